@@ -1,0 +1,174 @@
+"""Ground acceleration: sampled records and analytic pulses. SI units, zero outside their duration."""
+
+import hashlib
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .errors import SceneError
+
+PULSES = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
+
+# A Ricker wavelet has no ends; four periods around its centre leave a step below 1e-15 of the amplitude.
+RICKER_PERIODS = 4.0
+
+
+def _positive(key, value, unit):
+    if not (isinstance(value, (int, float)) and math.isfinite(value) and value > 0):
+        raise SceneError(key, value, "not a positive number", f"give a finite value above 0 [{unit}]")
+
+
+@dataclass(frozen=True, eq=False)
+class SampledMotion:
+    """Ground acceleration at equal intervals, linear in between, zero after the last sample.
+
+    Parameters
+    ----------
+    dt : float
+        Sampling interval [s].
+    samples : array, shape (n,)
+        Accelerations [m/s2], the first at t = 0; n >= 2. Kept read-only.
+    label : str
+        What the motion is, for plots and tables.
+    """
+
+    dt: float
+    samples: np.ndarray = field(repr=False)
+    label: str = "sampled motion"
+
+    def __post_init__(self):
+        _positive("motion.dt", self.dt, "s")
+        samples = np.array(self.samples, dtype=np.float64)
+        if samples.ndim != 1 or len(samples) < 2:
+            raise SceneError("motion.record", f"shape {samples.shape}", "holds fewer than two samples",
+                             "give at least two accelerations")
+        if not np.isfinite(samples).all():
+            first = int(np.flatnonzero(~np.isfinite(samples))[0])
+            raise SceneError("motion.record", float(samples[first]), f"sample {first} is not finite",
+                             "mend or remove it")
+        samples.flags.writeable = False
+        object.__setattr__(self, "samples", samples)
+        object.__setattr__(self, "dt", float(self.dt))
+
+    @property
+    def start(self):
+        return 0.0
+
+    @property
+    def end(self):
+        """Time of the last sample [s]."""
+        return (len(self.samples) - 1) * self.dt
+
+    @property
+    def peak(self):
+        """Peak ground acceleration [m/s2] (absolute)."""
+        return float(np.abs(self.samples).max())
+
+    @property
+    def peak_time(self):
+        """Time of the peak [s]."""
+        return float(np.abs(self.samples).argmax() * self.dt)
+
+    def acceleration(self, t):
+        """Acceleration [m/s2] at time(s) t [s]; zero before 0 and after the last sample."""
+        times = np.arange(len(self.samples)) * self.dt
+        return np.interp(t, times, self.samples, left=0.0, right=0.0)
+
+    def scaled(self, factor):
+        """The same motion times `factor`."""
+        return SampledMotion(self.dt, self.samples * factor, self.label)
+
+    def digest(self):
+        """Content of the motion as a hash: equal motions have equal digests."""
+        return hashlib.sha256(np.float64(self.dt).tobytes() + self.samples.tobytes()).hexdigest()
+
+
+@dataclass(frozen=True)
+class PulseMotion:
+    """A pulse given by a formula; with u = frequency (t - start):
+
+    one-sine: a sin u, 0 <= u <= 2 pi; one-cosine: a cos u, 0 <= u <= 2 pi; half-sine: a sin u, 0 <= u <= pi;
+    rectangular: a, 0 <= u <= pi; ricker: a (1 - 2 b) exp(-b), b = (u - 4 pi)^2/4, 0 <= u <= 8 pi.
+
+    Parameters
+    ----------
+    shape : str
+        One of `PULSES`.
+    amplitude : float
+        a [m/s2]; may be negative.
+    frequency : float
+        [rad/s], above 0.
+    start : float
+        [s], not negative.
+    """
+
+    shape: str
+    amplitude: float
+    frequency: float
+    start: float = 0.0
+
+    def __post_init__(self):
+        if self.shape not in PULSES:
+            raise SceneError("motion.pulse", self.shape, "not a known pulse", "choose one of " + ", ".join(PULSES))
+        for name in ("amplitude", "frequency", "start"):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+                raise SceneError(f"motion.{name}", value, "not a finite number", "give a finite number")
+            object.__setattr__(self, name, float(value))
+        _positive("motion.frequency", self.frequency, "rad/s")
+        if self.start < 0:
+            raise SceneError("motion.start", self.start, "negative", "start the pulse at 0 or later [s]")
+
+    @property
+    def label(self):
+        return f"{self.shape} pulse, {self.amplitude:.4g} m/s2, {self.frequency:.4g} rad/s"
+
+    @property
+    def length(self):
+        """Duration of the pulse [s]."""
+        turns = {"one-sine": 1.0, "one-cosine": 1.0, "half-sine": 0.5, "rectangular": 0.5,
+                 "ricker": RICKER_PERIODS}[self.shape]
+        return turns * 2 * math.pi / self.frequency
+
+    @property
+    def end(self):
+        """Time at which the pulse is over [s]."""
+        return self.start + self.length
+
+    @property
+    def peak(self):
+        """Peak ground acceleration [m/s2] (absolute)."""
+        return abs(self.amplitude)
+
+    @property
+    def peak_time(self):
+        """First time of the peak [s]."""
+        offset = {"one-sine": math.pi / 2, "half-sine": math.pi / 2, "one-cosine": 0.0, "rectangular": 0.0,
+                  "ricker": RICKER_PERIODS * math.pi}[self.shape]
+        return self.start + offset / self.frequency
+
+    def acceleration(self, t):
+        """Acceleration [m/s2] at time(s) t [s]; zero outside the pulse."""
+        t = np.asarray(t, dtype=float)
+        u = self.frequency * (t - self.start)
+        if self.shape == "one-cosine":
+            value = np.cos(u)
+        elif self.shape == "rectangular":
+            value = np.ones_like(u)
+        elif self.shape == "ricker":
+            b = 0.25 * (u - RICKER_PERIODS * math.pi) ** 2
+            value = (1 - 2 * b) * np.exp(-b)
+        else:
+            value = np.sin(u)
+        inside = (t >= self.start) & (t <= self.end)
+        return np.where(inside, self.amplitude * value, 0.0)[()]
+
+    def scaled(self, factor):
+        """The same pulse times `factor`."""
+        return PulseMotion(self.shape, self.amplitude * factor, self.frequency, self.start)
+
+    def digest(self):
+        """Content of the motion as a hash: equal motions have equal digests."""
+        content = (self.shape, self.amplitude.hex(), self.frequency.hex(), self.start.hex())
+        return hashlib.sha256(repr(content).encode()).hexdigest()

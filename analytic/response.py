@@ -1,0 +1,153 @@
+"""What comes out of a simulation, the same for every solver."""
+
+import dataclasses
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+OUTCOMES = ("stands", "rocks", "overturns", "failed")
+
+
+@dataclass(frozen=True)
+class Impact:
+    """One impact: time [s], tilt rate before and after [rad/s], jump of the base velocity [m/s]."""
+
+    time: float
+    rate_before: float
+    rate_after: float
+    base_velocity_jump: float
+
+
+@dataclass(frozen=True)
+class State:
+    """Time [s], tilt [rad], tilt rate [rad/s], base displacement [m] and velocity [m/s], bearing force [N].
+
+    The bearing force is that of all bearings together, viscous part included.
+    """
+
+    time: float
+    tilt: float
+    tilt_rate: float
+    base_displacement: float
+    base_velocity: float
+    bearing_force: float
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """Arrays of shape (n,): the fields of `State` over time, and the ground acceleration [m/s2]."""
+
+    time: np.ndarray
+    tilt: np.ndarray
+    tilt_rate: np.ndarray
+    base_displacement: np.ndarray
+    base_velocity: np.ndarray
+    bearing_force: np.ndarray
+    ground_acceleration: np.ndarray
+
+    COLUMNS = ("time", "tilt", "tilt_rate", "base_displacement", "base_velocity", "bearing_force",
+               "ground_acceleration")
+
+    def to_csv(self, path):
+        """Write the columns with a header line; `path` is a file name or an open text file."""
+        table = np.column_stack([getattr(self, name) for name in self.COLUMNS])
+        np.savetxt(path, table, delimiter=",", header=",".join(self.COLUMNS), comments="", fmt="%.17g")
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Energy ledger [J]: what went in and where it went, in the ground's frame, from start to end.
+
+    kinetic and potential (gravity and the bearings' elastic kb x part) are changes from start to end;
+    input is the work of the inertial ground load; hysteretic, viscous and impact_loss are what left.
+    """
+
+    kinetic: float
+    potential: float
+    input: float
+    hysteretic: float
+    viscous: float
+    impact_loss: float
+
+    @property
+    def imbalance(self):
+        """input - (changes + losses) [J]; zero for an exact solution."""
+        return self.input - (self.kinetic + self.potential + self.hysteretic + self.viscous + self.impact_loss)
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why a run failed: a reason in plain words, the engine's own message, the last finite state."""
+
+    reason: str
+    message: str = ""
+    last_state: State | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """Result of ``simulate(scene, ...)``; see the field comments for units."""
+
+    engine: str
+    variant: str
+    outcome: str  # one of OUTCOMES; "stands": the block never lifted
+    overturning_time: float | None  # s, |tilt| = pi/2
+    unstable_time: float | None  # s, first |tilt| = slenderness: a diagnostic, no proof of overturning
+    peak_tilt: float  # rad
+    peak_tilt_ratio: float  # peak tilt / slenderness
+    peak_base_displacement: float  # m
+    peak_base_acceleration: float  # m/s2, absolute
+    impacts: tuple[Impact, ...]
+    uplifts: tuple[float, ...]  # s
+    rests: tuple[float, ...]  # s, limit times of accumulating impacts
+    friction_demand: float  # max |H|/N at the contact
+    min_normal_ratio: float  # min N/(m g) at the contact
+    end: State
+    cpu_seconds: float  # of the simulation alone: no import, no compilation
+    steps: int
+    settings: dict
+    versions: dict
+    scene: str = ""  # name
+    failure: Failure | None = None
+    energy: Energy | None = None
+    history: History | None = field(default=None, repr=False)
+
+    def __post_init__(self):
+        if self.outcome not in OUTCOMES:
+            raise ValueError(f"outcome {self.outcome!r} is none of {OUTCOMES}")
+        if (self.outcome == "failed") != (self.failure is not None):
+            raise ValueError("a failed response carries a failure, and no other does")
+
+    @property
+    def impact_count(self):
+        return len(self.impacts)
+
+    def to_json(self):
+        """The response without its history as a JSON-ready dict; non-finite numbers become None."""
+        values = {}
+        for part in dataclasses.fields(self):
+            if part.name == "history":
+                continue
+            value = getattr(self, part.name)
+            if dataclasses.is_dataclass(value):
+                value = dataclasses.asdict(value)
+            elif part.name == "impacts":
+                value = [dataclasses.asdict(impact) for impact in value]
+                values["impact_count"] = len(value)
+            elif isinstance(value, tuple):
+                value = list(value)
+            values[part.name] = value
+        return _finite(values)
+
+
+def _finite(value):
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,112 @@
+"""Uplift, rocking and impact of a rigid block: eqs (1)-(8) of the Caryatid paper, corrected where misprinted.
+
+tilt phi > 0 tips toward +x; s = sgn(phi) is the side; x is the base displacement relative to the ground.
+"""
+
+import math
+from dataclasses import dataclass
+
+from .bearing import BearingLaw
+
+
+@dataclass(frozen=True)
+class RockingModel:
+    """The equations of one scene, one method per equation.
+
+    Attributes
+    ----------
+    m, M, J : float
+        Mass of the block, of block and base together [kg]; J_O about a base corner [kg m2].
+    R, gamma, g : float
+        Radius [m], slenderness [rad], gravity [m/s2].
+    on_base : bool
+        False on rigid ground.
+    bearing : BearingLaw
+    restitution : float
+        e_phi of eq. (7), or the scene's own value; at least 0.
+    """
+
+    m: float
+    M: float
+    J: float
+    R: float
+    gamma: float
+    g: float
+    on_base: bool
+    bearing: BearingLaw
+    restitution: float
+    mass_share: float
+
+    @classmethod
+    def of(cls, scene):
+        block = scene.block
+        e = restitution(scene) if block.restitution is None else block.restitution
+        return cls(block.mass, scene.total_mass, block.inertia, block.radius, block.slenderness, scene.gravity,
+                   scene.base is not None, BearingLaw.of(scene.bearings), max(e, 0.0), scene.mass_share)
+
+    def lever(self, s, tilt):
+        """(c, n) [m]: height of the centre of mass above the corner, and its signed horizontal lever."""
+        angle = s * self.gamma - tilt
+        return self.R * math.cos(angle), self.R * math.sin(angle)
+
+    def contact_acceleration(self, bearing_force):
+        """x'' + a_g [m/s2] of the base in full contact, eq. (2)."""
+        return -bearing_force / self.M
+
+    @property
+    def uplift_acceleration(self):
+        """|absolute base acceleration| above which the block lifts: g tan(gamma) [m/s2]."""
+        return self.g * math.tan(self.gamma)
+
+    def accelerations(self, s, tilt, rate, ground, bearing_force):
+        """(phi'', x'') [rad/s2, m/s2] while rocking about the corner of side s, eqs (3)-(6).
+
+        On rigid ground x'' is 0 and the bearing force is not used.
+        """
+        c, n = self.lever(s, tilt)
+        if not self.on_base:
+            return -self.m * (c * ground + self.g * n) / self.J, 0.0
+        m, M, J = self.m, self.M, self.J
+        # M (a_g + x'') + m c phi'' = -m n phi'^2 - F;   m c (a_g + x'') + J phi'' = -m g n
+        push, moment = -m * n * rate * rate - bearing_force, -m * self.g * n
+        determinant = M * J - (m * c) ** 2
+        absolute = (J * push - m * c * moment) / determinant
+        return (M * moment - m * c * push) / determinant, absolute - ground
+
+    def impact(self, rate):
+        """(phi'+, jump of x') of an impact at tilt rate phi'-, eqs (7) and (8).
+
+        (8) is printed with a factor R cos(gamma) too many; this form conserves horizontal momentum.
+        """
+        after = self.restitution * rate
+        return after, self.mass_share * self.R * math.cos(self.gamma) * (rate - after)
+
+    def contact_forces(self, s, tilt, rate, tilt_acceleration, base_acceleration):
+        """(H, N) [N]: horizontal and normal force of the base on the block, base_acceleration absolute."""
+        c, n = self.lever(s, tilt)
+        horizontal = self.m * (base_acceleration + c * tilt_acceleration + n * rate * rate)
+        normal = self.m * (self.g + n * tilt_acceleration - c * rate * rate)
+        return horizontal, normal
+
+
+def restitution(scene):
+    """e_phi of eq. (7), momentum-exact: 1 - 2 m b^2/(J_O - m mt h^2). May be negative (stocky block, light base)."""
+    block = scene.block
+    b, h = block.half_width, block.half_height
+    return 1 - 2 * block.mass * b**2 / (block.inertia - block.mass * scene.mass_share * h**2)  # (7)
+
+
+def base_jump_length(scene):
+    """e_x of eq. (8), corrected [m]: x'+ = x'- - e_x phi'-."""
+    block, mt = scene.block, scene.mass_share
+    R, gamma, m = block.radius, block.slenderness, block.mass
+    return (2 * R**3 * math.sin(gamma) ** 2 * math.cos(gamma) * m * mt
+            / (R**2 * math.cos(gamma) ** 2 * m * mt - block.inertia))  # (8)
+
+
+def base_jump_length_as_printed(scene):
+    """e_x of eq. (8) as printed: a factor R cos(gamma) too many, so a length squared. Kept to show the misprint."""
+    block, mt = scene.block, scene.mass_share
+    R, gamma, m = block.radius, block.slenderness, block.mass
+    return (2 * R**4 * (math.sin(gamma) * math.cos(gamma)) ** 2 * m * mt
+            / (R**2 * math.cos(gamma) ** 2 * m * mt - block.inertia))

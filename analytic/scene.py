@@ -1,0 +1,166 @@
+"""What is simulated: a rigid block, its base, the bearings, the ground motion. Frozen, SI units."""
+
+import hashlib
+import json
+import math
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from .motion import PulseMotion, SampledMotion
+
+Positive = Annotated[float, Field(gt=0)]
+NotNegative = Annotated[float, Field(ge=0)]
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False,
+                              arbitrary_types_allowed=True)
+
+
+class Block(_Part):
+    """The rigid block.
+
+    mass m [kg]; radius R [m], base corner to centre of mass; slenderness gamma [rad], angle of R to the
+    vertical; corner_inertia J_O [kg m2] about a base corner, default 4/3 m R^2 (rectangle); restitution
+    overrides the e_phi of eq. (7).
+    """
+
+    mass: Positive
+    radius: Positive
+    slenderness: Annotated[float, Field(gt=0, lt=math.pi / 2)]
+    corner_inertia: Positive | None = None
+    restitution: Annotated[float, Field(ge=0, le=1)] | None = None
+
+    @model_validator(mode="after")
+    def _inertia_is_possible(self):
+        least = self.mass * self.radius**2
+        if self.corner_inertia is not None and self.corner_inertia <= least:
+            raise ValueError(f"corner_inertia must exceed mass radius^2 = {least:.6g} kg m2 (parallel axes)")
+        return self
+
+    @property
+    def inertia(self):
+        """J_O [kg m2] about a base corner."""
+        return 4 / 3 * self.mass * self.radius**2 if self.corner_inertia is None else self.corner_inertia
+
+    @property
+    def centre_inertia(self):
+        """Moment of inertia about the centre of mass [kg m2]."""
+        return self.inertia - self.mass * self.radius**2
+
+    @property
+    def half_width(self):
+        """b = R sin(gamma) [m]."""
+        return self.radius * math.sin(self.slenderness)
+
+    @property
+    def half_height(self):
+        """h = R cos(gamma) [m]."""
+        return self.radius * math.cos(self.slenderness)
+
+
+class Base(_Part):
+    """The isolated base under the block: mass m_b [kg]."""
+
+    mass: Positive
+
+
+class Bearings(_Part):
+    """The bearings under the base; all stiffnesses and forces per bearing.
+
+    algebraic: the hysteretic law of eqs (9)-(14). linear: f = ka x; kb, alpha and delta_k are not used.
+    bouc-wen: an ODE-state law matched to the f0, ka and kb of the algebraic one. damping [N s/m] adds a
+    viscous force to any of them.
+    """
+
+    law: Literal["algebraic", "linear", "bouc-wen"] = "algebraic"
+    count: Annotated[int, Field(ge=1)] = 1
+    ka: Positive
+    kb: NotNegative | None = None
+    alpha: Annotated[float, Field(gt=1)] | None = None
+    delta_k: Positive = 1e-20
+    damping: NotNegative = 0.0
+
+    @model_validator(mode="after")
+    def _law_is_complete(self):
+        if self.law != "linear":
+            for name in ("kb", "alpha"):
+                if getattr(self, name) is None:
+                    raise ValueError(f"{name} is missing; the {self.law} law needs it")
+            if self.ka <= self.kb:
+                raise ValueError(f"ka must exceed kb, but ka = {self.ka:.6g} and kb = {self.kb:.6g} N/m")
+            if self.delta_k >= self.ka - self.kb:
+                raise ValueError("delta_k must be far smaller than ka - kb")
+        return self
+
+
+class Start(_Part):
+    """Initial state: tilt [rad], tilt_rate [rad/s], base_displacement [m], base_velocity [m/s].
+
+    An initial base displacement is reached by loading the virgin bearing monotonically to it.
+    """
+
+    tilt: Annotated[float, Field(gt=-math.pi / 2, lt=math.pi / 2)] = 0.0
+    tilt_rate: float = 0.0
+    base_displacement: float = 0.0
+    base_velocity: float = 0.0
+
+
+class Scene(_Part):
+    """One thing to simulate. A part that is None is not modelled at all.
+
+    Without a base the block stands on rigid ground; without bearings the base slides freely; without a
+    motion the block moves freely.
+    """
+
+    block: Block
+    base: Base | None = None
+    bearings: Bearings | None = None
+    motion: SampledMotion | PulseMotion | None = None
+    start: Start = Start()
+    duration: Positive
+    gravity: Positive = 9.81
+    name: str = ""
+
+    @model_validator(mode="after")
+    def _parts_fit(self):
+        if self.base is None:
+            if self.bearings is not None:
+                raise ValueError("bearings need a [base]")
+            for name in ("base_displacement", "base_velocity"):
+                if getattr(self.start, name) != 0:
+                    raise ValueError(f"start.{name} needs a [base]")
+        return self
+
+    @property
+    def rocking_frequency(self):
+        """omega_r = sqrt(m g R/J_O) [rad/s], eq. (1)."""
+        block = self.block
+        return math.sqrt(block.mass * self.gravity * block.radius / block.inertia)
+
+    @property
+    def total_mass(self):
+        """m + m_b [kg]."""
+        return self.block.mass + (self.base.mass if self.base else 0.0)
+
+    @property
+    def mass_share(self):
+        """m/(m + m_b), the paper's m-tilde; 0 on rigid ground."""
+        return self.block.mass / self.total_mass if self.base else 0.0
+
+    def with_(self, **changes):
+        """A copy with fields replaced, validated again; ``block={"slenderness": 0.2}`` changes one part."""
+        values = {name: getattr(self, name) for name in type(self).model_fields}
+        for name, change in changes.items():
+            part = values.get(name)
+            if isinstance(change, dict) and isinstance(part, BaseModel):
+                change = type(part)(**{**part.model_dump(), **change})
+            values[name] = change
+        return type(self)(**values)
+
+    def digest(self):
+        """Content of the scene as a hash: scenes that simulate alike have equal digests (the name is left out)."""
+        content = self.model_dump(mode="python", exclude={"name", "motion"})
+        content["motion"] = self.motion.digest() if self.motion else None
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

@@ -1,0 +1,48 @@
+"""The same scene in multibody engines: ``get_engine("exudyn").simulate(scene)``.
+
+A new engine is one new file with ``simulate``, ``VARIANTS`` and ``versions`` (see contract.py), and one line here.
+"""
+
+from importlib import import_module
+
+from analytic.errors import EngineNotInstalled
+
+# name: (module, package that must be importable, how to install it)
+ENGINES = {
+    "exudyn": ("engines.exudyn_engine", "exudyn", "pip install exudyn"),
+    "pybullet": ("engines.pybullet_engine", "pybullet",
+                 "pip install pybullet (its wheels end at CPython 3.11: use Python 3.11)"),
+    "mujoco": ("engines.mujoco_engine", "mujoco", "pip install 'rocking[mujoco]'"),
+}
+
+
+def get_engine(name):
+    """The engine module called `name`.
+
+    Raises
+    ------
+    KeyError
+        The name is unknown; the message lists the known ones.
+    EngineNotInstalled
+        The engine's package cannot be imported; the message says how to install it.
+    """
+    if name not in ENGINES:
+        raise KeyError(f"unknown engine {name!r}: choose one of {', '.join(ENGINES)}")
+    module, package, remedy = ENGINES[name]
+    try:
+        import_module(package)
+    except ImportError as error:
+        raise EngineNotInstalled(f"engine {name!r} needs the package {package}: {remedy}") from error
+    return import_module(module)
+
+
+def installed_engines():
+    """Names of the engines that can be used here."""
+    names = []
+    for name in ENGINES:
+        try:
+            get_engine(name)
+        except ImportError:
+            continue
+        names.append(name)
+    return tuple(names)
