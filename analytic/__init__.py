@@ -4,6 +4,7 @@ from .errors import EngineNotInstalled, SceneError, SettingError
 from .motion import PulseMotion, SampledMotion
 from .response import Energy, Failure, History, Impact, Response, State
 from .scene import Base, Bearings, Block, Scene, Start
+from .solver import simulate
 
 __all__ = ["Base", "Bearings", "Block", "Energy", "EngineNotInstalled", "Failure", "History", "Impact",
-           "PulseMotion", "Response", "SampledMotion", "Scene", "SceneError", "SettingError", "Start", "State"]
+           "PulseMotion", "Response", "SampledMotion", "Scene", "SceneError", "SettingError", "Start", "State", "simulate"]

@@ -1,0 +1,131 @@
+"""Values and first roots of the Taylor polynomials of a step (compiled).
+
+A polynomial is an array of coefficients, lowest first; `order` is the highest power used.
+"""
+
+import numpy as np
+from numba import njit
+
+MAX_ORDER = 24
+BISECTIONS = 60
+
+
+@njit(cache=True)
+def value(f, order, t):
+    """f(t) by Horner's rule."""
+    total = f[order]
+    for k in range(order - 1, -1, -1):
+        total = total * t + f[k]
+    return total
+
+
+@njit(cache=True)
+def bracketed_root(f, first, order, low, high):
+    """Root of f(t)/t^first in (low, high], where it falls from + to -: Newton from the far end, kept in the bracket.
+
+    Just after an impact f is concave, so Newton from the far end cannot fall back to the trivial root at 0.
+    """
+    t = high
+    for _ in range(BISECTIONS):
+        total, slope = f[order], 0.0
+        for k in range(order - 1, first - 1, -1):
+            slope = slope * t + total
+            total = total * t + f[k]
+        if total > 0:
+            low = t
+        elif total < 0:
+            high = t
+        else:
+            return t
+        step = total / slope if slope < 0 else 0.0
+        following = t - step
+        if slope >= 0 or following <= low or following >= high:
+            # Newton's step ends on the bracket only when it has converged to it
+            if slope < 0 and abs(step) <= 4e-16 * t:
+                return t
+            following = 0.5 * (low + high)
+        if abs(following - t) <= 2e-16 * t:
+            return following
+        t = following
+    return t
+
+
+@njit(cache=True)
+def first_root(f, order, h, work):
+    """First t in [0, h] where f falls below 0, or -1; f > 0 just after 0 unless it falls at once (then 0).
+
+    Leading zero coefficients are a root at 0 and are divided out (just after an impact, or at the third-order
+    onset of uplift). Bernstein coefficients bound the polynomial, so no crossing is missed, however many there are.
+
+    work : scratch array, shape (BISECTIONS + 2, MAX_ORDER + 1)
+    """
+    first = 0
+    while first <= order and f[first] == 0.0:
+        first += 1
+    if first > order:
+        return -1.0
+    if f[first] < 0:
+        return 0.0
+    lowest, power = f[first], 1.0
+    for k in range(first + 1, order + 1):
+        power *= h
+        if f[k] < 0:
+            lowest += f[k] * power
+    if lowest > 0:
+        return -1.0
+    steepest, power, end = 0.0, 1.0, 0.0
+    for k in range(first + 1, order + 1):
+        if k == first + 1 or f[k] > 0:
+            steepest += (k - first) * f[k] * power
+        power *= h
+    end = f[order]
+    for k in range(order - 1, first - 1, -1):
+        end = end * h + f[k]
+    if steepest < 0:  # falls all the way: at most one root
+        return bracketed_root(f, first, order, 0.0, h) if end < 0 else -1.0
+    return _isolated_root(f, first, order, h, work)
+
+
+@njit(cache=True)
+def _isolated_root(f, first, order, h, work):
+    """`first_root` for a polynomial that is not monotone: sign variations of Bernstein coefficients, halved as needed."""
+    n = order - first
+    starts = np.empty(BISECTIONS + 2)
+    widths = np.empty(BISECTIONS + 2)
+    coefficients, power, binomial = work[0], 1.0, 1.0
+    for k in range(n + 1):
+        coefficients[k] = f[first + k] * power / binomial
+        power *= h
+        binomial *= (n - k) / (k + 1)
+    for j in range(1, n + 1):
+        for i in range(n, j - 1, -1):
+            coefficients[i] += coefficients[i - 1]
+    starts[0], widths[0] = 0.0, h
+    top = 0
+    while top >= 0:
+        low, width, b = starts[top], widths[top], work[top]
+        sign, changes = 0.0, 0
+        for i in range(n + 1):
+            if b[i] != 0:
+                now = 1.0 if b[i] > 0 else -1.0
+                if sign == 0 and now < 0:
+                    return low
+                if sign != 0 and now != sign:
+                    changes += 1
+                sign = now
+        if changes == 1:
+            return bracketed_root(f, first, order, low, low + width)
+        if changes == 0 or top >= BISECTIONS:
+            top -= 1  # no crossing here, or a touch without crossing that no halving tells apart
+            continue
+        left = work[top + 1]
+        for i in range(n + 1):  # de Casteljau at the middle: left half on top of the stack, right half below it
+            left[i] = b[0]
+            for j in range(n - i):
+                b[j] = 0.5 * (b[j] + b[j + 1])
+        # b now holds the right half, since its last entries are the running right-hand ends
+        width *= 0.5
+        starts[top], widths[top] = low + width, width
+        starts[top + 1], widths[top + 1] = low, width
+        top += 1
+    return -1.0

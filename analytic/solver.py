@@ -1,0 +1,205 @@
+"""``simulate(scene)``: the analytic model, by the compiled kernel."""
+
+import math
+import time
+
+import numpy as np
+
+from . import kernel
+from .bearing import BearingLaw
+from .errors import SettingError
+from .kernel import Ground, Options
+from .motion import RICKER_PERIODS, SampledMotion
+from .polynomial import MAX_ORDER
+from .response import Energy, Failure, History, Impact, Response, State
+from .rocking import RockingModel
+from .taylor import HARMONIC, LINEAR_GROUND, QUIET, RICKER, Parameters
+
+# Chosen by measurement (`rocking bench analytic`): where CPU against error is least.
+ORDER = 18  # free flight and pulses: long steps
+SHORT_ORDER = 8  # between the samples of a record: steps end there anyway
+TOLERANCE = 1e-12
+# Impacts are followed down to this fraction of omega_r, then summed to their limit; see kernel.remaining_hops.
+REST_RATE = 1e-8
+# History points where the motion has no sampling interval of its own.
+HISTORY_POINTS = 2000
+
+_NO_SAMPLES = np.zeros(2)
+_NO_SAMPLES.flags.writeable = False  # the same compiled type as the samples of a motion
+
+
+def parameters(scene):
+    """The scene as the kernel's `Parameters`."""
+    model, law, start = RockingModel.of(scene), BearingLaw.of(scene.bearings), scene.start
+    return Parameters(model.m, model.M, model.J, model.R, model.gamma, model.g, scene.rocking_frequency**2,
+                      model.restitution, model.mass_share, model.on_base, law.law, law.count, law.kb, law.dk, law.alpha,
+                      law.d0, law.f0, law.damping, start.tilt, start.tilt_rate, start.base_displacement,
+                      start.base_velocity, law.start(start.base_displacement), scene.duration)
+
+
+def ground(motion, scale=1.0):
+    """The motion as the kernel's `Ground`, times `scale`."""
+    if motion is None:
+        return Ground(QUIET, 1.0, _NO_SAMPLES, 0.0, 0.0, 0.0, 0.0, 0.0)
+    if isinstance(motion, SampledMotion):
+        return Ground(LINEAR_GROUND, motion.dt, motion.samples, float(scale), 0.0, 0.0, 0.0, motion.end)
+    kind, frequency, phase = {
+        "one-sine": (HARMONIC, motion.frequency, 0.0),
+        "half-sine": (HARMONIC, motion.frequency, 0.0),
+        "one-cosine": (HARMONIC, motion.frequency, 0.5 * math.pi),
+        "rectangular": (HARMONIC, 0.0, 0.0),
+        "ricker": (RICKER, motion.frequency, -RICKER_PERIODS * math.pi),
+    }[motion.shape]
+    return Ground(kind, 1.0, _NO_SAMPLES, motion.amplitude * scale, frequency, phase, motion.start, motion.end)
+
+
+def options(tolerance=TOLERANCE, order=ORDER, short_order=SHORT_ORDER, rest_rate=REST_RATE, record=True,
+            decide=False, output_step=0.0):
+    """The kernel's `Options`, checked.
+
+    Raises
+    ------
+    SettingError
+        A setting is out of range.
+    """
+    if not 1e-17 <= tolerance <= 1e-2:
+        raise SettingError(f"tolerance = {tolerance!r}: give a value from 1e-17 to 1e-2")
+    for name, value in (("order", order), ("short_order", short_order)):
+        if not (isinstance(value, int) and 4 <= value <= MAX_ORDER):
+            raise SettingError(f"{name} = {value!r}: give an integer from 4 to {MAX_ORDER}")
+    if not 0 < rest_rate <= 1e-2:
+        raise SettingError(f"rest_rate = {rest_rate!r}: give a value above 0, up to 1e-2")
+    return Options(float(tolerance), order, short_order, float(rest_rate), record, decide, float(output_step))
+
+
+def versions():
+    """Versions of what the analytic model runs on."""
+    import numba
+
+    return {"numpy": np.__version__, "numba": numba.__version__}
+
+
+def simulate(scene, *, history=True, tolerance=TOLERANCE, rest_rate=REST_RATE, output_step=None):
+    """Simulate a scene with the analytic rocking model.
+
+    Parameters
+    ----------
+    scene : Scene
+    history : bool
+        Keep the history at multiples of `output_step` (and at the end).
+    tolerance : float
+        The accuracy knob: the last Taylor term of a step, relative to the motion within the step. The error at the
+        end is larger by the sensitivity of the motion (a few hundred times near overturning).
+    rest_rate : float
+        Impacts slower than this fraction of omega_r are summed to their limit and end in rest.
+    output_step : float or None
+        [s]; by default the sampling interval of the motion, or duration/2000.
+
+    Returns
+    -------
+    Response
+
+    Raises
+    ------
+    SettingError
+        A setting is out of range.
+    """
+    motion = scene.motion
+    if output_step is None:
+        output_step = motion.dt if isinstance(motion, SampledMotion) else scene.duration / HISTORY_POINTS
+    if output_step <= 0 or not math.isfinite(output_step):
+        raise SettingError(f"output_step = {output_step!r}: give a time above 0 [s]")
+    settings = {"tolerance": tolerance, "rest_rate": rest_rate, "order": ORDER, "short_order": SHORT_ORDER}
+    chosen = options(tolerance, rest_rate=rest_rate, output_step=output_step if history else 0.0)
+    par, shaking, totals = parameters(scene), ground(motion), np.zeros(kernel.TOTALS)
+    _warm()
+    begin = time.process_time()
+    result = kernel.run(par, shaking, chosen, totals)
+    cpu = time.process_time() - begin
+    return _response(scene, par, totals, result, cpu, settings, history)
+
+
+def _warm():
+    """Load (or once per machine compile) the kernel, so that cpu_seconds are those of the simulation alone."""
+    if not kernel.run.signatures:
+        from .scene import Block, Scene
+
+        scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.2), duration=1e-3)
+        kernel.run(parameters(scene), ground(None), options(output_step=1.0), np.zeros(kernel.TOTALS))
+
+
+def _response(scene, par, totals, result, cpu, settings, history):
+    (tilt, rate, x, v, z), impacts, uplifts, rests, table = result
+    law = BearingLaw.of(scene.bearings)
+    end = State(float(totals[kernel.TIME]), tilt, rate, x, v, law.force(x, z, v))
+    gamma, status = scene.block.slenderness, int(totals[kernel.STATUS])
+    failure = None
+    if status in (kernel.STUCK, kernel.NOT_FINITE):
+        reason = {kernel.STUCK: "the step became too small to advance", kernel.NOT_FINITE: "the state is not finite"}
+        failure = Failure(reason[status], last_state=end)
+    overturned = int(totals[kernel.MODE]) == kernel.OVERTURNED
+    if failure:
+        outcome = "failed"
+    elif overturned:
+        outcome = "overturns"
+    else:
+        outcome = "rocks" if totals[kernel.LIFTED] else "stands"
+    if scene.base is None:
+        peak_acceleration = _peak_ground_acceleration(scene.motion, end.time)
+    else:
+        peak_acceleration = float(totals[kernel.PEAK_ACCELERATION])
+    unstable = float(totals[kernel.UNSTABLE_TIME])
+    return Response(
+        engine="analytic", variant="kernel", scene=scene.name, outcome=outcome,
+        overturning_time=end.time if overturned else None,
+        unstable_time=unstable if unstable >= 0 else None,
+        peak_tilt=float(totals[kernel.PEAK_TILT]), peak_tilt_ratio=float(totals[kernel.PEAK_TILT]) / gamma,
+        peak_base_displacement=float(totals[kernel.PEAK_X]), peak_base_acceleration=peak_acceleration,
+        impacts=tuple(Impact(*map(float, row)) for row in impacts),
+        uplifts=tuple(uplifts[:, 0].tolist()), rests=tuple(rests[:, 0].tolist()),
+        friction_demand=float(totals[kernel.FRICTION]), min_normal_ratio=float(totals[kernel.NORMAL]),
+        end=end, cpu_seconds=cpu, steps=int(totals[kernel.STEPS]), settings=settings, versions=versions(),
+        failure=failure, energy=_energy(scene, par, totals, end),
+        history=_history(scene, table, end) if history else None,
+    )
+
+
+def _peak_ground_acceleration(motion, until):
+    if motion is None:
+        return 0.0
+    if motion.end <= until:
+        return motion.peak
+    times = np.append(np.arange(0.0, until, motion.dt if isinstance(motion, SampledMotion) else until / 10000), until)
+    return float(np.abs(motion.acceleration(times)).max())
+
+
+def _energy(scene, par, totals, end):
+    start = scene.start
+    bearing_kb = par.count * par.kb
+
+    def kinetic(tilt, rate, v):
+        side = math.copysign(1.0, tilt if tilt != 0 else rate)
+        c = par.R * math.cos(side * par.gamma - tilt)
+        moving = 0.5 * par.M * v * v + par.m * c * v * rate if par.on_base else 0.0
+        return 0.5 * par.J * rate * rate + moving
+
+    def potential(tilt, x):
+        # cos(gamma - |tilt|) - cos(gamma) without cancellation
+        rise = 2 * math.sin(par.gamma - 0.5 * abs(tilt)) * math.sin(0.5 * abs(tilt))
+        return par.m * par.g * par.R * rise + 0.5 * bearing_kb * x * x
+
+    return Energy(
+        kinetic=kinetic(end.tilt, end.tilt_rate, end.base_velocity) - kinetic(start.tilt, start.tilt_rate,
+                                                                             start.base_velocity),
+        potential=potential(end.tilt, end.base_displacement) - potential(start.tilt, start.base_displacement),
+        input=float(totals[kernel.INPUT]), hysteretic=float(totals[kernel.HYSTERETIC]),
+        viscous=float(totals[kernel.VISCOUS]), impact_loss=float(totals[kernel.IMPACT_LOSS]))
+
+
+def _history(scene, table, end):
+    last = np.array([[end.time, end.tilt, end.tilt_rate, end.base_displacement, end.base_velocity, end.bearing_force]])
+    if not len(table) or table[-1, 0] < end.time:
+        table = np.vstack([table, last])
+    columns = np.ascontiguousarray(table.T)
+    shaking = np.zeros(len(table)) if scene.motion is None else scene.motion.acceleration(columns[0])
+    return History(*columns, shaking)

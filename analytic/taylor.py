@@ -1,0 +1,133 @@
+"""Taylor series of the motion over one step (compiled): the equations of rocking.py, coefficient by coefficient.
+
+Arrays hold coefficients in the time since the start of the step, lowest first; entry 0 (the state) is given, the
+rest is filled up to `order`. S and C are sin and cos of s gamma - phi, so n = R S and c = R C.
+"""
+
+import math
+from collections import namedtuple
+
+import numpy as np
+from numba import njit
+
+from .bearing import ALGEBRAIC, BOUC_WEN
+
+INVERSE = np.array([0.0] + [1.0 / k for k in range(1, 64)])
+
+# Parameters of a run, one scalar each; see RockingModel and BearingLaw for their meaning.
+Parameters = namedtuple("Parameters", "m M J R gamma g p2 e mt on_base law count kb dk alpha d0 f0 damping "
+                                      "tilt rate x v z duration")
+
+# Kinds of ground motion within a segment.
+QUIET, LINEAR_GROUND, HARMONIC, RICKER = range(4)
+
+
+@njit(cache=True)
+def ground_series(order, kind, a0, a1, frequency, u, A):
+    """Coefficients of the ground acceleration; returns the highest one that is not zero, or -1.
+
+    LINEAR_GROUND: a0 + a1 t. HARMONIC: a0 sin(u + frequency t). RICKER: see PulseMotion, with u measured from its centre.
+    """
+    if kind == QUIET:
+        return -1
+    if kind == LINEAR_GROUND:
+        A[0], A[1] = a0, a1
+        return 1
+    if kind == HARMONIC:
+        A[0], A[1] = a0 * math.sin(u), a0 * frequency * math.cos(u)
+        for k in range(order - 1):
+            A[k + 2] = -frequency * frequency * A[k] * INVERSE[k + 1] * INVERSE[k + 2]
+        return order
+    b0, b1, b2 = 0.25 * u * u, 0.5 * u * frequency, 0.25 * frequency * frequency
+    e2, e1, e0 = 0.0, 0.0, math.exp(-b0)  # coefficients k-2, k-1, k of exp(-b)
+    for k in range(order + 1):
+        A[k] = a0 * (e0 - 2 * (b0 * e0 + b1 * e1 + b2 * e2))
+        e2, e1, e0 = e1, e0, -(b1 * e0 + 2 * b2 * e1) * INVERSE[k + 1]
+    return order
+
+
+@njit(cache=True)
+def rigid_series(order, p2, g, highest, A, phi, w, S, C):
+    """Rocking on rigid ground, eq. (4) with x = 0: phi'' = -p^2 (S + a_g/g C)."""
+    for k in range(order):
+        if k > 0:
+            sine, cosine = 0.0, 0.0
+            for j in range(k):
+                sine += w[j] * C[k - 1 - j]
+                cosine += w[j] * S[k - 1 - j]
+            S[k] = -sine * INVERSE[k]
+            C[k] = cosine * INVERSE[k]
+        push = 0.0
+        for j in range(min(k, highest) + 1):
+            push += A[j] * C[k - j]
+        w[k + 1] = -p2 * (S[k] + push / g) * INVERSE[k + 1]
+        phi[k + 1] = w[k] * INVERSE[k + 1]
+
+
+@njit(cache=True, inline="always")
+def _bearing_term(k, par, s, y0, x, v, q):
+    """z_k per bearing, k >= 1; q holds (1 + s x - s x_j + 2 x0)^(1 - alpha) for ALGEBRAIC, z for BOUC_WEN."""
+    if par.law == ALGEBRAIC:  # y q' = (1 - alpha) y' q
+        total = 0.0
+        for j in range(1, k + 1):
+            total += ((2 - par.alpha) * j - k) * x[j] * q[k - j]
+        q[k] = s * total * INVERSE[k] / y0
+        return s * par.dk / (1 - par.alpha) * q[k]
+    if par.law == BOUC_WEN:  # z' = (ka - kb)/2 v (1 - s z/f0)
+        total = 0.0
+        for j in range(k):
+            total += q[j] * v[k - 1 - j]
+        q[k] = 0.5 * par.dk * (v[k - 1] - s / par.f0 * total) * INVERSE[k]
+        return q[k]
+    return 0.0
+
+
+@njit(cache=True)
+def contact_series(order, par, s, y0, highest, A, x, v, q, F, absolute):
+    """Full contact on the base, eq. (2): (m + m_b)(a_g + x'') + n_d f = 0. F[0] and q[0] are given."""
+    for k in range(order + 1):
+        if k > 0:
+            z = _bearing_term(k, par, s, y0, x, v, q)
+            F[k] = par.count * (par.kb * x[k] + z + par.damping * v[k])
+        absolute[k] = -F[k] / par.M
+        if k < order:
+            relative = absolute[k] - A[k] if k <= highest else absolute[k]
+            v[k + 1] = relative * INVERSE[k + 1]
+            x[k + 1] = v[k] * INVERSE[k + 1]
+
+
+@njit(cache=True)
+def base_series(order, par, s, y0, highest, A, phi, w, S, C, x, v, q, F, absolute):
+    """Rocking on the base, eqs (3)-(6), with c phi'' + n phi'^2 written as (c phi')'.
+
+    M X + m (c phi')' = -F;   m c X + J phi'' = -m g n;   X = a_g + x''.
+    """
+    mR = par.m * par.R
+    c0 = mR * C[0]
+    scale = 1.0 / (par.M * par.J - c0 * c0)
+    for k in range(order + 1):
+        if k > 0:
+            sine = 0.0
+            for j in range(k):
+                sine += w[j] * C[k - 1 - j]
+            S[k] = -sine * INVERSE[k]
+            z = _bearing_term(k, par, s, y0, x, v, q)
+            F[k] = par.count * (par.kb * x[k] + z + par.damping * v[k])
+        cosine = 0.0
+        for j in range(k + 1):
+            cosine += w[j] * S[k - j]
+        C[k + 1] = cosine * INVERSE[k + 1]
+        momentum, lever = 0.0, 0.0
+        for j in range(1, k + 1):
+            momentum += C[j] * w[k + 1 - j]
+            lever += C[j] * absolute[k - j]
+        momentum += C[k + 1] * w[0]
+        push = -F[k] - mR * (k + 1) * momentum
+        moment = -mR * (par.g * S[k] + lever)
+        absolute[k] = (par.J * push - c0 * moment) * scale
+        if k < order:
+            w[k + 1] = (par.M * moment - c0 * push) * scale * INVERSE[k + 1]
+            phi[k + 1] = w[k] * INVERSE[k + 1]
+            relative = absolute[k] - A[k] if k <= highest else absolute[k]
+            v[k + 1] = relative * INVERSE[k + 1]
+            x[k + 1] = v[k] * INVERSE[k + 1]
