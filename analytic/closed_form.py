@@ -1,0 +1,165 @@
+"""What is known in closed form about a rocking block on rigid ground: the oracles of the numerical models.
+
+Exact for their equations: free rocking as a pendulum, phi'' = -omega_r^2 sin(s gamma - phi), and Housner's
+linear equation for slender blocks, phi'' = omega_r^2 (phi - s gamma - a_g/g).
+Sources: the pendulum's elliptic integral in the form of B. C. Carlson (1995), Numer. Algorithms 10, 13-26;
+G. W. Housner (1963), Bull. Seismol. Soc. Am. 53(2), 403-417; N. Makris, J. Zhang (2001), J. Eng. Mech. 127.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import quad
+from scipy.special import ellipj, elliprf
+
+
+def swing_energy(slenderness, peak):
+    """(cos(gamma - |peak|) - cos gamma)/2: energy above the upright position over 2 m g R, no units."""
+    peak = abs(peak)
+    return math.sin(slenderness - peak / 2) * math.sin(peak / 2)
+
+
+def swing_peak(slenderness, energy):
+    """|phi| [rad] at the peak of a swing of the given `swing_energy`."""
+    s = math.sin(slenderness / 2)
+    # u = gamma - |phi| has sin(u/2) = root; then sin((gamma - u)/2) without cancellation
+    root = math.sqrt(max(s * s - energy, 0.0))
+    sine = energy / (s * math.sqrt(1 - root * root) + root * math.cos(slenderness / 2))
+    return 2 * math.asin(sine)
+
+
+def quarter_period(omega_r, slenderness, energy):
+    """Time from the peak of a swing, at rest, to the impact [s].
+
+    [K(k) - F(psi, k)]/omega_r with k = cos(u0/2), sin psi = cos(gamma/2)/k and u0 = gamma - |peak|, written
+    as one integral F(theta, k), tan theta = 1/(k' tan psi), that loses no digits for small swings or near
+    the unstable point. `energy` is the `swing_energy`.
+
+    Raises
+    ------
+    ValueError
+        The swing reaches the unstable point |phi| = gamma and never returns.
+    """
+    s2 = math.sin(slenderness / 2) ** 2
+    complement = s2 - energy  # k'^2 = sin^2(u0/2)
+    if complement <= 0:
+        raise ValueError(f"swing energy {energy:.6g} reaches the unstable point ({s2:.6g}): no impact")
+    modulus = 1 - complement  # k^2
+    sine2 = energy / (s2 * modulus)
+    cosine2 = complement * (1 - s2) / (s2 * modulus)
+    return math.sqrt(sine2) * float(elliprf(cosine2, cosine2 + complement * sine2, 1.0)) / omega_r
+
+
+@dataclass(frozen=True, eq=False)
+class FreeRocking:
+    """Free rocking on rigid ground: arrays of shape (n,), one entry per impact.
+
+    times [s]; rates_before, rates_after: |tilt rate| [rad/s]; peaks: |tilt| [rad] of the swings that follow.
+    """
+
+    times: np.ndarray
+    rates_before: np.ndarray
+    rates_after: np.ndarray
+    peaks: np.ndarray
+
+
+def free_rocking(omega_r, slenderness, restitution, tilt, count):
+    """The first `count` impacts of a block released at rest from `tilt` [rad], 0 < |tilt| < slenderness.
+
+    Successive peaks obey cos(u') - cos(gamma) = e^2 (cos(u) - cos(gamma)), u = gamma - |phi|.
+
+    Raises
+    ------
+    ValueError
+        The tilt is 0 or not below the slenderness.
+    """
+    if not 0 < abs(tilt) < slenderness:
+        raise ValueError(f"tilt = {tilt!r}: free rocking needs 0 < |tilt| < slenderness = {slenderness!r}")
+    energies = swing_energy(slenderness, tilt) * restitution ** (2.0 * np.arange(count + 1))
+    quarters = np.array([quarter_period(omega_r, slenderness, energy) for energy in energies[:-1]])
+    flights = np.concatenate([quarters[:1], 2 * quarters[1:]])
+    rates = 2 * omega_r * np.sqrt(energies)
+    peaks = np.array([swing_peak(slenderness, energy) for energy in energies[1:]])
+    return FreeRocking(np.cumsum(flights), rates[:-1], rates[1:], peaks)
+
+
+def impacts_to_rest(omega_r, slenderness, restitution, tilt, rest_rate):
+    """Number of impacts until |phi'+| < rest_rate [rad/s], of a block released at rest from `tilt` [rad]."""
+    first = 2 * omega_r * math.sqrt(swing_energy(slenderness, tilt))
+    count = max(0, math.floor(math.log(rest_rate / first) / math.log(restitution)))
+    while first * restitution**count >= rest_rate:
+        count += 1
+    return count
+
+
+def remaining_time(rate_after, restitution, deceleration):
+    """Time [s] in which the further impacts end, after one with small rate_after = |phi'+| [rad/s].
+
+    Each flight lasts 2 |phi'+|/deceleration and leaves e times the rate: a geometric sum. `deceleration` is
+    |phi''| at phi = 0 [rad/s2]; corrections are of the order of rate_after^2.
+    """
+    return 2 * abs(rate_after) / (deceleration * (1 - restitution))
+
+
+def rest_time(omega_r, slenderness, restitution, tilt):
+    """Time [s] at which the impacts accumulate; released at rest from `tilt` [rad], restitution < 1."""
+    count = max(1, impacts_to_rest(omega_r, slenderness, restitution, tilt, 1e-9 * omega_r))
+    run = free_rocking(omega_r, slenderness, restitution, tilt, count)
+    deceleration = omega_r**2 * math.sin(slenderness)
+    return run.times[-1] + remaining_time(run.rates_after[-1], restitution, deceleration)
+
+
+def free_rocking_tilt(omega_r, slenderness, restitution, tilt, t):
+    """Tilt [rad] at t [s] of a block released at rest from `tilt` [rad]; 0 once the impacts have accumulated.
+
+    Within a swing sin(u/2) = sin(u0/2)/dn(omega_r (t - t_peak), cos(u0/2)), u = gamma - |phi|.
+    """
+    if t >= rest_time(omega_r, slenderness, restitution, tilt):
+        return 0.0
+    energy, peak_time, side = swing_energy(slenderness, tilt), 0.0, math.copysign(1.0, tilt)
+    while t > peak_time + (quarter := quarter_period(omega_r, slenderness, energy)):
+        energy *= restitution**2
+        peak_time += quarter + quarter_period(omega_r, slenderness, energy)
+        side = -side
+    complement = math.sin(slenderness / 2) ** 2 - energy
+    dn = float(ellipj(omega_r * (t - peak_time), 1 - complement)[2])
+    return side * (slenderness - 2 * math.asin(math.sqrt(complement) / dn))
+
+
+def linear_period(omega_r, tilt_ratio):
+    """Housner's period [s] of a slender block's full cycle with peaks |phi|/gamma = tilt_ratio, in (0, 1)."""
+    return 4 / omega_r * math.acosh(1 / (1 - tilt_ratio))
+
+
+def linear_decay(restitution, tilt_ratio, n):
+    """Housner's |phi_n|/gamma: the peak after n impacts of a slender block released from |phi_0|/gamma."""
+    energy = restitution ** (2 * n) * tilt_ratio * (2 - tilt_ratio)  # 1 - (1 - tilt_ratio)^2
+    return energy / (1 + math.sqrt(1 - energy))  # 1 - sqrt(1 - energy)
+
+
+def rectangular_pulse_critical_duration(omega_r, ratio):
+    """Shortest rectangular pulse [s] that overturns a slender block; ratio = a/(g gamma).
+
+    Infinite for ratio <= 1, where the block does not lift. The block overturns without impact.
+    """
+    return math.log(ratio / (ratio - 1)) / omega_r if ratio > 1 else math.inf
+
+
+def no_impact_overturning_integral(omega_r, motion, uplift, gravity=9.81):
+    """|omega_r times the integral of exp(-omega_r (t - uplift)) a_g/g dt| [rad] from `uplift` [s] on.
+
+    A slender block that lifts at `uplift` and does not come back before the motion is over overturns exactly
+    if this exceeds its slenderness. `motion` is a pulse or a record.
+    """
+    def growth(t):
+        return omega_r * math.exp(-omega_r * (t - uplift)) * float(motion.acceleration(t)) / gravity
+
+    if hasattr(motion, "samples"):  # quad must not smear the corners of a record
+        first = math.floor(uplift / motion.dt) + 1
+        corners = [uplift, *(motion.dt * np.arange(first, len(motion.samples)))]
+    else:
+        corners = np.linspace(uplift, motion.end, 9)
+    parts = [quad(growth, a, b, epsabs=1e-15, epsrel=1e-12)[0] if b > a else 0.0
+             for a, b in zip(corners[:-1], corners[1:], strict=True)]
+    return abs(math.fsum(parts))
