@@ -1,0 +1,264 @@
+"""What an engine's step history says, as a `Response`: one piece of code for all engines.
+
+An engine hands over its accepted steps as a `Trace`; the events, peaks and contact forces are found here, outside
+the engine, so that no engine is judged by its own measure. The time this takes is not part of ``cpu_seconds``.
+"""
+
+import math
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+
+from analytic.motion import SampledMotion
+from analytic.response import Failure, History, Impact, Response, State
+
+from .swings import ArrayModel, Trace, find_swings, to_contact
+
+# A landing after which the block stays in flat contact counts as an impact with rate 0 after it where the rate
+# before it is this many times the rate that leads to the edge of contact; a weaker one is the tail of a chatter.
+LANDING = 10.0
+
+HISTORY_POINTS = 2000
+
+
+def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, versions, history=True, failure=None,
+            ended=None):
+    """The response of an engine's run.
+
+    Parameters
+    ----------
+    scene : Scene
+    trace : Trace
+        Accepted steps from the start on; a step past overturning is used to find its time, what follows is not.
+    engine, variant, cpu_seconds, steps, settings, versions
+        Kept as they are in the response.
+    history : bool
+        Keep the history, on the motion's own grid for a sampled motion, else on 2000 equal intervals.
+    failure : Failure or None
+        The engine's own failure: the outcome is "failed", and the last finite state is filled in.
+    ended : str or None
+        "overturned" where the adapter stopped the run at overturning: if the last step lies before
+        |tilt| = pi/2, the block is taken to fall on at the model's acceleration.
+
+    Returns
+    -------
+    Response
+        stands: |tilt| never exceeded ``trace.contact_tilt``. A trace with non-finite states, or one that ends
+        before ``scene.duration`` for no stated reason, is "failed".
+
+    An impact is reported where the swings before and after it are both resolved, that is exceed contact_tilt;
+    its rates and base velocities are carried to tilt = 0 by the model's equations of flight. Where no such
+    swing follows, the block came to rest: at the limit of the model's impacts after the last landing.
+    Friction demand and normal force follow from the states and the model's accelerations.
+    """
+    trace, failure = _finite_part(trace, failure)
+    overturning_time = None
+    if trace is not None:
+        trace, overturning_time = _upto_overturning(scene, trace, ended)
+    given = dict(engine=engine, variant=variant, cpu_seconds=cpu_seconds, steps=steps, settings=settings,
+                 versions=versions, scene=scene.name)
+    if trace is None:
+        return Response(outcome="failed", overturning_time=None, unstable_time=None, peak_tilt=math.nan,
+                        peak_tilt_ratio=math.nan, peak_base_displacement=math.nan, peak_base_acceleration=math.nan,
+                        impacts=(), uplifts=(), rests=(), friction_demand=math.nan, min_normal_ratio=math.nan,
+                        end=State(*[math.nan] * 6), failure=failure, **given)
+    end = State(*(float(getattr(trace, name)[-1]) for name in Trace.COLUMNS))
+    if failure is None and overturning_time is None and end.time < scene.duration * (1 - 1e-9) - trace.time[1]:
+        failure = Failure("the run ended early", f"last step at {end.time:.9g} s of {scene.duration:.9g} s", end)
+    swings = find_swings(trace)
+    impacts, uplifts, rests = find_events(scene, trace, swings)
+    demand, normal, acceleration = contact_measures(scene, trace)
+    peak = _peak(trace.time, trace.tilt, trace.tilt_rate)
+    if failure is not None:
+        outcome = "failed"
+    elif overturning_time is not None:
+        outcome = "overturns"
+    else:
+        outcome = "rocks" if len(swings) else "stands"
+    return Response(
+        outcome=outcome, overturning_time=overturning_time, unstable_time=_unstable_time(scene, trace),
+        peak_tilt=peak, peak_tilt_ratio=peak / scene.block.slenderness,
+        peak_base_displacement=_peak(trace.time, trace.base_displacement, trace.base_velocity),
+        peak_base_acceleration=acceleration, impacts=impacts, uplifts=uplifts, rests=rests,
+        friction_demand=demand, min_normal_ratio=normal, end=end, failure=failure,
+        history=_history(scene, trace) if history else None, **given)
+
+
+def _finite_part(trace, failure):
+    """(the steps before the first non-finite one or None, the failure with its last finite state)."""
+    finite = np.isfinite([getattr(trace, name) for name in Trace.COLUMNS]).all(axis=0)
+    count = len(finite) if finite.all() else int(np.argmin(finite))
+    last = State(*(float(getattr(trace, name)[count - 1]) for name in Trace.COLUMNS)) if count else None
+    if count < len(finite):
+        first = Failure("the state is no longer finite", f"at step {count}, t = {trace.time[count]:.9g} s")
+        failure = failure or first
+    if failure is not None and failure.last_state is None:
+        failure = Failure(failure.reason, failure.message, last)
+    return (trace.upto(count) if count >= 2 else None), failure
+
+
+def _upto_overturning(scene, trace, ended):
+    """The trace up to |tilt| = pi/2 with that state as its last step, and its time; or the whole trace and None."""
+    limit = math.pi / 2
+    over = np.flatnonzero(np.abs(trace.tilt) >= limit)
+    if len(over) and over[0] > 0:
+        last = int(over[0])
+        pair = slice(last - 1, last + 1)
+        t = _crossing(trace.time[pair], trace.tilt[pair], trace.tilt_rate[pair], limit * np.sign(trace.tilt[last]))
+        weight = (t - trace.time[last - 1]) / (trace.time[last] - trace.time[last - 1])
+        columns = {name: (1 - weight) * getattr(trace, name)[last - 1] + weight * getattr(trace, name)[last]
+                   for name in Trace.COLUMNS[2:]}
+        columns.update(time=t, tilt=math.copysign(limit, trace.tilt[last]))
+        if weight == 0:
+            last -= 1
+        return Trace(*(np.append(getattr(trace, name)[:last], columns[name]) for name in Trace.COLUMNS),
+                     trace.contact_tilt), t
+    side = np.sign(trace.tilt[-1])
+    if ended == "overturned" and side * trace.tilt_rate[-1] > 0:
+        model = ArrayModel.of(scene)
+        ground = scene.motion.acceleration(trace.time[-1]) if scene.motion else 0.0
+        pull = side * model.accelerations(side, trace.tilt[-1], trace.tilt_rate[-1], ground,
+                                          trace.bearing_force[-1])[0]
+        q, p = side * trace.tilt_rate[-1], abs(trace.tilt[-1]) - limit
+        return trace, float(trace.time[-1] - 2 * p / (q + math.sqrt(max(q * q - 2 * pull * p, 0.0))))
+    return trace, None
+
+
+def _crossing(time, value, rate, level):
+    """Time at which the cubic through both ends of a step first takes `level`."""
+    roots = CubicHermiteSpline(time, value, rate).solve(level, extrapolate=False)
+    roots = roots[np.isfinite(roots)]
+    if len(roots):
+        return float(roots.min())
+    return float(np.interp(level, value, time)) if value[0] < value[1] else float(np.interp(-level, -value, time))
+
+
+def _unstable_time(scene, trace):
+    """First time of |tilt| = slenderness [s], or None."""
+    over = np.flatnonzero(np.abs(trace.tilt) >= scene.block.slenderness)
+    if not len(over):
+        return None
+    i = int(over[0])
+    if i == 0:
+        return float(trace.time[0])
+    pair = slice(i - 1, i + 1)
+    return _crossing(trace.time[pair], trace.tilt[pair], trace.tilt_rate[pair],
+                     math.copysign(scene.block.slenderness, trace.tilt[i]))
+
+
+def _peak(time, value, rate):
+    """Largest |value|, between the steps by the cubic through both ends of a step."""
+    i = int(np.abs(value).argmax())
+    side, best = math.copysign(1.0, value[i]), abs(value[i])
+    for k in (i - 1, i):
+        if 0 <= k < len(time) - 1 and side * rate[k] > 0 > side * rate[k + 1]:
+            cubic = CubicHermiteSpline(time[k:k + 2], value[k:k + 2], rate[k:k + 2])
+            roots = cubic.derivative().roots(extrapolate=False)
+            best = max(best, *np.abs(cubic(roots)), 0.0)
+    return float(best)
+
+
+def find_events(scene, trace, swings):
+    """(impacts, uplifts, rests) of the swings of a trace; see `observe`."""
+    n = len(swings)
+    if n == 0:
+        return (), (), ()
+    model = ArrayModel.of(scene)
+    land, before, v_before = to_contact(scene, trace, swings.last, swings.side, 1)
+    lift, after, v_after = to_contact(scene, trace, swings.first, swings.side, -1)
+    edge = trace.contact_tilt
+    impacts, uplifts, rests = [], [], []
+    for i in range(n):
+        first, last = swings.first[i], swings.last[i]
+        if i == 0 and scene.start.tilt == 0 and scene.start.tilt_rate == 0:
+            uplifts.append(_uplift_time(model, scene, trace, 0, first))
+        if last == len(trace.time) - 1:
+            break  # the trace ends in flight
+        following = swings.first[i + 1] if i + 1 < n else None
+        if following is not None:
+            slack = 2 * max(trace.time[last + 1] - trace.time[last], trace.time[following] - trace.time[following - 1])
+            slack += edge / abs(before[i]) + edge / abs(after[i + 1])
+            crossed = swings.side[i + 1] == -swings.side[i] and lift[i + 1] - land[i] <= slack  # False for NaN
+            if crossed or (swings.side[i + 1] == -swings.side[i] and following == last + 1
+                           and np.isfinite(before[i] + after[i + 1])):
+                impacts.append(Impact(float(land[i]), float(before[i]), float(after[i + 1]),
+                                      float(v_after[i + 1] - v_before[i])))
+                continue
+            if swings.side[i + 1] == swings.side[i] and not np.isfinite(land[i]):
+                continue  # it grazed contact without landing
+        landing = float(land[i]) if np.isfinite(land[i]) else float(trace.time[last])
+        limit, pull = _limit_time(model, scene, trace, last, swings.side[i], landing, before[i])
+        strong = pull > 0 and abs(before[i]) > LANDING * math.sqrt(2 * pull * edge)
+        if strong:
+            k = min(int(np.searchsorted(trace.time, landing)) + 1, len(trace.time) - 1)
+            impacts.append(Impact(landing, float(before[i]), 0.0, float(trace.base_velocity[k] - v_before[i])))
+        if following is None:
+            if limit <= trace.time[-1]:
+                rests.append(limit)
+        else:
+            uplift = _uplift_time(model, scene, trace, last + 1, following)
+            rests.append(min(limit, uplift))
+            uplifts.append(uplift)
+    return tuple(impacts), tuple(uplifts), tuple(rests)
+
+
+def _limit_time(model, scene, trace, last, side, landing, rate):
+    """(time at which the model's impacts after a landing accumulate, |tilt''| toward contact there)."""
+    ground = float(scene.motion.acceleration(landing)) if scene.motion else 0.0
+    pull = -side * float(model.accelerations(side, 0.0, 0.0, ground, trace.bearing_force[last])[0])
+    e = model.restitution
+    if not (pull > 0 and np.isfinite(rate) and e < 1):
+        return landing, pull
+    return landing + 2 * e * abs(float(rate)) / (pull * (1 - e)), pull
+
+
+def _uplift_time(model, scene, trace, begin, first):
+    """Time at which |absolute base acceleration| last rose through g tan(gamma) in steps begin..first, eq. (2)."""
+    steps = slice(begin, first + 1)
+    size = np.abs(_contact_acceleration(model, scene, trace, steps)) - model.uplift_acceleration
+    rising = np.flatnonzero((size[:-1] <= 0) & (size[1:] > 0))
+    if not len(rising):
+        return float(trace.time[begin] if size[0] > 0 else trace.time[first])
+    k = int(rising[-1])
+    t0, t1 = trace.time[begin + k], trace.time[begin + k + 1]
+    return float(t0 - size[k] * (t1 - t0) / (size[k + 1] - size[k]))
+
+
+def _contact_acceleration(model, scene, trace, steps=slice(None)):
+    """Absolute acceleration of the base in full contact [m/s2] at the steps, eq. (2)."""
+    if model.on_base:
+        return model.contact_acceleration(trace.bearing_force[steps])
+    time = trace.time[steps]
+    return scene.motion.acceleration(time) if scene.motion else np.zeros(len(time))
+
+
+def contact_measures(scene, trace):
+    """(max |H|/N, min N/(m g), max |absolute base acceleration| [m/s2]) over the steps of a trace."""
+    model = ArrayModel.of(scene)
+    level = _contact_acceleration(model, scene, trace)
+    flight = np.abs(trace.tilt) > trace.contact_tilt
+    demand, normal, absolute = np.abs(level) / model.g, np.ones(len(level)), level.copy()
+    if flight.any():
+        tilt, rate, side = trace.tilt[flight], trace.tilt_rate[flight], np.sign(trace.tilt[flight])
+        ground = scene.motion.acceleration(trace.time[flight]) if scene.motion else np.zeros(len(tilt))
+        tilting, sliding = model.accelerations(side, tilt, rate, ground, trace.bearing_force[flight])
+        absolute[flight] = ground + sliding
+        H, N = model.contact_forces(side, tilt, rate, tilting, absolute[flight])
+        demand[flight] = np.where(N > 0, np.abs(H) / np.where(N > 0, N, 1.0), np.inf)
+        normal[flight] = N / (model.m * model.g)
+    return float(demand.max()), float(normal.min()), float(np.abs(absolute).max())
+
+
+def _history(scene, trace):
+    """The steps on an equal grid: tilt and displacement by cubics through the steps, the others linear."""
+    end = trace.time[-1]
+    dt = scene.motion.dt if isinstance(scene.motion, SampledMotion) else scene.duration / HISTORY_POINTS
+    time = trace.time[0] + dt * np.arange(math.floor((end - trace.time[0]) / dt * (1 + 1e-12)) + 1)
+    if time[-1] < end - 1e-9 * dt:
+        time = np.append(time, end)
+    linear = {name: np.interp(time, trace.time, getattr(trace, name)) for name in Trace.COLUMNS[1:]}
+    for value, rate in (("tilt", "tilt_rate"), ("base_displacement", "base_velocity")):
+        cubic = CubicHermiteSpline(trace.time, getattr(trace, value), getattr(trace, rate))
+        linear[value] = cubic(time)
+    ground = scene.motion.acceleration(time) if scene.motion else np.zeros(len(time))
+    return History(time=time, ground_acceleration=ground, **linear)
