@@ -1,0 +1,116 @@
+"""One run of a study: which scene, which solver, how set; and what its result depends on."""
+
+import functools
+import hashlib
+import importlib
+import json
+import platform
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from importlib.metadata import PackageNotFoundError, version
+
+from analytic.scene import Scene
+from engines import ENGINES, get_engine
+
+from .sources import digest_of, source_digests
+
+# solver: (module, function); every other name is an engine's, or "module:function"
+SOLVERS = {
+    "analytic": ("analytic", "simulate"),
+    "twin": ("analytic.twin", "simulate_twin"),
+    "time-stepping": ("analytic.time_stepping", "simulate_time_stepping"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """One run: ``solver(scene, variant=variant, **settings)``.
+
+    scene: what is simulated. solver: "analytic", "twin", "time-stepping", the name of an engine, or
+    "module:function". variant: None takes the solver's default. settings: keyword arguments, JSON values
+    only. tag: whatever the study wants to find again in the row (JSON values); no part of the key.
+    """
+
+    scene: Scene
+    solver: str = "analytic"
+    variant: str | None = None
+    settings: dict = field(default_factory=dict)
+    tag: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        object.__setattr__(self, "settings", dict(self.settings))
+        object.__setattr__(self, "tag", dict(self.tag))
+
+    def key(self, reduce=None):
+        """Hash of all that the row depends on: scene, solver, variant, settings, reducer, versions, sources."""
+        content = (self.scene.digest(), self.solver, self.variant, self.settings, name_of(reduce),
+                   fingerprint(self.solver, reduce))
+        return hashlib.sha256(json.dumps(content, sort_keys=True, allow_nan=False).encode()).hexdigest()[:32]
+
+    def run(self):
+        """Simulate it here and now; returns the `Response`."""
+        variant = {} if self.variant is None else {"variant": self.variant}
+        return solver(self.solver)(self.scene, **variant, **self.settings)
+
+
+def solver(name) -> Callable:
+    """The function called `name`: takes a scene, returns a `Response`.
+
+    Raises
+    ------
+    KeyError
+        No such solver; the message lists the known ones.
+    EngineNotInstalled
+        An engine that cannot be imported here.
+    """
+    if name in ENGINES:
+        return get_engine(name).simulate
+    module, function = _place(name)
+    return getattr(importlib.import_module(module), function)
+
+
+def module_of(name):
+    """The module that holds the solver `name`."""
+    return ENGINES[name][0] if name in ENGINES else _place(name)[0]
+
+
+def versions(name):
+    """Versions of Python and of the packages that the solver `name` rests on."""
+    packages = ["numpy", "scipy", "numba"] + ([ENGINES[name][1]] if name in ENGINES else [])
+    found = {"python": platform.python_version()}
+    for package in packages:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = None
+    return found
+
+
+def name_of(function):
+    """``module:function`` of a module-level function, None for None."""
+    if function is None:
+        return None
+    name = f"{function.__module__}:{function.__qualname__}"
+    if "<" in name:
+        raise ValueError(f"reducer {name} cannot travel to a worker process; make it a module-level function")
+    return name
+
+
+def fingerprint(name, reduce=None):
+    """Digest of the versions and of the project's source files behind a solver and a reducer."""
+    return _fingerprint(name, reduce.__module__ if reduce else None)
+
+
+@functools.cache  # of the code this process has loaded: it cannot change under it
+def _fingerprint(name, reducer_module):
+    modules = [module_of(name)] + ([reducer_module] if reducer_module else [])
+    return digest_of({"versions": json.dumps(versions(name)), **source_digests(modules)})
+
+
+def _place(name):
+    if name in SOLVERS:
+        return SOLVERS[name]
+    module, colon, function = name.partition(":")
+    if not colon:
+        raise KeyError(f"unknown solver {name!r}: choose one of {', '.join([*SOLVERS, *ENGINES])}")
+    return module, function

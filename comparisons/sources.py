@@ -1,0 +1,94 @@
+"""Which source files a number depends on, as digests that ignore comments and docstrings."""
+
+import ast
+import functools
+import hashlib
+import importlib.util
+from pathlib import Path
+
+PROJECT = ("analytic", "engines", "comparisons")
+
+
+def source_digests(modules):
+    """Digest of every project source file that `modules` reach through their imports.
+
+    Parameters
+    ----------
+    modules : iterable of str
+        Dotted names (``analytic``, ``engines.exudyn_engine``). Imports are followed, inside functions too,
+        but only within `PROJECT` and the top-level packages of `modules` themselves.
+
+    Returns
+    -------
+    dict
+        Dotted module name -> hexadecimal digest of its code, sorted by name. Comments, docstrings and
+        layout do not count: rewording them does not make a result stale.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        One of `modules` does not exist.
+    """
+    within = {*PROJECT, *(name.partition(".")[0] for name in modules)}
+    digests, waiting = {}, []
+    for name in modules:
+        if _file(name) is None:
+            raise ModuleNotFoundError(f"no source file for module {name!r}")
+        waiting.append(name)
+    while waiting:
+        name = waiting.pop()
+        file = _file(name) if name not in digests else None
+        if file is None:
+            continue
+        # The time stamp is part of the cache's key: a file edited meanwhile is read again.
+        digests[name], imported = _read(name, str(file), file.stat().st_mtime_ns)
+        parents = [name.rpartition(".")[0]] if "." in name else []
+        waiting += [other for other in (*imported, *parents) if other.partition(".")[0] in within]
+    return dict(sorted(digests.items()))
+
+
+def digest_of(digests):
+    """One digest for a dict of digests."""
+    return hashlib.sha256(repr(sorted(digests.items())).encode()).hexdigest()
+
+
+def _file(name):
+    try:
+        spec = importlib.util.find_spec(name)
+    except ModuleNotFoundError:  # `name` is a function or class of a module, not a module
+        return None
+    origin = spec.origin if spec else None
+    return Path(origin) if origin and origin.endswith(".py") else None
+
+
+@functools.cache
+def _read(name, file, _modified):
+    tree = ast.parse(Path(file).read_bytes())
+    package = name if file.endswith("__init__.py") else name.rpartition(".")[0]
+    imported = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            imported.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                above = package.split(".")[: len(package.split(".")) - node.level + 1]
+                base = ".".join([*above, base] if base else above)
+            imported.add(base)
+            imported.update(f"{base}.{alias.name}" for alias in node.names)
+    return hashlib.sha256(_code(tree).encode()).hexdigest(), tuple(sorted(imported))
+
+
+def _code(node):
+    """The tree as text, without docstrings and empty fields (which differ between Python versions)."""
+    if isinstance(node, list):
+        return "[" + ",".join(map(_code, node)) + "]"
+    if not isinstance(node, ast.AST):
+        return repr(node)
+    fields = []
+    for field, value in ast.iter_fields(node):
+        if field == "body" and isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            value = value[1:] if ast.get_docstring(node, clean=False) is not None else value
+        if value is not None and value != []:
+            fields.append(f"{field}={_code(value)}")
+    return f"{type(node).__name__}({','.join(fields)})"

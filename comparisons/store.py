@@ -1,0 +1,100 @@
+"""Results as they arrive: one line of JSON per run, appended; what a killed sweep leaves is found again."""
+
+import json
+import os
+import time
+from pathlib import Path
+
+try:
+    import fcntl
+except ImportError:  # Windows has none: no lock there
+    fcntl = None
+
+SYNC_SECONDS = 1.0  # a killed process loses nothing written; only a power cut can cost this much
+
+
+class StoreError(RuntimeError):
+    """A file of results that cannot be used; the message names file, line and remedy."""
+
+
+class Store:
+    """Append-only file of rows keyed by their case: a context manager around one JSONL file.
+
+    A row is a dict with at least "key". A torn last line (the process was killed while it wrote) is
+    dropped when the file is opened; `torn` says so.
+
+    Raises
+    ------
+    StoreError
+        Another sweep has the file open, or a whole line in it is no row.
+    """
+
+    def __init__(self, path):
+        self.path = Path(path)
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        self._file = open(self.path, "ab+")
+        self._lock()
+        self.torn = False
+        self.rows = self._read()
+        self._synced = time.monotonic()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def __len__(self):
+        return len(self.rows)
+
+    def get(self, key):
+        """The row stored last under `key`, or None."""
+        return self.rows.get(key)
+
+    def append(self, lines):
+        """Write rows given as lines of JSON (str, no line end) and return them as dicts."""
+        rows = [json.loads(line) for line in lines]
+        self._file.write("".join(line + "\n" for line in lines).encode())
+        self._file.flush()
+        if time.monotonic() - self._synced > SYNC_SECONDS:
+            self.sync()
+        self.rows.update((row["key"], row) for row in rows)
+        return rows
+
+    def sync(self):
+        """Force what was written onto the disk."""
+        os.fsync(self._file.fileno())
+        self._synced = time.monotonic()
+
+    def close(self):
+        if not self._file.closed:
+            self.sync()
+            self._file.close()
+
+    def _lock(self):
+        if fcntl is None:
+            return
+        try:
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            self._file.close()
+            raise StoreError(f"{self.path.name}: another sweep is writing to it; wait for it or give another "
+                             "file") from error
+
+    def _read(self):
+        self._file.seek(0)
+        rows, end = {}, 0
+        for number, line in enumerate(self._file, 1):
+            if not line.endswith(b"\n"):
+                self.torn = True
+                self._file.truncate(end)
+                break
+            end += len(line)
+            try:
+                row = json.loads(line)
+                rows[row["key"]] = row
+            except (ValueError, KeyError, TypeError) as error:
+                raise StoreError(f"{self.path.name}, line {number}: not a row of results ({error}); remove the "
+                                 "line, or the file to start afresh") from error
+        self._file.seek(0, os.SEEK_END)
+        return rows

@@ -1,0 +1,177 @@
+"""Many runs: a list of cases in, a row for each out, in parallel, resumable, proof against crashes and hangs.
+
+    rows = run_sweep(cases, store="results/map.jsonl", reduce=measures.outcome)
+
+The store can be reused: rows whose scene, solver, variant, settings, reducer, versions and source code are
+unchanged are not run again.
+"""
+
+import json
+from collections import deque
+from dataclasses import dataclass
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from .cases import Case, name_of, solver
+from .executors import Done, Executor, Processes, Serial, Task, json_ready
+from .store import Store
+
+__all__ = ["Case", "Done", "Executor", "Processes", "Row", "Serial", "Store", "Task", "run_sweep"]
+
+CHUNK_SECONDS = 0.2  # cheap runs travel together in tasks of about this length: what a kill can cost
+ENOUGH_SECONDS = 1.0  # a task that turns out longer hands back what it has
+CHUNK_CASES = 512
+
+
+@dataclass(frozen=True)
+class Row:
+    """Result of one case.
+
+    values: what the reducer returned, deterministic (or the whole `Response.to_json()` without a reducer).
+    failure: None, or kind ("solver", "exception", "time limit", "crash"), reason and message; the
+    outcome in values is then "failed". cost: cpu_seconds, which differs from run to run.
+    """
+
+    case: Case
+    values: dict
+    failure: dict | None
+    cost: dict
+    reused: bool
+
+    @property
+    def failed(self):
+        return self.failure is not None
+
+
+def run_sweep(cases, *, store, workers=None, time_limit=300.0, reduce=None, executor=None, progress=True,
+              label="runs"):
+    """Run every case and return its `Row`s in the order of the cases, whatever the order they ran in.
+
+    Parameters
+    ----------
+    cases : iterable of Case
+        Equal cases are run once.
+    store : path or Store
+        JSONL file of rows, appended to as they arrive. Rows found there are not run again.
+    workers : int or None
+        Worker processes; None takes one per core. Not used with `executor`.
+    time_limit : float
+        Seconds a run may take; beyond, its row is "failed". A row that failed so is run again when the
+        limit is raised, and so is one whose worker was killed from outside.
+    reduce : callable or None
+        Module-level function, `Response` -> dict of JSON values; runs in the worker, and only on
+        responses that have not failed.
+    executor : Executor or None
+        Where to run, to share workers between sweeps; it stays open.
+    progress : bool
+        Show a bar with the remaining time on standard error.
+
+    Raises
+    ------
+    KeyError, EngineNotInstalled
+        A solver that does not exist or is not installed: before anything runs.
+    StoreError
+        The store is in use or damaged.
+    """
+    cases = list(cases)
+    name_of(reduce)  # a reducer that cannot travel is an error now, not a failed row each
+    names = sorted({case.solver for case in cases})
+    for name in names:
+        solver(name)
+    keys = [case.key(reduce) for case in cases]
+    if not isinstance(store, Store):
+        with Store(store) as opened:
+            return run_sweep(cases, store=opened, workers=workers, time_limit=time_limit, reduce=reduce,
+                             executor=executor, progress=progress, label=label)
+    open_cases = {key: case for key, case in zip(keys, cases, strict=True)
+                  if not _settled(store.get(key), time_limit)}
+    fresh = frozenset(open_cases)
+    with _bar(progress) as bar:
+        line = bar.add_task(label, total=len(fresh), visible=bool(fresh))
+        if fresh and executor is None:
+            with Processes(workers, names) as executor:
+                _run(open_cases, store, executor, reduce, time_limit, lambda count: bar.advance(line, count))
+        elif fresh:
+            _run(open_cases, store, executor, reduce, time_limit, lambda count: bar.advance(line, count))
+    rows = map(store.get, keys)
+    return [Row(case, row["values"], row["failure"], row["cost"], key not in fresh)
+            for case, key, row in zip(cases, keys, rows, strict=True)]
+
+
+def _run(waiting, store, executor, reduce, time_limit, advance):
+    chunks = _Chunks(waiting, executor.slots)
+    alone = deque()  # members of lost tasks: each runs by itself to find the guilty one
+    submitted = {}
+    while chunks or alone or submitted:
+        while len(submitted) < executor.slots and (alone or chunks):
+            members = [alone.popleft()] if alone else chunks.take()
+            keys, cases = zip(*members, strict=True)
+            ticket = f"{keys[0]}-{len(keys)}"
+            submitted[ticket] = members
+            executor.submit(Task(ticket, cases, keys, reduce, time_limit, ENOUGH_SECONDS))
+        done = executor.next()
+        members = submitted.pop(done.ticket, None)
+        if members is None:  # of a sweep that was broken off, on a shared executor
+            continue
+        if done.lost and len(members) > 1:
+            alone.extend(members)
+            continue
+        lines = [_lost_line(members[0][0], done.lost)] if done.lost else done.lines
+        store.append(lines)
+        advance(len(lines))
+        chunks.put_back(members[len(lines):])
+        if not done.lost:
+            chunks.learn(members[0][1], done.seconds / len(lines))
+
+
+class _Chunks:
+    """Cuts the waiting cases into tasks of about `CHUNK_SECONDS`, as the runs before took."""
+
+    def __init__(self, waiting, slots):
+        self._waiting = deque(waiting.items())
+        self._slots = slots
+        self._seconds = {}  # kind of case: seconds per run of the last task
+
+    def __bool__(self):
+        return bool(self._waiting)
+
+    def take(self):
+        kind = _kind(self._waiting[0][1])
+        size = int(CHUNK_SECONDS / max(self._seconds[kind], 1e-9)) if kind in self._seconds else 1
+        fair = -(-len(self._waiting) // self._slots)  # near the end, leave something for every worker
+        members = [self._waiting.popleft()]
+        while (len(members) < min(size, fair, CHUNK_CASES) and self._waiting
+               and _kind(self._waiting[0][1]) == kind):
+            members.append(self._waiting.popleft())
+        return members
+
+    def put_back(self, members):
+        self._waiting.extendleft(reversed(members))
+
+    def learn(self, case, seconds):
+        self._seconds[_kind(case)] = seconds
+
+
+def _kind(case):
+    return case.solver, case.variant
+
+
+def _settled(row, time_limit):
+    """Whether a stored row stands; a run stopped from outside, or by a shorter time limit, deserves another try."""
+    if row is None:
+        return False
+    failure = row["failure"] or {}
+    if failure.get("kind") == "time limit":
+        return failure["time_limit"] >= time_limit
+    return failure.get("exit_code") not in (-9, -15)  # SIGKILL, SIGTERM: no solver sends them to itself
+
+
+def _lost_line(key, lost):
+    return json.dumps({"key": key, "values": {"outcome": "failed"}, "failure": json_ready(lost), "cost": {}})
+
+
+def _bar(shown):
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
+               TextColumn("left"), TimeRemainingColumn())
+    return Progress(*columns, console=Console(stderr=True), disable=not shown, transient=False)

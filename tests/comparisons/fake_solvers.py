@@ -1,0 +1,74 @@
+"""Cheap solvers for the tests of the sweep layer: some sound, some that crash, hang or raise."""
+
+import math
+import os
+import time
+
+from analytic import Failure, Response, State
+
+
+def response(scene, *, peak=0.0, outcome="stands", failure=None, settings=None):
+    return Response("fake", "", outcome, None, None, peak, peak / scene.block.slenderness, 0.0, 0.0, (), (), (),
+                    0.0, 1.0, State(scene.duration, 0.0, 0.0, 0.0, 0.0, 0.0), time.process_time(), 1,
+                    settings or {}, {}, failure=failure)
+
+
+def sound(scene, *, work=0, sleep=0.0):
+    """`work` square roots, then `sleep` seconds; the tilt depends on the scene alone."""
+    total = sum(math.sqrt(i) for i in range(work))
+    time.sleep(sleep)
+    return response(scene, peak=scene.start.tilt**2 + 0.0 * total, settings={"work": work})
+
+
+def counted(scene, *, log, sleep=0.0):
+    """Leaves a mark for every run."""
+    with open(log, "a") as file:
+        file.write(f"{scene.start.tilt:.6f}\n")
+    return sound(scene, sleep=sleep)
+
+
+def exits(scene, *, code=3):
+    """Ends its process without a word where the tilt is 0.05."""
+    if scene.start.tilt == 0.05:
+        os.write(2, b"engine: assertion failed in contact\n")
+        os._exit(code)
+    return sound(scene)
+
+
+def segfaults(scene):
+    import ctypes
+    if scene.start.tilt == 0.05:
+        ctypes.string_at(0)
+    return sound(scene)
+
+
+def killed(scene):
+    """Killed from outside, as by the system when memory runs out."""
+    os.kill(os.getpid(), 9)
+
+
+def hangs(scene, *, seconds=60.0):
+    """Does not come back within `seconds` where the tilt is 0.05."""
+    if scene.start.tilt == 0.05:
+        time.sleep(seconds)
+    return sound(scene)
+
+
+def raises(scene):
+    if scene.start.tilt == 0.05:
+        raise ValueError("Newton did not converge")
+    return sound(scene)
+
+
+def fails(scene):
+    last = State(0.5, 0.1, 0.0, 0.0, 0.0, 0.0)
+    return response(scene, outcome="failed", failure=Failure("energy gain", "12 J at 0.5 s", last))
+
+
+def tilt(response):
+    """Reducer."""
+    return {"outcome": response.outcome, "peak": response.peak_tilt, "cpu_seconds": response.cpu_seconds}
+
+
+def broken(response):
+    return {"peak": {1, 2}}
