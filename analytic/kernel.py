@@ -16,6 +16,7 @@ from .taylor import (
     HARMONIC,
     LINEAR_GROUND,
     QUIET,
+    SHORT_ORDER,
     base_series,
     contact_series,
     ground_series,
@@ -30,12 +31,15 @@ COMPLETE, DECIDED, STUCK, NOT_FINITE = range(4)
 (STATUS, MODE, TIME, PEAK_TILT, PEAK_X, PEAK_ACCELERATION, UNSTABLE_TIME, FRICTION, NORMAL, INPUT, HYSTERETIC,
  VISCOUS, IMPACT_LOSS, STEPS, IMPACTS, UPLIFTS, RESTS, WILL_OVERTURN, LIFTED) = range(19)
 TOTALS = 19
+# Rows of the workspace that hold the absolute base acceleration and the ground acceleration.
+ABSOLUTE, GROUND = 8, 9
 
 # Ground motion: sampled (dt, samples) or a pulse; `kind` is one of QUIET, LINEAR_GROUND (sampled), HARMONIC
 # (a0 sin(phase + frequency (t - start))), RICKER. A rectangular pulse is HARMONIC with frequency 0.
 Ground = namedtuple("Ground", "kind dt samples scale frequency phase start end")
-# What to do: `record` keeps events, ledger and diagnostics; `decide` stops as soon as the outcome is certain.
-Options = namedtuple("Options", "tolerance order short_order rest_rate record decide output_step")
+# What to do: `record` keeps events (up to `capacity` of a kind), ledger and diagnostics; `decide` stops as soon as the
+# outcome is certain.
+Options = namedtuple("Options", "tolerance order rest_rate record decide output_step capacity")
 
 # An impact slower than rest_rate omega_r ends in rest if the next hop is also short; see `rests`.
 LONGEST_LAST_HOP = 1e-3  # in units of 1/omega_r
@@ -43,13 +47,6 @@ LONGEST_LAST_HOP = 1e-3  # in units of 1/omega_r
 PROBES = 4
 # Events without progress of time that count as stuck (none is known; a guard, not a rule).
 PATIENCE = 1000
-
-
-@njit(cache=True)
-def _grown(table):
-    larger = np.empty((2 * table.shape[0], table.shape[1]))
-    larger[: table.shape[0]] = table
-    return larger
 
 
 @njit(cache=True)
@@ -111,18 +108,21 @@ def integral_of_product(f, g, order, h):
 def run(par, ground, options, totals):
     """Simulate; fills `totals` and returns (end state, impacts, uplifts, rests, history).
 
-    end : (tilt, rate, x, v, z); impacts : (n, 4); uplifts, rests : (n, 1); history : (n, 6) at multiples of
+    end : (tilt, rate, x, v, z); impacts : (n, 4); uplifts, rests : (n,); history : (n, 6) at multiples of
     output_step: time, tilt, rate, x, v, F (empty if output_step is 0).
     """
     record, tolerance = options.record, options.tolerance
+    # unpacked once: reading an array out of a tuple costs two atomic operations each time
+    ground_kind, ground_dt, samples, ground_scale, ground_frequency, ground_phase, ground_start, ground_end = ground
     omega = math.sqrt(par.p2)
     overturn, threshold = 0.5 * math.pi, par.g * math.tan(par.gamma)
     P = np.zeros((15, MAX_ORDER + 2))
-    phi, w, S, C, x, v, q, F, absolute, A = P[0], P[1], P[2], P[3], P[4], P[5], P[6], P[7], P[8], P[9]
+    phi, w, S, C, x, v, q, F, absolute, A = P[0], P[1], P[2], P[3], P[4], P[5], P[6], P[7], P[ABSOLUTE], P[GROUND]
     event, hysteretic, momentum = P[10], P[11], P[12]
     work = np.empty((BISECTIONS + 2, MAX_ORDER + 1))
-    capacity = 64 if record else 1
-    impacts, uplifts, rests = np.empty((capacity, 4)), np.empty((capacity, 1)), np.empty((capacity, 1))
+    # never rebound in the loop: numba would count references at every merge of the control flow
+    capacity = options.capacity if record else 0
+    impacts, uplifts, rests = np.empty((capacity, 4)), np.empty(capacity), np.empty(capacity)
     outputs = int(math.floor(par.duration / options.output_step * (1 + 1e-14))) + 1 if options.output_step > 0 else 0
     history = np.empty((outputs, 6))
     written, n_impacts, n_uplifts, n_rests, steps, idle = 0, 0, 0, 0, 0, 0
@@ -136,31 +136,31 @@ def run(par, ground, options, totals):
     if tilt != 0 or rate != 0:
         mode, s = ROCKING, math.copysign(1.0, tilt if tilt != 0 else rate)
     fresh_uplift, blocked = False, False  # onset just found: phi'' = 0 exactly; onset refused within this step
-    order = options.short_order if ground.kind == LINEAR_GROUND else options.order
+    order = SHORT_ORDER if ground_kind == LINEAR_GROUND else options.order
     # bearing history: direction of travel, D_c and x_c of the last reversal
     direction, anchor_x, anchor_travel = 0.0, bx, 1.0
     segment = 0
-    segments = ground.samples.shape[0] - 1 if ground.kind == LINEAR_GROUND else 3
+    segments = samples.shape[0] - 1 if ground_kind == LINEAR_GROUND else 3
     begin = 0.0
     while begin < par.duration and mode != OVERTURNED and status == COMPLETE:
         # the next stretch of ground motion without a corner
         kind, a0, slope = QUIET, 0.0, 0.0
         finish = par.duration
-        if ground.kind == LINEAR_GROUND:
+        if ground_kind == LINEAR_GROUND:
             if segment < segments:
-                a0 = ground.scale * ground.samples[segment]
-                slope = (ground.scale * ground.samples[segment + 1] - a0) / ground.dt
-                finish = min((segment + 1) * ground.dt, par.duration)
+                a0 = ground_scale * samples[segment]
+                slope = (ground_scale * samples[segment + 1] - a0) / ground_dt
+                finish = min((segment + 1) * ground_dt, par.duration)
                 if a0 != 0 or slope != 0:
                     kind = LINEAR_GROUND
-        elif ground.kind != QUIET:
+        elif ground_kind != QUIET:
             if segment == 0:
-                finish = min(ground.start, par.duration)
+                finish = min(ground_start, par.duration)
             elif segment == 1:
-                kind, a0 = ground.kind, ground.scale
-                finish = min(ground.end, par.duration)
+                kind, a0 = ground_kind, ground_scale
+                finish = min(ground_end, par.duration)
         segment += 1
-        if kind == QUIET and ground.kind == LINEAR_GROUND and segment > segments:
+        if kind == QUIET and ground_kind == LINEAR_GROUND and segment > segments:
             order = options.order
         length = finish - begin
         tau = 0.0
@@ -199,14 +199,14 @@ def run(par, ground, options, totals):
                     peak_tilt = overturn
                     status = DECIDED
                     break
-            phase = ground.phase + ground.frequency * (t - ground.start)
-            if kind == HARMONIC and ground.frequency == 0:
+            phase = ground_phase + ground_frequency * (t - ground_start)
+            if kind == HARMONIC and ground_frequency == 0:
                 highest = ground_series(order, LINEAR_GROUND, a0, 0.0, 0.0, 0.0, A)
             else:
                 highest = ground_series(order, kind, a0 + slope * tau if kind == LINEAR_GROUND else a0, slope,
-                                        ground.frequency, phase, A)
-            if kind != QUIET and kind != LINEAR_GROUND and ground.frequency > 0:
-                h = min(h, 1.0 / ground.frequency)
+                                        ground_frequency, phase, A)
+            if kind != QUIET and kind != LINEAR_GROUND and ground_frequency > 0:
+                h = min(h, 1.0 / ground_frequency)
             steps += 1
             found, h_event = 0, -1.0  # 1 uplift, 2 impact, 3 reversal, 4 overturning
             used = order
@@ -246,7 +246,7 @@ def run(par, ground, options, totals):
                     elif par.law == BOUC_WEN:
                         q[0] = z
                 if mode == CONTACT:
-                    contact_series(order, par, direction, y0, highest, A, x, v, q, F, absolute)
+                    contact_series(order, par, direction, 1.0 / y0, highest, A, x, v, q, F, absolute)
                     h = allowed_step(v, order, tolerance, h)
                 else:
                     angle = s * par.gamma - tilt
@@ -261,7 +261,7 @@ def run(par, ground, options, totals):
                                 used = min(order, max(5, int(math.log(tolerance * 0.01) / math.log(hop)) + 3))
                     while True:
                         if par.on_base:
-                            base_series(used, par, direction, y0, highest, A, phi, w, S, C, x, v, q, F, absolute)
+                            base_series(used, par, direction, 1.0 / y0, highest, A, phi, w, S, C, x, v, q, F, absolute)
                         else:
                             rigid_series(used, par.p2, par.g, highest, A, phi, w, S, C)
                         if fresh_uplift:
@@ -287,16 +287,16 @@ def run(par, ground, options, totals):
             # ---- events inside the step, the earliest one first
             if mode == CONTACT:
                 if found == 0 and not blocked:
-                    source = absolute if par.on_base else A
+                    row = ABSOLUTE if par.on_base else GROUND
                     reach = h
-                    size, power = abs(source[0]), 1.0
+                    size, power = abs(P[row, 0]), 1.0
                     for k in range(1, used + 1):
                         power *= h
-                        size += abs(source[k]) * power
+                        size += abs(P[row, k]) * power
                     if size >= threshold:
                         for side in (-1.0, 1.0):
                             for k in range(used + 1):
-                                event[k] = side * source[k]
+                                event[k] = side * P[row, k]
                             event[0] += threshold
                             root = first_root(event, used, reach, work)
                             if root >= 0:
@@ -450,9 +450,8 @@ def run(par, ground, options, totals):
                 fresh_uplift = abs(source) < threshold * (1 + 1e-9)
                 n_uplifts += 1
                 if record:
-                    if n_uplifts > uplifts.shape[0]:
-                        uplifts = _grown(uplifts)
-                    uplifts[n_uplifts - 1, 0] = t
+                    if n_uplifts <= capacity:
+                        uplifts[n_uplifts - 1] = t
             elif found == 2:
                 before, mc = rate, par.m * par.R * math.cos(par.gamma)
                 rate = par.e * before  # (7)
@@ -465,10 +464,9 @@ def run(par, ground, options, totals):
                 tilt = 0.0
                 n_impacts += 1
                 if record:
-                    if n_impacts > impacts.shape[0]:
-                        impacts = _grown(impacts)
-                    row = impacts[n_impacts - 1]
-                    row[0], row[1], row[2], row[3] = t, before, rate, jump
+                    if n_impacts <= capacity:
+                        i = n_impacts - 1
+                        impacts[i, 0], impacts[i, 1], impacts[i, 2], impacts[i, 3] = t, before, rate, jump
                 s = 1.0 if rate > 0 else -1.0
                 a_now = 0.0
                 if highest >= 0:
@@ -488,9 +486,8 @@ def run(par, ground, options, totals):
                     mode, rate, s = CONTACT, 0.0, 0.0
                     n_rests += 1
                     if record:
-                        if n_rests > rests.shape[0]:
-                            rests = _grown(rests)
-                        rests[n_rests - 1, 0] = limit
+                        if n_rests <= capacity:
+                            rests[n_rests - 1] = limit
             elif found == 4:
                 mode, tilt = OVERTURNED, s * overturn
                 peak_tilt = overturn
@@ -510,6 +507,4 @@ def run(par, ground, options, totals):
     totals[WILL_OVERTURN] = 1.0 if (will_overturn or mode == OVERTURNED) else 0.0
     lifted = n_uplifts > 0 or par.tilt != 0 or par.rate != 0
     totals[LIFTED] = 1.0 if lifted else 0.0
-    kept = 1 if record else 0
-    return ((tilt, rate, bx, bv, z), impacts[: n_impacts * kept], uplifts[: n_uplifts * kept], rests[: n_rests * kept],
-            history[:written])
+    return ((tilt, rate, bx, bv, z), impacts[:n_impacts], uplifts[:n_uplifts], rests[:n_rests], history[:written])

@@ -13,16 +13,18 @@ from .motion import RICKER_PERIODS, SampledMotion
 from .polynomial import MAX_ORDER
 from .response import Energy, Failure, History, Impact, Response, State
 from .rocking import RockingModel
-from .taylor import HARMONIC, LINEAR_GROUND, QUIET, RICKER, Parameters
+from .taylor import HARMONIC, LINEAR_GROUND, QUIET, RICKER, SHORT_ORDER, Parameters
 
 # Chosen by measurement (`rocking bench analytic`): where CPU against error is least.
 ORDER = 18  # free flight and pulses: long steps
-SHORT_ORDER = 8  # between the samples of a record: steps end there anyway
 TOLERANCE = 1e-12
 # Impacts are followed down to this fraction of omega_r, then summed to their limit; see kernel.remaining_hops.
 REST_RATE = 1e-8
 # History points where the motion has no sampling interval of its own.
 HISTORY_POINTS = 2000
+
+# Events of a kind kept in the first try; a run with more is repeated with room for all.
+CAPACITY = 4096
 
 _NO_SAMPLES = np.zeros(2)
 _NO_SAMPLES.flags.writeable = False  # the same compiled type as the samples of a motion
@@ -53,8 +55,8 @@ def ground(motion, scale=1.0):
     return Ground(kind, 1.0, _NO_SAMPLES, motion.amplitude * scale, frequency, phase, motion.start, motion.end)
 
 
-def options(tolerance=TOLERANCE, order=ORDER, short_order=SHORT_ORDER, rest_rate=REST_RATE, record=True,
-            decide=False, output_step=0.0):
+def options(tolerance=TOLERANCE, order=ORDER, rest_rate=REST_RATE, record=True,
+            decide=False, output_step=0.0, capacity=CAPACITY):
     """The kernel's `Options`, checked.
 
     Raises
@@ -64,12 +66,11 @@ def options(tolerance=TOLERANCE, order=ORDER, short_order=SHORT_ORDER, rest_rate
     """
     if not 1e-17 <= tolerance <= 1e-2:
         raise SettingError(f"tolerance = {tolerance!r}: give a value from 1e-17 to 1e-2")
-    for name, value in (("order", order), ("short_order", short_order)):
-        if not (isinstance(value, int) and 4 <= value <= MAX_ORDER):
-            raise SettingError(f"{name} = {value!r}: give an integer from 4 to {MAX_ORDER}")
+    if not (isinstance(order, int) and 4 <= order <= MAX_ORDER):
+        raise SettingError(f"order = {order!r}: give an integer from 4 to {MAX_ORDER}")
     if not 0 < rest_rate <= 1e-2:
         raise SettingError(f"rest_rate = {rest_rate!r}: give a value above 0, up to 1e-2")
-    return Options(float(tolerance), order, short_order, float(rest_rate), record, decide, float(output_step))
+    return Options(float(tolerance), order, float(rest_rate), record, decide, float(output_step), capacity)
 
 
 def versions():
@@ -115,6 +116,9 @@ def simulate(scene, *, history=True, tolerance=TOLERANCE, rest_rate=REST_RATE, o
     _warm()
     begin = time.process_time()
     result = kernel.run(par, shaking, chosen, totals)
+    most = int(totals[[kernel.IMPACTS, kernel.UPLIFTS, kernel.RESTS]].max())
+    if most > chosen.capacity:
+        result = kernel.run(par, shaking, chosen._replace(capacity=most), totals)
     cpu = time.process_time() - begin
     return _response(scene, par, totals, result, cpu, settings, history)
 
@@ -156,7 +160,7 @@ def _response(scene, par, totals, result, cpu, settings, history):
         peak_tilt=float(totals[kernel.PEAK_TILT]), peak_tilt_ratio=float(totals[kernel.PEAK_TILT]) / gamma,
         peak_base_displacement=float(totals[kernel.PEAK_X]), peak_base_acceleration=peak_acceleration,
         impacts=tuple(Impact(*map(float, row)) for row in impacts),
-        uplifts=tuple(uplifts[:, 0].tolist()), rests=tuple(rests[:, 0].tolist()),
+        uplifts=tuple(uplifts.tolist()), rests=tuple(rests.tolist()),
         friction_demand=float(totals[kernel.FRICTION]), min_normal_ratio=float(totals[kernel.NORMAL]),
         end=end, cpu_seconds=cpu, steps=int(totals[kernel.STEPS]), settings=settings, versions=versions(),
         failure=failure, energy=_energy(scene, par, totals, end),

@@ -12,6 +12,9 @@ from numba import njit
 
 from .bearing import ALGEBRAIC, BOUC_WEN
 
+# Order of the series between the samples of a record, where steps end anyway (`rocking bench analytic`).
+SHORT_ORDER = 8
+
 INVERSE = np.array([0.0] + [1.0 / k for k in range(1, 64)])
 
 # Parameters of a run, one scalar each; see RockingModel and BearingLaw for their meaning.
@@ -46,9 +49,8 @@ def ground_series(order, kind, a0, a1, frequency, u, A):
     return order
 
 
-@njit(cache=True)
-def rigid_series(order, p2, g, highest, A, phi, w, S, C):
-    """Rocking on rigid ground, eq. (4) with x = 0: phi'' = -p^2 (S + a_g/g C)."""
+@njit(cache=True, inline="always")
+def _rigid_series(order, p2, g, highest, A, phi, w, S, C):
     for k in range(order):
         if k > 0:
             sine, cosine = 0.0, 0.0
@@ -64,32 +66,54 @@ def rigid_series(order, p2, g, highest, A, phi, w, S, C):
         phi[k + 1] = w[k] * INVERSE[k + 1]
 
 
+@njit(cache=True)
+def rigid_series(order, p2, g, highest, A, phi, w, S, C):
+    """Rocking on rigid ground, eq. (4) with x = 0: phi'' = -p^2 (S + a_g/g C)."""
+    if order == SHORT_ORDER:  # a constant order is unrolled: twice as fast
+        _rigid_series(SHORT_ORDER, p2, g, highest, A, phi, w, S, C)
+    else:
+        _rigid_series(order, p2, g, highest, A, phi, w, S, C)
+
+
 @njit(cache=True, inline="always")
-def _bearing_term(k, par, s, y0, x, v, q):
-    """z_k per bearing, k >= 1; q holds (1 + s x - s x_j + 2 x0)^(1 - alpha) for ALGEBRAIC, z for BOUC_WEN."""
-    if par.law == ALGEBRAIC:  # y q' = (1 - alpha) y' q
-        total = 0.0
-        for j in range(1, k + 1):
-            total += ((2 - par.alpha) * j - k) * x[j] * q[k - j]
-        q[k] = s * total * INVERSE[k] / y0
-        return s * par.dk / (1 - par.alpha) * q[k]
-    if par.law == BOUC_WEN:  # z' = (ka - kb)/2 v (1 - s z/f0)
+def _bearing_term(k, law, s, y_inverse, power, slope, rate, x, v, q):
+    """z_k per bearing, k >= 1; q holds (1 + s x - s x_j + 2 x0)^(1 - alpha) for ALGEBRAIC, z for BOUC_WEN.
+
+    power: 2 - alpha; slope: s (ka - kb)/(1 - alpha); rate: (ka - kb)/2 and s (ka - kb)/(2 f0).
+    """
+    z = 0.0
+    if law == ALGEBRAIC:  # y q' = (1 - alpha) y' q with y' = s v: k y0 q_k = s sum((2 - alpha) v q - k x q)
+        speed, travel = 0.0, 0.0
+        for j in range(k):
+            speed += v[j] * q[k - 1 - j]
+            travel += x[j + 1] * q[k - 1 - j]
+        q[k] = s * y_inverse * (power * speed * INVERSE[k] - travel)
+        z = slope * q[k]
+    elif law == BOUC_WEN:  # z' = (ka - kb)/2 v (1 - s z/f0)
         total = 0.0
         for j in range(k):
             total += q[j] * v[k - 1 - j]
-        q[k] = 0.5 * par.dk * (v[k - 1] - s / par.f0 * total) * INVERSE[k]
-        return q[k]
-    return 0.0
+        q[k] = (rate[0] * v[k - 1] - rate[1] * total) * INVERSE[k]
+        z = q[k]
+    return z
 
 
-@njit(cache=True)
-def contact_series(order, par, s, y0, highest, A, x, v, q, F, absolute):
-    """Full contact on the base, eq. (2): (m + m_b)(a_g + x'') + n_d f = 0. F[0] and q[0] are given."""
+@njit(cache=True, inline="always")
+def _bearing_constants(par, s):
+    """power, slope and rate of `_bearing_term`."""
+    rate = (0.5 * par.dk, 0.5 * par.dk * s / par.f0 if par.law == BOUC_WEN else 0.0)
+    return 2 - par.alpha, s * par.dk / (1 - par.alpha), rate
+
+
+@njit(cache=True, inline="always")
+def _contact_series(order, law, par, s, y_inverse, highest, A, x, v, q, F, absolute):
+    power, slope, rate = _bearing_constants(par, s)
+    count, kb, damping, inverse_mass = float(par.count), par.kb, par.damping, -1.0 / par.M
     for k in range(order + 1):
         if k > 0:
-            z = _bearing_term(k, par, s, y0, x, v, q)
-            F[k] = par.count * (par.kb * x[k] + z + par.damping * v[k])
-        absolute[k] = -F[k] / par.M
+            z = _bearing_term(k, law, s, y_inverse, power, slope, rate, x, v, q)
+            F[k] = count * (kb * x[k] + z + damping * v[k])
+        absolute[k] = F[k] * inverse_mass
         if k < order:
             relative = absolute[k] - A[k] if k <= highest else absolute[k]
             v[k + 1] = relative * INVERSE[k + 1]
@@ -97,22 +121,29 @@ def contact_series(order, par, s, y0, highest, A, x, v, q, F, absolute):
 
 
 @njit(cache=True)
-def base_series(order, par, s, y0, highest, A, phi, w, S, C, x, v, q, F, absolute):
-    """Rocking on the base, eqs (3)-(6), with c phi'' + n phi'^2 written as (c phi')'.
+def contact_series(order, par, s, y_inverse, highest, A, x, v, q, F, absolute):
+    """Full contact on the base, eq. (2): (m + m_b)(a_g + x'') + n_d f = 0. F[0] and q[0] are given."""
+    if order == SHORT_ORDER and par.law == ALGEBRAIC:  # constants are unrolled: twice as fast
+        _contact_series(SHORT_ORDER, ALGEBRAIC, par, s, y_inverse, highest, A, x, v, q, F, absolute)
+    else:
+        _contact_series(order, par.law, par, s, y_inverse, highest, A, x, v, q, F, absolute)
 
-    M X + m (c phi')' = -F;   m c X + J phi'' = -m g n;   X = a_g + x''.
-    """
+
+@njit(cache=True, inline="always")
+def _base_series(order, law, par, s, y_inverse, highest, A, phi, w, S, C, x, v, q, F, absolute):
+    power, slope, rate = _bearing_constants(par, s)
+    count, kb, damping, M, J, g = float(par.count), par.kb, par.damping, par.M, par.J, par.g
     mR = par.m * par.R
     c0 = mR * C[0]
-    scale = 1.0 / (par.M * par.J - c0 * c0)
+    scale = 1.0 / (M * J - c0 * c0)
     for k in range(order + 1):
         if k > 0:
             sine = 0.0
             for j in range(k):
                 sine += w[j] * C[k - 1 - j]
             S[k] = -sine * INVERSE[k]
-            z = _bearing_term(k, par, s, y0, x, v, q)
-            F[k] = par.count * (par.kb * x[k] + z + par.damping * v[k])
+            z = _bearing_term(k, law, s, y_inverse, power, slope, rate, x, v, q)
+            F[k] = count * (kb * x[k] + z + damping * v[k])
         cosine = 0.0
         for j in range(k + 1):
             cosine += w[j] * S[k - j]
@@ -123,11 +154,23 @@ def base_series(order, par, s, y0, highest, A, phi, w, S, C, x, v, q, F, absolut
             lever += C[j] * absolute[k - j]
         momentum += C[k + 1] * w[0]
         push = -F[k] - mR * (k + 1) * momentum
-        moment = -mR * (par.g * S[k] + lever)
-        absolute[k] = (par.J * push - c0 * moment) * scale
+        moment = -mR * (g * S[k] + lever)
+        absolute[k] = (J * push - c0 * moment) * scale
         if k < order:
-            w[k + 1] = (par.M * moment - c0 * push) * scale * INVERSE[k + 1]
+            w[k + 1] = (M * moment - c0 * push) * scale * INVERSE[k + 1]
             phi[k + 1] = w[k] * INVERSE[k + 1]
             relative = absolute[k] - A[k] if k <= highest else absolute[k]
             v[k + 1] = relative * INVERSE[k + 1]
             x[k + 1] = v[k] * INVERSE[k + 1]
+
+
+@njit(cache=True)
+def base_series(order, par, s, y_inverse, highest, A, phi, w, S, C, x, v, q, F, absolute):
+    """Rocking on the base, eqs (3)-(6), with c phi'' + n phi'^2 written as (c phi')'.
+
+    M X + m (c phi')' = -F;   m c X + J phi'' = -m g n;   X = a_g + x''.
+    """
+    if order == SHORT_ORDER and par.law == ALGEBRAIC:
+        _base_series(SHORT_ORDER, ALGEBRAIC, par, s, y_inverse, highest, A, phi, w, S, C, x, v, q, F, absolute)
+    else:
+        _base_series(order, par.law, par, s, y_inverse, highest, A, phi, w, S, C, x, v, q, F, absolute)

@@ -1,0 +1,157 @@
+"""Many runs at once, on all cores, with only the outcomes kept: `simulate_many` and `overturning_map`."""
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from . import kernel
+from .kernel import Ground
+from .motion import PulseMotion, SampledMotion
+from .scene import Block, Scene
+from .solver import REST_RATE, TOLERANCE, ground, options, parameters
+from .taylor import Parameters
+
+# Chunks per worker: enough that a slow chunk does not leave the other cores idle.
+CHUNKS_PER_WORKER = 8
+
+_field = Parameters._fields.index
+
+
+@dataclass(frozen=True, eq=False)
+class Outcomes:
+    """Outcomes of many runs, arrays of one common shape.
+
+    overturns, lifted : bool. failed : bool, the kernel could not go on. peak_tilt [rad]; peak_base_displacement [m].
+    impacts : int, until the outcome was certain. unstable_time is not kept.
+    """
+
+    overturns: np.ndarray
+    lifted: np.ndarray
+    failed: np.ndarray
+    peak_tilt: np.ndarray
+    peak_base_displacement: np.ndarray
+    impacts: np.ndarray
+
+    @classmethod
+    def of(cls, totals, shape):
+        def column(slot):
+            return totals[:, slot].reshape(shape)
+
+        status = column(kernel.STATUS)
+        return cls(column(kernel.WILL_OVERTURN) > 0, column(kernel.LIFTED) > 0,
+                   (status == kernel.STUCK) | (status == kernel.NOT_FINITE), column(kernel.PEAK_TILT),
+                   column(kernel.PEAK_X), column(kernel.IMPACTS).astype(int))
+
+
+@njit(cache=True, nogil=True)
+def _run_rows(rows, pulses, kind, dt, samples, chosen, totals):
+    """Run each row of parameters under its own pulse (scale, frequency, phase, start, end); totals has a row each."""
+    for i in range(rows.shape[0]):
+        r = rows[i]
+        par = Parameters(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8], r[9] != 0, int(r[10]), int(r[11]), r[12],
+                         r[13], r[14], r[15], r[16], r[17], r[18], r[19], r[20], r[21], r[22], r[23])
+        b = pulses[i]
+        kernel.run(par, Ground(kind, dt, samples, b[0], b[1], b[2], b[3], b[4]), chosen, totals[i])
+
+
+def run_rows(rows, pulses, shaking, chosen, workers=None):
+    """Totals, shape (n, TOTALS), of n runs that share the kind and samples of one ground motion.
+
+    rows : (n, fields of Parameters). pulses : (n, 5) scale, frequency, phase, start, end.
+    The result does not depend on the number of workers (threads; the kernel holds no lock).
+    """
+    n = len(rows)
+    totals = np.zeros((n, kernel.TOTALS))
+    arguments = (shaking.kind, shaking.dt, shaking.samples, chosen)
+    workers = workers or os.cpu_count() or 1
+    _run_rows(rows[:1], pulses[:1], *arguments, totals[:1])  # compiled or loaded before threads start
+    size = max(1, -(-n // (workers * CHUNKS_PER_WORKER)))
+    parts = [slice(k, min(k + size, n)) for k in range(1, n, size)]
+    if workers == 1 or len(parts) < 2:
+        for part in parts:
+            _run_rows(rows[part], pulses[part], *arguments, totals[part])
+        return totals
+    with ThreadPoolExecutor(workers) as pool:
+        list(pool.map(lambda part: _run_rows(rows[part], pulses[part], *arguments, totals[part]), parts))
+    return totals
+
+
+def _pulse_row(shaking):
+    return shaking.scale, shaking.frequency, shaking.phase, shaking.start, shaking.end
+
+
+def _outcome_options(tolerance, rest_rate):
+    return options(tolerance, rest_rate=rest_rate, record=False, decide=True)
+
+
+def simulate_many(scenes, *, tolerance=TOLERANCE, rest_rate=REST_RATE, workers=None):
+    """Outcomes of a sequence of scenes, in its order, shape (n,).
+
+    Scenes are grouped by their ground motion (the same object or equal content), so ensembles of many scenes under
+    few records are cheapest.
+    """
+    scenes = list(scenes)
+    chosen = _outcome_options(tolerance, rest_rate)
+    groups = {}
+    for index, scene in enumerate(scenes):
+        motion = scene.motion
+        key = motion.digest() if isinstance(motion, SampledMotion) else ground(motion).kind
+        groups.setdefault(key, []).append(index)
+    totals = np.zeros((len(scenes), kernel.TOTALS))
+    for members in groups.values():
+        shakings = [ground(scenes[i].motion) for i in members]
+        rows = np.array([parameters(scenes[i]) for i in members], dtype=float)
+        pulses = np.array([_pulse_row(shaking) for shaking in shakings])
+        totals[members] = run_rows(rows, pulses, shakings[0], chosen, workers)
+    return Outcomes.of(totals, (len(scenes),))
+
+
+def overturning_map(scene, shape, frequency_ratios, amplitude_ratios, *, tolerance=TOLERANCE, workers=None):
+    """Outcomes over pulse frequency and amplitude, shape (len(amplitude_ratios), len(frequency_ratios)).
+
+    Parameters
+    ----------
+    scene : Scene
+        Block, base and bearings; its motion is replaced by the pulse, its duration must cover it.
+    shape : str
+        Pulse, see `PulseMotion`.
+    frequency_ratios : array
+        Pulse frequency / omega_r.
+    amplitude_ratios : array
+        Pulse amplitude / (g tan(slenderness)).
+    """
+    frequencies = np.asarray(frequency_ratios, dtype=float) * scene.rocking_frequency
+    unit = scene.gravity * np.tan(scene.block.slenderness)
+    amplitudes = np.asarray(amplitude_ratios, dtype=float) * unit
+    columns = [_pulse_row(ground(PulseMotion(shape, 1.0, frequency))) for frequency in frequencies]
+    pulses = np.tile(np.array(columns), (len(amplitudes), 1))
+    pulses[:, 0] = np.repeat(amplitudes, len(frequencies))
+    rows = np.tile(np.array(parameters(scene), dtype=float), (len(pulses), 1))
+    shaking = ground(PulseMotion(shape, 1.0, frequencies[0]))
+    totals = run_rows(rows, pulses, shaking, _outcome_options(tolerance, REST_RATE), workers)
+    return Outcomes.of(totals, (len(amplitudes), len(frequencies)))
+
+
+def rocking_spectrum(motion, periods, slenderness, *, restitution_value=None, gravity=9.81, duration=None,
+                     tolerance=TOLERANCE, workers=None):
+    """Outcomes of rectangular blocks on rigid ground against their rocking period T_r = 2 pi/omega_r, shape (n,).
+
+    Fig. 5(a) of the Caryatid paper is peak_tilt against `periods` [s]. The radius follows from T_r and eq. (1);
+    the mass does not matter.
+    """
+    periods = np.asarray(periods, dtype=float)
+    radii = 3 * gravity * (periods / (2 * np.pi)) ** 2 / 4  # (1) with J_O = 4/3 m R^2
+    duration = motion.end if duration is None else duration
+    block = Block(mass=1.0, radius=1.0, slenderness=slenderness, restitution=restitution_value)
+    scene = Scene(block=block, motion=motion, duration=float(duration), gravity=gravity)
+    rows = np.tile(np.array(parameters(scene), dtype=float), (len(periods), 1))
+    rows[:, _field("R")] = radii
+    rows[:, _field("J")] = 4 / 3 * radii**2
+    rows[:, _field("p2")] = (2 * np.pi / periods) ** 2
+    shaking = ground(motion)
+    pulses = np.tile(np.array(_pulse_row(shaking)), (len(periods), 1))
+    totals = run_rows(rows, pulses, shaking, _outcome_options(tolerance, REST_RATE), workers)
+    return Outcomes.of(totals, (len(periods),))
