@@ -1,0 +1,367 @@
+"""The readable twin: the equations of rocking.py in plain scipy `solve_ivp` with events, slow and clear.
+
+An implementation of its own, kept apart from the compiled kernel to check it and to stand for what a careful user
+would write. One stretch of smooth motion is one call of `solve_ivp`: it ends at the next corner of the ground
+motion, at an impact, an uplift, a reversal of the base (where the bearing's history is fixed) or at overturning.
+"""
+
+import math
+import platform
+import time
+
+import numpy as np
+import scipy
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from .bearing import ALGEBRAIC, BOUC_WEN
+from .errors import SettingError
+from .response import Energy, Failure, History, Impact, Response, State
+from .rocking import RockingModel
+from .segments import segments
+
+METHODS = ("DOP853", "RK45", "LSODA", "Radau")
+IMPACT_LIMIT = 50_000  # more in one run means impacts that never accumulate (restitution of 1)
+STALL_LIMIT = 50  # events in a row without progress in time
+REST_HORIZON = 0.1  # a block rests only if its impacts end within this share of 1/omega_r
+
+
+def simulate_twin(scene, *, method="DOP853", rtol=1e-10, atol=None, history=True, energy=True, max_step=None,
+                  rest_rate=1e-8):
+    """Simulate a scene with scipy.
+
+    Parameters
+    ----------
+    scene : Scene
+    method : str
+        One of `METHODS`.
+    rtol : float
+        Relative tolerance of `solve_ivp`.
+    atol : float, optional
+        Absolute tolerance as a share of each state's scale (slenderness, R times slenderness, omega_r times
+        these, f0); default rtol.
+    history, energy : bool
+        Whether to keep the states at every step, and to integrate the energy ledger with them.
+    max_step : float, optional
+        Longest step [s]; default half of 1/omega of the stiffest bearing on a base, unlimited on rigid ground.
+    rest_rate : float
+        Impacts count as accumulated when |phi'+| < rest_rate omega_r and the block is held down. It then rests.
+
+    Returns
+    -------
+    Response
+        engine "twin". Extremes of forces and accelerations are those at the steps; peaks of tilt and
+        displacement are located as events.
+
+    Raises
+    ------
+    SettingError
+        The method is unknown or a tolerance is not positive.
+    """
+    if method not in METHODS:
+        raise SettingError(f"method {method!r} is unknown: choose one of {', '.join(METHODS)}")
+    for name, value in (("rtol", rtol), ("atol", atol), ("max_step", max_step), ("rest_rate", rest_rate)):
+        if value is not None and not (value > 0 and math.isfinite(value)):
+            raise SettingError(f"{name} = {value!r} is not positive: give a finite value above 0")
+    run = _Run(scene, {"method": method, "rtol": rtol, "atol": rtol if atol is None else atol,
+                       "max_step": max_step, "rest_rate": rest_rate}, history, energy)
+    run.model.bearing.hysteretic(0.0, 1e-6)  # compiled before the clock starts
+    started = time.process_time()
+    failure = run.go()
+    return run.response(time.process_time() - started, failure)
+
+
+class _Run:
+    """One run: the state y = [tilt, rate] and on a base [.., x, v, z if bouc-wen], then the ledger's quadratures."""
+
+    def __init__(self, scene, settings, history, energy):
+        self.scene, self.settings, self.energy = scene, settings, energy
+        self.model = model = RockingModel.of(scene)
+        self.law, self.omega_r = model.bearing, scene.rocking_frequency
+        start, length = scene.start, model.R * model.gamma
+        y, scale = [start.tilt, start.tilt_rate], [model.gamma, model.gamma * self.omega_r]
+        self.z_c = self.law.start(start.base_displacement)
+        self.x_c = start.base_displacement
+        self.max_step = math.inf
+        if model.on_base:
+            y += [start.base_displacement, start.base_velocity]
+            scale += [length, length * self.omega_r]
+            stiffness = self.law.count * (self.law.kb + (self.law.dk if self.law.law >= ALGEBRAIC else 0.0))
+            if stiffness > 0:
+                self.max_step = 0.5 * math.sqrt(model.M / stiffness)
+            if self.law.law == BOUC_WEN:
+                y.append(self.z_c)
+                scale.append(self.law.f0)
+        if energy:
+            extra = 3 if model.on_base else 1
+            y += [0.0] * extra
+            scale += [model.m * model.g * length * model.gamma] * extra
+        self.max_step = settings["max_step"] or self.max_step
+        self.atol = settings["atol"] * np.array(scale)
+        self.y, self.t = np.array(y), 0.0
+        # side of the corner the block rocks about; 0 is full contact
+        self.side = math.copysign(1.0, start.tilt or start.tilt_rate) if start.tilt or start.tilt_rate else 0.0
+        self.lifted = 0.0 if start.tilt == 0 else -1.0  # when tilt was last 0
+        self.turned = -1.0  # when the base last stood still
+        self.flight = None  # a guess of the next step [s]
+        self.rocked, self.overturning, self.unstable = self.side != 0, None, None
+        if abs(start.tilt) >= model.gamma:
+            self.unstable = 0.0
+        self.impacts, self.uplifts, self.rests = [], [], []
+        self.steps, self.stalled, self.impact_loss = 0, 0, 0.0
+        self.peak_tilt, self.peak_x = abs(start.tilt), abs(start.base_displacement)
+        self.peak_acceleration, self.friction, self.normal = 0.0, 0.0, 1.0
+        self.rows = [] if history else None
+        self.stored = self.mechanical_energy()
+
+    # the state machine
+
+    def go(self):
+        """Run to the end or to overturning; a Failure, or None."""
+        for _, end, ground in segments(self.scene.motion, self.scene.duration):
+            while self.t < end and self.overturning is None:
+                before = self.t
+                failure = self.advance(end, ground)
+                self.stalled = self.stalled + 1 if self.t == before else 0
+                if failure:
+                    return failure
+                if self.stalled > STALL_LIMIT or len(self.impacts) > IMPACT_LIMIT:
+                    return Failure("events pile up without progress", f"{len(self.impacts)} impacts, t = {self.t!r}",
+                                   self.state())
+        return None
+
+    def advance(self, end, ground):
+        """One stretch of smooth motion from self.t, at most to `end`."""
+        if self.side == 0:
+            a = self.contact_acceleration(self.y, ground(self.t))
+            if abs(a) > self.model.uplift_acceleration:
+                return self.lift(a)
+            if not self.model.on_base:
+                return self.stand(end, ground)
+        return self.integrate(end, ground)
+
+    def contact_acceleration(self, y, ground):
+        """Absolute acceleration of the base in full contact [m/s2], eq. (2)."""
+        if not self.model.on_base:
+            return ground
+        return self.model.contact_acceleration(self.bearing_force(y))
+
+    def lift(self, acceleration):
+        """Uplift: the block tips against the acceleration; tilt, rate (and phi'') are 0, so that decides the side."""
+        self.side, self.lifted, self.rocked = -math.copysign(1.0, acceleration), self.t, True
+        self.uplifts.append(self.t)
+
+    def stand(self, end, ground):
+        """Full contact on rigid ground: nothing moves until |a_g| exceeds g tan(gamma)."""
+        def excess(t):
+            return abs(ground(t)) - self.model.uplift_acceleration
+
+        start = self.t
+        lifts = excess(end) > 0  # |a_g| has no maximum inside a segment
+        self.t = brentq(excess, start, end, xtol=1e-15, rtol=1e-15) if lifts else end
+        for t in (start, self.t):
+            self.record(t, self.y, ground(t))
+        if lifts:
+            self.lift(ground(self.t))
+
+    def integrate(self, end, ground):
+        """Integrate until `end` or the first terminal event, and apply that event."""
+        direction = self.direction(end, ground)
+        events = self.events(direction)
+        longest = min(self.max_step, end - self.t)
+        step = {"first_step": min(self.flight or longest, longest)}
+        if self.flight is None and math.isinf(self.max_step) and self.scene.motion is None:
+            step = {}
+        solution = solve_ivp(self.derivative(ground, direction), (self.t, end), self.y, self.settings["method"],
+                             events=[event for _, event in events], rtol=self.settings["rtol"], atol=self.atol,
+                             max_step=self.max_step, **step)
+        self.steps += len(solution.t) - 1
+        self.flight = None
+        for t, y in zip(solution.t, solution.y.T, strict=True):
+            self.record(t, y, ground(t))
+        self.t, self.y = float(solution.t[-1]), solution.y[:, -1].copy()
+        if solution.status < 0:
+            return Failure("the integrator gave up", solution.message, self.state())
+        for (name, event), times, states in zip(events, solution.t_events, solution.y_events, strict=True):
+            for t, y in zip(times, states, strict=True):
+                if name == "apex":
+                    self.peak_tilt = max(self.peak_tilt, abs(y[0]))
+                elif name == "reversal":
+                    self.peak_x = max(self.peak_x, abs(y[2]))
+                elif name == "unstable":
+                    self.unstable = float(t) if self.unstable is None else self.unstable
+            if event.terminal and len(times) and times[-1] == self.t:
+                getattr(self, "at_" + name)(ground(self.t))
+                break
+        return None
+
+    def direction(self, end, ground):
+        """Sign of the base velocity over the coming stretch; where it stands, of its acceleration."""
+        if not self.model.on_base:
+            return 0.0
+        if self.y[3] != 0:
+            return math.copysign(1.0, self.y[3])
+        for t in (self.t, self.t + 1e-3 * (end - self.t)):  # at the start of a motion a_g may only begin to grow
+            acceleration = self.derivative(ground, 0.0)(t, self.y)[3]
+            if acceleration != 0:
+                return math.copysign(1.0, acceleration)
+        return 0.0
+
+    # events of the integration; "terminal" ones end a stretch and have an at_ method
+
+    def events(self, direction):
+        side, model, lifted, turned = self.side, self.model, self.lifted, self.turned
+        found = []
+        if side:
+            # phi = 0 at take-off is a root too: it is divided out
+            found.append(("impact", lambda t, y: side * y[0] / (t - lifted) if t > lifted else 1.0, True, -1))
+            found.append(("overturning", lambda t, y: side * y[0] - math.pi / 2, True, 1))
+            found.append(("apex", lambda t, y: side * y[1], False, -1))
+            if self.unstable is None:
+                found.append(("unstable", lambda t, y: side * y[0] - model.gamma, False, 1))
+        else:
+            threshold = model.uplift_acceleration
+            found.append(("uplift", lambda t, y: abs(self.contact_acceleration(y, 0.0)) - threshold, True, 1))
+        if direction:
+            found.append(("reversal", lambda t, y: direction * y[3] if t > turned else 1.0,
+                          self.law.law >= ALGEBRAIC, -1))
+        for _, event, terminal, sense in found:
+            event.terminal, event.direction = terminal, sense
+        return [(name, event) for name, event, _, _ in found]
+
+    def at_overturning(self, ground):
+        self.overturning = self.t
+
+    def at_uplift(self, ground):
+        self.lift(self.contact_acceleration(self.y, ground))
+
+    def at_reversal(self, ground):
+        self.fix_history()
+        self.y[3], self.turned = 0.0, self.t
+
+    def at_impact(self, ground):
+        """Eqs (7), (8); then the other corner, or rest if impacts accumulate and the block is held down."""
+        y, model = self.y, self.model
+        before, kinetic = y[1], self.kinetic_energy()
+        y[0] = 0.0
+        y[1], jump = model.impact(before)
+        if model.on_base:
+            self.fix_history()
+            y[3] += jump
+        self.impacts.append(Impact(self.t, float(before), float(y[1]), float(jump)))
+        self.side, self.lifted = math.copysign(1.0, y[1]), self.t
+        force = self.bearing_force(y)
+        deceleration = -self.side * model.accelerations(self.side, 0.0, y[1], ground, force)[0]
+        remaining = math.inf
+        if deceleration > 0 and model.restitution < 1:
+            remaining = 2 * abs(y[1]) / (deceleration * (1 - model.restitution))
+            self.flight = 2.2 * abs(y[1]) / deceleration or None
+        resting = abs(y[1]) < self.settings["rest_rate"] * self.omega_r
+        if y[1] == 0 or (resting and remaining * self.omega_r < REST_HORIZON):
+            if model.on_base:  # what is left goes to the base, as at an impact with restitution 0
+                y[3] += model.mass_share * model.R * math.cos(model.gamma) * y[1]
+            y[1], self.side, self.flight = 0.0, 0.0, None
+            if deceleration > 0:
+                self.rests.append(float(self.t + remaining))
+        self.impact_loss += kinetic - self.kinetic_energy()
+
+    # the equations
+
+    def derivative(self, ground, direction):
+        model, law, side, energy = self.model, self.law, self.side, self.energy
+        if not model.on_base:
+            def block_alone(t, y):
+                a, rate = ground(t), y[1]
+                slope = (rate, model.accelerations(side, y[0], rate, a, 0.0)[0])
+                return (*slope, -a * model.m * model.lever(side, y[0])[0] * rate) if energy else slope
+            return block_alone
+
+        def block_on_base(t, y):
+            a, (tilt, rate, x, v) = ground(t), y[:4].tolist()
+            z = self.hysteretic_force(y)
+            force = law.force(x, z, v)
+            if side:
+                spin, push = model.accelerations(side, tilt, rate, a, force)
+            else:
+                spin, push = 0.0, model.contact_acceleration(force) - a
+            slope = [rate, spin, v, push]
+            if law.law == BOUC_WEN:
+                slope.append(0.5 * law.dk * v * (1 - direction * z / law.f0))
+            if energy:
+                momentum = model.M * v + (model.m * model.lever(side, tilt)[0] * rate if side else 0.0)
+                slope += [-a * momentum, law.count * z * v, law.count * law.damping * v * v]
+            return slope
+        return block_on_base
+
+    def hysteretic_force(self, y):
+        """z of one bearing [N]; algebraic: from the last reversal, exact."""
+        return float(y[4]) if self.law.law == BOUC_WEN else self.law.hysteretic(self.z_c, float(y[2]) - self.x_c)
+
+    def bearing_force(self, y):
+        return self.law.force(float(y[2]), self.hysteretic_force(y), float(y[3])) if self.model.on_base else 0.0
+
+    def fix_history(self):
+        """The bearing's memory is the point it turned at."""
+        if self.model.on_base:
+            self.z_c, self.x_c = self.hysteretic_force(self.y), float(self.y[2])
+
+    def kinetic_energy(self):
+        rate, v, model = self.y[1], self.y[3] if self.model.on_base else 0.0, self.model
+        c = model.lever(self.side, self.y[0])[0] if self.side else 0.0
+        return 0.5 * model.M * v * v + model.m * c * rate * v + 0.5 * model.J * rate * rate
+
+    def mechanical_energy(self):
+        """(kinetic, potential) [J] in the ground's frame; potential of gravity and of the springs kb."""
+        model, height = self.model, 0.0
+        if self.side:
+            height = model.lever(self.side, self.y[0])[0] - model.R * math.cos(model.gamma)
+        spring = 0.5 * self.law.count * self.law.kb * self.y[2] ** 2 if model.on_base else 0.0
+        return float(self.kinetic_energy()), float(model.m * model.g * height + spring)
+
+    # what is kept
+
+    def record(self, t, y, ground):
+        """Extremes at one step and, where a history is kept, its row."""
+        model, force = self.model, self.bearing_force(y)
+        tilt, rate = float(y[0]), float(y[1])
+        if self.side:
+            spin, push = model.accelerations(self.side, tilt, rate, ground, force)
+            absolute = push + ground
+            horizontal, normal = model.contact_forces(self.side, tilt, rate, spin, absolute)
+        else:
+            absolute = self.contact_acceleration(y, ground)
+            horizontal, normal = model.m * absolute, model.m * model.g
+        self.peak_acceleration = max(self.peak_acceleration, abs(absolute))
+        self.friction = max(self.friction, abs(horizontal) / normal if normal > 0 else math.inf)
+        self.normal = min(self.normal, normal / (model.m * model.g))
+        self.peak_tilt = max(self.peak_tilt, abs(tilt))
+        x, v = (float(y[2]), float(y[3])) if model.on_base else (0.0, 0.0)
+        self.peak_x = max(self.peak_x, abs(x))
+        if self.rows is not None:
+            self.rows.append((t, tilt, rate, x, v, force, ground))
+
+    def state(self):
+        x, v = (float(self.y[2]), float(self.y[3])) if self.model.on_base else (0.0, 0.0)
+        return State(self.t, float(self.y[0]), float(self.y[1]), x, v, self.bearing_force(self.y))
+
+    def ledger(self):
+        kinetic, potential = (now - then for now, then in zip(self.mechanical_energy(), self.stored, strict=True))
+        work = self.y[-3:].tolist() if self.model.on_base else [float(self.y[-1]), 0.0, 0.0]
+        return Energy(kinetic, potential, *work, float(self.impact_loss))
+
+    def response(self, cpu_seconds, failure):
+        outcome = "rocks" if self.rocked else "stands"
+        outcome = "failed" if failure else "overturns" if self.overturning is not None else outcome
+        history = None
+        if self.rows is not None:
+            history = History(*np.array(self.rows).reshape(-1, len(History.COLUMNS)).T)
+        return Response(
+            engine="twin", variant=self.settings["method"], outcome=outcome, overturning_time=self.overturning,
+            unstable_time=self.unstable, peak_tilt=self.peak_tilt,
+            peak_tilt_ratio=self.peak_tilt / self.model.gamma, peak_base_displacement=self.peak_x,
+            peak_base_acceleration=self.peak_acceleration, impacts=tuple(self.impacts),
+            uplifts=tuple(self.uplifts), rests=tuple(self.rests), friction_demand=self.friction,
+            min_normal_ratio=self.normal, end=self.state(), cpu_seconds=cpu_seconds, steps=self.steps,
+            settings=dict(self.settings), scene=self.scene.name, failure=failure,
+            versions={"python": platform.python_version(), "numpy": np.__version__, "scipy": scipy.__version__},
+            energy=self.ledger() if self.energy else None, history=history)
