@@ -6,9 +6,7 @@ import json
 import multiprocessing
 import os
 import queue
-import re
 import signal
-import site
 import sys
 import tempfile
 import threading
@@ -17,14 +15,13 @@ import traceback
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import TimeoutError
-from dataclasses import asdict, dataclass, is_dataclass
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
 from pebble import ProcessExpired, ProcessPool
 
 from .cases import Case, module_of
+from .provenance import json_ready, scrub
 
 GRACE_SECONDS = 0.5  # beyond the time limit, for the worker to write down where it hangs
 EVIDENCE_CHARACTERS = 4000
@@ -141,34 +138,6 @@ class Processes(_Closing):
         self._pool.stop()
         self._pool.join()
         self._evidence.cleanup()
-
-
-def scrub(text):
-    """`text` without this machine's paths and addresses: project files stay readable, others lose their folders."""
-    roots = [(str(Path(__file__).parents[1]), ".")]
-    roots += [(path, "site-packages") for path in site.getsitepackages()]
-    roots += [(sys.prefix, "<environment>"), (sys.base_prefix, "<python>"),
-              (tempfile.gettempdir(), "<temporary>"), (str(Path.home()), "~")]
-    for root, name in roots:
-        if len(root) > 1:
-            text = text.replace(root, name)
-    text = re.sub(r'(File ")/[^"]*/', r"\1", text)  # paths in tracebacks that are none of these
-    return re.sub(r"0x[0-9a-fA-F]{6,}", "0x...", text)
-
-
-def json_ready(value):
-    """`value` as plain JSON types; arrays become lists, numbers that are not finite become None."""
-    if is_dataclass(value) and not isinstance(value, type):
-        value = asdict(value)
-    if isinstance(value, np.ndarray | np.generic):
-        value = value.tolist()
-    if isinstance(value, dict):
-        return {str(key): json_ready(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [json_ready(item) for item in value]
-    if isinstance(value, float) and not np.isfinite(value):
-        return None
-    return value
 
 
 def _lines(task):

@@ -14,7 +14,8 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from .cases import Case, name_of, solver
-from .executors import Done, Executor, Processes, Serial, Task, json_ready
+from .executors import Done, Executor, Processes, Serial, Task
+from .provenance import json_ready
 from .store import Store
 
 __all__ = ["Case", "Done", "Executor", "Processes", "Row", "Serial", "Store", "Task", "run_sweep"]

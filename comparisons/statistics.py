@@ -1,0 +1,234 @@
+"""Are two solvers' overturning outcomes different? Intervals, paired tests and fragility curves."""
+
+import math
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from scipy.optimize import brentq, minimize
+from scipy.stats import binom, binomtest, norm
+
+
+@dataclass(frozen=True)
+class Confusion:
+    """Counts of paired outcomes of two solvers A and B on the same motions."""
+
+    both_stand: int
+    both_overturn: int
+    only_a: int  # overturns in A alone
+    only_b: int  # overturns in B alone
+
+    @property
+    def size(self):
+        return self.both_stand + self.both_overturn + self.only_a + self.only_b
+
+    @property
+    def discordant(self):
+        return self.only_a + self.only_b
+
+    def table(self):
+        """Rows: A stands, A overturns; columns: B stands, B overturns; shape (2, 2)."""
+        return np.array([[self.both_stand, self.only_b], [self.only_a, self.both_overturn]])
+
+
+def confusion(a, b):
+    """Confusion table of two arrays of outcomes, shape (n,), True where it overturns.
+
+    Raises
+    ------
+    ValueError
+        The arrays differ in length, are empty or are not boolean: a failed run has no outcome, so leave
+        out its pair and say how many were left out.
+    """
+    a, b = np.asarray(a), np.asarray(b)
+    if a.dtype != bool or b.dtype != bool or a.shape != b.shape or a.ndim != 1 or len(a) == 0:
+        raise ValueError(f"paired outcomes must be two boolean arrays of one length above 0, not {a.dtype} "
+                         f"{a.shape} and {b.dtype} {b.shape}; leave failed runs out in pairs")
+    return Confusion(int((~a & ~b).sum()), int((a & b).sum()), int((a & ~b).sum()), int((~a & b).sum()))
+
+
+def wilson(count, size, level=0.95):
+    """Wilson score interval (low, high) of a probability seen `count` times in `size` (Wilson 1927)."""
+    interval = binomtest(count, size).proportion_ci(level, method="wilson")
+    return float(interval.low), float(interval.high)
+
+
+def mcnemar(table):
+    """Two-sided p-value of the exact McNemar test: are the discordant pairs of a `Confusion` split evenly?"""
+    if table.discordant == 0:
+        return 1.0
+    return float(binomtest(table.only_a, table.discordant, 0.5).pvalue)
+
+
+def cohen_kappa(table, level=0.95):
+    """Cohen's kappa (1960) of a square table of counts, and its interval: (kappa, low, high).
+
+    The interval is the large-sample one of Fleiss, Cohen and Everitt (1969). Without any
+    disagreement that has no width: then the Wilson interval of the agreement is used, with the chance
+    agreement as observed. Where both raters give one and the same class throughout, kappa does not exist
+    and all three are None.
+    """
+    p = np.asarray(table, dtype=float)
+    size = p.sum()
+    p = p / size
+    rows, columns = p.sum(axis=1), p.sum(axis=0)
+    observed, chance = float(np.trace(p)), float(rows @ columns)
+    if 1 - chance < 1e-12:
+        return None, None, None
+    kappa = (observed - chance) / (1 - chance)
+    if observed > 1 - 0.5 / size:
+        least = wilson(int(size), int(size), level)[0]
+        return 1.0, (least - chance) / (1 - chance), 1.0
+    sums = rows[:, None] + columns[None, :]
+    diagonal = np.diag(p) @ (1 - np.diag(sums) * (1 - kappa)) ** 2
+    crossed = columns[:, None] + rows[None, :]
+    off = (1 - kappa) ** 2 * ((p * crossed**2).sum() - np.diag(p) @ np.diag(crossed) ** 2)
+    variance = (diagonal + off - (kappa - chance * (1 - kappa)) ** 2) / (size * (1 - chance) ** 2)
+    width = norm.ppf(0.5 + level / 2) * math.sqrt(max(variance, 0.0))
+    return kappa, max(kappa - width, -1.0), min(kappa + width, 1.0)
+
+
+def detectable_difference(size, discordance, level=0.05, power=0.8):
+    """Smallest difference of two overturning probabilities that `size` pairs would show, or None if none.
+
+    Exact power of the exact McNemar test. The number of discordant pairs is binomial with the rate
+    `discordance`, or with the difference itself where that is larger; given it, their split is binomial.
+
+    Parameters
+    ----------
+    size : int
+        Number of pairs.
+    discordance : float
+        Share of pairs whose outcomes differ, in [0, 1].
+    level, power : float
+        Significance level, and the probability with which the difference is to be found.
+    """
+    if not 0 <= discordance <= 1:
+        raise ValueError(f"discordance = {discordance!r} is no share; give one in [0, 1]")
+    numbers = np.arange(size + 1)
+    # Largest count of the rarer side at which the two-sided exact test still rejects; -1: none.
+    critical = binom.ppf(level / 2, numbers, 0.5)
+    critical = np.where(2 * binom.cdf(critical, numbers, 0.5) <= level, critical, critical - 1)
+
+    def excess(difference):
+        rate = max(discordance, difference)
+        split = min((rate + difference) / (2 * rate), 1.0)
+        rejected = binom.cdf(critical, numbers, split) + binom.sf(numbers - critical - 1, numbers, split)
+        return float(binom.pmf(numbers, size, rate) @ np.where(critical >= 0, rejected, 0.0)) - power
+
+    if excess(1.0) < 0:
+        return None
+    return float(brentq(excess, 1e-9, 1.0, xtol=1e-9))
+
+
+def holm(p_values):
+    """p-values of several tests, adjusted for their number by Holm's step-down method (1979); shape kept."""
+    p_values = np.asarray(p_values, dtype=float)
+    order = np.argsort(p_values, axis=None)
+    steps = p_values.ravel()[order] * np.arange(p_values.size, 0, -1)
+    adjusted = np.empty(p_values.size)
+    adjusted[order] = np.minimum(np.maximum.accumulate(steps), 1.0)
+    return adjusted.reshape(p_values.shape)
+
+
+def compare(a, b, names=("A", "B"), level=0.05):
+    """Do solvers A and B overturn the same blocks? A dict of counts, tests and one plain statement.
+
+    Parameters
+    ----------
+    a, b : bool arrays, shape (n,)
+        Outcomes on the same n independent motions. Several intensities of one motion are not
+        independent: compare each intensity by itself, and adjust the p-values with `holm`.
+    names : pair of str
+    level : float
+        Significance level of the statement.
+    """
+    table = confusion(a, b)
+    p_value = mcnemar(table)
+    kappa, low, high = cohen_kappa(table.table())
+    difference = (table.only_b - table.only_a) / table.size
+    least = detectable_difference(table.size, table.discordant / table.size, level)
+    counts = (f"{table.size} motions: {table.only_a} overturn in {names[0]} alone, {table.only_b} in {names[1]} "
+              f"alone; exact McNemar p = {p_value:.2g}")
+    if p_value <= level:
+        statement = f"they differ ({counts})"
+    else:
+        found = "no difference, however large, can be" if least is None else (
+            f"a difference of {100 * least:.1f} percentage points would have been")
+        statement = (f"no difference found at this sample size ({counts}; {found} found with 80 % "
+                     "probability)")
+    return {**asdict(table), "p_value": p_value, "difference": difference, "detectable_difference": least,
+            "kappa": kappa, "kappa_interval": None if kappa is None else [low, high], "differ": p_value <= level,
+            "statement": statement}
+
+
+@dataclass(frozen=True)
+class Fragility:
+    """Lognormal fragility P(x) = Phi(ln(x/median)/dispersion), with intervals at 95 %."""
+
+    median: float
+    dispersion: float
+    median_interval: tuple[float, float]
+    dispersion_interval: tuple[float, float]
+
+    def probability(self, intensity):
+        """Probability of overturning at `intensity` (array or float, the unit of the fit)."""
+        return norm.cdf(np.log(np.asarray(intensity) / self.median) / self.dispersion)
+
+
+def fit_fragility(intensity, overturned, size):
+    """Lognormal fragility by maximum likelihood, Baker (2015), doi:10.1193/021113EQS025M, eq. (11).
+
+    Parameters
+    ----------
+    intensity : array, shape (k,)
+        Intensity levels, above 0.
+    overturned, size : arrays, shape (k,)
+        Overturned and all motions at each level. Counts at the levels are taken as independent; where the
+        same motions are scaled to all levels the intervals are therefore only indicative.
+
+    Raises
+    ------
+    ValueError
+        The counts determine no rising curve: outcomes are separated, all alike, or fall with intensity.
+    """
+    intensity, overturned, size = (np.asarray(values, dtype=float) for values in (intensity, overturned, size))
+    if (intensity <= 0).any() or (overturned < 0).any() or (overturned > size).any():
+        raise ValueError("fragility needs intensities above 0 and 0 <= overturned <= size at every level")
+    falls, stands = intensity[overturned > 0], intensity[overturned < size]
+    if len(falls) == 0 or len(stands) == 0 or falls.min() >= stands.max():
+        raise ValueError("outcomes do not overlap: no motion stands above the lowest intensity that overturns one; "
+                         "add intensities between, or motions")
+    log_intensity = np.log(intensity)
+    centre = log_intensity.mean()  # a and b then hardly depend on each other
+    design = np.column_stack([np.ones_like(log_intensity), log_intensity - centre])
+
+    def loss(ab):  # convex in (a, b) of P = Phi(a + b ln x)
+        z = design @ ab
+        return -(overturned @ norm.logcdf(z) + (size - overturned) @ norm.logsf(z))
+
+    def slope(ab):
+        z = design @ ab
+        return -design.T @ (overturned * _hazard(z) - (size - overturned) * _hazard(-z))
+
+    fit = minimize(loss, [0.0, 1.0], jac=slope, method="BFGS", options={"gtol": 1e-9 * size.sum()})
+    a, b = fit.x
+    if not fit.success and np.abs(slope(fit.x)).max() > 1e-6 * size.sum():
+        raise ValueError(f"the fragility fit did not converge: {fit.message}")
+    if b <= 0:
+        raise ValueError("overturning does not become likelier with intensity; a fragility curve makes no sense here")
+    z = design @ fit.x
+    information = design.T @ (design * (size * _hazard(z) * _hazard(-z))[:, None])
+    covariance = np.linalg.inv(information)
+    # ln(median) = centre - a/b and ln(dispersion) = -ln b, delta method
+    to_median = np.array([-1 / b, a / b**2])
+    width = 1.959963984540054 * np.sqrt([to_median @ covariance @ to_median, covariance[1, 1] / b**2])
+    centres = np.array([centre - a / b, -math.log(b)])
+    low, high = np.exp(centres - width), np.exp(centres + width)
+    median, dispersion = np.exp(centres)
+    return Fragility(float(median), float(dispersion), (float(low[0]), float(high[0])),
+                     (float(low[1]), float(high[1])))
+
+
+def _hazard(z):
+    """phi(z)/Phi(z), finite far into the lower tail."""
+    return np.exp(norm.logpdf(z) - norm.logcdf(z))
