@@ -167,6 +167,8 @@ def run(par, ground, options, totals):
         while tau < length:
             h = length - tau
             t = begin + tau
+            if h <= 4e-16 * finish:  # less than the rounding of time: not a step
+                break
             if kind == QUIET and mode == CONTACT and not par.on_base:
                 tau = length  # nothing moves
                 while written < outputs and written * options.output_step <= finish:
@@ -286,7 +288,7 @@ def run(par, ground, options, totals):
 
             # ---- events inside the step, the earliest one first
             if mode == CONTACT:
-                if found == 0 and not blocked:
+                if found == 0:
                     row = ABSOLUTE if par.on_base else GROUND
                     reach = h
                     size, power = abs(P[row, 0]), 1.0
@@ -298,6 +300,10 @@ def run(par, ground, options, totals):
                             for k in range(used + 1):
                                 event[k] = side * P[row, k]
                             event[0] += threshold
+                            if blocked and abs(event[0]) <= 1e-9 * threshold:
+                                event[0] = 0.0  # the touch just refused; a later crossing still counts
+                                if event[1] < 0:
+                                    continue
                             root = first_root(event, used, reach, work)
                             if root >= 0:
                                 found, h_event, reach = 1, root, root
