@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from .errors import SceneError
 from .motion import PulseMotion, SampledMotion
 
 Positive = Annotated[float, Field(gt=0)]
@@ -36,7 +37,8 @@ class Block(_Part):
     def _inertia_is_possible(self):
         least = self.mass * self.radius**2
         if self.corner_inertia is not None and self.corner_inertia <= least:
-            raise ValueError(f"corner_inertia must exceed mass radius^2 = {least:.6g} kg m2 (parallel axes)")
+            raise SceneError("block.corner_inertia", self.corner_inertia, "less than a point mass would have",
+                             f"give more than mass radius^2 = {least:.6g} kg m2, or leave it out")
         return self
 
     @property
@@ -87,11 +89,13 @@ class Bearings(_Part):
         if self.law != "linear":
             for name in ("kb", "alpha"):
                 if getattr(self, name) is None:
-                    raise ValueError(f"{name} is missing; the {self.law} law needs it")
+                    raise SceneError(f"bearings.{name}", None, "missing", f"add it: the {self.law} law needs it")
             if self.ka <= self.kb:
-                raise ValueError(f"ka must exceed kb, but ka = {self.ka:.6g} and kb = {self.kb:.6g} N/m")
+                raise SceneError("bearings.ka", self.ka, f"not above kb = {self.kb:.6g} N/m",
+                                 "give the initial stiffness as ka, the smaller one after yielding as kb [N/m]")
             if self.delta_k >= self.ka - self.kb:
-                raise ValueError("delta_k must be far smaller than ka - kb")
+                raise SceneError("bearings.delta_k", self.delta_k, "not below ka - kb",
+                                 "give a small stiffness difference [N/m] such as 1e-20, or leave it out")
         return self
 
 
@@ -127,10 +131,11 @@ class Scene(_Part):
     def _parts_fit(self):
         if self.base is None:
             if self.bearings is not None:
-                raise ValueError("bearings need a [base]")
+                raise SceneError("bearings", None, "need a base to carry", "add a table [base] with its mass")
             for name in ("base_displacement", "base_velocity"):
                 if getattr(self.start, name) != 0:
-                    raise ValueError(f"start.{name} needs a [base]")
+                    raise SceneError(f"start.{name}", getattr(self.start, name), "needs a base",
+                                     "add a table [base] with its mass, or remove it")
         return self
 
     @property

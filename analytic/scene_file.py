@@ -1,0 +1,177 @@
+"""Scene files (TOML) to scenes; every mistake in them becomes one `SceneError`."""
+
+import difflib
+import tomllib
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, ValidationError
+
+from .errors import SceneError
+from .motion import PULSES, PulseMotion
+from .records import UNITS, read_record
+from .scene import Base, Bearings, Block, NotNegative, Positive, Scene, Start, _Part
+from .synthetic import DEFAULT_SEED, STYLES, synthetic_motion
+
+SHIPPED = Path(__file__).parent / "scenes"
+
+KEY_UNITS = {
+    "gravity": "m/s2", "block.mass": "kg", "block.radius": "m", "block.slenderness": "rad",
+    "block.corner_inertia": "kg m2", "base.mass": "kg", "bearings.ka": "N/m", "bearings.kb": "N/m",
+    "bearings.delta_k": "N/m", "bearings.damping": "N s/m", "motion.amplitude": "m/s2",
+    "motion.frequency": "rad/s", "motion.start": "s", "start.tilt": "rad", "start.tilt_rate": "rad/s",
+    "start.base_displacement": "m", "start.base_velocity": "m/s", "run.duration": "s",
+}
+MOTIONS = {"record": ("units",), "pulse": ("amplitude", "frequency", "start"), "synthetic": ("seed",)}
+
+LIMITS = {"greater_than": "above {:.6g}", "greater_than_equal": "from {:.6g} on", "less_than": "below {:.6g}",
+          "less_than_equal": "up to {:.6g}"}
+
+
+class _Motion(_Part):
+    """The [motion] table: exactly one of record, pulse and synthetic, with the keys that belong to it."""
+
+    record: str | None = None
+    units: Literal[*UNITS] | None = None
+    pulse: Literal[*PULSES] | None = None
+    amplitude: float | None = None
+    frequency: Positive | None = None
+    start: NotNegative | None = None
+    synthetic: Literal[*STYLES] | None = None
+    seed: Annotated[int, Field(ge=0)] | None = None
+    scale: float = 1.0
+
+    def motion(self, folder):
+        """The ground motion; records are looked up from `folder`."""
+        kinds = [kind for kind in MOTIONS if getattr(self, kind) is not None]
+        if len(kinds) != 1:
+            problem = "names several motions at once" if kinds else "names no motion"
+            raise SceneError("motion", ", ".join(kinds) or None, problem,
+                             "give exactly one of record, pulse and synthetic")
+        for kind, keys in MOTIONS.items():
+            for key in keys:
+                if kind != kinds[0] and getattr(self, key) is not None:
+                    raise SceneError(f"motion.{key}", getattr(self, key), f"belongs to a {kind}, not to a {kinds[0]}",
+                                     "remove it")
+        if self.synthetic:
+            return synthetic_motion(self.synthetic, DEFAULT_SEED if self.seed is None else self.seed).scaled(self.scale)
+        if self.pulse:
+            for key in ("amplitude", "frequency"):
+                if getattr(self, key) is None:
+                    raise _missing(f"motion.{key}")
+            return PulseMotion(self.pulse, self.amplitude, self.frequency, self.start or 0.0).scaled(self.scale)
+        return self._recorded(folder / self.record)
+
+    def _recorded(self, path):
+        try:
+            return read_record(path, self.units, self.scale)
+        except SceneError as error:
+            if error.key == "motion.units":
+                raise SceneError(error.key, error.value, f"{error.problem} ({path.name})", error.remedy) from None
+            found = "" if error.value is None else f" = {error.value!r}"
+            where = "" if error.key in ("record", "motion.record") else f"{error.key}{found}: "
+            raise SceneError("motion.record", self.record, where + error.problem, error.remedy) from None
+
+
+class _Run(_Part):
+    duration: Positive
+
+
+class _SceneFile(_Part):
+    """A scene file as written; keys are those of the file."""
+
+    name: str = ""
+    gravity: Positive = 9.81
+    block: Block
+    base: Base | None = None
+    bearings: Bearings | None = None
+    motion: _Motion | None = None
+    start: Start = Start()
+    run: _Run
+
+
+def shipped_scenes():
+    """Names of the scenes that come with the package: ``load_scene("caryatid-isolated")``."""
+    return tuple(sorted(path.stem for path in SHIPPED.glob("*.toml")))
+
+
+def load_scene(path):
+    """The scene in a TOML file, or a shipped scene by its name.
+
+    Raises
+    ------
+    SceneError
+        Names the file, the key, what was found there and the remedy; the first mistake only.
+    """
+    path = Path(path)
+    if not path.exists() and str(path) in shipped_scenes():
+        path = SHIPPED / f"{path}.toml"
+    try:
+        return _scene(_parse(path), path)
+    except SceneError as error:
+        raise error.in_file(path) from None
+
+
+def _parse(path):
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise SceneError("scene", None, f"cannot be read ({error.strerror})",
+                         "give a scene file or one of " + ", ".join(shipped_scenes())) from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise SceneError("scene", None, f"is not valid TOML ({error})", "mend the line named") from error
+
+
+def _scene(table, path):
+    try:
+        file = _SceneFile(**table)
+        motion = file.motion.motion(path.parent) if file.motion else None
+        return Scene(block=file.block, base=file.base, bearings=file.bearings, motion=motion, start=file.start,
+                     duration=file.run.duration, gravity=file.gravity, name=file.name or path.stem)
+    except ValidationError as error:
+        raise _scene_error(error.errors()) from None
+
+
+def _scene_error(problems):
+    """The first problem pydantic found as a SceneError; unknown keys first, as they explain missing ones."""
+    problem = min(problems, key=lambda found: found["type"] != "extra_forbidden")
+    key = ".".join(str(part) for part in problem["loc"])
+    kind, value, context = problem["type"], problem["input"], problem.get("ctx", {})
+    unit = f" [{KEY_UNITS[key]}]" if key in KEY_UNITS else ""
+    if kind == "value_error":
+        error = context["error"]
+        return error if isinstance(error, SceneError) else SceneError(key, None, str(error), "change it")
+    if kind == "missing":
+        return _missing(key)
+    if kind == "extra_forbidden":
+        return _unknown(key, value)
+    if kind == "finite_number":
+        return SceneError(key, value, "not finite", f"give a finite number{unit}")
+    if kind == "literal_error":
+        return SceneError(key, value, "not known", f"choose {context['expected']}")
+    if kind in LIMITS:
+        words = LIMITS[kind].format(*context.values())
+        return SceneError(key, value, "out of range", f"give a number {words}{unit}")
+    wanted = {"model_type": f"a table: write [{key}]", "string_type": 'text in "quotes"',
+              "int_type": "a whole number", "int_from_float": "a whole number"}
+    return SceneError(key, value, f"wrong type ({type(value).__name__})",
+                      f"give {wanted.get(kind, 'a number')}{unit}")
+
+
+def _missing(key):
+    if key in _SceneFile.model_fields:
+        return SceneError(key, None, "missing", f"add a table [{key}]")
+    unit = f" [{KEY_UNITS[key]}]" if key in KEY_UNITS else ""
+    return SceneError(key, None, "missing", f"add {key.split('.')[-1]} = ...{unit}")
+
+
+def _unknown(key, value):
+    *tables, name = key.split(".")
+    if tables:
+        part = {"block": Block, "base": Base, "bearings": Bearings, "motion": _Motion, "start": Start,
+                "run": _Run}[tables[0]]
+    else:
+        part = _SceneFile
+    close = difflib.get_close_matches(name, part.model_fields, 1)
+    hint = f"write {close[0]}" if close else "remove it, known are " + ", ".join(part.model_fields)
+    return SceneError(key, value, "unknown key", hint)
