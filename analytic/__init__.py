@@ -5,6 +5,8 @@ from .errors import EngineNotInstalled, SceneError, SettingError
 from .motion import PulseMotion, SampledMotion
 from .response import Energy, Failure, History, Impact, Response, State
 from .scene import Base, Bearings, Block, Scene, Start
+from .scene_file import load_scene, shipped_scenes
+from .synthetic import synthetic_motion
 
 with kernel_cache():
     from .batch import Outcomes, overturning_map, rocking_spectrum, simulate_many
@@ -12,4 +14,5 @@ with kernel_cache():
 
 __all__ = ["Base", "Bearings", "Block", "Energy", "EngineNotInstalled", "Failure", "History", "Impact", "Outcomes",
            "PulseMotion", "Response", "SampledMotion", "Scene", "SceneError", "SettingError", "Start", "State",
-           "overturning_map", "rocking_spectrum", "simulate", "simulate_many"]
+           "load_scene",
+           "overturning_map", "rocking_spectrum", "shipped_scenes", "simulate", "simulate_many", "synthetic_motion"]
