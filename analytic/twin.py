@@ -250,18 +250,21 @@ class _Run:
             y[3] += jump
         self.impacts.append(Impact(self.t, float(before), float(y[1]), float(jump)))
         self.side, self.lifted = math.copysign(1.0, y[1]), self.t
-        force = self.bearing_force(y)
-        deceleration = -self.side * model.accelerations(self.side, 0.0, y[1], ground, force)[0]
-        remaining = math.inf
-        if deceleration > 0 and model.restitution < 1:
-            remaining = 2 * abs(y[1]) / (deceleration * (1 - model.restitution))
-            self.flight = 2.2 * abs(y[1]) / deceleration or None
+        force, e = self.bearing_force(y), model.restitution
+        # how hard either corner is pressed down: sides alternate, and a force makes them unequal
+        here, there = (-side * model.accelerations(side, 0.0, y[1], ground, force)[0]
+                       for side in (self.side, -self.side))
+        held, remaining = min(here, there) > 0, math.inf
+        if held and e < 1:  # two geometric sums
+            remaining = 2 * abs(y[1]) / (1 - e * e) * (1 / here + e / there)
+        if here > 0:
+            self.flight = 2.2 * abs(y[1]) / here or None
         resting = abs(y[1]) < self.settings["rest_rate"] * self.omega_r
         if y[1] == 0 or (resting and remaining * self.omega_r < REST_HORIZON):
             if model.on_base:  # what is left goes to the base, as at an impact with restitution 0
                 y[3] += model.mass_share * model.R * math.cos(model.gamma) * y[1]
             y[1], self.side, self.flight = 0.0, 0.0, None
-            if deceleration > 0:
+            if held:
                 self.rests.append(float(self.t + remaining))
         self.impact_loss += kinetic - self.kinetic_energy()
 
