@@ -13,8 +13,8 @@ from .motion import SampledMotion
 G = 9.81  # m/s2: the g of a record in g is the g of the default scene
 UNITS = {"m/s2": 1.0, "cm/s2": 0.01, "g": G}  # -> m/s2
 
-# Fortran writes ".1E-02", "1D-3", and "-.1E-02-.2E-02" where a minus sign fills the column.
-NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?")
+# Fortran writes ".1E-02", "1D-3", and "-.1E-02-.2E-02" where a sign fills the column: exponents have two digits.
+NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d{1,2})?")
 AT2_COUNT = (re.compile(rf"NPTS\s*=\s*(\S+?)\s*,?\s*DT\s*=\s*({NUMBER.pattern}|\S+)", re.I),
              re.compile(rf"^\s*(\d+)[\s,]+({NUMBER.pattern})[\s,]*NPTS[\s,]+DT", re.I))
 DYNA_KEY = re.compile(r"([A-Z][A-Z0-9_/^]*):(.*)")
@@ -49,8 +49,6 @@ def read_record(path, units=None, scale=1.0):
     except OSError as error:
         raise SceneError("motion.record", str(path), f"cannot be read ({error.strerror})",
                          "give the path of a record, relative to the scene file") from error
-    if units is not None and units not in UNITS:
-        raise SceneError("motion.units", units, "not a known unit", "choose one of " + ", ".join(UNITS))
     # CR CR LF is what a DOS text becomes after one more conversion; Ctrl-Z ended DOS files.
     lines = re.sub(r"\r*\n|\r", "\n", text.replace("\x1a", "")).split("\n")
     try:
@@ -65,6 +63,8 @@ def read_record(path, units=None, scale=1.0):
 
 def _read(lines, units):
     """(dt [s], accelerations [m/s2]) in whichever format the lines are."""
+    if units is not None and units not in UNITS:
+        raise SceneError("motion.units", units, "not a known unit", "choose one of " + ", ".join(UNITS))
     first = next((line for line in lines if line.strip()), None)
     if first is None:
         raise SceneError("record", None, "is empty", "give a record with at least two accelerations")
@@ -132,8 +132,9 @@ def _read_columns(lines, units):
                          "add units, one of " + ", ".join(UNITS))
     table = np.array(rows)
     times = table[:, 0]
+    accelerations = table[:, 1] * UNITS[units]
     if len(times) < 2:
-        return 1.0, table[:, 1]
+        return 1.0, accelerations  # refused by the caller
     dt = float(f"{(times[-1] - times[0]) / (len(times) - 1):.12g}")
     # Times may be rounded as printed, but not leave the grid by more than that, or by 2 % of the step.
     printed = max(10.0 ** Decimal(token.upper().replace("D", "E")).as_tuple().exponent for token in tokens[:100])
@@ -146,7 +147,7 @@ def _read_columns(lines, units):
         raise SceneError(f"sample {worst + 1}, time", float(times[worst]),
                          f"the sampling is not uniform: this step is {steps[worst - 1]:.6g} s, most are {usual:.6g} s",
                          "resample the record at equal intervals")
-    return dt, table[:, 1]
+    return dt, accelerations
 
 
 def _numbers(lines, begin):
@@ -156,16 +157,17 @@ def _numbers(lines, begin):
         if NUMBER.sub("", line).strip():
             wrong = next(part for part in line.split() if NUMBER.sub("", part))
             _number(f"line {number}", wrong)
+            raise SceneError(f"line {number}", wrong, "not a number", "mend or remove it")
         values += [float(token.upper().replace("D", "E")) for token in NUMBER.findall(line)]
     return np.array(values)
 
 
 def _number(where, token):
     remedy = "mend or remove it"
-    if not NUMBER.fullmatch(token):
-        lost = re.fullmatch(r"[+-]?(nan|inf|infinity)", token, re.I)
-        raise SceneError(where, token, "not finite" if lost else "not a number", remedy)
-    value = float(token.upper().replace("D", "E"))
+    try:
+        value = float(token.upper().replace("D", "E"))
+    except ValueError:
+        raise SceneError(where, token, "not a number", remedy) from None
     if not math.isfinite(value):
         raise SceneError(where, token, "not finite", remedy)
     return value
