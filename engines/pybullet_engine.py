@@ -1,0 +1,149 @@
+"""The scene in PyBullet (Bullet's multibody solver): Bullet decides contact and impact."""
+
+import math
+import time
+from dataclasses import asdict, dataclass, fields, replace
+from importlib.metadata import version
+
+import pybullet
+
+from analytic.errors import SceneError, SettingError
+from analytic.response import Failure
+
+from . import pybullet_stepping
+from .observe import observe
+from .pybullet_check import check_energy, check_place
+from .pybullet_scene import Mismatch, assemble
+from .pybullet_trace import trace_of
+
+NAME = "pybullet"
+
+DECIDES = (
+    "Bullet's contact solver decides when a corner lands, sticks or lifts and what an impact does to the tilt rate "
+    "and the base velocity; no restitution is given to it. The adapter gives it the bearings' force and the "
+    "ground's acceleration, and chooses the length of the steps."
+)
+
+
+@dataclass(frozen=True)
+class ImpactAware:
+    """Large steps in flight and at rest, small ones on the way to an impact.
+
+    accuracy is the one knob: the share of its speed at the impact that the block may gain in one step there.
+    """
+
+    accuracy: float = 5e-5
+    largest_step: float = 1e-3  # s
+    iterations: int = 10  # of the contact solver
+
+    def stepping(self):
+        return self.largest_step, self.accuracy
+
+
+@dataclass(frozen=True)
+class FixedStep:
+    """The same chain at one step: `step` [s] is the one knob."""
+
+    step: float = 1e-4
+    iterations: int = 10
+
+    def stepping(self):
+        return self.step, None
+
+
+VARIANTS = {"impact-aware": ImpactAware(), "fixed-step": FixedStep()}
+DEFAULT_VARIANT = "impact-aware"
+
+# Steps per shortest plausible one after which a run is given up: an outer time limit cannot save the history.
+ROWS_PER_STEP, MOST_ROWS = 50, 20_000_000
+
+
+def versions():
+    """Versions of what computes: {package: version}."""
+    return {"pybullet": version("pybullet"), "bullet-api": str(pybullet.getAPIVersion())}
+
+
+def settings_of(variant, changes):
+    """(name, settings) of a variant with fields replaced; raises `SettingError` for what does not exist."""
+    name = DEFAULT_VARIANT if variant is None else variant
+    if name not in VARIANTS:
+        raise SettingError(f"unknown variant {name!r} of pybullet: choose one of {', '.join(VARIANTS)}")
+    settings = VARIANTS[name]
+    known = [field.name for field in fields(settings)]
+    for key, value in changes.items():
+        if key not in known:
+            raise SettingError(f"unknown setting {key!r} of pybullet {name}: choose among {', '.join(known)}")
+        kind = type(getattr(settings, key))
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or value <= 0:
+            raise SettingError(f"pybullet {name}: {key} = {value!r} must be a positive number")
+        if kind is int and value != int(value):
+            raise SettingError(f"pybullet {name}: {key} = {value!r} must be a whole number")
+        settings = replace(settings, **{key: kind(value)})
+    return name, settings
+
+
+def simulate(scene, *, variant=None, history=True, **settings):
+    """Simulate a scene in PyBullet.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its block must leave the restitution to the engine.
+    variant : str, optional
+        One of `VARIANTS`.
+    history : bool
+        Keep the history.
+    **settings
+        Fields of the variant to replace.
+
+    Returns
+    -------
+    Response
+        A run that went wrong has the outcome "failed" with its evidence.
+
+    Raises
+    ------
+    SettingError
+        Unknown variant or setting, or a value out of range.
+    SceneError
+        The scene overrides the restitution.
+    """
+    name, chosen = settings_of(variant, settings)
+    if scene.block.restitution is not None:
+        raise SceneError("block.restitution", scene.block.restitution, "a contact engine decides the impact itself",
+                         "leave it out, or use the analytic model")
+    given = dict(engine=NAME, variant=name, settings=asdict(chosen), versions=versions(), history=history)
+    largest, accuracy = chosen.stepping()
+    row_limit = int(min(MOST_ROWS, ROWS_PER_STEP * scene.duration / largest + 100_000))
+    client = pybullet.connect(pybullet.DIRECT)
+    failure, ended, rows, place = None, None, [], None
+    try:
+        assembly = assemble(client, scene, largest, chosen.iterations)
+        clock = time.process_time()
+        rows, ended = pybullet_stepping.run(assembly, scene, largest, accuracy, row_limit)
+        cpu = time.process_time() - clock
+        place = [state[0] for state in pybullet.getJointStates(assembly.body, (assembly.slide, assembly.lift), client)]
+    except (Mismatch, pybullet.error) as error:
+        cpu = math.nan
+        failure = Failure("Bullet does not use what it was given" if isinstance(error, Mismatch)
+                          else "Bullet raised an error", str(error))
+    finally:
+        pybullet.disconnect(client)
+    if len(rows) < 2:
+        rows = [(0.0, 0.0, *[math.nan] * 6), (largest, largest, *[math.nan] * 6)]
+    trace = trace_of(rows, scene, pybullet_stepping.FLAT * scene.block.slenderness)
+    if failure is None:
+        failure = _failure(scene, trace, rows, ended, place)
+    return observe(scene, trace, cpu_seconds=cpu, steps=len(rows) - 1, failure=failure,
+                   ended=ended if ended == "overturned" else None, **given)
+
+
+def _failure(scene, trace, rows, ended, place):
+    """What went wrong in a finished run, or None."""
+    if ended == "not finite":
+        return Failure("the state is no longer finite", f"at step {len(rows) - 1}, t = {rows[-1][0]:.9g} s")
+    if ended == "too many steps":
+        return Failure("too many steps", f"{len(rows) - 1} by t = {rows[-1][0]:.9g} s of {scene.duration:.9g} s")
+    if ended == "overturned":
+        return None
+    return check_place(scene, *place, rows[-1][2], rows[-1][4]) or check_energy(scene, trace)

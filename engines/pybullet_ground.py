@@ -1,0 +1,53 @@
+"""Ground velocity over time, exact for records and pulses: what the engine's kicks are made of."""
+
+import math
+
+import numpy as np
+
+from analytic.motion import RICKER_PERIODS, SampledMotion
+
+
+def ground_velocity(motion):
+    """A function of time [s] giving the integral of the ground acceleration from 0 [m/s].
+
+    A step's mean acceleration is the difference of two values over the time between, whatever happens in it: an
+    engine that samples the acceleration instead loses part of a pulse that starts or ends between its steps.
+    """
+    if motion is None:
+        return None
+    return _sampled(motion) if isinstance(motion, SampledMotion) else _pulse(motion)
+
+
+def _sampled(motion):
+    dt, a = motion.dt, motion.samples
+    sums = np.concatenate(([0.0], np.cumsum(0.5 * dt * (a[1:] + a[:-1])))).tolist()
+    level, slope = a.tolist(), (np.diff(a) / dt).tolist()
+    last, end = len(slope), sums[-1]
+
+    def velocity(t):
+        if t <= 0:
+            return 0.0
+        i = int(t / dt)
+        if i >= last:
+            return end
+        u = t - i * dt
+        return sums[i] + u * (level[i] + 0.5 * slope[i] * u)
+
+    return velocity
+
+
+def _pulse(motion):
+    frequency, start, length = motion.frequency, motion.start, motion.length
+    size = motion.amplitude / frequency
+    half = 0.5 * RICKER_PERIODS * math.pi
+    forms = {"one-sine": lambda u: 1 - math.cos(u), "half-sine": lambda u: 1 - math.cos(u),
+             "one-cosine": math.sin, "rectangular": lambda u: u,
+             # with y = u/2 - 2 pi: d(2 y exp(-y^2))/du = (1 - 2 y^2) exp(-y^2)
+             "ricker": lambda u: 2 * (0.5 * u - half) * math.exp(-((0.5 * u - half) ** 2))
+             + 2 * half * math.exp(-half * half)}
+    form = forms[motion.shape]
+
+    def velocity(t):
+        return size * form(frequency * min(max(t - start, 0.0), length))
+
+    return velocity

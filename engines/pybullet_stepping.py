@@ -1,0 +1,142 @@
+"""Stepping a scene in Bullet: loads, step size, readback.
+
+Bullet is leapfrog: displacements live at the steps' ends t_n, velocities half a step earlier. Between velocities at
+t_n - h/2 and t_n + h'/2 lie (h + h')/2 seconds, but Bullet multiplies the loads by h' alone. Scaling all loads of a
+step by (h + h')/(2 h') makes the scheme second order for any sequence of steps, the start included (h = 0), and
+needs no correction of velocities when the step changes.
+"""
+
+import math
+
+import pybullet
+
+from analytic.bearing import hysteretic_force
+from analytic.rocking import RockingModel
+
+from .pybullet_ground import ground_velocity
+from .pybullet_scene import correction
+
+# The step grows by at most this factor: halving it costs 4 % more steps, 2 leaves the e error as it is.
+GROWTH = 1.5
+# Share of the remaining time to the impact that a step may take on the way to it.
+APPROACH = 0.3
+# Steps that stay as small as at the impact after it: Bullet spreads it over two.
+SETTLING = 4
+# Swings below this share of gamma do not matter: their impacts are stepped over.
+FLAT = 1e-6
+SMALLEST_STEP = 1e-7  # s; below it the rounding of tilt shows in the rates
+
+
+def run(assembly, scene, largest, accuracy, row_limit):
+    """Step until the duration is over, the block has overturned or a state is not finite.
+
+    Parameters
+    ----------
+    largest : float
+        Longest step [s]; the only one where `accuracy` is None.
+    accuracy : float or None
+        Share of its speed at the impact that the block may gain in one step there.
+    row_limit : int
+        Steps after which the run is given up.
+
+    Returns
+    -------
+    rows : list of tuples
+        Per step, the start first: time [s], length of the step that led there [s], tilt [rad], tilt rate [rad/s],
+        base displacement [m] and velocity [m/s], hysteretic force of one bearing [N], total force without viscous
+        part [N]. Rates are Bullet's own, half a step early.
+    ended : str
+        "done", "overturned", "not finite" or "too many steps".
+    """
+    client, body = assembly.client, assembly.body
+    model = RockingModel.of(scene)
+    law, g = model.bearing, model.g
+    on_base, loaded = assembly.base is not None, scene.bearings is not None
+    joints = (assembly.tilt, assembly.base) if on_base else (assembly.tilt,)
+    ground = ground_velocity(scene.motion)
+    aware, fraction = accuracy is not None, accuracy or 0.0
+    least_pull = abs(model.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0])  # |tilt''| toward contact, unforced
+    weak = math.sqrt(2 * least_pull * FLAT * scene.block.slenderness)  # tilt rate at the impact after such a swing
+    constants = (law.law, law.dk, law.alpha, law.d0, law.f0)
+    count, kb, damping = law.count, law.kb, law.count * law.damping
+    start, end, limit = scene.start, scene.duration, 0.5 * math.pi
+    step_simulation, set_gravity, read = pybullet.stepSimulation, pybullet.setGravity, pybullet.getJointStates
+    drive, control = pybullet.setJointMotorControl2, pybullet.TORQUE_CONTROL
+    sqrt, engine_step = math.sqrt, pybullet.setPhysicsEngineParameter
+
+    t, h = 0.0, 0.0
+    tilt, rate, x, v = start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity
+    z = law.start(x)
+    force = count * (kb * x + z)
+    rows = [(t, h, tilt, rate, x, v, z, force)]
+    keep, step, side = rows.append, largest, tilt > 0
+    before, interval, gained, settling = 0.0, 1.0, 0.0, 0
+    last_scale, earlier = -1.0, v
+    if aware:  # a first swing may be short: start small and let the step grow
+        step = min(largest, max(SMALLEST_STEP, fraction * abs(rate) / least_pull, 1e-2 * largest))
+        engine_step(fixedTimeStep=step, contactERP=correction(step), physicsClientId=client)
+    end -= 1e-9 * largest  # the steps' sum may miss the duration by rounding
+    while t < end:
+        jumped = (tilt > 0) != side
+        side = tilt > 0
+        if aware and h:
+            toward, size = (-rate, tilt) if side else (rate, -tilt)
+            pull = least_pull
+            if jumped:
+                settling = SETTLING if toward < -weak or toward > weak else 0
+            elif settling == 0:
+                # What the last step gained, toward contact; more than the model's where the ground pushes.
+                now = (before - rate if side else rate - before) / interval
+                if now > pull:
+                    pull = now
+            if settling:
+                settling -= 1
+            else:
+                speed = sqrt(toward * toward + 2 * pull * size)
+                wanted = step * GROWTH
+                if wanted > largest:
+                    wanted = largest
+                if speed > weak:
+                    finest = fraction * speed / pull
+                    if finest < SMALLEST_STEP:
+                        finest = SMALLEST_STEP
+                    near = APPROACH * ((speed - toward) / pull - 3 * finest)
+                    if near < finest:
+                        near = finest
+                    if near < wanted:
+                        wanted = near
+                if wanted != step:
+                    step = wanted
+                    engine_step(fixedTimeStep=step, contactERP=correction(step), physicsClientId=client)
+        if t + step > end + 2e-9 * largest:
+            step = scene.duration - t
+            engine_step(fixedTimeStep=step, contactERP=correction(step), physicsClientId=client)
+        scale = 0.5 * (step + h) / step
+        if ground is not None:
+            level = ground(t + 0.5 * step)
+            set_gravity((gained - level) / step, 0.0, -g * scale, client)
+            gained = level
+        elif scale != last_scale:
+            set_gravity(0.0, 0.0, -g * scale, client)
+            last_scale = scale
+        if loaded:
+            push = force
+            if damping:  # at the velocity at t, extrapolated from the last two but never through an impact
+                push += damping * (v if jumped else v + (v - earlier) / interval * 0.5 * h)
+            drive(body, 3, control, force=-push * scale, physicsClientId=client)
+        step_simulation(client)
+        before, earlier, interval = rate, v, 0.5 * (step + h)
+        if on_base:
+            (tilt, rate, _, _), (x, v, _, _) = read(body, joints, client)
+            if loaded:
+                z = hysteretic_force(z, x - rows[-1][4], *constants)
+                force = count * (kb * x + z)
+        else:
+            (tilt, rate, _, _), = read(body, joints, client)
+        t, h = t + step, step
+        keep((t, h, tilt, rate, x, v, z, force))
+        if not -limit < tilt < limit:
+            return rows, "overturned" if math.isfinite(tilt) and math.isfinite(rate) else "not finite"
+        if len(rows) > row_limit:
+            return rows, "too many steps"
+    return rows, "done"
