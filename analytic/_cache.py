@@ -1,4 +1,4 @@
-"""Where numba keeps the compiled kernel: one folder per state of the source.
+"""Where numba keeps the compiled kernel: one folder per state of the compiled source.
 
 Numba's own cache looks at the file of a function alone, so a change in taylor.py would leave a stale kernel in use.
 """
@@ -16,7 +16,9 @@ def _folder():
     source = Path(__file__).parent
     digest = hashlib.sha256()
     for file in sorted(source.glob("*.py")):
-        digest.update(file.name.encode() + file.read_bytes())
+        text = file.read_bytes()
+        if b"njit" in text:
+            digest.update(file.name.encode() + text)
     name = f"numba-{digest.hexdigest()[:16]}"
     for parent in (source / "__pycache__", Path.home() / ".cache" / "rocking", Path(tempfile.gettempdir())):
         try:

@@ -1,0 +1,108 @@
+"""Batches: the same outcomes as one run at a time, whatever the number of workers."""
+
+import math
+
+import numpy as np
+import pytest
+
+from analytic import (
+    Base,
+    Bearings,
+    Block,
+    PulseMotion,
+    SampledMotion,
+    Scene,
+    Start,
+    overturning_map,
+    rocking_spectrum,
+    simulate,
+    simulate_many,
+)
+
+G = 9.81
+BLOCK = Block(mass=1.0, radius=3 * G / (4 * 2.14**2), slenderness=0.25, restitution=0.9)
+LRB = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
+CARYATID = Block(mass=3172.05, radius=1.0884, slenderness=0.18)
+
+
+def rough(seed, peak):
+    rng = np.random.default_rng(seed)
+    t = np.arange(0, 8, 0.01)
+    a = np.exp(-(((t - 3) / 1.5) ** 2)) * (np.sin(2 * np.pi * 0.8 * t) + 0.5 * rng.standard_normal(len(t)))
+    return SampledMotion(0.01, peak * a / np.abs(a).max())
+
+
+def mixed_scenes():
+    """Rigid and isolated, pulses, two records and free motion, in no order."""
+    records = [rough(1, 4.0), rough(2, 6.0)]
+    scenes = []
+    for k in range(24):
+        motion = [records[0], None, PulseMotion("ricker", 4.0, 5.0), records[1], PulseMotion("one-cosine", 5.0, 7.0),
+                  PulseMotion("rectangular", 4.0, 3.0)][k % 6]
+        start = Start(tilt=0.02 * (k % 5)) if motion is None else Start()
+        scenes.append(Scene(block=CARYATID, motion=motion, start=start, duration=12.0))
+        scenes.append(Scene(block=CARYATID, base=Base(mass=212.0), bearings=LRB, motion=motion, start=start,
+                            duration=12.0))
+    return scenes
+
+
+def test_simulate_many_equals_one_at_a_time():
+    scenes = mixed_scenes()
+    many = simulate_many(scenes, tolerance=1e-14)
+    assert len(set(many.overturns)) == 2  # the set holds both outcomes
+    assert not many.failed.any()
+    for i, scene in enumerate(scenes):
+        one = simulate(scene, tolerance=1e-14, history=False)
+        assert many.overturns[i] == (one.outcome == "overturns")
+        assert many.lifted[i] == (one.outcome != "stands")
+        assert many.peak_tilt[i] == pytest.approx(one.peak_tilt, rel=1e-8, abs=1e-12)
+        if not many.overturns[i]:
+            assert many.peak_base_displacement[i] == pytest.approx(one.peak_base_displacement, rel=1e-9)
+
+
+def test_workers_do_not_change_a_bit():
+    scenes = mixed_scenes()
+    one, two = simulate_many(scenes, workers=1), simulate_many(scenes, workers=2)
+    for name in ("overturns", "peak_tilt", "peak_base_displacement", "impacts"):
+        assert np.array_equal(getattr(one, name), getattr(two, name))
+
+
+def test_no_scenes():
+    assert simulate_many([]).overturns.shape == (0,)
+
+
+@pytest.mark.parametrize("shape", ["one-sine", "one-cosine", "ricker"])
+def test_overturning_map_equals_single_runs(shape):
+    scene = Scene(block=BLOCK, duration=40.0)
+    frequencies, amplitudes = np.array([1.5, 3.0, 6.0]), np.array([1.1, 2.0, 4.0, 8.0])
+    outcomes = overturning_map(scene, shape, frequencies, amplitudes)
+    assert outcomes.overturns.shape == (4, 3)
+    for row, amplitude in enumerate(amplitudes):
+        for column, frequency in enumerate(frequencies):
+            pulse = PulseMotion(shape, amplitude * G * math.tan(0.25), frequency * scene.rocking_frequency)
+            one = simulate(scene.with_(motion=pulse), history=False)
+            assert outcomes.overturns[row, column] == (one.outcome == "overturns")
+
+
+def test_early_decision_is_right():
+    """After the pulse the energy integral decides; a full run must agree in outcome and peak."""
+    scene = Scene(block=BLOCK, duration=60.0)
+    frequencies, amplitudes = np.linspace(1.5, 7, 23), np.linspace(1.05, 9, 29)
+    outcomes = overturning_map(scene, "one-sine", frequencies, amplitudes, tolerance=1e-16)
+    scenes = [scene.with_(motion=PulseMotion("one-sine", a * G * math.tan(0.25), f * scene.rocking_frequency))
+              for a in amplitudes for f in frequencies]
+    full = [simulate(one, history=False, tolerance=1e-16) for one in scenes]
+    assert outcomes.overturns.ravel().tolist() == [one.outcome == "overturns" for one in full]
+    assert outcomes.peak_tilt.ravel() == pytest.approx([one.peak_tilt for one in full], rel=1e-9)
+
+
+def test_rocking_spectrum_equals_single_runs():
+    motion, periods = rough(5, 5.0), np.array([0.8, 1.6, 2.4, 4.0, 7.0])
+    outcomes = rocking_spectrum(motion, periods, 0.25)
+    for i, period in enumerate(periods):
+        block = Block(mass=7.0, radius=0.75 * G * (period / (2 * math.pi)) ** 2, slenderness=0.25)
+        one = simulate(Scene(block=block, motion=motion, duration=motion.end), history=False)
+        assert outcomes.overturns[i] == (one.outcome == "overturns")
+        # the mass only scales the equations, to rounding and what the motion makes of it
+        assert outcomes.peak_tilt[i] == pytest.approx(one.peak_tilt, rel=1e-6)
+    assert 0 < outcomes.overturns.sum() < len(periods)
