@@ -12,7 +12,10 @@ from scipy.interpolate import CubicHermiteSpline
 from analytic.motion import SampledMotion
 from analytic.response import Failure, History, Impact, Response, State
 
+from .checks import GAIN_LIMIT, energy_gain, replay_bearing
 from .swings import ArrayModel, Trace, find_swings, to_contact
+
+__all__ = ["Trace", "energy_gain", "observe", "replay_bearing"]
 
 # A landing after which the block stays in flat contact counts as an impact with rate 0 after it where the rate
 # before it is this many times the rate that leads to the edge of contact; a weaker one is the tail of a chatter.
@@ -49,7 +52,8 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
     An impact is reported where the swings before and after it are both resolved, that is exceed contact_tilt;
     its rates and base velocities are carried to tilt = 0 by the model's equations of flight. Where no such
     swing follows, the block came to rest: at the limit of the model's impacts after the last landing.
-    Friction demand and normal force follow from the states and the model's accelerations.
+    Friction demand and normal force follow from the states and the model's accelerations. An energy gain beyond
+    `GAIN_LIMIT` is a failure too.
     """
     trace, failure = _finite_part(trace, failure)
     overturning_time = None
@@ -65,6 +69,9 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
     end = State(*(float(getattr(trace, name)[-1]) for name in Trace.COLUMNS))
     if failure is None and overturning_time is None and end.time < scene.duration * (1 - 1e-9) - trace.time[1]:
         failure = Failure("the run ended early", f"last step at {end.time:.9g} s of {scene.duration:.9g} s", end)
+    if failure is None and (gain := energy_gain(scene, trace)) > GAIN_LIMIT:
+        failure = Failure("the run gained energy from nowhere",
+                          f"{gain:.3g} of its energy scale, at most {GAIN_LIMIT} can be error of the steps", end)
     swings = find_swings(trace)
     impacts, uplifts, rests = find_events(scene, trace, swings)
     demand, normal, acceleration = contact_measures(scene, trace)
@@ -112,7 +119,7 @@ def _upto_overturning(scene, trace, ended):
         if weight == 0:
             last -= 1
         return Trace(*(np.append(getattr(trace, name)[:last], columns[name]) for name in Trace.COLUMNS),
-                     trace.contact_tilt), t
+                     trace.contact_tilt, trace.settle), t
     side = np.sign(trace.tilt[-1])
     if ended == "overturned" and side * trace.tilt_rate[-1] > 0:
         model = ArrayModel.of(scene)
@@ -164,8 +171,8 @@ def find_events(scene, trace, swings):
     if n == 0:
         return (), (), ()
     model = ArrayModel.of(scene)
-    land, before, v_before = to_contact(scene, trace, swings.last, swings.side, 1)
-    lift, after, v_after = to_contact(scene, trace, swings.first, swings.side, -1)
+    land, before, v_before = to_contact(scene, trace, swings, 1)
+    lift, after, v_after = to_contact(scene, trace, swings, -1)
     edge = trace.contact_tilt
     impacts, uplifts, rests = [], [], []
     for i in range(n):
@@ -199,7 +206,7 @@ def find_events(scene, trace, swings):
             uplift = _uplift_time(model, scene, trace, last + 1, following)
             rests.append(min(limit, uplift))
             uplifts.append(uplift)
-    return tuple(impacts), tuple(uplifts), tuple(rests)
+    return tuple(impacts), tuple(uplifts), tuple(float(rest) for rest in rests)
 
 
 def _limit_time(model, scene, trace, last, side, landing, rate):
@@ -236,10 +243,13 @@ def contact_measures(scene, trace):
     """(max |H|/N, min N/(m g), max |absolute base acceleration| [m/s2]) over the steps of a trace."""
     model = ArrayModel.of(scene)
     level = _contact_acceleration(model, scene, trace)
-    flight = np.abs(trace.tilt) > trace.contact_tilt
+    # In contact above the uplift acceleration the block is off the base already, unseen by the engine's resolution.
+    lifting = np.abs(level) > model.uplift_acceleration
+    flight = lifting | (np.abs(trace.tilt) > trace.contact_tilt)
     demand, normal, absolute = np.abs(level) / model.g, np.ones(len(level)), level.copy()
     if flight.any():
-        tilt, rate, side = trace.tilt[flight], trace.tilt_rate[flight], np.sign(trace.tilt[flight])
+        tilt, rate = trace.tilt[flight], trace.tilt_rate[flight]
+        side = np.where(np.abs(tilt) > trace.contact_tilt, np.sign(tilt), -np.sign(level[flight]))
         ground = scene.motion.acceleration(trace.time[flight]) if scene.motion else np.zeros(len(tilt))
         tilting, sliding = model.accelerations(side, tilt, rate, ground, trace.bearing_force[flight])
         absolute[flight] = ground + sliding

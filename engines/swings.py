@@ -40,6 +40,8 @@ class Trace:
         All bearings together, viscous part included [N]; zeros without bearings.
     contact_tilt : float
         Tilt [rad] below which the engine counts as in flat contact: just above its contact noise.
+    settle : float
+        Time [s] a compliant contact takes to relax after an impact; flight counts as clean after it.
 
     Raises
     ------
@@ -54,6 +56,7 @@ class Trace:
     base_velocity: np.ndarray
     bearing_force: np.ndarray
     contact_tilt: float
+    settle: float = 0.0
 
     COLUMNS = ("time", "tilt", "tilt_rate", "base_displacement", "base_velocity", "bearing_force")
 
@@ -73,17 +76,19 @@ class Trace:
 
     def upto(self, count):
         """The first `count` steps."""
-        return Trace(*(getattr(self, name)[:count] for name in self.COLUMNS), self.contact_tilt)
+        return Trace(*(getattr(self, name)[:count] for name in self.COLUMNS), self.contact_tilt, self.settle)
 
 
 @dataclass(frozen=True)
 class Swings:
     """The times the block is off flat contact; arrays of shape (n,).
 
-    first, last : indices of the first and last step with |tilt| > contact_tilt; side : +1 or -1.
+    first, last : indices of the first and last step with |tilt| > contact_tilt; clean: of the first step in clean
+    flight, ``settle`` after the first (at most half-way through the swing); side : +1 or -1.
     """
 
     first: np.ndarray
+    clean: np.ndarray
     last: np.ndarray
     side: np.ndarray
 
@@ -103,37 +108,42 @@ def find_swings(trace):
     lifted = np.flatnonzero(above)
     first = lifted[np.searchsorted(lifted, begin)]
     last = lifted[np.searchsorted(lifted, end) - 1]
-    return Swings(first, last, side[first])
+    begin, end = trace.time[first], trace.time[last]
+    clean = np.searchsorted(trace.time, np.minimum(begin + trace.settle, (begin + end) / 2))
+    return Swings(first, clean, last, side[first])
 
 
-def to_contact(scene, trace, index, side, direction):
-    """States of a trace carried to tilt = 0 by the model's equations of flight about the corner of `side`.
+def to_contact(scene, trace, swings, direction):
+    """States of a trace carried to tilt = 0 by the model's equations of flight.
 
     Parameters
     ----------
-    index, side : int arrays, shape (n,)
-        Steps to start from, and the side they are on.
+    swings : Swings
+        Of n swings.
     direction : int
-        +1 forward to the coming impact, -1 backward to the last one.
+        +1: from each swing's last step forward to its landing; -1: from its first clean step back to its start.
 
     Returns
     -------
     time, rate, velocity : arrays, shape (n,)
         Time [s], tilt rate [rad/s] and base velocity [m/s] at tilt = 0; NaN where the flight does not reach it.
 
-    The bearings' elastic and hysteretic force is carried along its tangent at the starting step.
+    The bearings' elastic and hysteretic force is the trace's within the swing, and follows its tangent outside.
     """
     model = ArrayModel.of(scene)
-    law = model.bearing
+    law, side = model.bearing, swings.side
+    index, edge = (swings.last, swings.last) if direction > 0 else (swings.clean, swings.first)
     ground = scene.motion.acceleration if scene.motion else np.zeros_like
     t, tilt, rate, x, v = (getattr(trace, name)[index].copy() for name in Trace.COLUMNS[:5])
     if len(t) == 0:
         return t, rate, v
-    x0, lasting0 = x.copy(), trace.bearing_force[index] - law.count * law.damping * v
-    stiffness = _tangent(law, x0, lasting0, v)
+    lasting = trace.bearing_force - law.count * law.damping * trace.base_velocity
+    stiffness = _tangent(law, trace.base_displacement[edge], lasting[edge], trace.base_velocity[edge])
 
     def slope(t, tilt, rate, x, v):
-        force = lasting0 + stiffness * (x - x0) + law.count * law.damping * v
+        outside = lasting[edge] + stiffness * (x - trace.base_displacement[edge])
+        inside = direction < 0 and np.interp(t, trace.time, lasting)
+        force = np.where(direction * (trace.time[edge] - t) > 0, inside, outside) + law.count * law.damping * v
         tilting, sliding = model.accelerations(side, tilt, rate, ground(t), force)
         return np.stack([rate, tilting, v, np.broadcast_to(sliding, rate.shape)])
 

@@ -1,0 +1,79 @@
+"""Each way an engine's process can end badly is provoked; the test module is what the process imports."""
+
+import os
+import signal
+import time
+
+import pytest
+
+from analytic import Block, Scene, SettingError, Start, simulate
+from engines.guard import guarded, guarded_simulate
+
+SCENE = Scene(block=Block(mass=1000.0, radius=1.0, slenderness=0.2), start=Start(tilt=0.1), duration=1.0, name="nod")
+SETTINGS = {"variant": "odd", "step": 1e-3}
+
+
+def hang(engine, scene, settings):
+    while True:
+        time.sleep(0.01)
+
+
+def kill(engine, scene, settings):
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def segfault(engine, scene, settings):
+    import faulthandler
+    faulthandler._sigsegv()
+
+
+def leave(engine, scene, settings):
+    os._exit(3)
+
+
+def err(engine, scene, settings):
+    raise RuntimeError("Newton did not converge at 0.25 s")
+
+
+def wrong_setting(engine, scene, settings):
+    raise SettingError("step = 0.001: unknown")
+
+
+def work(engine, scene, settings):
+    return simulate(scene)
+
+
+@pytest.mark.parametrize("run, limit, reason, evidence", [
+    (hang, 4.0, "did not end in time", "time limit of 4 s"),
+    (kill, 30.0, "process died", "SIGKILL"),
+    (segfault, 30.0, "process died", "SIGSEGV"),
+    (leave, 30.0, "process died", "exit code 3"),
+    (err, 30.0, "raised an error", "RuntimeError: Newton did not converge at 0.25 s"),
+])
+def test_a_run_that_ends_badly_is_a_failed_response_with_evidence(run, limit, reason, evidence):
+    began = time.monotonic()
+    response = guarded(run, "fake", SCENE, SETTINGS, limit)
+    assert time.monotonic() - began < limit + 5
+    assert response.outcome == "failed"
+    assert reason in response.failure.reason
+    assert evidence in response.failure.message
+    assert (response.engine, response.variant, response.settings, response.scene) == ("fake", "odd", SETTINGS, "nod")
+    assert response.to_json()["peak_tilt"] is None
+
+
+def test_a_good_run_comes_back_as_it_is():
+    response, here = guarded(work, "fake", SCENE, {}, 60.0), simulate(SCENE)
+    assert response.impacts == here.impacts
+    assert (response.history.tilt == here.history.tilt).all()
+
+
+def test_a_wrong_setting_is_the_callers_mistake():
+    with pytest.raises(SettingError, match="step"):
+        guarded(wrong_setting, "fake", SCENE, SETTINGS, 30.0)
+
+
+def test_an_unknown_engine_or_time_limit_is_refused_before_any_process():
+    with pytest.raises(KeyError, match="unknown engine 'ode'"):
+        guarded_simulate("ode", SCENE, time_limit=1.0)
+    with pytest.raises(ValueError, match="time_limit = 0"):
+        guarded_simulate("exudyn", SCENE, time_limit=0.0)
