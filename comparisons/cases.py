@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 
-from analytic.scene import Scene
+from analytic import Block, Scene, Start
 from engines import ENGINES, get_engine
 
 from .sources import digest_of, source_digests
@@ -21,6 +21,8 @@ SOLVERS = {
     "time-stepping": ("analytic.time_stepping", "simulate_time_stepping"),
 }
 
+COMPILED = frozenset({"analytic", "time-stepping"})
+
 
 @dataclass(frozen=True, eq=False)
 class Case:
@@ -28,7 +30,8 @@ class Case:
 
     scene: what is simulated. solver: "analytic", "twin", "time-stepping", the name of an engine, or
     "module:function". variant: None takes the solver's default. settings: keyword arguments, JSON values
-    only. tag: whatever the study wants to find again in the row (JSON values); no part of the key.
+    only; {"history": False} spares time where the reducer looks at no history. tag: whatever the study
+    wants to find again in the row (JSON values); no part of the key.
     """
 
     scene: Scene
@@ -67,6 +70,16 @@ def solver(name) -> Callable:
         return get_engine(name).simulate
     module, function = _place(name)
     return getattr(importlib.import_module(module), function)
+
+
+def compile_kernels(names):
+    """Let those of the solvers `names` that have a compiled kernel fill its cache on disk.
+
+    Else every worker process would compile it by itself, within its time limit.
+    """
+    scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), start=Start(tilt=0.1), duration=0.1)
+    for name in COMPILED.intersection(names):
+        solver(name)(scene)
 
 
 def module_of(name):

@@ -8,12 +8,13 @@ unchanged are not run again.
 
 import json
 from collections import deque
+from contextlib import ExitStack
 from dataclasses import dataclass
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from .cases import Case, name_of, solver
+from .cases import Case, compile_kernels, name_of, solver
 from .executors import Done, Executor, Processes, Serial, Task
 from .provenance import json_ready
 from .store import Store
@@ -81,28 +82,26 @@ def run_sweep(cases, *, store, workers=None, time_limit=300.0, reduce=None, exec
     for name in names:
         solver(name)
     keys = [case.key(reduce) for case in cases]
-    if not isinstance(store, Store):
-        with Store(store) as opened:
-            return run_sweep(cases, store=opened, workers=workers, time_limit=time_limit, reduce=reduce,
-                             executor=executor, progress=progress, label=label)
-    open_cases = {key: case for key, case in zip(keys, cases, strict=True)
-                  if not _settled(store.get(key), time_limit)}
-    fresh = frozenset(open_cases)
-    with _bar(progress) as bar:
-        line = bar.add_task(label, total=len(fresh), visible=bool(fresh))
-        if fresh and executor is None:
-            with Processes(workers, names) as executor:
-                _run(open_cases, store, executor, reduce, time_limit, lambda count: bar.advance(line, count))
-        elif fresh:
-            _run(open_cases, store, executor, reduce, time_limit, lambda count: bar.advance(line, count))
-    rows = map(store.get, keys)
-    return [Row(case, row["values"], row["failure"], row["cost"], key not in fresh)
+    with ExitStack() as stack:
+        if not isinstance(store, Store):
+            store = stack.enter_context(Store(store))
+        waiting = {key: case for key, case in zip(keys, cases, strict=True)
+                   if not _settled(store.get(key), time_limit)}
+        if waiting:
+            compile_kernels({case.solver for case in waiting.values()})
+            bar = stack.enter_context(_bar(progress))
+            line = bar.add_task(label, total=len(waiting))
+            if executor is None:
+                executor = stack.enter_context(Processes(workers, names))
+            _run(waiting, store, executor, reduce, time_limit, lambda count: bar.advance(line, count))
+        rows = [store.get(key) for key in keys]
+    return [Row(case, row["values"], row["failure"], row["cost"], key not in waiting)
             for case, key, row in zip(cases, keys, rows, strict=True)]
 
 
 def _run(waiting, store, executor, reduce, time_limit, advance):
     chunks = _Chunks(waiting, executor.slots)
-    alone = deque()  # members of lost tasks: each runs by itself to find the guilty one
+    alone = deque()  # members of lost tasks: each runs by itself, to find the guilty one
     submitted = {}
     while chunks or alone or submitted:
         while len(submitted) < executor.slots and (alone or chunks):

@@ -168,6 +168,14 @@ def test_an_executor_is_shared_by_several_sweeps(tmp_path):
     assert [row.reused for row in rows[1]] == [True] * 3 + [False] * 3
 
 
+def test_the_analytic_model_gives_the_same_rows_here_and_in_workers_without_compiling_there(tmp_path, fakes):
+    which = [Case(scene(0.05 * i), settings={"history": False}) for i in range(1, 6)]
+    here = sweep(which, tmp_path / "0.jsonl", executor=Serial(), reduce=fakes.tilt)
+    # Compiling takes longer than this limit; compile_kernels has left the workers a cache.
+    there = sweep(which, tmp_path / "2.jsonl", workers=2, reduce=fakes.tilt, time_limit=8.0)
+    assert results(here) == results(there) and not any(row.failed for row in there)
+
+
 KILLED_SWEEP = """
 import sys
 sys.path.insert(0, {here!r})
