@@ -1,0 +1,91 @@
+"""exudyn, variant compliant-corners: a stiff contact spring at each bottom corner; the engine decides the impacts."""
+
+import math
+from dataclasses import dataclass
+
+import exudyn as exu
+
+from .exudyn_run import solver_settings, step_through
+from .exudyn_scene import build
+
+Real = exu.symbolic.Real
+
+# The block the defaults were measured with: the Caryatid, mass [kg], radius [m], gravity [m/s2].
+MEASURED = 3172.05, 1.0884, 9.81
+
+# Time for the corners to relax after an impact, over sqrt(R/g): 8 ms for the Caryatid.
+SETTLE = 0.024
+
+
+@dataclass(frozen=True)
+class CompliantCorners:
+    """Settings of compliant-corners. `stiffness` is the accuracy knob: the error of restitution goes as its inverse.
+
+    stiffness [N/m] per corner and rebound [m/s], the speed a corner may keep after an impact, are those of a block
+    of the Caryatid's weight and size; other blocks get the equivalent (penetration over radius and rebound over
+    sqrt(g R) stay the same).
+    """
+
+    stiffness: float = 1e11
+    rebound: float = 1e-3
+    friction: float = 5.0
+    sticking: float = 1.0  # tangential over normal stiffness, less on a light base
+    damping: float = 0.5  # tangential, over the critical one of block and base sliding on the contact
+    tolerance: float = 1e-7  # local error per step [m, rad, m/s, rad/s]
+    longest_step: float = 5e-3  # s
+
+
+@dataclass(frozen=True)
+class Corner:
+    """Constants of one corner's contact force. Units: N/m, s/m, N/m, N s/m, -."""
+
+    stiffness: float
+    hardening: float
+    sticking: float
+    damping: float
+    friction: float
+
+    @classmethod
+    def of(cls, scene, settings):
+        block = scene.block
+        mass, radius, gravity = MEASURED
+        stiffness = settings.stiffness * (block.mass * scene.gravity / block.radius) / (mass * gravity / radius)
+        speed = math.sqrt(scene.gravity * block.radius / (gravity * radius))
+        # on a light base the reduced mass is small: a sticking spring in proportion keeps the step
+        reduced = block.mass * (1 - scene.mass_share if scene.base else 1.0)
+        sticking = settings.sticking * stiffness * reduced / block.mass
+        return cls(stiffness, 1 / (settings.rebound * speed), sticking,
+                   2 * settings.damping * math.sqrt(sticking * reduced), settings.friction)
+
+    def force(self, displacement, velocity, offset):
+        """Symbolic force of a Cartesian connector [N]: Hunt-Crossley, clipped at zero, and a stick spring.
+
+        The tangential force is gated by the normal one: a gate by the gap would let micro-bounces inject energy.
+        """
+        depth, rate = -displacement[1], -velocity[1]
+        normal = exu.symbolic.IfThenElse(
+            depth > 0.0, exu.symbolic.max(Real(0.0), self.stiffness * depth * (1.0 + self.hardening * rate)), Real(0.0))
+        limit = self.friction * normal
+        stick = self.sticking * displacement[0] + self.damping * velocity[0]
+        return [exu.symbolic.max(-limit, exu.symbolic.min(limit, stick)), -normal, Real(0.0)]
+
+
+def assemble(scene, settings):
+    """(model, contact tilt [rad]) of a scene with compliant corners."""
+    corner = Corner.of(scene, settings)
+    sink = scene.block.mass * scene.gravity / (2 * corner.stiffness)
+    model = build(scene, sink)
+    for side, name in ((-1, "left"), (1, "right")):
+        model.connect(name, model.corner_markers(side), corner.force)
+    return model, sink / scene.block.half_width
+
+
+def run(scene, settings):
+    """Step a scene with compliant corners."""
+    model, contact_tilt = assemble(scene, settings)
+    steps = max(1, math.ceil(scene.duration / settings.longest_step))
+    solver = solver_settings(
+        scene, numberOfSteps=steps, automaticStepSize=True, initialStepSize=1e-5, minimumStepSize=1e-13,
+        relativeTolerance=1e-14, absoluteTolerance=settings.tolerance)
+    return step_through(model, solver, exu.DynamicSolverType.DOPRI5, 2 * contact_tilt, settings.longest_step,
+                        settle=SETTLE * math.sqrt(scene.block.radius / scene.gravity))

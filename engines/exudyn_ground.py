@@ -1,0 +1,85 @@
+"""Ground acceleration for exudyn: one smooth expression per segment, and steps that stop where segments meet."""
+
+import math
+
+import exudyn as exu
+import numpy as np
+
+from analytic.motion import RICKER_PERIODS, SampledMotion
+
+
+def ground_load(motion):
+    """Symbolic ground acceleration [m/s2] from time and the load vector, which holds the segment's parameters.
+
+    Sampled: load = (a, slope) of a = a0 + slope t. Pulse: load = (amplitude, 0), zero outside the pulse.
+    """
+    if isinstance(motion, SampledMotion):
+        return lambda t, load: load[0] + load[1] * t
+    shapes = {"one-sine": exu.symbolic.sin, "half-sine": exu.symbolic.sin, "one-cosine": exu.symbolic.cos}
+
+    def pulse(t, load):
+        u = motion.frequency * (t - motion.start)
+        if motion.shape == "rectangular":
+            return load[0]
+        if motion.shape == "ricker":
+            b = 0.25 * (u - RICKER_PERIODS * math.pi) * (u - RICKER_PERIODS * math.pi)
+            return load[0] * (1.0 - 2.0 * b) * exu.symbolic.exp(-b)
+        return load[0] * shapes[motion.shape](u)
+
+    return pulse
+
+
+def segments(motion, duration):
+    """(ends, loads): end times [s] of the smooth segments up to `duration`, and the load vector in each."""
+    if isinstance(motion, SampledMotion):
+        slope = np.diff(motion.samples) / motion.dt
+        start = np.arange(len(slope)) * motion.dt
+        ends = list(start + motion.dt)
+        loads = list(zip((motion.samples[:-1] - slope * start).tolist(), slope.tolist(), strict=True))
+    else:
+        ends, loads = [motion.start, motion.end], [(0.0, 0.0), (motion.amplitude, 0.0)]
+    pairs = [(float(end), [a, b, 0.0]) for end, (a, b) in zip(ends, loads, strict=True) if end > 0]
+    inside = [pair for pair in pairs if pair[0] < duration]
+    after = pairs[len(inside)][1] if len(inside) < len(pairs) else [0.0, 0.0, 0.0]
+    ends, loads = zip(*inside, (duration, after), strict=True)
+    return ends, loads
+
+
+class Ground:
+    """Keeps the loads on the segment of the coming step, and the steps inside segments."""
+
+    def __init__(self, model, longest):
+        """longest : longest step [s]."""
+        self.ends, self.segment_loads = segments(model.scene.motion, model.scene.duration)
+        self.mbs, self.loads, self.longest = model.mbs, model.loads, longest
+        self.slack = 1e-12 * max(1.0, model.scene.duration)  # round-off of a sum of steps
+        self.at = 0
+        self.iterations = None
+        self._enter()
+
+    def _enter(self):
+        for load in self.loads:
+            self.mbs.SetLoadParameter(load, "loadVector", self.segment_loads[self.at])
+
+    def first_step(self, step):
+        """The first step [s]: `step`, but inside the first segment."""
+        return min(step, self.ends[0])
+
+    def prepare(self, mbs, t):
+        """Before each attempt of a step that would end at t (PreStep): its segment, and the longest step after it.
+
+        The rest of a segment is never cut to leave a sliver: it is one step, or at least two equal ones.
+        """
+        ends = self.ends
+        while t > ends[self.at] + self.slack and self.at + 1 < len(ends):
+            self.at += 1
+            self._enter()
+        rest = ends[self.at] - t
+        if rest > self.slack:
+            limit = rest if rest <= self.iterations.currentStepSize else rest / 2
+        elif self.at + 1 < len(ends):
+            limit = ends[self.at + 1] - ends[self.at]
+        else:
+            limit = self.longest
+        self.iterations.maxStepSize = min(limit, self.longest)
+        return True

@@ -1,0 +1,111 @@
+"""Stepping an exudyn model: record the accepted steps, commit the bearing's history, stop at overturning."""
+
+import math
+import time
+from dataclasses import dataclass
+
+import exudyn as exu
+import numpy as np
+
+from analytic.response import Failure
+
+from .exudyn_ground import Ground
+from .exudyn_scene import read_back
+from .observe import Trace
+
+OVERTURNED = math.pi / 2
+
+
+@dataclass(frozen=True)
+class Run:
+    """Accepted steps, CPU seconds and how the stepping ended."""
+
+    trace: Trace
+    cpu_seconds: float
+    steps: int
+    rejected: int
+    ended: str | None
+    failure: Failure | None
+
+
+def solver_settings(scene, **time_integration):
+    """Silent exudyn settings for one scene; the time integration's fields as given."""
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    settings.solution.solverInformationFileName = ""
+    settings.timeIntegration.verboseMode = 0
+    settings.timeIntegration.endTime = scene.duration
+    for name, value in time_integration.items():
+        setattr(settings.timeIntegration, name, value)
+    return settings
+
+
+def step_through(model, settings, solver, contact_tilt, longest, settle=0.0):
+    """Run a model to the scene's end, overturning or failure.
+
+    Parameters
+    ----------
+    model : Model
+        With its contact.
+    settings : exudyn.SimulationSettings
+    solver : exudyn.DynamicSolverType
+    contact_tilt : float
+        For the trace [rad].
+    longest : float
+        Longest step [s].
+    settle : float
+        For the trace [s].
+    """
+    exu.config.printToConsole = False
+    scene, mbs, bearing = model.scene, model.mbs, model.bearing
+    mbs.Assemble()
+    mismatch = _mismatch(model)
+    if mismatch:
+        raise RuntimeError(mismatch)
+    system = mbs.systemData
+    rows, forces = [], []
+    connector = model.connectors.get("bearing")
+
+    def keep(mbs, t):
+        q, v = system.GetODE2Coordinates(), system.GetODE2Coordinates_t()
+        rows.append((t, q, v))
+        if bearing is not None:
+            bearing.commit(q.item(3))
+            forces.append(bearing.z)
+            mbs.SetObjectParameter(connector, "offset", bearing.memory())
+        return abs(q.item(2)) < OVERTURNED  # False for NaN too
+
+    mbs.SetPostStepUserFunction(keep)
+    dynamic = exu.MainSolverExplicit()
+    if scene.motion is not None:
+        ground = Ground(model, longest)
+        ground.iterations = dynamic.it
+        settings.timeIntegration.initialStepSize = ground.first_step(settings.timeIntegration.initialStepSize)
+        mbs.SetPreStepUserFunction(ground.prepare)
+    settings.timeIntegration.solverType = solver
+    began = time.process_time()
+    failure = None
+    try:
+        done = dynamic.SolveSystem(mbs, settings)
+        if not done:
+            failure = Failure("the solver gave up", dynamic.GetErrorString())
+    except exu.ExudynError as error:
+        failure = Failure("the solver stopped with an error", f"{error} {dynamic.GetErrorString()}".strip())
+    cpu = time.process_time() - began
+    trace = _trace(scene, rows, forces, bearing, contact_tilt, settle)
+    ended = "overturned" if len(trace.tilt) and abs(trace.tilt[-1]) >= OVERTURNED else None
+    return Run(trace, cpu, len(rows) - 1, dynamic.it.rejectedAutomaticStepSizeSteps, ended, failure)
+
+
+def _mismatch(model):
+    wrong = [f"{name} is {found!r} in exudyn, {wanted!r} in the scene"
+             for name, (found, wanted) in read_back(model).items() if found != wanted]
+    return "; ".join(wrong)
+
+
+def _trace(scene, rows, z, bearing, contact_tilt, settle):
+    t = np.array([row[0] for row in rows])
+    q, v = np.array([row[1] for row in rows]), np.array([row[2] for row in rows])
+    x, speed = (q[:, 3], v[:, 3]) if scene.base else (np.zeros_like(t), np.zeros_like(t))
+    force = bearing.law.force(x, np.array(z), speed) if bearing else np.zeros_like(t)
+    return Trace(t, -q[:, 2], -v[:, 2], x, speed, force, contact_tilt, settle)

@@ -1,0 +1,200 @@
+"""A scene as exudyn bodies, loads and bearing; the variants add the contact between block and base.
+
+Coordinates: ground frame, x horizontal, y up; exudyn's rotation is counter-clockwise, so theta = -tilt. The ground
+motion enters as inertial load, x is relative to the ground.
+"""
+
+import math
+from dataclasses import dataclass, field
+
+import exudyn as exu
+import numpy as np
+from exudyn.advancedUtilities import CreateSymbolicUserFunction
+from exudyn.itemInterface import (
+    LoadForceVector,
+    LoadMassProportional,
+    MarkerBodyMass,
+    MarkerBodyPosition,
+    Node1D,
+    NodeRigidBody2D,
+    ObjectConnectorCartesianSpringDamper,
+    ObjectGround,
+    ObjectMass1D,
+    ObjectRigidBody2D,
+)
+
+from analytic.bearing import ALGEBRAIC, BOUC_WEN, BearingLaw, virtual_travel
+
+from .exudyn_ground import ground_load
+
+Real = exu.symbolic.Real
+
+
+@dataclass
+class Model:
+    """An exudyn system of one scene. `keep` holds the expression trees, which exudyn does not own."""
+
+    scene: object
+    container: object
+    mbs: object
+    ground: object
+    block: object
+    base: object
+    bearing: "Bearing | None" = None
+    loads: list = field(default_factory=list)
+    connectors: dict = field(default_factory=dict)
+    keep: list = field(default_factory=list)
+
+    def connect(self, name, markers, function, **parameters):
+        """A Cartesian connector with a symbolic force, kept by name; function(displacement, velocity, offset)."""
+        def spring(mbs, t, item, displacement, velocity, stiffness, damping, offset):
+            return function(displacement, velocity, offset)
+
+        item = ObjectConnectorCartesianSpringDamper(markerNumbers=markers, **parameters)
+        number = self.mbs.AddObject(item)
+        self._make_symbolic(number, spring, "springForceUserFunction", self.mbs.SetObjectParameter)
+        self.connectors[name] = number
+        return number
+
+    def load(self, item, function):
+        """A load with a symbolic value."""
+        number = exu.LoadIndex(self.mbs.AddLoad(item))
+        self._make_symbolic(number, function, "loadVectorUserFunction", self.mbs.SetLoadParameter)
+        self.loads.append(number)
+
+    def _make_symbolic(self, number, function, name, setter):
+        tree = CreateSymbolicUserFunction(self.mbs, function, name, number)
+        setter(number, name, tree)
+        self.keep.append(tree)
+
+    def corner_markers(self, side):
+        """Markers of the base point and of the block's bottom corner of that side."""
+        b, h = self.scene.block.half_width, self.scene.block.half_height
+        return [self.mbs.AddMarker(MarkerBodyPosition(bodyNumber=self.base, localPosition=[side * b, 0.0, 0.0])),
+                self.mbs.AddMarker(MarkerBodyPosition(bodyNumber=self.block, localPosition=[side * b, -h, 0.0]))]
+
+
+class Bearing:
+    """All bearings as one force between ground and base: symbolic inside a step, its history committed after it.
+
+    x, z : base displacement [m] and hysteretic force of one bearing [N] at the last accepted step.
+    """
+
+    def __init__(self, law, displacement):
+        self.law, self.x, self.z = law, displacement, law.start(displacement)
+
+    def memory(self):
+        """The history as the three numbers the force expression reads; 0 where the law has none."""
+        law = self.law
+        if law.law == ALGEBRAIC:
+            shape = law.dk, law.alpha, law.d0, law.f0
+            return [self.x, virtual_travel(1.0, self.z, *shape), virtual_travel(-1.0, self.z, *shape)]
+        return [self.x, self.z, 0.0]
+
+    def commit(self, x):
+        """Move the history to an accepted displacement."""
+        self.z = self.law.hysteretic(self.z, x - self.x)
+        self.x = x
+
+    def force(self, displacement, velocity, offset):
+        """Symbolic force against the base [N], eqs (9) and (11) from the committed point.
+
+        exudyn has already subtracted the offset, here the committed displacement, from the displacement.
+        """
+        law, dx = self.law, displacement[0]
+        total = law.kb * (dx + offset[0]) + law.damping * velocity[0]
+        if law.law == ALGEBRAIC:
+            forth = dx >= 0.0
+            s = exu.symbolic.IfThenElse(forth, Real(1.0), Real(-1.0))
+            travel = exu.symbolic.IfThenElse(forth, offset[1] + dx, offset[2] - dx)
+            power = exu.symbolic.pow(travel, Real(1 - law.alpha))
+            total = total + s * ((power - law.d0) * (law.dk / (1 - law.alpha)) + law.f0)
+        elif law.law == BOUC_WEN:
+            s = exu.symbolic.IfThenElse(dx >= 0.0, Real(1.0), Real(-1.0))
+            total = total + s * law.f0 - (s * law.f0 - offset[1]) * exu.symbolic.exp((-0.5 * law.dk / law.f0) * s * dx)
+        return [law.count * total, Real(0.0), Real(0.0)]
+
+
+def start_coordinates(scene, sink):
+    """(q, v) of the block's centre [m, m/s; rad, rad/s], relative to its place at rest; `sink` is the static
+    penetration [m] of a block that stands."""
+    block, start = scene.block, scene.start
+    b, h, R, gamma = block.half_width, block.half_height, block.radius, block.slenderness
+    tilt, rate = start.tilt, start.tilt_rate
+    s = math.copysign(1.0, tilt if tilt != 0 else rate)
+    c, n = R * math.cos(s * gamma - tilt), R * math.sin(s * gamma - tilt)
+    lower = sink if tilt == 0 and rate == 0 else 0.0
+    q = [start.base_displacement + s * b - n, c - h - lower, -tilt]
+    v = [start.base_velocity + c * rate, n * rate, -rate]
+    return q, v
+
+
+def build(scene, sink=0.0):
+    """The `Model` of a scene without contact."""
+    container = exu.SystemContainer()
+    mbs = container.AddSystem()
+    ground = mbs.AddObject(ObjectGround())
+    q, v = start_coordinates(scene, sink)
+    node = mbs.AddNode(NodeRigidBody2D(referenceCoordinates=[0.0, scene.block.half_height, 0.0],
+                                       initialCoordinates=q, initialVelocities=v))
+    block = mbs.AddObject(ObjectRigidBody2D(mass=scene.block.mass, inertia=scene.block.centre_inertia,
+                                            nodeNumber=node))
+    base = ground
+    if scene.base:
+        start = scene.start
+        node = mbs.AddNode(Node1D(referenceCoordinates=[0.0], initialCoordinates=[start.base_displacement],
+                                  initialVelocities=[start.base_velocity]))
+        base = mbs.AddObject(ObjectMass1D(mass=scene.base.mass, nodeNumber=node))
+    model = Model(scene, container, mbs, ground, block, base)
+    if scene.bearings:
+        _add_bearing(model)
+    _add_loads(model)
+    return model
+
+
+def _add_bearing(model):
+    mbs, law = model.mbs, BearingLaw.of(model.scene.bearings)
+    model.bearing = Bearing(law, model.scene.start.base_displacement)
+    markers = [mbs.AddMarker(MarkerBodyPosition(bodyNumber=body)) for body in (model.ground, model.base)]
+    model.connect("bearing", markers, model.bearing.force, offset=model.bearing.memory())
+
+
+def _add_loads(model):
+    """Weight of the block, and inertia of block and base in the ground's frame."""
+    scene, mbs = model.scene, model.mbs
+    block = mbs.AddMarker(MarkerBodyMass(bodyNumber=model.block))
+    if scene.motion is None:
+        mbs.AddLoad(LoadMassProportional(markerNumber=block, loadVector=[0.0, -scene.gravity, 0.0]))
+        return
+    acceleration = ground_load(scene.motion)
+
+    def on_block(mbs, t, load):
+        return [-acceleration(t, load), Real(-scene.gravity), Real(0.0)]
+
+    model.load(LoadMassProportional(markerNumber=block), on_block)
+    if scene.base:
+        base = mbs.AddMarker(MarkerBodyPosition(bodyNumber=model.base))
+
+        def on_base(mbs, t, load):
+            return [-scene.base.mass * acceleration(t, load), Real(0.0), Real(0.0)]
+
+        model.load(LoadForceVector(markerNumber=base), on_base)
+
+
+def read_back(model):
+    """What exudyn really holds, as a dict name -> (in exudyn, in the scene)."""
+    scene, mbs = model.scene, model.mbs
+    block = mbs.GetObject(model.block)
+    values = {"block.mass": (block["mass"], scene.block.mass),
+              "block.centre_inertia": (block["inertia"], scene.block.centre_inertia)}
+    if scene.base:
+        values["base.mass"] = (mbs.GetObject(model.base)["mass"], scene.base.mass)
+    q = np.asarray(mbs.systemData.GetODE2Coordinates())
+    v = np.asarray(mbs.systemData.GetODE2Coordinates_t())
+    values["start.tilt"] = (-q[2], scene.start.tilt)
+    values["start.tilt_rate"] = (-v[2], scene.start.tilt_rate)
+    if scene.base:
+        values["start.base_displacement"] = (q[3], scene.start.base_displacement)
+        values["start.base_velocity"] = (v[3], scene.start.base_velocity)
+    values["coordinates"] = (len(q), 4 if scene.base else 3)
+    return values
