@@ -1,0 +1,106 @@
+import math
+
+import numpy as np
+import pytest
+
+from analytic import closed_form
+from analytic.errors import SettingError
+from analytic.motion import PulseMotion
+from analytic.problems import problem_a, problem_b
+from analytic.scene import Base, Bearings, Block, Scene, Start
+from analytic.time_stepping import simulate_time_stepping
+from analytic.twin import simulate_twin
+
+STEPS = 0.004 / 2.0 ** np.arange(7)
+
+
+def order(steps, errors):
+    """Slope of log error over log step, least squares."""
+    return np.polyfit(np.log(steps), np.log(errors), 1)[0]
+
+
+def test_flight_is_first_order():
+    # up to the first impact of problem A: semi-implicit Euler alone
+    exact = closed_form.free_rocking_tilt(2.60, 0.25, 1 - 1.5 * math.sin(0.25) ** 2, 0.225, 1.0)
+    errors = [abs(simulate_time_stepping(problem_a(1.0), step=h, history=False).end.tilt - exact)
+              for h in 1.0 / np.array([100, 200, 400, 800])]
+    assert order(1.0 / np.array([100, 200, 400, 800]), errors) == pytest.approx(1.0, abs=0.05)
+
+
+def test_impacts_are_late_by_less_than_a_step_and_first_order_on_average():
+    exact = closed_form.free_rocking(2.60, 0.25, 1 - 1.5 * math.sin(0.25) ** 2, 0.225, 8).times
+    means = []
+    for h in STEPS:
+        errors = []
+        for phase in range(8):  # the error depends on where in a step the impact falls: average it out
+            run = simulate_time_stepping(problem_a(6.5), step=h * (1 - 0.04 * phase), history=False)
+            errors.append(np.abs([impact.time for impact in run.impacts[:8]] - exact).max())
+        means.append(np.mean(errors))
+    assert order(STEPS, means) == pytest.approx(1.0, abs=0.15)
+
+
+def test_error_does_not_fall_monotonically_with_the_step():
+    exact = 0.01588089793859602683756374  # problem A at 7 s
+    steps = 0.004 / 1.25 ** np.arange(16)
+    errors = [abs(abs(simulate_time_stepping(problem_a(7.0), step=h, history=False).end.tilt) - exact)
+              for h in steps]
+    assert order(steps, errors) > 0.5
+    assert (np.diff(errors) > 0).any()
+
+
+def overturns(ratio, step):
+    block = Block(mass=1000.0, radius=0.75 * 9.81 / 2.14**2, slenderness=0.25, restitution=0.9)
+    pulse = PulseMotion("one-sine", ratio * 9.81 * 0.25, 3 * 2.14)
+    scene = Scene(block=block, motion=pulse, duration=8.0)
+    return simulate_time_stepping(scene, step=step, history=False).outcome == "overturns"
+
+
+def test_overturning_boundary_shifts_with_the_step():
+    # safe -> one impact at w/p = 3; hard case 6: of the order of the step, and of either sign
+    shifts = []
+    for step in (0.02, 0.01, 0.005, 0.0025, 0.00125, 0.000625):
+        low, high = 1.3, 1.6
+        assert not overturns(low, step) and overturns(high, step)
+        for _ in range(18):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if overturns(middle, step) else (middle, high)
+        shifts.append(low / 1.43539 - 1)
+    shifts = np.array(shifts)
+    assert 0.002 < abs(shifts[0]) < 0.03
+    assert (np.abs(shifts[3:]) < 0.002).all()
+    assert len(set(np.sign(shifts))) == 2
+
+
+def test_rest_and_uplift_again():
+    run = simulate_time_stepping(problem_a(30.0), step=1e-3)
+    assert run.rests[0] == pytest.approx(10.05, abs=0.2)
+    assert (run.end.tilt, run.end.tilt_rate) == (0, 0)
+    pulse = PulseMotion("half-sine", 1.3 * 9.81 * math.tan(0.25), 3.0, start=15.0)
+    again = simulate_time_stepping(problem_a(30.0).with_(motion=pulse), step=1e-3)
+    assert len(again.uplifts) == 1 and again.uplifts[0] > 15
+    assert len(again.rests) == 2
+
+
+@pytest.mark.parametrize("law", ["algebraic", "bouc-wen", "linear"])
+def test_isolated_rocking_tends_to_the_twin(law):
+    scene = Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=0.15), base=Base(mass=212.0),
+                  bearings=Bearings(law=law, count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, damping=300.0),
+                  motion=PulseMotion("one-sine", 3.0, 4.0), duration=1.4, start=Start(base_displacement=0.02))
+    twin = simulate_twin(scene, rtol=1e-9)
+    assert twin.outcome == "rocks"
+    steps = np.array([1e-3, 5e-4, 2.5e-4, 1.25e-4]) / 2
+    ends = [simulate_time_stepping(scene, step=h, history=False).end for h in steps]
+    errors = [abs(end.base_displacement - twin.end.base_displacement) for end in ends]
+    assert errors[-1] < 2e-4
+    assert order(steps, errors) > 0.6
+
+
+def test_problem_b_lifts_within_a_step():
+    run = simulate_time_stepping(problem_b(), step=1e-3)
+    assert 0 <= run.uplifts[0] - math.asin(1 / 1.2) / 5.2 < 1e-3
+    assert run.history.time.shape == run.history.bearing_force.shape == (6001,)
+
+
+def test_step_must_be_positive():
+    with pytest.raises(SettingError, match="step"):
+        simulate_time_stepping(problem_a(), step=0.0)
