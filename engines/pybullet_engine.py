@@ -32,9 +32,8 @@ class ImpactAware:
     accuracy is the one knob: the share of its speed at the impact that the block may gain in one step there.
     """
 
-    accuracy: float = 5e-5
+    accuracy: float = 1e-5
     largest_step: float = 1e-3  # s
-    iterations: int = 10  # of the contact solver
 
     def stepping(self):
         return self.largest_step, self.accuracy
@@ -45,7 +44,6 @@ class FixedStep:
     """The same chain at one step: `step` [s] is the one knob."""
 
     step: float = 1e-4
-    iterations: int = 10
 
     def stepping(self):
         return self.step, None
@@ -118,7 +116,7 @@ def simulate(scene, *, variant=None, history=True, **settings):
     client = pybullet.connect(pybullet.DIRECT)
     failure, ended, rows, place = None, None, [], None
     try:
-        assembly = assemble(client, scene, largest, chosen.iterations)
+        assembly = assemble(client, scene, largest)
         clock = time.process_time()
         rows, ended = pybullet_stepping.run(assembly, scene, largest, accuracy, row_limit)
         cpu = time.process_time() - clock
