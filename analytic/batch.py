@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from . import kernel
-from .kernel import Ground
+from . import kernel, layout
+from .layout import Ground
 from .motion import PulseMotion, SampledMotion
 from .scene import Block, Scene
 from .solver import REST_RATE, TOLERANCE, ground, options, parameters
@@ -40,10 +40,10 @@ class Outcomes:
         def column(slot):
             return totals[:, slot].reshape(shape)
 
-        status = column(kernel.STATUS)
-        return cls(column(kernel.WILL_OVERTURN) > 0, column(kernel.LIFTED) > 0,
-                   (status == kernel.STUCK) | (status == kernel.NOT_FINITE), column(kernel.PEAK_TILT),
-                   column(kernel.PEAK_X), column(kernel.IMPACTS).astype(int))
+        status = column(layout.STATUS)
+        return cls(column(layout.WILL_OVERTURN) > 0, column(layout.LIFTED) > 0,
+                   (status == layout.STUCK) | (status == layout.NOT_FINITE), column(layout.PEAK_TILT),
+                   column(layout.PEAK_X), column(layout.IMPACTS).astype(int))
 
 
 @njit(cache=True, nogil=True)
@@ -64,7 +64,7 @@ def run_rows(rows, pulses, shaking, chosen, workers=None):
     The result does not depend on the number of workers (threads; the kernel holds no lock).
     """
     n = len(rows)
-    totals = np.zeros((n, kernel.TOTALS))
+    totals = np.zeros((n, layout.TOTALS))
     arguments = (shaking.kind, shaking.dt, shaking.samples, chosen)
     workers = workers or os.cpu_count() or 1
     _run_rows(rows[:1], pulses[:1], *arguments, totals[:1])  # compiled or loaded before threads start
@@ -100,7 +100,7 @@ def simulate_many(scenes, *, tolerance=TOLERANCE, rest_rate=REST_RATE, workers=N
         motion = scene.motion
         key = motion.digest() if isinstance(motion, SampledMotion) else ground(motion).kind
         groups.setdefault(key, []).append(index)
-    totals = np.zeros((len(scenes), kernel.TOTALS))
+    totals = np.zeros((len(scenes), layout.TOTALS))
     for members in groups.values():
         shakings = [ground(scenes[i].motion) for i in members]
         rows = np.array([parameters(scenes[i]) for i in members], dtype=float)

@@ -5,10 +5,10 @@ import time
 
 import numpy as np
 
-from . import kernel
+from . import kernel, layout
 from .bearing import BearingLaw
 from .errors import SettingError
-from .kernel import Ground, Options
+from .layout import Ground, Options
 from .motion import RICKER_PERIODS, SampledMotion
 from .polynomial import MAX_ORDER
 from .response import Energy, Failure, History, Impact, Response, State
@@ -112,11 +112,11 @@ def simulate(scene, *, history=True, tolerance=TOLERANCE, rest_rate=REST_RATE, o
         raise SettingError(f"output_step = {output_step!r}: give a time above 0 [s]")
     settings = {"tolerance": tolerance, "rest_rate": rest_rate, "order": ORDER, "short_order": SHORT_ORDER}
     chosen = options(tolerance, rest_rate=rest_rate, output_step=output_step if history else 0.0)
-    par, shaking, totals = parameters(scene), ground(motion), np.zeros(kernel.TOTALS)
+    par, shaking, totals = parameters(scene), ground(motion), np.zeros(layout.TOTALS)
     _warm()
     begin = time.process_time()
     result = kernel.run(par, shaking, chosen, totals)
-    most = int(totals[[kernel.IMPACTS, kernel.UPLIFTS, kernel.RESTS]].max())
+    most = int(totals[[layout.IMPACTS, layout.UPLIFTS, layout.RESTS]].max())
     if most > chosen.capacity:
         result = kernel.run(par, shaking, chosen._replace(capacity=most), totals)
     cpu = time.process_time() - begin
@@ -129,40 +129,40 @@ def _warm():
         from .scene import Block, Scene
 
         scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.2), duration=1e-3)
-        kernel.run(parameters(scene), ground(None), options(output_step=1.0), np.zeros(kernel.TOTALS))
+        kernel.run(parameters(scene), ground(None), options(output_step=1.0), np.zeros(layout.TOTALS))
 
 
 def _response(scene, par, totals, result, cpu, settings, history):
     (tilt, rate, x, v, z), impacts, uplifts, rests, table = result
     law = BearingLaw.of(scene.bearings)
-    end = State(float(totals[kernel.TIME]), tilt, rate, x, v, law.force(x, z, v))
-    gamma, status = scene.block.slenderness, int(totals[kernel.STATUS])
+    end = State(float(totals[layout.TIME]), tilt, rate, x, v, law.force(x, z, v))
+    gamma, status = scene.block.slenderness, int(totals[layout.STATUS])
     failure = None
-    if status in (kernel.STUCK, kernel.NOT_FINITE):
-        reason = {kernel.STUCK: "the step became too small to advance", kernel.NOT_FINITE: "the state is not finite"}
+    if status in (layout.STUCK, layout.NOT_FINITE):
+        reason = {layout.STUCK: "the step became too small to advance", layout.NOT_FINITE: "the state is not finite"}
         failure = Failure(reason[status], last_state=end)
-    overturned = int(totals[kernel.MODE]) == kernel.OVERTURNED
+    overturned = int(totals[layout.MODE]) == layout.OVERTURNED
     if failure:
         outcome = "failed"
     elif overturned:
         outcome = "overturns"
     else:
-        outcome = "rocks" if totals[kernel.LIFTED] else "stands"
+        outcome = "rocks" if totals[layout.LIFTED] else "stands"
     if scene.base is None:
         peak_acceleration = _peak_ground_acceleration(scene.motion, end.time)
     else:
-        peak_acceleration = float(totals[kernel.PEAK_ACCELERATION])
-    unstable = float(totals[kernel.UNSTABLE_TIME])
+        peak_acceleration = float(totals[layout.PEAK_ACCELERATION])
+    unstable = float(totals[layout.UNSTABLE_TIME])
     return Response(
         engine="analytic", variant="kernel", scene=scene.name, outcome=outcome,
         overturning_time=end.time if overturned else None,
         unstable_time=unstable if unstable >= 0 else None,
-        peak_tilt=float(totals[kernel.PEAK_TILT]), peak_tilt_ratio=float(totals[kernel.PEAK_TILT]) / gamma,
-        peak_base_displacement=float(totals[kernel.PEAK_X]), peak_base_acceleration=peak_acceleration,
+        peak_tilt=float(totals[layout.PEAK_TILT]), peak_tilt_ratio=float(totals[layout.PEAK_TILT]) / gamma,
+        peak_base_displacement=float(totals[layout.PEAK_X]), peak_base_acceleration=peak_acceleration,
         impacts=tuple(Impact(*map(float, row)) for row in impacts),
         uplifts=tuple(uplifts.tolist()), rests=tuple(rests.tolist()),
-        friction_demand=float(totals[kernel.FRICTION]), min_normal_ratio=float(totals[kernel.NORMAL]),
-        end=end, cpu_seconds=cpu, steps=int(totals[kernel.STEPS]), settings=settings, versions=versions(),
+        friction_demand=float(totals[layout.FRICTION]), min_normal_ratio=float(totals[layout.NORMAL]),
+        end=end, cpu_seconds=cpu, steps=int(totals[layout.STEPS]), settings=settings, versions=versions(),
         failure=failure, energy=_energy(scene, par, totals, end),
         history=_history(scene, table, end) if history else None,
     )
@@ -196,8 +196,8 @@ def _energy(scene, par, totals, end):
         kinetic=kinetic(end.tilt, end.tilt_rate, end.base_velocity) - kinetic(start.tilt, start.tilt_rate,
                                                                              start.base_velocity),
         potential=potential(end.tilt, end.base_displacement) - potential(start.tilt, start.base_displacement),
-        input=float(totals[kernel.INPUT]), hysteretic=float(totals[kernel.HYSTERETIC]),
-        viscous=float(totals[kernel.VISCOUS]), impact_loss=float(totals[kernel.IMPACT_LOSS]))
+        input=float(totals[layout.INPUT]), hysteretic=float(totals[layout.HYSTERETIC]),
+        viscous=float(totals[layout.VISCOUS]), impact_loss=float(totals[layout.IMPACT_LOSS]))
 
 
 def _history(scene, table, end):

@@ -26,10 +26,32 @@ QUIET, LINEAR_GROUND, HARMONIC, RICKER = range(4)
 
 
 @njit(cache=True)
+def allowed_step(f, order, tolerance, h):
+    """Largest step up to h whose last Taylor terms stay below tolerance times the size of f in the step."""
+    size = abs(f[0]) + abs(f[1]) * h + abs(f[2]) * h * h
+    limit = tolerance * size
+    last = abs(f[order]) * h**order
+    if last > limit:
+        h *= 0.9 * (limit / last) ** (1.0 / order)
+    before = abs(f[order - 1]) * h ** (order - 1)
+    if before > 4 * limit:  # one of the two may vanish by symmetry
+        h *= 0.9 * (4 * limit / before) ** (1.0 / (order - 1))
+    return h
+
+
+@njit(cache=True)
+def hop_order(length, order, tolerance):
+    """Order that a hop of `length` [1/omega_r] needs, at most `order`; the series falls about as (length)^k."""
+    if length >= 0.25:
+        return order
+    return min(order, max(5, int(math.log(0.01 * tolerance) / math.log(2 * length)) + 3))
+
+
+@njit(cache=True)
 def ground_series(order, kind, a0, a1, frequency, u, A):
     """Coefficients of the ground acceleration; returns the highest one that is not zero, or -1.
 
-    LINEAR_GROUND: a0 + a1 t. HARMONIC: a0 sin(u + frequency t). RICKER: see PulseMotion, with u measured from its centre.
+    LINEAR_GROUND: a0 + a1 t. HARMONIC: a0 sin(u + frequency t). RICKER: as PulseMotion, u from its centre.
     """
     if kind == QUIET:
         return -1

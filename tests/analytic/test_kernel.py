@@ -7,7 +7,8 @@ import pytest
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, SettingError, Start, simulate
 from analytic.bearing import BearingLaw
-from analytic.kernel import TOTALS, run
+from analytic.kernel import run
+from analytic.layout import TOTALS
 from analytic.rocking import RockingModel
 from analytic.solver import ground, options, parameters
 from analytic.taylor import base_series

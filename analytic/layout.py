@@ -1,0 +1,25 @@
+"""Names shared by the parts of the compiled kernel: modes, endings, slots of the totals, rows of the workspace."""
+
+from collections import namedtuple
+
+# Modes of the block.
+CONTACT, ROCKING, OVERTURNED = range(3)
+# How a run ended.
+COMPLETE, DECIDED, STUCK, NOT_FINITE = range(4)
+# Slots of the totals a run returns.
+(STATUS, MODE, TIME, PEAK_TILT, PEAK_X, PEAK_ACCELERATION, UNSTABLE_TIME, FRICTION, NORMAL, INPUT, HYSTERETIC,
+ VISCOUS, IMPACT_LOSS, STEPS, IMPACTS, UPLIFTS, RESTS, WILL_OVERTURN, LIFTED) = range(19)
+TOTALS = 19
+# Rows of the workspace: Taylor coefficients of tilt, rate, sin and cos, base displacement and velocity, bearing memory,
+# bearing force, absolute base acceleration, ground acceleration; then scratch.
+(PHI, W, S, C, X, V, Q, F, ABSOLUTE, GROUND, EVENT, PRODUCT_A, PRODUCT_B) = range(13)
+ROWS = 13
+# Kinds of event inside a step.
+NONE, UPLIFT, IMPACT, REVERSAL, OVERTURNING = range(5)
+
+# Ground motion: sampled (dt, samples) or a pulse; `kind` is QUIET, LINEAR_GROUND (sampled), HARMONIC
+# (scale sin(phase + frequency (t - start))) or RICKER. A rectangular pulse is HARMONIC with frequency 0.
+Ground = namedtuple("Ground", "kind dt samples scale frequency phase start end")
+# What to do: `record` keeps events (up to `capacity` of a kind), ledger and diagnostics; `decide` stops as soon as the
+# outcome is certain.
+Options = namedtuple("Options", "tolerance order rest_rate record decide output_step capacity")

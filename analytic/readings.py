@@ -1,0 +1,103 @@
+"""What is read off a Taylor step besides its end: history, diagnostics, energy ledger (compiled)."""
+
+import math
+
+from numba import njit
+
+from .layout import (
+    ABSOLUTE,
+    FRICTION,
+    GROUND,
+    HYSTERETIC,
+    INPUT,
+    NORMAL,
+    PEAK_ACCELERATION,
+    PHI,
+    PRODUCT_A,
+    PRODUCT_B,
+    VISCOUS,
+    C,
+    F,
+    V,
+    W,
+    X,
+)
+from .polynomial import value
+
+# Points inside a step at which friction demand, normal force and acceleration are read.
+PROBES = 4
+
+
+@njit(cache=True)
+def write_history(history, written, output_step, t, h, P, order, on_base, rocking):
+    """Rows of the history up to t + h; returns how many are written by then. Nothing moves where P is not used."""
+    while written < history.shape[0] and written * output_step <= t + h:
+        row = history[written]
+        d = min(max(written * output_step - t, 0.0), h)
+        row[:] = 0.0
+        row[0] = written * output_step
+        if rocking:
+            row[1], row[2] = value(P[PHI], order, d), value(P[W], order, d)
+        if on_base:
+            row[3], row[4], row[5] = value(P[X], order, d), value(P[V], order, d), value(P[F], order, d)
+        written += 1
+    return written
+
+
+@njit(cache=True)
+def _integral_of_product(f, g, order, h):
+    """Integral of f g over [0, h], to the order of the series."""
+    total, power = 0.0, h
+    for k in range(order + 1):
+        term = 0.0
+        for j in range(k + 1):
+            term += f[j] * g[k - j]
+        total += term * power / (k + 1)
+        power *= h
+    return total
+
+
+@njit(cache=True)
+def read_contact(par, s, rocking, P, order, highest, h, totals):
+    """Friction demand |H|/N, least N/(m g) and peak absolute base acceleration within the step."""
+    for probe in range(PROBES + 1):
+        d = h * probe / PROBES
+        if par.on_base:
+            acceleration = value(P[ABSOLUTE], order, d)
+        else:
+            acceleration = value(P[GROUND], highest, d) if highest >= 0 else 0.0
+        horizontal, vertical = acceleration, par.g
+        if rocking:
+            rate, second = value(P[W], order, d), 0.0
+            for k in range(order, 0, -1):
+                second = second * d + k * P[W, k]
+            angle = s * par.gamma - value(P[PHI], order, d)
+            c, n = par.R * math.cos(angle), par.R * math.sin(angle)
+            horizontal += c * second + n * rate * rate
+            vertical += n * second - c * rate * rate
+            totals[NORMAL] = min(totals[NORMAL], vertical / par.g)
+        demand = abs(horizontal) / vertical if vertical > 0 else math.inf
+        totals[FRICTION] = max(totals[FRICTION], demand)
+        totals[PEAK_ACCELERATION] = max(totals[PEAK_ACCELERATION], abs(acceleration))
+
+
+@njit(cache=True)
+def read_energy(par, rocking, P, order, highest, h, totals):
+    """Work of the ground, of the hysteretic and of the viscous bearing force within the step [J]."""
+    momentum, hysteretic = P[PRODUCT_A], P[PRODUCT_B]
+    if highest >= 0:  # -int a_g (M x' + m c phi') dt
+        for k in range(order + 1):
+            turning = 0.0
+            if rocking:
+                for j in range(k + 1):
+                    turning += P[C, j] * P[W, k - j]
+            momentum[k] = par.m * par.R * turning + (par.M * P[V, k] if par.on_base else 0.0)
+            if k > highest:
+                P[GROUND, k] = 0.0
+        totals[INPUT] -= _integral_of_product(P[GROUND], momentum, order, h)
+    if par.count > 0:
+        for k in range(order + 1):
+            hysteretic[k] = P[F, k] - par.count * (par.kb * P[X, k] + par.damping * P[V, k])
+        totals[HYSTERETIC] += _integral_of_product(hysteretic, P[V], order, h)
+        if par.damping > 0:
+            totals[VISCOUS] += par.count * par.damping * _integral_of_product(P[V], P[V], order, h)
