@@ -1,0 +1,211 @@
+"""How a response is measured, the same for every solver: nothing here knows which engine made it."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from engines.checks import energy_balance
+from engines.swings import Trace
+
+
+def swing_restitution(scene, response):
+    """Effective restitution of each impact from the energies of the swings around it, shape (impacts,).
+
+    For free rocking on rigid ground: cos(u') - cos(gamma) = e^2 (cos(u) - cos(gamma)), u = gamma - peak |tilt| of
+    the swing before, u' of the one after. Each peak is refined from the sample nearest to it by the energy
+    integral. NaN where one of the swings has no peak in the history, that is fewer than about four samples.
+
+    Raises
+    ------
+    ValueError
+        The scene has a base or a motion (the swings keep no energy of their own), or there is no history.
+    """
+    if scene.base is not None or scene.motion is not None:
+        raise ValueError("swing_restitution needs free rocking on rigid ground: use state_restitution")
+    history = _history(response)
+    gamma, p = scene.block.slenderness, scene.rocking_frequency
+    bounds = np.array([-math.inf] + [impact.time for impact in response.impacts] + [math.inf])
+    energy = np.full(len(bounds) - 1, np.nan)
+    edges = np.searchsorted(history.time, bounds)
+    for k, (first, last) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+        tilt, rate = np.abs(history.tilt[first:last]), history.tilt_rate[first:last]
+        if len(tilt) < 2 or rate[0] * rate[-1] > 0:
+            continue  # no peak between the samples
+        i = int(np.abs(rate).argmin())
+        u = gamma - tilt[i]
+        # cos(u) - cos(gamma) without its cancellation at small tilt
+        energy[k] = 2 * math.sin(tilt[i] / 2) * math.sin((gamma + u) / 2) + rate[i] ** 2 / (2 * p**2)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.sqrt(energy[1:] / energy[:-1])
+
+
+def state_restitution(response):
+    """e_phi = rate after / rate before of each impact, shape (impacts,); for any base and motion, eq. (7).
+
+    An engine's rates are its flight states carried to the impact by the model's equations (engines.observe).
+    """
+    rates = _rates(response)
+    return rates[:, 1] / rates[:, 0]
+
+
+def base_jump_error(scene, response):
+    """Error of the base velocity's jump against momentum, relative, shape (impacts,).
+
+    Momentum: x'+ - x'- = mt h (w- - w+), eq. (8) corrected, with the rates the response itself has.
+
+    Raises
+    ------
+    ValueError
+        The scene has no base.
+    """
+    if scene.base is None:
+        raise ValueError("base_jump_error needs a base: on rigid ground nothing jumps")
+    rates = _rates(response)
+    expected = scene.mass_share * scene.block.half_height * (rates[:, 0] - rates[:, 1])
+    jumps = np.array([impact.base_velocity_jump for impact in response.impacts])
+    return jumps / expected - 1
+
+
+def impact_time_errors(response, reference):
+    """Time of the impact minus that of the reference's [s], shape (reference impacts,); NaN for a lost one.
+
+    An impact belongs to the reference's impact on the same side that is nearest in time, if it lies within half
+    the interval to the reference's neighbouring impacts.
+    """
+    wanted = np.array([impact.time for impact in reference.impacts])
+    sides = np.sign([impact.rate_before for impact in reference.impacts])
+    times = np.array([impact.time for impact in response.impacts])
+    own = np.sign([impact.rate_before for impact in response.impacts])
+    errors = np.full(len(wanted), np.nan)
+    gaps = np.diff(wanted, prepend=-math.inf, append=math.inf)
+    for i in range(len(wanted)):
+        near = times[own == sides[i]] - wanted[i]
+        if len(near):
+            error = near[np.abs(near).argmin()]
+            if -gaps[i] / 2 <= error <= gaps[i + 1] / 2:
+                errors[i] = error
+    return errors
+
+
+def graph_distance(response, reference, *, tilt_scale, time_scale, until=math.inf):
+    """Hausdorff distance of the graphs (time/time_scale, tilt/tilt_scale) of two responses up to `until` [s].
+
+    The measure for motions whose velocity jumps (M. D. P. Monteiro Marques 1987, doi:10.1016/0022-0396(87)90143-4;
+    V. Acary 2012, doi:10.1016/j.apnum.2012.06.026), here with the Euclidean norm in place of the maximum norm:
+    an impact that is late by dt costs dt/time_scale, however large the difference at one instant. Distances
+    are from the samples of one graph to the straight lines between the samples of the other.
+    """
+    graphs = []
+    for one in (response, reference):
+        history = _history(one)
+        keep = history.time <= until
+        if keep.sum() < 2:
+            raise ValueError(f"until = {until!r} s leaves fewer than two samples of the history")
+        graphs.append((history.time[keep] / time_scale, history.tilt[keep] / tilt_scale))
+    (ta, ya), (tb, yb) = graphs
+    return float(max(_directed(ta, ya, tb, yb), _directed(tb, yb, ta, ya)))
+
+
+@njit(cache=True)
+def _segment_distance(t, y, t0, y0, t1, y1):
+    dt, dy = t1 - t0, y1 - y0
+    along = ((t - t0) * dt + (y - y0) * dy) / (dt * dt + dy * dy)
+    along = min(1.0, max(0.0, along))
+    return math.hypot(t - t0 - along * dt, y - y0 - along * dy)
+
+
+@njit(cache=True)
+def _directed(ta, ya, tb, yb):
+    """Largest distance of a point of graph a from graph b; b is searched outward from the same time."""
+    worst = 0.0
+    for i in range(len(ta)):
+        begin = min(max(np.searchsorted(tb, ta[i]) - 1, 0), len(tb) - 2)
+        best = np.inf
+        for k in range(begin, len(tb) - 1):
+            if tb[k] - ta[i] > best:
+                break
+            best = min(best, _segment_distance(ta[i], ya[i], tb[k], yb[k], tb[k + 1], yb[k + 1]))
+        for k in range(begin - 1, -1, -1):
+            if ta[i] - tb[k + 1] > best:
+                break
+            best = min(best, _segment_distance(ta[i], ya[i], tb[k], yb[k], tb[k + 1], yb[k + 1]))
+        worst = max(worst, best)
+    return worst
+
+
+def energy_drift(scene, response):
+    """Largest change of the energy balance within one swing or rest, over m g R (1 - cos gamma); 0 if exact.
+
+    The balance is mechanical energy + loss in the bearings - input work, from the history; between impacts it is
+    constant. Half a sample around each event is left out.
+    """
+    history = _history(response)
+    trace = Trace(*(getattr(history, name) for name in Trace.COLUMNS), contact_tilt=1e-12)
+    balance, _ = energy_balance(scene, trace)
+    events = sorted([impact.time for impact in response.impacts] + list(response.rests) + list(response.uplifts))
+    edges = np.concatenate(([0], np.unique(np.searchsorted(history.time, events)), [len(balance)])).astype(int)
+    # The step across an event mixes both sides in the trapezoidal rule: only differences inside a swing count.
+    drift = max((np.ptp(balance[a:b]) for a, b in zip(edges[:-1], edges[1:], strict=True) if b > a), default=0.0)
+    block = scene.block
+    return float(drift / (block.mass * scene.gravity * block.radius * (1 - math.cos(block.slenderness))))
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """A response against the reference; errors are response minus reference.
+
+    same_outcome; overturning_time_error [s], None unless both overturn; peak_tilt_error over slenderness;
+    peak_displacement_error relative to the reference's peak, None on rigid ground; impact_time_error: root mean
+    square over the matched impacts [s], None without any; lost_impacts of the reference; graph_distance of
+    the tilt (None without histories); the last three up to `until` [s].
+    """
+
+    same_outcome: bool
+    overturning_time_error: float | None
+    peak_tilt_error: float
+    peak_displacement_error: float | None
+    impact_time_error: float | None
+    lost_impacts: int
+    graph_distance: float | None
+    until: float
+
+
+def compare(scene, response, reference, *, until=math.inf):
+    """The `Agreement` of two responses of one scene, trajectories up to the sensitivity horizon `until` [s].
+
+    Tilt is scaled by the slenderness and time by 2 pi/omega_r. An impact of the reference counts as
+    lost only where its rate is at least 1 % of the largest: engines rest where the model still chatters.
+    """
+    overturning = None
+    if response.overturning_time is not None and reference.overturning_time is not None:
+        overturning = response.overturning_time - reference.overturning_time
+    displacement = None
+    if scene.base is not None and reference.peak_base_displacement > 0:
+        displacement = response.peak_base_displacement / reference.peak_base_displacement - 1
+    errors = impact_time_errors(response, reference)
+    rates = np.abs(_rates(reference)[:, 0])
+    kept = np.array([impact.time <= until for impact in reference.impacts], dtype=bool)
+    kept &= rates >= 0.01 * rates.max(initial=0.0)
+    found = errors[kept & np.isfinite(errors)]
+    distance = None
+    if response.history is not None and reference.history is not None:
+        distance = graph_distance(response, reference, tilt_scale=scene.block.slenderness,
+                                  time_scale=2 * math.pi / scene.rocking_frequency, until=until)
+    return Agreement(
+        same_outcome=response.outcome == reference.outcome, overturning_time_error=overturning,
+        peak_tilt_error=(response.peak_tilt - reference.peak_tilt) / scene.block.slenderness,
+        peak_displacement_error=displacement,
+        impact_time_error=float(np.sqrt(np.mean(found**2))) if len(found) else None,
+        lost_impacts=int(kept.sum() - len(found)), graph_distance=distance, until=until)
+
+
+def _rates(response):
+    return np.array([(impact.rate_before, impact.rate_after) for impact in response.impacts]).reshape(-1, 2)
+
+
+def _history(response):
+    if response.history is None:
+        raise ValueError("this measure needs a history: simulate with history=True")
+    return response.history
