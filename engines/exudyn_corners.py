@@ -13,8 +13,9 @@ Real = exu.symbolic.Real
 # The block the defaults were measured with: the Caryatid, mass [kg], radius [m], gravity [m/s2].
 MEASURED = 3172.05, 1.0884, 9.81
 
-# Time for the corners to relax after an impact, over sqrt(R/g): 8 ms for the Caryatid.
-SETTLE = 0.024
+# Time for the corners to relax after an impact, over sqrt(R/g): 20 ms for the Caryatid, of which a
+# stocky block spends 15 in the air.
+SETTLE = 0.06
 
 
 @dataclass(frozen=True)

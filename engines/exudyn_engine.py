@@ -4,15 +4,15 @@ import dataclasses
 import platform
 from importlib.metadata import version
 
-
 from analytic.errors import SettingError
 
-from . import exudyn_corners
+from . import exudyn_corners, exudyn_native
 from .observe import observe
 
 # name: (settings, module with run(scene, settings))
-_MODULES = {exudyn_corners.CompliantCorners: exudyn_corners}
-VARIANTS = {"compliant-corners": exudyn_corners.CompliantCorners()}
+_MODULES = {exudyn_corners.CompliantCorners: exudyn_corners, exudyn_native.NativeContact: exudyn_native}
+VARIANTS = {"compliant-corners": exudyn_corners.CompliantCorners(),
+            "native-contact": exudyn_native.NativeContact()}
 DEFAULT_VARIANT = "compliant-corners"
 
 DECIDES = {"compliant-corners": "exudyn decides contact, impact, sliding and rest through stiff corner springs"}

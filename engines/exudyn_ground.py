@@ -74,6 +74,8 @@ class Ground:
         while t > ends[self.at] + self.slack and self.at + 1 < len(ends):
             self.at += 1
             self._enter()
+        if self.iterations is None:  # fixed steps
+            return True
         rest = ends[self.at] - t
         if rest > self.slack:
             limit = rest if rest <= self.iterations.currentStepSize else rest / 2

@@ -76,13 +76,17 @@ def step_through(model, settings, solver, contact_tilt, longest, settle=0.0):
         return abs(q.item(2)) < OVERTURNED  # False for NaN too
 
     mbs.SetPostStepUserFunction(keep)
-    dynamic = exu.MainSolverExplicit()
+    integration = settings.timeIntegration
+    integration.solverType = solver
+    implicit = solver == exu.DynamicSolverType.TrapezoidalIndex2
+    dynamic = exu.MainSolverImplicitSecondOrder() if implicit else exu.MainSolverExplicit()
+    integration.generalizedAlpha.useNewmark = integration.generalizedAlpha.useIndex2Constraints = implicit
     if scene.motion is not None:
         ground = Ground(model, longest)
-        ground.iterations = dynamic.it
-        settings.timeIntegration.initialStepSize = ground.first_step(settings.timeIntegration.initialStepSize)
+        if integration.automaticStepSize:
+            ground.iterations = dynamic.it
+            integration.initialStepSize = ground.first_step(integration.initialStepSize)
         mbs.SetPreStepUserFunction(ground.prepare)
-    settings.timeIntegration.solverType = solver
     began = time.process_time()
     failure = None
     try:
