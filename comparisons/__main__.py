@@ -1,0 +1,5 @@
+"""``python -m comparisons``: the same as ``rocking``."""
+
+from .cli import main
+
+main()

@@ -1,0 +1,75 @@
+"""Plots that several commands share. Colours are those of Okabe and Ito, told apart by colour-blind readers."""
+
+import numpy as np
+from matplotlib.figure import Figure
+
+# solver: (colour, dashes, width); the reference lies wide underneath
+STYLES = {
+    "analytic": ("#000000", "-", 2.4),
+    "exudyn": ("#E69F00", "--", 1.4),
+    "pybullet": ("#0072B2", ":", 1.8),
+    "mujoco": ("#CC79A7", "-.", 1.3),
+}
+TILT_RANGE = (0.05, 2.0)  # least and greatest limit of a tilt axis, over slenderness
+SPARE = ("#009E73", (0, (5, 1)), 1.3)
+
+
+def style(solver):
+    """Line keywords of a solver: the same in every figure."""
+    colour, dashes, width = STYLES.get(solver, SPARE)
+    return {"color": colour, "linestyle": dashes, "linewidth": width}
+
+
+def draw_histories(scene, responses):
+    """Ground motion, tilt, base displacement and hysteresis loop of one or more responses, as far as they exist.
+
+    Each response needs its history. Returns a matplotlib Figure.
+    """
+    rows = ["ground"] * (scene.motion is not None) + ["tilt"] + ["displacement"] * (scene.base is not None)
+    loop = scene.bearings is not None
+    figure = Figure(figsize=(11 if loop else 8, 0.6 + 2.1 * len(rows)), layout="constrained")
+    mosaic = [[row, "loop"] if loop else [row] for row in rows]
+    axes = figure.subplot_mosaic(mosaic, width_ratios=[2, 1] if loop else None)
+    for row in rows:
+        axes[row].axhline(0, color="0.8", linewidth=0.8, zorder=0)
+        axes[row].sharex(axes[rows[0]])
+    if scene.motion is not None:
+        _draw_ground(axes["ground"], scene)
+    for response in responses:
+        history, line = response.history, style(response.engine)
+        if len(responses) == 1:
+            line["linewidth"] = 1.2  # nothing to lie underneath
+        label = f"{response.engine}, {response.variant}: {response.outcome}"
+        axes["tilt"].plot(history.time, history.tilt / scene.block.slenderness, label=label, **line)
+        if "displacement" in axes:
+            axes["displacement"].plot(history.time, history.base_displacement, label=label, **line)
+        if loop:
+            axes["loop"].plot(history.base_displacement, history.bearing_force / 1e3, label=label, **line)
+    tilt = axes["tilt"]
+    tilt.set_ylabel("tilt / slenderness [-]")
+    if max(response.peak_tilt_ratio for response in responses) > 0.8:
+        for level in (-1, 1):
+            tilt.axhline(level, color="0.6", linewidth=0.8, linestyle=(0, (4, 4)), zorder=0)
+    low, high = tilt.get_ylim()  # neither a tilt of 1e-6 nor an overturned block sets the scale
+    tilt.set_ylim(min(max(low, -TILT_RANGE[1]), -TILT_RANGE[0]), max(min(high, TILT_RANGE[1]), TILT_RANGE[0]))
+    tilt.legend(fontsize="small", loc="best")
+    if "displacement" in axes:
+        axes["displacement"].set_ylabel("base displacement [m]")
+    if loop:
+        axes["loop"].set(xlabel="base displacement [m]", ylabel="force of all bearings [kN]")
+    axes[rows[-1]].set_xlabel("time [s]")
+    figure.suptitle(scene.name)
+    return figure
+
+
+def _draw_ground(axis, scene):
+    times = np.linspace(0, scene.duration, 4001) if not hasattr(scene.motion, "dt") else np.arange(
+        0, scene.duration, scene.motion.dt)
+    axis.plot(times, scene.motion.acceleration(times), color="0.35", linewidth=0.8)
+    axis.set_ylabel("ground\nacceleration [m/s²]")
+    axis.set_title(scene.motion.label, fontsize="small")
+
+
+def save(figure, path):
+    """Write a figure; the format follows from the name (see `files.check_writable`)."""
+    figure.savefig(path, dpi=150)

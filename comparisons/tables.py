@@ -1,0 +1,69 @@
+"""Tables for the terminal."""
+
+import dataclasses
+import inspect
+
+from rich import box
+from rich.table import Table
+from rich.text import Text
+
+
+def _number(value, form=".4g"):
+    return "-" if value is None else f"{value:{form}}"
+
+
+def summary(scene, response):
+    """The main figures of one response, as a table."""
+    table = Table(title=f"{scene.name}: {response.engine}, {response.variant}", box=box.SIMPLE, show_header=False)
+    rows = {
+        "outcome": response.outcome,
+        "overturning time [s]": _number(response.overturning_time, ".6g"),
+        "peak tilt [rad]": _number(response.peak_tilt),
+        "peak tilt / slenderness": _number(response.peak_tilt_ratio),
+        "peak base displacement [m]": _number(response.peak_base_displacement),
+        "peak base acceleration [m/s2]": _number(response.peak_base_acceleration),
+        "impacts": str(response.impact_count),
+        "friction demand |H|/N": _number(response.friction_demand),
+        "least normal force N/(m g)": _number(response.min_normal_ratio),
+        "CPU time [s]": _number(response.cpu_seconds, ".3g"),
+        "steps": str(response.steps),
+    }
+    for name, value in rows.items():
+        table.add_row(Text(name), value)  # as text: a unit in brackets is no markup
+    return table
+
+
+def comparison(scene, responses):
+    """Responses of several solvers side by side; the first is the reference of the differences."""
+    table = Table(title=scene.name, box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0),
+                  caption="over: time of overturning; tilt: peak tilt over slenderness; base: peak base displacement; d: difference from the "
+                          "first row.\nWhere a motion is sensitive only the outcomes can be compared.")
+    for name in ("solver", "outcome", "over\n[s]", "tilt\n[-]", "d\n[-]", "base\n[m]", "d\n[%]", "im-\npacts", "CPU\n[s]"):
+        table.add_column(Text(name), justify="left" if name in ("solver", "outcome") else "right", no_wrap=True)
+    reference = responses[0]
+    for response in responses:
+        tilt, displacement = "", ""
+        if response is not reference and not response.failure:
+            if "overturns" not in (response.outcome, reference.outcome):
+                tilt = f"{response.peak_tilt_ratio - reference.peak_tilt_ratio:+.0e}"
+            if reference.peak_base_displacement > 0:
+                displacement = f"{100 * (response.peak_base_displacement / reference.peak_base_displacement - 1):+.0e}"
+        table.add_row(f"{response.engine}\n{response.variant}", response.outcome,
+                      _number(response.overturning_time, ".4f"), _number(response.peak_tilt_ratio, ".4f"), tilt,
+                      _number(response.peak_base_displacement, ".4f"), displacement, str(response.impact_count),
+                      _number(response.cpu_seconds, ".1e"))
+    return table
+
+
+def engine_text(name, engine):
+    """What an engine module says of itself: versions, what it decides, variants and settings."""
+    versions = ", ".join(f"{package} {version}" for package, version in engine.versions().items())
+    lines = [f"{name} ({versions})"]
+    decides = engine.DECIDES if isinstance(engine.DECIDES, dict) else {"": engine.DECIDES}
+    lines += [f"  {variant + ': ' if variant else ''}{text}" for variant, text in decides.items()]
+    for variant, settings in engine.VARIANTS.items():
+        default = " (default)" if variant == engine.DEFAULT_VARIANT else ""
+        about = inspect.getdoc(type(settings)).split("\n\n")[0].replace("\n", " ")
+        values = [f"{field.name} = {getattr(settings, field.name)!r}" for field in dataclasses.fields(settings)]
+        lines += [f"  --variant {variant}{default}: {about}", "      --set " + ", ".join(values)]
+    return "\n".join(lines) + "\n"
