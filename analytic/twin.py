@@ -182,17 +182,19 @@ class _Run:
         self.t, self.y = float(solution.t[-1]), solution.y[:, -1].copy()
         if solution.status < 0:
             return Failure("the integrator gave up", solution.message, self.state())
+        terminal = None
         for (name, event), times, states in zip(events, solution.t_events, solution.y_events, strict=True):
             for t, y in zip(times, states, strict=True):
                 if name == "apex":
-                    self.peak_tilt = max(self.peak_tilt, abs(y[0]))
+                    self.peak_tilt = max(self.peak_tilt, float(abs(y[0])))
                 elif name == "reversal":
-                    self.peak_x = max(self.peak_x, abs(y[2]))
-                elif name == "unstable":
-                    self.unstable = float(t) if self.unstable is None else self.unstable
-            if event.terminal and len(times) and times[-1] == self.t:
-                getattr(self, "at_" + name)(ground(self.t))
-                break
+                    self.peak_x = max(self.peak_x, float(abs(y[2])))
+                elif name == "unstable" and self.unstable is None:
+                    self.unstable = float(t)
+            if event.terminal and len(times):  # scipy reports the first terminal event of a stretch only
+                terminal = name
+        if terminal:
+            getattr(self, "at_" + terminal)(ground(self.t))
         return None
 
     def direction(self, end, ground):

@@ -1,0 +1,159 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad, solve_ivp
+from scipy.optimize import brentq
+
+from analytic.bearing import BearingLaw
+from analytic.scene import Bearings
+
+KA, KB, ALPHA = 6.22e4, 6.22e3, 44.69
+PAPER = BearingLaw.of(Bearings(ka=KA, kb=KB, alpha=ALPHA))
+BOUC_WEN = BearingLaw.of(Bearings(law="bouc-wen", ka=KA, kb=KB, alpha=ALPHA))
+EXTREME = [(KA, KB, 1.5), (KA, KB, 200.0), (1.0001 * KB, KB, ALPHA), (KA, KB, 1.001), (KA, 0.0, 3.0)]
+
+
+def bearing(ka, kb, alpha):
+    return BearingLaw.of(Bearings(ka=ka, kb=kb, alpha=alpha, delta_k=min(1e-20, 1e-6 * (ka - kb))))
+
+
+def rate(law, z, s):
+    """dz/dx of the algebraic law in direction s, with the D0-small term in full."""
+    y = law.d0 + (1 - law.alpha) * (s * z - law.f0) / law.dk
+    return law.dk * max(y, 0.0) ** (law.alpha / (law.alpha - 1))
+
+
+def work(law, z, dx):
+    """Integral of z over the travel dx [J], by quadrature."""
+    points = [dx * share for share in (0.01, 0.05, 0.2, 0.5)]
+    return quad(lambda u: law.hysteretic(z, u), 0.0, dx, points=points, epsrel=1e-12, epsabs=1e-12, limit=400)[0]
+
+
+def test_constants_of_table_1b():
+    assert 2 * PAPER.x0 == pytest.approx(2.57907793, abs=1e-8)
+    assert PAPER.f0 == pytest.approx(640.65003, abs=1e-5)
+
+
+def test_slopes():
+    h = 1e-6  # extrapolated from h and h/2: the law bends within centimetres
+    virgin = (4 * PAPER.hysteretic(0.0, h / 2) - PAPER.hysteretic(0.0, h)) / h + KB
+    assert virgin == pytest.approx(33769.44, abs=0.01)
+    # right after a reversal on the limit curve the stiffness is ka
+    limit = PAPER.hysteretic(0.0, 2.0)
+    assert (limit - PAPER.hysteretic(limit, -1e-8)) / 1e-8 + KB == pytest.approx(KA, rel=1e-5)
+    # far along the limit curve it is kb
+    assert (PAPER.hysteretic(0.0, 3.0) - PAPER.hysteretic(0.0, 2.5)) == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.parametrize(("amplitude", "area"), [(0.30, 708.752), (0.10, 196.277)])
+def test_loop_area(amplitude, area):
+    z = PAPER.start(amplitude)
+    for _ in range(6):  # cycles until the loop is closed
+        z_low = PAPER.hysteretic(z, -2 * amplitude)
+        z = PAPER.hysteretic(z_low, 2 * amplitude)
+    loop = work(PAPER, z, -2 * amplitude) + work(PAPER, z_low, 2 * amplitude)
+    assert loop == pytest.approx(area, abs=1e-3)
+    if amplitude >= 0.15:
+        assert PAPER.cycle_loss(amplitude) == pytest.approx(loop, rel=1e-9)
+
+
+def literal(x, s, x_j, law, bracket_sign):
+    """Eqs (9), (11) with the paper's x_j, less k_b x; bracket_sign is that of x in the bracket."""
+    bracket = 1 + bracket_sign * (x - x_j) + 2 * law.x0
+    return s * (law.dk * (bracket ** (1 - law.alpha) - law.d0) / (1 - law.alpha) + law.f0)
+
+
+def test_stable_form_is_the_literal_law_and_its_misprint_is_not():
+    # loading from the virgin state to 0.2 m, then unloading; (12) is misprinted, eq. (9) is not
+    x_c = 0.2
+    z_c = PAPER.start(x_c)
+    low, high = x_c - 2 * PAPER.x0, x_c  # bracket 1 ... 1 + 2 x0
+    x_j = brentq(lambda value: literal(x_c, -1, value, PAPER, -1) - z_c, low, high, xtol=1e-15)
+    for x in (0.2, 0.19, 0.1, 0.0, -0.2):
+        z = PAPER.hysteretic(z_c, x - x_c)
+        assert z == pytest.approx(literal(x, -1, x_j, PAPER, -1), abs=1e-9 * PAPER.f0)
+    # with the sign of the loading branch in the bracket, the force jumps by 2 f0 at the reversal
+    misprinted = literal(x_c, -1, x_j, PAPER, +1)
+    assert z_c - misprinted == pytest.approx(2 * PAPER.f0, rel=1e-3)
+
+
+@pytest.mark.parametrize("case", EXTREME)
+def test_closed_form_solves_the_rate_form(case):
+    law = bearing(*case)
+    for share, s in ((0.0, 1), (0.7, -1), (-0.99, 1), (1.0, -1)):
+        z0 = share * law.f0
+        travel = np.array([1e-4, 0.01, 0.1, 1.0, 2.0])  # beyond 1.33 m
+        path = solve_ivp(lambda u, z, s=s: [s * rate(law, z[0], s)], (0, 2.0), [z0], "LSODA", travel,
+                         rtol=1e-11, atol=1e-11 * law.f0)
+        closed = [law.hysteretic(z0, s * u) for u in travel]
+        np.testing.assert_allclose(closed, path.y[0], rtol=0, atol=1e-8 * law.f0)
+
+
+def test_bouc_wen_solves_its_rate_and_has_the_same_limits():
+    law = BOUC_WEN
+    assert (law.f0, law.kb, law.dk) == (PAPER.f0, PAPER.kb, PAPER.dk)
+    path = solve_ivp(lambda u, z: [-0.5 * law.dk * (1 + z[0] / law.f0)], (0, 0.1), [law.f0], rtol=1e-11, atol=1e-9)
+    assert law.hysteretic(law.f0, -0.1) == pytest.approx(path.y[0, -1], abs=1e-7)
+
+
+def test_linear_bearing_has_no_memory():
+    law = BearingLaw.of(Bearings(law="linear", ka=1e4, count=3, damping=5.0))
+    assert law.force(0.1, law.start(0.1), 2.0) == pytest.approx(3 * (1000 + 10))
+    assert BearingLaw.of(None).force(0.1, 0.0, 1.0) == 0
+
+
+LAWS = st.sampled_from([PAPER, BOUC_WEN, *(bearing(*case) for case in EXTREME)])
+TRAVELS = st.floats(-3.0, 3.0).filter(lambda u: u == 0 or abs(u) > 1e-12)
+SHARES = st.floats(-1.0, 1.0)
+
+
+@given(LAWS, SHARES, TRAVELS, st.floats(0.0, 1.0))
+@settings(deadline=None)
+def test_travel_may_be_cut_anywhere(law, share, travel, cut):
+    z = share * law.f0
+    middle = law.hysteretic(z, cut * travel)
+    assert law.hysteretic(middle, travel - cut * travel) == pytest.approx(law.hysteretic(z, travel), abs=1e-9 * law.f0)
+
+
+@given(LAWS, SHARES, TRAVELS)
+@settings(deadline=None)
+def test_bounded_monotone_and_odd(law, share, travel):
+    z = share * law.f0
+    after = law.hysteretic(z, travel)
+    assert math.isfinite(after) and abs(after) <= law.f0 * (1 + 1e-12)
+    assert (after - z) * travel >= -1e-12 * law.f0 * abs(travel)
+    assert law.hysteretic(-z, -travel) == -after
+
+
+@given(LAWS, SHARES, st.sampled_from([-1, 1]), st.floats(1e-13, 1e-9))
+@settings(deadline=None)
+def test_force_is_continuous_at_reversals(law, share, s, travel):
+    # a tiny travel in either direction changes z by no more than the largest stiffness allows
+    z = share * law.f0
+    assert abs(law.hysteretic(z, s * travel) - z) <= law.dk * travel * (1 + 1e-6) + 1e-9 * law.f0
+    assert law.hysteretic(z, 0.0) == z
+
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(64)
+
+
+@given(LAWS, st.lists(st.floats(-0.4, 0.4), min_size=2, max_size=5))
+@settings(deadline=None, max_examples=80)
+def test_closed_cycle_never_gives_energy_back(law, turns):
+    def after(z):
+        """z and energy after one cycle through all turning points, back to the last one."""
+        energy = 0.0
+        for x, turn in zip([turns[-1], *turns[:-1]], turns, strict=True):
+            travel = turn - x
+            energy += sum(0.5 * travel * w * law.hysteretic(z, 0.5 * travel * (1 + u))
+                          for u, w in zip(NODES, WEIGHTS, strict=True))
+            z = law.hysteretic(z, travel)
+        return z, energy
+
+    # a cycle takes a bearing's z closer to one fixed value: there the loop is closed
+    closed = brentq(lambda z: after(z)[0] - z, -law.f0, law.f0, xtol=1e-15 * law.f0)
+    travelled = sum(abs(a - b) for a, b in zip(turns, [turns[-1], *turns[:-1]], strict=True))
+    assert after(closed)[1] >= -1e-10 * law.f0 * travelled

@@ -1,0 +1,163 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
+from analytic.scene import Base, Bearings, Block, Scene
+
+RADIUS, MASS, BASE = 1.088388, 3172.05, 212.0
+# slenderness: e on rigid ground, e_phi and e_x [m] with the base of 212 kg, e_x as printed
+TABLE = {0.20: (0.940796, 0.817683, -0.182293, -0.194450), 0.25: (0.908187, 0.729974, -0.266917, -0.281478),
+         0.28: (0.885441, 0.673321, -0.320300, -0.335034), 0.35: (0.823632, 0.535439, -0.445213, -0.455187)}
+
+
+def scene(slenderness, base=BASE, **block):
+    return Scene(block=Block(mass=MASS, radius=RADIUS, slenderness=slenderness, **block), duration=1.0,
+                 base=Base(mass=base) if base else None)
+
+
+@pytest.mark.parametrize("slenderness", TABLE)
+def test_impact_table(slenderness):
+    rigid, isolated, jump, printed = TABLE[slenderness]
+    assert restitution(scene(slenderness, base=None)) == pytest.approx(rigid, abs=5e-7)
+    assert restitution(scene(slenderness, base=None)) == pytest.approx(1 - 1.5 * math.sin(slenderness) ** 2)
+    assert restitution(scene(slenderness)) == pytest.approx(isolated, abs=5e-7)
+    # half the last digit of the table, and of the radius it was made with (lengths go with R or R^2)
+    digits = 5e-7 + 2 * 5e-7 / RADIUS * abs(printed)
+    assert base_jump_length(scene(slenderness)) == pytest.approx(jump, abs=digits)
+    assert base_jump_length_as_printed(scene(slenderness)) == pytest.approx(printed, abs=digits)
+
+
+def impact_by_momentum(case, rate):
+    """(phi'+, jump of x') from two balances alone: linear momentum, and the block's about its new corner.
+
+    The block returns from phi > 0, so it turns from its right corner to its left one; clockwise is positive.
+    """
+    m, base, b, h = case.block.mass, case.base.mass, case.block.half_width, case.block.half_height
+    inertia = case.block.centre_inertia
+    # centre of mass before: velocity (v + h w, b w), after: (v' + h w', -b w'); new corner at (-b, -h) from it
+    balances = np.array([[m * h, m + base], [inertia + m * (h * h + b * b), m * h]])
+    before = np.array([m * h * rate, (inertia + m * (h * h - b * b)) * rate])  # v = 0
+    return np.linalg.solve(balances, before)
+
+
+@pytest.mark.parametrize("slenderness", TABLE)
+@pytest.mark.parametrize("base", [50.0, 212.0, 1e5])
+def test_impact_follows_from_momentum(slenderness, base):
+    case = scene(slenderness, base)
+    after, jump = RockingModel.of(case).impact(-0.7)
+    expected = impact_by_momentum(case, -0.7)
+    assert restitution(case) * -0.7 == pytest.approx(expected[0], rel=1e-12)
+    if restitution(case) > 0:
+        assert (after, jump) == pytest.approx(tuple(expected), rel=1e-12)
+        assert -base_jump_length(case) * -0.7 == pytest.approx(expected[1], rel=1e-12)
+
+
+def linear_momentum_error(case, jump_length):
+    """Relative change of linear momentum at an impact with this e_x."""
+    rate, h, m = -1.0, case.block.half_height, case.block.mass
+    before = m * h * rate
+    after = m * h * restitution(case) * rate - case.total_mass * jump_length * rate
+    return abs(after / before - 1)
+
+
+@pytest.mark.parametrize("slenderness", TABLE)
+def test_printed_equation_8_breaks_momentum(slenderness):
+    case = scene(slenderness)
+    assert linear_momentum_error(case, base_jump_length(case)) < 1e-14
+    assert linear_momentum_error(case, base_jump_length_as_printed(case)) > 0.005
+    ratio = base_jump_length_as_printed(case) / base_jump_length(case)
+    assert ratio == pytest.approx(RADIUS * math.cos(slenderness), rel=1e-12)
+
+
+@given(st.floats(0.02, 1.5), st.floats(1e-3, 1e6), st.floats(0.0, 1.0) | st.none())
+def test_impact_never_adds_energy(slenderness, base, own):
+    case = scene(slenderness, base, restitution=own)
+    model, w = RockingModel.of(case), -0.8
+    after, jump = model.impact(w)
+    h = case.block.half_height
+
+    def kinetic(rate, v):
+        return 0.5 * model.M * v * v + model.m * h * rate * v + 0.5 * model.J * rate * rate
+
+    assert kinetic(after, jump) <= kinetic(w, 0.0) * (1 + 1e-12)
+    # momentum holds for any restitution, the scene's own and a clipped one included
+    assert model.m * h * after + model.M * jump == pytest.approx(model.m * h * w, rel=1e-12)
+
+
+def test_negative_restitution_is_clipped_to_a_flat_landing():
+    case = scene(0.7, 1.0)
+    assert restitution(case) < 0
+    assert RockingModel.of(case).restitution == 0
+
+
+def test_heavy_base_is_rigid_ground():
+    rigid = restitution(scene(0.28, base=None))
+    errors = [restitution(scene(0.28, base)) - rigid for base in (1e7, 1e8)]
+    assert errors[0] / errors[1] == pytest.approx(10, rel=1e-2)
+    assert RockingModel.of(scene(0.28, None)).impact(-1.0) == (pytest.approx(-rigid), 0.0)
+
+
+SIDES = st.sampled_from([-1.0, 1.0])
+
+
+@given(SIDES, st.floats(0.0, 1.5), st.floats(-3, 3), st.floats(-5, 5), st.floats(-1e4, 1e4))
+def test_accelerations_solve_equations_3_and_4(side, size, rate, ground, force):
+    case = scene(0.28)
+    model, tilt = RockingModel.of(case), side * size
+    spin, push = model.accelerations(side, tilt, rate, ground, force)
+    c = RADIUS * math.cos(side * 0.28 - tilt)
+    n = RADIUS * math.sin(side * 0.28 - tilt)
+    horizontal = model.M * (ground + push) + MASS * (c * spin + n * rate**2) + force
+    moment = model.J * spin + MASS * c * (ground + push) + MASS * 9.81 * n
+    assert abs(horizontal) < 1e-9 * model.M * 9.81 and abs(moment) < 1e-9 * MASS * 9.81 * RADIUS
+
+
+@given(SIDES, st.floats(0.0, 1.5), st.floats(-3, 3), st.floats(-1e4, 1e4))
+def test_free_motion_conserves_energy(side, size, rate, force):
+    # power of gravity and bearing force = rate of kinetic energy, differentiated by hand
+    model, tilt, v = RockingModel.of(scene(0.28)), side * size, 0.3
+    spin, push = model.accelerations(side, tilt, rate, 0.0, force)
+    c, n = model.lever(side, tilt)
+    # d/dt [M v^2/2 + m c w v + J w^2/2], c' = n w
+    kinetic = (model.M * v * push + MASS * (n * rate**2 * v + c * spin * v + c * rate * push)
+               + model.J * rate * spin)
+    assert kinetic == pytest.approx(-MASS * 9.81 * n * rate - force * v, rel=1e-9, abs=1e-6)
+
+
+@given(SIDES, st.floats(0.0, 1.5), st.floats(-3, 3), st.floats(-5, 5), st.floats(-1e4, 1e4))
+def test_contact_force_drives_the_base(side, size, rate, ground, force):
+    # the block's horizontal force and the bearings' accelerate the base alone
+    model, tilt = RockingModel.of(scene(0.28)), side * size
+    spin, push = model.accelerations(side, tilt, rate, ground, force)
+    horizontal, normal = model.contact_forces(side, tilt, rate, spin, push + ground)
+    assert BASE * (push + ground) == pytest.approx(-horizontal - force, rel=1e-9, abs=1e-6)
+    # rotation about the centre of mass: J_c phi'' = -(H c + N n)
+    c, n = model.lever(side, tilt)
+    assert (model.J - MASS * RADIUS**2) * spin == pytest.approx(-horizontal * c - normal * n, rel=1e-9, abs=1e-5)
+
+
+def test_mirrored_states_have_mirrored_accelerations():
+    model = RockingModel.of(scene(0.28))
+    one = model.accelerations(1.0, 0.1, -0.4, 2.0, 300.0)
+    other = model.accelerations(-1.0, -0.1, 0.4, -2.0, -300.0)
+    assert other == (-one[0], -one[1])
+
+
+def test_uplift_threshold_is_where_the_block_starts_to_turn():
+    # in full contact at |a_abs| = g tan(gamma) the tilt acceleration about the corner is zero, on any foundation
+    for case in (scene(0.28), scene(0.28, base=None)):
+        model = RockingModel.of(case)
+        a = model.uplift_acceleration
+        spin, _ = model.accelerations(-1.0, 0.0, 0.0, a, -model.M * a)
+        assert abs(spin) < 1e-12
+        assert model.accelerations(-1.0, 0.0, 0.0, 1.01 * a, -1.01 * model.M * a)[0] < 0
+    assert RockingModel.of(scene(0.28)).contact_acceleration(1000.0) == pytest.approx(-1000 / (MASS + BASE))
+
+
+def test_bearing_is_part_of_the_model():
+    case = scene(0.28).with_(bearings=Bearings(law="linear", ka=1e5, count=2))
+    assert RockingModel.of(case).bearing.force(0.1, 0.0) == pytest.approx(2e4)
