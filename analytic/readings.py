@@ -23,6 +23,7 @@ from .layout import (
     X,
 )
 from .polynomial import value
+from .taylor import INVERSE
 
 # Points inside a step at which friction demand, normal force and acceleration are read.
 PROBES = 4
@@ -45,14 +46,18 @@ def write_history(history, written, output_step, t, h, P, order, on_base, rockin
 
 
 @njit(cache=True)
-def _integral_of_product(f, g, order, h):
-    """Integral of f g over [0, h], to the order of the series."""
+def _integral_of_product(f, highest, g, order, h):
+    """Integral over [0, h] of f g, of orders `highest` and `order`, with every term of the product.
+
+    Cut at the order of its factors the product would be worse than they are by up to two to that order.
+    """
     total, power = 0.0, h
-    for k in range(order + 1):
-        term = 0.0
-        for j in range(k + 1):
-            term += f[j] * g[k - j]
-        total += term * power / (k + 1)
+    for j in range(highest + 1):
+        term, term_power = 0.0, f[j] * power
+        for k in range(order + 1):
+            term += g[k] * term_power * INVERSE[j + k + 1]
+            term_power *= h
+        total += term
         power *= h
     return total
 
@@ -92,12 +97,10 @@ def read_energy(par, rocking, P, order, highest, h, totals):
                 for j in range(k + 1):
                     turning += P[C, j] * P[W, k - j]
             momentum[k] = par.m * par.R * turning + (par.M * P[V, k] if par.on_base else 0.0)
-            if k > highest:
-                P[GROUND, k] = 0.0
-        totals[INPUT] -= _integral_of_product(P[GROUND], momentum, order, h)
+        totals[INPUT] -= _integral_of_product(P[GROUND], min(highest, order), momentum, order, h)
     if par.count > 0:
         for k in range(order + 1):
             hysteretic[k] = P[F, k] - par.count * (par.kb * P[X, k] + par.damping * P[V, k])
-        totals[HYSTERETIC] += _integral_of_product(hysteretic, P[V], order, h)
+        totals[HYSTERETIC] += _integral_of_product(hysteretic, order, P[V], order, h)
         if par.damping > 0:
-            totals[VISCOUS] += par.count * par.damping * _integral_of_product(P[V], P[V], order, h)
+            totals[VISCOUS] += par.count * par.damping * _integral_of_product(P[V], order, P[V], order, h)

@@ -15,6 +15,9 @@ from .bearing import ALGEBRAIC, BOUC_WEN
 # Order of the series between the samples of a record, where steps end anyway (`rocking bench analytic`).
 SHORT_ORDER = 8
 
+# A damped motion decays until its numbers have no digits left; below this size [rad, m, ...] it sets no step.
+NEGLIGIBLE = 1e-200
+
 INVERSE = np.array([0.0] + [1.0 / k for k in range(1, 64)])
 
 # Parameters of a run, one scalar each; see RockingModel and BearingLaw for their meaning.
@@ -29,7 +32,7 @@ QUIET, LINEAR_GROUND, HARMONIC, RICKER = range(4)
 def allowed_step(f, order, tolerance, h):
     """Largest step up to h whose last Taylor terms stay below tolerance times the size of f in the step."""
     size = abs(f[0]) + abs(f[1]) * h + abs(f[2]) * h * h
-    limit = tolerance * size
+    limit = tolerance * max(size, NEGLIGIBLE)
     last = abs(f[order]) * h**order
     if last > limit:
         h *= 0.9 * (limit / last) ** (1.0 / order)
