@@ -6,16 +6,22 @@ from importlib.metadata import version
 
 from analytic.errors import SettingError
 
-from . import exudyn_corners, exudyn_native
+from . import exudyn_corners, exudyn_joints, exudyn_native
 from .observe import observe
 
-# name: (settings, module with run(scene, settings))
-_MODULES = {exudyn_corners.CompliantCorners: exudyn_corners, exudyn_native.NativeContact: exudyn_native}
+_MODULES = {exudyn_corners.CompliantCorners: exudyn_corners,
+            exudyn_joints.SwitchedJoints: exudyn_joints,
+            exudyn_native.NativeContact: exudyn_native}
 VARIANTS = {"compliant-corners": exudyn_corners.CompliantCorners(),
+            "switched-joints": exudyn_joints.SwitchedJoints(),
             "native-contact": exudyn_native.NativeContact()}
 DEFAULT_VARIANT = "compliant-corners"
 
-DECIDES = {"compliant-corners": "exudyn decides contact, impact, sliding and rest through stiff corner springs"}
+DECIDES = {
+    "compliant-corners": "exudyn decides contact, impact, sliding and rest through stiff corner springs",
+    "switched-joints": "exudyn decides the motion; uplift, impact and rest are the adapter's",
+    "native-contact": "exudyn decides contact, impact, sliding and rest through its sphere-triangle contact",
+}
 
 
 def versions():

@@ -16,6 +16,10 @@ from .observe import Trace
 OVERTURNED = math.pi / 2
 
 
+class Mismatch(RuntimeError):
+    """exudyn holds other values than the scene asks for."""
+
+
 @dataclass(frozen=True)
 class Run:
     """Accepted steps, CPU seconds and how the stepping ended."""
@@ -58,10 +62,7 @@ def step_through(model, settings, solver, contact_tilt, longest, settle=0.0):
     """
     exu.config.printToConsole = False
     scene, mbs, bearing = model.scene, model.mbs, model.bearing
-    mbs.Assemble()
-    mismatch = _mismatch(model)
-    if mismatch:
-        raise RuntimeError(mismatch)
+    check(model)
     system = mbs.systemData
     rows, forces = [], []
     connector = model.connectors.get("bearing")
@@ -96,18 +97,27 @@ def step_through(model, settings, solver, contact_tilt, longest, settle=0.0):
     except exu.ExudynError as error:
         failure = Failure("the solver stopped with an error", f"{error} {dynamic.GetErrorString()}".strip())
     cpu = time.process_time() - began
-    trace = _trace(scene, rows, forces, bearing, contact_tilt, settle)
+    trace = make_trace(scene, rows, forces, bearing, contact_tilt, settle)
     ended = "overturned" if len(trace.tilt) and abs(trace.tilt[-1]) >= OVERTURNED else None
     return Run(trace, cpu, len(rows) - 1, dynamic.it.rejectedAutomaticStepSizeSteps, ended, failure)
 
 
-def _mismatch(model):
+def check(model):
+    """Assemble a model and refuse one in which exudyn holds other values than the scene.
+
+    Raises
+    ------
+    Mismatch
+        Names each quantity with both values.
+    """
+    model.mbs.Assemble()
     wrong = [f"{name} is {found!r} in exudyn, {wanted!r} in the scene"
              for name, (found, wanted) in read_back(model).items() if found != wanted]
-    return "; ".join(wrong)
+    if wrong:
+        raise Mismatch("; ".join(wrong))
 
 
-def _trace(scene, rows, z, bearing, contact_tilt, settle):
+def make_trace(scene, rows, z, bearing, contact_tilt, settle):
     t = np.array([row[0] for row in rows])
     q, v = np.array([row[1] for row in rows]), np.array([row[2] for row in rows])
     x, speed = (q[:, 3], v[:, 3]) if scene.base else (np.zeros_like(t), np.zeros_like(t))

@@ -1,0 +1,213 @@
+"""exudyn, variant switched-joints: the idealised block. Joints hold the corner in contact; the adapter, not exudyn,
+decides uplift, impact and rest, localised in time, and applies the impact of eqs (7) and (8)."""
+
+import math
+import time
+from dataclasses import dataclass
+
+import exudyn as exu
+import numpy as np
+from exudyn.itemInterface import (
+    MarkerNodeCoordinate,
+    NodePointGround,
+    ObjectConnectorCoordinate,
+    ObjectJointRevolute2D,
+)
+from scipy.interpolate import CubicHermiteSpline
+
+from analytic.response import Failure
+from analytic.rocking import RockingModel
+
+from .exudyn_ground import Ground
+from .exudyn_run import OVERTURNED, Run, check, make_trace, solver_settings
+from .exudyn_scene import build
+
+REST = 0  # the side of a block in full contact
+INITIAL = exu.ConfigurationType.Initial
+
+
+@dataclass(frozen=True)
+class SwitchedJoints:
+    """Settings of switched-joints. `step` is the accuracy knob: the error goes as its square."""
+
+    step: float = 1e-3  # s
+
+
+class Stepper:
+    """A scene between joints: pieces of exudyn's time integration, from one event to the next."""
+
+    def __init__(self, scene, settings):
+        self.scene, self.step = scene, settings.step
+        self.equations = RockingModel.of(scene)
+        self.model = build(scene)
+        self._add_joints()
+        check(self.model)
+        self.solver = exu.MainSolverImplicitSecondOrder()
+        self.settings = solver_settings(scene, automaticStepSize=False, adaptiveStep=False,
+                                        solverType=exu.DynamicSolverType.TrapezoidalIndex2)
+        alpha = self.settings.timeIntegration.generalizedAlpha
+        alpha.useNewmark = alpha.useIndex2Constraints = True
+        if scene.motion is not None:
+            self.model.mbs.SetPreStepUserFunction(Ground(self.model, settings.step).prepare)
+        self.model.mbs.SetPostStepUserFunction(self.keep)
+        self.rows, self.z, self.time, self.side, self.watching = [], [], 0.0, REST, True
+
+    def _add_joints(self):
+        model, mbs = self.model, self.model.mbs
+        node = mbs.GetObject(model.block)["nodeNumber"]
+        fixed = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=mbs.AddNode(NodePointGround()), coordinate=0))
+        turn = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=2))
+        self.joints = {side: mbs.AddObject(ObjectJointRevolute2D(markerNumbers=model.corner_markers(side)))
+                       for side in (-1, 1)}
+        self.lock = mbs.AddObject(ObjectConnectorCoordinate(markerNumbers=[fixed, turn]))
+        model.connectors.update(left=self.joints[-1], right=self.joints[1], lock=self.lock)
+
+    def keep(self, mbs, t):
+        """After each step (PostStep): record it, commit the bearing's history; False stops at an event."""
+        system, bearing = mbs.systemData, self.model.bearing
+        q, v = system.GetODE2Coordinates(), system.GetODE2Coordinates_t()
+        if self.rows and t <= self.rows[-1][0]:
+            return True  # exudyn calls it at the start of each piece, too
+        self.rows.append((t, q, v))
+        if bearing is not None:
+            bearing.commit(q.item(3))
+            self.z.append(bearing.z)
+            mbs.SetObjectParameter(self.model.connectors["bearing"], "offset", bearing.memory())
+        tilt = -q.item(2)
+        if not abs(tilt) < OVERTURNED:
+            return False
+        return not (self.watching and self.event())
+
+    def event(self):
+        """Whether the last step ended beyond an impact or an uplift."""
+        t, q, v = self.rows[-1]
+        if self.side == REST:
+            return self.excess(len(self.rows) - 1) > 0
+        return -self.side * q.item(2) < 0
+
+    def excess(self, index):
+        """|absolute acceleration in full contact| above the uplift acceleration [m/s2] at a row."""
+        return abs(self.contact_acceleration(index)) - self.equations.uplift_acceleration
+
+    def contact_acceleration(self, index):
+        t, q, v = self.rows[index]
+        if self.scene.base:
+            return self.equations.contact_acceleration(self.force(index))
+        return float(self.scene.motion.acceleration(t)) if self.scene.motion else 0.0
+
+    def force(self, index):
+        """Force of all bearings [N] at a row."""
+        if self.model.bearing is None:
+            return 0.0
+        t, q, v = self.rows[index]
+        return self.model.bearing.law.force(q.item(3), self.z[index], v.item(3))
+
+    def advance(self, until, watching=True):
+        """Integrate from the last row to `until` [s], at most to an event."""
+        t, q, v = self.rows[-1]
+        mbs, integration = self.model.mbs, self.settings.timeIntegration
+        self.watching = watching
+        for side, joint in self.joints.items():
+            mbs.SetObjectParameter(joint, "activeConnector", side == (self.side or 1))
+        mbs.SetObjectParameter(self.lock, "activeConnector", self.side == REST)
+        mbs.Assemble()
+        mbs.systemData.SetODE2Coordinates(q, configuration=INITIAL)
+        mbs.systemData.SetODE2Coordinates_t(v, configuration=INITIAL)
+        integration.startTime, integration.endTime = t, until
+        integration.numberOfSteps = max(1, math.ceil((until - t) / self.step - 1e-9))
+        if not self.solver.SolveSystem(mbs, self.settings):
+            return Failure("the solver gave up", self.solver.GetErrorString())
+        return None
+
+    def take_back(self):
+        """Undo the last step."""
+        self.rows.pop()
+        bearing = self.model.bearing
+        if bearing is not None:
+            self.z.pop()
+            bearing.x, bearing.z = self.rows[-1][1].item(3), self.z[-1]
+            self.model.mbs.SetObjectParameter(self.model.connectors["bearing"], "offset", bearing.memory())
+
+    def event_time(self):
+        """Time of the event within the last step [s]."""
+        (t0, q0, v0), (t1, q1, v1) = self.rows[-2:]
+        if self.side == REST:
+            e0, e1 = self.excess(len(self.rows) - 2), self.excess(len(self.rows) - 1)
+            return t0 - e0 * (t1 - t0) / (e1 - e0) if e0 < 0 else t0
+        curve = CubicHermiteSpline((t0, t1), (q0[2], q1[2]), (v0[2], v1[2]))
+        roots = [root for root in curve.roots(extrapolate=False) if t0 < root <= t1]
+        return max(roots) if roots else t0
+
+    def impact(self):
+        """Apply eqs (7) and (8) to the last row; the new side, or REST if the next swing is shorter than a step."""
+        t, q, v = self.rows[-1]
+        equations, old = self.equations, self.side
+        rate = -v.item(2)
+        speed = v.item(3) if self.scene.base else 0.0
+        after, jump = equations.impact(rate)
+        ground = float(self.scene.motion.acceleration(t)) if self.scene.motion else 0.0
+        pull = old * equations.accelerations(-old, 0.0, 0.0, ground, self.force(len(self.rows) - 1))[0]
+        side = -old
+        if after == 0 or (pull > 0 and 2 * abs(after) / pull < self.step):
+            side, after = REST, 0.0
+            jump = self.scene.mass_share * self.scene.block.half_height * rate
+        self.place(side, after, speed + jump)
+
+    def place(self, side, rate, speed):
+        """Put the block flat on the base at the last row, with these rates [rad/s, m/s]."""
+        t, q, v = self.rows[-1]
+        x = q.item(3) if self.scene.base else 0.0
+        h, b = self.scene.block.half_height, self.scene.block.half_width
+        q = np.array([x, 0.0, 0.0, x])[:len(q)]
+        v = np.array([speed + h * rate, side * b * rate, -rate, speed])[:len(v)]
+        self.rows[-1] = (t, q, v)
+        self.side = side
+
+    def run(self):
+        """Step to the scene's end; the failure, or None."""
+        system, scene = self.model.mbs.systemData, self.scene
+        q, v = np.array(system.GetODE2Coordinates()), np.array(system.GetODE2Coordinates_t())
+        self.rows.append((0.0, q, v))
+        if self.model.bearing is not None:
+            self.z.append(self.model.bearing.z)
+        lean = scene.start.tilt or scene.start.tilt_rate
+        self.side = int(math.copysign(1, lean)) if lean else REST
+        if self.side == REST and self.excess(0) > 0:
+            self.lift()
+        while self.rows[-1][0] < scene.duration * (1 - 1e-12):
+            failure = self.advance(scene.duration)
+            if failure or not abs(self.rows[-1][1].item(2)) < OVERTURNED:
+                return failure
+            if not self.event():
+                continue
+            at = self.event_time()
+            self.take_back()
+            if at - self.rows[-1][0] > 1e-9 * self.step:
+                failure = self.advance(at, watching=False)
+                if failure:
+                    return failure
+            if self.side == REST:
+                self.lift()
+            else:
+                self.impact()
+        return None
+
+    def lift(self):
+        """Let the block rock, away from the acceleration of the base."""
+        side = -int(math.copysign(1, self.contact_acceleration(len(self.rows) - 1)))
+        self.place(side, 0.0, self.rows[-1][2].item(3) if self.scene.base else 0.0)
+
+
+def run(scene, settings):
+    """Step a scene between switched joints."""
+    exu.config.printToConsole = False
+    stepper = Stepper(scene, settings)
+    began = time.process_time()
+    try:
+        failure = stepper.run()
+    except exu.ExudynError as error:
+        failure = Failure("the solver stopped with an error", f"{error} {stepper.solver.GetErrorString()}".strip())
+    cpu = time.process_time() - began
+    trace = make_trace(scene, stepper.rows, stepper.z, stepper.model.bearing, 1e-9, 0.0)
+    ended = "overturned" if abs(trace.tilt[-1]) >= OVERTURNED else None
+    return Run(trace, cpu, len(stepper.rows) - 1, 0, ended, failure)
