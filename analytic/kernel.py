@@ -11,8 +11,10 @@ import numpy as np
 from numba import njit
 
 from . import layout as L
+from ._unowned import unowned
 from .bearing import ALGEBRAIC, BOUC_WEN, virtual_travel
 from .events import (
+    NEARLY_ELASTIC,
     direction_from_rest,
     find_exceedance,
     find_impact,
@@ -40,6 +42,9 @@ from .taylor import (
 
 # Events without progress of time that count as stuck (none is known; a guard, not a rule).
 PATIENCE = 1000
+# Impacts of a nearly elastic block lose next to nothing: followed further down than this fraction of omega_r they are
+# millions per second, each hop some 1e-9 rad high.
+ELASTIC_REST_RATE = 1e-4
 # Steps shorter than this fraction of the time are below its rounding.
 ROUNDING = 4e-16
 # Acceleration this close to the threshold at uplift: the onset is of third order, phi'' = 0.
@@ -54,16 +59,17 @@ def run(par, ground, options, totals):
     (n,); history : (n, 6) at multiples of output_step: time, tilt, rate, x, v, F (empty if output_step is 0).
     """
     record, tolerance = options.record, options.tolerance
-    # unpacked once: reading an array out of a tuple costs two atomic operations each time
-    ground_kind, dt, samples, scale, frequency, phase, ground_start, ground_end = ground
+    ground_kind, dt, ground_samples, scale, frequency, phase, ground_start, ground_end = ground
+    samples = unowned(ground_samples)
     omega, threshold = math.sqrt(par.p2), par.g * math.tan(par.gamma)
     overturn = 0.5 * math.pi
+    rest_rate = max(options.rest_rate, ELASTIC_REST_RATE) if par.e > NEARLY_ELASTIC else options.rest_rate
     lever = par.mt * par.R * math.cos(par.gamma)  # base velocity jump per jump of -phi', eq. (8)
-    P = np.zeros((L.ROWS, MAX_ORDER + 2))
+    workspace, scratch = np.zeros((L.ROWS, MAX_ORDER + 2)), np.empty((BISECTIONS + 2, MAX_ORDER + 1))
+    P, work = unowned(workspace), unowned(scratch)
     phi, w, S, C = P[L.PHI], P[L.W], P[L.S], P[L.C]
     x, v, q, F = P[L.X], P[L.V], P[L.Q], P[L.F]
     absolute, A, event = P[L.ABSOLUTE], P[L.GROUND], P[L.EVENT]
-    work = np.empty((BISECTIONS + 2, MAX_ORDER + 1))
     # never rebound in the loop: numba would count references at every merge of the control flow
     capacity = options.capacity if record else 0
     impacts, uplifts, rests = np.empty((capacity, 4)), np.empty(capacity), np.empty(capacity)
@@ -260,7 +266,7 @@ def run(par, ground, options, totals):
                     impacts[n_impacts, 2], impacts[n_impacts, 3] = rate, jump
                 n_impacts += 1
                 landed, limit = rate == 0, t
-                if not landed and abs(rate) < options.rest_rate * omega:
+                if not landed and abs(rate) < rest_rate * omega:
                     ground_now = value(A, highest, h) if highest >= 0 else 0.0
                     force = par.count * (par.kb * bx + z + par.damping * bv)
                     remaining = remaining_hops(par, rate, ground_now, force)
@@ -282,6 +288,7 @@ def run(par, ground, options, totals):
         if mode != L.OVERTURNED and status == L.COMPLETE:
             begin, t = finish, finish
     totals[L.STATUS], totals[L.MODE], totals[L.TIME] = status, mode, t
+    workspace[0, 0], scratch[0, 0] = 0.0, ground_samples[0]  # used last, so alive until here
     totals[L.PEAK_TILT], totals[L.PEAK_X], totals[L.STEPS] = peak_tilt, peak_x, steps
     totals[L.IMPACTS], totals[L.UPLIFTS], totals[L.RESTS] = n_impacts, n_uplifts, n_rests
     totals[L.WILL_OVERTURN] = will_overturn
