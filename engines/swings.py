@@ -128,7 +128,7 @@ def to_contact(scene, trace, swings, direction):
     time, rate, velocity : arrays, shape (n,)
         Time [s], tilt rate [rad/s] and base velocity [m/s] at tilt = 0; NaN where the flight does not reach it.
 
-    The bearings' elastic and hysteretic force is the trace's within the swing, and follows its tangent outside.
+    The bearings' elastic and hysteretic force is the trace's within the swing, and follows the law outside.
     """
     model = ArrayModel.of(scene)
     law, side = model.bearing, swings.side
@@ -138,12 +138,11 @@ def to_contact(scene, trace, swings, direction):
     if len(t) == 0:
         return t, rate, v
     lasting = trace.bearing_force - law.count * law.damping * trace.base_velocity
-    stiffness = _tangent(law, trace.base_displacement[edge], lasting[edge], trace.base_velocity[edge])
+    beyond = _branch(law, trace.base_displacement[edge], lasting[edge], trace.base_velocity[edge])
 
     def slope(t, tilt, rate, x, v):
-        outside = lasting[edge] + stiffness * (x - trace.base_displacement[edge])
-        inside = direction < 0 and np.interp(t, trace.time, lasting)
-        force = np.where(direction * (trace.time[edge] - t) > 0, inside, outside) + law.count * law.damping * v
+        within = (direction < 0) & (t > trace.time[edge])
+        force = np.where(within, np.interp(t, trace.time, lasting), beyond(x)) + law.count * law.damping * v
         tilting, sliding = model.accelerations(side, tilt, rate, ground(t), force)
         return np.stack([rate, tilting, v, np.broadcast_to(sliding, rate.shape)])
 
@@ -172,11 +171,25 @@ def _time_to_zero(p, q, a, direction):
         return np.where(p == 0, 0.0, sign * 2 * p / (root - sign * q))
 
 
-def _tangent(law, x, lasting, v):
-    """Stiffness of all bearings [N/m] along the path through (x, lasting force) in the direction of v."""
-    z = lasting / max(law.count, 1) - law.kb * x
-    step = np.where(v < 0, -1e-7, 1e-7)
-    # |z| may exceed f0 by rounding in the engine; the law is only defined up to f0.
-    z = np.clip(z, -law.f0, law.f0)
-    slopes = [(law.hysteretic(zi, dx) - zi) / dx for zi, dx in zip(z.tolist(), step.tolist(), strict=True)]
-    return law.count * (law.kb + np.array(slopes))
+def _branch(law, x, lasting, v):
+    """Elastic and hysteretic force of all bearings [N] as function of displacement, on the path through (x, force).
+
+    The law is taken in the direction of v as it is at two points, and between and behind them by the exponential
+    through these, which is exact for a Bouc-Wen law and good to (alpha dx)^2/(2 alpha) for the algebraic one.
+    """
+    z = np.clip(lasting / max(law.count, 1) - law.kb * x, -law.f0, law.f0)  # an engine's rounding may exceed f0
+    step = np.where(v < 0, -1e-4, 1e-4)
+    near, far = (np.array([law.hysteretic(zi, dx) for zi, dx in zip(z.tolist(), (k * step).tolist(), strict=True)])
+                 for k in (1, 2))
+    rise = near - z
+    with np.errstate(invalid="ignore", divide="ignore"):
+        decay = np.log((far - near) / rise)
+    curved = np.isfinite(decay) & (decay < -1e-9)
+
+    def force(at):
+        travel = (at - x) / step
+        bent = np.expm1(np.where(curved, decay, -1.0) * travel) / np.expm1(np.where(curved, decay, -1.0))
+        moved = np.clip(z + rise * np.where(curved, bent, travel), -law.f0, law.f0)
+        return law.count * (law.kb * at + moved)
+
+    return force
