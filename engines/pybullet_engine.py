@@ -12,7 +12,7 @@ from analytic.response import Failure
 
 from . import pybullet_stepping
 from .observe import observe
-from .pybullet_check import check_energy, check_place
+from .pybullet_check import check_place
 from .pybullet_scene import Mismatch, assemble
 from .pybullet_trace import trace_of
 
@@ -131,12 +131,12 @@ def simulate(scene, *, variant=None, history=True, **settings):
         rows = [(0.0, 0.0, *[math.nan] * 6), (largest, largest, *[math.nan] * 6)]
     trace = trace_of(rows, scene, pybullet_stepping.FLAT * scene.block.slenderness)
     if failure is None:
-        failure = _failure(scene, trace, rows, ended, place)
+        failure = _failure(scene, rows, ended, place)
     return observe(scene, trace, cpu_seconds=cpu, steps=len(rows) - 1, failure=failure,
                    ended=ended if ended == "overturned" else None, **given)
 
 
-def _failure(scene, trace, rows, ended, place):
+def _failure(scene, rows, ended, place):
     """What went wrong in a finished run, or None."""
     if ended == "not finite":
         return Failure("the state is no longer finite", f"at step {len(rows) - 1}, t = {rows[-1][0]:.9g} s")
@@ -144,4 +144,4 @@ def _failure(scene, trace, rows, ended, place):
         return Failure("too many steps", f"{len(rows) - 1} by t = {rows[-1][0]:.9g} s of {scene.duration:.9g} s")
     if ended == "overturned":
         return None
-    return check_place(scene, *place, rows[-1][2], rows[-1][4]) or check_energy(scene, trace)
+    return check_place(scene, *place, rows[-1][2], rows[-1][4])

@@ -14,7 +14,7 @@ from analytic.bearing import hysteretic_force
 from analytic.rocking import RockingModel
 
 from .pybullet_ground import ground_velocity
-from .pybullet_scene import correction
+from .pybullet_scene import ROCKING_ITERATIONS, correction, standing_iterations
 
 # The step grows by at most this factor: halving it costs 4 % more steps, 2 leaves the e error as it is.
 GROWTH = 1.5
@@ -56,7 +56,7 @@ def run(assembly, scene, largest, accuracy, row_limit):
     ground = ground_velocity(scene.motion)
     aware, fraction = accuracy is not None, accuracy or 0.0
     least_pull = abs(model.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0])  # |tilt''| toward contact, unforced
-    weak = math.sqrt(2 * least_pull * FLAT * scene.block.slenderness)  # tilt rate at the impact after such a swing
+    weak = 2 * least_pull * FLAT * scene.block.slenderness  # square of the speed at the impact of such a swing
     constants = (law.law, law.dk, law.alpha, law.d0, law.f0)
     count, kb, damping = law.count, law.kb, law.count * law.damping
     start, end, limit = scene.start, scene.duration, 0.5 * math.pi
@@ -71,46 +71,37 @@ def run(assembly, scene, largest, accuracy, row_limit):
     rows = [(t, h, tilt, rate, x, v, z, force)]
     keep, step, side = rows.append, largest, tilt > 0
     before, interval, gained, settling = 0.0, 1.0, 0.0, 0
-    last_scale, earlier = -1.0, v
+    last_scale, earlier, stood, many = -1.0, v, None, standing_iterations(scene)
     if aware:  # a first swing may be short: start small and let the step grow
         step = min(largest, max(SMALLEST_STEP, fraction * abs(rate) / least_pull, 1e-2 * largest))
-        engine_step(fixedTimeStep=step, contactERP=correction(step), physicsClientId=client)
     end -= 1e-9 * largest  # the steps' sum may miss the duration by rounding
     while t < end:
         jumped = (tilt > 0) != side
         side = tilt > 0
+        toward, size = (-rate, tilt) if side else (rate, -tilt)
+        energy = toward * toward + 2 * least_pull * size  # of the swing, as the square of its speed at the impact
+        standing = energy < 100 * weak
+        wanted = step
         if aware and h:
-            toward, size = (-rate, tilt) if side else (rate, -tilt)
-            pull = least_pull
             if jumped:
-                settling = SETTLING if toward < -weak or toward > weak else 0
-            elif settling == 0:
-                # What the last step gained, toward contact; more than the model's where the ground pushes.
-                now = (before - rate if side else rate - before) / interval
-                if now > pull:
-                    pull = now
+                settling = SETTLING if energy > weak else 0
             if settling:
                 settling -= 1
             else:
-                speed = sqrt(toward * toward + 2 * pull * size)
-                wanted = step * GROWTH
-                if wanted > largest:
-                    wanted = largest
-                if speed > weak:
-                    finest = fraction * speed / pull
-                    if finest < SMALLEST_STEP:
-                        finest = SMALLEST_STEP
-                    near = APPROACH * ((speed - toward) / pull - 3 * finest)
-                    if near < finest:
-                        near = finest
-                    if near < wanted:
-                        wanted = near
-                if wanted != step:
-                    step = wanted
-                    engine_step(fixedTimeStep=step, contactERP=correction(step), physicsClientId=client)
-        if t + step > end + 2e-9 * largest:
-            step = scene.duration - t
-            engine_step(fixedTimeStep=step, contactERP=correction(step), physicsClientId=client)
+                wanted = min(step * GROWTH, largest)
+                if energy > weak:
+                    # What the last step gained toward contact, where that is more: the ground may push.
+                    pull = least_pull if jumped else max(
+                        least_pull, (before - rate if side else rate - before) / interval)
+                    speed = sqrt(toward * toward + 2 * pull * size)
+                    finest = max(SMALLEST_STEP, fraction * speed / pull)
+                    wanted = min(wanted, max(finest, APPROACH * ((speed - toward) / pull - 3 * finest)))
+        if t + wanted > end + 2e-9 * largest:
+            wanted = scene.duration - t
+        if wanted != step or standing != stood:
+            step, stood = wanted, standing
+            engine_step(fixedTimeStep=step, contactERP=correction(step), physicsClientId=client,
+                        numSolverIterations=many if standing else ROCKING_ITERATIONS)
         scale = 0.5 * (step + h) / step
         if ground is not None:
             level = ground(t + 0.5 * step)
