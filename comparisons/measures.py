@@ -9,6 +9,9 @@ from numba import njit
 from engines.checks import energy_balance
 from engines.swings import Trace
 
+# Time after an impact that belongs to it [s]: exudyn's compliant corners relax for 6 ms.
+SETTLE = 0.01
+
 
 def swing_restitution(scene, response):
     """Effective restitution of each impact from the energies of the swings around it, shape (impacts,).
@@ -135,19 +138,19 @@ def _directed(ta, ya, tb, yb):
     return worst
 
 
-def energy_drift(scene, response):
+def energy_drift(scene, response, *, settle=SETTLE):
     """Largest change of the energy balance within one swing or rest, over m g R (1 - cos gamma); 0 if exact.
 
     The balance is mechanical energy + loss in the bearings - input work, from the history; between impacts it is
-    constant. Half a sample around each event is left out.
+    constant. The `settle` seconds after each event are left out.
     """
     history = _history(response)
     trace = Trace(*(getattr(history, name) for name in Trace.COLUMNS), contact_tilt=1e-12)
     balance, _ = energy_balance(scene, trace)
     events = sorted([impact.time for impact in response.impacts] + list(response.rests) + list(response.uplifts))
-    edges = np.concatenate(([0], np.unique(np.searchsorted(history.time, events)), [len(balance)])).astype(int)
-    # The step across an event mixes both sides in the trapezoidal rule: only differences inside a swing count.
-    drift = max((np.ptp(balance[a:b]) for a, b in zip(edges[:-1], edges[1:], strict=True) if b > a), default=0.0)
+    begins = np.searchsorted(history.time, np.add([-math.inf] + events, settle))
+    ends = np.searchsorted(history.time, events + [math.inf])
+    drift = max((np.ptp(balance[a:b]) for a, b in zip(begins, ends, strict=True) if b > a), default=0.0)
     block = scene.block
     return float(drift / (block.mass * scene.gravity * block.radius * (1 - math.cos(block.slenderness))))
 

@@ -46,11 +46,11 @@ def guarded_simulate(engine_name, scene, *, time_limit, **settings):
     """
     if not (math.isfinite(time_limit) and time_limit > 0):
         raise ValueError(f"time_limit = {time_limit!r}: give a time above 0 [s]")
-    get_engine(engine_name)
-    return guarded(_simulate, engine_name, scene, settings, time_limit)
+    versions = get_engine(engine_name).versions()
+    return guarded(_simulate, engine_name, scene, settings, time_limit, versions)
 
 
-def guarded(run, engine_name, scene, settings, time_limit):
+def guarded(run, engine_name, scene, settings, time_limit, versions=None):
     """``run(engine_name, scene, settings)`` in a process of its own; see `guarded_simulate`.
 
     `run` is a function at the top of a module, so that the process can import it.
@@ -69,7 +69,7 @@ def guarded(run, engine_name, scene, settings, time_limit):
         except Exception as error:  # whatever an engine raises, its message is the evidence
             trace = getattr(error, "traceback", "")
             failure = Failure("the run raised an error", f"{type(error).__name__}: {error}\n{trace}".strip())
-    return failed_response(scene, engine_name, settings, failure)
+    return failed_response(scene, engine_name, settings, failure, versions)
 
 
 def _last_words(code):

@@ -77,3 +77,12 @@ def test_an_unknown_engine_or_time_limit_is_refused_before_any_process():
         guarded_simulate("ode", SCENE, time_limit=1.0)
     with pytest.raises(ValueError, match="time_limit = 0"):
         guarded_simulate("exudyn", SCENE, time_limit=0.0)
+
+
+def test_a_real_engine_runs_guarded_as_it_does_here_and_is_killed_at_its_limit():
+    exudyn = pytest.importorskip("engines.exudyn_engine", reason="exudyn is not installed")
+    here, there = exudyn.simulate(SCENE), guarded_simulate("exudyn", SCENE, time_limit=120.0)
+    assert here.impacts == there.impacts and here.end == there.end
+    late = guarded_simulate("exudyn", SCENE, time_limit=0.01, stiffness=1e10)
+    assert late.outcome == "failed" and "0.01 s" in late.failure.message
+    assert late.versions == exudyn.versions() and late.settings == {"stiffness": 1e10}
