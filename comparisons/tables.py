@@ -36,9 +36,10 @@ def summary(scene, response):
 def comparison(scene, responses):
     """Responses of several solvers side by side; the first is the reference of the differences."""
     table = Table(title=scene.name, box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0),
-                  caption="over: time of overturning; tilt: peak tilt over slenderness; base: peak base displacement; d: difference from the "
-                          "first row.\nWhere a motion is sensitive only the outcomes can be compared.")
-    for name in ("solver", "outcome", "over\n[s]", "tilt\n[-]", "d\n[-]", "base\n[m]", "d\n[%]", "im-\npacts", "CPU\n[s]"):
+                  caption="over: time of overturning; tilt: peak tilt over slenderness; base: peak base displacement;\n"
+                          "d: difference from the first row. Where a motion is sensitive only the outcomes compare.")
+    for name in ("solver", "outcome", "over\n[s]", "tilt\n[-]", "d\n[-]", "base\n[m]", "d\n[%]", "im-\npacts",
+                 "CPU\n[ms]"):
         table.add_column(Text(name), justify="left" if name in ("solver", "outcome") else "right", no_wrap=True)
     reference = responses[0]
     for response in responses:
@@ -51,12 +52,12 @@ def comparison(scene, responses):
         table.add_row(f"{response.engine}\n{response.variant}", response.outcome,
                       _number(response.overturning_time, ".4f"), _number(response.peak_tilt_ratio, ".4f"), tilt,
                       _number(response.peak_base_displacement, ".4f"), displacement, str(response.impact_count),
-                      _number(response.cpu_seconds, ".1e"))
+                      f"{1e3 * response.cpu_seconds:.1f}")
     return table
 
 
 def engine_text(name, engine):
-    """What an engine module says of itself: versions, what it decides, variants and settings."""
+    """What an engine module says of itself: versions, what it decides, variants and settings, the knob first."""
     versions = ", ".join(f"{package} {version}" for package, version in engine.versions().items())
     lines = [f"{name} ({versions})"]
     decides = engine.DECIDES if isinstance(engine.DECIDES, dict) else {"": engine.DECIDES}
@@ -64,6 +65,8 @@ def engine_text(name, engine):
     for variant, settings in engine.VARIANTS.items():
         default = " (default)" if variant == engine.DEFAULT_VARIANT else ""
         about = inspect.getdoc(type(settings)).split("\n\n")[0].replace("\n", " ")
-        values = [f"{field.name} = {getattr(settings, field.name)!r}" for field in dataclasses.fields(settings)]
-        lines += [f"  --variant {variant}{default}: {about}", "      --set " + ", ".join(values)]
+        values = [f"{name}={value:g}" if isinstance(value, float) else f"{name}={value}"
+                  for name, value in dataclasses.asdict(settings).items()]
+        values[:1] = [f"{value} (accuracy)" for value in values[:1]]
+        lines += [f"  --variant {variant}{default}: {about}", "      settings: " + ", ".join(values)]
     return "\n".join(lines) + "\n"

@@ -1,0 +1,91 @@
+"""Sampled motions and pulses."""
+
+import math
+
+import numpy as np
+import pytest
+
+from analytic import PulseMotion, SampledMotion, SceneError
+from analytic.motion import PULSES
+
+
+def test_sampled_motion_is_linear_between_samples_and_zero_outside():
+    motion = SampledMotion(0.5, [1.0, 3.0, -2.0])
+    times = [-1e-9, 0.0, 0.25, 0.5, 0.75, 1.0, 1.0 + 1e-9, 9.0]
+    np.testing.assert_allclose(motion.acceleration(times), [0, 1, 2, 3, 0.5, -2, 0, 0], atol=1e-15)
+    assert (motion.start, motion.end, motion.peak, motion.peak_time) == (0.0, 1.0, 3.0, 0.5)
+
+
+def test_samples_are_kept_read_only_and_apart_from_the_callers():
+    mine = np.array([1.0, 2.0])
+    motion = SampledMotion(0.1, mine)
+    mine[0] = 9
+    assert motion.samples[0] == 1.0
+    with pytest.raises(ValueError):
+        motion.samples[0] = 9
+
+
+def test_scaled_and_digest():
+    motion = SampledMotion(0.1, [1.0, -2.0], "a")
+    assert motion.scaled(-2).samples.tolist() == [-2.0, 4.0]
+    assert motion.digest() == SampledMotion(0.1, [1.0, -2.0], "b").digest()
+    assert motion.digest() != SampledMotion(0.1, [1.0, np.nextafter(-2.0, 0)]).digest()
+    assert motion.digest() != SampledMotion(0.2, [1.0, -2.0]).digest()
+
+
+@pytest.mark.parametrize("dt, samples, message", [
+    (0.0, [1, 2], "motion.dt = 0.0: not a positive number"),
+    (-1, [1, 2], "motion.dt = -1: not a positive number"),
+    (math.nan, [1, 2], "motion.dt = nan: not a positive number"),
+    (math.inf, [1, 2], "motion.dt = inf"),
+    (0.1, [], "holds fewer than two samples; give at least two accelerations"),
+    (0.1, [1], "holds fewer than two samples"),
+    (0.1, [[1, 2], [3, 4]], "shape (2, 2)"),
+    (0.1, [1, math.nan, 2], "motion.record = nan: sample 1 is not finite; mend or remove it"),
+    (0.1, [1, 2, -math.inf], "motion.record = -inf: sample 2 is not finite"),
+])
+def test_bad_samples(dt, samples, message):
+    with pytest.raises(SceneError) as caught:
+        SampledMotion(dt, samples)
+    assert message in str(caught.value)
+
+
+@pytest.mark.parametrize("shape", PULSES)
+def test_pulse_is_zero_outside_and_peaks_where_it_says(shape):
+    pulse = PulseMotion(shape, -2.0, 3.0, start=1.5)
+    assert pulse.acceleration(np.array([1.5 - 1e-9, pulse.end + 1e-9])).tolist() == [0, 0]
+    assert pulse.acceleration(pulse.peak_time) == pytest.approx(-2.0, rel=1e-12)
+    times = np.linspace(1.5, pulse.end, 20001)
+    assert np.abs(pulse.acceleration(times)).max() == pytest.approx(pulse.peak, rel=1e-6)
+    twice = pulse.scaled(-2)
+    np.testing.assert_array_equal(twice.acceleration(times), -2 * pulse.acceleration(times))
+    assert twice.digest() != pulse.digest()
+
+
+@pytest.mark.parametrize("shape, gain", [  # integral of the acceleration, in amplitude/frequency
+    ("one-sine", 0.0), ("one-cosine", 0.0), ("half-sine", 2.0), ("rectangular", math.pi), ("ricker", 0.0)])
+def test_velocity_gained_in_a_pulse(shape, gain):
+    pulse = PulseMotion(shape, 1.0, 2.0)
+    times = np.linspace(0, pulse.end, 400001)
+    gained = np.trapezoid(pulse.acceleration(times), times)
+    assert gained == pytest.approx(gain / 2.0, abs=1e-9)
+
+
+def test_ricker_ends_below_rounding():
+    pulse = PulseMotion("ricker", 1.0, 2.0)
+    assert abs(pulse.acceleration(0.0)) < 1e-15
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (("two-sine", 1, 1), "motion.pulse = 'two-sine': not a known pulse; choose one of one-sine, one-cosine"),
+    (("one-sine", math.nan, 1), "motion.amplitude = nan: not a finite number"),
+    (("one-sine", "1", 1), "motion.amplitude = '1'"),
+    (("one-sine", True, 1), "motion.amplitude = True"),
+    (("one-sine", 1, 0), "motion.frequency = 0.0: not a positive number; give a finite value above 0 [rad/s]"),
+    (("one-sine", 1, math.inf), "motion.frequency = inf"),
+    (("one-sine", 1, 1, -0.5), "motion.start = -0.5: negative; start the pulse at 0 or later [s]"),
+])
+def test_bad_pulse(arguments, message):
+    with pytest.raises(SceneError) as caught:
+        PulseMotion(*arguments)
+    assert message in str(caught.value)

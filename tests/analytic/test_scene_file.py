@@ -1,0 +1,122 @@
+"""Scene files: what they give, and one clear message for every mistake."""
+
+import math
+from pathlib import Path
+
+import pytest
+from bad_scenes import BAD, SCENE, write_scene
+
+from analytic import Base, Bearings, Block, PulseMotion, SceneError, Start, load_scene, shipped_scenes
+from analytic.synthetic import synthetic_motion
+
+
+def test_full_file(tmp_path):
+    text = """
+        name = "everything"
+        gravity = 10
+        [block]
+        mass = 3172.05
+        radius = 1.0884
+        slenderness = 0.28
+        corner_inertia = 5010.2
+        restitution = 0.9
+        [base]
+        mass = 212.0
+        [bearings]
+        law = "bouc-wen"
+        count = 4
+        ka = 6.22e4
+        kb = 6.22e3
+        alpha = 44.69
+        delta_k = 1e-18
+        damping = 5.0
+        [motion]
+        pulse = "one-cosine"
+        amplitude = -2.0
+        frequency = 3
+        start = 0.5
+        scale = 2
+        [start]
+        tilt = 0.1
+        tilt_rate = 0.2
+        base_displacement = 0.3
+        base_velocity = 0.4
+        [run]
+        duration = 20
+    """
+    scene = load_scene(write_scene(tmp_path, text))
+    assert (scene.name, scene.gravity, scene.duration) == ("everything", 10.0, 20.0)
+    assert scene.block == Block(mass=3172.05, radius=1.0884, slenderness=0.28, corner_inertia=5010.2, restitution=0.9)
+    assert scene.base == Base(mass=212.0)
+    assert scene.bearings == Bearings(law="bouc-wen", count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, delta_k=1e-18,
+                                      damping=5.0)
+    assert scene.motion == PulseMotion("one-cosine", -4.0, 3.0, 0.5)
+    assert scene.start == Start(tilt=0.1, tilt_rate=0.2, base_displacement=0.3, base_velocity=0.4)
+
+
+def test_least_file(tmp_path):
+    text = "[block]\nmass = 1\nradius = 1\nslenderness = 0.2\n[run]\nduration = 1\n"
+    scene = load_scene(write_scene(tmp_path, text))
+    assert (scene.base, scene.bearings, scene.motion, scene.gravity, scene.name) == (None, None, None, 9.81, "scene")
+
+
+def test_record_is_looked_up_beside_the_scene_file(tmp_path, monkeypatch):
+    (tmp_path / "records").mkdir()
+    (tmp_path / "records" / "r.txt").write_text("0 1\n0.5 2\n")
+    path = write_scene(tmp_path, SCENE.replace('synthetic = "duzce-like"',
+                                               'record = "records/r.txt"\nunits = "cm/s2"\nscale = 3'))
+    monkeypatch.chdir("/")
+    assert load_scene(path).motion.samples.tolist() == pytest.approx([0.03, 0.06])
+
+
+def test_synthetic_motion_with_seed_and_scale(tmp_path):
+    path = write_scene(tmp_path, SCENE.replace('"duzce-like"', '"duzce-like"\nseed = 5\nscale = 0.5'))
+    assert load_scene(path).motion.digest() == synthetic_motion(seed=5).scaled(0.5).digest()
+
+
+def test_shipped_scenes():
+    scenes = {name: load_scene(name) for name in shipped_scenes()}
+    assert set(scenes) == {"caryatid-rigid", "caryatid-isolated", "free-rocking-rigid", "free-rocking-isolated"}
+    assert {name for name, scene in scenes.items() if scene.base} == {"caryatid-isolated", "free-rocking-isolated"}
+    for name, scene in scenes.items():
+        assert scene.block == scenes["caryatid-rigid"].block
+        if name.startswith("caryatid"):
+            assert "synthetic" in scene.motion.label
+        else:
+            assert scene.motion is None
+            assert scene.start.tilt == pytest.approx(0.6 * scene.block.slenderness)
+    table_1b = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, delta_k=1e-20)
+    assert scenes["caryatid-isolated"].bearings == scenes["free-rocking-isolated"].bearings == table_1b
+
+
+def test_a_file_goes_before_a_shipped_scene_of_that_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("caryatid-rigid").write_text(SCENE.replace("20.0", "3.0"))
+    assert load_scene("caryatid-rigid").duration == 3.0
+
+
+@pytest.mark.parametrize("change, message", BAD.values(), ids=BAD)
+def test_bad_file(tmp_path, change, message):
+    path = write_scene(tmp_path, change(SCENE))
+    with pytest.raises(SceneError) as caught:
+        load_scene(path)
+    error = caught.value
+    assert str(error).startswith(f"{path}: {message}")
+    assert error.file == str(path) and error.key and error.remedy
+
+
+def test_the_file_before_any_change_is_good(tmp_path):
+    assert math.isclose(load_scene(write_scene(tmp_path, SCENE)).duration, 20.0)
+
+
+def test_no_such_scene():
+    with pytest.raises(SceneError) as caught:
+        load_scene("no-such-scene")
+    assert str(caught.value) == ("no-such-scene: scene: cannot be read (No such file or directory); give a scene file "
+                                 "or one of caryatid-isolated, caryatid-rigid, free-rocking-isolated, "
+                                 "free-rocking-rigid")
+
+
+def test_folder(tmp_path):
+    with pytest.raises(SceneError, match="cannot be read"):
+        load_scene(tmp_path)
