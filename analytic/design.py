@@ -1,0 +1,150 @@
+"""Design of the bearings: from target period, damping and displacement, Table 1(a), to ka, kb and alpha, Table 1(b)."""
+
+import math
+from dataclasses import dataclass
+
+from scipy.optimize import brentq, minimize_scalar
+
+from .bearing import BearingLaw
+from .errors import SettingError
+from .scene import Bearings
+
+# The paper's 30 % is the loss W_D over 2 pi E_s; the usual equivalent damping divides by 4 pi E_s and reads half of it.
+DEFINITIONS = {"paper": 2 * math.pi, "equivalent": 4 * math.pi}
+# Exponents searched; Table 1(b) has 44.69.
+STEEPEST = 1e4
+# The design equations take the loop on its limit curves; the law's own loop may differ from them by this much.
+LOOP_AGREEMENT = 1e-3
+SETTLING_CYCLES = 50
+
+
+@dataclass(frozen=True)
+class BearingProperties:
+    """What a set of bearings gives at the displacement x_max.
+
+    period : float
+        Secant period at x_max [s], 2 pi sqrt(M x_max/F(x_max)); with kb alone it would be `period_kb`.
+    damping_paper, damping_equivalent : float
+        W_D/(2 pi E_s), as in Table 1(a), and the usual W_D/(4 pi E_s), with E_s = k_sec x_max^2/2.
+    secant_stiffness, force : float
+        Of one bearing at x_max [N/m, N].
+    cycle_loss : float
+        W_D of one bearing [J], in a steady cycle of the law itself.
+    """
+
+    period: float
+    period_kb: float
+    damping_paper: float
+    damping_equivalent: float
+    secant_stiffness: float
+    force: float
+    cycle_loss: float
+
+
+def steady_cycle(law, amplitude):
+    """(loss [J], force [N] at +amplitude) of one bearing in the steady cycle between +-amplitude [m].
+
+    The loss is the integral of the hysteretic force along both branches, exact for the algebraic law.
+    """
+    z = law.hysteretic(0.0, amplitude)
+    for _ in range(SETTLING_CYCLES):
+        low = law.hysteretic(z, -2 * amplitude)
+        z = law.hysteretic(low, 2 * amplitude)
+    # the loading branch from z = low: D from D_c to D_c + 2 X on the limit curve, integrated in closed form
+    power = law.d0 + (1 - law.alpha) * (low - law.f0) / law.dk
+    start = max(law.d0, power) ** (1 / (1 - law.alpha))
+    curved = ((start + 2 * amplitude) ** (2 - law.alpha) - start ** (2 - law.alpha)) / (2 - law.alpha)
+    branch = law.dk * (curved - 2 * amplitude * law.d0) / (1 - law.alpha) + 2 * amplitude * law.f0
+    return 2 * branch, law.kb * amplitude + z
+
+
+def properties(bearings, mass, x_max):
+    """`BearingProperties` of algebraic bearings under `mass` (block and base) [kg] at x_max [m]."""
+    loss, force = steady_cycle(BearingLaw.of(bearings), x_max)
+    secant = force / x_max
+    energy = 0.5 * secant * x_max**2
+    kb_period = 2 * math.pi * math.sqrt(mass / (bearings.count * bearings.kb)) if bearings.kb else math.inf
+    return BearingProperties(2 * math.pi * math.sqrt(mass / (bearings.count * secant)), kb_period,
+                             loss / (2 * math.pi * energy), loss / (4 * math.pi * energy), secant, force, loss)
+
+
+def _mismatch(alpha, loss, secant, x_max, ratio):
+    """(ka - kb) that f0 and alpha give less that kb and the ratio give; f0 from the loss on the limit curves."""
+    f0 = loss / (4 * (x_max - 1 / (alpha - 2)))
+    return 2 * f0 * (alpha - 1) - (ratio - 1) * (secant - f0 / x_max), f0
+
+
+def _feasible(damping, divisor, secant, x_max, ratio):
+    """(alpha of least mismatch, the mismatch there); a design exists where it is below 0."""
+    loss = damping * divisor * 0.5 * secant * x_max**2
+    low = math.log(1 / x_max * (1 + 1e-9))
+
+    def at(u):
+        return _mismatch(2 + math.exp(u), loss, secant, x_max, ratio)[0] / secant
+
+    best = minimize_scalar(at, bounds=(low, math.log(STEEPEST)), method="bounded")
+    return 2 + math.exp(best.x), best.fun
+
+
+def design_bearings(mass, period, damping, x_max, *, count=4, stiffness_ratio=10.0, definition="paper",
+                    delta_k=1e-20):
+    """Bearings with a given secant period and damping at x_max.
+
+    Parameters
+    ----------
+    mass : float
+        Block and base together [kg].
+    period : float
+        Secant period at x_max [s].
+    damping : float
+        Share of critical damping at x_max, in the sense of `definition`.
+    x_max : float
+        Design displacement [m].
+    count : int
+        Number of bearings.
+    stiffness_ratio : float
+        ka/kb. The paper does not print it; its Table 1(b) has 10.
+    definition : str
+        "paper" for W_D/(2 pi E_s), "equivalent" for W_D/(4 pi E_s).
+
+    Returns
+    -------
+    Bearings
+
+    Raises
+    ------
+    SettingError
+        A target is out of range or cannot be met; the message says how far it can go.
+    """
+    targets = {"mass": mass, "period": period, "damping": damping, "x_max": x_max, "delta_k": delta_k}
+    for name, number in targets.items():
+        if not (math.isfinite(number) and number > 0):
+            raise SettingError(f"{name} = {number!r}: give a finite number above 0")
+    if not (math.isfinite(stiffness_ratio) and stiffness_ratio > 1):
+        raise SettingError(f"stiffness_ratio = {stiffness_ratio!r}: ka/kb must be above 1")
+    if count < 1:
+        raise SettingError(f"count = {count!r}: give at least one bearing")
+    if definition not in DEFINITIONS:
+        raise SettingError(f"definition = {definition!r}: choose one of {', '.join(DEFINITIONS)}")
+    divisor, secant = DEFINITIONS[definition], mass * (2 * math.pi / period) ** 2 / count
+    turn, least = _feasible(damping, divisor, secant, x_max, stiffness_ratio)
+    if least >= 0:
+        # damping -> 0 can always be met: f0 -> 0 leaves the ratio term alone
+        most = brentq(lambda d: _feasible(d, divisor, secant, x_max, stiffness_ratio)[1], 1e-9, damping)
+        raise SettingError(f"damping = {damping:.4g} ({definition} definition) cannot be met at x_max = {x_max:.4g} m with "
+                           f"ka/kb = {stiffness_ratio:.4g}: the most is {most:.4g}; lower it, or raise stiffness_ratio")
+    loss = damping * divisor * 0.5 * secant * x_max**2
+    if _mismatch(STEEPEST, loss, secant, x_max, stiffness_ratio)[0] < 0:
+        raise SettingError(f"damping = {damping:.4g} is so small that alpha would exceed {STEEPEST:g}; "
+                           "raise it, or lower stiffness_ratio")
+    alpha = brentq(lambda a: _mismatch(a, loss, secant, x_max, stiffness_ratio)[0], turn, STEEPEST, xtol=1e-12)
+    f0 = _mismatch(alpha, loss, secant, x_max, stiffness_ratio)[1]
+    kb = secant - f0 / x_max
+    bearings = Bearings(count=count, ka=stiffness_ratio * kb, kb=kb, alpha=alpha, delta_k=delta_k)
+    got = properties(bearings, mass, x_max)
+    got_damping = got.damping_paper if definition == "paper" else got.damping_equivalent
+    if abs(got.period / period - 1) > LOOP_AGREEMENT or abs(got_damping / damping - 1) > LOOP_AGREEMENT:
+        raise SettingError(f"x_max = {x_max:.4g} m is too small for bearings with alpha = {alpha:.4g} to reach their limit "
+                           f"curves (period {got.period:.4g} s, damping {got_damping:.4g} result); raise x_max or "
+                           "stiffness_ratio")
+    return bearings
