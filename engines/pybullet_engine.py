@@ -10,11 +10,11 @@ import pybullet
 from analytic.errors import SceneError, SettingError
 from analytic.response import Failure
 
-from . import pybullet_stepping
+from . import pybullet_first_script, pybullet_stepping
 from .observe import observe
 from .pybullet_check import check_place
 from .pybullet_scene import Mismatch, assemble
-from .pybullet_trace import trace_of
+from .pybullet_trace import raw_trace_of, trace_of
 
 NAME = "pybullet"
 
@@ -25,34 +25,39 @@ DECIDES = (
 )
 
 
+# Free rocking, slenderness .1, .2, .3, .45, rigid ground and m_b = 212 kg, 8 starts, 3 impacts each (rms):
+# accuracy 5e-5: e within 1.1e-4; 1e-5: e within 2.2e-5, base velocity jump within 4.3e-4, 1030 to 1390 steps a second.
 @dataclass(frozen=True)
 class ImpactAware:
     """Large steps in flight and at rest, small ones on the way to an impact.
 
     accuracy is the one knob: the share of its speed at the impact that the block may gain in one step there.
+    largest_step [s] is that of flight and rest; it changes neither the impacts nor, up to 2 ms, the displacement of
+    the isolated Caryatid by more than 2e-6.
     """
 
     accuracy: float = 1e-5
-    largest_step: float = 1e-3  # s
-
-    def stepping(self):
-        return self.largest_step, self.accuracy
+    largest_step: float = 1e-3
 
 
 @dataclass(frozen=True)
 class FixedStep:
     """The same chain at one step: `step` [s] is the one knob."""
 
-    step: float = 1e-4
-
-    def stepping(self):
-        return self.step, None
+    step: float = 1e-4  # e within 1.5e-4 to 3e-3 (rms), at 10 000 steps a second
 
 
-VARIANTS = {"impact-aware": ImpactAware(), "fixed-step": FixedStep()}
+@dataclass(frozen=True)
+class FirstScript:
+    """A free 3-D box with all defaults of the API: `step` [s] is the one knob, and hardly matters."""
+
+    step: float = 1 / 240  # Bullet's own default
+
+
+VARIANTS = {"impact-aware": ImpactAware(), "fixed-step": FixedStep(), "first-script": FirstScript()}
 DEFAULT_VARIANT = "impact-aware"
 
-# Steps per shortest plausible one after which a run is given up: an outer time limit cannot save the history.
+# Steps after which a run is given up: this many per largest step of the duration, and a reserve for the impacts.
 ROWS_PER_STEP, MOST_ROWS = 50, 20_000_000
 
 
@@ -111,29 +116,45 @@ def simulate(scene, *, variant=None, history=True, **settings):
         raise SceneError("block.restitution", scene.block.restitution, "a contact engine decides the impact itself",
                          "leave it out, or use the analytic model")
     given = dict(engine=NAME, variant=name, settings=asdict(chosen), versions=versions(), history=history)
-    largest, accuracy = chosen.stepping()
-    row_limit = int(min(MOST_ROWS, ROWS_PER_STEP * scene.duration / largest + 100_000))
+    failure, ended, rows, place, cpu = None, None, [], None, math.nan
     client = pybullet.connect(pybullet.DIRECT)
-    failure, ended, rows, place = None, None, [], None
     try:
-        assembly = assemble(client, scene, largest)
-        clock = time.process_time()
-        rows, ended = pybullet_stepping.run(assembly, scene, largest, accuracy, row_limit)
-        cpu = time.process_time() - clock
-        place = [state[0] for state in pybullet.getJointStates(assembly.body, (assembly.slide, assembly.lift), client)]
-    except (Mismatch, pybullet.error) as error:
-        cpu = math.nan
-        failure = Failure("Bullet does not use what it was given" if isinstance(error, Mismatch)
-                          else "Bullet raised an error", str(error))
+        rows, ended, place, cpu = _run(client, scene, chosen)
+    except Mismatch as error:
+        failure = Failure("Bullet does not use what it was given", str(error))
+    except pybullet.error as error:
+        failure = Failure("Bullet raised an error", str(error))
     finally:
         pybullet.disconnect(client)
     if len(rows) < 2:
-        rows = [(0.0, 0.0, *[math.nan] * 6), (largest, largest, *[math.nan] * 6)]
-    trace = trace_of(rows, scene, pybullet_stepping.FLAT * scene.block.slenderness)
+        rows = [(float(k), 1.0, *[math.nan] * 6) for k in range(2)]
+    flat = pybullet_stepping.FLAT * scene.block.slenderness
+    if isinstance(chosen, FirstScript):
+        trace = raw_trace_of(rows, scene, 1e-3 * scene.block.slenderness)
+    else:
+        trace = trace_of(rows, scene, flat)
     if failure is None:
         failure = _failure(scene, rows, ended, place)
     return observe(scene, trace, cpu_seconds=cpu, steps=len(rows) - 1, failure=failure,
                    ended=ended if ended == "overturned" else None, **given)
+
+
+def _run(client, scene, chosen):
+    """(rows, how it ended, place of the block or None, CPU seconds of the stepping)."""
+    if isinstance(chosen, FirstScript):
+        handles = pybullet_first_script.build(client, scene, chosen.step)
+        clock = time.process_time()
+        rows, ended = pybullet_first_script.run(handles, client, scene, chosen.step)
+        return rows, ended, None, time.process_time() - clock
+    aware = isinstance(chosen, ImpactAware)
+    largest, accuracy = (chosen.largest_step, chosen.accuracy) if aware else (chosen.step, None)
+    assembly = assemble(client, scene, largest)
+    clock = time.process_time()
+    row_limit = int(min(MOST_ROWS, ROWS_PER_STEP * scene.duration / largest + 100_000))
+    rows, ended = pybullet_stepping.run(assembly, scene, largest, accuracy, row_limit)
+    cpu = time.process_time() - clock
+    place = [state[0] for state in pybullet.getJointStates(assembly.body, (assembly.slide, assembly.lift), client)]
+    return rows, ended, place, cpu
 
 
 def _failure(scene, rows, ended, place):
@@ -142,6 +163,6 @@ def _failure(scene, rows, ended, place):
         return Failure("the state is no longer finite", f"at step {len(rows) - 1}, t = {rows[-1][0]:.9g} s")
     if ended == "too many steps":
         return Failure("too many steps", f"{len(rows) - 1} by t = {rows[-1][0]:.9g} s of {scene.duration:.9g} s")
-    if ended == "overturned":
+    if ended == "overturned" or place is None:
         return None
     return check_place(scene, *place, rows[-1][2], rows[-1][4])

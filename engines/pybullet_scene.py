@@ -24,11 +24,11 @@ CORRECTION_RATE, MOST_CORRECTION = 30.0, 0.1
 # Bullet only its lowest corners: it lost weak impacts, and never came to rest.
 CORNER_RADIUS = 1e-6
 
-# Sequential impulses per step. Around one corner 10 are enough (e is the same with 1000). Standing on both corners they
-# converge the slower the more slender the block, by about exp(-.1 tan^2 gamma) each: too few let a standing block rock
-# (10: at 9e-5 of gamma under shaking of .9 of the uplift threshold, gamma .1; 250: 1e-8).
-# The direct solver (Dantzig) stands as well, but its friction is wrong on two corners: under a horizontal load the block
-# and its base part. Default solverResidualThreshold does not end the iterations early.
+# Sequential impulses per step. Around one corner 10 are enough: e is the same with 1000. Standing on two corners they
+# converge the slower the more slender the block, as exp(-n tan^2 gamma); too few let a standing block rock (10: at
+# 9e-5 of gamma under shaking of .9 of the uplift threshold, gamma .1; 250: 3e-8). The direct solver (Dantzig) stands
+# too, but its friction is wrong on two corners: under a horizontal load the block and its base part. The default
+# solverResidualThreshold does not end the iterations early.
 ROCKING_ITERATIONS, STANDING_ITERATIONS, MOST_ITERATIONS = 10, 3.0, 600
 
 

@@ -48,3 +48,10 @@ def _synchronised(value, h, jump, landed):
             after = value[i + 1] - 0.5 * h[i + 1] * (slope[i + 1] if i + 1 < n - 1 and not jump[i + 1] else 0.0)
             result[i] = after if landed[i] else before
     return result
+
+
+def raw_trace_of(rows, scene, contact_tilt):
+    """The `Trace` of rows taken as they are, as a first script takes them."""
+    t, _, tilt, rate, x, v, _, force = np.array(rows).T
+    law = RockingModel.of(scene).bearing
+    return Trace(t, tilt, rate, x, v, force + law.count * law.damping * v, contact_tilt)
