@@ -195,6 +195,8 @@ def find_events(scene, trace, swings):
                 continue  # it grazed contact without landing
         landing = float(land[i]) if np.isfinite(land[i]) else float(trace.time[last])
         limit, pull = _limit_time(model, scene, trace, last, swings.side[i], landing, before[i])
+        if following is not None and trace.time[following] < limit:
+            continue  # still chattering, below resolution
         strong = pull > 0 and abs(before[i]) > LANDING * math.sqrt(2 * pull * edge)
         if strong:
             k = min(int(np.searchsorted(trace.time, landing)) + 1, len(trace.time) - 1)

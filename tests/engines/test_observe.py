@@ -167,6 +167,17 @@ def test_uplift_is_where_the_acceleration_crosses_its_threshold():
     assert reference.uplifts == pytest.approx([0.5 + math.asin(1 / 1.2) / 5.2], abs=1e-9)
 
 
+@pytest.mark.parametrize("name, tolerance", [("rigid ground, shaken", 0.02), ("isolated, shaken", 0.003)])
+def test_every_uplift_and_rest_under_shaking_is_found_and_no_other(name, tolerance):
+    scene = SCENES[name]
+    trace, reference = sampled(scene, 5e-4)
+    response = seen(scene, trace)
+    assert len(reference.uplifts) >= 1 and len(reference.rests) >= 1
+    assert response.uplifts == pytest.approx(reference.uplifts, abs=1e-5)
+    # The limit of the impacts below resolution is taken at constant acceleration.
+    assert response.rests == pytest.approx(reference.rests, abs=tolerance)
+
+
 def overturning():
     return Scene(block=block(0.2), start=Start(tilt=0.21), duration=5.0)
 
