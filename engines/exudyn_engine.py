@@ -1,12 +1,17 @@
 """exudyn: ``get_engine("exudyn").simulate(scene, variant=...)``."""
 
 import dataclasses
+import math
 import platform
 from importlib.metadata import version
 
-from analytic.errors import SettingError
+import numpy as np
+
+from analytic.errors import SceneError, SettingError
+from analytic.response import Failure
 
 from . import exudyn_corners, exudyn_joints, exudyn_native
+from .checks import GAIN_LIMIT, energy_gain, replay_bearing
 from .observe import observe
 
 _MODULES = {exudyn_corners.CompliantCorners: exudyn_corners,
@@ -15,6 +20,11 @@ _MODULES = {exudyn_corners.CompliantCorners: exudyn_corners,
 VARIANTS = {"compliant-corners": exudyn_corners.CompliantCorners(),
             "switched-joints": exudyn_joints.SwitchedJoints(),
             "native-contact": exudyn_native.NativeContact()}
+# A run whose lower corner leaves its place by more than this, over the radius, is not that of a
+# rocking block. (The corner spheres of native-contact alone move it by 0.02.)
+GAP_LIMIT = 0.05
+# Replayed bearing force, over f0: round-off stays below 1e-12.
+REPLAY_LIMIT = 1e-9
 DEFAULT_VARIANT = "compliant-corners"
 
 DECIDES = {
@@ -30,12 +40,52 @@ def versions():
 
 
 def simulate(scene, *, variant=None, history=True, **settings):
-    """The response of a scene in exudyn."""
+    """The response of a scene in exudyn.
+
+    Parameters
+    ----------
+    scene : Scene
+    variant : str or None
+        One of VARIANTS; None is the default one.
+    history : bool
+        Keep the history in the response.
+    **settings
+        Fields of the variant's settings, in place of their defaults.
+
+    Raises
+    ------
+    SettingError
+        Unknown variant or setting, or a setting that is not a positive number.
+    SceneError
+        The scene overrides the restitution, and exudyn's contact decides it.
+    Mismatch
+        exudyn holds other values than the scene asks for; nothing was run.
+    """
     name, chosen = _choose(variant, settings)
+    if scene.block.restitution is not None and name != "switched-joints":
+        raise SceneError("block.restitution", scene.block.restitution,
+                         f"exudyn's contact decides the restitution in {name}",
+                         "leave it out, or use the variant switched-joints")
     run = _MODULES[type(chosen)].run(scene, chosen)
     return observe(scene, run.trace, engine="exudyn", variant=name, cpu_seconds=run.cpu_seconds, steps=run.steps,
                    settings=dataclasses.asdict(chosen), versions=versions(), history=history,
-                   failure=run.failure, ended=run.ended)
+                   failure=run.failure or _fault(scene, run), ended=run.ended)
+
+
+def _fault(scene, run):
+    """The failure of a run that exudyn took for a success, or None."""
+    if not all(np.isfinite(getattr(run.trace, name)).all() for name in run.trace.COLUMNS):
+        return None  # observe reports it, with the last finite state
+    if run.gap > GAP_LIMIT:
+        return Failure("the block slid, sank or jumped",
+                       f"its lower corner left its place on the base by {run.gap:.3g} of the radius")
+    gain = energy_gain(scene, run.trace)
+    if gain > GAIN_LIMIT:
+        return Failure("unphysical energy gain", f"{gain:.3g} times the energy of the motion")
+    difference = replay_bearing(scene, run.trace)
+    if difference > REPLAY_LIMIT:
+        return Failure("the bearing force is not the law's", f"it differs by {difference:.3g} f0 when replayed")
+    return None
 
 
 def _choose(variant, changes):
@@ -47,4 +97,7 @@ def _choose(variant, changes):
     unknown = [key for key in changes if key not in fields]
     if unknown:
         raise SettingError(f"exudyn {name} has no setting {unknown[0]!r}: its settings are {', '.join(fields)}")
+    for key, value in changes.items():
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < math.inf:
+            raise SettingError(f"exudyn {name}: {key} = {value!r} is not a positive number")
     return name, dataclasses.replace(chosen, **changes)

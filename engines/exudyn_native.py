@@ -23,7 +23,7 @@ class NativeContact:
     damping: float = 0.5  # over the critical one of the block's mass on one corner
     friction: float = 1.0
     slip_speed: float = 1e-2  # m/s, below it friction is proportional to speed
-    sphere: float = 1e-3  # m, radius of the corner spheres
+    sphere: float = 2e-2  # m, radius of the corner spheres; with 1e-3 stocky blocks are thrown into the air
 
 
 def assemble(scene, settings):
@@ -38,11 +38,13 @@ def assemble(scene, settings):
     for side, name in ((-1, "left"), (1, "right")):
         centre = mbs.AddMarker(MarkerBodyRigid(bodyNumber=model.block, localPosition=[side * b, -h + r, 0.0]))
         memory = mbs.AddNode(NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
-        model.connectors[name] = mbs.AddObject(ObjectContactSphereTriangle(
-            markerNumbers=[centre, plane], nodeNumber=memory, sphereRadius=r, trianglePoints=exu.Vector3DList(triangle),
-            includeEdges=0, contactStiffness=settings.stiffness,
-            contactDamping=2 * settings.damping * math.sqrt(settings.stiffness * block.mass),
-            dynamicFriction=settings.friction, frictionProportionalZone=settings.slip_speed))
+        values = dict(sphereRadius=r, includeEdges=0, contactStiffness=settings.stiffness,
+                      contactDamping=2 * settings.damping * math.sqrt(settings.stiffness * block.mass),
+                      dynamicFriction=settings.friction, frictionProportionalZone=settings.slip_speed)
+        number = mbs.AddObject(ObjectContactSphereTriangle(
+            markerNumbers=[centre, plane], nodeNumber=memory, trianglePoints=exu.Vector3DList(triangle), **values))
+        model.connectors[name] = number
+        model.expected.update({(number, key): value for key, value in values.items()})
     return model, sink
 
 

@@ -30,6 +30,7 @@ class Run:
     rejected: int
     ended: str | None
     failure: Failure | None
+    gap: float = 0.0  # largest distance of the lower corner from its place on the base, over the radius
 
 
 def solver_settings(scene, **time_integration):
@@ -99,7 +100,8 @@ def step_through(model, settings, solver, contact_tilt, longest, settle=0.0):
     cpu = time.process_time() - began
     trace = make_trace(scene, rows, forces, bearing, contact_tilt, settle)
     ended = "overturned" if len(trace.tilt) and abs(trace.tilt[-1]) >= OVERTURNED else None
-    return Run(trace, cpu, len(rows) - 1, dynamic.it.rejectedAutomaticStepSizeSteps, ended, failure)
+    return Run(trace, cpu, len(rows) - 1, dynamic.it.rejectedAutomaticStepSizeSteps, ended, failure,
+               corner_gap(scene, rows))
 
 
 def check(model):
@@ -115,6 +117,24 @@ def check(model):
              for name, (found, wanted) in read_back(model).items() if found != wanted]
     if wrong:
         raise Mismatch("; ".join(wrong))
+
+
+def corner_gap(scene, rows):
+    """Largest distance of the lower corner from its place on the base, over the radius: slip, sink or jump.
+
+    Up to |tilt| = slenderness: a block that falls over may well leave the ground.
+    """
+    q = np.array([row[1] for row in rows])
+    q = q[np.isfinite(q).all(axis=1) & (np.abs(q[:, 2]) <= scene.block.slenderness)]
+    if not len(q):
+        return 0.0
+    b, h = scene.block.half_width, scene.block.half_height
+    tilt, x = -q[:, 2], q[:, 3] if scene.base else 0.0
+    side = np.where(tilt < 0, -1.0, 1.0)
+    # corner = centre + rotation by theta = -tilt of (side b, -h)
+    across = q[:, 0] + side * b * np.cos(tilt) - h * np.sin(tilt) - x - side * b
+    up = q[:, 1] + h - side * b * np.sin(tilt) - h * np.cos(tilt)
+    return float(np.hypot(across, up).max() / scene.block.radius)
 
 
 def make_trace(scene, rows, z, bearing, contact_tilt, settle):

@@ -44,6 +44,7 @@ class Model:
     loads: list = field(default_factory=list)
     connectors: dict = field(default_factory=dict)
     keep: list = field(default_factory=list)
+    expected: dict = field(default_factory=dict)  # (object number, field): value the variant asked for
 
     def connect(self, name, markers, function, **parameters):
         """A Cartesian connector with a symbolic force, kept by name; function(displacement, velocity, offset)."""
@@ -54,6 +55,7 @@ class Model:
         number = self.mbs.AddObject(item)
         self._make_symbolic(number, spring, "springForceUserFunction", self.mbs.SetObjectParameter)
         self.connectors[name] = number
+        self.expected[number, "activeConnector"] = True
         return number
 
     def load(self, item, function):
@@ -197,4 +199,7 @@ def read_back(model):
         values["start.base_displacement"] = (q[3], scene.start.base_displacement)
         values["start.base_velocity"] = (v[3], scene.start.base_velocity)
     values["coordinates"] = (len(q), 4 if scene.base else 3)
+    for (number, name), wanted in model.expected.items():
+        item = mbs.GetObject(number)
+        values[f"{item['objectType']} {number} {name}"] = (item[name], wanted)
     return values
