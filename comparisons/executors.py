@@ -15,6 +15,7 @@ import traceback
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import TimeoutError
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -23,6 +24,7 @@ from pebble import ProcessExpired, ProcessPool
 from .cases import Case, module_of
 from .provenance import json_ready, scrub
 
+MOST_BROKEN = 3
 GRACE_SECONDS = 0.5  # beyond the time limit, for the worker to write down where it hangs
 EVIDENCE_CHARACTERS = 4000
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
@@ -104,40 +106,78 @@ class Processes(_Closing):
     """
 
     def __init__(self, workers=None, solvers=()):
-        workers = workers or os.cpu_count()
-        self.slots = 2 * workers
+        self._workers = workers or os.cpu_count()
+        self.slots = 2 * self._workers
         self._ended = queue.SimpleQueue()
         self._evidence = tempfile.TemporaryDirectory(prefix="sweep-")
         server = "forkserver" in multiprocessing.get_all_start_methods()
-        context = multiprocessing.get_context("forkserver" if server else "spawn")
+        self._context = multiprocessing.get_context("forkserver" if server else "spawn")
         if server:
-            context.set_forkserver_preload(["comparisons.executors", *map(module_of, solvers)])
-        self._pool = ProcessPool(workers, initializer=_start_worker, initargs=(tuple(sys.path),), context=context)
+            self._context.set_forkserver_preload(["comparisons.executors", *map(module_of, solvers)])
+        self._under_way = {}  # future: task and its log
+        self._broken = 0  # pools in a row that ended without finishing a task
+        self._pool = self._new_pool()
 
     def submit(self, task):
         log = os.path.join(self._evidence.name, f"{task.ticket}.log")
-        with _one_thread():  # workers are started by the first task and inherit it
+        with _one_thread():  # workers started by this inherit it
+            if not self._pool.active:
+                self._renew()
             future = self._pool.schedule(_work, (task, log), timeout=task.time_limit + GRACE_SECONDS)
-        future.add_done_callback(lambda ended: self._ended.put((task, log, ended)))
+        self._under_way[future] = task, log
+        future.add_done_callback(self._ended.put)
 
     def next(self):
-        task, log, future = self._ended.get()
-        try:
-            lines, seconds = future.result()
-            return Done(task.ticket, lines, seconds)
-        except TimeoutError:
-            reason = f"no result within the time limit of {task.time_limit:g} s"
-            lost = {"kind": "time limit", "reason": reason, "time_limit": task.time_limit}
-        except ProcessExpired as error:
-            lost = {"kind": "crash", "reason": f"the worker process ended: {_exit(error.exitcode)}",
-                    "exit_code": error.exitcode}
-        lost["message"] = _tail(log)
-        return Done(task.ticket, lost=lost)
+        while True:
+            try:
+                future = self._ended.get(timeout=GRACE_SECONDS)
+            except queue.Empty:
+                if not self._pool.active:  # what it had not yet taken up it never will
+                    self._renew()
+                continue
+            if future not in self._under_way:
+                continue
+            if isinstance(future.exception(), BrokenProcessPool):
+                self._renew()
+                continue
+            task, log = self._under_way.pop(future)
+            self._broken = 0
+            try:
+                return Done(task.ticket, *future.result())
+            except TimeoutError:
+                reason = f"no result within the time limit of {task.time_limit:g} s"
+                lost = {"kind": "time limit", "reason": reason, "time_limit": task.time_limit}
+            except ProcessExpired as error:
+                lost = {"kind": "crash", "reason": f"the worker process ended: {_exit(error.exitcode)}",
+                        "exit_code": error.exitcode}
+            lost["message"] = _tail(log)
+            return Done(task.ticket, lost=lost)
 
     def close(self):
+        self._close_pool()
+        self._evidence.cleanup()
+
+    def _new_pool(self):
+        return ProcessPool(self._workers, initializer=_start_worker, initargs=(tuple(sys.path),),
+                           context=self._context)
+
+    def _renew(self):
+        """A new pool: a pool ends when a worker dies that has no task, as when it is killed while idle."""
+        self._broken += 1
+        if self._broken > MOST_BROKEN:
+            raise RuntimeError("worker processes end before they take up any run; try one case with the Serial "
+                               "executor to see why. Rows done so far are kept")
+        self._close_pool()
+        self._pool = self._new_pool()
+        unfinished = {future: entry for future, entry in self._under_way.items()
+                      if not future.done() or future.exception() is not None}
+        for future, (task, _) in unfinished.items():
+            del self._under_way[future]
+            self.submit(task)
+
+    def _close_pool(self):
         self._pool.stop()
         self._pool.join()
-        self._evidence.cleanup()
 
 
 def _lines(task):

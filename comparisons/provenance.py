@@ -216,3 +216,8 @@ def _version(package):
 
 def _digest(file):
     return hashlib.sha256(Path(file).read_bytes()).hexdigest()
+
+
+def result_file(kind):
+    """Where the committed result of the full study `kind` lives."""
+    return PROJECT_FOLDER / "comparisons" / "results" / f"{kind}.json"

@@ -108,3 +108,11 @@ def test_files_that_cannot_be_used_are_errors_with_a_remedy(tmp_path):
     path.write_text("{")
     with pytest.raises(ResultError, match="not JSON"):
         read_result(path)
+
+
+def test_every_committed_result_can_be_read_and_says_where_it_comes_from():
+    for file in module.result_file("any").parent.glob("*.json"):
+        result = read_result(file)
+        assert result.kind == file.stem and result.provenance["commit"], file.name
+        assert module.result_file(result.kind) == file
+    assert module.result_file("restitution").parent.is_dir()

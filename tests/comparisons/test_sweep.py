@@ -168,6 +168,21 @@ def test_an_executor_is_shared_by_several_sweeps(tmp_path):
     assert [row.reused for row in rows[1]] == [True] * 3 + [False] * 3
 
 
+def test_workers_killed_while_idle_are_replaced(tmp_path):
+    with Processes(2) as executor, Store(tmp_path / "s.jsonl") as store:
+        sweep(cases(count=3), store, executor=executor)
+        for worker in executor._pool._pool_manager.worker_manager.workers.values():
+            worker.kill()
+        assert not any(row.failed for row in sweep(cases(count=12), store, executor=executor))
+
+
+def test_workers_that_cannot_start_are_an_error_not_an_endless_loop(tmp_path, monkeypatch):
+    import comparisons.executors as module
+    monkeypatch.setattr(module, "_start_worker", os._exit)  # the initializer ends every worker
+    with pytest.raises(RuntimeError, match="end before they take up any run"):
+        sweep(cases(count=3), tmp_path / "s.jsonl", workers=1)
+
+
 def test_the_analytic_model_gives_the_same_rows_here_and_in_workers_without_compiling_there(tmp_path, fakes):
     which = [Case(scene(0.05 * i), settings={"history": False}) for i in range(1, 6)]
     here = sweep(which, tmp_path / "0.jsonl", executor=Serial(), reduce=fakes.tilt)
