@@ -36,8 +36,9 @@ def summary(scene, response):
 def comparison(scene, responses):
     """Responses of several solvers side by side; the first is the reference of the differences."""
     table = Table(title=scene.name, box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0),
-                  caption="over: time of overturning; tilt: peak tilt over slenderness; base: peak base displacement;\n"
-                          "d: difference from the first row. Where a motion is sensitive only the outcomes compare.")
+                  caption="over: time of overturning; tilt: peak tilt over slenderness;\n"
+                          "base: peak base displacement; d: difference from the first row.\n"
+                          "Where a motion is sensitive only the outcomes compare.")
     for name in ("solver", "outcome", "over\n[s]", "tilt\n[-]", "d\n[-]", "base\n[m]", "d\n[%]", "im-\npacts",
                  "CPU\n[ms]"):
         table.add_column(Text(name), justify="left" if name in ("solver", "outcome") else "right", no_wrap=True)
@@ -67,6 +68,6 @@ def engine_text(name, engine):
         about = inspect.getdoc(type(settings)).split("\n\n")[0].replace("\n", " ")
         values = [f"{name}={value:g}" if isinstance(value, float) else f"{name}={value}"
                   for name, value in dataclasses.asdict(settings).items()]
-        values[:1] = [f"{value} (accuracy)" for value in values[:1]]
+        values[:1] = [f"{value} (knob)" for value in values[:1]]
         lines += [f"  --variant {variant}{default}: {about}", "      settings: " + ", ".join(values)]
     return "\n".join(lines) + "\n"

@@ -17,6 +17,6 @@ def command():
             with stdout_to_stderr():
                 engine = get_engine(name)
         except EngineNotInstalled as error:
-            console.print(f"[bold]{name}[/bold]: not installed. {error}\n")
+            console.print(f"{name}: not installed. {error}\n", markup=False)
             continue
         console.print(engine_text(name, engine), markup=False)

@@ -57,7 +57,8 @@ def test_digest_is_of_the_content():
     (lambda: Bearings(ka=2.0, alpha=3.0), "bearings.kb: missing"),
     (lambda: Bearings(ka=2.0, kb=1.0, alpha=2.0, delta_k=1.0), "bearings.delta_k = 1.0: not below ka - kb"),
     (lambda: Scene(block=BLOCK, duration=1.0, bearings=SCENE.bearings), "bearings: need a base to carry"),
-    (lambda: Scene(block=BLOCK, duration=1.0, start=Start(base_velocity=1.0)), "start.base_velocity = 1.0: needs a base"),
+    (lambda: Scene(block=BLOCK, duration=1.0, start=Start(base_velocity=1.0)),
+     "start.base_velocity = 1.0: needs a base"),
     (lambda: Scene(block=BLOCK, duration=math.nan), "finite number"),
     (lambda: Scene(block=BLOCK, duration=1.0, motion="quake"), "motion"),
 ])
