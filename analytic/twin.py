@@ -176,6 +176,9 @@ class _Run:
                              events=[event for _, event in events], rtol=self.settings["rtol"], atol=self.atol,
                              max_step=self.max_step, **step)
         self.steps += len(solution.t) - 1
+        missed = self.stepped_over(events, solution)
+        if missed is not None and self.t < missed < solution.t[-1]:
+            return self.integrate(missed, ground)  # its end now shows the crossing
         self.flight = None
         for t, y in zip(solution.t, solution.y.T, strict=True):
             self.record(t, y, ground(t))
@@ -196,6 +199,21 @@ class _Run:
         if terminal:
             getattr(self, "at_" + terminal)(ground(self.t))
         return None
+
+    def stepped_over(self, events, solution):
+        """Time of the first extreme beyond a threshold that was crossed twice within one step, or None.
+
+        tilt below 0 where its rate is 0; |a_abs| above g tan(gamma) where the base stands still.
+        """
+        found = []
+        for (name, _), times, states in zip(events, solution.t_events, solution.y_events, strict=True):
+            for t, y in zip(times, states, strict=True):
+                if name == "apex" and self.side * y[0] < 0:
+                    found.append(float(t))
+                elif name == "reversal" and self.side == 0:
+                    if abs(self.contact_acceleration(y, 0.0)) > self.model.uplift_acceleration * (1 + 1e-13):
+                        found.append(float(t))
+        return min(found, default=None)
 
     def direction(self, end, ground):
         """Sign of the base velocity over the coming stretch; where it stands, of its acceleration."""
@@ -218,7 +236,7 @@ class _Run:
             # phi = 0 at take-off is a root too: it is divided out
             found.append(("impact", lambda t, y: side * y[0] / (t - lifted) if t > lifted else 1.0, True, -1))
             found.append(("overturning", lambda t, y: side * y[0] - math.pi / 2, True, 1))
-            found.append(("apex", lambda t, y: side * y[1], False, -1))
+            found.append(("apex", lambda t, y: side * y[1], False, 0))
             if self.unstable is None:
                 found.append(("unstable", lambda t, y: side * y[0] - model.gamma, False, 1))
         else:
