@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from analytic import Block, PulseMotion, Scene, simulate
 from comparisons.refine import boundaries, drive, refine_map
 
 
@@ -112,7 +113,7 @@ def test_columns_of_a_sweep(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(Path(__file__).parent))
     from fake_solvers import tilt
 
-    from analytic import Block, Scene, Start
+    from analytic import Start
     from comparisons.sweep import Case, Serial, Store, run_sweep
 
     with Store(tmp_path / "s.jsonl") as store:
@@ -135,3 +136,28 @@ def test_what_cannot_be_searched_is_an_error():
             refine_map(x, [0, 1], levels)
     with pytest.raises(ValueError, match="0 outcomes for 2 points"):
         drive([boundaries(0.0, 1.0, 2, 0.1)], lambda batch: [])
+
+
+# One-sine overturning, p = 2.14 rad/s, gamma 0.25, e = 0.9, nonlinear: amplitude over g gamma (the project's notes)
+ONE_SINE = {2: (1.25090, 2.37418, 2.40806), 3: (1.43539, 3.60487, 3.74275), 4: (1.84430, 5.07937, 5.43676),
+            5: (3.03234, 6.74302, 7.49300), 6: (4.91994, 8.50817, 9.91798), 8: (15.90490,)}
+
+
+def test_the_rocking_block_s_boundaries_and_safe_gap():
+    gravity, gamma, frequency = 9.81, 0.25, 2.14
+    block = Block(mass=1.0, radius=0.75 * gravity / frequency**2, slenderness=gamma, restitution=0.9)
+    ratios = list(ONE_SINE)
+
+    def evaluate(batch):
+        labels = []
+        for index, amplitude in batch:
+            pulse = PulseMotion("one-sine", amplitude * gravity * gamma, ratios[index] * frequency)
+            end = simulate(Scene(block=block, motion=pulse, duration=12.0), history=False)
+            labels.append(("overturns", end.impact_count) if end.outcome == "overturns" else "safe")
+        return labels
+
+    # 0.7 wide steps would miss the gap of 0.034 at ratio 2; the two ways to overturn give it away
+    columns = drive([boundaries(1.01, 18.01, 25, 1e-6) for _ in ratios], evaluate)
+    for ratio, column in zip(ratios, columns, strict=True):
+        assert [t.position for t in column.transitions] == pytest.approx(ONE_SINE[ratio], abs=1e-5)
+        assert column.evaluations < 120
