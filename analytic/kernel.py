@@ -149,7 +149,8 @@ def run(par, ground, options, totals):
             if mode == L.CONTACT:
                 if par.on_base:
                     contact_series(order, par, direction, 1.0 / y0, highest, A, x, v, q, F, absolute)
-                    h = allowed_step(v, order, tolerance, h)
+                    # the force too: where ka is close to kb it varies faster than the velocity shows
+                    h = allowed_step(F, order, tolerance, allowed_step(v, order, tolerance, h))
                 else:
                     for k in range(highest + 1, order + 1):
                         A[k] = 0.0
@@ -168,7 +169,7 @@ def run(par, ground, options, totals):
                     good = reach
                     if par.on_base:
                         base_series(used, par, direction, 1.0 / y0, highest, A, phi, w, S, C, x, v, q, F, absolute)
-                        good = allowed_step(v, used, tolerance, good)
+                        good = allowed_step(F, used, tolerance, allowed_step(v, used, tolerance, good))
                     else:
                         rigid_series(used, par.p2, par.g, highest, A, phi, w, S, C)
                     if fresh:
