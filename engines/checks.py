@@ -94,9 +94,10 @@ def energy_gain(scene, trace):
     """Largest rise of `energy_balance` over its lowest value so far; such a rise has no physical cause.
 
     In units of m g R (1 - cos gamma), which takes the block from rest to the unstable point, or of the largest
-    kinetic energy where that is more.
+    kinetic energy where that is more. NaN where the energy overflows.
     """
-    balance, kinetic = energy_balance(scene, trace)
+    with np.errstate(over="ignore", invalid="ignore"):  # a state that exploded has no balance: NaN
+        balance, kinetic = energy_balance(scene, trace)
     block = scene.block
     unit = block.mass * scene.gravity * block.radius * (1 - math.cos(block.slenderness))
     return float((balance - np.minimum.accumulate(balance)).max() / max(unit, kinetic.max()))

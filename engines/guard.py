@@ -8,9 +8,10 @@ from concurrent.futures import TimeoutError
 from pebble import ProcessExpired, ProcessPool
 
 from analytic.errors import SceneError, SettingError
-from analytic.response import Failure, Response, State
+from analytic.response import Failure
 
 from . import get_engine
+from .observe import failed_response
 
 
 def _simulate(engine_name, scene, settings):
@@ -69,7 +70,8 @@ def guarded(run, engine_name, scene, settings, time_limit, versions=None):
         except Exception as error:  # whatever an engine raises, its message is the evidence
             trace = getattr(error, "traceback", "")
             failure = Failure("the run raised an error", f"{type(error).__name__}: {error}\n{trace}".strip())
-    return failed_response(scene, engine_name, settings, failure, versions)
+    return failed_response(scene, failure, engine=engine_name, variant=str(settings.get("variant") or ""),
+                           settings=dict(settings), versions=versions or {})
 
 
 def _last_words(code):
@@ -80,14 +82,3 @@ def _last_words(code):
         except ValueError:
             return f"killed by signal {-code}"
     return f"exit code {code}"
-
-
-def failed_response(scene, engine, settings, failure, versions=None):
-    """A response of outcome "failed" for a run that left no states: every number is NaN, the evidence is kept."""
-    nan = math.nan
-    return Response(
-        engine=engine, variant=str(settings.get("variant") or ""), outcome="failed", overturning_time=None,
-        unstable_time=None, peak_tilt=nan, peak_tilt_ratio=nan, peak_base_displacement=nan,
-        peak_base_acceleration=nan, impacts=(), uplifts=(), rests=(), friction_demand=nan, min_normal_ratio=nan,
-        end=State(nan, nan, nan, nan, nan, nan), cpu_seconds=nan, steps=0, settings=dict(settings),
-        versions=versions or {}, scene=scene.name, failure=failure)

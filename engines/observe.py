@@ -15,7 +15,7 @@ from analytic.response import Failure, History, Impact, Response, State
 from .checks import GAIN_LIMIT, energy_gain, replay_bearing
 from .swings import ArrayModel, Trace, find_swings, to_contact
 
-__all__ = ["Trace", "energy_gain", "observe", "replay_bearing"]
+__all__ = ["Trace", "energy_gain", "failed_response", "observe", "replay_bearing"]
 
 # A landing after which the block stays in flat contact counts as an impact with rate 0 after it where the rate
 # before it is this many times the rate that leads to the edge of contact; a weaker one is the tail of a chatter.
@@ -62,14 +62,13 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
     given = dict(engine=engine, variant=variant, cpu_seconds=cpu_seconds, steps=steps, settings=settings,
                  versions=versions, scene=scene.name)
     if trace is None:
-        return Response(outcome="failed", overturning_time=None, unstable_time=None, peak_tilt=math.nan,
-                        peak_tilt_ratio=math.nan, peak_base_displacement=math.nan, peak_base_acceleration=math.nan,
-                        impacts=(), uplifts=(), rests=(), friction_demand=math.nan, min_normal_ratio=math.nan,
-                        end=State(*[math.nan] * 6), failure=failure, **given)
+        return failed_response(scene, failure, engine=engine, variant=variant, settings=settings,
+                               versions=versions, cpu_seconds=cpu_seconds, steps=steps)
     end = State(*(float(getattr(trace, name)[-1]) for name in Trace.COLUMNS))
-    if failure is None and overturning_time is None and end.time < scene.duration * (1 - 1e-9) - trace.time[1]:
+    short = scene.duration * (1 - 1e-9) - end.time  # the last of equal steps need not end at the duration
+    if failure is None and overturning_time is None and short > np.diff(trace.time).max():
         failure = Failure("the run ended early", f"last step at {end.time:.9g} s of {scene.duration:.9g} s", end)
-    if failure is None and (gain := energy_gain(scene, trace)) > GAIN_LIMIT:
+    if failure is None and not (gain := energy_gain(scene, trace)) <= GAIN_LIMIT:  # not: NaN of an overflow
         failure = Failure("the run gained energy from nowhere",
                           f"{gain:.3g} of its energy scale, at most {GAIN_LIMIT} can be error of the steps", end)
     swings = find_swings(trace)
@@ -89,6 +88,17 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
         peak_base_acceleration=acceleration, impacts=impacts, uplifts=uplifts, rests=rests,
         friction_demand=demand, min_normal_ratio=normal, end=end, failure=failure,
         history=_history(scene, trace) if history else None, **given)
+
+
+def failed_response(scene, failure, *, engine, variant, settings, versions, cpu_seconds=math.nan, steps=0):
+    """A response of outcome "failed" for a run that left no states: every number is NaN, the evidence is kept."""
+    nan = math.nan
+    return Response(
+        engine=engine, variant=variant, outcome="failed", overturning_time=None, unstable_time=None, peak_tilt=nan,
+        peak_tilt_ratio=nan, peak_base_displacement=nan, peak_base_acceleration=nan, impacts=(), uplifts=(),
+        rests=(), friction_demand=nan, min_normal_ratio=nan, end=State(nan, nan, nan, nan, nan, nan),
+        cpu_seconds=cpu_seconds, steps=steps, settings=settings, versions=versions, scene=scene.name,
+        failure=failure)
 
 
 def _finite_part(trace, failure):
