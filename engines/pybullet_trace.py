@@ -6,47 +6,34 @@ from analytic.rocking import RockingModel
 
 from .swings import Trace
 
-# A gain of speed this many times the largest smooth one is part of an impact.
-JUMP = 30.0
-
 
 def trace_of(rows, scene, contact_tilt):
     """The `Trace` of rows (time, step, tilt, tilt rate, x, v, z, force); rates are half a step early.
 
-    A velocity at t_n is the mean of its neighbours, weighted by their distance. In an impact that mean would mix
-    before and after: there the side of the tilt decides which of both is extrapolated.
+    A velocity at t_n is the mean of its neighbours, weighted by their distance. Bullet spreads an impact over the
+    steps that reach contact and leave it: there only the neighbour in flight is used, and the gain beyond it.
     """
-    table = np.array(rows)
-    t, h, tilt, rate, x, v, _, force = table.T
-    if len(rows) < 3:
-        return Trace(t, tilt, rate, x, v, force, contact_tilt)
-    model = RockingModel.of(scene)
-    peak = scene.motion.peak if scene.motion else 0.0
-    pull = abs(model.accelerations(1.0, 0.0, 0.0, peak + model.g * model.gamma, 0.0)[0])
-    kick = np.diff(rate) / (0.5 * (h[1:] + h[:-1]))  # tilt'' at t_0 .. t_(n-2)
-    jump = np.abs(kick) > JUMP * pull
-    side = np.sign(tilt)
-    landed = np.zeros(len(t), dtype=bool)  # rows on the new side of an impact in progress
-    landed[1:] = side[1:] != side[:-1]
-    landed[2:] |= landed[1:-1] & jump[1:][: len(t) - 2] if len(t) > 2 else False
-    rate, v = (_synchronised(value, h, jump, landed) for value in (rate, v))
-    force = force + model.bearing.count * model.bearing.damping * v
-    return Trace(t, tilt, rate, x, v, force, contact_tilt)
+    t, h, tilt, rate, x, v, _, force = np.array(rows).T
+    law = RockingModel.of(scene).bearing
+    if len(rows) >= 4:
+        side = np.where(np.abs(tilt) > contact_tilt, np.sign(tilt), 0.0)
+        changes = side[1:] != side[:-1]
+        leaving = np.append(changes, False) & (side != 0)  # the next step is at contact or beyond
+        coming = np.append(False, changes) & (side != 0)
+        rate, v = (_synchronised(value, h, leaving & ~coming, coming & ~leaving) for value in (rate, v))
+    return Trace(t, tilt, rate, x, v, force + law.count * law.damping * v, contact_tilt)
 
 
-def _synchronised(value, h, jump, landed):
+def _synchronised(value, h, from_before, from_after):
     """`value`, known half a step early, at the steps' ends."""
-    n = len(h)
-    slope = np.diff(value) / (0.5 * (h[1:] + h[:-1]))
-    mean = (value[1:-1] * h[2:] + value[2:] * h[1:-1]) / (h[1:-1] + h[2:])  # rows 1 .. n-2
-    result = value.copy()
-    result[1:-1] = mean
-    result[-1] = value[-1] + 0.5 * h[-1] * (0.0 if jump[-1] else slope[-1])
-    for i in np.flatnonzero(jump):
-        if 1 <= i < n - 1:
-            before = value[i] + 0.5 * h[i] * (0.0 if jump[i - 1] else slope[i - 1])
-            after = value[i + 1] - 0.5 * h[i + 1] * (slope[i + 1] if i + 1 < n - 1 and not jump[i + 1] else 0.0)
-            result[i] = after if landed[i] else before
+    gain = np.diff(value) / (0.5 * (h[1:] + h[:-1]))  # per second, at t_0 .. t_(n-2)
+    result = value.copy()  # the first is the start, not half a step early
+    result[1:-1] = (value[1:-1] * h[2:] + value[2:] * h[1:-1]) / (h[1:-1] + h[2:])
+    result[-1] = value[-1] + 0.5 * h[-1] * gain[-1]
+    i = np.flatnonzero(from_before[2:]) + 2
+    result[i] = value[i] + 0.5 * h[i] * gain[i - 1]
+    i = np.flatnonzero(from_after[1:-2]) + 1
+    result[i] = value[i + 1] - 0.5 * h[i + 1] * gain[i + 1]
     return result
 
 
