@@ -20,10 +20,11 @@ def style(solver):
     return {"color": colour, "linestyle": dashes, "linewidth": width}
 
 
-def draw_histories(scene, responses):
+def draw_histories(scene, responses, horizon=None):
     """Ground motion, tilt, base displacement and hysteresis loop of one or more responses, as far as they exist.
 
-    Each response needs its history. Returns a matplotlib Figure.
+    Each response needs its history. horizon [s], if any, is where point-wise comparison ends.
+    Returns a matplotlib Figure.
     """
     rows = ["ground"] * (scene.motion is not None) + ["tilt"] + ["displacement"] * (scene.base is not None)
     loop = scene.bearings is not None
@@ -49,7 +50,11 @@ def draw_histories(scene, responses):
     tilt.set_ylabel("tilt / slenderness [-]")
     if max(response.peak_tilt_ratio for response in responses) > 0.8:
         for level in (-1, 1):
-            tilt.axhline(level, color="0.6", linewidth=0.8, linestyle=(0, (4, 4)), zorder=0)
+            tilt.axhline(level, color="0.6", linewidth=0.8, linestyle=(0, (4, 4)), zorder=0,
+                         label="unstable point" if level > 0 else None)
+    if horizon is not None:
+        for row in set(rows) - {"ground"}:
+            axes[row].axvspan(horizon, scene.duration, color="0.93", zorder=-1, label="beyond the sensitivity horizon")
     low, high = tilt.get_ylim()  # neither a tilt of 1e-6 nor an overturned block sets the scale
     tilt.set_ylim(min(max(low, -TILT_RANGE[1]), -TILT_RANGE[0]), max(min(high, TILT_RANGE[1]), TILT_RANGE[0]))
     tilt.legend(fontsize="small", loc="best")

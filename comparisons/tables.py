@@ -33,12 +33,15 @@ def summary(scene, response):
     return table
 
 
-def comparison(scene, responses):
-    """Responses of several solvers side by side; the first is the reference of the differences."""
+def comparison(scene, responses, horizon):
+    """Responses of several solvers side by side, the first being the reference; horizon [s] or None."""
+    limit = "Not sensitive: the histories can be compared to the end."
+    if horizon is not None:
+        limit = f"Sensitivity horizon {horizon:.3g} s: beyond it only outcomes can be compared."
     table = Table(title=scene.name, box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0),
                   caption="over: time of overturning; tilt: peak tilt over slenderness;\n"
                           "base: peak base displacement; d: difference from the first row.\n"
-                          "Where a motion is sensitive only the outcomes compare.")
+                          + limit)
     for name in ("solver", "outcome", "over\n[s]", "tilt\n[-]", "d\n[-]", "base\n[m]", "d\n[%]", "im-\npacts",
                  "CPU\n[ms]"):
         table.add_column(Text(name), justify="left" if name in ("solver", "outcome") else "right", no_wrap=True)

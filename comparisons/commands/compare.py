@@ -20,6 +20,7 @@ def command(
     from engines import installed_engines
 
     from ..files import check_writable, write_text
+    from ..horizon import sensitivity_horizon
     from ..solving import ANALYTIC, simulate, spinner
 
     check_writable([None if json_file == "-" else json_file], picture=plot)
@@ -30,20 +31,23 @@ def command(
         for number, name in enumerate([ANALYTIC, *names], 1):
             say(f"{what.name}: {name} ({number} of {len(names) + 1})")
             responses.append(simulate(what, name, history=bool(plot)))
+        found = sensitivity_horizon(what)
+    horizon = found.horizon if any(time is not None for time in found.twins.values()) else None
     if json_file:
-        content = {"scene": what.name, "responses": [response.to_json() for response in responses]}
+        content = {"scene": what.name, "sensitivity_horizon": horizon,
+                   "responses": [response.to_json() for response in responses]}
         text = json.dumps(content, indent=2, allow_nan=False) + "\n"
         sys.stdout.write(text) if json_file == "-" else write_text(json_file, text)
     if plot:
         from ..plots import draw_histories, save
 
-        save(draw_histories(what, responses), plot)
+        save(draw_histories(what, [response for response in responses if response.history], horizon), plot)
     if json_file != "-":
         from rich.console import Console
 
         from ..tables import comparison
 
-        Console().print(comparison(what, responses))
+        Console().print(comparison(what, responses, horizon))
     for response in responses:
         if response.failure:
             print(f"{response.engine} failed: {response.failure.reason}. {response.failure.message}", file=sys.stderr)

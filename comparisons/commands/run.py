@@ -32,6 +32,9 @@ def command(
     if json_file:
         text = json.dumps(response.to_json(), indent=2, allow_nan=False) + "\n"
         sys.stdout.write(text) if json_file == "-" else write_text(json_file, text)
+    if (csv or plot) and response.history is None:
+        print("there is no history to write", file=sys.stderr)
+        csv = plot = None
     if csv:
         response.history.to_csv(csv)
     if plot:

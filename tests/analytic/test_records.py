@@ -59,8 +59,8 @@ def test_stuck_numbers_and_fortran_exponents(tmp_path, data):
 def dyna(values, **changes):
     """A DYNA 1.2 file: 64 header lines, one value a line; a key set to None is left out."""
     keys = {"EVENT_NAME": "MADE UP", "EVENT_DATE_YYYYMMDD": "20000101", "VS30_M/S": "",
-            "SAMPLING_INTERVAL_S": "0.010000", "NDATA": len(values), "UNITS": "cm/s^2", "PGA_CM/S^2": "", "HEADER_FORMAT": "DYNA 1.2",
-            "ORIGINAL_DATA_MEDIATOR_CITATION": ": made up"}
+            "SAMPLING_INTERVAL_S": "0.010000", "NDATA": len(values), "UNITS": "cm/s^2", "PGA_CM/S^2": "",
+            "HEADER_FORMAT": "DYNA 1.2", "ORIGINAL_DATA_MEDIATOR_CITATION": ": made up"}
     keys |= {f"USER{n}": "" for n in range(1, 65 - len(keys))} | changes
     assert len(keys) == 64
     lines = [f"{key}: {value}" for key, value in keys.items() if value is not None]

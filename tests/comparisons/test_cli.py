@@ -1,6 +1,7 @@
 """The command line, called as a user calls it: in this process where that is enough, else in a new one."""
 
 import csv
+import dataclasses
 import json
 import subprocess
 import sys
@@ -157,11 +158,13 @@ def test_engines_lists_what_is_there_and_what_is_not(rocking, monkeypatch):
             assert all(f"{setting}=" in out for setting in vars(settings))
 
 
-def test_compare(rocking, tmp_path, monkeypatch):
+def test_compare(rocking, tmp_path):
     picture, result = tmp_path / "c.png", tmp_path / "c.json"
     status, out, _ = rocking("compare", "free-rocking-rigid", "--plot", picture, "--json", result)
     assert status == 0
-    names = [response["engine"] for response in json.loads(result.read_text())["responses"]]
+    content = json.loads(result.read_text())
+    names = [response["engine"] for response in content["responses"]]
+    assert content["sensitivity_horizon"] is None  # free rocking forgets its past
     assert names == ["analytic", *installed_engines()]
     assert all(name in out for name in names)
     assert picture.read_bytes().startswith(PNG)
@@ -173,14 +176,13 @@ def test_comparison_table_fits_a_terminal(rocking):
     assert "…" not in out
 
 
-def test_failed_run_is_told_and_has_a_status_of_its_own(rocking, monkeypatch):
+def test_failed_run_is_told_and_has_a_status_of_its_own(rocking, monkeypatch, tmp_path):
     class Broken:
         VARIANTS, DEFAULT_VARIANT = {}, None
 
         @staticmethod
         def simulate(scene, *, variant, history):
-            import dataclasses
-            return dataclasses.replace(simulate(scene), engine="exudyn", outcome="failed",
+            return dataclasses.replace(simulate(scene, history=False), engine="exudyn", outcome="failed",
                                        failure=Failure("Newton gave up", "SolverError: no convergence"))
 
     monkeypatch.setattr("engines.get_engine", lambda name: Broken)
@@ -188,6 +190,8 @@ def test_failed_run_is_told_and_has_a_status_of_its_own(rocking, monkeypatch):
     assert status == 1
     assert json.loads(out)["failure"]["reason"] == "Newton gave up"
     assert "exudyn failed: Newton gave up. SolverError: no convergence" in err
+    status, _, err = rocking("run", "free-rocking-rigid", "--engine", "exudyn", "--plot", tmp_path / "x.png")
+    assert status == 1 and "there is no history to write" in err and not (tmp_path / "x.png").exists()
 
 
 def test_other_errors_are_not_hidden(monkeypatch):
