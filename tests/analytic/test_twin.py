@@ -260,5 +260,5 @@ def test_two_crossings_within_one_step_are_found():
         samples = np.random.default_rng(seed).normal(size=25) * 1.5 * uplift
         scene = Scene(block=block, motion=SampledMotion(0.1, samples), duration=2.5)
         coarse = simulate_twin(scene, history=False, energy=False)
-        fine = simulate_twin(scene, max_step=2e-3, history=False, energy=False)
+        fine = simulate_twin(scene, max_step=1e-2, history=False, energy=False)
         assert coarse.impact_count == fine.impact_count, seed
