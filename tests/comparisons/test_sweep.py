@@ -168,6 +168,18 @@ def test_an_executor_is_shared_by_several_sweeps(tmp_path):
     assert [row.reused for row in rows[1]] == [True] * 3 + [False] * 3
 
 
+def test_two_workers_do_nearly_twice_as_much_as_one(tmp_path):
+    # Runs that sleep: what is measured is the sweep layer, whatever else the machine is doing.
+    seconds = {}
+    for workers in (1, 2):
+        with Processes(workers) as executor, Store(tmp_path / f"{workers}.jsonl") as store:
+            sweep(cases(count=4, sleep=0.01), store, executor=executor)
+            start = time.monotonic()
+            sweep(cases(count=24, sleep=0.05), store, executor=executor)
+            seconds[workers] = time.monotonic() - start
+    assert seconds[1] > 1.6 * seconds[2]
+
+
 def test_workers_killed_while_idle_are_replaced(tmp_path):
     with Processes(2) as executor, Store(tmp_path / "s.jsonl") as store:
         sweep(cases(count=3), store, executor=executor)
