@@ -12,7 +12,7 @@ from analytic.response import Failure
 
 from . import exudyn_corners, exudyn_joints, exudyn_native
 from .checks import GAIN_LIMIT, energy_gain, replay_bearing
-from .observe import observe
+from .observe import failed_response, observe
 
 _MODULES = {exudyn_corners.CompliantCorners: exudyn_corners,
             exudyn_joints.SwitchedJoints: exudyn_joints,
@@ -67,6 +67,10 @@ def simulate(scene, *, variant=None, history=True, **settings):
                          f"exudyn's contact decides the restitution in {name}",
                          "leave it out, or use the variant switched-joints")
     run = _MODULES[type(chosen)].run(scene, chosen)
+    if run.trace is None:
+        failure = run.failure or Failure("the run ended before its first step")
+        return failed_response(scene, failure, engine="exudyn", variant=name, settings=dataclasses.asdict(chosen),
+                               versions=versions(), cpu_seconds=run.cpu_seconds, steps=max(run.steps, 0))
     return observe(scene, run.trace, engine="exudyn", variant=name, cpu_seconds=run.cpu_seconds, steps=run.steps,
                    settings=dataclasses.asdict(chosen), versions=versions(), history=history,
                    failure=run.failure or _fault(scene, run), ended=run.ended)

@@ -53,11 +53,12 @@ class Ground:
         self.ends, self.segment_loads = segments(model.scene.motion, model.scene.duration)
         self.mbs, self.loads, self.longest = model.mbs, model.loads, longest
         self.slack = 1e-12 * max(1.0, model.scene.duration)  # round-off of a sum of steps
-        self.at = 0
+        self.at, self.limited = 0, False
         self.iterations = None
         self._enter()
 
     def _enter(self):
+        self.end = self.ends[self.at]
         for load in self.loads:
             self.mbs.SetLoadParameter(load, "loadVector", self.segment_loads[self.at])
 
@@ -70,18 +71,24 @@ class Ground:
 
         The rest of a segment is never cut to leave a sliver: it is one step, or at least two equal ones.
         """
-        ends = self.ends
-        while t > ends[self.at] + self.slack and self.at + 1 < len(ends):
+        rest = self.end - t
+        while rest < -self.slack and self.at + 1 < len(self.ends):
             self.at += 1
             self._enter()
-        if self.iterations is None:  # fixed steps
+            rest = self.end - t
+        iterations = self.iterations
+        if iterations is None:  # fixed steps
             return True
-        rest = ends[self.at] - t
+        step = iterations.currentStepSize
+        if rest > 2 * step:
+            if self.limited:
+                iterations.maxStepSize, self.limited = self.longest, False
+            return True
         if rest > self.slack:
-            limit = rest if rest <= self.iterations.currentStepSize else rest / 2
-        elif self.at + 1 < len(ends):
-            limit = ends[self.at + 1] - ends[self.at]
+            limit = rest if rest <= step else rest / 2
+        elif self.at + 1 < len(self.ends):
+            limit = self.ends[self.at + 1] - self.end
         else:
             limit = self.longest
-        self.iterations.maxStepSize = min(limit, self.longest)
+        iterations.maxStepSize, self.limited = min(limit, self.longest), True
         return True

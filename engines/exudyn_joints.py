@@ -70,9 +70,7 @@ class Stepper:
             return True  # exudyn calls it at the start of each piece, too
         self.rows.append((t, q, v))
         if bearing is not None:
-            bearing.commit(q.item(3))
-            self.z.append(bearing.z)
-            mbs.SetObjectParameter(self.model.connectors["bearing"], "offset", bearing.memory())
+            self.z.append(bearing.commit(mbs, q.item(3)))
         tilt = -q.item(2)
         if not abs(tilt) < OVERTURNED:
             return False
@@ -125,8 +123,7 @@ class Stepper:
         bearing = self.model.bearing
         if bearing is not None:
             self.z.pop()
-            bearing.x, bearing.z = self.rows[-1][1].item(3), self.z[-1]
-            self.model.mbs.SetObjectParameter(self.model.connectors["bearing"], "offset", bearing.memory())
+            bearing.restore(self.model.mbs, self.rows[-1][1].item(3), self.z[-1])
 
     def event_time(self):
         """Time of the event within the last step [s]."""
@@ -209,5 +206,5 @@ def run(scene, settings):
         failure = Failure("the solver stopped with an error", f"{error} {stepper.solver.GetErrorString()}".strip())
     cpu = time.process_time() - began
     trace = make_trace(scene, stepper.rows, stepper.z, stepper.model.bearing, 1e-9, 0.0)
-    ended = "overturned" if abs(trace.tilt[-1]) >= OVERTURNED else None
+    ended = "overturned" if trace is not None and abs(trace.tilt[-1]) >= OVERTURNED else None
     return Run(trace, cpu, len(stepper.rows) - 1, 0, ended, failure)

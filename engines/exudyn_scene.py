@@ -22,8 +22,9 @@ from exudyn.itemInterface import (
     ObjectMass1D,
     ObjectRigidBody2D,
 )
+from numba import njit
 
-from analytic.bearing import ALGEBRAIC, BOUC_WEN, BearingLaw, virtual_travel
+from analytic.bearing import ALGEBRAIC, BOUC_WEN, LINEAR, BearingLaw, hysteretic_force, virtual_travel
 
 from .exudyn_ground import ground_load
 
@@ -76,6 +77,15 @@ class Model:
                 self.mbs.AddMarker(MarkerBodyPosition(bodyNumber=self.block, localPosition=[side * b, -h, 0.0]))]
 
 
+@njit(cache=True)
+def _move(z, dx, law, dk, alpha, d0, f0):
+    """(z, two numbers of the force expression) after travel dx: D_c forth and back, or z."""
+    z = hysteretic_force(z, dx, law, dk, alpha, d0, f0)
+    if law == ALGEBRAIC:
+        return z, virtual_travel(1.0, z, dk, alpha, d0, f0), virtual_travel(-1.0, z, dk, alpha, d0, f0)
+    return z, z, 0.0
+
+
 class Bearing:
     """All bearings as one force between ground and base: symbolic inside a step, its history committed after it.
 
@@ -83,20 +93,27 @@ class Bearing:
     """
 
     def __init__(self, law, displacement):
-        self.law, self.x, self.z = law, displacement, law.start(displacement)
+        self.law, self.x, self.z, self.connector = law, displacement, law.start(displacement), None
+        self.shape = law.law, law.dk, law.alpha, law.d0, law.f0
 
     def memory(self):
-        """The history as the three numbers the force expression reads; 0 where the law has none."""
-        law = self.law
-        if law.law == ALGEBRAIC:
-            shape = law.dk, law.alpha, law.d0, law.f0
-            return [self.x, virtual_travel(1.0, self.z, *shape), virtual_travel(-1.0, self.z, *shape)]
-        return [self.x, self.z, 0.0]
+        """The history as the three numbers the force expression reads."""
+        return [self.x, *_move(self.z, 0.0, *self.shape)[1:]]
 
-    def commit(self, x):
-        """Move the history to an accepted displacement."""
-        self.z = self.law.hysteretic(self.z, x - self.x)
+    def commit(self, mbs, x):
+        """Move the history to an accepted displacement; the hysteretic force there."""
+        law, dk, alpha, d0, f0 = self.shape
+        if law == LINEAR:
+            return self.z
+        self.z, forth, back = _move(self.z, x - self.x, law, dk, alpha, d0, f0)
         self.x = x
+        mbs.SetObjectParameter(self.connector, "offset", [x, forth, back])
+        return self.z
+
+    def restore(self, mbs, x, z):
+        """Take the history back to an earlier step."""
+        self.x, self.z = x, z
+        mbs.SetObjectParameter(self.connector, "offset", self.memory())
 
     def force(self, displacement, velocity, offset):
         """Symbolic force against the base [N], eqs (9) and (11) from the committed point.
@@ -158,7 +175,7 @@ def _add_bearing(model):
     mbs, law = model.mbs, BearingLaw.of(model.scene.bearings)
     model.bearing = Bearing(law, model.scene.start.base_displacement)
     markers = [mbs.AddMarker(MarkerBodyPosition(bodyNumber=body)) for body in (model.ground, model.base)]
-    model.connect("bearing", markers, model.bearing.force, offset=model.bearing.memory())
+    model.bearing.connector = model.connect("bearing", markers, model.bearing.force, offset=model.bearing.memory())
 
 
 def _add_loads(model):
