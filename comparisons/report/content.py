@@ -1,0 +1,76 @@
+"""What a section of the report is made of, and how numbers are written in it."""
+
+import base64
+import io
+import math
+from dataclasses import dataclass
+
+import matplotlib
+
+MINUS_DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+# Glyphs as paths: the page looks alike where fonts differ. The salt makes equal figures equal bytes.
+SVG = {"svg.fonttype": "path", "svg.hashsalt": "rocking"}
+
+
+@dataclass(frozen=True)
+class Table:
+    """columns: heads with units. rows: lists of cells, str; the first cell of a row names it."""
+
+    caption: str
+    columns: tuple
+    rows: list
+
+
+@dataclass(frozen=True)
+class Figure:
+    """svg: the picture. alt: what it shows, for those who cannot see it. caption: what to look at."""
+
+    svg: bytes
+    alt: str
+    caption: str
+
+    @property
+    def source(self):
+        """The picture as a data URI."""
+        return "data:image/svg+xml;base64," + base64.b64encode(self.svg).decode()
+
+
+@dataclass(frozen=True)
+class Section:
+    """title: heading. text: paragraphs, plain text. age: None, or how the result is older than the code.
+
+    evidence: (heading, text) pairs, folded away: raw messages of runs that failed.
+    """
+
+    title: str
+    text: tuple = ()
+    tables: tuple = ()
+    figures: tuple = ()
+    age: str | None = None
+    evidence: tuple = ()
+
+
+def figure_of(figure, alt, caption):
+    """The `Figure` of a matplotlib figure."""
+    file = io.BytesIO()
+    with matplotlib.rc_context(SVG):
+        figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
+    return Figure(file.getvalue(), alt, caption)
+
+
+def number(value, digits=3):
+    """A number with so many significant digits; a dash for None, powers of ten where digits would not do."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return "–"
+    if value == 0:
+        return "0"
+    exponent = math.floor(math.log10(abs(value)))
+    if -3 <= exponent < 5:
+        return f"{value:.{max(digits - 1 - exponent, 0)}f}".replace("-", "−")
+    mantissa, power = f"{value:.{digits - 1}e}".split("e")
+    return f"{mantissa}·10{str(int(power)).translate(MINUS_DIGITS)}".replace("-", "−")
+
+
+def percent(fraction, digits=2):
+    """A fraction in per cent."""
+    return "–" if fraction is None else f"{number(100 * fraction, digits)} %"

@@ -1,0 +1,227 @@
+"""The runs behind the report: the Caryatid in every solver, and free rocking in every variant; as result files."""
+
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+from scipy.integrate import trapezoid
+
+from analytic import load_scene, simulate
+from analytic.closed_form import free_rocking
+from analytic.response import History, Impact, Response, State
+from analytic.rocking import base_jump_length, restitution
+from engines import ENGINES, get_engine
+
+from ..cases import Case
+from ..horizon import sensitivity_horizon
+from ..measures import base_jump_error, compare, state_restitution
+from ..provenance import write_result
+from ..sweep import Processes, Serial, Store, run_sweep
+
+CARYATID, FREE_ROCKING = "caryatid.json", "free-rocking.json"
+SCENES = ("caryatid-rigid", "caryatid-isolated")
+
+SLENDERNESSES = (0.1, 0.2, 0.3, 0.45)  # rad
+STARTS = (0.3, 0.45, 0.6, 0.75)  # released tilt over slenderness
+VARIANT_STARTS = (0.6,)  # of the variants that are not an engine's default
+BASES = {"rigid ground": None, "sliding base": {"mass": 212.0}}  # kg
+FREE_SECONDS = 3.0
+# Impacts slower than this share of the first are left out: engines come to rest in a chatter of their own.
+SLOWEST_IMPACT = 0.1
+# Outer limit of a run [s]; the longest takes a few. A hang becomes a failed row.
+TIME_LIMIT = 60.0
+
+
+def available_engines():
+    """Names of the installed engines, and {name: why it is missing} of the others."""
+    present, missing = [], {}
+    for name in ENGINES:
+        try:
+            get_engine(name)
+            present.append(name)
+        except ImportError as error:
+            missing[name] = str(error)
+    return tuple(present), missing
+
+
+def make_results(folder, motion, *, duration=None, slendernesses=SLENDERNESSES, say=lambda text: None):
+    """Simulate everything the report shows and write its result files into `folder`.
+
+    Parameters
+    ----------
+    folder : path
+        Made if it does not exist. A report that is broken off goes on from what it finds here.
+    motion : SampledMotion
+    duration : float or None
+        Of the Caryatid's runs [s]; None: the whole motion.
+    slendernesses : sequence of float
+        Of the free rocking blocks [rad].
+    say : callable
+        Told in words what is being done.
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    engines, missing = available_engines()
+    scenes = caryatid_scenes(motion, duration or motion.end)
+    caryatid = [Case(scene, solver, tag={"scene": name})
+                for solver in ("analytic", *engines) for name, scene in scenes.items()]
+    free = free_rocking_cases(engines, slendernesses)
+    store = folder / "runs.jsonl"
+    say("analytic model (the first run on a machine compiles it)")
+    simulate(next(iter(scenes.values())))  # before workers start, so that they find the compiled kernel
+    rows = []
+    with Store(store) as opened:
+        for cases, reduce in ((caryatid, with_history), (free, impacts_only)):
+            ours = [case for case in cases if case.solver == "analytic"]
+            rows.append(run_sweep(ours, store=opened, reduce=reduce, executor=Serial(), progress=False))
+        # One pool for both: the long runs of the Caryatid first.
+        with Processes(solvers=engines) as pool:
+            say(f"the Caryatid in {', '.join(engines)}" if engines else "no engine installed")
+            for place, (cases, reduce, label) in enumerate(((caryatid, with_history, "Caryatid"),
+                                                            (free, impacts_only, "free rocking"))):
+                theirs = [case for case in cases if case.solver != "analytic"]
+                rows[place] += run_sweep(theirs, store=opened, reduce=reduce, executor=pool,
+                                         time_limit=TIME_LIMIT, label=label) if theirs else []
+    modules = ["comparisons.report.runs", *(ENGINES[name][0] for name in engines)]
+    _write_caryatid(folder / CARYATID, rows[0], scenes, motion, missing, modules)
+    _write_free_rocking(folder / FREE_ROCKING, rows[1], modules, engines)
+    store.unlink()  # complete: the next report measures its times afresh
+
+
+def caryatid_scenes(motion, duration):
+    """The free-standing and the isolated Caryatid (Table 1 of the paper) under `motion`, by name."""
+    return {name: load_scene(name).with_(motion=motion, duration=float(duration)) for name in SCENES}
+
+
+def free_rocking_cases(engines, slendernesses):
+    """Blocks of the Caryatid's mass and radius released from rest, in every solver and variant."""
+    block = load_scene(SCENES[0]).block
+    solvers = [("analytic", None, STARTS)]
+    for name in engines:
+        engine = get_engine(name)
+        solvers += [(name, variant, STARTS if variant == engine.DEFAULT_VARIANT else VARIANT_STARTS)
+                    for variant in engine.VARIANTS]
+    cases = []
+    for solver, variant, starts in solvers:
+        for ground, base in BASES.items():
+            for slenderness in slendernesses:
+                for start in starts:
+                    scene = load_scene(SCENES[0]).with_(
+                        block={**block.model_dump(), "slenderness": slenderness}, motion=None,
+                        base=base and load_scene(SCENES[1]).base.model_copy(update=base),
+                        start={"tilt": start * slenderness}, duration=FREE_SECONDS)
+                    tag = {"ground": ground, "slenderness": slenderness, "start": start}
+                    cases.append(Case(scene, solver, variant, tag=tag))
+    return cases
+
+
+def with_history(response):
+    """Reducer: everything, the history as lists."""
+    history = {name: getattr(response.history, name).tolist() for name in History.COLUMNS}
+    return {**response.to_json(), "history": history}
+
+
+def impacts_only(response):
+    """Reducer: everything but the history."""
+    return response.to_json()
+
+
+def response_of(values):
+    """The `Response` a reducer's values came from; None stays where a number was not finite."""
+    values = {key: value for key, value in values.items() if key != "impact_count"}
+    history = values.pop("history", None)
+    impacts = tuple(Impact(**impact) for impact in values.pop("impacts"))
+    tuples = {name: tuple(values.pop(name)) for name in ("uplifts", "rests")}
+    values.update(end=State(**values["end"]), energy=None, cpu_seconds=values.get("cpu_seconds", 0.0))
+    history = history and History(*(np.array(history[name]) for name in History.COLUMNS))
+    return Response(impacts=impacts, history=history, **tuples, **values)
+
+
+def _write_caryatid(path, rows, scenes, motion, missing, modules):
+    arrays = {"motion/time": motion.dt * np.arange(len(motion.samples)), "motion/acceleration": motion.samples}
+    horizons = {name: sensitivity_horizon(scene) for name, scene in scenes.items()}
+    described = {name: {"name": scene.name, "duration": scene.duration, "gravity": scene.gravity,
+                        "block": scene.block.model_dump(), "base": scene.base and scene.base.model_dump(),
+                        "bearings": scene.bearings and scene.bearings.model_dump(),
+                        "half_width": scene.block.half_width, "half_height": scene.block.half_height,
+                        "rocking_frequency": scene.rocking_frequency, "restitution": restitution(scene),
+                        "horizon": horizons[name].horizon}
+                 for name, scene in scenes.items()}
+    references = {row.case.tag["scene"]: response_of(row.values) for row in rows
+                  if row.case.solver == "analytic" and not row.failed}
+    kept = []
+    for row in rows:
+        name = row.case.tag["scene"]
+        values = {key: value for key, value in row.values.items() if key != "history"}
+        entry = {**values, "scene": name, "solver": row.case.solver, "failure": row.failure, **row.cost}
+        if not row.failed:
+            response = response_of(row.values)
+            for column in History.COLUMNS:
+                arrays[f"{name}/{row.case.solver}/{column}"] = getattr(response.history, column)
+            entry["cpu_per_second"] = row.cost["cpu_seconds"] / response.end.time
+            entry["bearing_work"] = float(trapezoid(response.history.bearing_force, response.history.base_displacement))
+            if name in references:
+                agreement = compare(scenes[name], response, references[name], until=horizons[name].horizon)
+                entry["agreement"] = asdict(agreement)
+        kept.append(entry)
+    settings = {"motion": {"label": motion.label, "peak": motion.peak, "peak_time": motion.peak_time,
+                           "dt": motion.dt, "end": motion.end},
+                "scenes": described, "missing": missing}
+    write_result(path, "report-caryatid", settings, kept, arrays, modules=modules)
+
+
+def _write_free_rocking(path, rows, modules, engines):
+    groups = {}
+    for row in rows:
+        key = (row.case.solver, row.case.variant, row.case.tag["ground"], row.case.tag["slenderness"])
+        groups.setdefault(key, []).append(row)
+    entries = [_restitution_entry(*key, members) for key, members in groups.items()]
+    arrays = {"curve/slenderness": np.linspace(0.05, 0.5, 91)}
+    for ground in BASES:
+        scene = next(row.case.scene for row in rows if row.case.tag["ground"] == ground)
+        arrays[f"curve/{ground}"] = np.array([restitution(scene.with_(block={"slenderness": float(slenderness)}))
+                                              for slenderness in arrays["curve/slenderness"]])
+    settings = {"starts": STARTS, "variant_starts": VARIANT_STARTS, "seconds": FREE_SECONDS,
+                "slowest_impact": SLOWEST_IMPACT, "bases": BASES,
+                "decides": {name: get_engine(name).DECIDES for name in engines}}
+    write_result(path, "report-free-rocking", settings, entries, arrays, modules=modules)
+
+
+def _restitution_entry(solver, variant, ground, slenderness, members):
+    """Errors of one solver and variant on one ground, over all starts; rates and times of every impact used."""
+    scene = members[0].case.scene
+    formula = restitution(scene)
+    impacts, jumps, time_errors, sound = [], [], [], [row for row in members if not row.failed]
+    for row in sound:
+        scene, response = row.case.scene, response_of(row.values)
+        measured = state_restitution(response)
+        rates = np.abs([impact.rate_before for impact in response.impacts])
+        used = rates >= SLOWEST_IMPACT * rates.max(initial=0.0)
+        jump = base_jump_error(scene, response) if scene.base else np.zeros(len(rates))
+        jumps += jump[used].tolist()
+        if scene.base is None:
+            count = int(used.sum())
+            exact = free_rocking(scene.rocking_frequency, slenderness, formula, scene.start.tilt, count)
+            times = np.array([impact.time for impact in response.impacts])[used]
+            time_errors += (times / exact.times - 1).tolist()
+        impacts += [{"start": row.case.tag["start"], "time": impact.time, "restitution": float(e)}
+                    for impact, e, keep in zip(response.impacts, measured, used, strict=True) if keep]
+    errors = np.array([impact["restitution"] for impact in impacts]) - formula
+    simulated = sum(row.values["end"]["time"] for row in sound)
+    return {"solver": solver, "variant": sound[0].values["variant"] if sound else variant, "default": len(members) > 1,
+            "ground": ground, "slenderness": slenderness, "restitution": formula,
+            "base_jump_length": base_jump_length(scene), "runs": len(members),
+            "failures": [row.failure for row in members if row.failed], "impacts": impacts,
+            "bias": _of(errors, np.mean), "rms": _of(errors, _rms), "worst": _of(np.abs(errors), np.max),
+            "jump_rms": _of(jumps, _rms) if scene.base else None, "time_rms": _of(time_errors, _rms),
+            "settings": sound[0].values["settings"] if sound else None,
+            "cpu_per_second": sum(row.cost["cpu_seconds"] for row in sound) / simulated if sound else None,
+            "simulated": simulated}
+
+
+def _rms(values):
+    return np.sqrt(np.mean(np.square(values)))
+
+
+def _of(values, measure):
+    return float(measure(values)) if len(values) else None

@@ -1,0 +1,71 @@
+"""The answer in plain words, put together from the numbers of the result files."""
+
+from .content import number, percent
+
+WORDS = {"stands": "never lifts", "rocks": "rocks and stays upright", "overturns": "overturns"}
+
+
+def summary(caryatid, groups):
+    """Sentences, list of str: outcomes, agreement, restitution, cost."""
+    sentences = []
+    for name, scene in caryatid.settings["scenes"].items():
+        rows = [row for row in caryatid.rows if row["scene"] == name]
+        sentences.append(f"{scene['name']}: {outcomes(rows)}{_times(rows)}{_displacement(rows)}.")
+    reference = next((group for group in groups if group["solver"] == "analytic"), None)
+    for group in groups:
+        if group["default"] and group["solver"] != "analytic" and group["rms"] is not None:
+            sentences.append(
+                f"Restitution in {group['name']}: off the momentum formula, eq. (7), by {number(group['rms'], 2)} "
+                f"(root mean square over {group['impacts']} impacts; worst {number(group['worst'], 2)}), at "
+                f"{number(group['cpu_per_second'], 2)} s of CPU time per simulated second, "
+                f"{_ratio(group, reference)}.")
+    for group in groups:
+        if not group["default"] and group["rms"] is not None:
+            sentences.append(f"Set up as {group['name']}: off by {number(group['rms'], 2)} (worst "
+                             f"{number(group['worst'], 2)}) at {number(group['cpu_per_second'], 2)} s/s.")
+    for name, reason in caryatid.settings["missing"].items():
+        sentences.append(f"Not in this report: {name}. {reason}.")
+    failed = [f"{row['solver']} on {row['scene']} ({row['failure']['reason']})" for row in caryatid.rows
+              if row["failure"]]
+    failed += [f"{len(group['failures'])} of free rocking in {group['name']} ({group['failures'][0]['reason']})"
+               for group in groups if group["failures"]]
+    if failed:
+        sentences.append("Failed runs: " + "; ".join(failed) + ".")
+    return sentences
+
+
+def outcomes(rows):
+    """Who found what: "all 3 solvers: it overturns", or the solvers by outcome."""
+    by_outcome = {}
+    for row in rows:
+        by_outcome.setdefault(WORDS.get(row["outcome"], row["outcome"]), []).append(row["solver"])
+    if len(by_outcome) == 1:
+        (outcome, solvers), = by_outcome.items()
+        return f"it {outcome} in all {len(solvers)} solvers" if len(solvers) > 1 else f"it {outcome} ({solvers[0]})"
+    return "the solvers disagree: " + ", ".join(
+        f"it {outcome} in {' and '.join(solvers)}" for outcome, solvers in by_outcome.items())
+
+
+def _times(rows):
+    times = [row["overturning_time"] for row in rows if row.get("overturning_time") is not None]
+    if not times:
+        return ""
+    low, high = number(min(times), 4), number(max(times), 4)
+    return f", at {low} s" if low == high else f", between {low} and {high} s"
+
+
+def _displacement(rows):
+    peaks = {row["solver"]: row["peak_base_displacement"] for row in rows if row.get("peak_base_displacement")}
+    if "analytic" not in peaks:
+        return ""
+    text = f"; the base moves by at most {number(peaks['analytic'], 4)} m"
+    apart = {solver: abs(peak / peaks["analytic"] - 1) for solver, peak in peaks.items() if solver != "analytic"}
+    if apart:
+        text += " (" + ", ".join(f"{solver} off by {percent(value)}" for solver, value in apart.items()) + ")"
+    return text
+
+
+def _ratio(group, reference):
+    if not (reference and reference["cpu_per_second"]):
+        return "the analytic model having no time to compare with"
+    return f"{number(group['cpu_per_second'] / reference['cpu_per_second'], 2)} times the analytic model's"
