@@ -52,7 +52,7 @@ def run(assembly, scene, largest, accuracy, row_limit):
     model = RockingModel.of(scene)
     law, g = model.bearing, model.g
     on_base, loaded = assembly.base is not None, scene.bearings is not None
-    joints = (assembly.tilt, assembly.base) if on_base else (assembly.tilt,)
+    joints = (assembly.tilt, assembly.base)
     ground = ground_velocity(scene.motion)
     aware, fraction = accuracy is not None, accuracy or 0.0
     least_pull = abs(model.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0])  # |tilt''| toward contact, unforced
@@ -60,17 +60,21 @@ def run(assembly, scene, largest, accuracy, row_limit):
     constants = (law.law, law.dk, law.alpha, law.d0, law.f0)
     count, kb, damping = law.count, law.kb, law.count * law.damping
     start, end, limit = scene.start, scene.duration, 0.5 * math.pi
-    step_simulation, set_gravity, read = pybullet.stepSimulation, pybullet.setGravity, pybullet.getJointStates
-    drive, control = pybullet.setJointMotorControl2, pybullet.TORQUE_CONTROL
+    step_simulation, set_gravity = pybullet.stepSimulation, pybullet.setGravity
+    read_both, read, turn = pybullet.getJointStates, pybullet.getJointState, assembly.tilt
+    # A force on the base's link is the same as one on its joint, at half the cost of the call.
+    drive, base, middle, frame = pybullet.applyExternalForce, assembly.base, (0.0, 0.0, 0.0), pybullet.LINK_FRAME
     sqrt, engine_step = math.sqrt, pybullet.setPhysicsEngineParameter
 
     t, h = 0.0, 0.0
     tilt, rate, x, v = start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity
     z = law.start(x)
-    force = count * (kb * x + z)
+    force, committed = count * (kb * x + z), x
     rows = [(t, h, tilt, rate, x, v, z, force)]
     keep, step, side = rows.append, largest, tilt > 0
     before, interval, gained, settling = 0.0, 1.0, 0.0, 0
+    twice_pull, almost = 2 * least_pull, 100 * weak  # below `almost` both corners count as loaded
+    level_tilt = almost / twice_pull
     last_scale, earlier, stood, many = -1.0, v, None, standing_iterations(scene)
     if aware:  # a first swing may be short: start small and let the step grow
         step = min(largest, max(SMALLEST_STEP, fraction * abs(rate) / least_pull, 1e-2 * largest))
@@ -78,24 +82,31 @@ def run(assembly, scene, largest, accuracy, row_limit):
     while t < end:
         jumped = (tilt > 0) != side
         side = tilt > 0
-        toward, size = (-rate, tilt) if side else (rate, -tilt)
-        energy = toward * toward + 2 * least_pull * size  # of the swing, as the square of its speed at the impact
-        standing = energy < 100 * weak
         wanted = step
-        if aware and h:
+        if aware:
+            toward, size = (-rate, tilt) if side else (rate, -tilt)
+            energy = toward * toward + twice_pull * size  # of the swing, as the square of its speed at the impact
+            standing = energy < almost
             if jumped:
                 settling = SETTLING if energy > weak else 0
             if settling:
                 settling -= 1
-            else:
-                wanted = min(step * GROWTH, largest)
+            elif h:
+                wanted = step * GROWTH
+                if wanted > largest:
+                    wanted = largest
                 if energy > weak:
                     # What the last step gained toward contact, where that is more: the ground may push.
-                    pull = least_pull if jumped else max(
-                        least_pull, (before - rate if side else rate - before) / interval)
+                    pull = least_pull if jumped else (before - rate if side else rate - before) / interval
+                    if pull < least_pull:
+                        pull = least_pull
                     speed = sqrt(toward * toward + 2 * pull * size)
                     finest = max(SMALLEST_STEP, fraction * speed / pull)
-                    wanted = min(wanted, max(finest, APPROACH * ((speed - toward) / pull - 3 * finest)))
+                    near = APPROACH * ((speed - toward) / pull - 3 * finest)
+                    if near < wanted:
+                        wanted = near if near > finest else finest
+        else:
+            standing = -level_tilt < tilt < level_tilt and rate * rate < almost
         if t + wanted > end + 2e-9 * largest:
             wanted = scene.duration - t
         if wanted != step or standing != stood:
@@ -104,9 +115,9 @@ def run(assembly, scene, largest, accuracy, row_limit):
                         numSolverIterations=many if standing else ROCKING_ITERATIONS)
         scale = 0.5 * (step + h) / step
         if ground is not None:
-            level = ground(t + 0.5 * step)
-            set_gravity((gained - level) / step, 0.0, -g * scale, client)
-            gained = level
+            reached = ground(t + 0.5 * step)
+            set_gravity((gained - reached) / step, 0.0, -g * scale, client)
+            gained = reached
         elif scale != last_scale:
             set_gravity(0.0, 0.0, -g * scale, client)
             last_scale = scale
@@ -114,16 +125,17 @@ def run(assembly, scene, largest, accuracy, row_limit):
             push = force
             if damping:  # at the velocity at t, extrapolated from the last two but never through an impact
                 push += damping * (v if jumped else v + (v - earlier) / interval * 0.5 * h)
-            drive(body, 3, control, force=-push * scale, physicsClientId=client)
+            drive(body, base, (-push * scale, 0.0, 0.0), middle, frame, client)
         step_simulation(client)
         before, earlier, interval = rate, v, 0.5 * (step + h)
         if on_base:
-            (tilt, rate, _, _), (x, v, _, _) = read(body, joints, client)
+            (tilt, rate, _, _), (x, v, _, _) = read_both(body, joints, client)
             if loaded:
-                z = hysteretic_force(z, x - rows[-1][4], *constants)
+                z = hysteretic_force(z, x - committed, *constants)
+                committed = x
                 force = count * (kb * x + z)
         else:
-            (tilt, rate, _, _), = read(body, joints, client)
+            tilt, rate, _, _ = read(body, turn, client)
         t, h = t + step, step
         keep((t, h, tilt, rate, x, v, z, force))
         if not -limit < tilt < limit:
