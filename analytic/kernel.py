@@ -266,20 +266,21 @@ def run(par, ground, options, totals):
                     impacts[n_impacts, 0], impacts[n_impacts, 1] = t, before
                     impacts[n_impacts, 2], impacts[n_impacts, 3] = rate, jump
                 n_impacts += 1
-                landed, limit = rate == 0, t
-                if not landed and abs(rate) < rest_rate * omega:
-                    ground_now = value(A, highest, h) if highest >= 0 else 0.0
-                    force = par.count * (par.kb * bx + z + par.damping * bv)
+                ground_now = value(A, highest, h) if highest >= 0 else 0.0
+                force = par.count * (par.kb * bx + z + par.damping * bv)
+                landed = rate == 0
+                remaining = -1.0
+                if landed or abs(rate) < rest_rate * omega:
                     remaining = remaining_hops(par, rate, ground_now, force)
-                    landed, limit = remaining >= 0, t + remaining
-                if landed:
+                if landed or remaining >= 0:
                     left = lever * rate  # the hops left out: their momentum stays with the base
                     totals[L.IMPACT_LOSS] += impact_loss(par, bv, rate, 0.0, left)
                     bv += left
                     mode, rate, s = L.CONTACT, 0.0, 0.0
-                    if n_rests < capacity:
-                        rests[n_rests] = limit
-                    n_rests += 1
+                    if remaining >= 0:  # else it lands flat and lifts again at once
+                        if n_rests < capacity:
+                            rests[n_rests] = t + remaining
+                        n_rests += 1
             elif found == L.OVERTURNING:
                 mode, tilt, peak_tilt, will_overturn = L.OVERTURNED, s * overturn, overturn, True
                 break

@@ -197,7 +197,8 @@ def test_sampling_from_fine_to_coarse(dt):
     motion = SampledMotion(dt, 3.0 * np.sin(2 * np.pi * 0.5 * t))
     one = sound(simulate(ISOLATED.with_(motion=motion, block={"slenderness": 0.2})))
     fine = np.arange(0, t[-1], dt / 4)
-    other = simulate(ISOLATED.with_(motion=SampledMotion(dt / 4, motion.acceleration(fine)), block={"slenderness": 0.2}))
+    finer = SampledMotion(dt / 4, motion.acceleration(fine))
+    other = simulate(ISOLATED.with_(motion=finer, block={"slenderness": 0.2}))
     assert one.peak_base_displacement == pytest.approx(other.peak_base_displacement, rel=1e-4)
 
 
