@@ -1,5 +1,6 @@
 """What must hold in every engine run, whatever its accuracy: the bearing law, and no energy from nowhere."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -94,10 +95,26 @@ def energy_gain(scene, trace):
     """Largest rise of `energy_balance` over its lowest value so far; such a rise has no physical cause.
 
     In units of m g R (1 - cos gamma), which takes the block from rest to the unstable point, or of the largest
-    kinetic energy where that is more. NaN where the energy overflows.
+    kinetic energy where that is more. NaN where the energy overflows. Steps within ``trace.settle`` after a
+    crossing of tilt = 0 are left out.
     """
+    trace = _settled(trace)
     with np.errstate(over="ignore", invalid="ignore"):  # a state that exploded has no balance: NaN
         balance, kinetic = energy_balance(scene, trace)
     block = scene.block
     unit = block.mass * scene.gravity * block.radius * (1 - math.cos(block.slenderness))
     return float((balance - np.minimum.accumulate(balance)).max() / max(unit, kinetic.max()))
+
+
+def _settled(trace):
+    """The steps of a trace outside the relaxation of a compliant contact after each crossing of tilt = 0.
+
+    There the block does not pivot about its corner, and the energy of a pivoting block does not describe it.
+    """
+    crossings = trace.time[1:][np.diff(np.sign(trace.tilt)) != 0]
+    last = np.searchsorted(crossings, trace.time, side="right") - 1
+    since = trace.time - np.concatenate(([-math.inf], crossings))[last + 1]
+    steps = np.flatnonzero(since >= trace.settle)
+    if len(steps) < 2:
+        return trace
+    return dataclasses.replace(trace, **{name: getattr(trace, name)[steps] for name in trace.COLUMNS})
