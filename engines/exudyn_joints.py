@@ -23,6 +23,7 @@ from .exudyn_run import OVERTURNED, Run, check, make_trace, solver_settings
 from .exudyn_scene import build
 
 REST = 0  # the side of a block in full contact
+STUCK = 10  # events at one instant after which a run is given up; uplift and rest together are two
 INITIAL = exu.ConfigurationType.Initial
 
 
@@ -171,7 +172,12 @@ class Stepper:
         self.side = int(math.copysign(1, lean)) if lean else REST
         if self.side == REST and self.excess(0) > 0:
             self.lift()
+        reached, tries = -1.0, 0
         while self.rows[-1][0] < scene.duration * (1 - 1e-12):
+            tries = tries + 1 if self.rows[-1][0] <= reached else 0
+            reached = self.rows[-1][0]
+            if tries > STUCK:
+                return Failure("uplift and rest alternate without progress", f"{tries} times at t = {reached:.9g} s")
             failure = self.advance(scene.duration)
             if failure or not abs(self.rows[-1][1].item(2)) < OVERTURNED:
                 return failure

@@ -45,6 +45,9 @@ def solver_settings(scene, **time_integration):
     explicit.computeEndOfStepAccelerations = False
     for name, value in time_integration.items():
         setattr(settings.timeIntegration, name, value)
+        held = getattr(settings.timeIntegration, name)
+        if held != value:
+            raise Mismatch(f"timeIntegration.{name} is {held!r} in exudyn, {value!r} was set")
     return settings
 
 

@@ -56,6 +56,13 @@ def test_compliant_corners_give_the_restitution_of_eq_7(slenderness, base):
     assert np.abs(jump).max() < 1e-3
 
 
+def test_a_stocky_block_that_leaves_the_ground_after_an_impact_is_no_failure():
+    scene = rocking(0.45, part=0.8, duration=1.5)
+    response = simulate(scene)
+    assert response.outcome == "rocks"
+    assert np.abs(errors(scene, response)[0]).max() < 2e-4
+
+
 def test_error_of_compliant_corners_goes_as_one_over_stiffness():
     scene = rocking(0.1, duration=0.8)
     soft, stiff = (abs(errors(scene, simulate(scene, stiffness=k))[0][0]) for k in (1e9, 1e10))
