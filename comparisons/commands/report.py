@@ -11,7 +11,7 @@ def command(
                                                "or two columns. Default: the shipped synthetic motion.")] = None,
     units: Annotated[str | None, typer.Option(help="Of a record in two columns: m/s2, cm/s2 or g.")] = None,
     output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the page and its "
-                                                            "result files.")] = "rocking-report",
+                                                            "result files.")] = "report",
 ):
     """All solvers on the Caryatid, free-standing and isolated: one HTML page and the result files it is made from."""
     from pathlib import Path
