@@ -17,18 +17,19 @@ def swing_restitution(scene, response):
     """Effective restitution of each impact from the energies of the swings around it, shape (impacts,).
 
     For free rocking on rigid ground: cos(u') - cos(gamma) = e^2 (cos(u) - cos(gamma)), u = gamma - peak |tilt| of
-    the swing before, u' of the one after. Each peak is refined from the sample nearest to it by the energy
+    the swing before, u' of the one after; on a base that slides freely the same holds for the energy relative to
+    the centre of mass of block and base. Each peak is refined from the sample nearest to it by the energy
     integral. NaN where one of the swings has no peak in the history, that is fewer than about four samples.
 
     Raises
     ------
     ValueError
-        The scene has a base or a motion (the swings keep no energy of their own), or there is no history.
+        The scene has bearings or a motion (the swings keep no energy of their own), or there is no history.
     """
-    if scene.base is not None or scene.motion is not None:
-        raise ValueError("swing_restitution needs free rocking on rigid ground: use state_restitution")
-    history = _history(response)
-    gamma, p = scene.block.slenderness, scene.rocking_frequency
+    if scene.bearings is not None or scene.motion is not None:
+        raise ValueError("swing_restitution needs free rocking without bearings: use state_restitution")
+    history, block = _history(response), scene.block
+    gamma, p = block.slenderness, scene.rocking_frequency
     bounds = np.array([-math.inf] + [impact.time for impact in response.impacts] + [math.inf])
     energy = np.full(len(bounds) - 1, np.nan)
     edges = np.searchsorted(history.time, bounds)
@@ -38,8 +39,10 @@ def swing_restitution(scene, response):
             continue  # no peak between the samples
         i = int(np.abs(rate).argmin())
         u = gamma - tilt[i]
+        # the base follows the block: inertia J_O - m mt c^2 instead of J_O
+        share = 1 - block.mass * scene.mass_share * (block.radius * math.cos(u)) ** 2 / block.inertia
         # cos(u) - cos(gamma) without its cancellation at small tilt
-        energy[k] = 2 * math.sin(tilt[i] / 2) * math.sin((gamma + u) / 2) + rate[i] ** 2 / (2 * p**2)
+        energy[k] = 2 * math.sin(tilt[i] / 2) * math.sin((gamma + u) / 2) + share * rate[i] ** 2 / (2 * p**2)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.sqrt(energy[1:] / energy[:-1])
 
