@@ -50,11 +50,11 @@ def histories(result, name, column, label, scale=1.0, limits=(None, None)):
         axis.axhline(0, color="0.85", linewidth=0.8, zorder=0)
         if parts:
             axis.axvline(horizon, color="0.5", linewidth=1, linestyle=":")
-    above.set(ylabel=label, ylim=limits)
+    title = result.settings["scenes"][name]["name"]
+    above.set(ylabel=label, ylim=limits, title=title)
     above.legend(fontsize=9, loc="best")
     below.set(xlabel="time [s]", ylabel="engine − analytic")
     below.ticklabel_format(axis="y", scilimits=(-2, 2))
-    title = result.settings["scenes"][name]["name"]
     apart = "; ".join(f"{solver} {number(value, 2)}" for solver, value in worst.items()) or "no engine ran"
     dotted = "" if not parts else (
         f" Dotted: the sensitivity horizon, {number(horizon)} s; after it no two solutions can be compared point by "
@@ -74,9 +74,9 @@ def loops(result, name):
             axis.plot(result.arrays[key + "base_displacement"], result.arrays[key + "bearing_force"] / 1e3,
                       label=row["solver"], **style(row["solver"]))
             solvers.append(row["solver"])
-    axis.set(xlabel="base displacement x [m]", ylabel="force of all bearings [kN]")
-    axis.legend(fontsize=9)
     title = result.settings["scenes"][name]["name"]
+    axis.set(xlabel="base displacement x [m]", ylabel="force of all bearings [kN]", title=title)
+    axis.legend(fontsize=9)
     return figure_of(figure, f"{title}: hysteresis loops of {', '.join(solvers)} over each other.",
                      f"{title}: hysteresis of the bearings, all of them together.")
 

@@ -12,8 +12,8 @@ ORDER = ("restitution", "overturning", "fragility", "speed-error", "stability", 
 
 
 def study_sections(folder=RESULTS):
-    """Sections of all result files in the sub-folders of `folder`, in the studies' order; see the package."""
-    files = sorted(folder.glob("*/*.json"), key=lambda file: (_place(file.parent.name), file.parent.name, file.name))
+    """Sections of all result files ``<study>.json`` in `folder`, in the studies' order; see the package."""
+    files = sorted(folder.glob("*.json"), key=lambda file: (_place(file.stem), file.stem))
     return [_section(file) for file in files]
 
 
@@ -22,12 +22,12 @@ def _place(study):
 
 
 def _section(file):
-    name = f"{file.parent.name}/{file.name}"
+    name = file.name
     try:
         result = read_result(file)
     except ResultError as error:
-        return Section(f"Study {file.parent.name}", (f"{name} cannot be shown: {error}",))
-    module = f"comparisons.{result.kind.replace('-', '_')}_study"
+        return Section(f"Study {file.stem}", (f"{name} cannot be shown: {error}",))
+    module = f"comparisons.studies.{result.kind.replace('-', '_')}"
     if importlib.util.find_spec(module) is None:
         return Section(f"Study {result.kind}", (f"{name} cannot be shown: there is no module {module}.",),
                        age=age(result))

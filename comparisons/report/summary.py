@@ -21,8 +21,9 @@ def summary(caryatid, groups):
                 f"{_ratio(group, reference)}.")
     for group in groups:
         if not group["default"] and group["rms"] is not None:
-            sentences.append(f"Set up as {group['name']}: off by {number(group['rms'], 2)} (worst "
-                             f"{number(group['worst'], 2)}) at {number(group['cpu_per_second'], 2)} s/s.")
+            sentences.append(f"Set up as {group['name']}: restitution off by {number(group['rms'], 2)} (worst "
+                             f"{number(group['worst'], 2)}) at {number(group['cpu_per_second'], 2)} s of CPU time per "
+                             "simulated second.")
     for name, reason in caryatid.settings["missing"].items():
         sentences.append(f"Not in this report: {name}. {reason}.")
     failed = [f"{row['solver']} on {row['scene']} ({row['failure']['reason']})" for row in caryatid.rows

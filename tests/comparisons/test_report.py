@@ -237,13 +237,13 @@ def test_a_failed_run_shows_its_evidence(folder, copied):
 
 def test_a_study_is_shown_by_its_own_section_and_says_when_it_is_old(folder, copied, tmp_path_factory, monkeypatch):
     studies = tmp_path_factory.mktemp("results")
-    file = write_result(studies / "fake" / "fake.json", "fake", {}, [{"kappa": 0.75}], modules=["analytic.errors"])
-    module = types.ModuleType("comparisons.fake_study")
+    file = write_result(studies / "fake.json", "fake", {}, [{"kappa": 0.75}], modules=["analytic.errors"])
+    module = types.ModuleType("comparisons.studies.fake")
     module.__spec__ = importlib.machinery.ModuleSpec(module.__name__, None)
     module.section = lambda result: Section("A fake study", ("Two paragraphs < one.",), (
         Table("Agreement", ("solver", "kappa [-]"), [["exudyn", str(result.rows[0]["kappa"])]]),))
     page = Page(write_page(copied, studies=studies))
-    assert "there is no module comparisons.fake_study" in page.source
+    assert "there is no module comparisons.studies.fake" in page.source
     monkeypatch.setitem(sys.modules, module.__name__, module)
     page = Page(write_page(copied, studies=studies))
     assert page.table("Agreement")["exudyn", "kappa [-]"] == "0.75"
