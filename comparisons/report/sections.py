@@ -54,8 +54,8 @@ def caryatid_sections(result):
             f"Each solver on the same scenes under {motion}. Overturning is |φ| = 90°. Friction demand |H|/N and "
             "normal force N/(m g) are what the model's assumptions of no sliding and no jumping ask for. Point-wise "
             "measures hold up to the end, or to the sensitivity horizon where that comes first: there a change of "
-            "restitution, motion and start by one in ten thousand makes another motion. Graphs are compared with time in "
-            "units of 2 π/ω_r and tilt in units of γ (Hausdorff distance).",),
+            "restitution, motion and start by one in ten thousand makes another motion. Graphs are compared with time "
+            "in units of 2 π/ω_r and tilt in units of γ (Hausdorff distance).",),
                 tuple(table for name in scenes for table in (_outcomes(result, name), *_agreement(result, name))),
                 evidence=failed),
         Section("Histories and hysteresis", (
