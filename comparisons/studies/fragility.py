@@ -1,0 +1,34 @@
+"""Fragility: how likely is overturning at an intensity, and does the answer depend on the solver?"""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .fragility_page import section
+
+__all__ = ["command", "section"]
+
+
+def command(
+    quick: Annotated[bool, typer.Option("--quick", help="A small study, to see it work.")] = False,
+    output: Annotated[str, typer.Option(metavar="DIR", help="Folder for result and figures.")] = "rocking-fragility",
+    workers: Annotated[int | None, typer.Option(help="Worker processes; default: one per core.")] = None,
+):
+    """Probability of overturning over the intensity of synthetic motions: analytic model, exudyn, PyBullet."""
+    from ..plots import save
+    from ..provenance import read_result, write_result
+    from .fragility_page import draw
+    from .fragility_runs import compute
+    from .workshop import DEFAULTS, code_of, say, workshop
+
+    solvers = [solver for solver, _ in DEFAULTS]
+    with workshop(output, solvers, workers) as work:
+        settings, rows, arrays = compute(work, quick)
+    path = write_result(Path(output) / "fragility.json", "fragility", settings, rows, arrays,
+                        modules=code_of("comparisons.studies.fragility_runs", solvers), seed=settings["seeds"])
+    result = read_result(path)
+    save(draw(result), path.with_suffix(".png"))
+    for paragraph in section(result).text:
+        say(paragraph)
+    print(path)
