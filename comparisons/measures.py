@@ -28,23 +28,32 @@ def swing_restitution(scene, response):
     """
     if scene.bearings is not None or scene.motion is not None:
         raise ValueError("swing_restitution needs free rocking without bearings: use state_restitution")
-    history, block = _history(response), scene.block
-    gamma, p = block.slenderness, scene.rocking_frequency
+    history = _history(response)
     bounds = np.array([-math.inf] + [impact.time for impact in response.impacts] + [math.inf])
     energy = np.full(len(bounds) - 1, np.nan)
     edges = np.searchsorted(history.time, bounds)
     for k, (first, last) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
-        tilt, rate = np.abs(history.tilt[first:last]), history.tilt_rate[first:last]
+        tilt, rate = history.tilt[first:last], history.tilt_rate[first:last]
         if len(tilt) < 2 or rate[0] * rate[-1] > 0:
             continue  # no peak between the samples
         i = int(np.abs(rate).argmin())
-        u = gamma - tilt[i]
-        # the base follows the block: inertia J_O - m mt c^2 instead of J_O
-        share = 1 - block.mass * scene.mass_share * (block.radius * math.cos(u)) ** 2 / block.inertia
-        # cos(u) - cos(gamma) without its cancellation at small tilt
-        energy[k] = 2 * math.sin(tilt[i] / 2) * math.sin((gamma + u) / 2) + share * rate[i] ** 2 / (2 * p**2)
+        energy[k] = flight_energy(scene, tilt[i], rate[i])
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.sqrt(energy[1:] / energy[:-1])
+
+
+def flight_energy(scene, tilt, rate):
+    """Energy over m g R of a block in free flight, 0 at tilt = rate = 0; constant between impacts. Arrays or floats.
+
+    cos(u) - cos(gamma) + rate^2/(2 p^2), u = gamma - |tilt|; on a freely sliding base relative to the centre of mass.
+    """
+    block, tilt = scene.block, np.abs(tilt)
+    u = block.slenderness - tilt
+    # the base follows the block: inertia J_O - m mt c^2 instead of J_O
+    share = 1 - block.mass * scene.mass_share * (block.radius * np.cos(u)) ** 2 / block.inertia
+    # cos(u) - cos(gamma) without its cancellation at small tilt
+    raised = 2 * np.sin(tilt / 2) * np.sin((block.slenderness + u) / 2)
+    return raised + share * rate**2 / (2 * scene.rocking_frequency**2)
 
 
 def state_restitution(response):

@@ -12,6 +12,7 @@ from comparisons.measures import (
     base_jump_error,
     compare,
     energy_drift,
+    flight_energy,
     graph_distance,
     impact_time_errors,
     state_restitution,
@@ -34,6 +35,16 @@ def test_swing_energies_give_the_restitution_of_eq_7(slenderness, side, base):
     clear = np.isfinite(measured)
     assert clear.sum() >= 5
     assert np.abs(measured[clear] - restitution(scene)).max() < 1e-8  # issue 5: better than 1e-8
+
+
+@pytest.mark.parametrize("base", [None, Base(mass=212.0)])
+def test_flight_energy_falls_by_the_square_of_restitution_at_impacts_alone(base):
+    scene = free(0.3, base, duration=1.2)
+    response = simulate(scene)
+    history, times = response.history, [impact.time for impact in response.impacts]
+    energy = flight_energy(scene, history.tilt, history.tilt_rate)
+    swing = np.searchsorted(times, history.time)
+    np.testing.assert_allclose(energy, energy[0] * restitution(scene) ** (2 * swing), rtol=1e-9, atol=1e-15)
 
 
 def test_swing_energies_see_another_impact_law():
