@@ -25,6 +25,7 @@ from engines import installed_engines
 
 DURATION = 7.0  # s: the free-standing Caryatid overturns within it
 SLENDERNESS = 0.3
+NO_STUDIES = Path(__file__).parent / "no such folder"
 DUZCE = Path(__file__).parents[3] / "shared" / "records" / "RSN1605_DUZCE_DZC270.AT2"
 
 
@@ -81,7 +82,7 @@ def folder(tmp_path_factory):
     """A report on the synthetic motion, with every engine installed here."""
     folder = tmp_path_factory.mktemp("report")
     runs.make_results(folder, synthetic_motion(), duration=DURATION, slendernesses=(SLENDERNESS,))
-    write_page(folder, studies=folder)
+    write_page(folder, studies=NO_STUDIES)
     return folder
 
 
@@ -156,7 +157,7 @@ def test_restitution_table_equals_the_impacts_in_the_file_and_the_momentum_formu
 
 def test_summary_follows_the_numbers(folder, copied):
     def items():
-        return Page(write_page(copied, studies=copied)).items
+        return Page(write_page(copied, studies=NO_STUDIES)).items
 
     count = 1 + len(installed_engines())
     if count > 1:
@@ -208,7 +209,8 @@ def test_no_path_of_this_machine_and_no_leftovers(folder):
 
 
 def test_equal_result_files_give_equal_pages(folder, copied):
-    assert write_page(copied, studies=copied).read_bytes() == (folder / "report.html").read_bytes()
+    first = write_page(folder, studies=NO_STUDIES).read_bytes()
+    assert write_page(copied, studies=NO_STUDIES).read_bytes() == first
 
 
 def test_missing_engines_are_named_with_their_remedy(tmp_path, monkeypatch):
@@ -217,7 +219,7 @@ def test_missing_engines_are_named_with_their_remedy(tmp_path, monkeypatch):
 
     monkeypatch.setattr(runs, "get_engine", nothing_installed)
     runs.make_results(tmp_path, synthetic_motion(), duration=DURATION, slendernesses=(SLENDERNESS,))
-    page = Page(write_page(tmp_path, studies=tmp_path))
+    page = Page(write_page(tmp_path, studies=NO_STUDIES))
     assert any("Not in this report: pybullet. engine 'pybullet' needs the package pybullet: install it so" in item
                for item in page.items)
     assert page.table("Caryatid isolated, 7 s")["outcome", "analytic"] == "stands"
@@ -230,7 +232,7 @@ def test_a_failed_run_shows_its_evidence(folder, copied):
         row.pop("agreement", None)
 
     changed(copied / runs.CARYATID, fail)
-    page = Page(write_page(copied, studies=copied))
+    page = Page(write_page(copied, studies=NO_STUDIES))
     assert any(item.startswith("Failed runs:") and "the worker ended" in item for item in page.items)
     assert "<pre>&lt;SIGSEGV&gt;</pre>" in page.source
 
@@ -248,9 +250,9 @@ def test_a_study_is_shown_by_its_own_section_and_says_when_it_is_old(folder, cop
     page = Page(write_page(copied, studies=studies))
     assert page.table("Agreement")["exudyn", "kappa [-]"] == "0.75"
     assert "Two paragraphs &lt; one." in page.source
-    assert "Out of date" not in page.source
+    warnings = page.source.count("Out of date")
     changed(file, lambda content: content["provenance"]["sources"].update({"analytic.errors": "another"}))
-    assert "Out of date" in write_page(copied, studies=studies).read_text()
+    assert write_page(copied, studies=studies).read_text().count("Out of date") == warnings + 1
 
 
 def test_responses_survive_the_way_through_a_result_file():
@@ -286,7 +288,7 @@ def test_mistakes_end_with_one_message(arguments, words, capsys):
 @pytest.mark.skipif(not DUZCE.exists(), reason="the Duzce record does not lie beside the project")
 def test_duzce_record_overturns_the_free_caryatid_and_not_the_isolated_one(tmp_path):
     runs.make_results(tmp_path, read_record(DUZCE), duration=10.0, slendernesses=(SLENDERNESS,))
-    page = Page(write_page(tmp_path, studies=tmp_path))
+    page = Page(write_page(tmp_path, studies=NO_STUDIES))
     free, isolated = page.table("Caryatid on rigid ground, 10 s"), page.table("Caryatid isolated, 10 s")
     for solver in ("analytic", *installed_engines()):
         assert free["outcome", solver] == "overturns"
