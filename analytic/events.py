@@ -16,6 +16,8 @@ from .polynomial import first_root
 LONGEST_LAST_HOP = 1e-3
 # Above this restitution the series of hops is so long that it is ended at the impact itself.
 NEARLY_ELASTIC = 0.999
+# Tilt rate after an impact [omega_r] that no longer counts as motion while the acceleration is on the threshold.
+NO_RATE = 1e-15
 # Relative distance to the threshold below which an onset counts as the touch just refused.
 TOUCH = 1e-9
 
@@ -114,9 +116,11 @@ def remaining_hops(par, rate, ground, force):
     """
     s = 1.0 if rate > 0 else -1.0
     here, there = hop_deceleration(par, s, ground, force), hop_deceleration(par, -s, ground, force)
-    if here <= 0 or there <= 0:
-        return -1.0
     w = abs(rate)
+    if here <= 0 or there <= 0:
+        # exactly on the threshold rounding decides the sign: hops shrink for ever
+        touching = min(here, there) >= -TOUCH * par.p2
+        return 0.0 if touching and w < NO_RATE * math.sqrt(par.p2) else -1.0
     if 2 * w > LONGEST_LAST_HOP / math.sqrt(par.p2) * min(here, there):
         return -1.0
     if par.e > NEARLY_ELASTIC:
