@@ -1,0 +1,35 @@
+"""The kernel as the benchmark calls it: no history, no ledger, outcomes only."""
+
+import numpy as np
+
+from analytic import kernel, layout
+from analytic.batch import run_rows
+from analytic.solver import ground, options, parameters
+
+
+def kernel_run(problem, tolerance):
+    """A function without arguments that runs `problem` and returns (state at the horizon, impacts)."""
+    scene, totals = problem.scene, np.zeros(layout.TOTALS)
+    inside = problem.horizon < scene.duration
+    arguments = parameters(scene), ground(scene.motion), _options(problem, tolerance, inside), totals
+
+    def run():
+        end, _, _, _, history = kernel.run(*arguments)
+        return np.array(history[1, 1:5] if inside else end[:4]), int(totals[layout.IMPACTS])
+
+    return run
+
+
+def kernel_batch(problem, tolerance, count):
+    """A function that does `count` equal runs of `problem` in one compiled loop on one core."""
+    scene = problem.scene
+    shaking, chosen = ground(scene.motion), _options(problem, tolerance, problem.horizon < scene.duration)
+    rows = np.tile(np.array(parameters(scene), dtype=float), (count, 1))
+    pulse = (shaking.scale, shaking.frequency, shaking.phase, shaking.start, shaking.end)
+    pulses = np.tile(np.array(pulse), (count, 1))
+    return lambda: run_rows(rows, pulses, shaking, chosen, workers=1)
+
+
+def _options(problem, tolerance, inside):
+    return options(tolerance, rest_rate=problem.rest_rate, record=False,
+                   output_step=problem.horizon if inside else 0.0)
