@@ -78,41 +78,54 @@ def run(assembly, scene, largest, accuracy, row_limit):
     if aware:  # a first swing may be short: start small and let the step grow
         step = min(largest, max(SMALLEST_STEP, fraction * abs(rate) / least_pull, 1e-2 * largest))
     end -= 1e-9 * largest  # the steps' sum may miss the duration by rounding
-    while t < end:
+    # Farther than this time from its impact the block is left at the largest step, without a closer look.
+    reach = largest / APPROACH * 1.2
+    gate, cruising = end + 2e-9 * largest, False
+    for _ in range(row_limit):
+        if t >= end:
+            return rows, "done"
         jumped = (tilt > 0) != side
         side = tilt > 0
         wanted = step
         if aware:
             toward, size = (-rate, tilt) if side else (rate, -tilt)
-            energy = toward * toward + twice_pull * size  # of the swing, as the square of its speed at the impact
-            standing = energy < almost
-            if jumped:
-                settling = SETTLING if energy > weak else 0
-            if settling:
-                settling -= 1
-            elif h:
-                wanted = step * GROWTH
-                if wanted > largest:
-                    wanted = largest
-                if energy > weak:
-                    # What the last step gained toward contact, where that is more: the ground may push.
-                    pull = least_pull if jumped else (before - rate if side else rate - before) / interval
-                    if pull < least_pull:
-                        pull = least_pull
-                    speed = sqrt(toward * toward + 2 * pull * size)
-                    finest = max(SMALLEST_STEP, fraction * speed / pull)
-                    near = APPROACH * ((speed - toward) / pull - 3 * finest)
-                    if near < wanted:
-                        wanted = near if near > finest else finest
+            far = False
+            if cruising and not jumped and size > level_tilt:
+                # What the last step gained toward contact, where that is more: the ground may push.
+                pull = (before - rate if side else rate - before) / interval
+                if pull < least_pull:
+                    pull = least_pull
+                far = size > reach * (toward + 0.5 * reach * pull)
+            if not far:
+                energy = toward * toward + twice_pull * size  # of the swing, as the square of its speed at the impact
+                standing = energy < almost
+                if jumped:
+                    settling = SETTLING if energy > weak else 0
+                if settling:
+                    settling -= 1
+                elif h:
+                    wanted = step * GROWTH
+                    if wanted > largest:
+                        wanted = largest
+                    if energy > weak:
+                        pull = least_pull if jumped else (before - rate if side else rate - before) / interval
+                        if pull < least_pull:
+                            pull = least_pull
+                        speed = sqrt(toward * toward + 2 * pull * size)
+                        finest = max(SMALLEST_STEP, fraction * speed / pull)
+                        near = APPROACH * ((speed - toward) / pull - 3 * finest)
+                        if near < wanted:
+                            wanted = near if near > finest else finest
+                cruising = wanted == step == largest and not standing and not settling
         else:
             standing = -level_tilt < tilt < level_tilt and rate * rate < almost
-        if t + wanted > end + 2e-9 * largest:
+        if t + wanted > gate:
             wanted = scene.duration - t
         if wanted != step or standing != stood:
             step, stood = wanted, standing
             engine_step(fixedTimeStep=step, contactERP=correction(step), physicsClientId=client,
                         numSolverIterations=many if standing else ROCKING_ITERATIONS)
-        scale = 0.5 * (step + h) / step
+        scale = 1.0 if step == h else 0.5 * (step + h) / step
         if ground is not None:
             reached = ground(t + 0.5 * step)
             set_gravity((gained - reached) / step, 0.0, -g * scale, client)
@@ -126,8 +139,9 @@ def run(assembly, scene, largest, accuracy, row_limit):
                 push += damping * (v if jumped else v + (v - earlier) / interval * 0.5 * h)
             drive(body, base, (-push * scale, 0.0, 0.0), middle, frame, client)
         step_simulation(client)
-        before, earlier, interval = rate, v, 0.5 * (step + h)
+        before, interval = rate, step if scale == 1.0 else 0.5 * (step + h)
         if on_base:
+            earlier = v
             (tilt, rate, _, _), (x, v, _, _) = read_both(body, joints, client)
             if loaded:
                 z = hysteretic_force(z, x - committed, *constants)
@@ -139,6 +153,4 @@ def run(assembly, scene, largest, accuracy, row_limit):
         keep((t, h, tilt, rate, x, v, z, force))
         if not -limit < tilt < limit:
             return rows, "overturned" if math.isfinite(tilt) and math.isfinite(rate) else "not finite"
-        if len(rows) > row_limit:
-            return rows, "too many steps"
-    return rows, "done"
+    return rows, "done" if t >= end else "too many steps"
