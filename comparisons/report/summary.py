@@ -42,7 +42,8 @@ def outcomes(rows):
         by_outcome.setdefault(WORDS.get(row["outcome"], row["outcome"]), []).append(row["solver"])
     if len(by_outcome) == 1:
         (outcome, solvers), = by_outcome.items()
-        return f"it {outcome} in all {len(solvers)} solvers" if len(solvers) > 1 else f"it {outcome} ({solvers[0]})"
+        many = {1: solvers[0], 2: "both solvers"}.get(len(solvers), f"all {len(solvers)} solvers")
+        return f"it {outcome} in {many}"
     return "the solvers disagree: " + ", ".join(
         f"it {outcome} in {' and '.join(solvers)}" for outcome, solvers in by_outcome.items())
 
