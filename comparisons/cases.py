@@ -21,7 +21,7 @@ SOLVERS = {
     "time-stepping": ("analytic.time_stepping", "simulate_time_stepping"),
 }
 
-COMPILED = frozenset({"analytic", "time-stepping"})
+COMPILED = {"analytic": {}, "time-stepping": {"step": 0.01}}  # solvers with a kernel, and settings they require
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,8 +78,8 @@ def compile_kernels(names):
     Else every worker process would compile it by itself, within its time limit.
     """
     scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), start=Start(tilt=0.1), duration=0.1)
-    for name in COMPILED.intersection(names):
-        solver(name)(scene)
+    for name in COMPILED.keys() & set(names):
+        solver(name)(scene, **COMPILED[name])
 
 
 def module_of(name):
