@@ -14,12 +14,15 @@ def draw(rows, machine, path):
     problems = list(dict.fromkeys(row["problem"] for row in rows))
     columns = min(2, len(problems))
     lines = -(-len(problems) // columns)
-    figure = Figure(figsize=(6.2 * columns, 4.6 * lines), layout="constrained")
+    figure = Figure(figsize=(6.2 * columns, 0.8 + 4.2 * lines), layout="constrained")
     axes = figure.subplots(lines, columns, squeeze=False)
     for axis, problem in zip(axes.flat, problems, strict=False):
         _panel(axis, problem, [row for row in rows if row["problem"] == problem])
     for axis in axes.flat[len(problems):]:
         axis.remove()
+    known = {label: handle for axis in figure.axes for handle, label in zip(*axis.get_legend_handles_labels(),
+                                                                            strict=True)}
+    figure.legend(known.values(), known.keys(), loc="outside lower center", ncols=4, fontsize=8)
     figure.suptitle(f"Error against CPU time of one run; {machine['processor']}, one core", fontsize=11)
     figure.savefig(path, dpi=130)
 
@@ -38,4 +41,3 @@ def _panel(axis, problem, rows):
                       color=colour, markersize=8, label=f"{solver}: impacts missed")
     axis.set(xscale="log", yscale="log", xlabel="CPU time of one run [s]", ylabel="error / scale", title=problem)
     axis.grid(True, which="major", color="0.9")
-    axis.legend(fontsize=7, loc="upper right")

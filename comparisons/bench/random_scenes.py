@@ -12,6 +12,8 @@ from comparisons.provenance import json_ready
 
 IMBALANCE_LIMIT = 1e-6  # of the largest energy in the run
 LOSS_ROUND_OFF = 1e-12  # an impact may seem to add this share of the energy it meets
+# Energies below this share of what it takes to tip the block are rounding (a pulse that just touches the threshold).
+ROUND_OFF = 1e-9
 CHUNK = 200
 CHUNK_SECONDS, SCENE_SECONDS = 20.0, 5.0  # time limits of a chunk, of a scene alone
 
@@ -126,10 +128,10 @@ def _energy_scale(scene, response):
     if bearings:
         k = bearings.ka if bearings.law == "linear" else bearings.kb
         scale += 0.5 * bearings.count * k * response.peak_base_displacement**2
-    if response.peak_tilt > 0:
-        reached = min(response.peak_tilt, block.slenderness)
-        scale += block.mass * scene.gravity * block.radius * (math.cos(block.slenderness - reached)
-                                                              - math.cos(block.slenderness))
+    weight = block.mass * scene.gravity * block.radius
+    reached = min(response.peak_tilt, block.slenderness)
+    scale += weight * (math.cos(block.slenderness - reached) - math.cos(block.slenderness))
+    scale += ROUND_OFF * weight * (1 - math.cos(block.slenderness))
     if scene.base and scene.motion:  # what a base gains and loses again when the ground stops
         scale += 0.5 * scene.total_mass * _peak_velocity(scene.motion) ** 2
     return scale

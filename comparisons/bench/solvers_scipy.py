@@ -103,13 +103,15 @@ def contact_run(problem, method, rtol):
     scene, model, law = problem.scene, RockingModel.of(problem.scene), BearingLaw.of(problem.scene.bearings)
     if not isinstance(scene.motion, SampledMotion):
         raise ValueError(f"{scene.name}: needs a sampled motion")
-    samples, dt, duration = scene.motion.samples.tolist() + [0.0, 0.0], scene.motion.dt, scene.duration
+    samples, dt, over, duration = scene.motion.samples.tolist(), scene.motion.dt, scene.motion.end, scene.duration
     count, kb, dk, alpha, d0, f0, M = law.count, law.kb, law.dk, law.alpha, law.d0, law.f0, model.M
     threshold, length, power = model.uplift_acceleration, model.R * model.gamma, 1 - law.alpha
     last = len(samples) - 2
     atol = rtol * np.array([length, length * scene.rocking_frequency])
 
     def ground(t):
+        if t > over:
+            return 0.0
         i = min(int(t / dt), last)
         return samples[i] + (samples[i + 1] - samples[i]) * (t / dt - i)
 

@@ -19,6 +19,6 @@ def figure_table(found):
     table = Table("figure", "measured", "asked for", "met", "how", title="Figures")
     for figure in found:
         value = "-" if figure.value is None else f"{figure.value:.3g} {figure.unit}"
-        table.add_row(figure.name, value, f"{figure.sense} {figure.limit:g} {figure.unit}",
-                      "yes" if figure.met else "no", figure.how)
+        asked = "-" if figure.limit is None else f"{figure.sense} {figure.limit:g} {figure.unit}"
+        table.add_row(figure.name, value, asked, {True: "yes", False: "no", None: "-"}[figure.met], figure.how)
     return table

@@ -29,7 +29,8 @@ analytic_done = time.perf_counter()
 scene = problem_a()
 analytic.simulate(scene)
 run_done = time.perf_counter()
-print(numpy_done - begin, numba_done - numpy_done, analytic_done - numba_done, run_done - analytic_done)
+print(numpy_done - begin, numba_done - numpy_done, analytic_done - numba_done, run_done - analytic_done,
+      time.process_time())
 """
 
 
@@ -69,7 +70,7 @@ def spectrum_cost(motion, rounds, periods=500, workers=2):
 
 
 def start_up(rounds):
-    """Wall seconds of processes that run one scene with the cached kernel, and the medians of their parts."""
+    """Processes that run one scene with the cached kernel: elapsed seconds, medians of their parts and of their CPU."""
     environment = {**os.environ, "PYTHONPATH": str(PROJECT)}
     seconds, parts = [], []
     for _ in range(rounds + 1):
@@ -79,9 +80,9 @@ def start_up(rounds):
         seconds.append(time.perf_counter() - begin)
         parts.append([float(word) for word in done.stdout.split()])
     seconds, parts = seconds[1:], parts[1:]  # the first one may compile the kernel
+    *medians, cpu = (statistics.median(values) for values in zip(*parts, strict=True))
     names = ("numpy", "numba", "analytic", "first run")
-    medians = {name: statistics.median(values) for name, values in zip(names, zip(*parts, strict=True), strict=True)}
-    return seconds, {"python": statistics.median(seconds) - sum(medians.values()), **medians}
+    return seconds, dict(zip(names, medians, strict=True)), cpu
 
 
 def _cpu_seconds(run, rounds, runs):
