@@ -195,7 +195,9 @@ def find_events(scene, trace, swings):
         if following is not None:
             slack = 2 * max(trace.time[last + 1] - trace.time[last], trace.time[following] - trace.time[following - 1])
             slack += edge / abs(before[i]) + edge / abs(after[i + 1])
-            crossed = swings.side[i + 1] == -swings.side[i] and lift[i + 1] - land[i] <= slack  # False for NaN
+            # A compliant contact's hop after an impact shifts the lift carried back, not the time in contact.
+            contact = min(lift[i + 1] - land[i], trace.time[following] - trace.time[last])
+            crossed = swings.side[i + 1] == -swings.side[i] and contact <= slack  # False for NaN
             if crossed or (swings.side[i + 1] == -swings.side[i] and following == last + 1
                            and np.isfinite(before[i] + after[i + 1])):
                 impacts.append(Impact(float(land[i]), float(before[i]), float(after[i + 1]),
