@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+from analytic.errors import SettingError
 from analytic.records import read_record
 from analytic.synthetic import synthetic_motion
 from comparisons.provenance import machine, write_result
@@ -33,11 +34,19 @@ def bench_analytic(output, *, quick=False, random_scenes=0, record=None, advance
         Record of the isolated Caryatid; the shipped synthetic motion without one.
     advance : callable
         Called with a word on what comes next.
+
+    Raises
+    ------
+    SceneError, SettingError
+        The record cannot be read, or the folder cannot be made: before anything runs.
     """
-    output = Path(output)
-    output.mkdir(parents=True, exist_ok=True)
-    rounds = QUICK_ROUNDS if quick else ROUNDS
     motion = read_record(record) if record else synthetic_motion()
+    output = Path(output)
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise SettingError(f"--output {output.name}: no folder can be made there ({error.strerror})") from error
+    rounds = QUICK_ROUNDS if quick else ROUNDS
     blocks, records = block_problems(), record_problems(motion)
     entries = [entry for problem in blocks for entry in block_entries(problem, quick)]
     entries += [entry for problem in records for entry in record_entries(problem, quick)]

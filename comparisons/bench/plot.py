@@ -1,5 +1,7 @@
 """Error against CPU time, one panel per problem."""
 
+import math
+
 from matplotlib.figure import Figure
 
 # Okabe and Ito: told apart in every colour vision; markers differ as well.
@@ -16,6 +18,7 @@ def draw(rows, machine, path):
     lines = -(-len(problems) // columns)
     figure = Figure(figsize=(6.2 * columns, 0.8 + 4.2 * lines), layout="constrained")
     axes = figure.subplots(lines, columns, squeeze=False)
+    rows = [row for row in rows if row["cpu_seconds"] is not None and math.isfinite(row["error"])]
     for axis, problem in zip(axes.flat, problems, strict=False):
         _panel(axis, problem, [row for row in rows if row["problem"] == problem])
     for axis in axes.flat[len(problems):]:
@@ -31,8 +34,8 @@ def _panel(axis, problem, rows):
     for solver in dict.fromkeys(row["solver"] for row in rows):
         base, _, variant = solver.partition(",")
         colour, marker = STYLES[base]
-        sound = [row for row in rows if row["solver"] == solver and row["counted"] and row["error"] is not None]
-        wrong = [row for row in rows if row["solver"] == solver and not row["counted"] and row["error"] is not None]
+        sound = [row for row in rows if row["solver"] == solver and row["counted"]]
+        wrong = [row for row in rows if row["solver"] == solver and not row["counted"]]
         look = {"color": colour, "marker": marker, "markersize": 5, "linestyle": "--" if variant else "-",
                 "markerfacecolor": "none" if variant else colour, "label": solver, "linewidth": 1.2}
         axis.plot([row["cpu_seconds"] for row in sound], [max(row["error"], FLOOR) for row in sound], **look)

@@ -35,7 +35,7 @@ TWIN_QUICK = {"DOP853": (1e-6,)}
 
 @dataclass
 class Entry:
-    """One solver at one tolerance on one problem. seconds: CPU per run, one per round."""
+    """One solver at one tolerance on one problem. seconds: CPU per run, one per round; failure: what it raised."""
 
     problem: object
     solver: str
@@ -45,6 +45,7 @@ class Entry:
     impacts: int = -1
     batch: int = 1
     seconds: list = field(default_factory=list)
+    failure: str | None = None
 
     @property
     def counted(self):
@@ -57,11 +58,12 @@ class Entry:
 
     def row(self):
         """JSON-ready."""
-        low, high = np.percentile(self.seconds, (10, 90)).tolist()
+        low, median, high = np.percentile(self.seconds, (10, 50, 90)).tolist() if self.seconds else 3 * [None]
         return {"problem": self.problem.name, "solver": self.solver, "tolerance": self.tolerance, "error": self.error,
                 "impacts": self.impacts, "impacts_expected": self.problem.impacts, "counted": self.counted,
-                "cpu_seconds": self.median, "cpu_seconds_low": low, "cpu_seconds_high": high,
-                "runs_per_timing": self.batch, "timings": len(self.seconds)}
+                "cpu_seconds": median, "cpu_seconds_low": low, "cpu_seconds_high": high,
+                "runs_per_timing": self.batch, "timings": len(self.seconds),
+                "failure": self.failure}
 
 
 def block_entries(problem, quick):
@@ -91,7 +93,11 @@ def measure(entries, rounds, advance=lambda: None):
     """Error and impacts of each entry, then its CPU time in `rounds` rounds of one timing each, in turns."""
     for entry in entries:
         begin = time.process_time()
-        state, entry.impacts = entry.run()  # also compiles and warms up
+        try:
+            state, entry.impacts = entry.run()  # also compiles and warms up
+        except (ArithmeticError, RuntimeError, ValueError) as error:  # a general solver may give up on its own events
+            entry.failure = f"{type(error).__name__}: {error}"
+            continue
         entry.error = entry.problem.error(state) if state is not None else float("nan")
         cost = time.process_time() - begin
         if cost < TICK:
@@ -103,6 +109,8 @@ def measure(entries, rounds, advance=lambda: None):
         advance()
     for turn in range(rounds):
         for entry in entries:
+            if entry.failure:
+                continue
             expected = entry.median if entry.seconds else 0.0
             if expected > VERY_SLOW or (expected > SLOW and turn >= 3):
                 continue

@@ -6,8 +6,20 @@ import math
 import numpy as np
 import pytest
 
-from analytic import Base, Block, Impact, PulseMotion, SampledMotion, Scene, overturning_map, simulate
+from analytic import (
+    Base,
+    Block,
+    Impact,
+    PulseMotion,
+    SampledMotion,
+    Scene,
+    SceneError,
+    SettingError,
+    overturning_map,
+    simulate,
+)
 from comparisons.bench import peers, random_scenes
+from comparisons.bench.analytic_bench import bench_analytic
 from comparisons.bench.figures import Figure, ratios
 from comparisons.bench.kernel_solver import kernel_run
 from comparisons.bench.plot import draw
@@ -82,6 +94,17 @@ def test_measured_ratio_and_error_belong_to_the_same_runs():
     assert "DOP853 at 1e-11" in figure.how
 
 
+def test_a_solver_that_gives_up_is_reported_and_not_timed():
+    def gives_up():
+        raise ValueError("f(a) and f(b) must have different signs")
+
+    entry = Entry(A, "LSODA", 1e-9, gives_up)
+    measure([entry], 2)
+    assert entry.row()["failure"] == "ValueError: f(a) and f(b) must have different signs"
+    assert not entry.counted and entry.row()["cpu_seconds"] is None
+    assert cheapest([entry], A, lambda name: True, 1.0) is None
+
+
 def test_a_figure_that_could_not_be_measured_is_not_met():
     assert Figure("x", None, "", "at least", 1, "").met is False
     assert Figure("x", 2.0, "", "at least", 1, "").met is True
@@ -148,3 +171,12 @@ def test_methods_are_those_the_twin_offers():
     from analytic.twin import METHODS as offered
 
     assert set(METHODS) == set(offered)
+
+
+def test_mistakes_end_before_anything_runs(tmp_path):
+    with pytest.raises(SceneError, match="missing.at2.*cannot be read"):
+        bench_analytic(tmp_path / "out", record=tmp_path / "missing.at2")
+    assert not (tmp_path / "out").exists()
+    (tmp_path / "file").write_text("")
+    with pytest.raises(SettingError, match="--output file"):
+        bench_analytic(tmp_path / "file")
