@@ -13,6 +13,7 @@ STUDIES = {
     "fragility": "fragility",
     "speed-error": "speed_error",
     "stability": "stability",
+    "caryatid": "caryatid",
 }
 PACKAGE = "comparisons.studies"
 

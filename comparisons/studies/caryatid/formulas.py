@@ -4,14 +4,14 @@ import math
 
 import numpy as np
 
-from analytic import Bearings, load_scene, simulate
+from analytic import load_scene, simulate
 from analytic.bearing import BearingLaw
 from analytic.design import design_bearings, properties, steady_cycle
 from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
 
 from . import paper
 from .literal import branch, history_point, momentum_after
-from .paper import CORRECTED, GIVEN, REPRODUCED, Value, judged
+from .paper import CORRECTED, DERIVED, GIVEN, REPRODUCED, Value, judged
 
 TURNS = (0.0, 0.06, -0.06, 0.15, -0.15, 0.30, -0.30, 0.10, -0.05, 0.30)  # m, the path of Fig. 3
 REVERSAL = 0.20  # m, where the misprint of eq. (12) is shown
@@ -87,10 +87,10 @@ def _table(scene, law):
         Value("text", "mass of the Caryatid m [kg]", paper.MASS, scene.block.mass, GIVEN),
         Value("text", "mass of the base m_b [kg]", paper.BASE_MASS, scene.base.mass, GIVEN),
         judged("eq. (1)", "rocking frequency ω_r [rad/s]", paper.OMEGA_R, scene.rocking_frequency, 0.005,
-               "with R = 1.0884 m"),
-        Value("eq. (1)", "radius R [m]", "not at hand", radius, REPRODUCED,
+               "with R = 1.0884 m, itself derived from ω_r"),
+        Value("eq. (1)", "radius R [m]", "not at hand", radius, DERIVED,
               "follows from ω_r and J_O = 4/3 m R² of a rectangle"),
-        Value("text", "slenderness γ [rad]", "not printed", scene.block.slenderness, CORRECTED,
+        Value("text", "slenderness γ [rad]", "not printed", scene.block.slenderness, DERIVED,
               "chosen; the interval that fits the paper's claims is with each motion"),
         judged("Table 1(a)", "period T_bi [s]", paper.PERIOD, got.period, 0.005,
                f"as secant period at x_max; with k_b alone it would be {got.period_kb:.3f} s"),
@@ -188,8 +188,3 @@ def _equations(scene, law, arrays, jump):
         equation("Table 1(b)", "bearings", REPRODUCED, "α designed from Table 1(a) [-]",
                  design_bearings(scene.total_mass, paper.PERIOD, paper.DAMPING, paper.X_MAX).alpha),
     ]
-
-
-def bearings_of_table_1b():
-    """The paper's bearings."""
-    return Bearings(count=paper.COUNT, ka=paper.KA, kb=paper.KB, alpha=paper.ALPHA, delta_k=paper.DELTA_K)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 REPRODUCED, CORRECTED, NOT_REPRODUCIBLE = "reproduced", "corrected", "not reproducible"
-GIVEN, OTHER_MOTION, CHECKED = "input", "other motion", "checked"
+GIVEN, DERIVED, ADDED, OTHER_MOTION = "input", "not printed, derived", "added here", "other motion"
 
 # Table 1(a): targets; Table 1(b): the bearings designed for them
 PERIOD, X_MAX, DAMPING = 2.0, 0.30, 0.30  # s, m, share of critical

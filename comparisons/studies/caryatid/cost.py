@@ -1,0 +1,204 @@
+"""The paper's cost claim: the algebraic bearing against Bouc-Wen, at equal error, interleaved in one process."""
+
+import math
+import time
+
+import numpy as np
+from numba import njit
+
+from analytic import PulseMotion, kernel, layout, simulate
+from analytic.bearing import ALGEBRAIC, BOUC_WEN, BearingLaw, hysteretic_force, virtual_travel
+from analytic.solver import ground, options, parameters
+from analytic.twin import simulate_twin
+
+from .runs import ISOLATED, caryatid
+
+LAWS = ("algebraic", "bouc-wen")
+TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
+DIVISIONS = (1, 2, 4, 8, 16, 32)  # fixed steps per sample of the motion
+ERRORS = {"kernel": (1e-8, 1e-10, 1e-12), "fixed-step RK4": (1e-6, 3e-7, 1e-7, 3e-8)}
+TWIN_SECONDS = 4.0
+EVALUATIONS = 200_000
+
+
+def cost_rows(motion, quick=False):
+    """Rows: CPU of the algebraic over that of the Bouc-Wen bearing, median and spread over rounds.
+
+    Errors are those of the final displacement over the peak, of each law against its own tight solution.
+    """
+    rounds = 3 if quick else 9
+    record = {law: caryatid(ISOLATED, motion).with_(bearings={"law": law}) for law in LAWS}
+    pulse = {law: scene.with_(motion=PulseMotion("one-sine", 3.0, math.pi), duration=10.0)
+             for law, scene in record.items()}
+    return [
+        _ladder("kernel", "one-sine pulse: Taylor steps, code alike for both laws", pulse, TOLERANCES,
+                lambda scene, tolerance: _kernel(scene, tolerance, 20), rounds),
+        _floor("kernel", "record: steps end at samples, algebraic path unrolled", record, rounds,
+               lambda scene: _kernel(scene, 1e-8, 3)),
+        _ladder("fixed-step RK4", "record: the same loop; x_j fixed at each reversal", record, DIVISIONS,
+                _fixed_step, rounds),
+        *(_floor(f"scipy {method}", f"record, first {TWIN_SECONDS:g} s", {
+            law: scene.with_(duration=TWIN_SECONDS) for law, scene in record.items()}, 2 if quick else 5,
+            lambda scene, method=method: _twin(scene, method)) for method in ("RK45", "DOP853")),
+        _evaluation(record, rounds),
+    ]
+
+
+def _kernel(scene, tolerance, repeats):
+    """CPU of the compiled run alone, and its final displacement."""
+    run = parameters(scene), ground(scene.motion), options(tolerance), np.zeros(layout.TOTALS)
+    begin = time.process_time()
+    for _ in range(repeats):
+        state, *_ = kernel.run(*run)
+    return (time.process_time() - begin) / repeats, float(state[2])
+
+
+def _twin(scene, method):
+    response = simulate_twin(scene, method=method, rtol=1e-6, history=False, energy=False)
+    return response.cpu_seconds, response.end.base_displacement
+
+
+@njit(cache=True)
+def _algebraic(z, s, travel, dx, dk, alpha, d0, f0):
+    """z after dx from z: on the branch of direction s, where `travel` = D_c + s (x - x_c) is known, with one power."""
+    if dx * s < 0:
+        return hysteretic_force(z, dx, ALGEBRAIC, dk, alpha, d0, f0)
+    return s * (dk * ((travel + s * dx) ** (1 - alpha) - d0) / (1 - alpha) + f0)
+
+
+@njit(cache=True)
+def _rk4(dt, samples, divisions, mass, law, count, kb, dk, alpha, d0, f0):
+    """Final displacement in full contact, eq. (2), with RK4; the algebraic history is committed at each step's end."""
+    x, v, z, s = 0.0, 0.0, 0.0, 1.0
+    travel = virtual_travel(s, z, dk, alpha, d0, f0)
+    h = dt / divisions
+    for i in range(len(samples) - 1):
+        slope = (samples[i + 1] - samples[i]) / dt
+        for k in range(divisions):
+            x1, v1, z1 = x, v, z
+            dx, dv, dz = 0.0, 0.0, 0.0
+            for stage in range(4):
+                at = 0.0 if stage == 0 else (h if stage == 3 else 0.5 * h)
+                rate = 0.0
+                if law == BOUC_WEN:
+                    rate = 0.5 * dk * v1 * (1 - math.copysign(1.0, v1) * z1 / f0)
+                elif stage > 0:
+                    z1 = _algebraic(z, s, travel, x1 - x, dk, alpha, d0, f0)
+                push = -count * (kb * x1 + z1) / mass - (samples[i] + slope * (k * h + at))
+                weight = 1 / 6 if stage == 0 or stage == 3 else 1 / 3
+                dx, dv, dz = dx + weight * v1, dv + weight * push, dz + weight * rate
+                ahead = 0.5 * h if stage < 2 else h
+                x1, v1, z1 = x + ahead * v1, v + ahead * push, z + ahead * rate
+            if law == BOUC_WEN:
+                z += h * dz
+            elif s * dx >= 0:
+                z = _algebraic(z, s, travel, h * dx, dk, alpha, d0, f0)
+                travel += s * h * dx
+            else:  # a reversal: the history is fixed anew
+                s, before = -s, z
+                z = hysteretic_force(before, h * dx, ALGEBRAIC, dk, alpha, d0, f0)
+                travel = virtual_travel(s, before, dk, alpha, d0, f0) + s * h * dx
+            x, v = x + h * dx, v + h * dv
+    return x
+
+
+def _fixed_step(scene, divisions):
+    law, motion = BearingLaw.of(scene.bearings), scene.motion
+    begin = time.process_time()
+    end = _rk4(motion.dt, motion.samples, divisions, scene.total_mass, law.law, law.count, law.kb, law.dk, law.alpha,
+               law.d0, law.f0)
+    return time.process_time() - begin, end
+
+
+def _references(scenes):
+    tight = {law: simulate(scene, tolerance=1e-16, history=False) for law, scene in scenes.items()}
+    return {law: (one.end.base_displacement, one.peak_base_displacement) for law, one in tight.items()}
+
+
+def _error(end, reference):
+    return abs(end - reference[0]) / reference[1]
+
+
+def _ladder(solver, what, scenes, knobs, run, rounds):
+    """CPU at equal error: between the rungs of each law's ladder, on logarithmic scales; a ratio per round."""
+    references = _references(scenes)
+    for scene in scenes.values():
+        run(scene, knobs[0])  # compiled
+    cpu, errors = np.empty((rounds, len(LAWS), len(knobs))), np.empty((len(LAWS), len(knobs)))
+    for number in range(rounds):
+        for k, knob in enumerate(knobs):
+            for i, law in enumerate(LAWS):
+                cpu[number, i, k], end = run(scenes[law], knob)
+                errors[i, k] = _error(end, references[law])
+    ratios = []
+    targets = ERRORS[solver]
+    for number in range(rounds):
+        at = [[_cpu_at(target, errors[i], cpu[number, i]) for target in targets] for i in range(len(LAWS))]
+        ratios += [a / b for a, b in zip(*at, strict=True) if a is not None and b is not None]
+    return _row(solver, what, ratios, errors.tolist(), np.median(cpu, axis=0).tolist(), targets)
+
+
+def _cpu_at(error, errors, cpu):
+    """CPU at `error` by logarithmic interpolation; None outside the ladder's errors."""
+    errors = np.maximum(errors, 1e-17)
+    best = np.minimum.accumulate(errors)  # a lucky rung is not bought by the next
+    if not best[-1] <= error <= best[0]:
+        return None
+    return float(np.exp(np.interp(-np.log(error), -np.log(best), np.log(cpu))))
+
+
+def _floor(solver, what, scenes, rounds, run):
+    """CPU where both laws sit at the error floor that steps ending at the samples give."""
+    references = _references(scenes)
+    for scene in scenes.values():
+        run(scene)
+    ratios, cpu, errors = [], [], {}
+    for _ in range(rounds):
+        spent = {}
+        for law, scene in scenes.items():
+            spent[law], end = run(scene)
+            errors[law] = _error(end, references[law])
+        ratios.append(spent["algebraic"] / spent["bouc-wen"])
+        cpu.append([spent[law] for law in LAWS])
+    return _row(solver, what, ratios, [[errors[law]] for law in LAWS], np.median(cpu, axis=0)[:, None].tolist(), None)
+
+
+@njit(cache=True)
+def _branch_forces(n, dk, alpha, d0, f0):
+    """As an integrator that fixes x_j at each reversal evaluates it: one power."""
+    z = 0.0
+    for k in range(n):
+        z += 1e-12 * (dk * ((1.05 + 1e-9 * k) ** (1 - alpha) - d0) / (1 - alpha) + f0)
+    return z
+
+
+@njit(cache=True)
+def _rates(n, dk, f0):
+    z = 0.1 * f0
+    for k in range(n):
+        v = 0.1 + 1e-9 * k
+        z += 1e-12 * (0.5 * dk * v * (1 - math.copysign(1.0, v) * z / f0))
+    return z
+
+
+def _evaluation(scenes, rounds):
+    """One evaluation of the force (algebraic, x_j fixed) over one of the rate z' (Bouc-Wen)."""
+    law = BearingLaw.of(scenes["algebraic"].bearings)
+    runs = {"algebraic": lambda: _branch_forces(EVALUATIONS, law.dk, law.alpha, law.d0, law.f0),
+            "bouc-wen": lambda: _rates(EVALUATIONS, law.dk, law.f0)}
+    for run in runs.values():
+        run()
+    cpu = np.empty((rounds, len(LAWS)))
+    for number in range(rounds):
+        for i, name in enumerate(LAWS):
+            begin = time.process_time()
+            runs[name]()
+            cpu[number, i] = (time.process_time() - begin) / EVALUATIONS
+    return _row("one evaluation, compiled", "force with x_j fixed, against rate of z", (cpu[:, 0] / cpu[:, 1]).tolist(),
+                None, np.median(cpu, axis=0)[:, None].tolist(), None)
+
+
+def _row(solver, what, ratios, errors, cpu, targets):
+    low, middle, high = np.percentile(ratios, (10, 50, 90)) if ratios else (None, None, None)
+    return {"part": "cost", "solver": solver, "what": what, "ratio": middle, "ratio_low": low, "ratio_high": high,
+            "ratios": len(ratios), "errors": errors, "cpu_seconds": cpu, "at_errors": targets}

@@ -1,0 +1,125 @@
+"""The paper's simulations in the analytic model and in both engines: Figs 4(b) and 6, points of Figs 5(a) and 5(b)."""
+
+import numpy as np
+
+from analytic import Base, Bearings, Scene, load_scene, rocking_spectrum
+from analytic.linear_oscillator import displacement_spectrum
+from engines import get_engine
+
+from ...cases import Case
+from ...sweep import run_sweep
+
+FREE, ISOLATED = "free-standing", "isolated"
+SHIPPED = {FREE: "caryatid-rigid", ISOLATED: "caryatid-isolated"}
+ENGINES = ("exudyn", "pybullet")
+DAMPING_RATIOS = (0.05, 0.10, 0.15, 0.20, 0.30)  # Fig. 5(b); the paper's own are not at hand
+OSCILLATOR_DAMPING = (0.05, 0.30)  # of those run in the engines
+# A block this stocky stays down on its oscillator: it lifts at 0.84 g.
+STOCKY = 0.7  # rad
+TIME_LIMIT = 120.0  # s
+HISTORY_STEP = 0.01  # s, at which histories are kept
+
+
+def caryatid(name, motion):
+    """The free-standing or the isolated Caryatid under `motion`."""
+    return load_scene(SHIPPED[name]).with_(motion=motion, duration=motion.end)
+
+
+def slender_block(motion, period, slenderness):
+    """A block on rigid ground whose rocking period T_r is `period` [s], as in Fig. 5(a)."""
+    scene = caryatid(FREE, motion)
+    radius = 3 * scene.gravity * (period / (2 * np.pi)) ** 2 / 4  # (1) with J_O = 4/3 m R^2
+    return scene.with_(block={"radius": float(radius), "slenderness": slenderness})
+
+
+def oscillator(motion, period, damping):
+    """A linear oscillator as a scene: a block that cannot lift, on one linear bearing with a damper."""
+    scene = caryatid(ISOLATED, motion)
+    omega = 2 * np.pi / period
+    bearing = Bearings(law="linear", count=1, ka=float(scene.total_mass * omega**2),
+                       damping=float(2 * damping * omega * scene.total_mass))
+    return Scene(block=scene.block.model_copy(update={"slenderness": STOCKY}), base=Base(mass=scene.base.mass),
+                 bearings=bearing, motion=motion, duration=float(motion.end + period), gravity=scene.gravity)
+
+
+def scalars(response):
+    """Reducer: what came out, without history and impacts."""
+    values = response.to_json()
+    return {name: value for name, value in values.items() if name not in ("impacts", "uplifts", "rests", "energy")}
+
+
+def with_history(response):
+    """Reducer: the scalars, and tilt and base displacement at multiples of `HISTORY_STEP`."""
+    history = response.history
+    time = np.arange(0.0, history.time[-1], HISTORY_STEP)
+    kept = {name: np.interp(time, history.time, getattr(history, name)).tolist()
+            for name in ("tilt", "base_displacement")}
+    return {**scalars(response), "history": {"time": time.tolist(), **kept}}
+
+
+def engines_here():
+    """(names of the two engines that are installed, {name: why not} of the others)."""
+    present, missing = [], {}
+    for name in ENGINES:
+        try:
+            get_engine(name)
+            present.append(name)
+        except ImportError as error:
+            missing[name] = str(error)
+    return present, missing
+
+
+def simulations(motion, store, quick=False, progress=True):
+    """Rows of all runs, and the histories of Figs 4(b) and 6 as arrays."""
+    engines, missing = engines_here()
+    solvers = ("analytic", *engines)
+    figures = [Case(caryatid(name, motion), solver, tag={"part": "run", "scene": name})
+               for name in SHIPPED for solver in solvers]
+    points = _points(motion, solvers, quick)
+    rows, histories = [], {}
+    for cases, reduce, label in ((figures, with_history, "Figs 4(b), 6"), (points, scalars, "Figs 5(a), 5(b)")):
+        found = run_sweep(cases, store=store, reduce=reduce, time_limit=TIME_LIMIT, progress=progress, label=label)
+        for row in found:
+            values = dict(row.values)
+            for column, numbers in values.pop("history", {}).items():
+                key = f"{row.case.tag['scene']}/{row.case.solver}/{column}"
+                histories[key] = np.array(numbers, dtype=np.float32)
+            rows.append({**values, **row.case.tag, "solver": row.case.solver, "failure": row.failure, **row.cost})
+    return rows, histories, missing
+
+
+def _points(motion, solvers, quick):
+    """Single blocks and oscillators of Fig. 5, in every solver."""
+    slenderness = caryatid(FREE, motion).block.slenderness
+    own = 2 * np.pi / caryatid(FREE, motion).rocking_frequency
+    blocks = (own, 5.0) if quick else (1.5, own, 3.0, 3.5, 4.5, 5.0, 6.0, 7.0)
+    oscillators = (2.0,) if quick else (1.0, 2.0, 3.0)
+    cases = [Case(slender_block(motion, period, slenderness), solver, settings={"history": False},
+                  tag={"part": "rocking spectrum", "period": float(period)})
+             for solver in solvers for period in blocks]
+    return cases + [Case(oscillator(motion, period, damping), solver, settings={"history": False},
+                         tag={"part": "displacement spectrum", "period": period, "damping": damping})
+                    for solver in solvers for period in oscillators for damping in OSCILLATOR_DAMPING]
+
+
+def spectra(motion, quick=False):
+    """Arrays of Fig. 5(a), max tilt over slenderness against T_r, and Fig. 5(b), max displacement against T_bi."""
+    slenderness = caryatid(FREE, motion).block.slenderness
+    periods = np.linspace(0.5, 8.0, 151 if quick else 751)
+    tilts = rocking_spectrum(motion, periods, slenderness)
+    isolation = np.linspace(0.1, 5.0, 99 if quick else 246)
+    return {"rocking/period": periods, "rocking/tilt": np.where(tilts.overturns, np.nan, tilts.peak_tilt / slenderness),
+            "rocking/overturns": tilts.overturns, "displacement/period": isolation,
+            "displacement/damping": np.array(DAMPING_RATIOS),
+            "displacement/peak": displacement_spectrum(motion, isolation, DAMPING_RATIOS)}
+
+
+def equivalent_oscillators(motion, properties, nonlinear):
+    """What a linear oscillator at T_bi predicts, with the damping in either definition, beside the bearings' own."""
+    return [{"part": "equivalent", "definition": name, "damping": damping, "period": properties.period,
+             "displacement": float(displacement_spectrum(motion, [properties.period], [damping])[0, 0]),
+             "nonlinear": nonlinear}
+            for name, damping in (("W_D/(2π E_s)", properties.damping_paper),
+                                  ("W_D/(4π E_s)", properties.damping_equivalent))]
+
+

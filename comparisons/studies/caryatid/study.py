@@ -1,0 +1,170 @@
+"""The study as a whole: computes everything, writes the result files and the figures."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from analytic.design import properties
+from engines import ENGINES
+
+from ...provenance import read_result, write_result
+from ...sweep import Store
+from . import paper
+from .cost import cost_rows
+from .formulas import formulas
+from .paper import NOT_REPRODUCIBLE, OTHER_MOTION, REPRODUCED, Value, judged
+from .runs import FREE, ISOLATED, caryatid, equivalent_oscillators, simulations, spectra
+from .slenderness import claims, uplift_slenderness
+from .variations import contact, impact_friction, maps
+
+KIND = "caryatid"
+PART_PAPER, PART_MOTION, PART_HISTORIES = "paper", "motion", "histories"
+STORE = "runs.jsonl"
+
+
+def make_results(folder, motion, *, quick=False, progress=True, say=lambda text: None):
+    """Compute the study under `motion` and write its result files and figures into `folder`.
+
+    Parameters
+    ----------
+    folder : path
+        Made if it does not exist. The engines' runs resume from what a broken-off study left there.
+    motion : SampledMotion
+    quick : bool
+        Fewer points everywhere: under a minute.
+    say : callable
+        Told in words what is being done.
+
+    Returns
+    -------
+    list of Path
+        The result files.
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    described = {"motion": {"label": motion.label, "peak": motion.peak, "peak_time": motion.peak_time,
+                            "dt": motion.dt, "end": motion.end}, "quick": quick}
+    say("bearing law, Table 1, misprints")
+    rows, arrays = formulas()
+    files = [write_result(folder / "caryatid-paper.json", KIND, {"part": PART_PAPER}, rows, arrays,
+                          modules=["comparisons.studies.caryatid.formulas"])]
+    with Store(folder / STORE) as store:
+        rows, histories, missing = simulations(motion, store, quick, progress)
+    say("spectra")
+    arrays = spectra(motion, quick)
+    isolated = caryatid(ISOLATED, motion)
+    analytic = {row["scene"]: row for row in rows if row["part"] == "run" and row["solver"] == "analytic"}
+    rows += equivalent_oscillators(motion, properties(isolated.bearings, isolated.total_mass, paper.X_MAX),
+                                   analytic[ISOLATED]["peak_base_displacement"])
+    say("slenderness: which values fit the claims")
+    found, more = claims(motion, quick)
+    rows, arrays = rows + found, arrays | more
+    say("friction and normal force")
+    found, more = contact(motion, quick)
+    rows, arrays = rows + found, arrays | more | _impact_friction(motion)
+    say("other slendernesses, intensities and motions")
+    found, more = maps(motion, quick, say)
+    rows, arrays = rows + found, arrays | more
+    say("algebraic against Bouc-Wen")
+    rows += cost_rows(motion, quick)
+    arrays = {name: values.astype(np.float32) if values.dtype == np.float64 else values
+              for name, values in arrays.items()}
+    least = uplift_slenderness(motion)
+    rows += [value.row() for value in _values(rows, motion, least)]
+    modules = ["comparisons.studies.caryatid.study", *(ENGINES[name][0] for name in ENGINES if name not in missing)]
+    stem = f"caryatid-under-{_slug(motion)}"
+    files.append(write_result(folder / f"{stem}.json", KIND,
+                              {"part": PART_MOTION, **described, "missing": missing, "uplift_slenderness": least,
+                               "slenderness": isolated.block.slenderness}, rows, arrays, modules=modules))
+    histories |= {"motion/time": np.arange(len(motion.samples)) * np.float32(motion.dt),
+                  "motion/acceleration": motion.samples.astype(np.float32)}
+    files.append(write_result(folder / f"{stem}-histories.json", KIND,
+                              {"part": PART_HISTORIES, **described, "slenderness": isolated.block.slenderness,
+                               "x_max": paper.X_MAX}, [row for row in rows if row["part"] == "run"], histories,
+                              modules=modules))
+    draw(files, folder)
+    (folder / STORE).unlink()  # complete: the next study measures afresh
+    return files
+
+
+def _slug(motion):
+    """A file's name for the motion: of a record its own, without the ending."""
+    name = "synthetic" if motion.label.startswith("synthetic") else Path(motion.label).stem
+    return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
+
+
+def draw(files, folder):
+    """Write the figures of result files as PNG into `folder`."""
+    from .figures import drawings
+
+    for file in files:
+        for name, drawing in drawings(read_result(file)).items():
+            drawing.figure.savefig(Path(folder) / f"{file.stem}-{name}.png", dpi=150)
+
+
+def _impact_friction(motion):
+    """Friction an impact itself asks for, over slenderness."""
+    slendernesses = np.linspace(0.05, 0.6, 56)
+    return {"impact friction/slenderness": slendernesses, **{
+        f"impact friction/{name}": np.array([impact_friction(caryatid(name, motion).with_(
+            block={"slenderness": float(gamma)})) for gamma in slendernesses]) for name in (FREE, ISOLATED)}}
+
+
+def _values(rows, motion, least):
+    """The paper's numbers that need the motion: Figs 4 to 6, in every solver."""
+    own = "DUZCE" in motion.label.upper()
+    values = []
+
+    def compare(where, quantity, printed, study, within, note=""):
+        if own and study is not None:
+            values.append(judged(where, quantity, printed, study, within, note))
+        elif study is None:
+            values.append(Value(where, quantity, printed, "does not happen",
+                                NOT_REPRODUCIBLE if own else OTHER_MOTION, note))
+        else:
+            values.append(Value(where, quantity, printed, study, OTHER_MOTION, note))
+
+    def words(where, quantity, printed, study):
+        same = REPRODUCED if study == printed else NOT_REPRODUCIBLE if own else OTHER_MOTION
+        values.append(Value(where, quantity, printed, study, same))
+
+    for row in (row for row in rows if row["part"] == "run"):
+        solver, outcome = row["solver"], row["outcome"]
+        if outcome == "failed":
+            values.append(Value("Figs 4(b), 6", f"{row['scene']} Caryatid, {solver}", "runs", "failed",
+                                NOT_REPRODUCIBLE, row["failure"]["reason"]))
+        elif row["scene"] == FREE:
+            words("Fig. 4(b)", f"free-standing Caryatid, {solver}", "overturns", outcome)
+            time = row["overturning_time"]
+            compare("Fig. 4(b)", f"overturning after the peak of the motion [s], {solver}",
+                    paper.OVERTURNING_AFTER_PEAK, None if time is None else time - motion.peak_time,
+                    paper.OVERTURNING_ABOUT, "about 35 s in a trace that starts about 28 s earlier")
+        else:
+            words("Fig. 6", f"isolated Caryatid, {solver}", "stands", outcome)
+            compare("Fig. 6", f"peak displacement of the base [m], {solver}", paper.PEAK_DISPLACEMENT,
+                    row["peak_base_displacement"], 0.0005)
+            compare("Fig. 6", f"peak absolute acceleration [g], {solver}", paper.PEAK_ACCELERATION_G,
+                    row["peak_base_acceleration"] / caryatid(ISOLATED, motion).gravity, 0.0005)
+            words("Fig. 6", f"peak displacement below x_max = 0.30 m, {solver}", "yes",
+                  "yes" if row["peak_base_displacement"] < paper.X_MAX else "no")
+    periods = [row["period"] for row in rows if row["part"] == "rocking spectrum"]
+    for solver in dict.fromkeys(row["solver"] for row in rows if row["part"] == "rocking spectrum"):
+        wrong = [row["period"] for row in rows if row["part"] == "rocking spectrum" and row["solver"] == solver
+                 and (row["outcome"] == "overturns") != _overturns(rows, row["period"])]
+        if solver != "analytic":
+            found = "at all points" if not wrong else f"not at T_r = {', '.join(f'{t:.3g}' for t in wrong)} s"
+            values.append(Value("Fig. 5(a)", f"overturning as in the analytic model, {solver}", "no engine used", found,
+                                paper.ADDED, f"T_r = {', '.join(f'{t:.3g}' for t in dict.fromkeys(periods))} s"))
+    limit = [row for row in rows if row["part"] == "vulnerable"]
+    for row in limit:
+        compare("Fig. 5(a)", "vulnerable below T_r of [s]", paper.VULNERABLE_PERIOD, row["period"],
+                paper.VULNERABLE_ABOUT, f"largest T_r that overturns, γ = {row['slenderness']:g} rad")
+    values.append(Value("text", "least slenderness that does not rock on the bearings [rad]", "not printed", least,
+                        paper.DERIVED, "atan(max|a|/g)"))
+    return values
+
+
+def _overturns(rows, period):
+    return any(row["outcome"] == "overturns" for row in rows if row["part"] == "rocking spectrum"
+               and row["solver"] == "analytic" and row["period"] == period)
