@@ -83,7 +83,7 @@ def loops(result, name):
 
 def restitution(result):
     """Measured restitution on the curve of eq. (7), and its error."""
-    figure = Figure(figsize=(WIDTH, 5.8), layout="constrained")
+    figure = Figure(figsize=(WIDTH, 6.2), layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True)
     for ground, line in GROUND_LINES.items():
         above.plot(result.arrays["curve/slenderness"], result.arrays[f"curve/{ground}"], line, color="0.6",
@@ -105,8 +105,9 @@ def restitution(result):
     above.set(ylabel="restitution $e_φ$ [-]")
     above.legend(fontsize=8)
     below.set(xlabel="slenderness γ [rad]", ylabel="error of restitution, rms [-]", yscale="log")
-    if below.get_legend_handles_labels()[0]:
-        below.legend(fontsize=8)
+    handles, labels = below.get_legend_handles_labels()
+    if handles:
+        figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize=8)
     return figure_of(figure, "Above, restitution falling with slenderness: curves of eq. (7) for rigid ground and for "
                              "a sliding base, with the measured values of each solver on them. Below, the root mean "
                              "square error of each engine on a logarithmic scale.",

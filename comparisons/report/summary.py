@@ -19,11 +19,11 @@ def summary(caryatid, groups):
                 f"(root mean square over {group['impacts']} impacts; worst {number(group['worst'], 2)}), at "
                 f"{number(group['cpu_per_second'], 2)} s of CPU time per simulated second, "
                 f"{_ratio(group, reference)}.")
-    for group in groups:
-        if not group["default"] and group["rms"] is not None:
-            sentences.append(f"Set up as {group['name']}: restitution off by {number(group['rms'], 2)} (worst "
-                             f"{number(group['worst'], 2)}) at {number(group['cpu_per_second'], 2)} s of CPU time per "
-                             "simulated second.")
+    others = [f"{group['name']} {number(group['rms'], 2)} at {number(group['cpu_per_second'], 2)} s/s"
+              for group in groups if not group["default"] and group["rms"] is not None]
+    if others:
+        sentences.append("Set up otherwise, restitution error (root mean square) at CPU time per simulated second: "
+                         + "; ".join(others) + ".")
     for name, reason in caryatid.settings["missing"].items():
         sentences.append(f"Not in this report: {name}. {reason}.")
     failed = [f"{row['solver']} on {row['scene']} ({row['failure']['reason']})" for row in caryatid.rows

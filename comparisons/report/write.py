@@ -30,7 +30,7 @@ def write_page(folder, studies=RESULTS):
     html = environment.get_template("page.html").render(
         motion=caryatid.settings["motion"]["label"], summary=summary(caryatid, variant_groups(free)),
         sections=sections, studies=study_sections(studies), provenance=_provenance(caryatid, free),
-        ages=[text for text in map(age, (caryatid, free)) if text],
+        ages=[f"{name} is {text}" for name, text in ((CARYATID, age(caryatid)), (FREE_ROCKING, age(free))) if text],
         files=[CARYATID, CARYATID.replace(".json", ".npz"), FREE_ROCKING, FREE_ROCKING.replace(".json", ".npz")])
     path = folder / PAGE
     path.write_text(html, encoding="utf-8")

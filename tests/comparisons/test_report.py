@@ -18,7 +18,7 @@ from analytic import EngineNotInstalled, load_scene, simulate, synthetic_motion
 from analytic.records import read_record
 from comparisons.cli import main
 from comparisons.provenance import read_result, write_result
-from comparisons.report import runs
+from comparisons.report import runs, write
 from comparisons.report.content import Section, Table, number, percent
 from comparisons.report.write import write_page
 from engines import installed_engines
@@ -95,6 +95,13 @@ def copied(folder, tmp_path):
     return tmp_path
 
 
+def displacement(folder):
+    """Peak base displacement of the isolated Caryatid in the analytic model [m], from the result file."""
+    (peak,) = [row["peak_base_displacement"] for row in read_result(folder / runs.CARYATID).rows
+               if (row["scene"], row["solver"]) == ("caryatid-isolated", "analytic")]
+    return peak
+
+
 def changed(path, change):
     content = json.loads(path.read_text())
     change(content)
@@ -162,7 +169,7 @@ def test_summary_follows_the_numbers(folder, copied):
     count = 1 + len(installed_engines())
     solvers = {1: "analytic", 2: "both solvers"}.get(count, f"all {count} solvers")
     assert any(f"it overturns in {solvers}" in item for item in items())
-    assert any(f"it never lifts in {solvers}" in item for item in items())
+    assert any("it never lifts in" in item and f"{displacement(folder):.4f} m" in item for item in items())
 
     def analytic_stands(content):
         (row,) = [row for row in content["rows"] if (row["scene"], row["solver"]) == ("caryatid-rigid", "analytic")]
@@ -207,7 +214,8 @@ def test_no_path_of_this_machine_and_no_leftovers(folder):
     assert str(Path(__file__).parents[2]) not in (folder / "report.html").read_text()
 
 
-def test_equal_result_files_give_equal_pages(folder, copied):
+def test_equal_result_files_give_equal_pages(folder, copied, monkeypatch):
+    monkeypatch.setattr(write, "age", lambda result: None)  # the code may be edited meanwhile
     first = write_page(folder, studies=NO_STUDIES).read_bytes()
     assert write_page(copied, studies=NO_STUDIES).read_bytes() == first
 
@@ -289,7 +297,7 @@ def test_duzce_record_overturns_the_free_caryatid_and_not_the_isolated_one(tmp_p
     runs.make_results(tmp_path, read_record(DUZCE), duration=10.0, slendernesses=(SLENDERNESS,))
     page = Page(write_page(tmp_path, studies=NO_STUDIES))
     free, isolated = page.table("Caryatid on rigid ground, 10 s"), page.table("Caryatid isolated, 10 s")
-    for solver in ("analytic", *installed_engines()):
+    for solver in {"analytic", "exudyn", "pybullet"} - set(runs.available_engines()[1]):
         assert free["outcome", solver] == "overturns"
         assert 6 < value(free["overturns at [s]", solver]) < 9
         assert isolated["outcome", solver] == "stands"
