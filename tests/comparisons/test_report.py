@@ -23,6 +23,8 @@ from comparisons.report.content import Section, Table, number, percent
 from comparisons.report.write import write_page
 from engines import installed_engines
 
+pytestmark = pytest.mark.xdist_group("report")  # one worker: its runs are made once
+
 DURATION = 7.0  # s: the free-standing Caryatid overturns within it
 SLENDERNESS = 0.3
 NO_STUDIES = Path(__file__).parent / "no such folder"
