@@ -15,7 +15,7 @@ LOSS_ROUND_OFF = 1e-12  # an impact may seem to add this share of the energy it 
 # Energies below this share of what it takes to tip the block are rounding (a pulse that just touches the threshold).
 ROUND_OFF = 1e-9
 CHUNK = 200
-CHUNK_SECONDS, SCENE_SECONDS = 20.0, 5.0  # time limits of a chunk, of a scene alone
+CHUNK_SECONDS, SCENE_SECONDS = 60.0, 20.0  # time limits of a chunk, of a scene alone
 
 
 def random_scene(seed, index):
