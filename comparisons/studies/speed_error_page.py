@@ -1,0 +1,190 @@
+"""The speed-error study in the report: words, tables and figures, all from the result."""
+
+from ..report.content import Section, Table, figure_of, number
+from .speed_error_ladders import NEEDED
+from .speed_error_measures import MEASURES
+from .speed_error_plots import draw_growth, draw_pareto
+from .speed_error_tables import (
+    LEVELS,
+    TIE,
+    cost_at_error,
+    extras,
+    growths,
+    ladder,
+    law_cost,
+    orders,
+    principal,
+    ranking_stability,
+    unrepeatable,
+)
+
+ENGINES = ("exudyn", "pybullet", "mujoco")
+SHOWN = (1e-2, 1e-3, 1e-4)  # levels of which the words speak
+
+
+def section(result):
+    """The study's `Section` of the report."""
+    failed = [row for row in ladder(result) if row["failure"]]
+    figures = [figure_of(draw_pareto(result), "Error against CPU time of every solver, one panel per scene.",
+                         "Error against CPU time of the very same runs: one point per setting of the accuracy knob, "
+                         "down and left is better. Crosses: impacts lost. Hollow: more is modelled than the scene "
+                         "needs."),
+               figure_of(draw_pareto(result, x="step"), "Error against mean step of every solver, one panel per scene.",
+                         "Error against the mean step (simulated time over steps taken).")]
+    if growths(result):
+        figures.append(figure_of(draw_growth(result), "CPU time and memory against duration, sample rate and runs.",
+                                 "How the cost of a run grows. No run keeps a history."))
+    return Section(
+        "Speed against error", tuple(paragraphs(result)), tuple(tables(result)), tuple(figures),
+        evidence=tuple((f"{row['family']} at {row['knob']} = {row['value']:g}, {row['scene']}: "
+                        f"{row['failure']['reason']}", row["failure"].get("message", "")) for row in failed))
+
+
+def paragraphs(result):
+    """Plain words with computed numbers, list of str."""
+    settings = result.settings
+    found = ["Every solver runs a ladder of its accuracy knob on five scenes. Error and CPU time come from the same "
+             f"runs: {settings['rounds']} fresh processes one after the other, in each every solver has its turn after "
+             "a warm-up; CPU times are medians (of the simulation alone: no import, no compilation, no building of "
+             "the scene)."]
+    for scene, about in settings["scenes"].items():
+        found.append(_scene_words(result, scene, about))
+    found += _extra_words(result) + _law_words(result) + _growth_words(result)
+    pairs, changed = ranking_stability(result)
+    broken = unrepeatable(result)
+    found.append(f"Repetition: the errors of {len(ladder(result)) - len(broken)} of {len(ladder(result))} settings are "
+                 "the same bit for bit in every round"
+                 + ("" if not broken else " (not: " + ", ".join(sorted({row["family"] for row in broken})) + ")")
+                 + f"; of {pairs} pairs of solvers that reach the same error at CPU times more than "
+                 f"{number(100 * (TIE - 1), 2)} % apart, {len(changed)} swap places between the odd and the even rounds"
+                 + ("" if not changed else ": " + "; ".join(f"{one} and {other} ({scene}, {level:g})"
+                                                            for scene, level, one, other in changed)) + ".")
+    return found
+
+
+def _scene_words(result, scene, about):
+    """Cheapest engine and kernel at each level, in one sentence per scene."""
+    measure = MEASURES[principal(result, scene)][0]
+    parts = []
+    for level in SHOWN:
+        best = cost_at_error(result, scene, level)
+        engine = next(((family, row) for family, row in best.items() if family.startswith(ENGINES)), None)
+        kernel = best.get("kernel")
+        if engine and kernel:
+            family, row = engine
+            parts.append(f"to {level:g}: {family} ({row['knob']} {row['value']:.3g}) in "
+                         f"{number(row['cpu_seconds'], 2)} s, {number(row['cpu_seconds'] / kernel['cpu_seconds'], 2)} "
+                         "times the analytic kernel")
+        elif kernel:
+            parts.append(f"to {level:g}: no engine on its ladder; the kernel in {number(kernel['cpu_seconds'], 2)} s")
+    return f"{about['title']} ({measure}; cheapest engine setting) – " + "; ".join(parts) + "."
+
+
+def _extra_words(result):
+    found = extras(result)
+    if not found:
+        return []
+    words = []
+    for model in dict.fromkeys(row["model"] for row in found):
+        ratios = [row["cost_ratio"] for row in found if row["model"] == model]
+        low, high = number(min(ratios), 2), number(max(ratios), 2)
+        words.append(f"{model}: {low if low == high else f'{low} to {high}'} times the CPU time of what is needed")
+    return ["What the scene needs – " + "; ".join(words) + ". The table says what each does to the error."]
+
+
+def _law_words(result):
+    ratios = [f"{number(middle, 3)} times in {family} ({scene}; {number(low, 3)} to {number(high, 3)})"
+              for (scene, family), (middle, low, high) in law_cost(result).items()]
+    if not ratios:
+        return []
+    changed = "; ".join(f"{scene}: {number(100 * change['peak_displacement'], 2)} %"
+                        for scene, change in result.settings["laws"].items())
+    return ["A Bouc-Wen bearing costs, over the algebraic law at the same setting: " + ", ".join(ratios)
+            + f". It changes the peak displacement by ({changed}), whatever the solver."]
+
+
+def _growth_words(result):
+    found = growths(result)
+    words = []
+    for (against, family), series in found.items():
+        if "exponent" in series:
+            words.append(f"{family} against {against}: {number(series['exponent'], 3)} ± "
+                         f"{number(series['exponent_error'], 1)}")
+    if not words:
+        return []
+    memory = found.get(("duration", "kernel"))
+    text = "CPU time grows as a power of – " + "; ".join(words) + "."
+    if memory:
+        traced, value = memory["traced_bytes"], memory["value"]
+        text += (f" The kernel allocates {number(traced[0] / 2**20, 3)} MiB for a run of {value[0]:g} s without history "
+                 f"and {number(traced[-1] / 2**20, 3)} MiB for {value[-1]:g} s; the engines' adapters keep every step "
+                 "until the run is measured, so theirs grow with the duration.")
+    return [text]
+
+
+def tables(result):
+    """Cost at an error for every scene; observed orders; what the scene needs; cost per second and per step."""
+    found = [_cost_table(result, scene, about) for scene, about in result.settings["scenes"].items()]
+    return [*found, _order_table(result), _extra_table(result), _unit_table(result)]
+
+
+def _cost_table(result, scene, about):
+    columns = {level: cost_at_error(result, scene, level) for level in LEVELS}
+    families = list(dict.fromkeys(family for level in LEVELS for family in columns[level]))
+    rows = [[family, *(_cell(columns[level].get(family)) for level in LEVELS)] for family in families]
+    return Table(f"{about['title']}: CPU time [ms] of one run to reach an error (lowest – highest round; setting)",
+                 (MEASURES[principal(result, scene)][0], *(f"≤ {level:g}" for level in LEVELS)), rows)
+
+
+def _cell(row):
+    if row is None:
+        return "–"
+    cpu, low, high = (number(1e3 * row[name], 3) for name in ("cpu_seconds", "cpu_low", "cpu_high"))
+    return f"{cpu} ({low} – {high}; {row['value']:.3g})"
+
+
+def _order_table(result):
+    scenes = result.settings["scenes"]
+    by_scene = {scene: (orders(result, scene, "value"), orders(result, scene, "step")) for scene in scenes}
+    families = dict.fromkeys(row["family"] for row in ladder(result))
+    rows = []
+    for family in families:
+        cells = []
+        for scene in scenes:
+            knob, step = (found.get(family) for found in by_scene[scene])
+            cells.append("–" if knob is None else f"{number(knob[0], 2)} ± {number(knob[1], 1)}"
+                         + ("" if step is None else f"; {number(step[0], 2)}"))
+        if any(cell != "–" for cell in cells):
+            rows.append([family, *cells])
+    return Table("Observed order: error ~ knob^q, q ± standard error; then error ~ (mean step)^q [-]",
+                 ("solver", *(about["title"] for about in scenes.values())), rows)
+
+
+def _extra_table(result):
+    rows = [[f"{row['model']}: {row['family']}, {row['knob']} {row['value']:.3g}",
+             result.settings["scenes"][row["scene"]]["title"], number(row["cost_ratio"], 3),
+             number(row["needed_error"], 2) + _lost(row["needed_lost"]), number(row["error"], 2) + _lost(
+                 row["lost_impacts"])] for row in extras(result)]
+    return Table("What the scene needs, and more: cost and error (principal measure of the scene)",
+                 ("modelled beyond need", "scene", "CPU time over the needed model's [-]", "error as needed",
+                  "error with the extra"), rows)
+
+
+def _lost(count):
+    return f" ({count} impacts lost)" if count else ""
+
+
+def _unit_table(result):
+    rows = []
+    for family in dict.fromkeys(row["family"] for row in ladder(result)):
+        mine = [row for row in ladder(result) if row["family"] == family and row["model"] == NEEDED
+                and "cpu_seconds" in row]
+        steps = [row["cpu_per_step"] for row in mine if row["cpu_per_step"]]
+        if mine:
+            rows.append([family, _range([row["cpu_per_second"] for row in mine], 1.0), _range(steps, 1e6)])
+    return Table("Cost over all scenes and settings, lowest to highest",
+                 ("solver", "CPU time per simulated second [s/s]", "CPU time per step [µs]"), rows)
+
+
+def _range(values, unit):
+    return "–" if not values else f"{number(unit * min(values), 2)} – {number(unit * max(values), 2)}"
