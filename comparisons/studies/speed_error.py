@@ -13,7 +13,7 @@ __all__ = ["command", "section"]
 def command(
     quick: Annotated[bool, typer.Option("--quick", help="Short ladders: under two minutes.")] = False,
     output: Annotated[str, typer.Option(metavar="DIR", help="Folder for result and figures.")] = "rocking-speed-error",
-    repeats: Annotated[int | None, typer.Option(min=1, help="Rounds, a fresh process each. Default 5, quick 3.")] = None,
+    repeats: Annotated[int | None, typer.Option(min=1, help="Fresh processes in turn. Default 5, quick 3.")] = None,
     x: Annotated[str, typer.Option(help="Horizontal axis of the figure.")] = "cpu",
     y: Annotated[str, typer.Option(help="Vertical axis; 'error' is each scene's principal measure.")] = "error",
     replot: Annotated[str | None, typer.Option(metavar="FILE", help="Only draw, from this result file.")] = None,

@@ -28,7 +28,7 @@ EVIDENCE = 600  # characters of an engine's message that a row keeps
 OWN = ("comparisons.studies.speed_error_compute", "comparisons.studies.speed_error_runs", "analytic")
 
 
-def run_study(output, *, quick=False, repeats=None, progress=True, keep=lambda entry: True, grow=True):
+def run_study(output, *, quick=False, repeats=None, progress=True, scenes=None, keep=lambda entry: True, grow=True):
     """Run what is not yet in the store and write ``speed-error.json`` (and ``.npz``) into `output`; returns its path.
 
     Parameters
@@ -41,6 +41,8 @@ def run_study(output, *, quick=False, repeats=None, progress=True, keep=lambda e
         Rounds; each is one fresh process in which every solver has its turn.
     progress : bool
         Bars with the remaining time on standard error.
+    scenes : list of Trial or None
+        None: all five.
     keep : callable
         Entry -> bool: which of them to run.
     grow : bool
@@ -48,7 +50,7 @@ def run_study(output, *, quick=False, repeats=None, progress=True, keep=lambda e
     """
     output = Path(output)
     rounds = repeats or (QUICK_REPEATS if quick else REPEATS)
-    scenes = trials()
+    scenes = scenes or trials()
     chosen = [entry for entry in entries(scenes, quick) if keep(entry)]
     with Store(output / ".sweep" / f"{KIND}.jsonl") as store:
         measured = _rounds(chosen, rounds, store, progress)

@@ -115,7 +115,7 @@ def _batch(scene, count):
 
 
 def _resident_growth(run):
-    """(the run's response, bytes by which the peak resident memory during it exceeds that before, None where hidden)."""
+    """(the run's response, bytes by which resident memory at its peak exceeds that before; None where hidden)."""
     status, reset = Path("/proc/self/status"), Path("/proc/self/clear_refs")
     before = psutil.Process().memory_info().rss
     try:

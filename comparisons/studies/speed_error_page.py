@@ -116,8 +116,8 @@ def _growth_words(result):
     text = "CPU time grows as a power of – " + "; ".join(words) + "."
     if memory:
         traced, value = memory["traced_bytes"], memory["value"]
-        text += (f" The kernel allocates {number(traced[0] / 2**20, 3)} MiB for a run of {value[0]:g} s without history "
-                 f"and {number(traced[-1] / 2**20, 3)} MiB for {value[-1]:g} s; the engines' adapters keep every step "
+        text += (f" The kernel allocates {number(traced[0] / 2**20, 3)} MiB for {value[0]:g} s without history and "
+                 f"{number(traced[-1] / 2**20, 3)} MiB for {value[-1]:g} s; the engines' adapters keep every step "
                  "until the run is measured, so theirs grow with the duration.")
     return [text]
 

@@ -139,5 +139,6 @@ def draw_growth(result):
     memory.set_ylim(bottom=-0.002)
     for axis in axes.flat:
         axis.grid(True, which="major", color="0.9")
-        axis.legend(fontsize=8)
+        if axis.lines:
+            axis.legend(fontsize=8)
     return figure
