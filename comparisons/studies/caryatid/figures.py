@@ -91,8 +91,8 @@ def reversal(result):
     top, bottom = arrays["reversal/right"][0] / 1e3, arrays["reversal/printed"][0] / 1e3
     axis.annotate("", (arrays["reversal/x"][0], bottom), (arrays["reversal/x"][0], top),
                   arrowprops={"arrowstyle": "<->", "color": BLACK})
-    axis.text(arrays["reversal/x"][0] - 0.01, 0.5 * (top + bottom), f"{top - bottom:.2f} kN = 2 f₀", ha="right")
-    axis.set(xlabel="displacement x [m]", ylabel="force of one bearing [kN]")
+    axis.text(arrays["reversal/x"][0] + 0.01, 0.5 * (top + bottom), f"{top - bottom:.2f} kN = 2 f₀")
+    axis.set(xlim=(-0.21, 0.34), xlabel="displacement x [m]", ylabel="force of one bearing [kN]")
     axis.legend(fontsize=9, loc="upper left")
     return Drawing(figure, "Unloading from 0.2 m: the corrected branch starts where loading ended, the printed one "
                            "1.28 kN below.",
@@ -106,13 +106,13 @@ def definitions(result):
     arrays = result.arrays
     left.plot(arrays["amplitude/x"], arrays["amplitude/period"], color=BLUE)
     left.plot(X_MAX, 2.0, "o", color=RED)
-    left.annotate("Table 1(a)", (X_MAX, 2.0), (-62, 4), textcoords="offset points", fontsize=9)
+    left.annotate("Table 1(a)", (X_MAX, 2.0), (-40, -18), textcoords="offset points", fontsize=9)
     left.set(xlabel="amplitude [m]", ylabel="secant period [s]")
     for name, colour, line in (("2 pi", RED, "--"), ("4 pi", BLUE, "-")):
         right.plot(arrays["amplitude/x"], 100 * arrays[f"amplitude/damping {name}"], line, color=colour,
                    label=f"W_D/({name.replace('pi', 'π')} E_s)")
     right.plot(X_MAX, 30.0, "o", color=RED)
-    right.annotate("Table 1(a)", (X_MAX, 30.0), (-30, 10), textcoords="offset points", fontsize=9)
+    right.annotate("Table 1(a)", (X_MAX, 30.0), (-18, 14), textcoords="offset points", fontsize=9)
     right.set(xlabel="amplitude [m]", ylabel="damping [% of critical]", ylim=(0, None))
     right.legend(fontsize=9)
     return Drawing(figure, "Secant period rising and damping falling with amplitude; the usual definition gives half.",
@@ -130,7 +130,7 @@ def rocking(result):
     _points(axis, [row for row in result.rows if row["part"] == "rocking spectrum"],
             lambda row: 1.53 if row["outcome"] == "overturns" else row["peak_tilt_ratio"])
     axis.set(xlabel="rocking period T_r [s]", ylabel="max |φ| / γ [-]", ylim=(low, high), xlim=(period[0], period[-1]))
-    axis.legend(fontsize=9, loc="lower right")
+    axis.legend(fontsize=9, loc="upper right")
     return Drawing(figure, "Peak tilt over rocking period; overturning, shaded, up to a largest period.",
                    f"Fig. 5(a), γ = {gamma:g} rad, {result.settings['motion']['label']}: shaded where the block "
                    "overturns; marks at the top edge: the engine overturns.")
@@ -152,7 +152,7 @@ def displacement(result):
     for ratio, peak, (colour, line) in zip(arrays["displacement/damping"], arrays["displacement/peak"], DAMPING_STYLES,
                                            strict=True):
         axis.plot(arrays["displacement/period"], peak, color=colour, linestyle=line, label=f"ξ = {100 * ratio:.0f} %")
-    _points(axis, [row for row in result.rows if row["part"] == "displacement spectrum"],
+    _points(axis, [row for row in result.rows if row["part"] == "displacement spectrum" and row["outcome"] == "stands"],
             lambda row: row["peak_base_displacement"])
     nonlinear = next(row for row in result.rows if row["part"] == "equivalent")
     axis.plot(nonlinear["period"], nonlinear["nonlinear"], "*", color=PURPLE, markersize=13,
@@ -210,7 +210,7 @@ def seeds(result):
     total = arrays["seeds/counts"].sum(axis=0).max()
     for axis, kind, title in ((axes[0], ONLY_ISOLATED, "isolation helps"), (axes[1], ONLY_FREE, "isolation harms")):
         mesh = axis.pcolormesh(arrays["seeds/slenderness"], arrays["seeds/intensity"],
-                               100 * arrays["seeds/counts"][kind].T / total, cmap="cividis", vmin=0, vmax=100,
+                               100.0 * arrays["seeds/counts"][kind].T / total, cmap="cividis", vmin=0, vmax=100,
                                rasterized=True)
         axis.set(title=title, xlabel="slenderness γ [rad]")
     axes[0].set_ylabel("intensity: motion times [-]")

@@ -43,8 +43,8 @@ def _paper(result):
          for row in _rows(result, "equation")])
     text = [f"Of the paper's equations, Fig. 3 and Table 1, {counts.get(paper.REPRODUCED, 0)} are reproduced and "
             f"{counts.get(paper.CORRECTED, 0)} are corrected: (8), which breaks the conservation of momentum, and "
-            "(12), which makes the bearing force jump. Two definitions need care: the damping of 30 % is twice the usual "
-            "equivalent damping, and the period of 2 s is the secant period at 0.30 m.",
+            "(12), which makes the bearing force jump. Two definitions need care: the damping of 30 % is twice the "
+            "usual equivalent damping, and the period of 2 s is the secant period at 0.30 m.",
             f"Not at hand, and so not compared: {paper.UNKNOWN}"]
     return "The Caryatid paper: equations, Table 1, misprints", text, [
         _value_table(result, "Paper, this study, difference"), equations, misprints]
@@ -110,21 +110,23 @@ def _benefit_text(result):
             f"{percent(this[CATEGORIES[ONLY_ISOLATED]])} and for the worse in {percent(this[CATEGORIES[ONLY_FREE]])} "
             f"of the map with this motion; over {len(others)} synthetic motions in {mean(ONLY_ISOLATED)} and "
             f"{mean(ONLY_FREE)} on average. The Caryatid first overturns at {number(critical[FREE, 'overturns'])} "
-            f"times the motion free-standing and at {number(critical[ISOLATED, 'overturns'])} times isolated, where it lifts "
-            f"from {number(critical[ISOLATED, 'lifts'])} on; its bearings reach 0.30 m at "
-            f"{number(critical[ISOLATED, 'exceeds x_max'])} times, and beyond that the law describes no built bearing.")
+            f"times the motion free-standing and at {number(critical[ISOLATED, 'overturns'])} times isolated, where it "
+            f"lifts from {number(critical[ISOLATED, 'lifts'])} on; its bearings reach 0.30 m at "
+            f"{number(critical[ISOLATED, 'exceeds x_max'])} times: beyond that the law describes no built bearing.")
 
 
 def _contact_text(result):
     free, isolated = _rows(result, "contact")
-    return (f"No sliding, no jump? The Caryatid itself asks for a friction of {number(free['friction_demand'], 3)} "
-            f"free-standing (until it is past saving) and {number(isolated['friction_demand'], 3)} isolated; its "
-            f"normal force never falls below {number(free['min_normal_ratio'], 3)} and "
-            f"{number(isolated['min_normal_ratio'], 3)} m g. Over the map friction of 0.5 is not enough in {percent(free['friction above 0.5'])} and "
-            f"{percent(isolated['friction above 0.5'])}, and the normal force vanishes (a jump) in "
-            f"{percent(free['jumps'])} and {percent(isolated['jumps'])}. An impact by itself asks for "
-            f"{number(free['impact_friction'], 3)} on rigid ground and {number(isolated['impact_friction'], 3)} on the "
-            "base, at any speed.")
+
+    def both(key, write):
+        return f"{write(free[key])} free-standing and {write(isolated[key])} isolated"
+
+    return ("No sliding, no jump? The Caryatid itself asks for a friction of "
+            f"{both('friction_demand', number)} (runs that overturn: until the tilt first "
+            "reaches γ); its normal force never falls below "
+            f"{both('min_normal_ratio', number)}, over m g. Over the map a friction of 0.5 is not enough in "
+            f"{both('friction above 0.5', percent)}; the normal force vanishes, a jump, in {both('jumps', percent)}. "
+            f"An impact by itself asks for {both('impact_friction', number)}, at any speed.")
 
 
 def _cost_text(result):
@@ -138,9 +140,9 @@ def _cost_text(result):
                "the algebraic law is the cheaper one beyond the spread in: " + ", ".join(
                    f"{row['solver']} ({row['what']})" for row in cheaper))
     return ("The cost claim: CPU time of the algebraic bearing over that of a Bouc-Wen bearing of the same f₀, k_a, "
-            f"k_b, at equal error, median and 10 to 90 % of rounds: {'; '.join(words)}. So {verdict}. The Bouc-Wen law here "
-            "is the simplest, linear in z: one multiplication where the algebraic law raises to a power. A Bouc-Wen "
-            "law with other exponents, or one solved by iteration in each step, costs more; that is not measured here.")
+            f"k_b, at equal error, median and 10 to 90 % of rounds: {'; '.join(words)}. So {verdict}. The Bouc-Wen law "
+            "here is the simplest one, linear in z: a multiplication where the algebraic law raises to a power. Laws "
+            "with other exponents, or solved by iteration in each step, are not measured here.")
 
 
 def _run_table(result):
@@ -181,11 +183,11 @@ def _critical_table(result):
 
 
 def _seed_table(result):
-    return Table("Share of the map over slenderness and intensity", ("motion", *(f"{text} [%]" for text in CATEGORIES),
-                                                                     "isolated lifts [%]", "beyond 0.30 m [%]"),
-                 [[row["motion"], *(number(100 * row[text], 3) for text in CATEGORIES),
-                   number(100 * row["isolated lifts"], 3), number(100 * row["beyond x_max"], 3)]
-                  for row in _rows(result, "benefit")])
+    heads = ("motion", *(f"{text} [%]" for text in CATEGORIES), "isolated lifts [%]",
+             "isolated upright beyond 0.30 m [%]")
+    rows = [[row["motion"], *(number(100 * row[key], 3) for key in (*CATEGORIES, "isolated lifts", "beyond x_max"))]
+            for row in _rows(result, "benefit")]
+    return Table("Share of the map over slenderness and intensity", heads, rows)
 
 
 def _contact_table(result):

@@ -19,7 +19,7 @@ def vulnerable_period(motion, slenderness, step=0.02):
     """Largest rocking period T_r [s] up to `LONGEST` at which a block overturns, on a grid of `step`; 0 if none."""
     periods = np.arange(LONGEST, 0.4, -step)
     overturns = rocking_spectrum(motion, periods, slenderness).overturns
-    return float(periods[overturns].max(initial=0.0))
+    return round(float(periods[overturns].max(initial=0.0)), 6)
 
 
 def claims(motion, quick=False):
@@ -53,7 +53,8 @@ def claims(motion, quick=False):
         together = _overlap(together, intervals)
     rows.append({"part": "claim", "claim": "all three", "intervals": together, "evaluations": None})
     own = free.block.slenderness
-    rows.append({"part": "vulnerable", "slenderness": own, "period": vulnerable_period(motion, own, step)})
+    rows.append({"part": "vulnerable", "slenderness": own, "step": step,
+                 "period": vulnerable_period(motion, own, step)})
     grid = np.linspace(LOW, HIGH, scan)
     return rows, {"claims/slenderness": grid,
                   "claims/vulnerable period": np.array([vulnerable_period(motion, float(gamma), step)

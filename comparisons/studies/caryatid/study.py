@@ -159,7 +159,8 @@ def _values(rows, motion, least):
     limit = [row for row in rows if row["part"] == "vulnerable"]
     for row in limit:
         compare("Fig. 5(a)", "vulnerable below T_r of [s]", paper.VULNERABLE_PERIOD, row["period"],
-                paper.VULNERABLE_ABOUT, f"largest T_r that overturns, γ = {row['slenderness']:g} rad")
+                paper.VULNERABLE_ABOUT,
+                f"largest T_r that overturns, in steps of {row['step']:g} s, γ = {row['slenderness']:g} rad")
     values.append(Value("text", "least slenderness that does not rock on the bearings [rad]", "not printed", least,
                         paper.DERIVED, "atan(max|a|/g)"))
     return values

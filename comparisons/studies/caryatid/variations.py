@@ -27,7 +27,10 @@ def grid(quick, fine=True):
 
 
 def benefit(motion, slendernesses, intensities):
-    """Category (uint8), whether the isolated block lifts, and its peak base displacement [m], shape (n, k)."""
+    """Category (uint8), whether the isolated block lifts, and its peak base displacement [m], shape (n, k).
+
+    The displacement is NaN where the isolated block overturns: runs end when that is certain.
+    """
     found = {}
     scaled = [motion.scaled(float(factor)) for factor in intensities]
     shape = len(slendernesses), len(intensities)
@@ -42,8 +45,8 @@ def benefit(motion, slendernesses, intensities):
     category = np.select([~overturns[FREE] & ~overturns[ISOLATED], overturns[FREE] & ~overturns[ISOLATED],
                           ~overturns[FREE] & overturns[ISOLATED]], [BOTH, ONLY_ISOLATED, ONLY_FREE], NEITHER)
     isolated = found[ISOLATED]
-    return (category.astype(np.uint8), isolated.lifted.reshape(shape),
-            isolated.peak_base_displacement.reshape(shape).astype(np.float32))
+    displacement = np.where(overturns[ISOLATED], np.nan, isolated.peak_base_displacement.reshape(shape))
+    return category.astype(np.uint8), isolated.lifted.reshape(shape), displacement.astype(np.float32)
 
 
 def maps(motion, quick=False, advance=lambda text: None):
@@ -79,7 +82,8 @@ def _critical(motion):
     questions = ((FREE, "overturns", lambda outcomes: outcomes.overturns),
                  (ISOLATED, "overturns", lambda outcomes: outcomes.overturns),
                  (ISOLATED, "lifts", lambda outcomes: outcomes.lifted),
-                 (ISOLATED, "exceeds x_max", lambda outcomes: outcomes.peak_base_displacement > paper.X_MAX))
+                 (ISOLATED, "exceeds x_max",
+                  lambda outcomes: outcomes.overturns | (outcomes.peak_base_displacement > paper.X_MAX)))
     for name, what, read in questions:
         scene = caryatid(name, motion)
 
