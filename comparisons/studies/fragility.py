@@ -23,10 +23,12 @@ def command(
     from .workshop import DEFAULTS, code_of, say, workshop
 
     solvers = [solver for solver, _ in DEFAULTS]
+    path = Path(output) / "fragility.json"
     with workshop(output, solvers, workers) as work:
-        settings, rows, arrays = compute(work, quick)
-    path = write_result(Path(output) / "fragility.json", "fragility", settings, rows, arrays,
-                        modules=code_of("comparisons.studies.fragility_runs", solvers), seed=settings["seeds"])
+        for settings, rows, arrays in compute(work, quick):  # each a complete result, the last with all scenes
+            write_result(path, "fragility", settings, rows, arrays,
+                         modules=code_of("comparisons.studies.fragility_runs", solvers), seed=settings["seeds"])
+            say(f"written: {path.name}, {len(rows)} rows")
     result = read_result(path)
     save(draw(result), path.with_suffix(".png"))
     for paragraph in section(result).text:

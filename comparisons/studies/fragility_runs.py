@@ -11,7 +11,7 @@ from analytic.synthetic import PEAK, G
 
 from ..cases import Case
 from ..statistics import compare, fit_fragility, holm, wilson
-from .workshop import DEFAULTS, name_of, say
+from .workshop import DEFAULTS, FIRST_SCRIPT_FRICTION, name_of, say
 
 DURATION = 9.0  # s; that no outcome is decided later is checked against WHOLE with the analytic model
 WHOLE = 25.0  # s, length of the synthetic motions
@@ -27,11 +27,10 @@ FULL = {
 QUICK = {"free-standing": ("caryatid-rigid", {}, (0.9, 1.0, 1.3))}
 MOTIONS, QUICK_MOTIONS = 200, 16
 FIRST_SCRIPT = ("pybullet", "first-script")  # cheap enough to take along
-FIRST_SCRIPT_FRICTION = 0.5 * 0.5  # Bullet's default on either body; they multiply
 
 
 def compute(work, quick=False, scenes=None, motions=None):
-    """(settings, rows, arrays) of the study.
+    """Yields (settings, rows, arrays) of the study, one scene more each time.
 
     Parameters
     ----------
@@ -41,8 +40,8 @@ def compute(work, quick=False, scenes=None, motions=None):
     scenes, motions : dict and int, optional
         In place of `FULL` or `QUICK`, and of the number of motions.
 
-    Returns
-    -------
+    Yields
+    ------
     settings : dict
     rows : list of dict
         By "part": "curve" (probability of overturning of one solver at one intensity), "fit" (lognormal curve),
@@ -60,7 +59,8 @@ def compute(work, quick=False, scenes=None, motions=None):
         described[name] = {"scene": shipped, "block": scene.block.model_dump(),
                            "base": scene.base.model_dump() if scene.base else None,
                            "bearings": scene.bearings.model_dump() if scene.bearings else None,
-                           "tan_slenderness": math.tan(scene.block.slenderness), "factors": list(factors), "intensities": intensities}
+                           "tan_slenderness": math.tan(scene.block.slenderness), "factors": list(factors),
+                           "intensities": intensities}
         found, costs, checks = _analytic(scene, shakings, factors)
         rows.append({"part": "check", "scene": name, **checks})
         for solver, variant in (*DEFAULTS, FIRST_SCRIPT):
@@ -77,11 +77,11 @@ def compute(work, quick=False, scenes=None, motions=None):
                      for row in results if row.failed]
         rows += _curves(name, found, intensities, costs) + _pairs(name, found, intensities)
         arrays |= {f"{name}/{label}": values for label, values in found.items()}
-    settings = {"quick": quick, "scenes": described, "motions": count, "seeds": [0, count - 1],
-                "motion": "synthetic duzce-like, scaled", "duration": DURATION, "twin": TWIN,
-                "first_script_friction": FIRST_SCRIPT_FRICTION,
-                "solvers": [REFERENCE, *(name_of(*one) for one in (*DEFAULTS, FIRST_SCRIPT))]}
-    return settings, rows, arrays
+        settings = {"quick": quick, "scenes": described, "motions": count, "seeds": [0, count - 1],
+                    "motion": "synthetic duzce-like, scaled", "duration": DURATION, "twin": TWIN,
+                    "first_script_friction": FIRST_SCRIPT_FRICTION,
+                    "solvers": [REFERENCE, *(name_of(*one) for one in (*DEFAULTS, FIRST_SCRIPT))]}
+        yield settings, rows, arrays
 
 
 def _analytic(scene, shakings, factors):

@@ -15,7 +15,10 @@ from ..sweep import run_sweep
 
 STORE = ".sweep"  # folder of the rows of single runs, beside the result
 TIME_LIMIT = 300.0  # s, of one run
+SHOWN = 30  # runs from which on a batch shows its progress; a bisection has many small ones
 DEFAULTS = (("exudyn", None), ("pybullet", None))  # solver, variant: the engines at default settings
+
+FIRST_SCRIPT_FRICTION = 0.5 * 0.5  # of PyBullet's first-script: its default on either body, which it multiplies
 
 
 def outcome(response):
@@ -35,7 +38,7 @@ class Workshop:
     def run(self, cases, label, reduce=outcome):
         """Rows of the cases, in their order; those in the store are not run again."""
         return run_sweep(cases, store=self.store, executor=self.executor, reduce=reduce, time_limit=TIME_LIMIT,
-                         progress=self.progress, label=label)
+                         progress=self.progress and len(cases) >= SHOWN, label=label)
 
 
 @contextmanager

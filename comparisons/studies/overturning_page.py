@@ -1,0 +1,227 @@
+"""The overturning study's result in words and tables, from the result alone."""
+
+import math
+
+from ..report.content import Section, Table, figure_of, number, percent
+from .overturning_plots import LIMIT, draw_knobs, draw_maps, draw_shifts, knob_curves
+
+
+def section(result):
+    """The `Section` of a result of this study."""
+    solvers = result.settings["solvers"]
+    text = [_asked(result), *(_verdict(result, solver) for solver in solvers), _band(result),
+            *(_knob_words(result, *key, values) for key, values in knob_curves(result).items()),
+            *filter(None, (_first_words(result, solver) for solver in result.settings["first_scripts"])),
+            _failures(result)]
+    tables = [_shift_table(result), _boundary_table(result), _confusion_table(result), _knob_table(result)]
+    missed = [row for row in _rows(result, "shift") if row["shift"] is None]
+    if missed:
+        tables.append(_missed_table(missed))
+    surprises = _rows(result, "surprise")
+    if surprises:
+        tables.append(_surprise_table(surprises))
+    found = sum(row["shift"] is not None for row in _rows(result, "shift"))
+    figures = [
+        figure_of(draw_maps(result), "Maps of outcomes over pulse frequency and amplitude with the engines' "
+                  f"boundaries marked; {len(surprises)} disagreements outside the band.",
+                  "Colours: the analytic model. Symbols: boundaries found with the engines. Crosses: scanned points "
+                  "where an engine's outcome differs. White above colour is the safe gap between two ways to "
+                  "overturn."),
+        figure_of(draw_shifts(result), f"Shift of {found} boundaries in per cent over pulse frequency, beside a "
+                  f"band of plus and minus {LIMIT:g} per cent.",
+                  f"Boundary of the engine over that of the analytic model, minus one. Bars: width of the last "
+                  f"bracket. Grey: {LIMIT:g} %. The axis is linear within ±0.01 %, logarithmic beyond."),
+]
+    if knob_curves(result):
+        figures.append(figure_of(draw_knobs(result), "Largest and median shift of the boundaries over step, accuracy "
+                                 "or stiffness.", f"One-sine pulses on both grounds. Dotted: {LIMIT:g} %."))
+    evidence = tuple((f"{row['solver']}, {row['ground']}, {row['shape']}, frequency {row['frequency']:g}, amplitude "
+                      f"{row['amplitude']:.6g}", f"{row['reason']}\n{row.get('message') or ''}")
+                     for row in _rows(result, "failure")[:50])
+    return Section("Overturning under pulses: where the boundaries lie", tuple(text), tuple(tables), tuple(figures),
+                   evidence=evidence)
+
+
+def _asked(result):
+    s = result.settings
+    edges = _rows(result, "edge")
+    grounds = "; ".join(f"{name}: slenderness {given['block']['slenderness']:g}" + (
+        f" on {given['bearings']['count']} bearings and a base of {given['base']['mass']:g} kg" if given["base"]
+        else "")
+        for name, given in s["grounds"].items())
+    return ("Under a pulse the block overturns above a certain amplitude, may stand again in a safe gap, and "
+            f"overturns once more. The analytic model has {len(edges)} such boundaries for the pulses "
+            f"{', '.join(s['shapes'])} of {min(s['frequencies']):g} to {max(s['frequencies']):g} times "
+            f"omega_r and amplitudes of {s['amplitudes'][0]:g} to {s['amplitudes'][1]:g} g tan(slenderness), on two grounds ({grounds}). "
+            f"{' and '.join(s['solvers'])} were asked for theirs at default settings.")
+
+
+def _verdict(result, solver):
+    rows = _rows(result, "shift", solver=solver)
+    found = [row for row in rows if row["shift"] is not None]
+    gaps = sum(not row["rises"] for row in rows)
+    seen = sum(not row["rises"] for row in found)
+    if not found:
+        return f"{solver}: none of {len(rows)} boundaries found."
+    worst = max(found, key=lambda row: abs(row["shift"]))
+    reach = abs(worst["shift"]) + worst["half_width"]
+    yes = reach <= LIMIT / 100 and len(found) == len(rows)
+    words = "All boundaries lie" if yes else "Not all boundaries lie"
+    return (f"{solver}: {len(found)} of {len(rows)} boundaries found, among them {seen} of {gaps} beginnings of a "
+            f"safe gap. {words} within {LIMIT:g} % of the analytic ones; the largest shift is "
+            f"{percent(worst['shift'])} (± {percent(worst['half_width'], 1)}: {worst['shape']}, {worst['ground']}, frequency "
+            f"{worst['frequency']:g}, amplitude {number(worst['amplitude'], 4)}), the median "
+            f"{percent(_median([abs(row['shift']) for row in found]))}.")
+
+
+def _band(result):
+    rows = _rows(result, "confusion", region="outside")
+    size = sum(_size(row) for row in rows)
+    wrong = sum(row["only_a"] + row["only_b"] for row in rows)
+    near = sum(_size(row) for row in _rows(result, "confusion", region="inside"))
+    return (f"Further than {percent(result.settings['band'], 1)} from any boundary, {wrong} of {size} runs of the "
+            f"engines end otherwise than the analytic model. Within that band {near} "
+            "more runs were made in search of the boundaries; disagreement there is what a shifted boundary means.")
+
+
+def _knob_words(result, solver, knob, values):
+    good, bad = [], []
+    for value, rows in values.items():
+        shifts = [abs(row["shift"]) for row in rows if row["shift"] is not None]
+        (good if len(shifts) == len(rows) and max(shifts) <= LIMIT / 100 else bad).append(value)
+    def listed(chosen):
+        return ", ".join(number(value, 2) for value in sorted(chosen)) or "none"
+    return (f"{solver}, {knob}: all boundaries within {LIMIT:g} % at {listed(good)}; not at {listed(bad)}.")
+
+
+def _first_words(result, solver):
+    rows = _rows(result, "knob", solver=solver)
+    if not rows:
+        return None
+    found = [row["shift"] for row in rows if row["shift"] is not None]
+    span = (f"those found are shifted by {percent(min(found))} to {percent(max(found))}" if found else "")
+    reasons = {}
+    for row in rows:
+        if row["shift"] is None:
+            key = row["ground"], row["reason"].split(",")[0]
+            reasons[key] = reasons.get(key, 0) + 1
+    lost = "; ".join(f"{ground}: {why} ({count} boundaries)" for (ground, why), count in reasons.items())
+    text = f"First script, {solver}: {len(found)} of {len(rows)} boundaries found" + (f"; {span}" if span else "") + (
+        f". Not found, within 30 % or half-way to the next boundary: {lost}." if lost else ".")
+    slides = [name for name, given in result.settings["grounds"].items()
+              if given["tan_slenderness"] > result.settings["first_script_friction"]]
+    if solver.startswith("pybullet") and slides and any(ground in slides for ground, _ in reasons):
+        text += (f" On {' and '.join(slides)} its friction, {result.settings['first_script_friction']:g} by PyBullet's "
+                 "defaults, is below tan(slenderness): the block slides where it should lift.")
+    return text
+
+
+def _failures(result):
+    counts = {}
+    jumped = 0
+    for row in _rows(result, "failure"):
+        counts[row["solver"], row["reason"]] = counts.get((row["solver"], row["reason"]), 0) + 1
+        jumped += row["kind"] != "undecided" and row["min_normal"] < 0
+    if not counts:
+        return "No run failed or stayed undecided."
+    words = "; ".join(f"{solver}: {reason} ({count})" for (solver, reason), count in counts.items())
+    return (f"Runs without an outcome, left out of the tables: {words}. In {jumped} of them the normal force of the "
+            "analytic model becomes negative: there the block would leave the ground, which that model does not know.")
+
+
+def _shift_table(result):
+    s, rows = result.settings, []
+    for ground in s["grounds"]:
+        for shape in s["shapes"]:
+            cells = [f"{ground}, {shape}", str(len(_rows(result, "edge", ground=ground, shape=shape)))]
+            for solver in s["solvers"]:
+                group = _rows(result, "shift", solver=solver, ground=ground, shape=shape)
+                shifts = [abs(row["shift"]) for row in group if row["shift"] is not None]
+                cells += [str(len(shifts)), number(100 * _median(shifts), 2) if shifts else "–",
+                          number(100 * max(shifts), 2) if shifts else "–"]
+            rows.append(cells)
+    heads = [f"{solver}: {what}" for solver in s["solvers"] for what in ("found [-]", "median |shift| [%]",
+                                                                         "largest |shift| [%]")]
+    return Table("Boundaries at default settings", ("ground, pulse", "analytic boundaries [-]", *heads), rows)
+
+
+def _boundary_table(result):
+    s, rows = result.settings, []
+    for edge in _rows(result, "edge", shape=s["shapes"][0]):
+        cells = []
+        for solver in s["solvers"]:
+            row, = _rows(result, "shift", solver=solver, **{key: edge[key] for key in (
+                "ground", "shape", "frequency", "amplitude")})
+            cells.append("not found" if row["shift"] is None else number(100 * row["shift"], 2))
+        rows.append([f"{edge['ground']}, frequency {edge['frequency']:g}", f"{edge['amplitude']:.5f}",
+                     "begins" if edge["rises"] else "ends", str(edge["mode"]), *cells])
+    return Table(f"Boundaries under one pulse ({s['shapes'][0]}), amplitude over g tan(slenderness), and the engines' "
+                 f"shifts, known to ± {percent(s['tolerance'] / 2, 1)}",
+                 ("ground, frequency over omega_r", "analytic amplitude [-]", "overturning", "after impacts [-]",
+                  *(f"{solver} [%]" for solver in s["solvers"])), rows)
+
+
+def _confusion_table(result):
+    band = percent(result.settings["band"], 1)
+    names = {"scan": "coarse scan of the map", "outside": f"all runs further than {band} from a boundary",
+             "inside": "all runs nearer"}
+    rows = [[f"{row['solver']}, {row['ground']}: {names[row['region']]}", str(row["both_stand"]),
+             str(row["both_overturn"]), str(row["only_a"]), str(row["only_b"]),
+             "–" if row["region"] == "inside" or row["kappa"] is None
+             else f"{number(row['kappa'])} ({number(row['kappa_low'])} to {number(row['kappa_high'])})"]
+            for row in _rows(result, "confusion")]
+    return Table("Outcomes in the engine and in the analytic model", (
+        "engine, ground: runs", "both stand [-]", "both overturn [-]", "only the analytic model overturns [-]",
+        "only the engine overturns [-]", "Cohen's kappa (95 % interval) [-]"), rows)
+
+
+def _knob_table(result):
+    rows = []
+    for (solver, knob), values in knob_curves(result).items():
+        for value in sorted(values):
+            rows.append(_knob_row(f"{solver}, {knob} {number(value, 3)}", values[value]))
+    for solver in result.settings["first_scripts"]:
+        group = _rows(result, "knob", solver=solver)
+        if group:
+            (knob, value), = group[0]["settings"].items()
+            rows.append(_knob_row(f"first script: {solver}, {knob} {number(value, 3)}", group))
+    return Table("Shift of the boundaries against step, accuracy or stiffness (one-sine pulses, both grounds)",
+                 ("solver and setting (SI units)", "found [-]", "median |shift| [%]", "largest |shift| [%]"), rows)
+
+
+def _knob_row(name, rows):
+    shifts = [abs(row["shift"]) for row in rows if row["shift"] is not None]
+    return [name, f"{len(shifts)} of {len(rows)}", number(100 * _median(shifts), 2) if shifts else "–",
+            number(100 * max(shifts), 2) if shifts else "–"]
+
+
+def _missed_table(rows):
+    return Table("Boundaries not found at default settings", (
+        "engine", "ground, pulse, frequency", "analytic amplitude [-]", "half-way to the next boundary [%]",
+        "why"),
+        [[row["solver"], f"{row['ground']}, {row['shape']}, {row['frequency']:g}", number(row["amplitude"], 6),
+          number(100 * row["room"], 2), row["reason"]] for row in rows])
+
+
+def _surprise_table(rows):
+    return Table("Disagreements outside the band", (
+        "engine", "ground, pulse, frequency", "amplitude [-]", "distance from the nearest boundary [%]",
+        "analytic model"), [
+        [row["solver"], f"{row['ground']}, {row['shape']}, {row['frequency']:g}", number(row["amplitude"], 6),
+         number(100 * row["distance"], 2) if row["distance"] is not None else "–",
+         "overturns" if row["analytic_overturns"] else "stands"] for row in rows])
+
+
+def _size(row):
+    return row["both_stand"] + row["both_overturn"] + row["only_a"] + row["only_b"]
+
+
+def _median(values):
+    values = sorted(values)
+    middle = len(values) // 2
+    return math.nan if not values else 0.5 * (values[middle] + values[-1 - middle])
+
+
+def _rows(result, part, **wanted):
+    return [row for row in result.rows if row["part"] == part
+            and all(row[key] == value for key, value in wanted.items())]
