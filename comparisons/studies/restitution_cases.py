@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic import simulate
-from analytic.rocking import base_jump_length, base_jump_length_as_printed, restitution
 from analytic.scene import Base, Block, Scene, Start
 from engines import get_engine
 
@@ -29,6 +28,9 @@ LADDERS = {
     ("pybullet", "impact-aware"): ("accuracy", (1e-3, 1e-4, 1e-6)),
     ("pybullet", "fixed-step"): ("step", (4e-3, 1e-3, 2.5e-4)),
     ("pybullet", "first-script"): ("step", (1 / 60, 1 / 1000)),
+    ("mujoco", "impact-aware"): ("accuracy", (1e-3, 1e-4)),
+    ("mujoco", "fixed-step"): ("step", (4e-3, 1e-3)),
+    ("mujoco", "first-script"): ("step", (1 / 120, 5e-4)),
 }
 
 
@@ -141,10 +143,3 @@ def experiment_cases(grid, engines):
                               {"part": "experiment", "experiment": "size", "ratio": CARYATID_BASE,
                                "slenderness": gamma, "start": 0.6, "value": scale}))
     return cases
-
-
-def formulas(scene):
-    """What the model says of a scene: e_phi of (7), e_x of (8) corrected and as printed, times of the impacts [s]."""
-    times = [impact.time for impact in simulate(scene, history=False).impacts[:IMPACTS]]
-    return {"restitution": max(restitution(scene), 0.0), "jump": base_jump_length(scene),
-            "jump_as_printed": base_jump_length_as_printed(scene), "times": times}
