@@ -171,6 +171,10 @@ def _time_to_zero(p, q, a, direction):
         return np.where(p == 0, 0.0, sign * 2 * p / (root - sign * q))
 
 
+# Exponent beyond which the bearing is on its limit force, whatever the number [-].
+FAR = 100.0
+
+
 def _branch(law, x, lasting, v):
     """Elastic and hysteretic force of all bearings [N] as function of displacement, on the path through (x, force).
 
@@ -188,7 +192,8 @@ def _branch(law, x, lasting, v):
 
     def force(at):
         travel = (at - x) / step
-        bent = np.expm1(np.where(curved, decay, -1.0) * travel) / np.expm1(np.where(curved, decay, -1.0))
+        rate = np.where(curved, decay, -1.0)
+        bent = np.expm1(np.minimum(rate * travel, FAR)) / np.expm1(rate)
         moved = np.clip(z + rise * np.where(curved, bent, travel), -law.f0, law.f0)
         return law.count * (law.kb * at + moved)
 
