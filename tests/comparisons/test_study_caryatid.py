@@ -9,6 +9,7 @@ from analytic import PulseMotion, SampledMotion, load_scene, simulate, synthetic
 from analytic.linear_oscillator import displacement_spectrum
 from analytic.records import read_record
 from analytic.rocking import RockingModel
+from comparisons.cli import main
 from comparisons.provenance import PROJECT_FOLDER, read_result
 from comparisons.refine import Transition
 from comparisons.studies.caryatid import section
@@ -48,13 +49,15 @@ def test_every_equation_and_table_has_a_row(rows):
     numbers = [row["number"] for row in rows if row["part"] == "equation"]
     assert numbers == ["(1)", "(2)", "(3)–(6)", "(7)", "(8)", "(9)–(11)", "(12)", "(13)", "(14)", "Fig. 3",
                        "Table 1(a)", "Table 1(b)"]
+    checks = {row["number"]: row["value"] for row in rows if row["part"] == "equation"}
+    assert checks["(2)"] < 1e-7 and checks["(3)–(6)"] < 1e-9 and checks["(9)–(11)"] < 1e-9 and checks["(8)"] < 1e-12
     corrected = [row["number"] for row in rows if row["part"] == "equation" and row["status"] == CORRECTED]
     assert corrected == ["(8)", "(12)"]
 
 
 def test_numbers_without_motion(rows):
     values = {row["quantity"]: row for row in rows if row["part"] == "value"}
-    assert not [row for row in values.values() if row["status"] == NOT_REPRODUCIBLE]
+    assert [row["where"] for row in values.values() if row["status"] == NOT_REPRODUCIBLE] == ["Figs 1, 2"]
     assert values["α [-]"]["study"] == pytest.approx(44.69, abs=0.005)
     assert values["damping ξ as W_D/(4π E_s) [%]"]["study"] == pytest.approx(15.0, abs=0.05)
     assert values["period T_bi [s]"]["study"] == pytest.approx(1.9993, abs=5e-5)
@@ -201,3 +204,15 @@ def test_the_paper_with_its_record():
     assert isolated.outcome == "stands"
     assert isolated.peak_base_displacement == pytest.approx(0.212, abs=5e-4)
     assert isolated.peak_base_acceleration / 9.81 == pytest.approx(0.236, abs=5e-4)
+
+
+@pytest.mark.parametrize(("arguments", "message"), [
+    (["--record", "no-such-record.AT2"], "no-such-record.AT2"),
+    (["--units", "g"], "--record"),
+    (["--output", __file__], "is a file"),
+])
+def test_mistakes_end_with_status_2_before_any_run(arguments, message, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["study", "caryatid", *arguments])
+    assert ended.value.code == 2
+    assert message in capsys.readouterr().err

@@ -81,6 +81,8 @@ def simulations(motion, store, quick=False, progress=True):
         found = run_sweep(cases, store=store, reduce=reduce, time_limit=TIME_LIMIT, progress=progress, label=label)
         for row in found:
             values = dict(row.values)
+            if row.case.scene.base is None:  # the ground's own peak: a value of the motion
+                values.pop("peak_base_acceleration", None)
             for column, numbers in values.pop("history", {}).items():
                 key = f"{row.case.tag['scene']}/{row.case.solver}/{column}"
                 histories[key] = np.array(numbers, dtype=np.float32)

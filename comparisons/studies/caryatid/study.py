@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from analytic.design import properties
+from analytic.linear_oscillator import displacement_spectrum
 from engines import ENGINES
 
 from ...provenance import read_result, write_result
@@ -43,7 +44,7 @@ def make_results(folder, motion, *, quick=False, progress=True, say=lambda text:
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    described = {"motion": {"label": motion.label, "peak": motion.peak, "peak_time": motion.peak_time,
+    described = {"motion": {"label": motion.label, "peak_time": motion.peak_time,
                             "dt": motion.dt, "end": motion.end}, "quick": quick}
     say("bearing law, Table 1, misprints")
     rows, arrays = formulas()
@@ -148,6 +149,8 @@ def _values(rows, motion, least):
                     row["peak_base_acceleration"] / caryatid(ISOLATED, motion).gravity, 0.0005)
             words("Fig. 6", f"peak displacement below x_max = 0.30 m, {solver}", "yes",
                   "yes" if row["peak_base_displacement"] < paper.X_MAX else "no")
+    values.append(Value("Fig. 4(a)", "ground motion", "Duzce 12 Nov 1999, East-West", motion.label,
+                        REPRODUCED if own else OTHER_MOTION, "the paper's trace starts about 28 s earlier"))
     periods = [row["period"] for row in rows if row["part"] == "rocking spectrum"]
     for solver in dict.fromkeys(row["solver"] for row in rows if row["part"] == "rocking spectrum"):
         wrong = [row["period"] for row in rows if row["part"] == "rocking spectrum" and row["solver"] == solver
@@ -156,6 +159,7 @@ def _values(rows, motion, least):
             found = "at all points" if not wrong else f"not at T_r = {', '.join(f'{t:.3g}' for t in wrong)} s"
             values.append(Value("Fig. 5(a)", f"overturning as in the analytic model, {solver}", "no engine used", found,
                                 paper.ADDED, f"T_r = {', '.join(f'{t:.3g}' for t in dict.fromkeys(periods))} s"))
+    values += _oscillator_values(rows, motion)
     limit = [row for row in rows if row["part"] == "vulnerable"]
     for row in limit:
         compare("Fig. 5(a)", "vulnerable below T_r of [s]", paper.VULNERABLE_PERIOD, row["period"],
@@ -163,6 +167,20 @@ def _values(rows, motion, least):
                 f"largest T_r that overturns, in steps of {row['step']:g} s, γ = {row['slenderness']:g} rad")
     values.append(Value("text", "least slenderness that does not rock on the bearings [rad]", "not printed", least,
                         paper.DERIVED, "atan(max|a|/g)"))
+    return values
+
+
+def _oscillator_values(rows, motion):
+    """Fig. 5(b): no number of the paper is at hand; every solver against the exact solution."""
+    points = [row for row in rows if row["part"] == "displacement spectrum" and row["outcome"] == "stands"]
+    values = []
+    for solver in dict.fromkeys(row["solver"] for row in points):
+        apart = [abs(row["peak_base_displacement"] / float(
+            displacement_spectrum(motion, [row["period"]], [row["damping"]])[0, 0]) - 1)
+            for row in points if row["solver"] == solver]
+        values.append(Value("Fig. 5(b)", f"oscillators, worst relative difference from the exact one [-], {solver}",
+                            "not at hand", max(apart), NOT_REPRODUCIBLE,
+                            "drawn; the paper's damping ratios and values are not at hand"))
     return values
 
 
