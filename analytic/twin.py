@@ -175,9 +175,12 @@ class _Run:
         step = {"first_step": min(self.flight or longest, longest)}
         if self.flight is None and math.isinf(self.max_step) and self.scene.motion is None:
             step = {}
-        solution = solve_ivp(self.derivative(ground, direction), (self.t, end), self.y, self.settings["method"],
-                             events=[event for _, event in events], rtol=self.settings["rtol"], atol=self.atol,
-                             max_step=self.max_step, **step)
+        try:
+            solution = solve_ivp(self.derivative(ground, direction), (self.t, end), self.y, self.settings["method"],
+                                 events=[event for _, event in events], rtol=self.settings["rtol"], atol=self.atol,
+                                 max_step=self.max_step, **step)
+        except ValueError as error:  # LSODA's dense output may miss its own sign change
+            return Failure("scipy could not find an event", str(error), self.state())
         self.steps += len(solution.t) - 1
         missed = self.stepped_over(events, solution)
         if missed is not None and self.t < missed < solution.t[-1]:
