@@ -52,7 +52,8 @@ def _asked(result):
     return ("Under a pulse the block overturns above a certain amplitude, may stand again in a safe gap, and "
             f"overturns once more. The analytic model has {len(edges)} such boundaries for the pulses "
             f"{', '.join(s['shapes'])} of {min(s['frequencies']):g} to {max(s['frequencies']):g} times "
-            f"omega_r and amplitudes of {s['amplitudes'][0]:g} to {s['amplitudes'][1]:g} g tan(slenderness), on two grounds ({grounds}). "
+            f"omega_r and amplitudes of {s['amplitudes'][0]:g} to {s['amplitudes'][1]:g} g tan(slenderness), on two "
+            f"grounds ({grounds}). "
             f"{' and '.join(s['solvers'])} were asked for theirs at default settings.")
 
 
@@ -69,8 +70,8 @@ def _verdict(result, solver):
     words = "All boundaries lie" if yes else "Not all boundaries lie"
     return (f"{solver}: {len(found)} of {len(rows)} boundaries found, among them {seen} of {gaps} beginnings of a "
             f"safe gap. {words} within {LIMIT:g} % of the analytic ones; the largest shift is "
-            f"{percent(worst['shift'])} (± {percent(worst['half_width'], 1)}: {worst['shape']}, {worst['ground']}, frequency "
-            f"{worst['frequency']:g}, amplitude {number(worst['amplitude'], 4)}), the median "
+            f"{percent(worst['shift'])} (± {percent(worst['half_width'], 1)}: {worst['shape']}, {worst['ground']}, "
+            f"frequency {worst['frequency']:g}, amplitude {number(worst['amplitude'], 4)}), the median "
             f"{percent(_median([abs(row['shift']) for row in found]))}.")
 
 

@@ -83,9 +83,9 @@ def compute(work, quick=False):
         "solvers": [name_of(*one) for one in ENGINES],
         "knobs": [[solver, variant, knob] for solver, variant, knob, _ in (*KNOBS, *FIRST_SCRIPTS)],
         "default_knobs": {name_of(*one): getattr(get_engine(one[0]).VARIANTS[one[1]], knob)
-                                  for one, knob in zip(ENGINES, ("stiffness", "accuracy"), strict=True)},
-                "first_scripts": [name_of(*one[:2]) for one in FIRST_SCRIPTS],
-                "first_script_friction": FIRST_SCRIPT_FRICTION}
+                          for one, knob in zip(ENGINES, ("stiffness", "accuracy"), strict=True)},
+        "first_scripts": [name_of(*one[:2]) for one in FIRST_SCRIPTS],
+        "first_script_friction": FIRST_SCRIPT_FRICTION}
     yield settings, rows + log.failures, arrays
     chosen = {(ground, "one-sine"): {f: column for f, column in found[ground, "one-sine"].items()
                                      if f in KNOB_FREQUENCIES[:1 if quick else None]} for ground in grounds}
