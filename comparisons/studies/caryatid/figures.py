@@ -106,7 +106,7 @@ def definitions(result):
     arrays = result.arrays
     left.plot(arrays["amplitude/x"], arrays["amplitude/period"], color=BLUE)
     left.plot(X_MAX, 2.0, "o", color=RED)
-    left.annotate("Table 1(a)", (X_MAX, 2.0), (-40, -18), textcoords="offset points", fontsize=9)
+    left.annotate("Table 1(a)", (X_MAX, 2.0), (-22, -22), textcoords="offset points", fontsize=9)
     left.set(xlabel="amplitude [m]", ylabel="secant period [s]")
     for name, colour, line in (("2 pi", RED, "--"), ("4 pi", BLUE, "-")):
         right.plot(arrays["amplitude/x"], 100 * arrays[f"amplitude/damping {name}"], line, color=colour,

@@ -14,6 +14,7 @@ from .runs import FREE, ISOLATED, caryatid
 # who stays upright
 BOTH, ONLY_ISOLATED, ONLY_FREE, NEITHER = range(4)
 CATEGORIES = ("both stay upright", "only the isolated one does", "only the free-standing one does", "both overturn")
+WITHIN = "only the isolated one does, within 0.30 m"
 SEEDS = 12
 FRICTION_LIMITS = (0.3, 0.5, 0.7)  # [-], of stone on stone and steel, low to high
 
@@ -72,7 +73,8 @@ def maps(motion, quick=False, advance=lambda text: None):
 
 def _shares(name, category, lifted, displacement):
     shares = {text: float((category == kind).mean()) for kind, text in enumerate(CATEGORIES)}
-    return {"part": "benefit", "motion": name, "cells": int(category.size), **shares,
+    within = (category == ONLY_ISOLATED) & (displacement <= paper.X_MAX)
+    return {"part": "benefit", "motion": name, "cells": int(category.size), **shares, WITHIN: float(within.mean()),
             "isolated lifts": float(lifted.mean()), "beyond x_max": float((displacement > paper.X_MAX).mean())}
 
 
