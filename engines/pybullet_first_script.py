@@ -14,6 +14,8 @@ from analytic.bearing import BearingLaw
 from .pybullet_scene import placement
 
 THICKNESS = 1.0  # m, of the slab
+# Bullet's own default [m]. Process-global: without it a planar run earlier in the process would leave its own here.
+BREAKING_THRESHOLD = 0.02
 
 
 def build(client, scene, step):
@@ -21,6 +23,7 @@ def build(client, scene, step):
     block = scene.block
     b, h = block.half_width, block.half_height
     pybullet.setTimeStep(step, client)
+    pybullet.setPhysicsEngineParameter(contactBreakingThreshold=BREAKING_THRESHOLD, physicsClientId=client)
     pybullet.setGravity(0, 0, -scene.gravity, client)
     half = [20 * block.radius, 20 * block.radius, THICKNESS / 2]
     flat = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half, physicsClientId=client)

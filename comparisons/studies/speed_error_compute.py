@@ -125,7 +125,7 @@ def _growth(scenes, quick, rounds, store, progress):
     rows = []
     for place in track(places, "growth of cost", console=Console(stderr=True), disable=not progress):
         found = []
-        for turn in range(1 if quick and place.solver != "analytic" else min(FEW, rounds)):
+        for turn in range(min(FEW, rounds)):
             case = Case(place.scene, growth.RUNNER, None, place.arguments(turn))
             with Processes(1, [growth.RUNNER, place.solver]) as executor:
                 found += run_sweep([case], store=store, executor=executor, time_limit=TIME_LIMIT, progress=False)

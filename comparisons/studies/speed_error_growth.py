@@ -23,7 +23,7 @@ RUNNER = "comparisons.studies.speed_error_growth:grown"
 AGAINST = {"duration": "duration [s]", "samples": "record samples per second [1/s]", "runs": "runs in a batch [-]"}
 SPREAD_OF_BATCH = 0.2  # amplitudes of a batch lie within this share of the boundary
 SPAN = {"duration": {"analytic": ((100, 200, 400, 800, 1600, 3200), (50, 100, 200, 400)),
-                     "engine": ((5, 10, 20, 40), (2.5, 5, 10))},
+                     "engine": ((5, 10, 20, 40), (1, 2, 4))},
         "samples": ((100, 200, 400, 800, 1600, 3200), (200, 400, 800)),
         "runs": ((250, 500, 1000, 2000, 4000, 8000), (100, 200, 400))}
 ENGINES = ("exudyn", "pybullet")
@@ -87,7 +87,8 @@ def grown(scene, *, solver, settings, count, **_):
     """
     run = _batch(scene, count) if count else lambda: solver_function(solver)(scene, history=False, **settings)
     solver_function(solver)(scene.with_(duration=min(scene.duration, WARM_SECONDS)), history=False, **settings)
-    response, resident = _resident_growth(run)
+    resident = _resident_growth(run)
+    response = run()
     cpu = response.cpu_seconds
     if cpu < TICK:
         repeats = math.ceil(TICK / cpu)
@@ -115,16 +116,16 @@ def _batch(scene, count):
 
 
 def _resident_growth(run):
-    """(the run's response, bytes by which resident memory at its peak exceeds that before; None where hidden)."""
+    """Bytes by which the peak resident memory during `run` exceeds that before it; None where the system hides it."""
     status, reset = Path("/proc/self/status"), Path("/proc/self/clear_refs")
     before = psutil.Process().memory_info().rss
     try:
         reset.write_text("5")  # forget the peak so far
     except OSError:
-        return run(), None
-    response = run()
+        return None
+    run()
     peak = next(line for line in status.read_text().splitlines() if line.startswith("VmHWM"))
-    return response, max(0, int(peak.split()[1]) * 1024 - before)
+    return max(0, int(peak.split()[1]) * 1024 - before)
 
 
 def fit(x, y):

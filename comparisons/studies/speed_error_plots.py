@@ -136,9 +136,9 @@ def draw_growth(result):
                             **{**looks[family], "linestyle": ":", "markerfacecolor": "none"})
     memory.set(xscale="log", xlabel=AGAINST["duration"], ylabel="memory of the run, peak [MiB]")
     memory.set_yscale("symlog", linthresh=0.01)
-    memory.set_ylim(bottom=-0.002)
+    memory.set_ylim(-0.002, 3 * memory.get_ylim()[1])
     for axis in axes.flat:
         axis.grid(True, which="major", color="0.9")
         if axis.lines:
-            axis.legend(fontsize=8)
+            axis.legend(fontsize=8, loc="upper left" if axis is not memory else "center right")
     return figure
