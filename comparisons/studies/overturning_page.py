@@ -34,7 +34,9 @@ def section(result):
 ]
     if knob_curves(result):
         figures.append(figure_of(draw_knobs(result), "Largest and median shift of the boundaries over step, accuracy "
-                                 "or stiffness.", f"One-sine pulses on both grounds. Dotted: {LIMIT:g} %."))
+                                 "or stiffness.", f"One-sine pulses on both grounds. Dotted: {LIMIT:g} %. A shift is known to "
+                                 f"± {percent(result.settings['tolerance'] / 2, 1)} at default settings, to "
+                                 f"± {percent(result.settings['knob_tolerance'] / 2, 1)} at others."))
     evidence = tuple((f"{row['solver']}, {row['ground']}, {row['shape']}, frequency {row['frequency']:g}, amplitude "
                       f"{row['amplitude']:.6g}", f"{row['reason']}\n{row.get('message') or ''}")
                      for row in _rows(result, "failure")[:50])
@@ -92,7 +94,7 @@ def _knob_words(result, solver, knob, values):
         (good if len(shifts) == len(rows) and max(shifts) <= LIMIT / 100 else bad).append(value)
     def listed(chosen):
         return ", ".join(number(value, 2) for value in sorted(chosen)) or "none"
-    return (f"{solver}, {knob}: all boundaries within {LIMIT:g} % at {listed(good)}; not at {listed(bad)}.")
+    return (f"{solver}, {knob}: all boundaries within {LIMIT:g} % at {listed(good)}; not at {listed(bad)} (SI units).")
 
 
 def _first_words(result, solver):
@@ -106,7 +108,7 @@ def _first_words(result, solver):
         if row["shift"] is None:
             key = row["ground"], row["reason"].split(",")[0]
             reasons[key] = reasons.get(key, 0) + 1
-    lost = "; ".join(f"{ground}: {why} ({count} boundaries)" for (ground, why), count in reasons.items())
+    lost = "; ".join(f"{ground}: {why} ({count})" for (ground, why), count in reasons.items())
     text = f"First script, {solver}: {len(found)} of {len(rows)} boundaries found" + (f"; {span}" if span else "") + (
         f". Not found, within 30 % or half-way to the next boundary: {lost}." if lost else ".")
     slides = [name for name, given in result.settings["grounds"].items()

@@ -51,7 +51,8 @@ def draw_maps(result):
                        linestyle="none", label=f"{solver}: boundary") for solver in ("exudyn", "pybullet")]
     handles += [Line2D([], [], marker=".", color="0.35", linestyle="none", label="scanned with both engines"),
                 Line2D([], [], marker="x", color="#D55E00", linestyle="none", label="scanned, outcomes differ")]
-    figure.legend(handles=handles, loc="outside lower center", ncols=4, fontsize="small")
+    figure.legend(handles=handles, loc="outside lower center", ncols=4 if len(s["shapes"]) > 1 else 2,
+                  fontsize="small")
     return figure
 
 

@@ -80,6 +80,7 @@ def compute(work, quick=False):
         for name, scene in grounds.items()},
         "shapes": list(shapes), "frequencies": list(frequencies), "scan": list(scan),
         "amplitudes": [LOWEST, HIGHEST], "band": BAND, "tolerance": TOLERANCE,
+        "knob_tolerance": KNOB_TOLERANCE,
         "solvers": [name_of(*one) for one in ENGINES],
         "knobs": [[solver, variant, knob] for solver, variant, knob, _ in (*KNOBS, *FIRST_SCRIPTS)],
         "default_knobs": {name_of(*one): getattr(get_engine(one[0]).VARIANTS[one[1]], knob)
