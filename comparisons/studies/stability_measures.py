@@ -19,8 +19,8 @@ from .stability_cases import hard_cases
 
 JUDGE_TOLERANCE = 1e-15  # of the kernel where it judges others
 # Impacts are counted down to this share of the strongest one's rate, but not below 1e-3 omega_r slenderness, which
-# moves nothing: engines rest earlier than the model. A run's own impacts count from half of that.
-LEAST_RATE, LEAST_SHARE = 0.05, 1e-3
+# moves nothing: engines rest earlier than the model. A run's own impacts count from OWN of that, for their rates err.
+LEAST_RATE, LEAST_SHARE, OWN = 0.05, 1e-3, 0.95
 LAST_PART = 0.1  # share of the run, at its end, over which a block at rest must not drift
 
 
@@ -74,7 +74,7 @@ def oracle(name, of_kernel):
     case = _case(name)
     until, robust = comparable_until(name)
     response = simulate(case.scene, tolerance=JUDGE_TOLERANCE)
-    noise = _energy_errors(case.scene, response, until)
+    noise = _energy_errors(case, response, until)
     if of_kernel:
         until, robust = min(until, case.twin_until), math.isinf(case.twin_until)
         short = case.scene if robust else case.scene.with_(duration=case.twin_until)
@@ -111,7 +111,7 @@ def measure(response):
     if response.energy is not None:
         errors["energy imbalance"] = _imbalance(response.energy)
     else:
-        drift, gain = _energy_errors(scene, response, comparable_until(case.name)[0])
+        drift, gain = _energy_errors(case, response, comparable_until(case.name)[0])
         errors["energy drift"] = max(0.0, drift - truth.noise[0])
         errors["energy gain"] = max(0.0, gain - truth.noise[1])
     return {"outcome": response.outcome, "errors": errors, "until": truth.until, "impacts": response.impact_count,
@@ -166,24 +166,24 @@ def _event_errors(case, response, truth):
     least = max(LEAST_RATE * max(wanted, default=0.0),
                 LEAST_SHARE * scene.rocking_frequency * scene.block.slenderness)
     if count := sum(rate >= least for rate in wanted):
-        own = sum(abs(impact.rate_before) >= 0.5 * least for impact in response.impacts)
+        own = sum(abs(impact.rate_before) >= OWN * least for impact in response.impacts)
         errors["lost impacts"] = float(max(0, count - own))
     return errors
 
 
-def _energy_errors(scene, response, until):
+def _energy_errors(case, response, until):
     """(drift between events, gain from nowhere) up to `until` [s] and the unstable point, from the history.
 
-    Drift: as `measures.energy_drift`, but that a sample beside an event belongs to neither side.
+    Drift: as `measures.energy_drift`, but that a sample or step beside an event belongs to neither side.
     """
-    history = response.history
+    scene, history = case.scene, response.history
     last = min(until, math.inf if response.unstable_time is None else response.unstable_time)
     trace = Trace(*(getattr(history, name) for name in Trace.COLUMNS), contact_tilt=1e-12, settle=SETTLE)
     trace = trace.upto(max(2, int(np.searchsorted(history.time, last, side="right"))))
     balance, _ = energy_balance(scene, trace)
     events = sorted([impact.time for impact in response.impacts] + list(response.rests) + list(response.uplifts))
-    beside = 1.5 * float(np.diff(trace.time).max())
-    begins = np.searchsorted(trace.time, np.add([-math.inf] + events, max(SETTLE, beside)))
+    beside = max(SETTLE, 1.5 * float(np.diff(trace.time).max()), 1.5 * (case.step or 0.0))
+    begins = np.searchsorted(trace.time, np.add([-math.inf] + events, beside))
     ends = np.searchsorted(trace.time, np.subtract(events + [math.inf], beside))
     drift = max((np.ptp(balance[a:b]) for a, b in zip(begins, ends, strict=True) if b > a), default=0.0)
     block = scene.block

@@ -1,6 +1,7 @@
 """The stability study as a picture and as a section of the report."""
 
 import math
+import textwrap
 
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure as Canvas
@@ -30,7 +31,7 @@ def matrix(result):
 def draw(result):
     """The matrix of verdicts: a line per case, a column per solver; a matplotlib Figure."""
     cases, solvers, cells = list(result.settings["cases"]), list(result.settings["solvers"]), matrix(result)
-    canvas = Canvas(figsize=(3.0 + 1.05 * len(solvers), 1.6 + 0.28 * len(cases)), layout="constrained")
+    canvas = Canvas(figsize=(3.0 + 1.05 * len(solvers), 1.6 + 0.33 * len(cases)), layout="constrained")
     axes = canvas.add_subplot()
     for j, case in enumerate(cases):
         for i, solver in enumerate(solvers):
@@ -55,9 +56,15 @@ def _word(row):
     if row["verdict"] == RIGHT:
         return RIGHT
     if row["verdict"] == FAILED:
-        return f"{FAILED}:\n{row['failure']['kind']}"
+        return f"{FAILED}:\n" + "\n".join(textwrap.wrap(_reason(row), 19)[:2])
     name, value, limit, ratio = worst(row)
-    return f"{name}\n" + (f"{ratio:.2g} x tol." if math.isfinite(ratio) else f"{value:.2g}" if value else "none")
+    if name == "outcome":
+        return f"wrong:\n{row['outcome']}"
+    return f"{name}\n" + (f"{ratio:.2g} × tol." if math.isfinite(ratio) else f"{value:.2g}" if value else "none")
+
+
+def _reason(row):
+    return "time limit" if row["failure"]["kind"] == "time limit" else row["failure"]["reason"]
 
 
 def section(result):
