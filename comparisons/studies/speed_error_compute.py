@@ -10,6 +10,7 @@ from rich.progress import track
 
 from engines import installed_engines
 
+from ..bench.analytic_bench import peer_versions
 from ..executors import Processes
 from ..provenance import write_result
 from ..store import Store
@@ -60,7 +61,7 @@ def run_study(output, *, quick=False, repeats=None, progress=True, scenes=None, 
     for line, found in zip(seconds, measured, strict=True):
         line[:len(found)] = [one.cost.get("cpu_seconds", np.nan) for one in found]
     settings = {"quick": quick, "rounds": rounds, "scenes": {trial.name: description(trial) for trial in scenes},
-                "laws": _laws(scenes)}
+                "laws": _laws(scenes), "peers": peer_versions()}
     return write_result(output / f"{KIND}.json", KIND, settings, rows + grown, {"cpu_seconds": seconds},
                         modules=[*OWN, *modules(chosen)])
 
@@ -96,14 +97,15 @@ def _row(entry, found):
     seconds = [one.cost["cpu_seconds"] for one in found if one.cost.get("cpu_seconds")]
     if first.failure or not seconds:
         return row
-    shifts = values["settings"].get("boundary_shifts")
+    chosen = dict(values["settings"])
+    shifts, _, _ = (chosen.pop(name, None) for name in ("boundary_shifts", "repeats", "knows_impacts"))
     row["errors"] = errors(trial, values, shifts)
     row["lost_impacts"] = row["errors"].pop("lost_impacts", None)
     cpu, simulated, steps = statistics.median(seconds), values["end"]["time"], values["steps"]
     row |= {"cpu_seconds": cpu, "cpu_low": min(seconds), "cpu_high": max(seconds), "simulated": simulated,
             "steps": steps or None, "step": simulated / steps if steps else None,
             "cpu_per_second": cpu / simulated, "cpu_per_step": cpu / steps if steps else None,
-            "boundary_shifts": shifts}
+            "boundary_shifts": shifts, "settings": chosen}
     return row
 
 

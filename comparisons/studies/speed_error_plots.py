@@ -129,16 +129,17 @@ def draw_growth(result):
     for (what, family), found in series.items():
         if what == "duration":
             memory.plot(found["value"], [value / 2**20 for value in found["traced_bytes"]],
-                        label=f"{family}: allocated by Python and numpy", **looks[family])
+                        label=f"{family}: allocated", **looks[family])
             resident = [None if value is None else value / 2**20 for value in found["resident_bytes"]]
             if None not in resident:
                 memory.plot(found["value"], resident, label=f"{family}: resident",
                             **{**looks[family], "linestyle": ":", "markerfacecolor": "none"})
+    memory.set_title("allocated by Python and numpy; resident in the process", fontsize=9)
     memory.set(xscale="log", xlabel=AGAINST["duration"], ylabel="memory of the run, peak [MiB]")
     memory.set_yscale("symlog", linthresh=0.01)
     memory.set_ylim(-0.002, 3 * memory.get_ylim()[1])
     for axis in axes.flat:
         axis.grid(True, which="major", color="0.9")
         if axis.lines:
-            axis.legend(fontsize=8, loc="upper left" if axis is not memory else "center right")
+            axis.legend(fontsize=8, **({"loc": "lower left", "bbox_to_anchor": (0.0, 0.08)} if axis is memory else {}))
     return figure

@@ -44,8 +44,11 @@ def cost_at_error(result, scene, level, measure=None, seconds=None):
     return {family: row for family, (cost, row) in sorted(best.items(), key=lambda item: item[1][0])}
 
 
-def orders(result, scene, axis="step"):
-    """{family: (order, standard error, points)}: error ~ step^order (axis "step") or ~ value^order ("value")."""
+def orders(result, scene, axis="value"):
+    """{family: (order, standard error, points)}: error ~ knob^order (axis "value") or ~ mean step^order ("step").
+
+    Errors at rounding and runs that lost impacts are left out; three points or more.
+    """
     measure, found = principal(result, scene), {}
     for family in dict.fromkeys(row["family"] for row in ladder(result)):
         rows = [row for row in ladder(result) if row["scene"] == scene and row["family"] == family
