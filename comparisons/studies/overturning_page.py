@@ -34,8 +34,8 @@ def section(result):
 ]
     if knob_curves(result):
         figures.append(figure_of(draw_knobs(result), "Largest and median shift of the boundaries over step, accuracy "
-                                 "or stiffness.", f"One-sine pulses on both grounds. Dotted: {LIMIT:g} %. A shift is known to "
-                                 f"± {percent(result.settings['tolerance'] / 2, 1)} at default settings, to "
+                                 "or stiffness.", f"One-sine pulses on both grounds. Dotted: {LIMIT:g} %. A shift is "
+                                 f"known to ± {percent(result.settings['tolerance'] / 2, 1)} at default settings, to "
                                  f"± {percent(result.settings['knob_tolerance'] / 2, 1)} at others."))
     evidence = tuple((f"{row['solver']}, {row['ground']}, {row['shape']}, frequency {row['frequency']:g}, amplitude "
                       f"{row['amplitude']:.6g}", f"{row['reason']}\n{row.get('message') or ''}")
