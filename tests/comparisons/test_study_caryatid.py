@@ -14,6 +14,7 @@ from comparisons.provenance import PROJECT_FOLDER, read_result
 from comparisons.refine import Transition
 from comparisons.studies.caryatid import section
 from comparisons.studies.caryatid.cost import DIVISIONS, _cpu_at, _fixed_step
+from comparisons.studies.caryatid.figures import draw
 from comparisons.studies.caryatid.formulas import formulas
 from comparisons.studies.caryatid.paper import CORRECTED, NOT_REPRODUCIBLE, REPRODUCED, judged
 from comparisons.studies.caryatid.runs import FREE, ISOLATED, caryatid, oscillator, slender_block
@@ -174,6 +175,7 @@ def test_cost_at_an_error_lies_between_the_rungs():
 
 def test_end_to_end(short, tmp_path):
     files = make_results(tmp_path, short, quick=True, progress=False)
+    draw(files)
     assert len(files) == 3 and len(list(tmp_path.glob("*.png"))) == 12
     for file in files:
         assert file.with_suffix(".npz").stat().st_size < 500_000

@@ -9,6 +9,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import ScalarFormatter
 
 from ...plots import style
+from ...provenance import read_result
 from .paper import X_MAX
 from .runs import FREE, ISOLATED
 from .variations import CATEGORIES, FRICTION_LIMITS, ONLY_FREE, ONLY_ISOLATED
@@ -38,6 +39,13 @@ def drawings(result):
                          "seeds": seeds, "contact": contact},
               "histories": {"fig4": free_standing, "fig6": isolated}}[result.settings["part"]]
     return {name: maker(result) for name, maker in makers.items()}
+
+
+def draw(files):
+    """Write the figures of result files as PNG beside them."""
+    for file in files:
+        for name, drawing in drawings(read_result(file)).items():
+            drawing.figure.savefig(file.with_name(f"{file.stem}-{name}.png"), dpi=150)
 
 
 def _axes(rows=1, columns=1, height=3.2, **kind):

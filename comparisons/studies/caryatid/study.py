@@ -1,4 +1,4 @@
-"""The study as a whole: computes everything, writes the result files and the figures."""
+"""The study as a whole: computes everything and writes the result files."""
 
 import re
 from pathlib import Path
@@ -9,7 +9,7 @@ from analytic.design import properties
 from analytic.linear_oscillator import displacement_spectrum
 from engines import ENGINES
 
-from ...provenance import read_result, write_result
+from ...provenance import write_result
 from ...sweep import Store
 from . import paper
 from .cost import cost_rows
@@ -25,7 +25,7 @@ STORE = "runs.jsonl"
 
 
 def make_results(folder, motion, *, quick=False, progress=True, say=lambda text: None):
-    """Compute the study under `motion` and write its result files and figures into `folder`.
+    """Compute the study under `motion` and write its result files into `folder`.
 
     Parameters
     ----------
@@ -84,7 +84,6 @@ def make_results(folder, motion, *, quick=False, progress=True, say=lambda text:
                               {"part": PART_HISTORIES, **described, "slenderness": isolated.block.slenderness,
                                "x_max": paper.X_MAX}, [row for row in rows if row["part"] == "run"], histories,
                               modules=modules))
-    draw(files, folder)
     (folder / STORE).unlink()  # complete: the next study measures afresh
     return files
 
@@ -93,15 +92,6 @@ def _slug(motion):
     """A file's name for the motion: of a record its own, without the ending."""
     name = "synthetic" if motion.label.startswith("synthetic") else Path(motion.label).stem
     return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
-
-
-def draw(files, folder):
-    """Write the figures of result files as PNG into `folder`."""
-    from .figures import drawings
-
-    for file in files:
-        for name, drawing in drawings(read_result(file)).items():
-            drawing.figure.savefig(Path(folder) / f"{file.stem}-{name}.png", dpi=150)
 
 
 def _impact_friction(motion):

@@ -20,6 +20,7 @@ def command(
     from analytic.records import read_record
 
     from ...solving import stdout_to_stderr
+    from .figures import draw
     from .study import make_results
 
     if units and not record:
@@ -34,5 +35,6 @@ def command(
     say(f"ground motion: {motion.label}")
     with stdout_to_stderr():  # engines greet on standard output
         files = make_results(output, motion, quick=quick, say=say)
+    draw(files)
     for file in files:
         print(file)
