@@ -1,0 +1,258 @@
+"""How far an engine is from the analytic model, measured: one function for each quantity of the tolerance table.
+
+Each takes (engine, variant, runs), runs being a dict in which simulations are kept that several measures share, and
+returns one number: the worst found. What it runs is named by the scenes of the table's row.
+"""
+
+import contextlib
+import math
+
+import numpy as np
+
+from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, load_scene, simulate
+from analytic.bearing import BearingLaw
+from analytic.rocking import restitution
+from engines import get_engine
+
+from .measures import base_jump_error, compare, state_restitution, swing_restitution
+
+CARYATID = {"mass": 3172.05, "radius": 1.0884}
+BASE = Base(mass=212.0)
+BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
+STARTS = (0.3, 0.37, 0.44, 0.51, 0.59, 0.66, 0.73, 0.8)  # released tilt over slenderness
+SLENDERNESSES = (0.1, 0.2, 0.3, 0.45)
+IMPACTS = 3
+FREE_ROCKING = {"rigid ground": (None, SLENDERNESSES), "sliding base": (BASE, SLENDERNESSES),
+                "rigid ground, slenderness 0.2": (None, (0.2,)), "sliding base, slenderness 0.2": (BASE, (0.2,))}
+BOUNDARY_FREQUENCIES = (2.0, 5.0)  # of the pulse, over omega_r
+
+
+class Unmeasurable(RuntimeError):
+    """The engine's run failed, or lacks what is to be measured; says which and why."""
+
+
+def run(engine, variant, scene, history=True):
+    """The engine's response; raises `Unmeasurable` where it failed."""
+    response = get_engine(engine).simulate(scene, variant=variant, history=history)
+    if response.failure is not None:
+        raise Unmeasurable(f"{engine}, {variant} failed: {response.failure.reason}. {response.failure.message}")
+    return response
+
+
+def free_rocking(scenes):
+    """{slenderness: scenes} of a family: free rocking from every start, up to past the third impact's swing."""
+    base, slendernesses = FREE_ROCKING[scenes]
+    family = {}
+    for slenderness in slendernesses:
+        block = Block(slenderness=slenderness, **CARYATID)
+        for start in STARTS:
+            scene = Scene(block=block, base=base, start=Start(tilt=start * slenderness), duration=12.0)
+            times = [impact.time for impact in simulate(scene, history=False).impacts[:IMPACTS + 1]]
+            family.setdefault(slenderness, []).append(
+                scene.with_(duration=times[-2] + 0.75 * (times[-1] - times[-2])))
+    return family
+
+
+def _free_responses(engine, variant, scenes, runs):
+    key = engine, variant, scenes
+    if key not in runs:
+        runs[key] = {slenderness: [(scene, run(engine, variant, scene)) for scene in family]
+                     for slenderness, family in free_rocking(scenes).items()}
+    return runs[key]
+
+
+def _worst_rms(groups):
+    return max(float(np.sqrt(np.mean(np.square(np.concatenate(values))))) for values in groups)
+
+
+def restitution_rms(engine, variant, scenes, runs):
+    """Error of e_phi against eq. (7) from the states at the first three impacts, rms over starts; worst slenderness."""
+    return _worst_rms([[state_restitution(response)[:IMPACTS] - restitution(scene) for scene, response in pairs]
+                       for pairs in _free_responses(engine, variant, scenes, runs).values()])
+
+
+def swing_restitution_bias(engine, variant, scenes, runs):
+    """|mean| error of e_phi against eq. (7) from the energies of the swings around the first three impacts."""
+    errors = [swing_restitution(scene, response)[:IMPACTS] - restitution(scene)
+              for pairs in _free_responses(engine, variant, scenes, runs).values() for scene, response in pairs]
+    return float(abs(np.nanmean(np.concatenate(errors))))
+
+
+def base_jump_rms(engine, variant, scenes, runs):
+    """Relative error of the base velocity jump against momentum, rms over starts and impacts; worst slenderness."""
+    return _worst_rms([[base_jump_error(scene, response)[:IMPACTS] for scene, response in pairs]
+                       for pairs in _free_responses(engine, variant, scenes, runs).values()])
+
+
+def impact_times(engine, variant, scenes, runs):
+    """Largest error of the times of the first three impacts [s]."""
+    worst = 0.0
+    for pairs in _free_responses(engine, variant, scenes, runs).values():
+        for scene, response in pairs:
+            wanted = [impact.time for impact in simulate(scene, history=False).impacts[:IMPACTS]]
+            found = [impact.time for impact in response.impacts[:IMPACTS]]
+            if len(found) < len(wanted):
+                raise Unmeasurable(f"{engine}, {variant}: {len(found)} impacts, the model has {len(wanted)}")
+            worst = max(worst, *np.abs(np.subtract(found, wanted)))
+    return float(worst)
+
+
+def named_scene(name):
+    """The scenes of the table that are one scene each."""
+    if name == "isolated Caryatid, synthetic motion":
+        return load_scene("caryatid-isolated")
+    if name == "rocking on bearings, one-sine":
+        return Scene(block=Block(slenderness=0.15, **CARYATID), base=BASE, bearings=BEARINGS,
+                     motion=PulseMotion("one-sine", 3.0, 8.0), duration=3.0)
+    if name == "one-sine of 3.8 g slenderness, rigid ground":
+        return Scene(block=Block(slenderness=0.2, **CARYATID), motion=PulseMotion("one-sine", 3.8 * 9.81 * 0.2, 5.2),
+                     duration=5.0)
+    shaking = 0.01 * np.arange(6001)
+    level = np.sin(8 * shaking) + 0.5 * np.sin(26 * shaking)
+    if name == "60 s of shaking below uplift, rigid ground":
+        peak = 0.9 * 9.81 * math.tan(0.2)
+        return Scene(block=Block(slenderness=0.2, **CARYATID), duration=60.0,
+                     motion=SampledMotion(0.01, level / np.abs(level).max() * peak))
+    if name == "60 s of shaking below uplift, on bearings":
+        return Scene(block=Block(slenderness=0.2, **CARYATID), base=BASE, bearings=BEARINGS, duration=60.0,
+                     motion=SampledMotion(0.01, level / np.abs(level).max() * 0.5))
+    raise KeyError(f"no scene is called {name!r}")
+
+
+def _agreement(engine, variant, scenes, runs):
+    key = engine, variant, scenes
+    if key not in runs:
+        scene = named_scene(scenes)
+        runs[key] = compare(scene, run(engine, variant, scene), simulate(scene))
+    if not runs[key].same_outcome:
+        raise Unmeasurable(f"{engine}, {variant}: another outcome than the model's in {scenes}")
+    return runs[key]
+
+
+def peak_tilt(engine, variant, scenes, runs):
+    """|Error| of the peak tilt over slenderness."""
+    return abs(_agreement(engine, variant, scenes, runs).peak_tilt_error)
+
+
+def peak_displacement(engine, variant, scenes, runs):
+    """|Error| of the peak base displacement, relative."""
+    return abs(_agreement(engine, variant, scenes, runs).peak_displacement_error)
+
+
+def tilt_graph(engine, variant, scenes, runs):
+    """Distance of the tilt graphs over the whole scene: tilt over slenderness, time over 2 pi/omega_r."""
+    return _agreement(engine, variant, scenes, runs).graph_distance
+
+
+def overturning_time(engine, variant, scenes, runs):
+    """|Error| of the time of overturning [s]."""
+    return abs(_agreement(engine, variant, scenes, runs).overturning_time_error)
+
+
+def boundary_scene(frequency, amplitude):
+    """One sine of frequency times omega_r and amplitude times g tan(slenderness), on rigid ground."""
+    scene = Scene(block=Block(slenderness=0.25, **CARYATID), duration=1.0)
+    pulse = PulseMotion("one-sine", amplitude * 9.81 * math.tan(0.25), frequency * scene.rocking_frequency)
+    return scene.with_(motion=pulse, duration=pulse.end + 6.0)
+
+
+def _overturns(engine, variant, frequency, amplitude):
+    scene = boundary_scene(frequency, amplitude)
+    if engine == "analytic":
+        return simulate(scene, history=False).outcome == "overturns"
+    return run(engine, variant, scene, history=False).outcome == "overturns"
+
+
+def first_boundary(frequency):
+    """Least amplitude over g tan(slenderness) at which the model overturns; found by scanning, then halving."""
+    amplitudes = np.arange(1.0, 12.0, 0.02)
+    over = next(k for k, a in enumerate(amplitudes) if _overturns("analytic", None, frequency, float(a)))
+    low, high = float(amplitudes[over - 1]), float(amplitudes[over])
+    while high - low > 1e-7 * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if _overturns("analytic", None, frequency, middle) else (middle, high)
+    return high
+
+
+def boundary_shift(engine, variant, scenes, runs):
+    """Largest relative shift of the first overturning boundary, its bracket included, over `BOUNDARY_FREQUENCIES`."""
+    worst = 0.0
+    for frequency in BOUNDARY_FREQUENCIES:
+        exact = first_boundary(frequency)
+        low, high = -1e-4, 1e-4
+        while _overturns(engine, variant, frequency, exact * (1 + low)):
+            low *= 4
+        while not _overturns(engine, variant, frequency, exact * (1 + high)):
+            high *= 4
+        for _ in range(4):
+            middle = 0.5 * (low + high)
+            over = _overturns(engine, variant, frequency, exact * (1 + middle))
+            low, high = (low, middle) if over else (middle, high)
+        worst = max(worst, abs(low), abs(high))
+    return worst
+
+
+@contextlib.contextmanager
+def recorded_traces(engine):
+    """List of the traces (accepted steps) that the engine's adapter hands over inside the block."""
+    module, traces = get_engine(engine), []
+    observe = module.observe
+
+    def recording(scene, trace, **given):
+        traces.append(trace)
+        return observe(scene, trace, **given)
+
+    module.observe = recording
+    try:
+        yield traces
+    finally:
+        module.observe = observe
+
+
+def bearing_replay(engine, variant, scenes, runs):
+    """Largest difference of the engine's bearing force from `paper_force` on its own displacements, over n_d f0."""
+    scene = named_scene(scenes)
+    with recorded_traces(engine) as traces:
+        run(engine, variant, scene)
+    trace, law = traces[0], BearingLaw.of(scene.bearings)
+    force = paper_force(law, trace.base_displacement)
+    return float(np.abs(trace.bearing_force - force).max() / (law.count * law.f0))
+
+
+def paper_force(law, x):
+    """Force of all bearings [N] along displacements x [m], shape (n,), x[0] = 0, by the paper's eqs (9)-(12).
+
+    With its own history, the reversal points, and (12) with the sign mended: a second implementation beside
+    `analytic.bearing`, whose history is the last point. Travel since a reversal up to 1.3 m.
+    """
+    a, double = 1 - law.alpha, 2 * law.x0
+    force, s, shift = np.zeros(len(x)), 0.0, 0.0
+    for i in range(1, len(x)):
+        way = math.copysign(1.0, x[i] - x[i - 1]) if x[i] != x[i - 1] else s
+        if way != s:  # a reversal, or the first step: x_j from the point where it happens, eqs (10), (12)
+            z = force[i - 1] - law.kb * x[i - 1]
+            shift = x[i - 1] + way * (1 + double - (law.d0 + a * (way * z - law.f0) / law.dk) ** (1 / a))
+            s = way
+        if s:
+            bracket = (1 + s * x[i] - s * shift + double) ** a - law.d0
+            force[i] = law.kb * x[i] + law.dk * bracket / (s * a) + s * law.f0  # (9), (11)
+    return law.count * force
+
+
+def corner_lift(engine, variant, scenes, runs):
+    """Largest lift of a corner of a block that should stand [m]."""
+    scene = named_scene(scenes)
+    response = run(engine, variant, scene, history=False)
+    if response.outcome != "stands":
+        raise Unmeasurable(f"{engine}, {variant}: {response.outcome} in {scenes}")
+    return 2 * scene.block.half_width * response.peak_tilt
+
+
+def base_drift(engine, variant, scenes, runs):
+    """Largest difference of the base displacement from the model's [m] while the block stands."""
+    scene = named_scene(scenes)
+    found, reference = run(engine, variant, scene).history, simulate(scene).history
+    return float(np.abs(np.interp(reference.time, found.time, found.base_displacement)
+                        - reference.base_displacement).max())
+
+
