@@ -1,6 +1,8 @@
 """The same scene in multibody engines: ``get_engine("exudyn").simulate(scene)``.
 
-A new engine is one new file with ``simulate``, ``VARIANTS`` and ``versions`` (see contract.py), and one line here.
+A new engine is one new file and one line here. The file holds ``simulate(scene, *, variant=None, history=True,
+**settings)``, which returns a `Response`; ``VARIANTS``, by name a frozen dataclass of settings, the
+accuracy knob first; ``DEFAULT_VARIANT``; ``DECIDES``, in words what the engine decides by itself; ``versions()``.
 """
 
 from importlib import import_module
@@ -42,7 +44,7 @@ def installed_engines():
     for name in ENGINES:
         try:
             get_engine(name)
-        except ImportError:
+        except EngineNotInstalled:  # no other ImportError: an adapter that is broken must not pass for absent
             continue
         names.append(name)
     return tuple(names)

@@ -26,7 +26,6 @@ All with mujoco 4.0.0; diagexact needs 3.9.
 import math
 import time
 from dataclasses import asdict, dataclass, fields, replace
-from importlib.metadata import version
 from typing import ClassVar
 
 import mujoco
@@ -128,7 +127,7 @@ class Mismatch(RuntimeError):
 
 def versions():
     """Versions of what computes: {package: version}."""
-    return {"mujoco": version("mujoco"), "mujoco-library": mujoco.mj_versionString()}
+    return {"mujoco": mujoco.__version__, "mujoco-library": mujoco.mj_versionString()}
 
 
 def settings_of(variant, changes):
