@@ -7,15 +7,15 @@ import numpy as np
 
 from analytic.design import properties
 from analytic.linear_oscillator import displacement_spectrum
-from engines import ENGINES
 
+from ...cases import module_of
 from ...provenance import write_result
 from ...sweep import Store
 from . import paper
 from .cost import cost_rows
 from .formulas import formulas
 from .paper import NOT_REPRODUCIBLE, OTHER_MOTION, REPRODUCED, Value, judged
-from .runs import FREE, ISOLATED, caryatid, equivalent_oscillators, simulations, spectra
+from .runs import ENGINES, FREE, ISOLATED, caryatid, equivalent_oscillators, simulations, spectra
 from .slenderness import claims, uplift_slenderness
 from .variations import contact, impact_friction, maps
 
@@ -73,7 +73,7 @@ def make_results(folder, motion, *, quick=False, progress=True, say=lambda text:
               for name, values in arrays.items()}
     least = uplift_slenderness(motion)
     rows += [value.row() for value in _values(rows, motion, least)]
-    modules = ["comparisons.studies.caryatid.study", *(ENGINES[name][0] for name in ENGINES if name not in missing)]
+    modules = ["comparisons.studies.caryatid.study", *(module_of(name) for name in ENGINES if name not in missing)]
     stem = f"caryatid-under-{_slug(motion)}"
     files.append(write_result(folder / f"{stem}.json", KIND,
                               {"part": PART_MOTION, **described, "missing": missing, "uplift_slenderness": least,
