@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from analytic import simulate
+from analytic import SettingError, simulate
 from comparisons.provenance import read_result, write_result
 from comparisons.statistics import wilson
-from comparisons.studies.fragility import section
+from comparisons.studies.fragility import command, section
 from comparisons.studies.fragility_page import draw
 from comparisons.studies.fragility_runs import FULL, MOTIONS, compute
+from comparisons.studies.workshop import workshop
 from comparisons.sweep import Row
 
 SCENES = {"free-standing": ("caryatid-rigid", {}, (0.9, 1.0, 1.3))}
@@ -102,3 +103,55 @@ def test_the_figure_has_a_point_for_every_solver_and_intensity(tmp_path):
     share = above.containers[0][0].get_ydata()
     assert share == pytest.approx((result.arrays["free-standing/analytic"] == 1).mean(axis=1))
     assert np.all(np.diff(share) > 0)
+
+
+def test_the_command_refuses_what_it_cannot_use_before_any_run(tmp_path):
+    (tmp_path / "taken").write_text("")
+    with pytest.raises(SettingError, match="is a file; give a folder"):
+        command(quick=True, output=str(tmp_path / "taken"), workers=1)
+    with pytest.raises(SettingError, match="--workers 0: give at least 1"):
+        command(quick=True, output=str(tmp_path / "new"), workers=0)
+    assert not (tmp_path / "new").exists()
+
+
+def test_an_interrupted_study_takes_up_its_own_rows(tmp_path):
+    """Real runs in real worker processes; the first attempt ends in the middle."""
+    scenes = {"free-standing": ("caryatid-rigid", {}, (1.0,))}
+
+    def attempt(folder, limit=None):
+        with workshop(tmp_path / folder, ["exudyn", "pybullet"], 1, progress=False) as work:
+            if limit:
+                with pytest.raises(KeyboardInterrupt):
+                    list(compute(Stopping(work, limit), scenes=scenes, motions=2))
+                return len(work.store)
+            found, = compute(work, scenes=scenes, motions=2)
+            return found
+
+    kept = attempt("broken", limit=2)
+    assert kept == 4
+    store = tmp_path / "broken" / ".sweep" / "runs.jsonl"
+    before = store.read_text()
+    _, rows, arrays = attempt("broken")
+    assert store.read_text().startswith(before)
+    assert len(store.read_text().splitlines()) == 6
+    _, again, same = attempt("broken")  # nothing left to run
+    assert len(store.read_text().splitlines()) == 6
+    assert without_cost(again) == without_cost(rows)
+    assert all((arrays[name] == same[name]).all() for name in arrays)
+
+
+class Stopping:
+    """A workshop that is left after so many batches."""
+
+    def __init__(self, work, batches):
+        self.work, self.batches = work, batches
+
+    def run(self, cases, label):
+        if not self.batches:
+            raise KeyboardInterrupt
+        self.batches -= 1
+        return self.work.run(cases, label)
+
+
+def without_cost(rows):
+    return [{key: value for key, value in row.items() if key != "cpu_per_run"} for row in rows]
