@@ -10,6 +10,7 @@ from .stability_page import section
 __all__ = ["command", "run", "section"]
 
 QUICK_LIMIT, TIME_LIMIT = 60.0, 300.0  # s, of one run
+LONG = 60.0  # s; in longer scenes cures are tried on the engines' default variants only, to save time
 
 
 def command(
@@ -91,7 +92,8 @@ def _rows(cases, columns, store, workers, progress, quick):
 
         ill, cure = runs(cells, None, "hard cases"), 0
         while ill := [(case, column) for case, column in ill
-                      if cure < len(column.cures) and (column.quick_cures or not quick)]:
+                      if cure < len(column.cures)
+                      and (column.quick_cures or not (quick or case.scene.duration > LONG))]:
             ill, cure = runs(ill, cure, f"cures, round {cure + 1}"), cure + 1
     return found
 

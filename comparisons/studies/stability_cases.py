@@ -129,10 +129,13 @@ def _bearings():
     yield HardCase("bearing driven beyond the 1.33 m at which eqs (10), (12) as printed give NaN", ISOLATED.with_(
         name="beyond 1.33 m", start=Start(base_velocity=8.0), block={"slenderness": 1.2}, duration=6.0), quick=True)
     t = _times(8.0, 0.005)
+    rounding = {"event-driven": {"displacement": (1e-3, "eqs (9), (11) add the travel, here 6e-12 m, to 1 m: each "
+                                                        "reversal is rounded to 4e-5 of it")}}
     for amplitude in (1e-3, 1e-9):
         yield HardCase(f"reversals under {amplitude:g} m/s2", ISOLATED.with_(
             name=f"reversals, {amplitude:g} m/s2",
-            motion=SampledMotion(0.005, amplitude * np.sin(10 * np.pi * t))), quick=amplitude == 1e-3)
+            motion=SampledMotion(0.005, amplitude * np.sin(10 * np.pi * t))), quick=amplitude == 1e-3,
+            tolerances={} if amplitude == 1e-3 else rounding)
     for name, change in (("alpha 1.5", {"alpha": 1.5}), ("alpha 200", {"alpha": 200.0}),
                          ("ka = 1.0001 kb", {"ka": 6.22e3 * 1.0001}), ("ka = 1e9 N/m", {"ka": 1e9})):
         yield HardCase("extreme bearing law, rocking", ISOLATED.with_(

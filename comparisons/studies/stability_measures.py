@@ -59,12 +59,12 @@ def comparable_until(name):
 
 
 def twin_step(scene):
-    """Longest step of the twin [s]: its own choice, but short enough to interpolate in."""
+    """Longest step of the twin [s]: its own choice, but short enough to interpolate in to 1e-8."""
     longest = 0.005
     if hasattr(scene.motion, "dt"):
         longest = min(longest, 0.5 * scene.motion.dt)
     if scene.bearings is not None:
-        longest = min(longest, 0.5 / math.sqrt(scene.bearings.count * scene.bearings.ka / scene.total_mass))
+        longest = min(longest, 0.05 / math.sqrt(scene.bearings.count * scene.bearings.ka / scene.total_mass))
     return longest
 
 
