@@ -19,6 +19,7 @@ from .speed_error_tables import (
 )
 
 ENGINES = ("exudyn", "pybullet", "mujoco")
+JOINTS = "exudyn, switched-joints"  # uplift, impact and rest are the adapter's
 SHOWN = (1e-2, 1e-3, 1e-4)  # levels of which the words speak
 
 
@@ -49,7 +50,7 @@ def paragraphs(result):
              "the scene)."]
     for scene, about in settings["scenes"].items():
         found.append(_scene_words(result, scene, about))
-    found += _extra_words(result) + _law_words(result) + _growth_words(result)
+    found += _failure_words(result) + _extra_words(result) + _law_words(result) + _growth_words(result)
     pairs, changed = ranking_stability(result)
     broken = unrepeatable(result)
     found.append(f"Repetition: the errors of {len(ladder(result)) - len(broken)} of {len(ladder(result))} settings are "
@@ -63,21 +64,46 @@ def paragraphs(result):
 
 
 def _scene_words(result, scene, about):
-    """Cheapest engine and kernel at each level, in one sentence per scene."""
+    """Cheapest engine that decides the impact itself, and the kernel, at each level: one sentence per scene."""
     measure = MEASURES[principal(result, scene)][0]
     parts = []
     for level in SHOWN:
         best = cost_at_error(result, scene, level)
-        engine = next(((family, row) for family, row in best.items() if family.startswith(ENGINES)), None)
-        kernel = best.get("kernel")
-        if engine and kernel:
-            family, row = engine
-            parts.append(f"to {level:g}: {family} ({row['knob']} {row['value']:.3g}) in "
-                         f"{number(row['cpu_seconds'], 2)} s, {number(row['cpu_seconds'] / kernel['cpu_seconds'], 2)} "
-                         "times the analytic kernel")
-        elif kernel:
-            parts.append(f"to {level:g}: no engine on its ladder; the kernel in {number(kernel['cpu_seconds'], 2)} s")
-    return f"{about['title']} ({measure}; cheapest engine setting) – " + "; ".join(parts) + "."
+        kernel, joints = best.get("kernel"), best.get(JOINTS)
+        engine = next((row for family, row in best.items() if family.startswith(ENGINES) and family != JOINTS), None)
+        if kernel is None:
+            continue
+        words = f"to {level:g}: no engine on its ladder" if engine is None else (
+            f"to {level:g}: {engine['family']} ({engine['knob']} {engine['value']:.3g}) in "
+            f"{number(engine['cpu_seconds'], 2)} s, {number(engine['cpu_seconds'] / kernel['cpu_seconds'], 2)} "
+            "times the analytic kernel")
+        parts.append(words + (f" ({JOINTS}, whose impacts the adapter applies: {number(joints['cpu_seconds'], 2)} s)"
+                              if joints else ""))
+    return f"{about['title']} ({measure}; cheapest engine setting that reaches it) – " + "; ".join(parts) + "."
+
+
+def _failure_words(result):
+    """Which settings failed, and which found no boundary: they have no place in the tables."""
+    rows, words = ladder(result), []
+    failed = _counted([row for row in rows if row["failure"]], rows)
+    if failed:
+        words.append(f"Failed, with the solver's own message below: {failed}.")
+    searched = [row for row in rows if principal(result, row["scene"]) == "boundary_shift" and not row["failure"]]
+    none = _counted([row for row in searched if "boundary_shift" not in row["errors"]], searched)
+    if none:
+        words.append("No overturning boundary near the reference's (the search went on moving, by 5 % a run): "
+                     f"{none}.")
+    return words
+
+
+def _counted(rows, among):
+    """"solver: 2 of 5 settings (scene)" for those that occur in `rows`."""
+    parts = []
+    for key in dict.fromkeys((row["family"], row["model"], row["scene"]) for row in rows):
+        some, every = (sum((row["family"], row["model"], row["scene"]) == key for row in group)
+                       for group in (rows, among))
+        parts.append(f"{key[0]}: {some} of {every} settings ({key[2]})")
+    return "; ".join(parts)
 
 
 def _extra_words(result):
