@@ -38,19 +38,20 @@ LADDERS = {
 class Grid:
     """What the study covers: slendernesses [rad], m_b/m (None: rigid ground), starts (tilt over slenderness).
 
-    ladder: (slenderness, m_b/m) where the accuracy knobs run through their ladders; None: everywhere.
+    ladder: (slenderness, m_b/m) where the accuracy knobs run through their ladders.
     """
 
     slendernesses: tuple
     ratios: tuple
     starts: tuple
-    ladder: tuple | None
+    ladder: tuple
     phase_starts: int  # of the experiment on the phase of the steps
 
 
 STARTS = tuple(round(float(start), 4) for start in np.linspace(0.3, 0.8, 8))
 FULL = Grid((0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45), (None, 10.0, 1.0, 0.3, CARYATID_BASE, 0.01), STARTS,
-            None, 48)
+            tuple((slenderness, ratio) for slenderness in (0.1, 0.2, 0.3, 0.45) for ratio in (None, 1.0, CARYATID_BASE)),
+            48)
 QUICK = Grid((0.1, 0.2, 0.3, 0.45), (None, 10.0, 1.0, CARYATID_BASE), STARTS,
              ((0.2, None), (0.2, CARYATID_BASE)), 16)
 
@@ -89,7 +90,7 @@ def grid_cases(grid, engines):
     for ratio in grid.ratios:
         for slenderness in grid.slendernesses:
             scenes = [(start, free_scene(slenderness, ratio, start)) for start in grid.starts]
-            climbs = grid.ladder is None or (slenderness, ratio) in grid.ladder
+            climbs = (slenderness, ratio) in grid.ladder
             for engine, variant in variants_of(engines):
                 name, default, values = knob_of(engine, variant)
                 for value in values if climbs else (default,):

@@ -154,8 +154,8 @@ def _friction(axis, rows, result):
     _ladder(axis, rows)
     for ground, dashes in zip(GROUNDS, ("-", "--"), strict=True):
         axis.axvline(result.settings["friction_needed"][ground], color="0.5", linewidth=1, linestyle=dashes,
-                     label=f"needed by the model's impact, {ground}")
-    axis.set(xlabel="friction coefficient [-]", ylim=(1e-6, 1e3), title="Friction (exudyn, compliant-corners)")
+                     label=f"model's need, {ground}")
+    axis.set(xlabel="friction coefficient [-]", ylim=(1e-6, 1e2), title="Friction (exudyn, compliant-corners)")
 
 
 def _flight_damping(axis, rows, result):

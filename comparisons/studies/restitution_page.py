@@ -42,8 +42,8 @@ def _setting_words(settings):
     return (f"Blocks of slenderness {min(gammas):g} to {max(gammas):g} rad are tilted to {min(starts):g} to "
             f"{max(starts):g} of it ({len(starts)} starts) and let go, on rigid ground and on bases of {bases} times "
             f"their mass that slide without friction. The first {settings['impacts']} impacts of each run are "
-            "measured. Restitution follows from the energies of the swings before and after an impact, so that whatever takes "
-            "energy counts; the base velocity jump is held against momentum with the run's own rates.")
+            "measured. Restitution follows from the energies of the swings before and after an impact, so that "
+            "whatever takes energy counts; the base velocity jump is held against momentum with the run's own rates.")
 
 
 def _verdict(result, knob):
@@ -69,7 +69,7 @@ def _verdict(result, knob):
     orders = [row for row in select(result, "order", engine=knob["engine"], variant=knob["variant"]) if row["order"]]
     if orders:
         words += " Along its knob the error goes as " + " and ".join(
-            f"{knob['knob']}^{number(row['order'], 2)} ({row['ground']})" for row in orders) + "."
+            f"{knob['knob']}^{row['order']:.1f} ({row['ground']})" for row in orders) + "."
     if failed:
         words += f" {failed} of {runs} runs failed."
     lost = sum(row["lost"] for row in rows)
@@ -115,7 +115,8 @@ def _cause_words(result):
         fine = min(damping, key=lambda row: row["step"])
         yield (f"Damping in flight. PyBullet's default damping alone, put into the model, gives an error of "
                f"{number(fine['predicted'], 3)} at slenderness {fine['slenderness']:g} on rigid ground; measured "
-               f"with a first script at {number(1e3 * fine['step'], 2)} ms: {number(fine['measured'], 3)}. No step cures it.")
+               f"with a first script at {number(1e3 * fine['step'], 2)} ms: {number(fine['measured'], 3)}. "
+               "No step cures it.")
 
 
 def _equation_words(result):
@@ -124,8 +125,8 @@ def _equation_words(result):
         right, wrong = (max(row[key] for row in sizes) for key in ("jump_8", "jump_8_printed"))
         yield (f"Eq. (8). Blocks of {number(min(row['value'] for row in sizes), 2)} to "
                f"{number(max(row['value'] for row in sizes), 2)} times the Caryatid's size: the engines' base velocity "
-               f"jump agrees with the corrected equation within {percent(right)}, and differs from the printed one by up to "
-               f"{percent(wrong)}. The engines, which know nothing of the equation, side with momentum.")
+               f"jump agrees with the corrected equation within {percent(right)}, and differs from the printed one by "
+               f"up to {percent(wrong)}. The engines, which know nothing of the equation, side with momentum.")
 
 
 def _default_table(result, rows):

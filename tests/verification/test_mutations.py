@@ -1,0 +1,161 @@
+"""The verification can fail: a deliberate change of impact law, bearing law or step makes its rows fail."""
+
+import math
+
+import numpy as np
+import pytest
+
+from analytic import simulate
+from analytic.rocking import RockingModel, base_jump_length_as_printed, restitution
+from comparisons import agreement
+from comparisons.tolerances import TABLE
+from engines import get_engine
+
+
+def row(quantity, engine, variant, scenes):
+    (found,) = [one for one in TABLE
+                if (one.quantity, one.engine, one.variant, one.scenes) == (quantity, engine, variant, scenes)]
+    pytest.importorskip(engine)
+    return found
+
+
+def assert_caught(rows):
+    """Every row is out of its bound."""
+    for one in rows:
+        value = one.found()
+        assert not one.holds(value), f"{one.name}: the mutation is not seen, {value:.3g} {one.unit}"
+
+
+# Impact law. What an engine does at an impact is its own: the model it is held against is changed instead, and in
+# switched-joints, where the adapter applies the law, the adapter.
+
+DEFAULTS = [("exudyn", "compliant-corners"), ("pybullet", "impact-aware")]
+
+
+@pytest.mark.parametrize("engine, variant", DEFAULTS)
+@pytest.mark.parametrize("factor", [1.01, 1.0001])
+def test_another_restitution_fails(monkeypatch, engine, variant, factor):
+    monkeypatch.setattr(agreement, "FREE_ROCKING", {"rigid ground": (None, (0.2,)),
+                                                    "sliding base": (agreement.BASE, (0.2,))})
+    monkeypatch.setattr(agreement, "restitution", lambda scene: factor * restitution(scene))
+    assert_caught([row("restitution, rms", engine, variant, scenes) for scenes in ("rigid ground", "sliding base")])
+
+
+@pytest.mark.parametrize("engine, variant", DEFAULTS)
+def test_another_restitution_in_the_model_shifts_times_peaks_and_boundary(monkeypatch, engine, variant):
+    def other(scene, **given):
+        e = restitution(scene) * 1.01
+        return simulate(scene.with_(block={"restitution": e}), **given)
+
+    monkeypatch.setattr(agreement, "simulate", other)
+    monkeypatch.setattr(agreement, "BOUNDARY_FREQUENCIES", (5.0,))
+    monkeypatch.setattr(agreement, "FREE_ROCKING", {"rigid ground": (None, (0.2,))})
+    driven = "rocking on bearings, one-sine"
+    assert_caught([row("impact times", engine, variant, "rigid ground"), row("peak tilt", engine, variant, driven),
+                   row("tilt graph", engine, variant, driven),
+                   row("overturning boundary", engine, variant, "one-sine at 2 and 5 times omega_r, rigid ground")])
+
+
+@pytest.mark.parametrize("engine, variant", DEFAULTS)
+def test_eq_8_as_printed_fails(monkeypatch, engine, variant):
+    def against_printed(scene, response):
+        return [impact.base_velocity_jump / (-base_jump_length_as_printed(scene) * impact.rate_before) - 1
+                for impact in response.impacts]
+
+    monkeypatch.setattr(agreement, "FREE_ROCKING", {"sliding base": (agreement.BASE, (0.2,))})
+    monkeypatch.setattr(agreement, "base_jump_error", against_printed)
+    assert_caught([row("base velocity jump, rms", engine, variant, "sliding base")])
+
+
+def test_switched_joints_with_the_impact_of_printed_eq_8_fail(monkeypatch):
+    impact = RockingModel.impact
+
+    def printed(self, rate):
+        after, jump = impact(self, rate)
+        return after, jump * self.R * math.cos(self.gamma)
+
+    rows = [row("base velocity jump, rms", "exudyn", "switched-joints", "sliding base, slenderness 0.2")]
+    monkeypatch.setattr(RockingModel, "impact", printed)
+    assert_caught(rows)
+
+
+def test_switched_joints_with_another_restitution_fail(monkeypatch):
+    impact = RockingModel.impact
+    rows = [row("restitution, rms", "exudyn", "switched-joints", "rigid ground, slenderness 0.2")]
+    monkeypatch.setattr(RockingModel, "impact", lambda self, rate: (1.0001 * impact(self, rate)[0], 0.0))
+    assert_caught(rows)
+
+
+# Bearing law.
+
+@pytest.mark.parametrize("engine, variant", DEFAULTS)
+def test_another_alpha_in_the_engine_fails(monkeypatch, engine, variant):
+    """The engine is given alpha 1 % larger than the law that its force is held against."""
+    def run(engine, variant, scene, history=True):
+        scene = scene.with_(bearings={"alpha": 1.01 * scene.bearings.alpha})
+        return get_engine(engine).simulate(scene, variant=variant, history=history)
+
+    monkeypatch.setattr(agreement, "run", run)
+    isolated = "isolated Caryatid, synthetic motion"
+    assert_caught([row("bearing force replayed", engine, variant, isolated),
+                   row("peak displacement", engine, variant, isolated)])
+
+
+def test_eq_12_as_printed_fails(monkeypatch):
+    """Unloading with the printed sign of x: the force jumps at a reversal."""
+    def printed_force(law, x):
+        a, double = 1 - law.alpha, 2 * law.x0
+        force, s, shift = np.zeros(len(x)), 0.0, 0.0
+        for i in range(1, len(x)):
+            way = math.copysign(1.0, x[i] - x[i - 1]) if x[i] != x[i - 1] else s
+            if way != s:
+                z = np.clip(force[i - 1] - law.kb * x[i - 1], -law.f0, law.f0)
+                inner = max(law.d0, law.d0 + a * (way * z - law.f0) / law.dk)
+                shift, s = x[i - 1] + way * (1 + double - inner ** (1 / a)), way
+            if s:
+                inner = 1 + x[i] - shift + double if s > 0 else 1 + x[i] + shift + double  # (9), (12) as printed
+                force[i] = law.kb * x[i] + law.dk * (inner**a - law.d0) / (s * a) + s * law.f0
+        return law.count * force
+
+    monkeypatch.setattr(agreement, "paper_force", printed_force)
+    assert_caught([row("bearing force replayed", engine, variant, "isolated Caryatid, synthetic motion")
+                   for engine, variant in DEFAULTS])
+
+
+def test_a_bearing_force_that_lags_one_step_fails(monkeypatch):
+    from engines import pybullet_stepping
+
+    law, before = pybullet_stepping.hysteretic_force, []
+
+    def late(z, dx, *constants):
+        before.append(law(z, dx, *constants))
+        return before[-2] if len(before) > 1 else z
+
+    monkeypatch.setattr(pybullet_stepping, "hysteretic_force", late)
+    assert_caught([row("bearing force replayed", "pybullet", "impact-aware", "isolated Caryatid, synthetic motion")])
+
+
+# Step size, and what stands for it in an adaptive engine.
+
+@pytest.mark.parametrize("engine, variant, changes, quantity, scenes", [
+    ("exudyn", "compliant-corners", {"stiffness": 2e10}, "restitution, rms", "rigid ground"),
+    ("exudyn", "compliant-corners", {"stiffness": 2e10}, "corner lift at rest",
+     "60 s of shaking below uplift, rigid ground"),
+    ("exudyn", "switched-joints", {"step": 4e-3}, "restitution, rms", "rigid ground, slenderness 0.2"),
+    ("pybullet", "impact-aware", {"accuracy": 1e-4}, "restitution, rms", "sliding base"),
+    ("pybullet", "impact-aware", {"accuracy": 1e-4}, "base velocity jump, rms", "sliding base"),
+    ("pybullet", "impact-aware", {"largest_step": 5e-3}, "overturning time",
+     "one-sine of 3.8 g slenderness, rigid ground"),
+    ("pybullet", "impact-aware", {"largest_step": 5e-3}, "peak displacement", "isolated Caryatid, synthetic motion"),
+    ("pybullet", "impact-aware", {"largest_step": 5e-3}, "base drift at rest",
+     "60 s of shaking below uplift, on bearings"),
+    ("pybullet", "fixed-step", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
+])
+def test_a_coarse_step_fails(monkeypatch, engine, variant, changes, quantity, scenes):
+    one = row(quantity, engine, variant, scenes)
+
+    def coarse(engine, variant, scene, history=True):
+        return get_engine(engine).simulate(scene, variant=variant, history=history, **changes)
+
+    monkeypatch.setattr(agreement, "run", coarse)
+    assert_caught([one])

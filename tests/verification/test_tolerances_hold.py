@@ -1,0 +1,22 @@
+"""Every row of the tolerance table: the engine is run and held to it."""
+
+import pytest
+
+from comparisons.tolerances import SLACK, TABLE
+
+
+@pytest.fixture(scope="module")
+def runs():
+    """Runs that rows of one engine and variant share; these rows stay on one worker."""
+    return {}
+
+
+@pytest.mark.parametrize("row", [
+    pytest.param(row, id=row.name, marks=pytest.mark.xdist_group(f"{row.engine} {row.variant}")) for row in TABLE])
+def test_row_of_the_tolerance_table(row, runs):
+    pytest.importorskip(row.engine)
+    value = row.found(runs)
+    assert value <= row.bound, f"{row.name}: {value:.3g} {row.unit}, tolerated {row.bound:.3g}"
+    assert value >= row.least, f"{row.name}: only {value:.3g} {row.unit}: has the engine been mended?"
+    # Much better than when the bound was set: then the bound says nothing any more.
+    assert row.round_off or value > row.measured / (2 * SLACK), f"{row.name}: {value:.3g}; tighten the table"
