@@ -93,7 +93,7 @@ def _rows(cases, columns, store, workers, progress, quick):
         ill, cure = runs(cells, None, "hard cases"), 0
         while ill := [(case, column) for case, column in ill
                       if cure < len(column.cures)
-                      and (column.quick_cures or not (quick or case.scene.duration > LONG))]:
+                      and (column.default or not (quick or case.scene.duration > LONG))]:
             ill, cure = runs(ill, cure, f"cures, round {cure + 1}"), cure + 1
     return found
 
@@ -107,8 +107,8 @@ def settings_of(cases, columns, quick):
         "cases": {case.name: {"title": case.title, "oracle": case.oracle, "duration": case.scene.duration,
                               "twin_until": case.twin_until, "tolerances": case.tolerances} for case in cases},
         "measures": MEASURES, "tolerances": TOLERANCES,
-        "solvers": {column.label: {"kind": column.kind, "settings": defaults(column), "cures": column.cures}
-                    for column in columns}}
+        "solvers": {column.label: {"kind": column.kind, "default_variant": column.default, "settings": defaults(column),
+                                   "cures": column.cures} for column in columns}}
 
 
 def defaults(column):

@@ -72,7 +72,7 @@ class Solver:
     settings: dict
     step: str | None  # the setting that is a step [s]
     cures: tuple
-    quick_cures: bool = False
+    default: bool = False  # the engine's best effort
 
     @property
     def label(self):
@@ -111,8 +111,7 @@ STEP_NAMES = ("step", "largest_step", "longest_step")
 
 def solvers():
     """The columns: kernel, twin, time stepping, and every variant of every engine installed here."""
-    found = [Solver("analytic", None, "event-driven", {}, None, ()), Solver("twin", None, "event-driven", {}, None, ()),
-             TIME_STEPPING]
+    found = [*(Solver(name, None, "event-driven", {}, None, (), True) for name in ("analytic", "twin")), TIME_STEPPING]
     for name in installed_engines():
         for variant, settings in get_engine(name).VARIANTS.items():
             fields = [field.name for field in dataclasses.fields(settings)]
