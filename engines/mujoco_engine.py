@@ -61,7 +61,7 @@ class ImpactAware:
     # Table above. At a largest step of 4e-4 s: e within 1.3e-4 at 2e-5, 2.7e-4 at 5e-5; 2e-6 changes little.
     accuracy: float = 5e-6
     # Rocking on bearings the error goes with it, as friction stops the corner along the step's first tangent: under
-    # Duzce (gamma .15) the tilt is off by 6e-3 of gamma up to the sensitivity horizon, by 2e-3 at 1e-4 s, 2e-2 at 4e-4 s.
+    # Duzce (gamma .15) the tilt is off by 6e-3 of gamma to the sensitivity horizon, by 2e-3 at 1e-4 s, 2e-2 at 4e-4 s.
     # In free rocking 4e-4 s (e within 4.3e-5, velocity jump 5e-4) is enough, at half the cost.
     largest_step: float = 2e-4
 
