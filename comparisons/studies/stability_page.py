@@ -109,9 +109,9 @@ def _text(result, cells, ill):
     engine = [row for (_, name), (row, _) in cells.items() if name in steppers]
     first = (f"{len(result.settings['cases'])} scenes that have broken real integrators, each run by "
              f"{len(result.settings['solvers'])} solvers and variants as they come. A run is right if every measure is "
-             "within its tolerance, degraded if it ends but is not right, failed if the solver says so, crashes or takes "
-             "more than the time limit, or if what it did is no motion of the scene: states not finite, energy from "
-             "nowhere, the block off its place.")
+             "within its tolerance, degraded if it ends but is not right, failed if the solver says so, crashes or "
+             "takes more than the time limit, or if what it did is no motion of the scene: states not finite, energy "
+             "from nowhere, the block off its place.")
     own = [row for row, _ in ill if row["solver"] in event]
     of_events = sum(name in event for _, name in cells)
     second = (f"The event-driven solvers (kernel and twin) are right in {of_events - len(own)} of {of_events} cells; "
