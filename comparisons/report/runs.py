@@ -8,6 +8,7 @@ from scipy.integrate import trapezoid
 
 from analytic import load_scene, simulate
 from analytic.closed_form import free_rocking
+from analytic.errors import EngineNotInstalled
 from analytic.response import History, Impact, Response, State
 from analytic.rocking import base_jump_length, restitution
 from engines import ENGINES, get_engine
@@ -39,7 +40,7 @@ def available_engines():
         try:
             get_engine(name)
             present.append(name)
-        except ImportError as error:
+        except EngineNotInstalled as error:  # a broken adapter must not pass for an absent one
             missing[name] = str(error)
     return tuple(present), missing
 
