@@ -50,8 +50,7 @@ class Grid:
 
 STARTS = tuple(round(float(start), 4) for start in np.linspace(0.3, 0.8, 8))
 FULL = Grid((0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45), (None, 10.0, 1.0, 0.3, CARYATID_BASE, 0.01), STARTS,
-            tuple((slenderness, ratio) for slenderness in (0.1, 0.2, 0.3, 0.45) for ratio in (None, 1.0, CARYATID_BASE)),
-            48)
+            tuple((gamma, ratio) for gamma in (0.1, 0.2, 0.3, 0.45) for ratio in (None, 1.0, CARYATID_BASE)), 48)
 QUICK = Grid((0.1, 0.2, 0.3, 0.45), (None, 10.0, 1.0, CARYATID_BASE), STARTS,
              ((0.2, None), (0.2, CARYATID_BASE)), 16)
 

@@ -85,6 +85,8 @@ def accuracy(result):
         for knob in result.settings["knobs"]:
             rows = [row for row in select(result, "summary", scope="ladder", engine=knob["engine"],
                                           variant=knob["variant"], ground=ground) if row["rms"] is not None]
+            if not rows:
+                continue
             line = look(result, knob["engine"], knob["variant"])
             errors = [max(row["rms"], FLOOR) for row in rows]
             axes[0, column].plot([row["value"] / knob["default"] for row in rows], errors, **line,
@@ -94,7 +96,8 @@ def accuracy(result):
         axes[0, column].set_xlabel("accuracy knob over its default [-]")
         axes[1, column].set_xlabel("CPU time per simulated second [s/s]")
     for axis in axes.flat:
-        axis.set(xscale="log", yscale="log")
+        if axis.lines:
+            axis.set(xscale="log", yscale="log")
         axis.grid(color="0.9")
         axis.set_axisbelow(True)
         axis.xaxis.set_minor_formatter(NullFormatter())
@@ -184,6 +187,8 @@ def equation_8(result):
         knob = next(one for one in result.settings["knobs"] if (one["engine"], one["variant"]) == (engine, variant))
         cells = [row for row in select(result, "cell", engine=engine, variant=variant, value=knob["default"])
                  if row["ratio"] is not None and row["jump_8"] is not None]
+        if not cells:
+            continue
         gammas = sorted({row["slenderness"] for row in cells})
         sizes = select(result, "experiment", experiment="size", engine=engine)
         for key, dashes, filled, name in (("jump_8", "-", True, "corrected"),

@@ -140,10 +140,11 @@ def _summaries(pooled, engines, grid):
                         and (where is None or (key[4], key[3]) in where)]
 
             given = {"engine": engine, "variant": variant, "ground": ground}
-            entries.append({"part": "summary", "scope": "all", **given, "value": default,
-                            **_measures(pools(default, None))})
-            ladder = [{"part": "summary", "scope": "ladder", **given, "value": value,
-                       **_measures(pools(value, grid.ladder))} for value in values]
+            everywhere = pools(default, None)
+            if everywhere:
+                entries.append({"part": "summary", "scope": "all", **given, "value": default, **_measures(everywhere)})
+            ladder = [{"part": "summary", "scope": "ladder", **given, "value": value, **_measures(found)}
+                      for value in values if (found := pools(value, grid.ladder))]
             found = [(row["value"], row["rms"]) for row in ladder if row["rms"]]
             order = np.polyfit(*np.log(np.transpose(found)), 1)[0] if len(found) > 1 else None
             entries += [*ladder, {"part": "order", **given, "order": order and float(order)}]
