@@ -88,6 +88,11 @@ def make_results(folder, motion, *, quick=False, progress=True, say=lambda text:
     return files
 
 
+def is_papers_motion(motion):
+    """Whether it is a Duzce record, by its name: only then are the paper's numbers the ones to meet."""
+    return "DUZCE" in motion.label.upper() and not motion.label.startswith("synthetic")
+
+
 def _slug(motion):
     """A file's name for the motion: of a record its own, without the ending."""
     name = "synthetic" if motion.label.startswith("synthetic") else Path(motion.label).stem
@@ -104,7 +109,7 @@ def _impact_friction(motion):
 
 def _values(rows, motion, least):
     """The paper's numbers that need the motion: Figs 4 to 6, in every solver."""
-    own = "DUZCE" in motion.label.upper()
+    own = is_papers_motion(motion)
     values = []
 
     def compare(where, quantity, printed, study, within, note=""):
@@ -117,8 +122,8 @@ def _values(rows, motion, least):
             values.append(Value(where, quantity, printed, study, OTHER_MOTION, note))
 
     def words(where, quantity, printed, study):
-        same = REPRODUCED if study == printed else NOT_REPRODUCIBLE if own else OTHER_MOTION
-        values.append(Value(where, quantity, printed, study, same))
+        status = REPRODUCED if study == printed else NOT_REPRODUCIBLE
+        values.append(Value(where, quantity, printed, study, status if own else OTHER_MOTION))
 
     for row in (row for row in rows if row["part"] == "run"):
         solver, outcome = row["solver"], row["outcome"]
