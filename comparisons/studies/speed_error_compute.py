@@ -13,6 +13,7 @@ from engines import installed_engines
 from ..bench.analytic_bench import peer_versions
 from ..executors import Processes
 from ..provenance import write_result
+from ..sources import source_digests
 from ..store import Store
 from ..sweep import Case, run_sweep
 from . import speed_error_growth as growth
@@ -53,6 +54,8 @@ def run_study(output, *, quick=False, repeats=None, progress=True, scenes=None, 
     rounds = repeats or (QUICK_REPEATS if quick else REPEATS)
     scenes = scenes or trials()
     chosen = [entry for entry in entries(scenes, quick) if keep(entry)]
+    code = [*OWN, *modules(chosen)]
+    before = source_digests(code)
     with Store(output / ".sweep" / f"{KIND}.jsonl") as store:
         measured = _rounds(chosen, rounds, store, progress)
         grown = _growth(scenes, quick, rounds, store, progress) if grow else []
@@ -61,9 +64,15 @@ def run_study(output, *, quick=False, repeats=None, progress=True, scenes=None, 
     for line, found in zip(seconds, measured, strict=True):
         line[:len(found)] = [one.cost.get("cpu_seconds", np.nan) for one in found]
     settings = {"quick": quick, "rounds": rounds, "scenes": {trial.name: description(trial) for trial in scenes},
-                "laws": _laws(scenes), "peers": peer_versions()}
+                "laws": _laws(scenes), "peers": peer_versions(),
+                "changed_while_running": _changed(before, source_digests(code))}
     return write_result(output / f"{KIND}.json", KIND, settings, rows + grown, {"cpu_seconds": seconds},
-                        modules=[*OWN, *modules(chosen)])
+                        modules=code)
+
+
+def _changed(before, after):
+    """Names of modules whose code was edited while the study ran: their numbers are those of the code before."""
+    return sorted(name for name in {*before, *after} if before.get(name) != after.get(name))
 
 
 def _rounds(chosen, rounds, store, progress):

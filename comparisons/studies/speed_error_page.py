@@ -50,6 +50,9 @@ def paragraphs(result):
              "the scene)."]
     for scene, about in settings["scenes"].items():
         found.append(_scene_words(result, scene, about))
+    if settings["changed_while_running"]:
+        found.append("While the study ran, this code was edited; the numbers are those of the code before: "
+                     + ", ".join(settings["changed_while_running"]) + ".")
     found += _failure_words(result) + _extra_words(result) + _law_words(result) + _growth_words(result)
     pairs, changed = ranking_stability(result)
     broken = unrepeatable(result)
@@ -135,7 +138,7 @@ def _growth_words(result):
     for (against, family), series in found.items():
         if "exponent" in series:
             words.append(f"{family} against {against}: {number(series['exponent'], 3)} ± "
-                         f"{number(series['exponent_error'], 1)}")
+                         f"{number(series['exponent_error'], 1)} (last doubling: {number(series['last_exponent'], 3)})")
     if not words:
         return []
     memory = found.get(("duration", "kernel"))
@@ -176,7 +179,7 @@ def _order_table(result):
     for family in dict.fromkeys(row["family"] for row in ladder(result)):
         found = [by_family.get(family) for by_family in by_scene]
         if any(found):
-            rows.append([family, *("–" if one is None else f"{number(one[0], 2)} ± {number(one[1], 1)}"
+            rows.append([family, *("–" if one is None else f"{one[0]:.2f} ± {one[1]:.2f}".replace("-", "−")
                                    for one in found)])
     return Table("Observed order q: error ~ knob^q, ± standard error; the knob is a step, a tolerance, a contact "
                  "stiffness or an accuracy [-]", ("solver", *(about["title"] for about in scenes.values())), rows)

@@ -2,6 +2,7 @@
 
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import NullFormatter
 
 from analytic.errors import SettingError
 
@@ -140,6 +141,9 @@ def draw_growth(result):
     memory.set_ylim(-0.002, 3 * memory.get_ylim()[1])
     for axis in axes.flat:
         axis.grid(True, which="major", color="0.9")
+        for side, (low, high) in ((axis.xaxis, axis.get_xlim()), (axis.yaxis, axis.get_ylim())):
+            if low > 0 and high > 10 * low:  # decades enough to be read
+                side.set_minor_formatter(NullFormatter())
         if axis.lines:
             axis.legend(fontsize=8, **({"loc": "lower left", "bbox_to_anchor": (0.0, 0.08)} if axis is memory else {}))
     return figure

@@ -135,7 +135,9 @@ def law_cost(result):
 
 
 def growths(result):
-    """{(against, family): dict of values, cpu_seconds, traced_bytes, resident_bytes, exponent, exponent_error}."""
+    """{(against, family): dict of values, cpu_seconds, traced_bytes, resident_bytes, exponent, exponent_error, and
+    last_exponent, that between the last two points}.
+    """
     series = {}
     for row in result.rows:
         if row["table"] == "growth" and not row["failure"]:
@@ -146,6 +148,8 @@ def growths(result):
                                                                "resident_bytes")}
         if len(rows) >= 3:
             entry["exponent"], entry["exponent_error"] = fit(entry["value"], entry["cpu_seconds"])
+            (x0, x1), (y0, y1) = entry["value"][-2:], entry["cpu_seconds"][-2:]
+            entry["last_exponent"] = float(np.log(y1 / y0) / np.log(x1 / x0))
         found[key] = entry
     return found
 
