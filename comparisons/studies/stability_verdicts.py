@@ -96,7 +96,7 @@ CURES = {
     ("exudyn", "compliant-corners"): ({"stiffness": 1e12, "longest_step": 1e-3},
                                       {"stiffness": 1e12, "longest_step": 1e-3, "tolerance": 1e-9}),
     ("exudyn", "switched-joints"): ({"step": 1e-4},),
-    ("exudyn", "native-contact"): ({"step": 2e-5},),
+    ("exudyn", "native-contact"): ({"step": 5e-5},),
     ("pybullet", "impact-aware"): ({"largest_step": 1e-4}, {"largest_step": 1e-4, "accuracy": 1e-6}),
     ("pybullet", "fixed-step"): ({"step": 2e-5},),
     ("pybullet", "first-script"): ({"step": 2e-4},),
