@@ -16,7 +16,7 @@ def section(result):
     tables = [_shift_table(result), _boundary_table(result), _confusion_table(result), _knob_table(result)]
     missed = [row for row in _rows(result, "shift") if row["shift"] is None]
     if missed:
-        tables.append(_missed_table(missed))
+        tables.append(_missed_table(result, missed))
     surprises = _rows(result, "surprise")
     if surprises:
         tables.append(_surprise_table(surprises))
@@ -66,15 +66,31 @@ def _verdict(result, solver):
     seen = sum(not row["rises"] for row in found)
     if not found:
         return f"{solver}: none of {len(rows)} boundaries found."
+    text = (f"{solver}: {len(found)} of {len(rows)} boundaries found, among them {seen} of {gaps} beginnings of a safe "
+            f"gap. {_within(rows)}, the median shift is {percent(_median([abs(row['shift']) for row in found]))}.")
+    standing = [row for row in rows if _least_normal(result, row) >= 0]
+    if len(standing) < len(rows):
+        text += (f" At {len(rows) - len(standing)} boundaries the normal force of the analytic model becomes negative: "
+                 "the block would leave the ground, which that model does not know but the engines do. Of the other "
+                 f"{len(standing)} boundaries {sum(row['shift'] is not None for row in standing)} were found. "
+                 f"{_within(standing)}.")
+    return text
+
+
+def _within(rows):
+    """Whether all boundaries were found within the limit, and the largest shift."""
+    found = [row for row in rows if row["shift"] is not None]
     worst = max(found, key=lambda row: abs(row["shift"]))
-    reach = abs(worst["shift"]) + worst["half_width"]
+    reach = max(abs(row["shift"]) + row["half_width"] for row in found)
     yes = reach <= LIMIT / 100 and len(found) == len(rows)
-    words = "All boundaries lie" if yes else "Not all boundaries lie"
-    return (f"{solver}: {len(found)} of {len(rows)} boundaries found, among them {seen} of {gaps} beginnings of a "
-            f"safe gap. {words} within {LIMIT:g} % of the analytic ones; the largest shift is "
-            f"{percent(worst['shift'])} (± {percent(worst['half_width'], 1)}: {worst['shape']}, {worst['ground']}, "
-            f"frequency {worst['frequency']:g}, amplitude {number(worst['amplitude'], 4)}), the median "
-            f"{percent(_median([abs(row['shift']) for row in found]))}.")
+    return (f"{'All boundaries lie' if yes else 'Not all boundaries lie'} within {LIMIT:g} % of the analytic ones; the "
+            f"largest shift is {percent(worst['shift'])} (± {percent(worst['half_width'], 1)}: {worst['shape']}, "
+            f"{worst['ground']}, frequency {worst['frequency']:g}, amplitude {number(worst['amplitude'], 4)})")
+
+
+def _least_normal(result, row):
+    edge, = _rows(result, "edge", **{key: row[key] for key in ("ground", "shape", "frequency", "amplitude")})
+    return edge["min_normal"]
 
 
 def _band(result):
@@ -198,12 +214,12 @@ def _knob_row(name, rows):
             number(100 * max(shifts), 2) if shifts else "–"]
 
 
-def _missed_table(rows):
+def _missed_table(result, rows):
     return Table("Boundaries not found at default settings", (
         "engine", "ground, pulse, frequency", "analytic amplitude [-]", "half-way to the next boundary [%]",
-        "why"),
+        "least N/(m g) of the analytic model [-]", "why"),
         [[row["solver"], f"{row['ground']}, {row['shape']}, {row['frequency']:g}", number(row["amplitude"], 6),
-          number(100 * row["room"], 2), row["reason"]] for row in rows])
+          number(100 * row["room"], 2), number(_least_normal(result, row), 2), row["reason"]] for row in rows])
 
 
 def _surprise_table(rows):
