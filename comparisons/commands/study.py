@@ -14,6 +14,7 @@ STUDIES = {
     "speed-error": "speed_error",
     "stability": "stability",
     "caryatid": "caryatid",
+    "tolerances": "tolerances",
 }
 PACKAGE = "comparisons.studies"
 

@@ -14,7 +14,6 @@ from comparisons.studies.restitution_cases import CARYATID_BASE, FULL, QUICK, Gr
 from comparisons.studies.restitution_results import BULLET_DAMPING, damped_error, friction_needed
 from comparisons.studies.restitution_runs import kept, measured, strong_impacts
 
-
 pytestmark = pytest.mark.xdist_group("restitution study")  # the small study is run once
 
 
