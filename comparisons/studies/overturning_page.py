@@ -4,6 +4,7 @@ import math
 
 from ..report.content import Section, Table, figure_of, number, percent
 from .overturning_plots import LIMIT, draw_knobs, draw_maps, draw_shifts, knob_curves
+from .workshop import name_of
 
 
 def section(result):
@@ -12,7 +13,7 @@ def section(result):
     text = [_asked(result), *(_verdict(result, solver) for solver in solvers), _band(result),
             *(_knob_words(result, *key, values) for key, values in knob_curves(result).items()),
             *filter(None, (_first_words(result, solver) for solver in result.settings["first_scripts"])),
-            _failures(result)]
+            _failures(result), *_unfinished(result)]
     tables = [_shift_table(result), _boundary_table(result), _confusion_table(result), _knob_table(result)]
     missed = [row for row in _rows(result, "shift") if row["shift"] is None]
     if missed:
@@ -146,6 +147,15 @@ def _failures(result):
     words = "; ".join(f"{solver}: {reason} ({count})" for (solver, reason), count in counts.items())
     return (f"Runs without an outcome, left out of the tables: {words}. In {jumped} of them the normal force of the "
             "analytic model becomes negative: there the block would leave the ground, which that model does not know.")
+
+
+def _unfinished(result):
+    """What a result lacks that was written before the study came to its end."""
+    done = {(row["solver"], *row["settings"]) for row in _rows(result, "knob")}
+    missing = [f"{name_of(solver, variant)} ({knob})" for solver, variant, knob in result.settings["knobs"]
+               if (name_of(solver, variant), knob) not in done]
+    if missing and not result.settings["quick"]:
+        yield f"The study was stopped before its end; other settings were not tried of: {', '.join(missing)}."
 
 
 def _shift_table(result):
