@@ -23,11 +23,15 @@ class Table:
 
 @dataclass(frozen=True)
 class Figure:
-    """svg: the picture. alt: what it shows, for those who cannot see it. caption: what to look at."""
+    """svg: the picture. alt: what it shows, for those who cannot see it. caption: what to look at.
+
+    wide: it takes the whole width of the page.
+    """
 
     svg: bytes
     alt: str
     caption: str
+    wide: bool = False
 
     @property
     def source(self):
@@ -50,12 +54,16 @@ class Section:
     evidence: tuple = ()
 
 
+# Width [inch] from which a figure would be unreadable in half of the page.
+WIDE = 7.0
+
+
 def figure_of(figure, alt, caption):
     """The `Figure` of a matplotlib figure."""
     file = io.BytesIO()
     with matplotlib.rc_context(SVG):
         figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
-    return Figure(file.getvalue(), alt, caption)
+    return Figure(file.getvalue(), alt, caption, wide=figure.get_size_inches()[0] > WIDE)
 
 
 def number(value, digits=3):
