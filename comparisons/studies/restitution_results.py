@@ -20,7 +20,7 @@ from .restitution_cases import (
     knob_of,
     variants_of,
 )
-from .restitution_runs import SLOWEST_IMPACT, measured
+from .restitution_runs import SLOWEST_IMPACT, measured, strong_impacts
 
 GROUNDS = ("rigid ground", "sliding base")
 # Bullet's default damping of a multibody: force and moment of d m v (1 + |v|) and d I w (1 + |w|), SI units.
@@ -89,7 +89,7 @@ class _Pool:
 
 
 def _model_times(scene):
-    return np.array([impact.time for impact in simulate(scene, history=False).impacts[:IMPACTS]])
+    return np.array([impact.time for impact in strong_impacts(simulate(scene, history=False))[:IMPACTS]])
 
 
 def _measures(pools):
