@@ -131,8 +131,9 @@ def design_bearings(mass, period, damping, x_max, *, count=4, stiffness_ratio=10
     if least >= 0:
         # damping -> 0 can always be met: f0 -> 0 leaves the ratio term alone
         most = brentq(lambda d: _feasible(d, divisor, secant, x_max, stiffness_ratio)[1], 1e-9, damping)
-        raise SettingError(f"damping = {damping:.4g} ({definition} definition) cannot be met at x_max = {x_max:.4g} m with "
-                           f"ka/kb = {stiffness_ratio:.4g}: the most is {most:.4g}; lower it, or raise stiffness_ratio")
+        raise SettingError(f"damping = {damping:.4g} ({definition} definition) cannot be met at x_max = {x_max:.4g} m "
+                           f"with ka/kb = {stiffness_ratio:.4g}: the most is {most:.4g}; lower it, "
+                           "or raise stiffness_ratio")
     loss = damping * divisor * 0.5 * secant * x_max**2
     if _mismatch(STEEPEST, loss, secant, x_max, stiffness_ratio)[0] < 0:
         raise SettingError(f"damping = {damping:.4g} is so small that alpha would exceed {STEEPEST:g}; "
@@ -144,7 +145,7 @@ def design_bearings(mass, period, damping, x_max, *, count=4, stiffness_ratio=10
     got = properties(bearings, mass, x_max)
     got_damping = got.damping_paper if definition == "paper" else got.damping_equivalent
     if abs(got.period / period - 1) > LOOP_AGREEMENT or abs(got_damping / damping - 1) > LOOP_AGREEMENT:
-        raise SettingError(f"x_max = {x_max:.4g} m is too small for bearings with alpha = {alpha:.4g} to reach their limit "
-                           f"curves (period {got.period:.4g} s, damping {got_damping:.4g} result); raise x_max or "
-                           "stiffness_ratio")
+        raise SettingError(f"x_max = {x_max:.4g} m is too small for bearings with alpha = {alpha:.4g} to reach their "
+                           f"limit curves (period {got.period:.4g} s, damping {got_damping:.4g} result); "
+                           "raise x_max or stiffness_ratio")
     return bearings

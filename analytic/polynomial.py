@@ -88,7 +88,7 @@ def first_root(f, order, h, work):
 
 @njit(cache=True)
 def _isolated_root(f, first, order, h, work):
-    """`first_root` for a polynomial that is not monotone: sign variations of Bernstein coefficients, halved as needed."""
+    """`first_root` for a polynomial that is not monotone: sign changes of Bernstein coefficients, halved as needed."""
     n = order - first
     starts = np.empty(BISECTIONS + 2)
     widths = np.empty(BISECTIONS + 2)

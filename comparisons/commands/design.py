@@ -33,6 +33,7 @@ def command(
     console = Console(highlight=False, soft_wrap=True)
     console.print(f"[bold]ka[/bold] = {bearings.ka:.5g} N/m   [bold]kb[/bold] = {bearings.kb:.5g} N/m   "
                   f"[bold]alpha[/bold] = {bearings.alpha:.4f}   for each of {count} bearings")
-    console.print(f"back: secant period {back.period:.5g} s at {xmax:g} m ({back.period_kb:.4g} s with kb alone); damping "
-                  f"{back.damping_paper:.2%} as W_D/(2 pi E_s), {back.damping_equivalent:.2%} as W_D/(4 pi E_s); "
+    console.print(f"back: secant period {back.period:.5g} s at {xmax:g} m ({back.period_kb:.4g} s with kb alone); "
+                  f"damping {back.damping_paper:.2%} as W_D/(2 pi E_s), "
+                  f"{back.damping_equivalent:.2%} as W_D/(4 pi E_s); "
                   f"loss {back.cycle_loss:.5g} J a cycle and bearing")

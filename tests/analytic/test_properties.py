@@ -1,4 +1,4 @@
-"""Random valid scenes: whatever the parameters, the kernel ends, stays finite, keeps the energy ledger and the mirror."""
+"""Random valid scenes: the kernel ends, stays finite, keeps the energy ledger and the mirror."""
 
 import math
 
