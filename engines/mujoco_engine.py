@@ -36,10 +36,10 @@ from analytic.errors import SceneError, SettingError
 from analytic.response import Failure
 from analytic.rocking import RockingModel
 
+from .ground_velocity import ground_velocity
+from .leapfrog_trace import raw_trace_of, trace_of
 from .observe import failed_response, observe
 from .pybullet_check import check_place
-from .pybullet_ground import ground_velocity
-from .pybullet_trace import raw_trace_of, trace_of
 
 NAME = "mujoco"
 

@@ -11,10 +11,10 @@ from analytic.errors import SceneError, SettingError
 from analytic.response import Failure
 
 from . import pybullet_first_script, pybullet_stepping
+from .leapfrog_trace import raw_trace_of, trace_of
 from .observe import observe
 from .pybullet_check import check_place
 from .pybullet_scene import Mismatch, assemble
-from .pybullet_trace import raw_trace_of, trace_of
 
 NAME = "pybullet"
 

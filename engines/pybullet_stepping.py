@@ -13,7 +13,7 @@ import pybullet
 from analytic.bearing import hysteretic_force
 from analytic.rocking import RockingModel
 
-from .pybullet_ground import ground_velocity
+from .ground_velocity import ground_velocity
 from .pybullet_scene import ROCKING_ITERATIONS, correction, standing_iterations
 
 # The next four are no accuracy knobs: measured on free rocking (slenderness .1 and .45, rigid ground and m_b = 212 kg),

@@ -40,11 +40,11 @@ def free_block_3d(scene, *, step, history=True):
     import pybullet
 
     from engines import pybullet_first_script as script
+    from engines.leapfrog_trace import trace_of
     from engines.observe import observe
     from engines.pybullet_engine import versions
     from engines.pybullet_scene import BREAKING_THRESHOLD, FRICTION, correction, standing_iterations
     from engines.pybullet_stepping import FLAT
-    from engines.pybullet_trace import trace_of
 
     client = pybullet.connect(pybullet.DIRECT)
     try:

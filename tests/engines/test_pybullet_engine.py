@@ -22,7 +22,7 @@ from engines import (  # noqa: E402
     pybullet_scene,
     pybullet_stepping,
 )
-from engines.pybullet_ground import ground_velocity  # noqa: E402
+from engines.ground_velocity import ground_velocity  # noqa: E402
 
 simulate = pybullet_engine.simulate
 BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)

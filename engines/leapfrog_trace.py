@@ -1,4 +1,4 @@
-"""Bullet's rows as a `Trace`: velocities brought to the time of the displacements."""
+"""Rows of a leapfrog engine as a `Trace`: velocities brought to the time of the displacements."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from .swings import Trace
 def trace_of(rows, scene, contact_tilt):
     """The `Trace` of rows (time, step, tilt, tilt rate, x, v, z, force); rates are half a step early.
 
-    A velocity at t_n is the mean of its neighbours, weighted by their distance. Bullet spreads an impact over the
+    A velocity at t_n is the mean of its neighbours, weighted by their distance. Contact solvers spread an impact over the
     steps that reach contact and leave it: there only the neighbour in flight is used, and the gain beyond it.
     """
     t, h, tilt, rate, x, v, _, force = np.array(rows).T
