@@ -205,7 +205,7 @@ def measure_all(rows=TABLE):
         found, failure = None, None
         try:
             found = row.found(runs)
-        except (agreement.Unmeasurable, ImportError) as error:
+        except agreement.Unmeasurable as error:
             failure = str(error)
         results.append({"quantity": row.quantity, "engine": row.engine, "variant": row.variant, "scenes": row.scenes,
                         "least": row.least, "bound": row.bound, "unit": row.unit, "measured": row.measured,

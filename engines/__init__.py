@@ -38,13 +38,25 @@ def get_engine(name):
     return import_module(module)
 
 
-def installed_engines():
-    """Names of the engines that can be used here."""
-    names = []
-    for name in ENGINES:
+def available_engines(names=ENGINES):
+    """(those of the engines `names` that are installed, {name: why it is missing} of the others).
+
+    Raises
+    ------
+    ImportError
+        An adapter is broken: that must not pass for a package that is absent.
+    """
+    present, missing = [], {}
+    for name in names:
         try:
             get_engine(name)
-        except EngineNotInstalled:  # no other ImportError: an adapter that is broken must not pass for absent
-            continue
-        names.append(name)
-    return tuple(names)
+        except EngineNotInstalled as error:
+            missing[name] = str(error)
+        else:
+            present.append(name)
+    return tuple(present), missing
+
+
+def installed_engines():
+    """Names of the engines that can be used here."""
+    return available_engines()[0]

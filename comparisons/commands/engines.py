@@ -5,18 +5,14 @@ def command():
     """List the engines: version, what each decides by itself, variants with their settings (the knob first)."""
     from rich.console import Console
 
-    from analytic.errors import EngineNotInstalled
-    from engines import ENGINES, get_engine
+    from engines import ENGINES, available_engines, get_engine
 
     from ..solving import stdout_to_stderr
     from ..tables import engine_text
 
     console = Console(highlight=False, soft_wrap=True)
+    with stdout_to_stderr():  # engines greet on standard output
+        _, missing = available_engines()
     for name in ENGINES:
-        try:
-            with stdout_to_stderr():
-                engine = get_engine(name)
-        except EngineNotInstalled as error:
-            console.print(f"{name}: not installed. {error}\n", markup=False)
-            continue
-        console.print(engine_text(name, engine), markup=False)
+        text = f"{name}: not installed. {missing[name]}\n" if name in missing else engine_text(name, get_engine(name))
+        console.print(text, markup=False)

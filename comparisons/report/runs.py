@@ -8,10 +8,9 @@ from scipy.integrate import trapezoid
 
 from analytic import load_scene, simulate
 from analytic.closed_form import free_rocking
-from analytic.errors import EngineNotInstalled
 from analytic.response import History, Impact, Response, State
 from analytic.rocking import base_jump_length, restitution
-from engines import ENGINES, get_engine
+from engines import ENGINES, available_engines, get_engine
 
 from ..cases import Case
 from ..horizon import sensitivity_horizon
@@ -31,18 +30,6 @@ FREE_SECONDS = 3.0
 SLOWEST_IMPACT = 0.1
 # Outer limit of a run [s]; the longest takes a few. A hang becomes a failed row.
 TIME_LIMIT = 60.0
-
-
-def available_engines():
-    """Names of the installed engines, and {name: why it is missing} of the others."""
-    present, missing = [], {}
-    for name in ENGINES:
-        try:
-            get_engine(name)
-            present.append(name)
-        except EngineNotInstalled as error:  # a broken adapter must not pass for an absent one
-            missing[name] = str(error)
-    return tuple(present), missing
 
 
 def make_results(folder, motion, *, duration=None, slendernesses=SLENDERNESSES, say=lambda text: None):

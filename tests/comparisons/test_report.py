@@ -21,7 +21,7 @@ from comparisons.provenance import read_result, write_result
 from comparisons.report import runs, write
 from comparisons.report.content import Section, Table, number, percent
 from comparisons.report.write import write_page
-from engines import installed_engines
+from engines import available_engines, installed_engines
 
 pytestmark = pytest.mark.xdist_group("report")  # one worker: its runs are made once
 
@@ -226,7 +226,7 @@ def test_missing_engines_are_named_with_their_remedy(tmp_path, monkeypatch):
     def nothing_installed(name):
         raise EngineNotInstalled(f"engine {name!r} needs the package {name}: install it so")
 
-    monkeypatch.setattr(runs, "get_engine", nothing_installed)
+    monkeypatch.setattr("engines.get_engine", nothing_installed)
     runs.make_results(tmp_path, synthetic_motion(), duration=DURATION, slendernesses=(SLENDERNESS,))
     page = Page(write_page(tmp_path, studies=NO_STUDIES))
     assert any("Not in this report: pybullet. engine 'pybullet' needs the package pybullet: install it so" in item
@@ -299,7 +299,7 @@ def test_duzce_record_overturns_the_free_caryatid_and_not_the_isolated_one(tmp_p
     runs.make_results(tmp_path, read_record(DUZCE), duration=10.0, slendernesses=(SLENDERNESS,))
     page = Page(write_page(tmp_path, studies=NO_STUDIES))
     free, isolated = page.table("Caryatid on rigid ground, 10 s"), page.table("Caryatid isolated, 10 s")
-    for solver in {"analytic", "exudyn", "pybullet"} - set(runs.available_engines()[1]):
+    for solver in {"analytic", "exudyn", "pybullet"} - set(available_engines()[1]):
         assert free["outcome", solver] == "overturns"
         assert 6 < value(free["overturns at [s]", solver]) < 9
         assert isolated["outcome", solver] == "stands"

@@ -4,7 +4,7 @@ import numpy as np
 
 from analytic import Base, Bearings, Scene, load_scene, rocking_spectrum
 from analytic.linear_oscillator import displacement_spectrum
-from engines import get_engine
+from engines import available_engines
 
 from ...cases import Case
 from ...sweep import run_sweep
@@ -57,21 +57,9 @@ def with_history(response):
     return {**scalars(response), "history": {"time": time.tolist(), **kept}}
 
 
-def engines_here():
-    """(names of the two engines that are installed, {name: why not} of the others)."""
-    present, missing = [], {}
-    for name in ENGINES:
-        try:
-            get_engine(name)
-            present.append(name)
-        except ImportError as error:
-            missing[name] = str(error)
-    return present, missing
-
-
 def simulations(motion, store, quick=False, progress=True):
     """Rows of all runs, and the histories of Figs 4(b) and 6 as arrays."""
-    engines, missing = engines_here()
+    engines, missing = available_engines(ENGINES)
     solvers = ("analytic", *engines)
     figures = [Case(caryatid(name, motion), solver, tag={"part": "run", "scene": name})
                for name in SHIPPED for solver in solvers]
