@@ -1,4 +1,4 @@
-"""Result files: refused before the work if they cannot be written."""
+"""Result files and folders: refused before the work if they cannot be written."""
 
 from pathlib import Path
 
@@ -17,6 +17,12 @@ def check_writable(paths, picture=None):
             raise SettingError(f"{path}: is a folder; give a file name")
         if not path.parent.is_dir():
             raise SettingError(f"{path}: there is no folder {path.parent}; make it first")
+
+
+def check_folder(output):
+    """Raise `SettingError` if `output`, the folder to write to, is a file; it need not exist."""
+    if Path(output).exists() and not Path(output).is_dir():
+        raise SettingError(f"--output {output}: is a file; give a folder")
 
 
 def write_text(path, text):

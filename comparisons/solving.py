@@ -1,4 +1,4 @@
-"""One run as a user asks for it: solver and settings by name, checked; progress on standard error."""
+"""One run as a user asks for it: ground motion, solver and settings by name, checked; progress on standard error."""
 
 import contextlib
 import dataclasses
@@ -30,6 +30,24 @@ def parse_settings(pairs):
         except ValueError:
             settings[name.strip()] = text
     return settings
+
+
+def ground_motion(record=None, units=None):
+    """The motion in the file `record`, or the shipped synthetic one without it; `units` of a record in two columns.
+
+    Raises
+    ------
+    SettingError
+        Units without a record.
+    SceneError
+        The record cannot be read.
+    """
+    from analytic import synthetic_motion
+    from analytic.records import read_record
+
+    if units and not record:
+        raise SettingError(f"--units {units}: belongs to a record; give --record FILE")
+    return read_record(record, units) if record else synthetic_motion()
 
 
 def simulate(scene, solver=ANALYTIC, variant=None, settings=None, history=True):
@@ -90,6 +108,11 @@ def _check_types(engine, variant, settings):
 def _check_number(name, value, whole=False):
     if isinstance(value, bool) or not isinstance(value, int if whole else int | float):
         raise SettingError(f"{name} = {value!r}: give a {'whole ' if whole else ''}number")
+
+
+def say(text):
+    """A line of progress on standard error."""
+    print(text, file=sys.stderr, flush=True)
 
 
 @contextlib.contextmanager

@@ -1,6 +1,5 @@
 """``rocking report``: the main job."""
 
-import sys
 from typing import Annotated
 
 import typer
@@ -14,24 +13,13 @@ def command(
                                                             "result files.")] = "report",
 ):
     """All solvers on the Caryatid, free-standing and isolated: one HTML page and the result files it is made from."""
-    from pathlib import Path
-
-    from analytic import SettingError, synthetic_motion
-    from analytic.records import read_record
-
+    from ..files import check_folder
     from ..report.runs import make_results
     from ..report.write import write_page
-    from ..solving import stdout_to_stderr
+    from ..solving import ground_motion, say, stdout_to_stderr
 
-    if units and not record:
-        raise SettingError(f"--units {units}: belongs to a record; give --record FILE")
-    if Path(output).exists() and not Path(output).is_dir():
-        raise SettingError(f"--output {output}: is a file; give a folder")
-    motion = read_record(record, units) if record else synthetic_motion()
-
-    def say(text):
-        print(text, file=sys.stderr, flush=True)
-
+    check_folder(output)
+    motion = ground_motion(record, units)
     say(f"ground motion: {motion.label}")
     with stdout_to_stderr():  # engines greet on standard output
         make_results(output, motion, say=say)

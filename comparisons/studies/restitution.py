@@ -15,12 +15,10 @@ def command(
     workers: Annotated[int | None, typer.Option(min=1, help="Worker processes; one per core without it.")] = None,
 ):
     """Error of restitution and base velocity jump over slenderness, base mass and accuracy setting, with its cost."""
-    from analytic import SettingError
-
+    from ..files import check_folder
     from .restitution_cases import FULL, QUICK
 
-    if Path(output).exists() and not Path(output).is_dir():
-        raise SettingError(f"--output {output}: is a file; give a folder")
+    check_folder(output)
     path, figures = run(output, QUICK if quick else FULL, workers=workers)
     for file in (path, *figures):
         print(file)

@@ -19,6 +19,7 @@ def command(
     replot: Annotated[str | None, typer.Option(metavar="FILE", help="Only draw, from this result file.")] = None,
 ):
     """Error and CPU time of the same runs: kernel, scipy, time stepping, Bouc-Wen, engines and variants, peers."""
+    from ..files import check_folder
     from ..plots import save
     from ..provenance import ResultError, read_result
     from .speed_error_compute import run_study
@@ -26,8 +27,7 @@ def command(
 
     check_axes(x, y)
     folder = Path(output)
-    if folder.exists() and not folder.is_dir():
-        raise typer.BadParameter(f"{output} is a file; give a folder", param_hint="--output")
+    check_folder(output)
     if replot:
         try:
             result = read_result(replot)

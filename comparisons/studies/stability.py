@@ -22,10 +22,9 @@ def command(
     workers: Annotated[int | None, typer.Option(min=1, help="Worker processes; one per core without it.")] = None,
 ):
     """Named hard cases, every solver and variant: right, degraded or failed, with measures, evidence and cures."""
-    from analytic import SettingError
+    from ..files import check_folder
 
-    if Path(output).exists() and not Path(output).is_dir():
-        raise SettingError(f"--output {output}: is a file; give a folder")
+    check_folder(output)
     for file in run(output, quick=quick, workers=workers):
         print(file)
 

@@ -11,15 +11,14 @@ def command(
     output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the result file.")] = "tolerances-study",
 ):
     """How far each engine is from the analytic model, beside what it is held to. Status 1: a row does not hold."""
-    from analytic import SettingError
     from engines import ENGINES, get_engine, installed_engines
 
+    from ..files import check_folder
     from ..provenance import write_result
     from ..solving import spinner, stdout_to_stderr
     from ..tolerances import TABLE, measure_all
 
-    if Path(output).exists() and not Path(output).is_dir():
-        raise SettingError(f"--output {output}: is a file; give a folder")
+    check_folder(output)
     results = []
     with stdout_to_stderr(), spinner("tolerances"):  # engines greet on standard output
         engines = installed_engines()

@@ -10,6 +10,7 @@ from analytic import SettingError
 
 from ..cases import module_of
 from ..executors import Processes
+from ..files import check_folder
 from ..store import Store
 from ..sweep import run_sweep
 
@@ -52,12 +53,10 @@ def workshop(output, solvers, workers=None, progress=True):
     StoreError
         Another study is writing there.
     """
-    output = Path(output)
-    if output.exists() and not output.is_dir():
-        raise SettingError(f"--output {output}: is a file; give a folder")
+    check_folder(output)
     if workers is not None and workers < 1:
         raise SettingError(f"--workers {workers}: give at least 1")
-    with Store(output / STORE / "runs.jsonl") as store, Processes(workers, solvers) as executor:
+    with Store(Path(output) / STORE / "runs.jsonl") as store, Processes(workers, solvers) as executor:
         yield Workshop(store, executor, progress)
 
 

@@ -12,6 +12,7 @@ from bad_scenes import BAD, SCENE, write_scene
 
 from analytic import EngineNotInstalled, Failure, load_scene, simulate
 from comparisons import cli, solving
+from comparisons.commands.study import STUDIES
 from engines import ENGINES, get_engine, installed_engines
 
 PNG = b"\x89PNG\r\n"
@@ -223,3 +224,11 @@ def test_entry_point_is_the_one_installed():
 
 def test_errors_told_without_traceback_are_those_a_user_can_mend():
     assert EngineNotInstalled in cli.MENDABLE and ValueError not in cli.MENDABLE
+
+
+@pytest.mark.parametrize("command", [["report"], *(["study", name] for name in STUDIES)], ids=" ".join)
+def test_an_output_that_is_a_file_is_refused_before_the_work(command, capsys):
+    with pytest.raises(SystemExit) as ended:
+        cli.main([*command, "--output", __file__])
+    assert ended.value.code == 2
+    assert f"--output {__file__}: is a file; give a folder" in capsys.readouterr().err
