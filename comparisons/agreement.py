@@ -1,7 +1,7 @@
 """How far an engine is from the analytic model, measured: one function for each quantity of the tolerance table.
 
-Each takes (engine, variant, runs), runs being a dict in which simulations are kept that several measures share, and
-returns one number: the worst found. What it runs is named by the scenes of the table's row.
+Each takes (engine, variant, scenes, runs) and returns one number, the worst found. scenes: what to run, one of the
+names below. runs: a dict in which simulations are kept that several measures share.
 """
 
 import contextlib
@@ -22,8 +22,18 @@ BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 STARTS = (0.3, 0.37, 0.44, 0.51, 0.59, 0.66, 0.73, 0.8)  # released tilt over slenderness
 SLENDERNESSES = (0.1, 0.2, 0.3, 0.45)
 IMPACTS = 3
-FREE_ROCKING = {"rigid ground": (None, SLENDERNESSES), "sliding base": (BASE, SLENDERNESSES),
-                "rigid ground, slenderness 0.2": (None, (0.2,)), "sliding base, slenderness 0.2": (BASE, (0.2,))}
+
+# Names of scenes; the first four are families of free rocking
+RIGID, SLIDING = "rigid ground", "sliding base"
+RIGID_2, SLIDING_2 = "rigid ground, slenderness 0.2", "sliding base, slenderness 0.2"
+DRIVEN, ISOLATED = "rocking on bearings, one-sine", "isolated Caryatid, synthetic motion"
+FALLING = "one-sine of 3.8 g slenderness, rigid ground"
+PULSES = "one-sine at 2 and 5 times omega_r, rigid ground"
+STANDING, STANDING_ISOLATED = ("60 s of shaking below uplift, rigid ground",
+                               "60 s of shaking below uplift, on bearings")
+
+FREE_ROCKING = {RIGID: (None, SLENDERNESSES), SLIDING: (BASE, SLENDERNESSES),
+                RIGID_2: (None, (0.2,)), SLIDING_2: (BASE, (0.2,))}
 BOUNDARY_FREQUENCIES = (2.0, 5.0)  # of the pulse, over omega_r
 
 
@@ -99,21 +109,21 @@ def impact_times(engine, variant, scenes, runs):
 
 def named_scene(name):
     """The scenes of the table that are one scene each."""
-    if name == "isolated Caryatid, synthetic motion":
+    if name == ISOLATED:
         return load_scene("caryatid-isolated")
-    if name == "rocking on bearings, one-sine":
+    if name == DRIVEN:
         return Scene(block=Block(slenderness=0.15, **CARYATID), base=BASE, bearings=BEARINGS,
                      motion=PulseMotion("one-sine", 3.0, 8.0), duration=3.0)
-    if name == "one-sine of 3.8 g slenderness, rigid ground":
+    if name == FALLING:
         return Scene(block=Block(slenderness=0.2, **CARYATID), motion=PulseMotion("one-sine", 3.8 * 9.81 * 0.2, 5.2),
                      duration=5.0)
     shaking = 0.01 * np.arange(6001)
     level = np.sin(8 * shaking) + 0.5 * np.sin(26 * shaking)
-    if name == "60 s of shaking below uplift, rigid ground":
+    if name == STANDING:
         peak = 0.9 * 9.81 * math.tan(0.2)
         return Scene(block=Block(slenderness=0.2, **CARYATID), duration=60.0,
                      motion=SampledMotion(0.01, level / np.abs(level).max() * peak))
-    if name == "60 s of shaking below uplift, on bearings":
+    if name == STANDING_ISOLATED:
         return Scene(block=Block(slenderness=0.2, **CARYATID), base=BASE, bearings=BEARINGS, duration=60.0,
                      motion=SampledMotion(0.01, level / np.abs(level).max() * 0.5))
     raise KeyError(f"no scene is called {name!r}")
@@ -254,5 +264,3 @@ def base_drift(engine, variant, scenes, runs):
     found, reference = run(engine, variant, scene).history, simulate(scene).history
     return float(np.abs(np.interp(reference.time, found.time, found.base_displacement)
                         - reference.base_displacement).max())
-
-

@@ -9,6 +9,18 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from . import agreement
+from .agreement import (
+    DRIVEN,
+    FALLING,
+    ISOLATED,
+    PULSES,
+    RIGID,
+    RIGID_2,
+    SLIDING,
+    SLIDING_2,
+    STANDING,
+    STANDING_ISOLATED,
+)
 
 SLACK = 2.0  # a bound is no looser than this times the measured worst
 
@@ -53,14 +65,6 @@ class Tolerance:
         """Whether a measured value lies within the bound (and not below the band)."""
         return self.least <= value <= self.bound
 
-
-DRIVEN, ISOLATED = "rocking on bearings, one-sine", "isolated Caryatid, synthetic motion"
-FALLING = "one-sine of 3.8 g slenderness, rigid ground"
-PULSES = "one-sine at 2 and 5 times omega_r, rigid ground"
-RIGID, SLIDING = "rigid ground", "sliding base"
-RIGID_2, SLIDING_2 = "rigid ground, slenderness 0.2", "sliding base, slenderness 0.2"
-STANDING, STANDING_ISOLATED = ("60 s of shaking below uplift, rigid ground",
-                               "60 s of shaking below uplift, on bearings")
 
 # quantity: how it is measured, unit
 QUANTITIES = {
@@ -179,17 +183,15 @@ _BANDS = {
 
 
 def _table():
-    rows = []
-    for (engine, variant), entries in _BOUNDS.items():
-        for quantity, scenes, bound, measured, source in entries:
-            measure, unit = QUANTITIES[quantity]
-            rows.append(Tolerance(quantity, measure, engine, variant, scenes, bound, unit, measured, source,
-                                  round_off=source == ROUNDING))
-    for (engine, variant), entries in _BANDS.items():
-        for quantity, scenes, least, bound, measured, source in entries:
-            measure, unit = QUANTITIES[quantity]
-            rows.append(Tolerance(quantity, measure, engine, variant, scenes, bound, unit, measured, source, least))
-    return tuple(rows)
+    entries = [(*key, quantity, scenes, 0.0, *rest)
+               for key, rows in _BOUNDS.items() for quantity, scenes, *rest in rows]
+    entries += [(*key, *row) for key, rows in _BANDS.items() for row in rows]
+    table = []
+    for engine, variant, quantity, scenes, least, bound, measured, source in entries:
+        measure, unit = QUANTITIES[quantity]
+        table.append(Tolerance(quantity, measure, engine, variant, scenes, bound, unit, measured, source, least,
+                               round_off=source == ROUNDING))
+    return tuple(table)
 
 
 TABLE = _table()

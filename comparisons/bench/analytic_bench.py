@@ -6,8 +6,8 @@ from pathlib import Path
 from analytic.errors import SettingError
 from analytic.records import read_record
 from analytic.synthetic import synthetic_motion
-from comparisons.provenance import machine, write_result
 
+from ..provenance import machine, write_result
 from . import figures, peers
 from .problems import block_problems, record_problems
 from .random_scenes import check_random_scenes

@@ -5,9 +5,7 @@ import math
 
 import numpy as np
 
-from analytic.rocking import RockingModel
-
-from .solvers_scipy import block_start
+from .solvers_scipy import block_constants, block_start
 
 PEERS = {"heyoka": "heyoka", "CVODE Adams": "sksundae", "CyRK DOP853": "CyRK"}
 COOLDOWN = 1e-12  # s; heyoka's own choice drops the shortest hops silently
@@ -25,8 +23,7 @@ def heyoka_run(problem, tolerance):
     """
     import heyoka
 
-    scene, model = problem.scene, RockingModel.of(problem.scene)
-    p2, gamma, e, omega = scene.rocking_frequency**2, model.gamma, model.restitution, scene.rocking_frequency
+    p2, gamma, e, omega, a, frequency = block_constants(problem)
     start, tilt0, rate0, side0, corners = block_start(problem)
     phi, w = heyoka.make_vars("phi", "w")
     angle = heyoka.par[0] * gamma - phi
@@ -50,10 +47,9 @@ def heyoka_run(problem, tolerance):
     free = system(0.0)
     stages = []
     if corners:
-        a, frequency = scene.motion.amplitude / scene.gravity, scene.motion.frequency
         stages.append((system(a * heyoka.sin(frequency * heyoka.time) * heyoka.cos(angle)), corners[0]))
     stages += [(free, problem.horizon)]
-    goes_on = problem.horizon < scene.duration
+    duration = problem.scene.duration
 
     def run():
         counted[0] = 0
@@ -66,8 +62,8 @@ def heyoka_run(problem, tolerance):
             stage.propagate_until(until)
             t, y, s = until, stage.state, stage.pars[0]
         state = free.state.copy()
-        if goes_on:
-            free.propagate_until(scene.duration)
+        if problem.horizon < duration:
+            free.propagate_until(duration)
         return state, counted[0]
 
     return run
@@ -77,11 +73,9 @@ def cvode_run(problem, rtol):
     """Problem A or B by SUNDIALS CVODE (Adams) with its root function; restarted at every impact."""
     from sksundae.cvode import CVODE
 
-    scene, model = problem.scene, RockingModel.of(problem.scene)
-    p2, gamma, e, omega = scene.rocking_frequency**2, model.gamma, model.restitution, scene.rocking_frequency
-    a, frequency = (scene.motion.amplitude / scene.gravity, scene.motion.frequency) if scene.motion else (0.0, 0.0)
+    p2, gamma, e, omega, a, frequency = block_constants(problem)
     start, tilt0, rate0, side0, corners = block_start(problem)
-    stops = sorted({*corners, problem.horizon, scene.duration})
+    stops = sorted({*corners, problem.horizon, problem.scene.duration})
     now = {"s": side0, "push": 0.0, "begin": start}
 
     def derivative(t, y, yp):
@@ -127,11 +121,9 @@ def cyrk_run(problem, rtol):
     """Problem A or B by CyRK's compiled DOP853 with an event; restarted at every impact."""
     from CyRK import pysolve_ivp
 
-    scene, model = problem.scene, RockingModel.of(problem.scene)
-    p2, gamma, e, omega = scene.rocking_frequency**2, model.gamma, model.restitution, scene.rocking_frequency
-    a, frequency = (scene.motion.amplitude / scene.gravity, scene.motion.frequency) if scene.motion else (0.0, 0.0)
+    p2, gamma, e, omega, a, frequency = block_constants(problem)
     start, tilt0, rate0, side0, corners = block_start(problem)
-    stops = sorted({*corners, problem.horizon, scene.duration})
+    stops = sorted({*corners, problem.horizon, problem.scene.duration})
     atol = rtol * np.array([gamma, gamma * omega])
     now = {"s": side0, "begin": start}
     sin, cos = math.sin, math.cos

@@ -27,13 +27,22 @@ def block_start(problem):
     return math.asin(1 / ratio) / scene.motion.frequency, 0.0, 0.0, -1.0, [scene.motion.end]
 
 
+def block_constants(problem):
+    """omega_r^2, slenderness, restitution, omega_r of the block of A or B; its pulse's amplitude over g and frequency.
+
+    Floats; amplitude and frequency are 0 without a pulse.
+    """
+    scene, model = problem.scene, RockingModel.of(problem.scene)
+    omega, pulse = scene.rocking_frequency, scene.motion
+    a, frequency = (pulse.amplitude / scene.gravity, pulse.frequency) if pulse else (0.0, 0.0)
+    return omega**2, model.gamma, model.restitution, omega, a, frequency
+
+
 def block_run(problem, method, rtol):
     """A function that runs problem A or B and returns (state at the horizon, impacts)."""
-    scene, model = problem.scene, RockingModel.of(problem.scene)
-    p2, gamma, e, omega = scene.rocking_frequency**2, model.gamma, model.restitution, scene.rocking_frequency
-    a, frequency = (scene.motion.amplitude / scene.gravity, scene.motion.frequency) if scene.motion else (0.0, 0.0)
+    p2, gamma, e, omega, a, frequency = block_constants(problem)
     start, tilt0, rate0, side0, corners = block_start(problem)
-    stops = sorted({*corners, problem.horizon, scene.duration})
+    stops = sorted({*corners, problem.horizon, problem.scene.duration})
     atol = rtol * np.array([gamma, gamma * omega])
     sin, cos = math.sin, math.cos
 
