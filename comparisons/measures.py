@@ -6,12 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from engines.checks import energy_balance
-from engines.swings import Trace
-
-# Time after an impact that belongs to it [s]: exudyn's compliant corners relax for 6 ms.
-SETTLE = 0.01
-
 
 def swing_restitution(scene, response):
     """Effective restitution of each impact from the energies of the swings around it, shape (impacts,).
@@ -148,23 +142,6 @@ def _directed(ta, ya, tb, yb):
             best = min(best, _segment_distance(ta[i], ya[i], tb[k], yb[k], tb[k + 1], yb[k + 1]))
         worst = max(worst, best)
     return worst
-
-
-def energy_drift(scene, response, *, settle=SETTLE):
-    """Largest change of the energy balance within one swing or rest, over m g R (1 - cos gamma); 0 if exact.
-
-    The balance is mechanical energy + loss in the bearings - input work, from the history; between impacts it is
-    constant. The `settle` seconds after each event are left out.
-    """
-    history = _history(response)
-    trace = Trace(*(getattr(history, name) for name in Trace.COLUMNS), contact_tilt=1e-12)
-    balance, _ = energy_balance(scene, trace)
-    events = sorted([impact.time for impact in response.impacts] + list(response.rests) + list(response.uplifts))
-    begins = np.searchsorted(history.time, np.add([-math.inf] + events, settle))
-    ends = np.searchsorted(history.time, events + [math.inf])
-    drift = max((np.ptp(balance[a:b]) for a, b in zip(begins, ends, strict=True) if b > a), default=0.0)
-    block = scene.block
-    return float(drift / (block.mass * scene.gravity * block.radius * (1 - math.cos(block.slenderness))))
 
 
 @dataclass(frozen=True)

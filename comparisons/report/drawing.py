@@ -33,7 +33,7 @@ def _draw(axis, scene):
     floor = 0.0
     if scene["base"]:
         floor = SLAB + RUBBER_HEIGHT
-        _draw_base(axis, scene, b, floor)
+        _draw_base(axis, b, floor)
     axis.add_patch(Rectangle((-1.2, -0.12), 2.4, 0.12, facecolor="white", edgecolor=FAINT, hatch="////", linewidth=0))
     axis.plot([-1.2, 1.2], [0, 0], color=LINE, linewidth=1.4)
     axis.add_patch(Rectangle((-b, floor), 2 * b, 2 * h, facecolor=STONE, edgecolor=LINE, linewidth=1.4))
@@ -58,7 +58,7 @@ def _draw(axis, scene):
     axis.axis("off")
 
 
-def _draw_base(axis, scene, b, floor):
+def _draw_base(axis, b, floor):
     wide = b + 0.4
     axis.add_patch(Rectangle((-wide, RUBBER_HEIGHT), 2 * wide, SLAB, facecolor=STEEL, edgecolor=LINE, linewidth=1.2))
     axis.text(-wide + 0.05, RUBBER_HEIGHT + SLAB / 2, "$m_b$", va="center")

@@ -6,11 +6,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from ..plots import style
+from .workshop import FIRST_SCRIPT_FRICTION
 
 WIDTH = 6.4  # in
 # In the order of an engine's variants: marker, dashes, whether the marker is filled.
 LOOKS = (("o", "-", True), ("s", "--", False), ("^", ":", False))
-FIRST_SCRIPT_FRICTION = 0.25  # Bullet's default .5 of block and slab, multiplied
 FLOOR = 1e-9  # errors below are drawn here
 GROUNDS = ("rigid ground", "sliding base")
 
@@ -53,7 +53,7 @@ def maps(result, measure, label):
             if row[measure] is not None:
                 table[i, j] = row[measure]
             if row["failed"]:
-                axis.text(j, i, f"{row['failed']}/{row['runs']}\nfailed", ha="center", va="center", fontsize=5,
+                axis.text(j, i, f"{row['failed']}/{row['runs']}", ha="center", va="center", fontsize=6.5,
                           color="black", bbox={"facecolor": "white", "alpha": 0.7, "pad": 0.5, "linewidth": 0})
         image = axis.imshow(np.clip(table, norm.vmin, norm.vmax), norm=norm, cmap="cividis", origin="lower",
                             aspect="auto")
@@ -158,7 +158,7 @@ def _friction(axis, rows, result):
     for ground, dashes in zip(GROUNDS, ("-", "--"), strict=True):
         axis.axvline(result.settings["friction_needed"][ground], color="0.5", linewidth=1, linestyle=dashes,
                      label=f"model's need, {ground}")
-    axis.set(xlabel="friction coefficient [-]", ylim=(1e-6, 1e2), title="Friction (exudyn, compliant-corners)")
+    axis.set(xlabel="friction coefficient [-]", ylim=(1e-7, 1e3), title="Friction (exudyn, compliant-corners)")
 
 
 def _flight_damping(axis, rows, result):

@@ -1,16 +1,17 @@
 """The restitution study as a section of the report: words and tables from its result alone."""
 
 from ..report.content import Section, Table, figure_of, number, percent
+from ..report.sections import TRUSTED, USABLE, trust
 from .restitution_figures import figures, select
 
-# Error of e_phi that moves no design decision: the scatter of measured restitution of stone is some per cent.
-TRUSTED, USABLE = 1e-3, 1e-2
+UNITS = {"stiffness": " N/m", "step": " s", "accuracy": ""}  # of the accuracy knobs
 CAPTIONS = {
     "maps": ("Error of restitution of every engine and variant over slenderness and base mass.",
-             "Error of restitution at default settings, root mean square over all starts and impacts. Pale labels: "
-             "runs that failed, of those made; they are not part of the error."),
+             "Error of restitution at default settings, root mean square over all starts and impacts. Numbers in "
+             "cells: runs that failed, of those made; they are not part of the error. White: no impact to measure."),
     "jump-maps": ("Error of the base velocity jump of every engine and variant over slenderness and base mass.",
-                  "Error of the base velocity jump against momentum, at default settings."),
+                  "Error of the base velocity jump against conservation of momentum, at default settings, relative, root mean "
+                  "square. White: no impact to measure."),
     "cost": ("Error of restitution against the accuracy knob and against CPU time, on rigid ground and on a sliding "
              "base.", "Error of restitution along each variant's accuracy knob (named in the legend), and the CPU time "
                       "of the same runs. Low and left is better."),
@@ -25,9 +26,9 @@ def section_of(result):
     """The `Section` of a `Result` of the restitution study."""
     settings = result.settings
     defaults = [row for row in select(result, "summary", scope="all")]
-    text = [_setting_words(settings), *[words for knob in settings["knobs"] if (words := _verdict(result, knob))],
+    text = [_setting_words(settings), _rule_words(settings), *[words for knob in settings["knobs"] if (words := _verdict(result, knob))],
             *_cause_words(result), *_equation_words(result)]
-    tables = [_default_table(result, defaults), _ladder_table(result), _experiment_table(result)]
+    tables = [_default_table(defaults), _ladder_table(result), _experiment_table(result)]
     drawn = [figure_of(figure, *CAPTIONS[name]) for name, figure in figures(result).items()]
     evidence = [(f"{row['engine']}, {row['variant']}: {row['reason']} ({row['count']} runs)",
                  f"{row['message']}\n\nfirst seen: {row['tag']}\nlast finite state: {row['last_state']}")
@@ -46,11 +47,22 @@ def _setting_words(settings):
             "whatever takes energy counts; the base velocity jump is held against momentum with the run's own rates.")
 
 
+def _rule_words(settings):
+    return (f"An engine may be trusted for restitution if its error, root mean square, is at most {TRUSTED:g} on both "
+            f"grounds and no run failed; at most {USABLE:g} it is usable where a per cent does not matter. The answer for "
+            "each engine and variant at its default setting, with error and cost:")
+
+
+def _setting(knob):
+    """The default of an accuracy knob with its unit."""
+    return f"{knob['knob']} = {number(knob['default'], 2)}{UNITS[knob['knob']]}"
+
+
 def _verdict(result, knob):
     """May I trust it, at which setting and cost?"""
     rows = select(result, "summary", scope="all", engine=knob["engine"], variant=knob["variant"])
     found = [row for row in rows if row["rms"] is not None]
-    name = f"{knob['engine']}, {knob['variant']} ({knob['knob']} = {number(knob['default'], 2)})"
+    name = f"{knob['engine']}, {knob['variant']} ({_setting(knob)})"
     if knob["variant"] == "switched-joints":
         name += ", whose adapter applies eqs (7) and (8) itself,"
     failed, runs = sum(row["failed"] for row in rows), sum(row["runs"] for row in rows)
@@ -58,18 +70,16 @@ def _verdict(result, knob):
         return f"{name}: no run succeeded." if runs else ""
     worst = max(row["rms"] for row in found)
     cost = max(row["cpu_per_second"] for row in found)
-    trust = ("may be trusted for restitution" if worst <= TRUSTED and not failed else
-             "is usable where a per cent of restitution does not matter" if worst <= USABLE and not failed else
-             "is not to be trusted for restitution")
-    errors = "; ".join(f"{row['ground']} {number(row['rms'], 2)} (worst impact {number(row['worst'], 2)})"
-                       for row in found)
-    words = f"{name} {trust}: error, root mean square, {errors}, at {number(cost, 2)} CPU seconds per simulated second"
+    errors = ", ".join(f"{number(row['rms'], 2)} on {'a ' if row['ground'] == 'sliding base' else ''}{row['ground']} "
+                       f"(worst impact {number(row['worst'], 2)})" for row in found)
+    words = (f"{name} {trust(worst, failed)} for restitution: error {errors}, at {number(cost, 2)} s of CPU time per "
+             "simulated second")
     jumps = [row["jump_rms"] for row in found if row["jump_rms"] is not None]
     words += f"; base velocity jump off by {percent(max(jumps))}." if jumps else "."
     orders = [row for row in select(result, "order", engine=knob["engine"], variant=knob["variant"]) if row["order"]]
     if orders:
-        words += " Along its knob the error goes as " + " and ".join(
-            f"{knob['knob']}^{row['order']:.1f} ({row['ground']})" for row in orders) + "."
+        words += f" The error goes as the {knob['knob']} to the power of " + " and ".join(
+            f"{number(row['order'], 2)} ({row['ground']})" for row in orders) + "."
     if failed:
         words += f" {failed} of {runs} runs failed."
     lost = sum(row["lost"] for row in rows)
@@ -85,9 +95,9 @@ def _cause_words(result):
         finest = min(phases, key=lambda row: row["step"])
         explained = percent(min(row["explained"] for row in phases), 3)
         yield ("Step phase. With a fixed step PyBullet's error depends on where in the step the impact falls: a "
-               f"sawtooth of that phase explains {explained} or more of its variance at every step length, and runs "
-               f"from {number(finest['least'], 2)} to {number(finest['most'], 2)} times the step [s] (step "
-               f"{number(1e3 * finest['step'], 2)} ms). It shrinks with the step; the impact-aware variant makes the "
+               f"sawtooth of that phase explains {explained} or more of its variance at every step length. At a "
+               f"step of {number(1e3 * finest['step'], 2)} ms the error runs from "
+               f"{number(finest['least'] * finest['step'], 2)} to {number(finest['most'] * finest['step'], 2)}. It shrinks with the step; the impact-aware variant makes the "
                "step small only where that counts.")
     ladder = select(result, "experiment", experiment="stiffness", ratio=None)
     if len(ladder) > 1:
@@ -130,10 +140,10 @@ def _equation_words(result):
                f"up to {percent(wrong)}. The engines, which know nothing of the equation, side with momentum.")
 
 
-def _default_table(result, rows):
+def _default_table(rows):
     return Table("Default settings, all slendernesses and bases together", (
         "engine, variant, ground", "runs, failed [-]", "restitution error: mean [-]", "rms [-]", "worst [-]",
-        "rms from states at the impact [-]", "base velocity jump, rms [-]", "against (8) as printed [-]",
+        "rms from tilt rates at the impact [-]", "base velocity jump, rms [-]", "against (8) as printed [-]",
         "impact times, relative, rms [-]", "CPU time per simulated second [s/s]"),
         [[f"{row['engine']}, {row['variant']}, {row['ground']}", f"{row['runs']}, {row['failed']}",
           *(number(row[key], 2) for key in ("bias", "rms", "worst", "rms_state", "jump_rms", "jump_8_printed",
@@ -156,7 +166,7 @@ def _experiment_table(result):
         "experiment: engine, variant", "ground", "value (SI)", "restitution error, rms [-]", "mean [-]",
         "base velocity jump, rms [-]", "against (8) corrected, as printed [-]", "failed [-]"),
         [[f"{row['experiment']}: {row['engine']}, {row['variant']}",
-          "rigid ground" if row["ratio"] is None else f"base of {row['ratio']:.2g} m", number(row["value"], 3),
+          "rigid ground" if row["ratio"] is None else f"base of {row['ratio']:.2g} block masses", number(row["value"], 3),
           *(number(row[key], 2) for key in ("rms", "bias", "jump_rms")),
           f"{number(row['jump_8'], 2)}, {number(row['jump_8_printed'], 2)}", str(row["failed"])]
          for row in select(result, "experiment")])

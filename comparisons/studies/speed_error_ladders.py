@@ -1,21 +1,18 @@
 """Every solver and the ladder of its accuracy knob: what is run on which scene."""
 
-import importlib.util
 from dataclasses import dataclass, field, fields
 
 from engines import get_engine, installed_engines
 
+from ..bench import peers
 from ..cases import fingerprint, module_of
 from . import speed_error_models as models
 from .speed_error_scenes import Trial
 
 RUNNER = "comparisons.studies.speed_error_runs:timed"
 THREE_D = "comparisons.studies.speed_error_models:free_block_3d"
-PEERS = {"heyoka": "heyoka", "CyRK DOP853": "CyRK", "CVODE Adams": "sksundae"}
 TRANSPARENT = ("free-rigid", "near-overturning")  # scenes without base or record: what the peers are written for
 SAMPLED = ("isolated-standing", "isolated-rocking")
-BASED = ("free-sliding", *SAMPLED)
-ALL = (*TRANSPARENT, *BASED)
 
 NEEDED = "as needed"
 HEAVY_BASE, SPRINGS, FREE_3D = "rigid ground as a heavy base", "rigid ground as stiff springs", "free block in 3-D"
@@ -126,8 +123,7 @@ def _engines(trial, pick):
 
 def _peers(trial, pick):
     return [Entry(trial, name, f"peer:{name}", "tolerance", value)
-            for name, package in PEERS.items() if importlib.util.find_spec(package)
-            for value in PEER_LADDERS[name][pick]]
+            for name in peers.installed() for value in PEER_LADDERS[name][pick]]
 
 
 def _bouc_wen(trial, pick):

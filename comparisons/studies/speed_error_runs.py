@@ -34,7 +34,7 @@ def timed(scene, *, solver, variant=None, settings=None, boundary=None, **_):
     """
     goal = Boundary(*boundary) if boundary else None
     run = _run_of(solver, variant, settings or {})
-    _warm(solver, variant, scene.bearings and scene.bearings.law, tuple(sorted((settings or {}).items())), run, scene)
+    _warm(solver, variant, scene.bearings and scene.bearings.law, run, scene)
     response, shifts, cpu = _measure(run, scene, goal)
     runs = BOUNDARY_RUNS if goal else 1
     repeats = 1
@@ -95,7 +95,7 @@ def _run_of(name, variant, settings):
 _warmed = set()
 
 
-def _warm(name, variant, law, settings, run, scene):
+def _warm(name, variant, law, run, scene):
     """A short run the first time a process meets a solver: its code, and the libraries' caches, are then loaded."""
     met = name, variant, law, scene.base is None, scene.motion is None
     if met not in _warmed and not name.startswith("peer:"):
@@ -115,7 +115,7 @@ def _peer_run(name, tolerance, scene):
     return run
 
 
-def peer_response(scene, *, name, tolerance, history=False):
+def peer_response(scene, *, name, tolerance):
     """What a peer of the benchmark found: its end state only; it keeps no impacts and counts no steps."""
     run = _peer_run(name, tolerance, scene)
     begin = time.process_time()

@@ -62,7 +62,6 @@ class Trial:
         return replace(self, scene=scene, reference=tight(scene))
 
 
-
 def tight(scene):
     """The reference response of a scene."""
     return simulate(scene, history=False, tolerance=TIGHTEST)

@@ -14,13 +14,13 @@ from engines.checks import energy_balance, energy_gain
 from engines.swings import Trace
 
 from ..horizon import sensitivity_horizon, twin_scenes
-from ..measures import SETTLE
 from .stability_cases import hard_cases
 
 JUDGE_TOLERANCE = 1e-15  # of the kernel where it judges others
 # Impacts are counted down to this share of the strongest one's rate, but not below 1e-3 omega_r slenderness, which
 # moves nothing: engines rest earlier than the model. A run's own impacts count from OWN of that, for their rates err.
 LEAST_RATE, LEAST_SHARE, OWN = 0.05, 1e-3, 0.95
+SETTLE = 0.01  # s after an impact that belong to it: exudyn's compliant corners relax for 6 ms
 LAST_PART = 0.1  # share of the run, at its end, over which a block at rest must not drift
 
 
@@ -174,7 +174,8 @@ def _event_errors(case, response, truth):
 def _energy_errors(case, response, until):
     """(drift between events, gain from nowhere) up to `until` [s] and the unstable point, from the history.
 
-    Drift: as `measures.energy_drift`, but that a sample or step beside an event belongs to neither side.
+    Drift: largest change of the balance (mechanical energy + loss in the bearings - input work) within one swing or
+    rest; a sample or step beside an event belongs to neither side.
     """
     scene, history = case.scene, response.history
     last = min(until, math.inf if response.unstable_time is None else response.unstable_time)

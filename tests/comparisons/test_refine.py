@@ -1,4 +1,4 @@
-"""Adaptive maps on synthetic outcomes whose boundaries are known."""
+"""The search on synthetic outcomes whose boundaries are known, and on published ones of the rocking block."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from analytic import Block, PulseMotion, Scene, simulate
-from comparisons.refine import boundaries, drive, refine_map
+from comparisons.refine import boundaries, drive
 
 
 def steps(*edges, labels=None):
@@ -24,7 +24,7 @@ def alone(search, outcome, seen=None):
     return result
 
 
-# physics.md's kind of column: safe, overturns after one impact, safe gap, overturns without impact
+# What a column of a pulse's map can look like: safe, overturns after one impact, safe gap, overturns without impact
 @pytest.mark.parametrize("edges", [(1.2509, 2.37418, 2.40806), (4.91994, 8.50817, 9.91798), (15.9047,), ()])
 def test_all_transitions_of_a_column_are_found(edges):
     seen = []
@@ -85,29 +85,6 @@ def test_every_bracket_holds_an_edge_and_wide_stretches_are_never_missed(edges, 
         assert len(column.transitions) == len(edges)
 
 
-def test_a_map_equals_brute_force_at_a_fraction_of_its_cost():
-    def outcome(point):  # a tongue of overturning with a safe hole in it
-        x, y = point
-        return bool(y > 2 + np.sin(x) and (x - 6) ** 2 + (y - 6) ** 2 > 1.5**2)
-    found = alone(refine_map(np.linspace(0, 10, 11), np.linspace(0, 10, 11), 4), outcome)
-    brute = np.array([[outcome((x, y)) for y in found.y] for x in found.x])
-    assert found.labels.shape == (161, 161) and (found.labels == brute).all()
-    assert found.evaluations < 0.2 * brute.size
-    assert found.x[0] == found.y[0] == 0.0 and found.x[-1] == found.y[-1] == 10.0
-
-
-def test_no_point_of_a_map_is_evaluated_twice_and_grids_need_not_be_even():
-    seen = []
-    x, y = np.geomspace(2, 8, 5), np.array([1.0, 1.5, 4.0])
-    found = alone(refine_map(x, y, 2), lambda p: int(p[0] > 3.3) + int(p[1] > 2.2), seen)
-    points = [point for batch in seen for point in batch]
-    assert len(points) == len(set(points)) == found.evaluations and len(seen) == 3
-    assert set(x) <= set(found.x) and set(y) <= set(found.y) and found.labels.shape == (17, 9)
-    assert (found.labels == (found.x[:, None] > 3.3).astype(int) + (found.y > 2.2)).all()
-    uniform = alone(refine_map(x, y, 3), lambda p: "safe")
-    assert uniform.evaluations == 15 and (uniform.labels == "safe").all()
-
-
 def test_columns_of_a_sweep(tmp_path, monkeypatch):
     from pathlib import Path
     monkeypatch.syspath_prepend(str(Path(__file__).parent))
@@ -131,14 +108,11 @@ def test_what_cannot_be_searched_is_an_error():
     for wrong in ((1, 0, 5, 0.1), (0, 1, 1, 0.1), (0, 1, 5, 0.0), (0, 1, 5, 0.1, 0)):
         with pytest.raises(ValueError, match="boundaries needs low < high"):
             boundaries(*wrong)
-    for x, levels in (([0, 0], 1), ([0], 1), ([0, 1], -1)):
-        with pytest.raises(ValueError, match="refine_map needs"):
-            refine_map(x, [0, 1], levels)
     with pytest.raises(ValueError, match="0 outcomes for 2 points"):
         drive([boundaries(0.0, 1.0, 2, 0.1)], lambda batch: [])
 
 
-# One-sine overturning, p = 2.14 rad/s, gamma 0.25, e = 0.9, nonlinear: amplitude over g gamma (the project's notes)
+# One-sine overturning, p = 2.14 rad/s, gamma 0.25, e = 0.9, nonlinear: amplitude over g gamma
 ONE_SINE = {2: (1.25090, 2.37418, 2.40806), 3: (1.43539, 3.60487, 3.74275), 4: (1.84430, 5.07937, 5.43676),
             5: (3.03234, 6.74302, 7.49300), 6: (4.91994, 8.50817, 9.91798), 8: (15.90490,)}
 

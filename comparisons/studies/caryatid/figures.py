@@ -20,7 +20,6 @@ BLACK, ORANGE, SKY, GREEN, BLUE, RED, PURPLE = ("#000000", "#E69F00", "#56B4E9",
 DAMPING_STYLES = ((BLACK, "-"), (ORANGE, "--"), (SKY, "-."), (GREEN, (0, (5, 1))), (RED, ":"))
 CATEGORY_COLOURS = ("#FFFFFF", SKY, RED, "#999999")
 MARKERS = {"exudyn": "s", "pybullet": "o"}
-SCENE_COLOURS = {FREE: RED, ISOLATED: BLUE}
 
 
 @dataclass(frozen=True)

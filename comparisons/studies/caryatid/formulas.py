@@ -28,7 +28,7 @@ def formulas():
     law = BearingLaw.of(scene.bearings)
     arrays = {**_loops(law), **_misprint_12(law), **_misprint_8(scene), **_amplitudes(scene)}
     jump = arrays["reversal/right"][0] - arrays["reversal/printed"][0]
-    rows = [value.row() for value in _table(scene, law)]
+    rows = [value.row() for value in _table(scene)]
     rows += _misprints(scene, law, jump) + _equations(scene, law, arrays, jump)
     return rows, arrays
 
@@ -79,7 +79,7 @@ def _amplitudes(scene):
             "amplitude/damping 4 pi": np.array([one.damping_equivalent for one in found])}
 
 
-def _table(scene, law):
+def _table(scene):
     """Every number of the paper that needs no motion."""
     got = properties(scene.bearings, scene.total_mass, paper.X_MAX)
     designed = design_bearings(scene.total_mass, paper.PERIOD, paper.DAMPING, paper.X_MAX, count=paper.COUNT)

@@ -1,4 +1,4 @@
-"""The paper's simulations in the analytic model and in both engines: Figs 4(b) and 6, points of Figs 5(a) and 5(b)."""
+"""The paper's simulations in the analytic model, exudyn and PyBullet: Figs 4(b) and 6, points of Figs 5(a) and 5(b)."""
 
 import numpy as np
 
