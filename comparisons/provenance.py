@@ -16,11 +16,13 @@ from pathlib import Path
 import numpy as np
 import psutil
 
+from engines import ENGINES
+
 from .sources import source_digests
 
 SCHEMA = 1  # of the result files; raise it when a reader of the old ones would go wrong
 PROJECT_FOLDER = Path(__file__).parents[1]
-PACKAGES = ("numpy", "scipy", "numba", "exudyn", "pybullet", "mujoco")
+PACKAGES = ("numpy", "scipy", "numba", *(package for _, package, _ in ENGINES.values()))
 
 
 class ResultError(RuntimeError):
@@ -216,8 +218,3 @@ def _version(package):
 
 def _digest(file):
     return hashlib.sha256(Path(file).read_bytes()).hexdigest()
-
-
-def result_file(kind):
-    """Where the committed result of the full study `kind` lives."""
-    return PROJECT_FOLDER / "comparisons" / "results" / f"{kind}.json"

@@ -10,7 +10,8 @@ import pytest
 from analytic import PulseMotion, Scene, simulate
 from analytic.response import Failure
 from comparisons.cases import Case
-from comparisons.provenance import read_result, result_file
+from comparisons.provenance import read_result
+from comparisons.report.studies import RESULTS
 from comparisons.studies import stability_measures
 from comparisons.studies.stability import run, section
 from comparisons.studies.stability_cases import BLOCK, GAP, OVERTURNS_FROM, THRESHOLD, hard_cases
@@ -179,7 +180,7 @@ def test_the_study_writes_cells_cures_and_page_and_resumes(tmp_path):
 
 
 def test_committed_result_has_no_ill_cell_of_the_kernel():
-    path = result_file("stability")
+    path = RESULTS / "stability.json"
     if not path.exists():
         pytest.skip("no committed result of the full study")
     result = read_result(path)
