@@ -1,35 +1,40 @@
 """``rocking design``: bearings from target period, damping and displacement."""
 
+import dataclasses
+import json
+import sys
+from typing import Annotated
+
 import typer
 
 
 def command(
-    period: float = typer.Option(..., help="secant period at x_max [s]"),
-    damping: float = typer.Option(..., help="share of critical damping at x_max, e.g. 0.30"),
-    xmax: float = typer.Option(..., help="design displacement [m]"),
-    mass: float = typer.Option(3384.05, help="block and base together [kg]; the Caryatid's by default"),
-    count: int = typer.Option(4, help="number of bearings"),
-    ratio: float = typer.Option(10.0, help="ka/kb; Table 1(b) of the paper has 10"),
-    definition: str = typer.Option("paper", help="paper: W_D/(2 pi E_s); equivalent: W_D/(4 pi E_s)"),
-    json: str = typer.Option(None, help="write the design as JSON to this file, or - for standard output"),
+    period: Annotated[float, typer.Option(help="Secant period at x_max [s].")],
+    damping: Annotated[float, typer.Option(help="Share of critical damping at x_max, e.g. 0.30.")],
+    xmax: Annotated[float, typer.Option(help="Design displacement [m].")],
+    mass: Annotated[float, typer.Option(help="Block and base together [kg]; the Caryatid's by default.")] = 3384.05,
+    count: Annotated[int, typer.Option(help="Number of bearings.")] = 4,
+    ratio: Annotated[float, typer.Option(help="ka/kb; Table 1(b) of the paper has 10.")] = 10.0,
+    definition: Annotated[str, typer.Option(help="paper: W_D/(2 pi E_s); equivalent: W_D/(4 pi E_s).")] = "paper",
+    json_file: Annotated[str | None, typer.Option("--json", metavar="FILE",
+                                                  help="Write the design; - prints it.")] = None,
 ):
     """Bearing constants for a target period, damping and displacement: Table 1(a) to Table 1(b), and back."""
-    import dataclasses
-    import json as json_module
-    from pathlib import Path
-
     from rich.console import Console
 
     from analytic.design import design_bearings, properties
 
+    from ..files import check_writable, write_text
+
+    check_writable([None if json_file == "-" else json_file])
     bearings = design_bearings(mass, period, damping, xmax, count=count, stiffness_ratio=ratio, definition=definition)
     back = properties(bearings, mass, xmax)
-    if json:
-        text = json_module.dumps({"bearings": bearings.model_dump(), "properties": dataclasses.asdict(back)}, indent=2)
-        if json == "-":
-            print(text)
-            return
-        Path(json).write_text(text + "\n")
+    if json_file:
+        content = {"bearings": bearings.model_dump(), "properties": dataclasses.asdict(back)}
+        text = json.dumps(content, indent=2, allow_nan=False) + "\n"
+        sys.stdout.write(text) if json_file == "-" else write_text(json_file, text)
+    if json_file == "-":
+        return
     console = Console(highlight=False, soft_wrap=True)
     console.print(f"[bold]ka[/bold] = {bearings.ka:.5g} N/m   [bold]kb[/bold] = {bearings.kb:.5g} N/m   "
                   f"[bold]alpha[/bold] = {bearings.alpha:.4f}   for each of {count} bearings")

@@ -9,7 +9,7 @@ import typer
 
 def command(
     scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
-    engine: Annotated[str, typer.Option(help="analytic, exudyn, pybullet or mujoco.")] = "analytic",
+    engine: Annotated[str, typer.Option(help="analytic, or an engine; see `rocking engines`.")] = "analytic",
     variant: Annotated[str | None, typer.Option(help="How the engine is set up; see `rocking engines`.")] = None,
     settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE",
                                                        help="A setting of the solver; may be repeated.")] = None,

@@ -227,8 +227,22 @@ def test_errors_told_without_traceback_are_those_a_user_can_mend():
 
 
 @pytest.mark.parametrize("command", [["report"], *(["study", name] for name in STUDIES)], ids=" ".join)
-def test_an_output_that_is_a_file_is_refused_before_the_work(command, capsys):
-    with pytest.raises(SystemExit) as ended:
-        cli.main([*command, "--output", __file__])
-    assert ended.value.code == 2
-    assert f"--output {__file__}: is a file; give a folder" in capsys.readouterr().err
+def test_an_output_that_is_a_file_is_refused_before_the_work(rocking, command):
+    status, out, err = rocking(*command, "--output", __file__)
+    assert status == 2 and not out and f"--output {__file__}: is a file; give a folder" in err
+
+
+TARGETS = ("design", "--period", "2", "--damping", "0.3", "--xmax", "0.3")
+
+
+def test_design_as_json_is_the_papers_bearing(rocking):
+    status, out, _ = rocking(*TARGETS, "--json", "-")
+    design = json.loads(out)
+    assert status == 0
+    assert design["bearings"]["alpha"] == pytest.approx(44.69, abs=0.01)
+    assert design["properties"]["period"] == pytest.approx(2.0, rel=1e-9)
+
+
+def test_design_for_a_file_that_cannot_be_written_is_a_mistake(rocking, tmp_path):
+    status, out, err = rocking(*TARGETS, "--json", tmp_path / "none" / "design.json")
+    assert status == 2 and not out and "there is no folder" in err
