@@ -9,16 +9,14 @@ import math
 
 import numpy as np
 
-from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, load_scene, simulate
+from analytic import PulseMotion, SampledMotion, Scene, Start, load_scene, simulate
 from analytic.bearing import BearingLaw
 from analytic.rocking import restitution
 from engines import get_engine
 
+from .caryatid import BASE, BEARINGS, caryatid_block
 from .measures import base_jump_error, compare, state_restitution, swing_restitution
 
-CARYATID = {"mass": 3172.05, "radius": 1.0884}
-BASE = Base(mass=212.0)
-BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 STARTS = (0.3, 0.37, 0.44, 0.51, 0.59, 0.66, 0.73, 0.8)  # released tilt over slenderness
 SLENDERNESSES = (0.1, 0.2, 0.3, 0.45)
 IMPACTS = 3
@@ -54,7 +52,7 @@ def free_rocking(scenes):
     base, slendernesses = FREE_ROCKING[scenes]
     family = {}
     for slenderness in slendernesses:
-        block = Block(slenderness=slenderness, **CARYATID)
+        block = caryatid_block(slenderness)
         for start in STARTS:
             scene = Scene(block=block, base=base, start=Start(tilt=start * slenderness), duration=12.0)
             times = [impact.time for impact in simulate(scene, history=False).impacts[:IMPACTS + 1]]
@@ -112,19 +110,19 @@ def named_scene(name):
     if name == ISOLATED:
         return load_scene("caryatid-isolated")
     if name == DRIVEN:
-        return Scene(block=Block(slenderness=0.15, **CARYATID), base=BASE, bearings=BEARINGS,
+        return Scene(block=caryatid_block(0.15), base=BASE, bearings=BEARINGS,
                      motion=PulseMotion("one-sine", 3.0, 8.0), duration=3.0)
     if name == FALLING:
-        return Scene(block=Block(slenderness=0.2, **CARYATID), motion=PulseMotion("one-sine", 3.8 * 9.81 * 0.2, 5.2),
+        return Scene(block=caryatid_block(0.2), motion=PulseMotion("one-sine", 3.8 * 9.81 * 0.2, 5.2),
                      duration=5.0)
     shaking = 0.01 * np.arange(6001)
     level = np.sin(8 * shaking) + 0.5 * np.sin(26 * shaking)
     if name == STANDING:
         peak = 0.9 * 9.81 * math.tan(0.2)
-        return Scene(block=Block(slenderness=0.2, **CARYATID), duration=60.0,
+        return Scene(block=caryatid_block(0.2), duration=60.0,
                      motion=SampledMotion(0.01, level / np.abs(level).max() * peak))
     if name == STANDING_ISOLATED:
-        return Scene(block=Block(slenderness=0.2, **CARYATID), base=BASE, bearings=BEARINGS, duration=60.0,
+        return Scene(block=caryatid_block(0.2), base=BASE, bearings=BEARINGS, duration=60.0,
                      motion=SampledMotion(0.01, level / np.abs(level).max() * 0.5))
     raise KeyError(f"no scene is called {name!r}")
 
@@ -161,7 +159,7 @@ def overturning_time(engine, variant, scenes, runs):
 
 def boundary_scene(frequency, amplitude):
     """One sine of frequency times omega_r and amplitude times g tan(slenderness), on rigid ground."""
-    scene = Scene(block=Block(slenderness=0.25, **CARYATID), duration=1.0)
+    scene = Scene(block=caryatid_block(0.25), duration=1.0)
     pulse = PulseMotion("one-sine", amplitude * 9.81 * math.tan(0.25), frequency * scene.rocking_frequency)
     return scene.with_(motion=pulse, duration=pulse.end + 6.0)
 

@@ -5,9 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic import Base, Bearings, Block, Scene, simulate
+from analytic import Scene, simulate
 from analytic.problems import problem_a, problem_b
 from analytic.solver import REST_RATE
+
+from ..caryatid import BASE, BEARINGS, caryatid_block
 
 TIGHTEST = 1e-17
 SLENDER = 0.18  # rad: the isolated Caryatid rocks without overturning, under the Duzce record and the synthetic motion
@@ -50,8 +52,7 @@ def block_problems():
 def caryatid(slenderness, motion, duration):
     """The Caryatid on the bearings of the paper's Table 1 under `motion`."""
     return Scene(name=f"isolated Caryatid, slenderness {slenderness:g}", motion=motion, duration=duration,
-                 block=Block(mass=3172.05, radius=1.0884, slenderness=slenderness), base=Base(mass=212.0),
-                 bearings=Bearings(law="algebraic", count=4, ka=6.22e4, kb=6.22e3, alpha=44.69))
+                 block=caryatid_block(slenderness), base=BASE, bearings=BEARINGS)
 
 
 def caryatid_problem(slenderness, motion, duration):

@@ -14,10 +14,10 @@ from analytic import simulate
 from analytic.scene import Base, Block, Scene, Start
 from engines import get_engine
 
+from ..caryatid import BASE, MASS, RADIUS
 from ..cases import Case
 
-MASS, RADIUS = 3172.05, 1.0884  # kg, m: the Caryatid's
-CARYATID_BASE = 212.0 / MASS  # its m_b/m
+CARYATID_BASE = BASE.mass / MASS  # its m_b/m
 IMPACTS = 3  # used of each run; on rigid ground the slowest is about as fast as the first from a third of the tilt
 
 # Accuracy knob of each variant and the values it runs through; the variant's default comes with them.

@@ -9,12 +9,12 @@ from analytic import simulate
 from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
 from engines import get_engine
 
+from ..caryatid import MASS, RADIUS
 from .restitution_cases import (
+    CARYATID_BASE,
     EXPERIMENT_SLENDERNESS,
     EXPERIMENTS,
     IMPACTS,
-    MASS,
-    RADIUS,
     SCALES,
     free_scene,
     knob_of,
@@ -57,7 +57,7 @@ def result_of(grid, rows):
         "experiments": {name: {"engine": one[0], "variant": one[1], "setting": one[2],
                                "slenderness": EXPERIMENT_SLENDERNESS} for name, one in EXPERIMENTS.items()},
         "friction_needed": {ground: friction_needed(free_scene(EXPERIMENT_SLENDERNESS, ratio, 0.6))
-                            for ground, ratio in zip(GROUNDS, (None, 212.0 / MASS), strict=True)},
+                            for ground, ratio in zip(GROUNDS, (None, CARYATID_BASE), strict=True)},
         "formulas": [{"ratio": ratio, "slenderness": gamma, "restitution": restitution(scene),
                       "jump_length": base_jump_length(scene), "jump_length_printed": base_jump_length_as_printed(scene)}
                      for (ratio, gamma), scene in scenes.items()],

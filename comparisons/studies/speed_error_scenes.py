@@ -6,19 +6,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
-from analytic import Base, Bearings, Block, Scene, Start, simulate
+from analytic import Scene, Start, simulate
 from analytic.motion import PulseMotion
 from analytic.response import Response
 from analytic.synthetic import synthetic_motion
 from analytic.twin import simulate_twin
 
+from ..caryatid import BASE, BEARINGS, caryatid_block
 from ..horizon import sensitivity_horizon
 
 TIGHTEST = 1e-17  # tolerance of the kernel as a reference
 TWIN_TOLERANCE = 1e-13  # of the independent solution each reference is held against
-CARYATID = {"mass": 3172.05, "radius": 1.0884}
-BEARINGS = {"count": 4, "ka": 6.22e4, "kb": 6.22e3, "alpha": 44.69}
-BASE_MASS = 212.0
 LONGEST = 10.0  # s, of a run under the synthetic motion: the strong shaking and what follows
 FREQUENCY_RATIO = 3.0  # pulse frequency over omega_r, near-overturning scene
 BOUNDARY_RUNS = 6  # a first run at the reference's boundary, then at the corrected ones
@@ -87,12 +85,12 @@ def at_amplitude(scene, amplitude):
 def trials():
     """The five trials, in order of what they ask of a solver."""
     motion = synthetic_motion()
-    free = Block(**CARYATID, slenderness=0.2)
-    isolated = {"base": Base(mass=BASE_MASS), "bearings": Bearings(**BEARINGS), "motion": motion}
+    free = caryatid_block(0.2)
+    isolated = {"base": BASE, "bearings": BEARINGS, "motion": motion}
     rigid = Scene(name="free rocking on rigid ground", block=free, start=Start(tilt=0.12), duration=5.0)
-    sliding = rigid.with_(name="free rocking on a sliding base", base=Base(mass=BASE_MASS), duration=4.0)
-    stands = Scene(name="isolated, standing", block=Block(**CARYATID, slenderness=0.28), duration=LONGEST, **isolated)
-    rocks = Scene(name="isolated, rocking", block=Block(**CARYATID, slenderness=0.15), duration=LONGEST, **isolated)
+    sliding = rigid.with_(name="free rocking on a sliding base", base=BASE, duration=4.0)
+    stands = Scene(name="isolated, standing", block=caryatid_block(0.28), duration=LONGEST, **isolated)
+    rocks = Scene(name="isolated, rocking", block=caryatid_block(0.15), duration=LONGEST, **isolated)
     rocks = rocks.with_(duration=math.floor(100 * sensitivity_horizon(rocks).horizon) / 100)
     events = ("impact_time", "restitution")
     return [_trial("free-rigid", rigid, (*events, "end_tilt")),
@@ -104,7 +102,7 @@ def trials():
 
 def near_overturning():
     """One sine at the amplitude where the block just overturns after one impact; its boundary is the question."""
-    block = Block(**CARYATID, slenderness=0.25)
+    block = caryatid_block(0.25)
     unit = 9.81 * math.tan(block.slenderness)
     pulse = PulseMotion("one-sine", unit, FREQUENCY_RATIO * Scene(block=block, duration=1.0).rocking_frequency)
     scene = Scene(name="one sine at the overturning boundary", block=block, motion=pulse, duration=2.5)

@@ -5,15 +5,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start
+from analytic import Base, Block, PulseMotion, SampledMotion, Scene, Start
 from analytic.problems import benchmark_block
+
+from ..caryatid import BASE, BEARINGS, caryatid_block
 
 BLOCK = benchmark_block()  # omega_r = 2.60 rad/s, slenderness 0.25
 GAMMA = BLOCK.slenderness
 THRESHOLD = 9.81 * math.tan(GAMMA)  # uplift acceleration on rigid ground [m/s2]
-STATUE = Block(mass=3172.05, radius=1.0884, slenderness=0.28)
-LRB = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
-ISOLATED = Scene(block=STATUE, base=Base(mass=212.0), bearings=LRB, duration=8.0)
+STATUE = caryatid_block(0.28)
+ISOLATED = Scene(block=STATUE, base=BASE, bearings=BEARINGS, duration=8.0)
 # One sine of 7.8 rad/s on BLOCK: amplitudes over THRESHOLD at which the outcome changes, from bisection with the kernel
 # (the tests bisect again).
 OVERTURNS_FROM = 1.401851713752694
@@ -77,7 +78,7 @@ def _rest():
         name="flat drop", block=flat, start=Start(tilt=0.2), duration=3.0), oracle="free rocking", quick=True)
     stocky = Block(mass=1000.0, radius=1.0, slenderness=1.0)
     yield HardCase("restitution of eq. (7) below 0: the block lands flat, its momentum goes to the base", Scene(
-        name="stocky on a light base", block=stocky, base=Base(mass=10.0), bearings=LRB, start=Start(tilt=0.1),
+        name="stocky on a light base", block=stocky, base=Base(mass=10.0), bearings=BEARINGS, start=Start(tilt=0.1),
         duration=4.0), quick=True)
 
 
