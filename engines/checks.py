@@ -1,6 +1,5 @@
-"""What must hold in every engine run, whatever its accuracy: the bearing law, and no energy from nowhere."""
+"""What must hold in every engine run, however coarse: the bearing law, the block's place, no energy from nowhere."""
 
-import dataclasses
 import math
 
 import numpy as np
@@ -9,6 +8,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from analytic.bearing import LINEAR, BearingLaw, hysteretic_force
 from analytic.motion import SampledMotion
+from analytic.response import Failure
 
 from .swings import ArrayModel
 
@@ -16,6 +16,9 @@ from .swings import ArrayModel
 # came from nowhere. The errors of legitimate steps stay below a tenth of it (tests/engines/test_observe.py, steps up
 # to 1/60 s); a contact instability reaches 1, as its gain becomes the largest kinetic energy.
 GAIN_LIMIT = 0.5
+
+# Sliding and height of the lower corner [share of R] that end a run as failed.
+SLIDING_TOLERANCE, HEIGHT_TOLERANCE = 0.03, 2e-3
 
 
 @njit(cache=True)
@@ -53,38 +56,62 @@ def replay_bearing(scene, trace):
 def energy_balance(scene, trace):
     """(balance, kinetic) [J], shape (n,): mechanical energy + loss in the bearings - input work, 0 at the start.
 
-    In the ground's frame, where the ground motion is the inertial load -a_g on both masses. Constant in flight
-    for an exact solution; every impact lowers it. Work by the trapezoidal rule, over the trace's steps and the
-    motion's samples together.
+    In the ground's frame, where the ground motion is the inertial load -a_g on both masses. Constant in flight, about
+    a corner or free, for an exact solution; every impact lowers it. Work by the trapezoidal rule, over the trace's
+    steps and the motion's samples together.
     """
     model = ArrayModel.of(scene)
-    law = model.bearing
-    time, tilt, x = _refined(scene, trace)
-    kept = np.searchsorted(time, trace.time)
-    # Centre of mass relative to the base's middle: s b - n; its velocity is c phi'.
-    b, h = model.R * math.sin(model.gamma), model.R * math.cos(model.gamma)
-    side = np.where(tilt < 0, -1.0, 1.0)
-    c, n = model.lever(side, tilt)
-    M = model.M if model.on_base else 0.0
-    ground = scene.motion.acceleration(time) if scene.motion else np.zeros_like(x)
-    work = -_trapezoid(ground, M * x + model.m * (side * b - n))[kept]
-    c, w, x, v = c[kept], trace.tilt_rate, trace.base_displacement, trace.base_velocity
-    kinetic = 0.5 * M * v**2 + model.m * c * w * v + 0.5 * model.J * w**2
-    potential = model.m * model.g * (c - h) + 0.5 * law.count * law.kb * x**2
+    law, m, base = model.bearing, model.m, model.M - model.m if model.on_base else 0.0
+    centre = pivoting_centre(scene, trace) if trace.centre is None else trace.centre
+    x, v, z = trace.base_displacement, trace.base_velocity, centre[:, 1]
+    kinetic = 0.5 * (base * v**2 + m * (centre[:, 2]**2 + centre[:, 3]**2)
+                     + scene.block.centre_inertia * trace.tilt_rate**2)
+    potential = m * model.g * z + 0.5 * law.count * law.kb * x**2
     lost = _trapezoid(trace.bearing_force - law.count * law.kb * x, x)
-    balance = kinetic + potential + lost - work
+    moved = base * x + m * centre[:, 0], base * v + m * centre[:, 2]
+    balance = kinetic + potential + lost - _work(scene.motion, trace.time, *moved)
     return balance - balance[0], kinetic
 
 
-def _refined(scene, trace):
-    """(time, tilt, base displacement) at the steps and at the motion's samples between them."""
-    time = trace.time
-    if isinstance(scene.motion, SampledMotion):
-        samples = scene.motion.dt * np.arange(len(scene.motion.samples))
-        time = np.union1d(time, samples[(samples > time[0]) & (samples < time[-1])])
-    curves = CubicHermiteSpline(trace.time, np.column_stack([trace.tilt, trace.base_displacement]),
-                                np.column_stack([trace.tilt_rate, trace.base_velocity]))
-    return time, *curves(time).T
+def pivoting_centre(scene, trace):
+    """Centre of a block that turns about its lower corner at the place of a standing one, as `Trace.centre`."""
+    side = np.where(trace.tilt < 0, -1.0, 1.0)
+    c, n = ArrayModel.of(scene).lever(side, trace.tilt)
+    return np.column_stack([trace.base_displacement + side * scene.block.half_width - n, c - scene.block.half_height,
+                            trace.base_velocity + c * trace.tilt_rate, n * trace.tilt_rate])
+
+
+def check_place(scene, trace, overturned):
+    """A `Failure` where at the end the block has slid on its base, sunk into it or left it, else None.
+
+    On the way it may fly and land again: that is the engine's decision, as long as it lands where it stood. A block
+    that overturns may do so anywhere. None, too, where the engine's place of the block was not read.
+    """
+    if trace.centre is None or overturned:
+        return None
+    R = scene.block.radius
+    slid, height = (trace.centre - pivoting_centre(scene, trace))[:, :2].T
+    flown = f"; its lower corner was at up to {height.max():.3g} m before"
+    if abs(slid[-1]) > SLIDING_TOLERANCE * R:
+        return Failure("the block slid on its base",
+                       f"by {slid[-1]:.6g} m; tolerated: {SLIDING_TOLERANCE * R:.3g} m{flown}")
+    if abs(height[-1]) > HEIGHT_TOLERANCE * R:
+        word = "sank into" if height[-1] < 0 else "left"
+        return Failure(f"the block {word} its base",
+                       f"lower corner at {height[-1]:.6g} m; tolerated: {HEIGHT_TOLERANCE * R:.3g} m{flown}")
+    return None
+
+
+def _work(motion, time, moved, rate):
+    """Work [J] of the inertial load up to each step, from the sum of mass times displacement [kg m] and its rate."""
+    if motion is None:
+        return np.zeros_like(time)
+    fine, between = time, moved
+    if isinstance(motion, SampledMotion):
+        samples = motion.dt * np.arange(len(motion.samples))
+        fine = np.union1d(time, samples[(samples > time[0]) & (samples < time[-1])])
+        between = CubicHermiteSpline(time, moved, rate)(fine)
+    return -_trapezoid(motion.acceleration(fine), between)[np.searchsorted(fine, time)]
 
 
 def _trapezoid(force, path):
@@ -115,6 +142,4 @@ def _settled(trace):
     last = np.searchsorted(crossings, trace.time, side="right") - 1
     since = trace.time - np.concatenate(([-math.inf], crossings))[last + 1]
     steps = np.flatnonzero(since >= trace.settle)
-    if len(steps) < 2:
-        return trace
-    return dataclasses.replace(trace, **{name: getattr(trace, name)[steps] for name in trace.COLUMNS})
+    return trace.at(steps) if len(steps) >= 2 else trace

@@ -17,6 +17,10 @@ MEASURED = 3172.05, 1.0884, 9.81
 # stocky block spends 15 in the air.
 SETTLE = 0.06
 
+# Share of R within which a corner is drawn back to where it stood. The hops after an impact move it by up to 4e-4
+# (slenderness .45) or 2e-3 (.6) of R; drawn back from farther, after a slide, it would gain energy from nowhere.
+REACH = 3e-3
+
 
 @dataclass(frozen=True)
 class CompliantCorners:
@@ -51,13 +55,14 @@ class CompliantCorners:
 
 @dataclass(frozen=True)
 class Corner:
-    """Constants of one corner's contact force. Units: N/m, s/m, N/m, N s/m, -."""
+    """Constants of one corner's contact force. Units: N/m, s/m, N/m, N s/m, -, m."""
 
     stiffness: float
     hardening: float
     sticking: float
     damping: float
     friction: float
+    reach: float
 
     @classmethod
     def of(cls, scene, settings):
@@ -69,18 +74,21 @@ class Corner:
         reduced = block.mass * (1 - scene.mass_share if scene.base else 1.0)
         sticking = settings.sticking * stiffness * reduced / block.mass
         return cls(stiffness, 1 / (settings.rebound * speed), sticking,
-                   2 * settings.damping * math.sqrt(sticking * reduced), settings.friction)
+                   2 * settings.damping * math.sqrt(sticking * reduced), settings.friction, REACH * block.radius)
 
     def force(self, displacement, velocity, offset):
         """Symbolic force of a Cartesian connector [N]: Hunt-Crossley, clipped at zero, and a stick spring.
 
-        The tangential force is gated by the normal one: a gate by the gap would let micro-bounces inject energy.
+        The tangential force is gated by the normal one: a gate by the gap would let micro-bounces inject energy. A
+        corner that has slid, or was thrown, by more than `reach` sticks no longer to where it stood.
         """
         depth, rate = -displacement[1], -velocity[1]
         normal = exu.symbolic.IfThenElse(
             depth > 0.0, exu.symbolic.max(Real(0.0), self.stiffness * depth * (1.0 + self.hardening * rate)), Real(0.0))
         limit = self.friction * normal
-        stick = self.sticking * displacement[0] + self.damping * velocity[0]
+        across = displacement[0]
+        spring = exu.symbolic.IfThenElse(across * across < self.reach**2, self.sticking * across, Real(0.0))
+        stick = spring + self.damping * velocity[0]
         return [exu.symbolic.max(-limit, exu.symbolic.min(limit, stick)), -normal, Real(0.0)]
 
 

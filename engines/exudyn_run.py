@@ -30,7 +30,6 @@ class Run:
     rejected: int
     ended: str | None
     failure: Failure | None
-    gap: float = 0.0  # largest distance of the lower corner from its place on the base, over the radius
 
 
 def solver_settings(scene, **time_integration):
@@ -104,10 +103,10 @@ def step_through(model, settings, solver, contact_tilt, longest, settle=0.0):
     cpu = time.process_time() - began
     trace = make_trace(scene, rows, forces, bearing, contact_tilt, settle)
     ended = "overturned" if trace is not None and abs(trace.tilt[-1]) >= OVERTURNED else None
-    steps, gap = len(rows) - 1, corner_gap(scene, rows)
+    steps = len(rows) - 1
     # exudyn holds on to `keep` as long as the process lives: 400 bytes a step, 40 MB a run of 100 000
     rows.clear(), forces.clear()
-    return Run(trace, cpu, steps, dynamic.it.rejectedAutomaticStepSizeSteps, ended, failure, gap)
+    return Run(trace, cpu, steps, dynamic.it.rejectedAutomaticStepSizeSteps, ended, failure)
 
 
 def check(model):
@@ -125,24 +124,6 @@ def check(model):
         raise Mismatch("; ".join(wrong))
 
 
-def corner_gap(scene, rows):
-    """Largest distance of the lower corner from its place on the base, over the radius: slip, sink or jump.
-
-    Up to |tilt| = slenderness: a block that falls over may well leave the ground.
-    """
-    q = np.array([row[1] for row in rows])
-    q = q[np.isfinite(q).all(axis=1) & (np.abs(q[:, 2]) <= scene.block.slenderness)]
-    if not len(q):
-        return 0.0
-    b, h = scene.block.half_width, scene.block.half_height
-    tilt, x = -q[:, 2], q[:, 3] if scene.base else 0.0
-    side = np.where(tilt < 0, -1.0, 1.0)
-    # corner = centre + rotation by theta = -tilt of (side b, -h)
-    across = q[:, 0] + side * b * np.cos(tilt) - h * np.sin(tilt) - x - side * b
-    up = q[:, 1] + h - side * b * np.sin(tilt) - h * np.cos(tilt)
-    return float(np.hypot(across, up).max() / scene.block.radius)
-
-
 def make_trace(scene, rows, z, bearing, contact_tilt, settle):
     """The `Trace` of the recorded steps, or None where there are fewer than two."""
     if bearing:
@@ -153,4 +134,5 @@ def make_trace(scene, rows, z, bearing, contact_tilt, settle):
     q, v = np.array([row[1] for row in rows]), np.array([row[2] for row in rows])
     x, speed = (q[:, 3], v[:, 3]) if scene.base else (np.zeros_like(t), np.zeros_like(t))
     force = bearing.law.force(x, np.array(z), speed) if bearing else np.zeros_like(t)
-    return Trace(t, -q[:, 2], -v[:, 2], x, speed, force, contact_tilt, settle)
+    centre = np.column_stack([q[:, :2], v[:, :2]])
+    return Trace(t, -q[:, 2], -v[:, 2], x, speed, force, contact_tilt, settle, centre)

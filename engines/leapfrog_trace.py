@@ -8,20 +8,24 @@ from .swings import Trace
 
 
 def trace_of(rows, scene, contact_tilt):
-    """The `Trace` of rows (time, step, tilt, tilt rate, x, v, z, force); rates are half a step early.
+    """The `Trace` of rows (time, step, tilt, tilt rate, x, v, z, force, and the centre's x, z, x', z' where read).
 
-    A velocity at t_n is the mean of its neighbours, weighted by their distance. Contact solvers spread an impact over the
-    steps that reach contact and leave it: there only the neighbour in flight is used, and the gain beyond it.
+    Rates are half a step early.
+
+    A velocity at t_n is the mean of its neighbours, weighted by their distance. Contact solvers spread an impact over
+    the steps that reach contact and leave it: there only the neighbour in flight is used, and the gain beyond it.
     """
-    t, h, tilt, rate, x, v, _, force = np.array(rows).T
+    t, h, tilt, rate, x, v, _, force, *centre = np.array(rows).T
     law = RockingModel.of(scene).bearing
     if len(rows) >= 4:
         side = np.where(np.abs(tilt) > contact_tilt, np.sign(tilt), 0.0)
         changes = side[1:] != side[:-1]
         leaving = np.append(changes, False) & (side != 0)  # the next step is at contact or beyond
         coming = np.append(False, changes) & (side != 0)
-        rate, v = (_synchronised(value, h, leaving & ~coming, coming & ~leaving) for value in (rate, v))
-    return Trace(t, tilt, rate, x, v, force + law.count * law.damping * v, contact_tilt)
+        rate, v, *centre[2:] = (_synchronised(value, h, leaving & ~coming, coming & ~leaving)
+                                for value in (rate, v, *centre[2:]))
+    return Trace(t, tilt, rate, x, v, force + law.count * law.damping * v, contact_tilt,
+                 centre=np.column_stack(centre) if centre else None)
 
 
 def _synchronised(value, h, from_before, from_after):
@@ -38,7 +42,7 @@ def _synchronised(value, h, from_before, from_after):
 
 
 def raw_trace_of(rows, scene, contact_tilt):
-    """The `Trace` of rows taken as they are, as a first script takes them."""
-    t, _, tilt, rate, x, v, _, force = np.array(rows).T
+    """The `Trace` of rows taken as they are, as a first script takes them; it does not look where the block is."""
+    t, _, tilt, rate, x, v, _, force = np.array(rows).T[:8]
     law = RockingModel.of(scene).bearing
     return Trace(t, tilt, rate, x, v, force + law.count * law.damping * v, contact_tilt)

@@ -39,7 +39,6 @@ from analytic.rocking import RockingModel
 from .ground_velocity import ground_velocity
 from .leapfrog_trace import raw_trace_of, trace_of
 from .observe import failed_response, observe
-from .pybullet_check import check_place
 
 NAME = "mujoco"
 
@@ -179,8 +178,6 @@ def simulate(scene, *, variant=None, history=True, **settings):
         share = max(CONTACT_TILT, CONTACT_TILT_PER_SECOND * chosen.largest_step)
         trace = trace_of(rows, scene, share * scene.block.slenderness)
     failure = _failure(scene, rows, ended, "; ".join(line.strip() for line in warnings))
-    if failure is None and ended == "done" and not isinstance(chosen, FirstScript):
-        failure = check_place(scene, *data.qpos[-3:-1].tolist(), rows[-1][2], rows[-1][4])
     return observe(scene, trace, cpu_seconds=cpu, steps=len(rows) - 1, failure=failure, history=history,
                    ended=ended if ended == "overturned" else None, **given)
 
@@ -323,7 +320,7 @@ def run(model, data, scene, chosen):
     tilt, rate, x, v = start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity
     z = law.start(x)
     force, earlier, gained, interval, last_scale, jumped = law.force(x, z), v, 0.0, 1.0, 1.0, False
-    rows = [(t, h, tilt, rate, x, v, z, force)]
+    rows = [(t, h, tilt, rate, x, v, z, force, *state[-3:-1].tolist(), *speed[-3:-1].tolist())]
     while t < end:
         step = pace.next(tilt, rate, jumped, interval) if pace else largest
         if t + step > end + 2e-9 * largest:
@@ -356,7 +353,7 @@ def run(model, data, scene, chosen):
                 z = law.hysteretic(z, x - before)
                 force = law.force(x, z)
         t, h, jumped = t + step, step, (tilt > 0) != side
-        rows.append((t, h, tilt, rate, x, v, z, force))
+        rows.append((t, h, tilt, rate, x, v, z, force, state.item(-3), state.item(-2), speed.item(-3), speed.item(-2)))
         if not -limit < tilt < limit:
             return rows, "overturned" if math.isfinite(tilt) else "not finite"
         if len(rows) > row_limit:

@@ -5,6 +5,7 @@ the engine, so that no engine is judged by its own measure. The time this takes 
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
@@ -12,7 +13,7 @@ from scipy.interpolate import CubicHermiteSpline
 from analytic.motion import SampledMotion
 from analytic.response import Failure, History, Impact, Response, State
 
-from .checks import GAIN_LIMIT, energy_gain, replay_bearing
+from .checks import GAIN_LIMIT, check_place, energy_gain, replay_bearing
 from .swings import ArrayModel, Trace, find_swings, to_contact
 
 __all__ = ["Trace", "energy_gain", "failed_response", "observe", "replay_bearing"]
@@ -52,8 +53,8 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
     An impact is reported where the swings before and after it are both resolved, that is exceed contact_tilt;
     its rates and base velocities are carried to tilt = 0 by the model's equations of flight. Where no such
     swing follows, the block came to rest: at the limit of the model's impacts after the last landing.
-    Friction demand and normal force follow from the states and the model's accelerations. An energy gain beyond
-    `GAIN_LIMIT` is a failure too.
+    Friction demand and normal force follow from the states and the model's accelerations. A block off its place
+    (`check_place`) and an energy gain beyond `GAIN_LIMIT` are failures too.
     """
     trace, failure = _finite_part(trace, failure)
     overturning_time = None
@@ -68,6 +69,8 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
     short = scene.duration * (1 - 1e-9) - end.time  # the last of equal steps need not end at the duration
     if failure is None and overturning_time is None and short > np.diff(trace.time).max():
         failure = Failure("the run ended early", f"last step at {end.time:.9g} s of {scene.duration:.9g} s", end)
+    if failure is None:
+        failure = check_place(scene, trace, overturning_time is not None)
     if failure is None and not (gain := energy_gain(scene, trace)) <= GAIN_LIMIT:  # not: NaN of an overflow
         failure = Failure("the run gained energy from nowhere",
                           f"{gain:.3g} of its energy scale, at most {GAIN_LIMIT} can be error of the steps", end)
@@ -104,6 +107,8 @@ def failed_response(scene, failure, *, engine, variant, settings, versions, cpu_
 def _finite_part(trace, failure):
     """(the steps before the first non-finite one or None, the failure with its last finite state)."""
     finite = np.isfinite([getattr(trace, name) for name in Trace.COLUMNS]).all(axis=0)
+    if trace.centre is not None:
+        finite &= np.isfinite(trace.centre).all(axis=1)
     count = len(finite) if finite.all() else int(np.argmin(finite))
     last = State(*(float(getattr(trace, name)[count - 1]) for name in Trace.COLUMNS)) if count else None
     if count < len(finite):
@@ -123,13 +128,16 @@ def _upto_overturning(scene, trace, ended):
         pair = slice(last - 1, last + 1)
         t = _crossing(trace.time[pair], trace.tilt[pair], trace.tilt_rate[pair], limit * np.sign(trace.tilt[last]))
         weight = (t - trace.time[last - 1]) / (trace.time[last] - trace.time[last - 1])
-        columns = {name: (1 - weight) * getattr(trace, name)[last - 1] + weight * getattr(trace, name)[last]
-                   for name in Trace.COLUMNS[2:]}
-        columns.update(time=t, tilt=math.copysign(limit, trace.tilt[last]))
-        if weight == 0:
-            last -= 1
-        return Trace(*(np.append(getattr(trace, name)[:last], columns[name]) for name in Trace.COLUMNS),
-                     trace.contact_tilt, trace.settle), t
+
+        def closed(values, end=None):
+            """The steps before it, and the state at it."""
+            if end is None:
+                end = (1 - weight) * values[last - 1] + weight * values[last]
+            return np.append(values[:last if weight > 0 else last - 1], [end], axis=0)
+
+        columns = {name: closed(getattr(trace, name)) for name in Trace.COLUMNS[2:]}
+        columns.update(time=closed(trace.time, t), tilt=closed(trace.tilt, math.copysign(limit, trace.tilt[last])))
+        return replace(trace, centre=None if trace.centre is None else closed(trace.centre), **columns), t
     side = np.sign(trace.tilt[-1])
     if ended == "overturned" and side * trace.tilt_rate[-1] > 0:
         model = ArrayModel.of(scene)

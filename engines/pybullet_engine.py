@@ -13,7 +13,6 @@ from analytic.response import Failure
 from . import pybullet_first_script, pybullet_stepping
 from .leapfrog_trace import raw_trace_of, trace_of
 from .observe import observe
-from .pybullet_check import check_place
 from .pybullet_scene import Mismatch, assemble
 
 NAME = "pybullet"
@@ -118,10 +117,10 @@ def simulate(scene, *, variant=None, history=True, **settings):
         raise SceneError("block.restitution", scene.block.restitution, "a contact engine decides the impact itself",
                          "leave it out, or use the analytic model")
     given = dict(engine=NAME, variant=name, settings=asdict(chosen), versions=versions(), history=history)
-    failure, ended, rows, place, cpu = None, None, [], None, math.nan
+    failure, ended, rows, cpu = None, None, [], math.nan
     client = pybullet.connect(pybullet.DIRECT)
     try:
-        rows, ended, place, cpu = _run(client, scene, chosen)
+        rows, ended, cpu = _run(client, scene, chosen)
     except Mismatch as error:
         failure = Failure("Bullet does not use what it was given", str(error))
     except pybullet.error as error:
@@ -136,35 +135,31 @@ def simulate(scene, *, variant=None, history=True, **settings):
     else:
         trace = trace_of(rows, scene, flat)
     if failure is None:
-        failure = _failure(scene, rows, ended, place)
+        failure = _failure(scene, rows, ended)
     return observe(scene, trace, cpu_seconds=cpu, steps=len(rows) - 1, failure=failure,
                    ended=ended if ended == "overturned" else None, **given)
 
 
 def _run(client, scene, chosen):
-    """(rows, how it ended, place of the block or None, CPU seconds of the stepping)."""
+    """(rows, how it ended, CPU seconds of the stepping)."""
     if isinstance(chosen, FirstScript):
         handles = pybullet_first_script.build(client, scene, chosen.step)
         clock = time.process_time()
         rows, ended = pybullet_first_script.run(handles, client, scene, chosen.step)
-        return rows, ended, None, time.process_time() - clock
+        return rows, ended, time.process_time() - clock
     aware = isinstance(chosen, ImpactAware)
     largest, accuracy = (chosen.largest_step, chosen.accuracy) if aware else (chosen.step, None)
     assembly = assemble(client, scene, largest)
     clock = time.process_time()
     row_limit = int(min(MOST_ROWS, ROWS_PER_STEP * scene.duration / largest + 100_000))
     rows, ended = pybullet_stepping.run(assembly, scene, largest, accuracy, row_limit)
-    cpu = time.process_time() - clock
-    place = [state[0] for state in pybullet.getJointStates(assembly.body, (assembly.slide, assembly.lift), client)]
-    return rows, ended, place, cpu
+    return rows, ended, time.process_time() - clock
 
 
-def _failure(scene, rows, ended, place):
+def _failure(scene, rows, ended):
     """What went wrong in a finished run, or None."""
     if ended == "not finite":
         return Failure("the state is no longer finite", f"at step {len(rows) - 1}, t = {rows[-1][0]:.9g} s")
     if ended == "too many steps":
         return Failure("too many steps", f"{len(rows) - 1} by t = {rows[-1][0]:.9g} s of {scene.duration:.9g} s")
-    if ended == "overturned" or place is None:
-        return None
-    return check_place(scene, *place, rows[-1][2], rows[-1][4])
+    return None

@@ -14,7 +14,7 @@ from analytic.bearing import hysteretic_force
 from analytic.rocking import RockingModel
 
 from .ground_velocity import ground_velocity
-from .pybullet_scene import ROCKING_ITERATIONS, correction, standing_iterations
+from .pybullet_scene import ROCKING_ITERATIONS, correction, placement, standing_iterations
 
 # The next four are no accuracy knobs: measured on free rocking (slenderness .1 and .45, rigid ground and m_b = 212 kg),
 # e moved by at most 4e-6 and the number of steps by at most 8 % over the ranges given.
@@ -43,7 +43,8 @@ def run(assembly, scene, largest, accuracy, row_limit):
     rows : list of tuples
         Per step, the start first: time [s], length of the step that led there [s], tilt [rad], tilt rate [rad/s],
         base displacement [m] and velocity [m/s], hysteretic force of one bearing [N], total force without viscous
-        part [N]. Rates are Bullet's own, half a step early.
+        part [N], centre of the block [m] and its velocity [m/s], as `Trace.centre`. Rates are Bullet's own, half a
+        step early.
     ended : str
         "done", "overturned", "not finite" or "too many steps".
     """
@@ -51,7 +52,7 @@ def run(assembly, scene, largest, accuracy, row_limit):
     model = RockingModel.of(scene)
     law, g = model.bearing, model.g
     on_base, loaded = assembly.base is not None, scene.bearings is not None
-    joints = (assembly.tilt, assembly.base)
+    joints = (assembly.tilt, assembly.slide, assembly.lift, *((assembly.base,) if on_base else ()))
     ground = ground_velocity(scene.motion)
     aware, fraction = accuracy is not None, accuracy or 0.0
     least_pull = abs(model.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0])  # |tilt''| toward contact, unforced
@@ -60,7 +61,7 @@ def run(assembly, scene, largest, accuracy, row_limit):
     count, kb, damping = law.count, law.kb, law.count * law.damping
     start, end, limit = scene.start, scene.duration, 0.5 * math.pi
     step_simulation, set_gravity = pybullet.stepSimulation, pybullet.setGravity
-    read_both, read, turn = pybullet.getJointStates, pybullet.getJointState, assembly.tilt
+    read = pybullet.getJointStates
     # A force on the base's link is the same as one on its joint, and the call costs half as much.
     drive, base, middle, frame = pybullet.applyExternalForce, assembly.base, (0.0, 0.0, 0.0), pybullet.LINK_FRAME
     sqrt, engine_step = math.sqrt, pybullet.setPhysicsEngineParameter
@@ -69,7 +70,8 @@ def run(assembly, scene, largest, accuracy, row_limit):
     tilt, rate, x, v = start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity
     z = law.start(x)
     force, committed = count * (kb * x + z), x
-    rows = [(t, h, tilt, rate, x, v, z, force)]
+    across, up, across_rate, up_rate = placement(scene)
+    rows = [(t, h, tilt, rate, x, v, z, force, across, up, across_rate, up_rate)]
     keep, step, side = rows.append, largest, tilt > 0
     before, interval, gained, settling = 0.0, 1.0, 0.0, 0
     twice_pull, almost = 2 * least_pull, 100 * weak  # below `almost` both corners count as loaded
@@ -142,15 +144,16 @@ def run(assembly, scene, largest, accuracy, row_limit):
         before, interval = rate, step if scale == 1.0 else 0.5 * (step + h)
         if on_base:
             earlier = v
-            (tilt, rate, _, _), (x, v, _, _) = read_both(body, joints, client)
+            (tilt, rate, _, _), (across, across_rate, _, _), (up, up_rate, _, _), (x, v, _, _) = read(
+                body, joints, client)
             if loaded:
                 z = hysteretic_force(z, x - committed, *constants)
                 committed = x
                 force = count * (kb * x + z)
         else:
-            tilt, rate, _, _ = read(body, turn, client)
+            (tilt, rate, _, _), (across, across_rate, _, _), (up, up_rate, _, _) = read(body, joints, client)
         t, h = t + step, step
-        keep((t, h, tilt, rate, x, v, z, force))
+        keep((t, h, tilt, rate, x, v, z, force, across, up, across_rate, up_rate))
         if not -limit < tilt < limit:
             return rows, "overturned" if math.isfinite(tilt) and math.isfinite(rate) else "not finite"
     return rows, "done" if t >= end else "too many steps"

@@ -5,7 +5,7 @@ contact are therefore not trusted: the last state in clean flight is carried for
 after the impact backward to it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -42,6 +42,9 @@ class Trace:
         Tilt [rad] below which the engine counts as in flat contact: just above its contact noise.
     settle : float
         Time [s] a compliant contact takes to relax after an impact; flight counts as clean after it.
+    centre : array, shape (n, 4), or None
+        Of the block, as the engine has it: x and z [m] from the place of a block standing at the origin, x' and z'
+        [m/s], relative to the ground. None: not read, taken to pivot about its corner.
 
     Raises
     ------
@@ -57,6 +60,7 @@ class Trace:
     bearing_force: np.ndarray
     contact_tilt: float
     settle: float = 0.0
+    centre: np.ndarray | None = None
 
     COLUMNS = ("time", "tilt", "tilt_rate", "base_displacement", "base_velocity", "bearing_force")
 
@@ -66,6 +70,10 @@ class Trace:
             object.__setattr__(self, name, array)
             if array.ndim != 1 or array.shape != self.time.shape:
                 raise ValueError(f"trace.{name} has shape {array.shape}, time {self.time.shape}: give one value a step")
+        if self.centre is not None:
+            object.__setattr__(self, "centre", np.ascontiguousarray(self.centre, dtype=np.float64))
+            if self.centre.shape != (len(self.time), 4):
+                raise ValueError(f"trace.centre has shape {self.centre.shape}: give (x, z, x', z') a step")
         if len(self.time) < 2:
             raise ValueError("a trace needs at least two steps, the first being the start")
         if not (self.contact_tilt > 0 and np.isfinite(self.contact_tilt)):
@@ -74,9 +82,14 @@ class Trace:
         if len(wrong):
             raise ValueError(f"trace.time does not increase after step {wrong[0]}, t = {self.time[wrong[0]]:.9g} s")
 
+    def at(self, steps):
+        """The steps of a slice or of an array of indices."""
+        return replace(self, centre=None if self.centre is None else self.centre[steps],
+                       **{name: getattr(self, name)[steps] for name in self.COLUMNS})
+
     def upto(self, count):
         """The first `count` steps."""
-        return Trace(*(getattr(self, name)[:count] for name in self.COLUMNS), self.contact_tilt, self.settle)
+        return self.at(slice(count))
 
 
 @dataclass(frozen=True)

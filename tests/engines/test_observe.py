@@ -7,7 +7,15 @@ import numpy as np
 import pytest
 
 from analytic import Base, Bearings, Block, Failure, PulseMotion, SampledMotion, Scene, Start, simulate
-from engines.checks import GAIN_LIMIT, replayed_force
+from engines.checks import (
+    GAIN_LIMIT,
+    HEIGHT_TOLERANCE,
+    SLIDING_TOLERANCE,
+    check_place,
+    energy_balance,
+    pivoting_centre,
+    replayed_force,
+)
 from engines.observe import Trace, energy_gain, observe, replay_bearing
 from engines.swings import find_swings
 
@@ -272,6 +280,62 @@ def test_a_gain_of_energy_fails():
     assert "energy" in seen(scene, thrown).failure.reason
 
 
+def thrown(spin=6.0):
+    """(scene, trace) of a block thrown off its corner: from there a parabola and an even turn, exact in flight."""
+    scene = Scene(block=block(0.25), start=Start(tilt=0.1, tilt_rate=spin), duration=0.2)
+    time = np.linspace(0, 0.2, 101)
+    zero = np.zeros_like(time)
+    trace = Trace(time, 0.1 + spin * time, zero + spin, zero, zero, zero, EDGE)
+    x, z, across, up = pivoting_centre(scene, trace)[0]
+    fall = scene.gravity * time
+    return scene, dataclasses.replace(trace, centre=np.column_stack(
+        [x + across * time, z + up * time - fall * time / 2, zero + across, up - fall]))
+
+
+def test_free_flight_keeps_its_energy_where_the_centre_is_read():
+    scene, trace = thrown()
+    balance, kinetic = energy_balance(scene, trace)
+    assert np.ptp(balance) < 1e-12 * kinetic.max() and energy_gain(scene, trace) < 1e-12
+    # taken to turn about its corner, the same block would change its energy
+    assert np.ptp(energy_balance(scene, dataclasses.replace(trace, centre=None))[0]) > 0.05 * kinetic.max()
+    pushed = trace.centre + np.where(trace.time > 0.1, 8.0, 0.0)[:, None] * [0, 0, 0, 1]
+    assert energy_gain(scene, dataclasses.replace(trace, centre=pushed)) > GAIN_LIMIT
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_pivoting_centre_is_that_of_the_model(name):
+    """Its velocity is the derivative of its place, and the balance with it read is that without."""
+    scene = SCENES[name]
+    trace, _ = sampled(scene, 2e-3)
+    centre = pivoting_centre(scene, trace)
+    middle = np.diff(centre[:, :2], axis=0) / np.diff(trace.time)[:, None]
+    flight = np.sign(trace.tilt[1:]) == np.sign(trace.tilt[:-1])  # an impact changes the velocity at once
+    np.testing.assert_allclose(middle[flight], 0.5 * (centre[1:, 2:] + centre[:-1, 2:])[flight], atol=5e-3)
+    np.testing.assert_allclose(energy_balance(scene, dataclasses.replace(trace, centre=centre)),
+                               energy_balance(scene, trace))
+
+
+def test_a_block_off_its_place_fails():
+    scene = SCENES["rigid ground"]
+    trace, _ = sampled(scene, 1e-3)
+    R, n = scene.block.radius, len(trace.time)
+
+    def moved(across=0.0, up=0.0, steps=slice(None)):
+        centre = pivoting_centre(scene, trace)
+        centre[steps, :2] += np.array([across, up]) * R
+        return dataclasses.replace(trace, centre=centre)
+
+    middle, slide, lift = slice(n // 3, n // 2), 1.1 * SLIDING_TOLERANCE, 1.1 * HEIGHT_TOLERANCE
+    assert check_place(scene, trace, False) is None and check_place(scene, moved(), False) is None
+    assert check_place(scene, moved(0.8 * slide, 0.8 * lift), False) is None
+    assert "slid" in check_place(scene, moved(across=-slide), False).reason
+    assert "left" in check_place(scene, moved(up=lift), False).reason
+    assert "sank" in check_place(scene, moved(up=-lift), False).reason
+    assert check_place(scene, moved(up=lift, steps=middle), False) is None  # it flew and landed
+    assert check_place(scene, moved(across=slide), True) is None  # it fell over: anywhere
+    assert "slid" in seen(scene, moved(across=slide)).failure.reason
+
+
 def test_an_exploded_base_fails():
     scene = SCENES["isolated"]
     trace, _ = sampled(scene, 1e-3)
@@ -300,7 +364,7 @@ def test_bearing_replay_is_exact_and_sees_a_lag():
 
 @pytest.mark.parametrize("changes, message", [
     ({"tilt": np.zeros(3)}, "trace.tilt has shape"), ({"time": np.array([0.0, 1.0, 1.0, 2.0])}, "does not increase"),
-    ({"contact_tilt": 0.0}, "contact_tilt"),
+    ({"contact_tilt": 0.0}, "contact_tilt"), ({"centre": np.zeros((4, 3))}, "trace.centre"),
 ])
 def test_a_trace_that_makes_no_sense_is_refused(changes, message):
     zero = np.zeros(4)
