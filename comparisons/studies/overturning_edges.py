@@ -27,7 +27,7 @@ class Edge:
 
     rises: overturning lies above it. mode: impacts before overturning. low, high: amplitudes half way to the
     neighbouring boundaries. duration [s] in which runs beside it are decided. min_normal: least normal force over m g
-    of the analytic model beside it; below 0 the block would jump, which the model does not know.
+    of the analytic model beside it; below 0 that model holds the corner down, where a block would slide or jump.
     """
 
     shape: str

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from analytic import load_scene, overturning_map, simulate_many
+from analytic import load_scene, overturning_map, simulate
 from engines import get_engine
 
 from ..cases import Case
@@ -35,6 +35,8 @@ KNOBS = (
 )
 FIRST_SCRIPTS = (("pybullet", "first-script", "step", (1 / 240,)), ("exudyn", "native-contact", "step", (1e-4,)))
 ENGINES = (("exudyn", "compliant-corners"), ("pybullet", "impact-aware"))  # the defaults, by name
+# Asked where the analytic model holds the corner down: this one does so, too.
+HELD = ("exudyn", "switched-joints", {"step": 1e-4})
 
 
 def compute(work, quick=False):
@@ -45,7 +47,8 @@ def compute(work, quick=False):
     settings : dict
     rows : list of dict
         By "part": "edge" (a boundary of the analytic model), "shift" (a solver's beside it, at default settings),
-        "knob" (the same at other settings), "confusion", "surprise" (a disagreement outside the band) and "failure".
+        "held" (the same with the corner held, where the normal force is negative), "knob" (the same at other
+        settings), "confusion", "surprise" (a disagreement outside the band) and "failure".
     arrays : dict
         frequency, amplitude; ``<ground>/<shape>``: int16, shape (amplitudes, frequencies), impacts before
         overturning in the analytic model, -1 where it does not overturn. ``points``: shape (n, 8): ground, shape,
@@ -69,6 +72,9 @@ def compute(work, quick=False):
     for engine in ENGINES:
         log.scan(engine, found, scan)
     rows += _search(log, found, ENGINES, "shift", LADDER, TOLERANCE)
+    pulled = {key: {frequency: [edge for edge in column if edge.min_normal < 0]
+                    for frequency, column in columns.items()} for key, columns in found.items()}
+    rows += _search(log, pulled, [HELD], "held", LADDER, TOLERANCE)
     arrays["points"], judged = _judge(log, grounds, shapes, found)
     rows += judged
     settings = {"quick": quick, "grounds": {
@@ -81,7 +87,7 @@ def compute(work, quick=False):
         "shapes": list(shapes), "frequencies": list(frequencies), "scan": list(scan),
         "amplitudes": [LOWEST, HIGHEST], "band": BAND, "tolerance": TOLERANCE,
         "knob_tolerance": KNOB_TOLERANCE,
-        "solvers": [name_of(*one) for one in ENGINES],
+        "solvers": [name_of(*one) for one in ENGINES], "held": _label(HELD),
         "knobs": [[solver, variant, knob] for solver, variant, knob, _ in (*KNOBS, *FIRST_SCRIPTS)],
         "default_knobs": {name_of(*one): getattr(get_engine(one[0]).VARIANTS[one[1]], knob)
                           for one, knob in zip(ENGINES, ("stiffness", "accuracy"), strict=True)},
@@ -177,14 +183,19 @@ def _search(log, found, engines, part, ladder, tolerance):
 
 
 def _judge(log, grounds, shapes, found):
-    """(points, rows): the default engines' outcomes beside the analytic ones, in and outside the band."""
+    """(points, rows): the default engines' outcomes beside the analytic ones, in and outside the band.
+
+    Outside it those are apart ("pulled") in which the normal force of the analytic model becomes negative.
+    """
     keys = list(log.points)
     scenes = []
     for _, ground, shape, frequency, amplitude in keys:
         scene = grounds[ground]
         motion = pulse(scene, shape, frequency, amplitude)
         scenes.append(scene.with_(motion=motion, duration=motion.end + 60.0 / scene.rocking_frequency))
-    reference = simulate_many(scenes).overturns
+    responses = [simulate(scene, history=False) for scene in scenes]
+    reference = np.array([response.outcome == "overturns" for response in responses])
+    normal = np.array([response.min_normal_ratio for response in responses])
     answers = [log.points[key][0] for key in keys]
     scanned = np.array([log.points[key][1] for key in keys])
     distance = np.array([min((abs(amplitude / edge.amplitude - 1) for edge in found[ground, shape][frequency]),
@@ -195,7 +206,9 @@ def _judge(log, grounds, shapes, found):
     for engine in ENGINES:
         for ground in grounds:
             here = np.array([key[0] == engine and key[1] == ground for key in keys]) & decided
-            for region, mask in (("scan", scanned), ("outside", distance > BAND), ("inside", distance <= BAND)):
+            outside = distance > BAND
+            for region, mask in (("scan", scanned), ("outside", outside & (normal >= 0)),
+                                 ("pulled", outside & (normal < 0)), ("inside", ~outside)):
                 chosen = here & mask
                 if not chosen.any():
                     continue
@@ -207,7 +220,7 @@ def _judge(log, grounds, shapes, found):
         engine, ground, shape, frequency, amplitude = keys[k]
         rows.append({"part": "surprise", "solver": _label(engine), "ground": ground, "shape": shape,
                      "frequency": frequency, "amplitude": amplitude, "analytic_overturns": bool(reference[k]),
-                     "distance": float(distance[k])})
+                     "distance": float(distance[k]), "min_normal": float(normal[k])})
     names = list(grounds)
     points = np.array([(names.index(ground), shapes.index(shape), ENGINES.index(engine), frequency, amplitude,
                         reference[k], own[k] if decided[k] else -1, scanned[k])

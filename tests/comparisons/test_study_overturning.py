@@ -102,10 +102,11 @@ class Shifted:
         return rows
 
 
-def study(tmp_path, work, monkeypatch):
+def study(tmp_path, work, monkeypatch, knobs=True):
     monkeypatch.setattr(overturning_runs, "GROUNDS", {"rigid ground": ("caryatid-rigid", {})})
     monkeypatch.setattr(overturning_runs, "KNOBS", overturning_runs.KNOBS[-1:])
-    *_, (settings, rows, arrays) = overturning_runs.compute(work, quick=True)
+    parts = overturning_runs.compute(work, quick=True)
+    settings, rows, arrays = list(parts)[-1] if knobs else next(parts)
     return read_result(write_result(tmp_path / "overturning.json", "overturning", settings, rows, arrays,
                                     modules=["analytic"]))
 
@@ -157,3 +158,39 @@ def test_page_and_figures_show_every_boundary(tmp_path, monkeypatch):
 def test_located_says_how_many_runs_it_took():
     assert isinstance(search(EDGE, lambda amplitude: True), Located)
     assert search(EDGE, lambda amplitude: bool(amplitude > 5.0)).runs <= 4 + 7
+
+
+class SlidesWhereItIsPulled(Shifted):
+    """The analytic model, but a contact in place of its corner: shifted where that would have to be held down."""
+
+    def run(self, cases, label):
+        shift, rows = self.shift, []
+        for case in cases:
+            pulled = simulate(case.scene, history=False).min_normal_ratio < 0
+            self.shift = shift if pulled and case.variant != "switched-joints" else 0.0
+            rows += super().run([case], label)
+        self.shift = shift
+        return rows
+
+
+def test_boundaries_at_which_the_model_holds_the_corner_down_are_told_apart(tmp_path, monkeypatch):
+    monkeypatch.setattr(overturning_runs, "SHAPES", ("one-cosine",))
+    result = study(tmp_path, SlidesWhereItIsPulled(-0.05), monkeypatch, knobs=False)
+    pulled = [row for row in result.rows if row["part"] == "edge" and row["min_normal"] < 0]
+    held = [row for row in result.rows if row["part"] == "held"]
+    assert len(pulled) == len(held) > 0
+    assert [row["shift"] for row in held] == pytest.approx([0.0] * len(held), abs=2e-5)
+    shifts = [row for row in result.rows if row["part"] == "shift"]
+    moved = [row for row in shifts if row["amplitude"] in [edge["amplitude"] for edge in pulled]]
+    assert 0 < len(moved) < len(shifts)
+    assert all(row["shift"] == pytest.approx(-0.05, abs=2e-5) for row in moved)
+    wrong = {region: sum(row["only_a"] + row["only_b"] for row in result.rows
+                         if row["part"] == "confusion" and row["region"] == region) for region in ("outside", "pulled")}
+    assert wrong["outside"] == 0 < wrong["pulled"]
+    assert all(row["min_normal"] < 0 for row in result.rows if row["part"] == "surprise")
+    page = section(result)
+    text = " ".join(page.text)
+    assert "All boundaries lie within 0.5 %" in text and "Not all boundaries lie within 0.5 %" in text
+    assert f"give {len(held)} of these {len(held)} boundaries" in text
+    table, = (table for table in page.tables if "holds the corner down" in table.caption)
+    assert len(table.rows) == len(held) and all(len(row) == len(table.columns) for row in table.rows)
