@@ -6,6 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
+from engines.checks import energy_balance, energy_gain
+from engines.swings import Trace
+
+# Time after an impact that belongs to it [s]: exudyn's compliant corners relax for 6 ms.
+SETTLE = 0.01
+
 
 def swing_restitution(scene, response):
     """Effective restitution of each impact from the energies of the swings around it, shape (impacts,).
@@ -142,6 +148,28 @@ def _directed(ta, ya, tb, yb):
             best = min(best, _segment_distance(ta[i], ya[i], tb[k], yb[k], tb[k + 1], yb[k + 1]))
         worst = max(worst, best)
     return worst
+
+
+def energy_errors(scene, response, *, until=math.inf, step=0.0):
+    """(drift between events, gain from nowhere) up to `until` [s] and the unstable point, from the history.
+
+    Drift: largest change of the balance (mechanical energy + loss in the bearings - input work) within one swing or
+    rest, over m g R (1 - cos gamma); 0 if exact. A sample or `step` [s] beside an event belongs to neither side.
+    Gain: as `engines.checks.energy_gain`.
+    """
+    history = _history(response)
+    last = min(until, math.inf if response.unstable_time is None else response.unstable_time)
+    trace = Trace(*(getattr(history, name) for name in Trace.COLUMNS), contact_tilt=1e-12, settle=SETTLE)
+    trace = trace.upto(max(2, int(np.searchsorted(history.time, last, side="right"))))
+    balance, _ = energy_balance(scene, trace)
+    events = sorted([impact.time for impact in response.impacts] + list(response.rests) + list(response.uplifts))
+    beside = max(SETTLE, 1.5 * float(np.diff(trace.time).max()), 1.5 * step)
+    begins = np.searchsorted(trace.time, np.add([-math.inf] + events, beside))
+    ends = np.searchsorted(trace.time, np.subtract(events + [math.inf], beside))
+    drift = max((np.ptp(balance[a:b]) for a, b in zip(begins, ends, strict=True) if b > a), default=0.0)
+    block = scene.block
+    unit = block.mass * scene.gravity * block.radius * (1 - math.cos(block.slenderness))
+    return float(drift / unit), energy_gain(scene, trace)
 
 
 @dataclass(frozen=True)

@@ -10,17 +10,15 @@ from analytic import simulate
 from analytic.closed_form import free_rocking, free_rocking_tilt, rest_time
 from analytic.rocking import restitution
 from analytic.twin import simulate_twin
-from engines.checks import energy_balance, energy_gain
-from engines.swings import Trace
 
 from ..horizon import sensitivity_horizon, twin_scenes
+from ..measures import energy_errors
 from .stability_cases import hard_cases
 
 JUDGE_TOLERANCE = 1e-15  # of the kernel where it judges others
 # Impacts are counted down to this share of the strongest one's rate, but not below 1e-3 omega_r slenderness, which
 # moves nothing: engines rest earlier than the model. A run's own impacts count from OWN of that, for their rates err.
 LEAST_RATE, LEAST_SHARE, OWN = 0.05, 1e-3, 0.95
-SETTLE = 0.01  # s after an impact that belong to it: exudyn's compliant corners relax for 6 ms
 LAST_PART = 0.1  # share of the run, at its end, over which a block at rest must not drift
 
 
@@ -74,7 +72,7 @@ def oracle(name, of_kernel):
     case = _case(name)
     until, robust = comparable_until(name)
     response = simulate(case.scene, tolerance=JUDGE_TOLERANCE)
-    noise = _energy_errors(case, response, until)
+    noise = energy_errors(case.scene, response, until=until, step=case.step or 0.0)
     if of_kernel:
         until, robust = min(until, case.twin_until), math.isinf(case.twin_until)
         short = case.scene if robust else case.scene.with_(duration=case.twin_until)
@@ -111,7 +109,7 @@ def measure(response):
     if response.energy is not None:
         errors["energy imbalance"] = _imbalance(response.energy)
     else:
-        drift, gain = _energy_errors(case, response, comparable_until(case.name)[0])
+        drift, gain = energy_errors(case.scene, response, until=comparable_until(case.name)[0], step=case.step or 0.0)
         errors["energy drift"] = max(0.0, drift - truth.noise[0])
         errors["energy gain"] = max(0.0, gain - truth.noise[1])
     return {"outcome": response.outcome, "errors": errors, "until": truth.until, "impacts": response.impact_count,
@@ -169,27 +167,6 @@ def _event_errors(case, response, truth):
         own = sum(abs(impact.rate_before) >= OWN * least for impact in response.impacts)
         errors["lost impacts"] = float(max(0, count - own))
     return errors
-
-
-def _energy_errors(case, response, until):
-    """(drift between events, gain from nowhere) up to `until` [s] and the unstable point, from the history.
-
-    Drift: largest change of the balance (mechanical energy + loss in the bearings - input work) within one swing or
-    rest; a sample or step beside an event belongs to neither side.
-    """
-    scene, history = case.scene, response.history
-    last = min(until, math.inf if response.unstable_time is None else response.unstable_time)
-    trace = Trace(*(getattr(history, name) for name in Trace.COLUMNS), contact_tilt=1e-12, settle=SETTLE)
-    trace = trace.upto(max(2, int(np.searchsorted(history.time, last, side="right"))))
-    balance, _ = energy_balance(scene, trace)
-    events = sorted([impact.time for impact in response.impacts] + list(response.rests) + list(response.uplifts))
-    beside = max(SETTLE, 1.5 * float(np.diff(trace.time).max()), 1.5 * (case.step or 0.0))
-    begins = np.searchsorted(trace.time, np.add([-math.inf] + events, beside))
-    ends = np.searchsorted(trace.time, np.subtract(events + [math.inf], beside))
-    drift = max((np.ptp(balance[a:b]) for a, b in zip(begins, ends, strict=True) if b > a), default=0.0)
-    block = scene.block
-    unit = block.mass * scene.gravity * block.radius * (1 - math.cos(block.slenderness))
-    return float(drift / unit), energy_gain(scene, trace)
 
 
 def _imbalance(energy):

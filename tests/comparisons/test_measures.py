@@ -11,6 +11,7 @@ from analytic.rocking import RockingModel, restitution
 from comparisons.measures import (
     base_jump_error,
     compare,
+    energy_errors,
     flight_energy,
     graph_distance,
     impact_time_errors,
@@ -123,6 +124,25 @@ def test_graph_distance_of_shifted_lines_is_the_perpendicular():
     from comparisons.measures import _directed
     assert _directed(fine, 2 * fine + 0.5, wide.history.time, wide.history.tilt) == pytest.approx(
         0.5 / math.sqrt(5), rel=1e-9)
+
+
+def test_energy_errors_vanish_for_exact_runs_and_see_a_drift():
+    scene = Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=0.2), base=Base(mass=212.0),
+                  start=Start(tilt=0.12), duration=4.0)
+    response = simulate(scene)
+    assert max(energy_errors(scene, response)) < 1e-10
+    history = response.history
+    growing = dataclasses.replace(history, tilt_rate=history.tilt_rate * (1 + 1e-3 * history.time))
+    assert min(energy_errors(scene, dataclasses.replace(response, history=growing))) > 1e-4
+    assert max(energy_errors(scene, dataclasses.replace(response, history=growing), until=0.01)) < 1e-5
+
+
+def test_energy_drift_with_bearings_and_motion_falls_with_the_sampling():
+    scene = Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=0.15), base=Base(mass=212.0),
+                  bearings=Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69),
+                  motion=PulseMotion("one-sine", 4.0, 6.0), duration=3.0)
+    drifts = [energy_errors(scene, simulate(scene, output_step=step))[0] for step in (4e-3, 2e-3, 1e-3)]
+    assert drifts[0] / drifts[1] > 3 and drifts[1] / drifts[2] > 3  # trapezoidal rule: factor 4
 
 
 def test_a_response_agrees_with_itself():
