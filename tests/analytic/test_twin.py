@@ -3,6 +3,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from analytic import closed_form
 from analytic.errors import SettingError
@@ -206,6 +207,32 @@ def test_restitution_of_one_fails_instead_of_bouncing_for_ever(monkeypatch):
     run = simulate_twin(problem_a().with_(block=block, start=Start(tilt=1e-9)))
     assert run.outcome == "failed" and "pile up" in run.failure.reason
     assert run.failure.last_state.time < 7
+
+
+def test_event_that_scipy_cannot_find_is_a_failure_with_scipys_words(monkeypatch):
+    """LSODA's dense output may miss its own sign change: brentq then raises inside `solve_ivp`."""
+    calls, words = [], "f(a) and f(b) must have different signs"
+
+    def third_call_raises(*args, **settings):
+        calls.append(args[1])
+        if len(calls) == 3:
+            raise ValueError(words)
+        return solve_ivp(*args, **settings)
+
+    scene = Scene(block=SLENDER, base=Base(mass=212.0), bearings=LRB, start=Start(tilt=0.1), duration=3.0)
+    whole = simulate_twin(scene, method="LSODA", rtol=1e-8)
+    monkeypatch.setattr("analytic.twin.solve_ivp", third_call_raises)
+    run = simulate_twin(scene, method="LSODA", rtol=1e-8)
+    assert len(calls) == 3 and whole.outcome == "rocks"
+    assert run.outcome == "failed" and run.failure.reason == "scipy could not find an event"
+    assert run.failure.message == words
+    # it broke off where the third stretch began, and says so; what was found before is kept
+    assert run.failure.last_state == run.end and 0 < run.end.time == calls[2][0] < 3.0
+    assert math.isfinite(run.end.tilt) and run.peak_tilt == 0.1
+    assert run.impacts == tuple(impact for impact in whole.impacts if impact.time <= run.end.time)
+    assert run.history.time[-1] == run.end.time and run.steps > 1
+    assert run.variant == run.settings["method"] == "LSODA"
+    assert run.to_json()["failure"]["message"] == words
 
 
 def test_extra_energy_and_history_do_not_change_the_outcome():
