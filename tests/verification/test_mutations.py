@@ -1,11 +1,13 @@
 """The verification can fail: a deliberate change of impact law, bearing law or step makes its rows fail."""
 
+import functools
 import math
 
 import numpy as np
 import pytest
 
 from analytic import simulate
+from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel, base_jump_length_as_printed, restitution
 from comparisons import agreement
 from comparisons.tolerances import TABLE
@@ -20,16 +22,17 @@ def row(quantity, engine, variant, scenes):
 
 
 def assert_caught(rows):
-    """Every row is out of its bound."""
+    """Every row is out of its bound, by a number: a run that broke off is not what is meant."""
     for one in rows:
         value = one.found()
+        assert math.isfinite(value), f"{one.name}: {value}"
         assert not one.holds(value), f"{one.name}: the mutation is not seen, {value:.3g} {one.unit}"
 
 
 # Impact law. What an engine does at an impact is its own: the model it is held against is changed instead, and in
 # switched-joints, where the adapter applies the law, the adapter.
 
-DEFAULTS = [("exudyn", "compliant-corners"), ("pybullet", "impact-aware")]
+DEFAULTS = [("exudyn", "compliant-corners"), ("pybullet", "impact-aware"), ("mujoco", "impact-aware")]
 
 
 @pytest.mark.parametrize("engine, variant", DEFAULTS)
@@ -101,7 +104,8 @@ def test_another_alpha_in_the_engine_fails(monkeypatch, engine, variant):
                    row("peak displacement", engine, variant, isolated)])
 
 
-def test_eq_12_as_printed_fails(monkeypatch):
+@pytest.mark.parametrize("engine, variant", DEFAULTS)
+def test_eq_12_as_printed_fails(monkeypatch, engine, variant):
     """Unloading with the printed sign of x: the force jumps at a reversal."""
     def printed_force(law, x):
         a, double = 1 - law.alpha, 2 * law.x0
@@ -118,21 +122,43 @@ def test_eq_12_as_printed_fails(monkeypatch):
         return law.count * force
 
     monkeypatch.setattr(agreement, "paper_force", printed_force)
-    assert_caught([row("bearing force replayed", engine, variant, "isolated Caryatid, synthetic motion")
-                   for engine, variant in DEFAULTS])
+    assert_caught([row("bearing force replayed", engine, variant, "isolated Caryatid, synthetic motion")])
 
 
-def test_a_bearing_force_that_lags_one_step_fails(monkeypatch):
-    from engines import pybullet_stepping
+def late(law):
+    """A bearing law (z, dx, ...) -> z that answers one step late."""
+    before = []
 
-    law, before = pybullet_stepping.hysteretic_force, []
-
-    def late(z, dx, *constants):
-        before.append(law(z, dx, *constants))
+    def lagging(z, *rest):
+        before.append(law(z, *rest))
         return before[-2] if len(before) > 1 else z
 
-    monkeypatch.setattr(pybullet_stepping, "hysteretic_force", late)
-    assert_caught([row("bearing force replayed", "pybullet", "impact-aware", "isolated Caryatid, synthetic motion")])
+    return lagging
+
+
+def lag_pybullet(monkeypatch):
+    from engines import pybullet_stepping
+
+    monkeypatch.setattr(pybullet_stepping, "hysteretic_force", late(pybullet_stepping.hysteretic_force))
+
+
+def lag_mujoco(monkeypatch):
+    from engines import mujoco_engine
+
+    class Lagging(BearingLaw):
+        @functools.cached_property
+        def hysteretic(self):
+            return late(super().hysteretic)
+
+    monkeypatch.setattr(mujoco_engine, "BearingLaw", Lagging)
+
+
+# exudyn is not among them: it commits inside a compiled call.
+@pytest.mark.parametrize("engine, lag", [("pybullet", lag_pybullet), ("mujoco", lag_mujoco)])
+def test_a_bearing_force_that_lags_one_step_fails(monkeypatch, engine, lag):
+    one = row("bearing force replayed", engine, "impact-aware", "isolated Caryatid, synthetic motion")
+    lag(monkeypatch)
+    assert_caught([one])
 
 
 # Step size, and what stands for it in an adaptive engine.
@@ -150,6 +176,15 @@ def test_a_bearing_force_that_lags_one_step_fails(monkeypatch):
     ("pybullet", "impact-aware", {"largest_step": 5e-3}, "base drift at rest",
      "60 s of shaking below uplift, on bearings"),
     ("pybullet", "fixed-step", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
+    ("mujoco", "impact-aware", {"accuracy": 1e-4}, "restitution, rms", "sliding base"),
+    ("mujoco", "impact-aware", {"accuracy": 1e-4}, "base velocity jump, rms", "sliding base"),
+    ("mujoco", "impact-aware", {"largest_step": 2e-3}, "impact times", "rigid ground"),
+    ("mujoco", "impact-aware", {"largest_step": 2e-3}, "overturning time",
+     "one-sine of 3.8 g slenderness, rigid ground"),
+    ("mujoco", "impact-aware", {"largest_step": 2e-3}, "peak displacement", "isolated Caryatid, synthetic motion"),
+    ("mujoco", "impact-aware", {"largest_step": 2e-3}, "base drift at rest",
+     "60 s of shaking below uplift, on bearings"),
+    ("mujoco", "fixed-step", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
 ])
 def test_a_coarse_step_fails(monkeypatch, engine, variant, changes, quantity, scenes):
     one = row(quantity, engine, variant, scenes)
