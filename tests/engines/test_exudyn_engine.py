@@ -1,13 +1,16 @@
 """exudyn's variants, beside what every engine must fulfil: accuracy, known faults, failures that must surface."""
 
+import gc
+
 import numpy as np
+import psutil
 import pytest
 
 pytest.importorskip("exudyn")
 
 from analytic import simulate as exact  # noqa: E402
 from analytic.errors import SceneError  # noqa: E402
-from analytic.motion import PulseMotion  # noqa: E402
+from analytic.motion import PulseMotion, SampledMotion  # noqa: E402
 from analytic.rocking import restitution  # noqa: E402
 from analytic.scene import Base, Bearings, Block, Scene, Start  # noqa: E402
 from engines import exudyn_corners, exudyn_engine, exudyn_run, get_engine  # noqa: E402
@@ -151,3 +154,21 @@ def test_a_mismatch_with_the_engine_is_refused(monkeypatch):
     monkeypatch.setattr(exudyn_run, "read_back", heavier)
     with pytest.raises(exudyn_run.Mismatch, match="block.mass is 6344.1 in exudyn, 3172.05 in the scene"):
         simulate(rocking(0.2))
+
+
+@pytest.mark.parametrize("variant", ["switched-joints", "compliant-corners"])
+def test_memory_does_not_grow_with_the_number_of_runs(variant):
+    """exudyn keeps a system alive that has a user function: its steps (400 bytes each) and the ground's segments."""
+    dt = 1e-4  # s; as many segments as steps
+    motion = SampledMotion(dt, 0.5 * np.sin(8 * dt * np.arange(10_001)))
+    scene = Scene(block=Block(slenderness=0.28, **CARYATID), base=Base(mass=212.0), bearings=Bearings(**BEARINGS),
+                  motion=motion, duration=1.0)
+    settings = {"switched-joints": {"step": dt}}.get(variant, {})
+    process, used = psutil.Process(), []
+    for _ in range(8):
+        response = simulate(scene, variant=variant, history=False, **settings)
+        gc.collect()
+        used.append(process.memory_info().rss)
+    assert response.outcome == "stands" and response.steps >= 10_000
+    growth = (used[-1] - used[2]) / 5 / response.steps
+    assert growth < 50, f"{growth:.0f} bytes a step are kept of each run"
