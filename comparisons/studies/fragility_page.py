@@ -8,6 +8,10 @@ from ..plots import style
 from ..report.content import Section, Table, figure_of, number, percent
 
 LEVEL = 0.05
+READING = ("May an engine be trusted for the probability of overturning? Each motion is given to the analytic model "
+           "and to the engine; an exact McNemar test on the motions where the two disagree tells one from the other, "
+           f"adjusted after Holm for the number of intensities, at a level of {LEVEL:g}. “No difference found” is not "
+           "“equal”: each answer says how large a difference would have been found.")
 REFERENCE = "analytic"
 MARKERS = {"analytic": "o", "exudyn": "s", "pybullet": "^"}
 TWIN_STYLE = {"color": "#56B4E9", "linestyle": (0, (1, 1)), "linewidth": 1.2}
@@ -16,7 +20,7 @@ FIRST_STYLE = {"color": "#D55E00", "linestyle": (0, (4, 1, 1, 1)), "linewidth": 
 
 def section(result):
     """The `Section` of a result of this study."""
-    text = [_asked(result)]
+    text = [_asked(result), READING]
     tables = []
     for scene in result.settings["scenes"]:
         text += _answers(result, scene)
@@ -92,7 +96,8 @@ def _answers(result, scene):
                   f"{number(smallest, 2)}; largest difference of the probability {_points(worst['difference'])} "
                   f"percentage points, at {worst['intensity']:.3g} g")
         if smallest <= LEVEL:
-            yield f"{_scene_name(result, scene)}, {label}: they differ. {counts}.{_cause(result, scene, label)}"
+            yield (f"{_scene_name(result, scene)}, {label}: they differ; do not trust it. {counts}."
+                   f"{_cause(result, scene, label)}")
             continue
         least = [row["detectable_difference"] for row in pairs]
         bound = ("no difference, however large, could have been found so" if None in least else
@@ -132,7 +137,7 @@ def _curve_table(result, scene):
         cells = [f"{row['overturned']}/{row['size']} ({percent(row['low'])} to {percent(row['high'])})" if row["size"]
                  else "–" for row in _part(result, "curve", scene=scene, solver=label)]
         fit, = _part(result, "fit", scene=scene, solver=label)
-        median = dispersion = f"no fit: {fit['reason']}"
+        median, dispersion = f"no fit: {fit['reason']}", "–"
         if fit["median"] is not None:
             median, dispersion = (f"{number(fit[key])} ({number(fit[key + '_interval'][0])} to "
                                   f"{number(fit[key + '_interval'][1])})" for key in ("median", "dispersion"))
@@ -148,7 +153,7 @@ def _pair_table(result, scene):
     for row in _part(result, "pair", scene=scene):
         rows.append([f"{row['solver']}, {row['intensity']:.3g} g", str(row["both_stand"]), str(row["both_overturn"]),
                      str(row["only_a"]), str(row["only_b"]), number(row["kappa"], 3), number(row["p_value"], 2),
-                     number(row["p_holm"], 2), "yes" if row["p_holm"] <= LEVEL else "no difference found"])
+                     number(row["p_holm"], 2), "yes" if row["p_holm"] <= LEVEL else "not found"])
     return Table(f"{_scene_name(result, scene)}: the same motion in the analytic model and in another solver",
                  ("solver, intensity", "both stand [-]", "both overturn [-]", "only the analytic model overturns [-]",
                   "only this solver overturns [-]", "Cohen's kappa [-]", "exact McNemar p [-]", "p after Holm [-]",

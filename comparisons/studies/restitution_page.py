@@ -4,14 +4,17 @@ from ..report.content import Section, Table, figure_of, number, percent
 from ..report.sections import TRUSTED, USABLE, trust
 from .restitution_figures import figures, select
 
+RULE = (f"An engine may be trusted for restitution if its error, root mean square, is at most {TRUSTED:g} on both "
+        f"grounds and no run failed; at most {USABLE:g} it is usable where a per cent does not matter. The answer for "
+        "each engine and variant at its default setting, with error and cost:")
 UNITS = {"stiffness": " N/m", "step": " s", "accuracy": ""}  # of the accuracy knobs
 CAPTIONS = {
     "maps": ("Error of restitution of every engine and variant over slenderness and base mass.",
              "Error of restitution at default settings, root mean square over all starts and impacts. Numbers in "
              "cells: runs that failed, of those made; they are not part of the error. White: no impact to measure."),
     "jump-maps": ("Error of the base velocity jump of every engine and variant over slenderness and base mass.",
-                  "Error of the base velocity jump against conservation of momentum, at default settings, relative, root mean "
-                  "square. White: no impact to measure."),
+                  "Error of the base velocity jump against conservation of momentum, at default settings, relative, "
+                  "root mean square. White: no impact to measure."),
     "cost": ("Error of restitution against the accuracy knob and against CPU time, on rigid ground and on a sliding "
              "base.", "Error of restitution along each variant's accuracy knob (named in the legend), and the CPU time "
                       "of the same runs. Low and left is better."),
@@ -26,7 +29,8 @@ def section_of(result):
     """The `Section` of a `Result` of the restitution study."""
     settings = result.settings
     defaults = [row for row in select(result, "summary", scope="all")]
-    text = [_setting_words(settings), _rule_words(settings), *[words for knob in settings["knobs"] if (words := _verdict(result, knob))],
+    text = [_setting_words(settings), RULE,
+            *[words for knob in settings["knobs"] if (words := _verdict(result, knob))],
             *_cause_words(result), *_equation_words(result)]
     tables = [_default_table(defaults), _ladder_table(result), _experiment_table(result)]
     drawn = [figure_of(figure, *CAPTIONS[name]) for name, figure in figures(result).items()]
@@ -45,12 +49,6 @@ def _setting_words(settings):
             f"their mass that slide without friction. The first {settings['impacts']} impacts of each run are "
             "measured. Restitution follows from the energies of the swings before and after an impact, so that "
             "whatever takes energy counts; the base velocity jump is held against momentum with the run's own rates.")
-
-
-def _rule_words(settings):
-    return (f"An engine may be trusted for restitution if its error, root mean square, is at most {TRUSTED:g} on both "
-            f"grounds and no run failed; at most {USABLE:g} it is usable where a per cent does not matter. The answer for "
-            "each engine and variant at its default setting, with error and cost:")
 
 
 def _setting(knob):
@@ -97,8 +95,8 @@ def _cause_words(result):
         yield ("Step phase. With a fixed step PyBullet's error depends on where in the step the impact falls: a "
                f"sawtooth of that phase explains {explained} or more of its variance at every step length. At a "
                f"step of {number(1e3 * finest['step'], 2)} ms the error runs from "
-               f"{number(finest['least'] * finest['step'], 2)} to {number(finest['most'] * finest['step'], 2)}. It shrinks with the step; the impact-aware variant makes the "
-               "step small only where that counts.")
+               f"{number(finest['least'] * finest['step'], 2)} to {number(finest['most'] * finest['step'], 2)}. "
+               "It shrinks with the step; the impact-aware variant makes the step small only where that counts.")
     ladder = select(result, "experiment", experiment="stiffness", ratio=None)
     if len(ladder) > 1:
         soft, stiff = ladder[0], ladder[-1]
@@ -166,7 +164,8 @@ def _experiment_table(result):
         "experiment: engine, variant", "ground", "value (SI)", "restitution error, rms [-]", "mean [-]",
         "base velocity jump, rms [-]", "against (8) corrected, as printed [-]", "failed [-]"),
         [[f"{row['experiment']}: {row['engine']}, {row['variant']}",
-          "rigid ground" if row["ratio"] is None else f"base of {row['ratio']:.2g} block masses", number(row["value"], 3),
+          "rigid ground" if row["ratio"] is None else f"base of {row['ratio']:.2g} block masses",
+          number(row["value"], 3),
           *(number(row[key], 2) for key in ("rms", "bias", "jump_rms")),
           f"{number(row['jump_8'], 2)}, {number(row['jump_8_printed'], 2)}", str(row["failed"])]
          for row in select(result, "experiment")])

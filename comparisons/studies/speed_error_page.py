@@ -47,7 +47,8 @@ def paragraphs(result):
     found = ["Every solver runs a ladder of its accuracy knob on five scenes. Error and CPU time come from the same "
              f"runs: {settings['rounds']} fresh processes one after the other, in each every solver has its turn after "
              "a warm-up; CPU times are medians (of the simulation alone: no import, no compilation, no building of "
-             "the scene)."]
+             "the scene). The paragraphs that follow say which engine, at which setting (SI units), keeps an error "
+             "at least cost; those that decide the impact themselves come first."]
     for scene, about in settings["scenes"].items():
         found.append(_scene_words(result, scene, about))
     if settings["changed_while_running"]:
@@ -61,7 +62,7 @@ def paragraphs(result):
                  + ("" if not broken else " (not: " + ", ".join(sorted({row["family"] for row in broken})) + ")")
                  + f"; of {pairs} pairs of solvers that reach the same error at CPU times more than "
                  f"{number(100 * (TIE - 1), 2)} % apart, {len(changed)} swap places between the odd and the even rounds"
-                 + ("" if not changed else ": " + "; ".join(f"{one} and {other} ({scene}, {level:g})"
+                 + ("" if not changed else ": " + "; ".join(f"{one} and {other} ({_title(result, scene)}, {level:g})"
                                                             for scene, level, one, other in changed)) + ".")
     return found
 
@@ -69,43 +70,48 @@ def paragraphs(result):
 def _scene_words(result, scene, about):
     """Cheapest engine that decides the impact itself, and the kernel, at each level: one sentence per scene."""
     measure = MEASURES[principal(result, scene)][0]
-    parts = []
+    parts, switched = [], []
     for level in SHOWN:
         best = cost_at_error(result, scene, level)
         kernel, joints = best.get("kernel"), best.get(JOINTS)
         engine = next((row for family, row in best.items() if family.startswith(ENGINES) and family != JOINTS), None)
         if kernel is None:
             continue
-        words = f"to {level:g}: no engine on its ladder" if engine is None else (
-            f"to {level:g}: {engine['family']} ({engine['knob']} {engine['value']:.3g}) in "
+        parts.append(f"{level:g} by no engine" if engine is None else (
+            f"{level:g} by {engine['family']} at {engine['knob']} {number(engine['value'])} in "
             f"{number(engine['cpu_seconds'], 2)} s, {number(engine['cpu_seconds'] / kernel['cpu_seconds'], 2)} "
-            "times the analytic kernel")
-        parts.append(words + (f" ({JOINTS}, whose impacts the adapter applies: {number(joints['cpu_seconds'], 2)} s)"
-                              if joints else ""))
-    return f"{about['title']} ({measure}; cheapest engine setting that reaches it) – " + "; ".join(parts) + "."
+            "times the analytic kernel"))
+        if joints:
+            switched.append(f"{level:g} in {number(joints['cpu_seconds'], 2)} s")
+    words = f"{about['title']}. An error ({measure}) of at most " + "; ".join(parts) + "."
+    return words + (f" {JOINTS}, whose impacts are the adapter's own: {'; '.join(switched)}." if switched else "")
 
 
 def _failure_words(result):
     """Which settings failed, and which found no boundary: they have no place in the tables."""
     rows, words = ladder(result), []
-    failed = _counted([row for row in rows if row["failure"]], rows)
+    failed = _counted(result, [row for row in rows if row["failure"]], rows)
     if failed:
         words.append(f"Failed, with the solver's own message below: {failed}.")
     searched = [row for row in rows if principal(result, row["scene"]) == "boundary_shift" and not row["failure"]]
-    none = _counted([row for row in searched if "boundary_shift" not in row["errors"]], searched)
+    none = _counted(result, [row for row in searched if "boundary_shift" not in row["errors"]], searched)
     if none:
         words.append("No overturning boundary near the reference's (the search went on moving, by 5 % a run): "
                      f"{none}.")
     return words
 
 
-def _counted(rows, among):
+def _title(result, scene):
+    return result.settings["scenes"][scene]["title"]
+
+
+def _counted(result, rows, among):
     """"solver: 2 of 5 settings (scene)" for those that occur in `rows`."""
     parts = []
     for key in dict.fromkeys((row["family"], row["model"], row["scene"]) for row in rows):
         some, every = (sum((row["family"], row["model"], row["scene"]) == key for row in group)
                        for group in (rows, among))
-        parts.append(f"{key[0]}: {some} of {every} settings ({key[2]})")
+        parts.append(f"{key[0]}: {some} of {every} settings ({_title(result, key[2])})")
     return "; ".join(parts)
 
 
@@ -118,18 +124,19 @@ def _extra_words(result):
         ratios = [row["cost_ratio"] for row in found if row["model"] == model]
         low, high = number(min(ratios), 2), number(max(ratios), 2)
         words.append(f"{model}: {low if low == high else f'{low} to {high}'} times the CPU time of what is needed")
-    return ["What the scene needs – " + "; ".join(words) + ". The table says what each does to the error."]
+    return ["More modelled than the scene needs – " + "; ".join(words) + ". The table says what each does to the "
+            "error."]
 
 
 def _law_words(result):
-    ratios = [f"{number(middle, 3)} times in {family} ({scene}; {number(low, 3)} to {number(high, 3)})"
+    ratios = [f"{number(middle, 3)} times in {family} ({_title(result, scene)}; {number(low, 3)} to {number(high, 3)})"
               for (scene, family), (middle, low, high) in law_cost(result).items()]
     if not ratios:
         return []
-    changed = "; ".join(f"{scene}: {number(100 * change['peak_displacement'], 2)} %"
+    changed = "; ".join(f"{_title(result, scene)}: {number(100 * change['peak_displacement'], 2)} %"
                         for scene, change in result.settings["laws"].items())
     return ["A Bouc-Wen bearing costs, over the algebraic law at the same setting: " + ", ".join(ratios)
-            + f". It changes the peak displacement by ({changed}), whatever the solver."]
+            + f". It changes the peak displacement, whatever the solver: {changed}."]
 
 
 def _growth_words(result):
@@ -169,7 +176,7 @@ def _cell(row):
     if row is None:
         return "–"
     cpu, low, high = (number(1e3 * row[name], 3) for name in ("cpu_seconds", "cpu_low", "cpu_high"))
-    return f"{cpu} ({low} – {high}; {row['value']:.3g})"
+    return f"{cpu} ({low} – {high}; {number(row['value'])})"
 
 
 def _order_table(result):

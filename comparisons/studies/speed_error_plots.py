@@ -2,7 +2,7 @@
 
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import NullFormatter
+from matplotlib.ticker import LogFormatterSciNotation, NullFormatter
 
 from analytic.errors import SettingError
 
@@ -141,9 +141,15 @@ def draw_growth(result):
     memory.set_ylim(-0.002, 3 * memory.get_ylim()[1])
     for axis in axes.flat:
         axis.grid(True, which="major", color="0.9")
-        for side, (low, high) in ((axis.xaxis, axis.get_xlim()), (axis.yaxis, axis.get_ylim())):
-            if low > 0 and high > 10 * low:  # decades enough to be read
-                side.set_minor_formatter(NullFormatter())
+        axis.xaxis.set_minor_formatter(NullFormatter())
+        low, high = axis.get_xlim()
+        if axis.lines and high < 100 * low:  # decades alone would be too few labels
+            values = axis.lines[0].get_xdata()
+            axis.set_xticks(values, [f"{value:g}" for value in values])
+        low, high = axis.get_ylim()
+        if low > 0:
+            axis.yaxis.set_minor_formatter(NullFormatter() if high > 100 * low else
+                                           LogFormatterSciNotation(minor_thresholds=(3, 0.4)))
         if axis.lines:
             axis.legend(fontsize=8, **({"loc": "lower left", "bbox_to_anchor": (0.0, 0.08)} if axis is memory else {}))
     return figure

@@ -13,6 +13,7 @@ from .stability_verdicts import DEGRADED, FAILED, MEASURES, RIGHT, worst
 # Okabe and Ito; told apart by lightness and by the words in the cells, too
 COLOURS = {RIGHT: "#B5DDF2", DEGRADED: "#E69F00", FAILED: "#882200"}
 CURED = "cured"
+WRAP = 14  # characters that a cell holds
 FINDINGS = "Case", "Solver", "Verdict", "Measure", "Value", "Tolerance", "Cure"
 CLASSES = {"event-driven": "event-driven solvers", "stepping": "solvers that step"}
 
@@ -36,7 +37,7 @@ def _cured(cure):
 def draw(result):
     """The matrix of verdicts: a line per case, a column per solver; a matplotlib Figure."""
     cases, solvers, cells = list(result.settings["cases"]), list(result.settings["solvers"]), matrix(result)
-    canvas = Canvas(figsize=(3.0 + 1.05 * len(solvers), 1.6 + 0.33 * len(cases)), layout="constrained")
+    canvas = Canvas(figsize=(2.2 + 0.76 * len(solvers), 1.4 + 0.39 * len(cases)), layout="constrained")
     axes = canvas.add_subplot()
     for j, case in enumerate(cases):
         for i, solver in enumerate(solvers):
@@ -61,11 +62,12 @@ def _word(row):
     if row["verdict"] == RIGHT:
         return RIGHT
     if row["verdict"] == FAILED:
-        return f"{FAILED}:\n" + "\n".join(textwrap.wrap(_reason(row), 19)[:2])
+        return f"{FAILED}:\n" + "\n".join(textwrap.wrap(_reason(row), WRAP)[:3])
     name, value, limit, ratio = worst(row)
     if name == "outcome":
         return f"wrong:\n{row['outcome']}"
-    return f"{name}\n" + (f"{ratio:.2g} × tol." if math.isfinite(ratio) else f"{value:.2g}" if value else "none")
+    amount = f"{number(ratio, 2)} × tol." if math.isfinite(ratio) else f"{value:g}" if value else "none"
+    return "\n".join([*textwrap.wrap(name, WRAP), amount])
 
 
 def _reason(row):
@@ -81,7 +83,8 @@ def section(result):
                str(sum(_cured(cure) for (_, name), (_, cure) in cells.items() if name == solver))]
               for solver in solvers]
     picture = figure_of(draw(result), _spoken(counts), "Verdicts. In the cells: the measure that is farthest outside "
-                        "its tolerance, and by how many times; \"cured\": a setting tried makes it right.")
+                        "its tolerance (tol.), and by how many times, or the count lost; “cured”: a setting tried "
+                        "makes it right.")
     ill = [(row, cure) for row, cure in cells.values() if row["verdict"] != RIGHT]
     best = [name for name, solver in solvers.items() if solver["default_variant"]]
     tables = [
@@ -113,8 +116,17 @@ def _text(result, cells, ill):
              "takes more than the time limit, or if what it did is no motion of the scene: states not finite, energy "
              "from nowhere, the block off its place.")
     own = [row for row, _ in ill if row["solver"] in event]
+    right = {name: sum(row["verdict"] == RIGHT for (_, solver), (row, _) in cells.items() if solver == name)
+             for name in steppers}
+    trusted = [name for name, count in right.items() if count == len(result.settings["cases"])]
+    answer = ("Which solver that steps may be trusted in all cases as hard as these? "
+              f"{', '.join(trusted) or 'None'}. Right are "
+              + ", ".join(f"{name} in {count}" for name, count in right.items())
+              + f" of {len(result.settings['cases'])} cases. The tables say what was wrong in the others, by how much, "
+              "and which setting cures it.")
     of_events = sum(name in event for _, name in cells)
-    second = (f"The event-driven solvers (kernel and twin) are right in {of_events - len(own)} of {of_events} cells; "
+    second = (f"The event-driven solvers (the analytic kernel, and its twin in plain scipy) are right in "
+              f"{of_events - len(own)} of {of_events} cells; "
               f"the solvers that step in {sum(row['verdict'] == RIGHT for row in engine)} of {len(engine)}, degraded "
               f"in {sum(row['verdict'] == DEGRADED for row in engine)}, failed in "
               f"{sum(row['verdict'] == FAILED for row in engine)}.")
@@ -125,7 +137,7 @@ def _text(result, cells, ill):
     fourth = ("Trajectories are compared up to the sensitivity horizon of each scene, and up to the unstable point; "
               "beyond, only outcomes that a change of 1e-4 does not alter. Drift and gained energy are what a "
               "solver shows beyond what the same measure shows on the reference.")
-    return first, second, third, fourth
+    return first, second, answer, third, fourth
 
 
 def _spoken(counts):
