@@ -120,10 +120,12 @@ def _checks(result):
              for row in _part(result, "check")]
     first = _part(result, "check")[0]
     failed = len(_part(result, "failure"))
+    unfitted = "".join(f" No curve fits {row['solver']} ({row['scene']}): {row['reason']}."
+                       for row in _part(result, "fit") if row["median"] is None)
     return (f"The runs end after {first['duration']:g} s of {first['whole']:g} s; outcomes of the analytic model that "
             f"the rest would change: {'; '.join(parts)}. Runs that failed: {failed}. “{_twin(result)}” is the analytic "
             f"model with its restitution changed by 1 part in {1 / result.settings['twin']:.0f}: disagreements as many "
-            "as it has with itself are nothing to blame an engine for.")
+            "as it has with itself are nothing to blame an engine for." + unfitted)
 
 
 def _twin(result):
@@ -137,7 +139,7 @@ def _curve_table(result, scene):
         cells = [f"{row['overturned']}/{row['size']} ({percent(row['low'])} to {percent(row['high'])})" if row["size"]
                  else "–" for row in _part(result, "curve", scene=scene, solver=label)]
         fit, = _part(result, "fit", scene=scene, solver=label)
-        median, dispersion = f"no fit: {fit['reason']}", "–"
+        median, dispersion = "no fit", "–"
         if fit["median"] is not None:
             median, dispersion = (f"{number(fit[key])} ({number(fit[key + '_interval'][0])} to "
                                   f"{number(fit[key + '_interval'][1])})" for key in ("median", "dispersion"))
