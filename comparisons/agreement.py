@@ -27,12 +27,15 @@ RIGID_2, SLIDING_2 = "rigid ground, slenderness 0.2", "sliding base, slenderness
 DRIVEN, ISOLATED = "rocking on bearings, one-sine", "isolated Caryatid, synthetic motion"
 FALLING = "one-sine of 3.8 g slenderness, rigid ground"
 PULSES = "one-sine at 2 and 5 times omega_r, rigid ground"
+HARD_PULSES = "one-sine at 7, one-cosine at 2 times omega_r, rigid ground"  # the overturning study's largest shifts
 STANDING, STANDING_ISOLATED = ("60 s of shaking below uplift, rigid ground",
                                "60 s of shaking below uplift, on bearings")
 
 FREE_ROCKING = {RIGID: (None, SLENDERNESSES), SLIDING: (BASE, SLENDERNESSES),
                 RIGID_2: (None, (0.2,)), SLIDING_2: (BASE, (0.2,))}
-BOUNDARY_FREQUENCIES = (2.0, 5.0)  # of the pulse, over omega_r
+# (slenderness, ((pulse, its frequency over omega_r), ...)) by the name of the scenes
+BOUNDARIES = {PULSES: (0.25, (("one-sine", 2.0), ("one-sine", 5.0))),
+              HARD_PULSES: (0.28, (("one-sine", 7.0), ("one-cosine", 2.0)))}
 
 
 class Unmeasurable(RuntimeError):
@@ -157,45 +160,54 @@ def overturning_time(engine, variant, scenes, runs):
     return abs(_agreement(engine, variant, scenes, runs).overturning_time_error)
 
 
-def boundary_scene(frequency, amplitude):
-    """One sine of frequency times omega_r and amplitude times g tan(slenderness), on rigid ground."""
-    scene = Scene(block=caryatid_block(0.25), duration=1.0)
-    pulse = PulseMotion("one-sine", amplitude * 9.81 * math.tan(0.25), frequency * scene.rocking_frequency)
-    return scene.with_(motion=pulse, duration=pulse.end + 6.0)
+def boundary_scene(slenderness, pulse, frequency, amplitude):
+    """One pulse of frequency times omega_r and amplitude times g tan(slenderness), on rigid ground."""
+    scene = Scene(block=caryatid_block(slenderness), duration=1.0)
+    motion = PulseMotion(pulse, amplitude * 9.81 * math.tan(slenderness), frequency * scene.rocking_frequency)
+    return scene.with_(motion=motion, duration=motion.end + 6.0)
 
 
-def _overturns(engine, variant, frequency, amplitude):
-    scene = boundary_scene(frequency, amplitude)
+def _overturns(engine, variant, scene):
     if engine == "analytic":
         return simulate(scene, history=False).outcome == "overturns"
     return run(engine, variant, scene, history=False).outcome == "overturns"
 
 
-def first_boundary(frequency):
-    """Least amplitude over g tan(slenderness) at which the model overturns; found by scanning, then halving."""
+def first_boundary(*pulse):
+    """Least amplitude over g tan(slenderness) at which the model overturns; found by scanning, then halving.
+
+    pulse : slenderness, shape, frequency, as `boundary_scene`.
+    """
+    def falls(amplitude):
+        return _overturns("analytic", None, boundary_scene(*pulse, amplitude))
+
     amplitudes = np.arange(1.0, 12.0, 0.02)
-    over = next(k for k, a in enumerate(amplitudes) if _overturns("analytic", None, frequency, float(a)))
+    over = next(k for k, a in enumerate(amplitudes) if falls(float(a)))
     low, high = float(amplitudes[over - 1]), float(amplitudes[over])
     while high - low > 1e-7 * high:
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if _overturns("analytic", None, frequency, middle) else (middle, high)
+        low, high = (low, middle) if falls(middle) else (middle, high)
     return high
 
 
 def boundary_shift(engine, variant, scenes, runs):
-    """Largest relative shift of the first overturning boundary, its bracket included, over `BOUNDARY_FREQUENCIES`."""
+    """Largest relative shift of the first overturning boundary, its bracket included, under the pulses `scenes`."""
+    slenderness, pulses = BOUNDARIES[scenes]
     worst = 0.0
-    for frequency in BOUNDARY_FREQUENCIES:
-        exact = first_boundary(frequency)
+    for pulse in pulses:
+        exact = first_boundary(slenderness, *pulse)
+
+        def falls(shift, exact=exact, pulse=pulse):
+            return _overturns(engine, variant, boundary_scene(slenderness, *pulse, exact * (1 + shift)))
+
         low, high = -1e-4, 1e-4
-        while _overturns(engine, variant, frequency, exact * (1 + low)):
+        while falls(low):
             low *= 4
-        while not _overturns(engine, variant, frequency, exact * (1 + high)):
+        while not falls(high):
             high *= 4
-        for _ in range(4):
+        while high - low > max(1.3e-5, 0.05 * max(-low, high)):
             middle = 0.5 * (low + high)
-            over = _overturns(engine, variant, frequency, exact * (1 + middle))
-            low, high = (low, middle) if over else (middle, high)
+            low, high = (low, middle) if falls(middle) else (middle, high)
         worst = max(worst, abs(low), abs(high))
     return worst
 

@@ -1,8 +1,9 @@
 """The same scene in multibody engines: ``get_engine("exudyn").simulate(scene)``.
 
 A new engine is one new file and one line here. The file holds ``simulate(scene, *, variant=None, history=True,
-**settings)``, which returns a `Response`; ``VARIANTS``, by name a frozen dataclass of settings, the
-accuracy knob first; ``DEFAULT_VARIANT``; ``DECIDES``, in words what the engine decides by itself; ``versions()``.
+**settings)``, which returns a `Response`, made by `observe` (imported by that name: tests look at what it is given);
+``VARIANTS``, by name a frozen dataclass of settings, the accuracy knob first; ``DEFAULT_VARIANT``; ``DECIDES``, in
+words what the engine decides by itself; ``versions()``.
 """
 
 from importlib import import_module

@@ -1,18 +1,18 @@
 """exudyn: ``get_engine("exudyn").simulate(scene, variant=...)``."""
 
-import dataclasses
-import math
 import platform
+from dataclasses import asdict, replace
 from importlib.metadata import version
 
 import numpy as np
 
-from analytic.errors import SceneError, SettingError
-from analytic.response import Failure
+from analytic.bearing import BearingLaw
+from analytic.response import Failure, State
 
 from . import exudyn_corners, exudyn_joints, exudyn_native
 from .checks import replay_bearing
 from .observe import failed_response, observe
+from .settings import choose, leave_restitution
 
 _MODULES = {exudyn_corners.CompliantCorners: exudyn_corners,
             exudyn_joints.SwitchedJoints: exudyn_joints,
@@ -58,18 +58,16 @@ def simulate(scene, *, variant=None, history=True, **settings):
     Mismatch
         exudyn holds other values than the scene asks for; nothing was run.
     """
-    name, chosen = _choose(variant, settings)
-    if scene.block.restitution is not None and name != "switched-joints":
-        raise SceneError("block.restitution", scene.block.restitution,
-                         f"exudyn's contact decides the restitution in {name}",
-                         "leave it out, or use the variant switched-joints")
+    name, chosen = choose("exudyn", VARIANTS, DEFAULT_VARIANT, variant, settings)
+    if name != "switched-joints":
+        leave_restitution(scene, "use the variant switched-joints")
     run = _MODULES[type(chosen)].run(scene, chosen)
     if run.trace is None:
-        failure = run.failure or Failure("the run ended before its first step")
-        return failed_response(scene, failure, engine="exudyn", variant=name, settings=dataclasses.asdict(chosen),
+        failure = replace(run.failure or Failure("the run ended before its first step"), last_state=_start(scene))
+        return failed_response(scene, failure, engine="exudyn", variant=name, settings=asdict(chosen),
                                versions=versions(), cpu_seconds=run.cpu_seconds, steps=max(run.steps, 0))
     return observe(scene, run.trace, engine="exudyn", variant=name, cpu_seconds=run.cpu_seconds, steps=run.steps,
-                   settings=dataclasses.asdict(chosen), versions=versions(), history=history,
+                   settings=asdict(chosen), versions=versions(), history=history,
                    failure=run.failure or _fault(scene, run), ended=run.ended)
 
 
@@ -83,16 +81,7 @@ def _fault(scene, run):
     return None
 
 
-def _choose(variant, changes):
-    name = variant or DEFAULT_VARIANT
-    if name not in VARIANTS:
-        raise SettingError(f"exudyn has no variant {name!r}: choose one of {', '.join(VARIANTS)}")
-    chosen = VARIANTS[name]
-    fields = [field.name for field in dataclasses.fields(chosen)]
-    unknown = [key for key in changes if key not in fields]
-    if unknown:
-        raise SettingError(f"exudyn {name} has no setting {unknown[0]!r}: its settings are {', '.join(fields)}")
-    for key, value in changes.items():
-        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < math.inf:
-            raise SettingError(f"exudyn {name}: {key} = {value!r} is not a positive number")
-    return name, dataclasses.replace(chosen, **changes)
+def _start(scene):
+    law, start = BearingLaw.of(scene.bearings), scene.start
+    x, v = start.base_displacement, start.base_velocity
+    return State(0.0, start.tilt, start.tilt_rate, x, v, float(law.force(x, law.start(x), v)))

@@ -19,7 +19,7 @@ from analytic.response import Failure
 from analytic.rocking import RockingModel
 
 from .exudyn_ground import Ground
-from .exudyn_run import OVERTURNED, Run, check, make_trace, solver_settings
+from .exudyn_run import OVERTURNED, Run, check, make_trace, release, solver_settings
 from .exudyn_scene import build
 
 REST = 0  # the side of a block in full contact
@@ -213,4 +213,5 @@ def run(scene, settings):
     cpu = time.process_time() - began
     trace = make_trace(scene, stepper.rows, stepper.z, stepper.model.bearing, 1e-9, 0.0)
     ended = "overturned" if trace is not None and abs(trace.tilt[-1]) >= OVERTURNED else None
+    release(stepper.model.mbs)
     return Run(trace, cpu, len(stepper.rows) - 1, 0, ended, failure)

@@ -25,20 +25,20 @@ All with mujoco 4.0.0; diagexact needs 3.9.
 
 import math
 import time
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from typing import ClassVar
 
 import mujoco
 import numpy as np
 
 from analytic.bearing import BearingLaw
-from analytic.errors import SceneError, SettingError
 from analytic.response import Failure
 from analytic.rocking import RockingModel
 
 from .ground_velocity import ground_velocity
 from .leapfrog_trace import raw_trace_of, trace_of
 from .observe import failed_response, observe
+from .settings import choose, leave_restitution
 
 NAME = "mujoco"
 
@@ -130,20 +130,6 @@ def versions():
     return {"mujoco": mujoco.__version__, "mujoco-library": mujoco.mj_versionString()}
 
 
-def settings_of(variant, changes):
-    """(name, settings) of a variant with fields replaced; raises `SettingError` for what does not exist."""
-    name = DEFAULT_VARIANT if variant is None else variant
-    if name not in VARIANTS:
-        raise SettingError(f"unknown variant {name!r} of mujoco: choose one of {', '.join(VARIANTS)}")
-    known = [field.name for field in fields(VARIANTS[name])]
-    for key, value in changes.items():
-        if key not in known:
-            raise SettingError(f"unknown setting {key!r} of mujoco {name}: choose among {', '.join(known)}")
-        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < math.inf:
-            raise SettingError(f"mujoco {name}: {key} = {value!r} must be a positive number")
-    return name, replace(VARIANTS[name], **{key: float(value) for key, value in changes.items()})
-
-
 def simulate(scene, *, variant=None, history=True, **settings):
     """The `Response` of a scene in MuJoCo; a run that went wrong has the outcome "failed" with its evidence.
 
@@ -156,10 +142,8 @@ def simulate(scene, *, variant=None, history=True, **settings):
     SceneError
         The scene overrides the restitution.
     """
-    name, chosen = settings_of(variant, settings)
-    if scene.block.restitution is not None:
-        raise SceneError("block.restitution", scene.block.restitution, "a contact engine decides the impact itself",
-                         "leave it out, or use the analytic model")
+    name, chosen = choose(NAME, VARIANTS, DEFAULT_VARIANT, variant, settings)
+    leave_restitution(scene)
     given = dict(engine=NAME, variant=name, settings=asdict(chosen), versions=versions())
     warnings, handler = [], mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(warnings.append)  # else MuJoCo writes a log file into the working directory

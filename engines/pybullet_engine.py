@@ -2,18 +2,19 @@
 
 import math
 import time
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass
 from importlib.metadata import version
 
+import numpy as np
 import pybullet
 
-from analytic.errors import SceneError, SettingError
 from analytic.response import Failure
 
 from . import pybullet_first_script, pybullet_stepping
 from .leapfrog_trace import raw_trace_of, trace_of
 from .observe import observe
-from .pybullet_scene import Mismatch, assemble
+from .pybullet_scene import MOST_VELOCITY, Mismatch, assemble
+from .settings import choose, leave_restitution
 
 NAME = "pybullet"
 
@@ -67,25 +68,6 @@ def versions():
     return {"pybullet": version("pybullet"), "bullet-api": str(pybullet.getAPIVersion())}
 
 
-def settings_of(variant, changes):
-    """(name, settings) of a variant with fields replaced; raises `SettingError` for what does not exist."""
-    name = DEFAULT_VARIANT if variant is None else variant
-    if name not in VARIANTS:
-        raise SettingError(f"unknown variant {name!r} of pybullet: choose one of {', '.join(VARIANTS)}")
-    settings = VARIANTS[name]
-    known = [field.name for field in fields(settings)]
-    for key, value in changes.items():
-        if key not in known:
-            raise SettingError(f"unknown setting {key!r} of pybullet {name}: choose among {', '.join(known)}")
-        kind = type(getattr(settings, key))
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or value <= 0:
-            raise SettingError(f"pybullet {name}: {key} = {value!r} must be a positive number")
-        if kind is int and value != int(value):
-            raise SettingError(f"pybullet {name}: {key} = {value!r} must be a whole number")
-        settings = replace(settings, **{key: kind(value)})
-    return name, settings
-
-
 def simulate(scene, *, variant=None, history=True, **settings):
     """Simulate a scene in PyBullet.
 
@@ -112,10 +94,8 @@ def simulate(scene, *, variant=None, history=True, **settings):
     SceneError
         The scene overrides the restitution.
     """
-    name, chosen = settings_of(variant, settings)
-    if scene.block.restitution is not None:
-        raise SceneError("block.restitution", scene.block.restitution, "a contact engine decides the impact itself",
-                         "leave it out, or use the analytic model")
+    name, chosen = choose(NAME, VARIANTS, DEFAULT_VARIANT, variant, settings)
+    leave_restitution(scene)
     given = dict(engine=NAME, variant=name, settings=asdict(chosen), versions=versions(), history=history)
     failure, ended, rows, cpu = None, None, [], math.nan
     client = pybullet.connect(pybullet.DIRECT)
@@ -135,7 +115,7 @@ def simulate(scene, *, variant=None, history=True, **settings):
     else:
         trace = trace_of(rows, scene, flat)
     if failure is None:
-        failure = _failure(scene, rows, ended)
+        failure = _failure(scene, rows, ended, trace)
     return observe(scene, trace, cpu_seconds=cpu, steps=len(rows) - 1, failure=failure,
                    ended=ended if ended == "overturned" else None, **given)
 
@@ -156,10 +136,13 @@ def _run(client, scene, chosen):
     return rows, ended, time.process_time() - clock
 
 
-def _failure(scene, rows, ended):
+def _failure(scene, rows, ended, trace):
     """What went wrong in a finished run, or None."""
     if ended == "not finite":
         return Failure("the state is no longer finite", f"at step {len(rows) - 1}, t = {rows[-1][0]:.9g} s")
     if ended == "too many steps":
         return Failure("too many steps", f"{len(rows) - 1} by t = {rows[-1][0]:.9g} s of {scene.duration:.9g} s")
+    fastest = max(np.abs(trace.tilt_rate).max(), np.abs(trace.base_velocity).max())
+    if fastest > 0.5 * MOST_VELOCITY:
+        return Failure("Bullet cuts velocities", f"{fastest:.3g} m/s or rad/s; its limit: {MOST_VELOCITY:g}")
     return None

@@ -33,6 +33,9 @@ CORNER_RADIUS = 1e-6
 ROCKING_ITERATIONS, STANDING_ITERATIONS, MOST_ITERATIONS = 10, 3.0, 600
 
 
+MOST_VELOCITY = 1e9  # m/s and rad/s, above which Bullet would cut a joint's; its default is 100
+
+
 class Mismatch(RuntimeError):
     """Bullet does not use what it was given."""
 
@@ -117,7 +120,7 @@ def assemble(client, scene, step):
         flags=pybullet.URDF_USE_SELF_COLLISION, physicsClientId=client)
     for link in range(-1, count):
         # Damping and velocity limits in a call force its linkIndex to -1: friction goes in a call of its own.
-        pybullet.changeDynamics(body, link, linearDamping=0.0, angularDamping=0.0, maxJointVelocity=1e9,
+        pybullet.changeDynamics(body, link, linearDamping=0.0, angularDamping=0.0, maxJointVelocity=MOST_VELOCITY,
                                 physicsClientId=client)
         pybullet.changeDynamics(body, link, lateralFriction=FRICTION, rollingFriction=0.0, spinningFriction=0.0,
                                 restitution=0.0, jointDamping=0.0, physicsClientId=client)

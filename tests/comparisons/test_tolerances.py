@@ -63,7 +63,8 @@ def test_the_first_boundary_is_the_published_one(monkeypatch, frequency, amplitu
     """Published over g slenderness, and for a restitution of 0.9; what falls 6 s after the pulse counts as standing."""
     scene = agreement.boundary_scene
     monkeypatch.setattr(agreement, "boundary_scene", lambda *given: scene(*given).with_(block={"restitution": 0.9}))
-    assert agreement.first_boundary(frequency) * math.tan(0.25) / 0.25 == pytest.approx(amplitude, rel=1e-5)
+    found = agreement.first_boundary(0.25, "one-sine", frequency)
+    assert found * math.tan(0.25) / 0.25 == pytest.approx(amplitude, rel=1e-5)
 
 
 def test_a_failed_run_is_a_row_that_does_not_hold(monkeypatch):

@@ -317,6 +317,16 @@ def test_overturning_under_a_pulse_stops_cleanly(engine, variant):
 
 
 @accurate_variant
+@pytest.mark.parametrize("ground", ["caryatid-rigid", "caryatid-isolated"])
+@pytest.mark.filterwarnings("ignore:(overflow|invalid value):RuntimeWarning")
+def test_a_shock_beyond_the_engines_numbers_is_not_survived_in_silence(engine, variant, ground):
+    given = load_scene(ground).with_(motion=PulseMotion("half-sine", 1e30, 3.0), duration=3.0)
+    response = simulate(engine, variant, given, history=False)
+    assert response.outcome in ("overturns", "failed")
+    assert response.failure is None or (response.failure.message and math.isfinite(response.failure.last_state.tilt))
+
+
+@accurate_variant
 def test_overturning_by_a_shock_stops_cleanly(engine, variant):
     """The block is thrown off its corner, which the model does not allow: the engines fall up to 0.09 s later."""
     given = scene(0.25, motion=PulseMotion("half-sine", 12.0, 3.0), duration=8.0)

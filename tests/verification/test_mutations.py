@@ -51,7 +51,7 @@ def test_another_restitution_in_the_model_shifts_times_peaks_and_boundary(monkey
         return simulate(scene.with_(block={"restitution": e}), **given)
 
     monkeypatch.setattr(agreement, "simulate", other)
-    monkeypatch.setattr(agreement, "BOUNDARY_FREQUENCIES", (5.0,))
+    monkeypatch.setitem(agreement.BOUNDARIES, agreement.PULSES, (0.25, (("one-sine", 5.0),)))
     monkeypatch.setattr(agreement, "FREE_ROCKING", {"rigid ground": (None, (0.2,))})
     driven = "rocking on bearings, one-sine"
     assert_caught([row("impact times", engine, variant, "rigid ground"), row("peak tilt", engine, variant, driven),
