@@ -43,7 +43,8 @@ class Figure:
 class Section:
     """title: heading. text: paragraphs, plain text. age: None, or how the result is older than the code.
 
-    evidence: (heading, text) pairs, folded away: raw messages of runs that failed.
+    evidence: (heading, text) pairs, folded away: raw messages of runs that failed. verdicts: sentences, may I trust
+    it, for the top of the page.
     """
 
     title: str
@@ -52,6 +53,7 @@ class Section:
     figures: tuple = ()
     age: str | None = None
     evidence: tuple = ()
+    verdicts: tuple = ()
 
 
 # Width [inch] from which a figure would be unreadable in half of the page.

@@ -36,16 +36,16 @@ def summary(caryatid, groups):
 
 
 def outcomes(rows):
-    """Who found what: "all 3 solvers: it overturns", or the solvers by outcome."""
+    """Who found what: "in all 3 solvers it overturns", or the solvers by outcome."""
     by_outcome = {}
     for row in rows:
         by_outcome.setdefault(WORDS.get(row["outcome"], row["outcome"]), []).append(row["solver"])
     if len(by_outcome) == 1:
         (outcome, solvers), = by_outcome.items()
         many = {1: solvers[0], 2: "both solvers"}.get(len(solvers), f"all {len(solvers)} solvers")
-        return f"it {outcome} in {many}"
+        return f"in {many} it {outcome}"
     return "the solvers disagree: " + ", ".join(
-        f"it {outcome} in {' and '.join(solvers)}" for outcome, solvers in by_outcome.items())
+        f"in {' and '.join(solvers)} it {outcome}" for outcome, solvers in by_outcome.items())
 
 
 def _times(rows):

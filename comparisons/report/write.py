@@ -27,9 +27,11 @@ def write_page(folder, studies=RESULTS):
     environment = Environment(loader=PackageLoader(__package__, "."), autoescape=True, undefined=StrictUndefined,
                               trim_blocks=True, lstrip_blocks=True)
     sections = [*caryatid_sections(caryatid), *restitution_sections(free)]
+    found = study_sections(studies)
     html = environment.get_template("page.html").render(
         motion=caryatid.settings["motion"]["label"], summary=summary(caryatid, variant_groups(free)),
-        sections=sections, studies=study_sections(studies), provenance=_provenance(caryatid, free),
+        verdicts=[verdict for section in found for verdict in section.verdicts], sections=sections, studies=found,
+        provenance=_provenance(caryatid, free),
         ages=[f"{name} is {text}" for name, text in ((CARYATID, age(caryatid)), (FREE_ROCKING, age(free))) if text],
         files=[CARYATID, CARYATID.replace(".json", ".npz"), FREE_ROCKING, FREE_ROCKING.replace(".json", ".npz")])
     path = folder / PAGE

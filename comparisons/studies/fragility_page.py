@@ -32,7 +32,8 @@ def section(result):
                        "solver and the analytic model disagree.")
     evidence = tuple((f"{row['solver']}, {row['scene']}, seed {row['seed']}, factor {row['factor']:g}",
                       f"{row['reason']}\n{row.get('message') or ''}") for row in _part(result, "failure"))
-    return Section("Fragility: probability of overturning", tuple(text), tuple(tables), (figure,), evidence=evidence)
+    return Section("Fragility: probability of overturning", tuple(text), tuple(tables), (figure,), evidence=evidence,
+                   verdicts=tuple(_verdict(result, label) for label in _compared(result)))
 
 
 def draw(result):
@@ -81,6 +82,23 @@ def _asked(result):
             f"{s['motions']} synthetic motions (near-fault pulse and noise, seeds {s['seeds'][0]} to "
             f"{s['seeds'][1]}), each scaled to several intensities, were given to {len(s['solvers'])} solvers at "
             f"their default settings: {'; '.join(s['solvers'])}. Scenes: {scenes}.")
+
+
+def _compared(result):
+    """Labels of the engines, without the analytic model's comparison with itself."""
+    labels = dict.fromkeys(row["solver"] for row in _part(result, "pair"))
+    return [label for label in labels if not label.startswith(REFERENCE)]
+
+
+def _verdict(result, label):
+    """May I trust it for the probability of overturning?"""
+    pairs = _part(result, "pair", solver=label)
+    differ, size = sum(row["only_a"] + row["only_b"] for row in pairs), sum(_size(row) for row in pairs)
+    apart = [_scene_name(result, scene) for scene in result.settings["scenes"]
+             if any(row["p_holm"] <= LEVEL for row in pairs if row["scene"] == scene)]
+    words = f"is not to be trusted for the probability of overturning ({', '.join(apart)})" if apart else (
+        "may be trusted for the probability of overturning, as no difference was found")
+    return f"{label} {words}: {differ} of {size} outcomes differ from the analytic model's."
 
 
 def _answers(result, scene):

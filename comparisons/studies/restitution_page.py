@@ -37,8 +37,10 @@ def section_of(result):
     evidence = [(f"{row['engine']}, {row['variant']}: {row['reason']} ({row['count']} runs)",
                  f"{row['message']}\n\nfirst seen: {row['tag']}\nlast finite state: {row['last_state']}")
                 for row in select(result, "failure")]
+    first = {knob["engine"]: knob for knob in reversed(settings["knobs"])}  # an engine's default variant comes first
+    verdicts = [words + "." for engine in reversed(first) if (words := _trust(result, first[engine]))]
     return Section("Restitution: error, cause and cost", tuple(text), tuple(tables), tuple(drawn),
-                   evidence=tuple(evidence))
+                   evidence=tuple(evidence), verdicts=tuple(verdicts))
 
 
 def _setting_words(settings):
@@ -56,7 +58,7 @@ def _setting(knob):
     return f"{knob['knob']} = {number(knob['default'], 2)}{UNITS[knob['knob']]}"
 
 
-def _verdict(result, knob):
+def _trust(result, knob):
     """May I trust it, at which setting and cost?"""
     rows = select(result, "summary", scope="all", engine=knob["engine"], variant=knob["variant"])
     found = [row for row in rows if row["rms"] is not None]
@@ -65,13 +67,23 @@ def _verdict(result, knob):
         name += ", whose adapter applies eqs (7) and (8) itself,"
     failed, runs = sum(row["failed"] for row in rows), sum(row["runs"] for row in rows)
     if not found:
-        return f"{name}: no run succeeded." if runs else ""
+        return f"{name}: no run succeeded" if runs else ""
     worst = max(row["rms"] for row in found)
     cost = max(row["cpu_per_second"] for row in found)
     errors = ", ".join(f"{number(row['rms'], 2)} on {'a ' if row['ground'] == 'sliding base' else ''}{row['ground']} "
                        f"(worst impact {number(row['worst'], 2)})" for row in found)
-    words = (f"{name} {trust(worst, failed)} for restitution: error {errors}, at {number(cost, 2)} s of CPU time per "
-             "simulated second")
+    return (f"{name} {trust(worst, failed)} for restitution: error {errors}, at {number(cost, 2)} s of CPU time per "
+            "simulated second")
+
+
+def _verdict(result, knob):
+    """The same, and all else that is known of a variant."""
+    words = _trust(result, knob)
+    rows = select(result, "summary", scope="all", engine=knob["engine"], variant=knob["variant"])
+    found = [row for row in rows if row["rms"] is not None]
+    failed, runs = sum(row["failed"] for row in rows), sum(row["runs"] for row in rows)
+    if not found:
+        return words and words + "."
     jumps = [row["jump_rms"] for row in found if row["jump_rms"] is not None]
     words += f"; base velocity jump off by {percent(max(jumps))}." if jumps else "."
     orders = [row for row in select(result, "order", engine=knob["engine"], variant=knob["variant"]) if row["order"]]

@@ -170,15 +170,23 @@ def test_summary_follows_the_numbers(folder, copied):
 
     count = 1 + len(installed_engines())
     solvers = {1: "analytic", 2: "both solvers"}.get(count, f"all {count} solvers")
-    assert any(f"it overturns in {solvers}" in item for item in items())
-    assert any("it never lifts in" in item and f"{displacement(folder):.4f} m" in item for item in items())
+    assert any(f"in {solvers} it overturns" in item for item in items())
+    assert any("it never lifts" in item and f"{displacement(folder):.4f} m" in item for item in items())
 
     def analytic_stands(content):
         (row,) = [row for row in content["rows"] if (row["scene"], row["solver"]) == ("caryatid-rigid", "analytic")]
         row.update(outcome="rocks", overturning_time=None)
 
     changed(copied / runs.CARYATID, analytic_stands)
-    assert any("it rocks and stays upright in analytic" in item for item in items())
+    assert any("in analytic it rocks and stays upright" in item for item in items())
+
+
+def test_verdicts_of_the_studies_stand_at_the_top(copied):
+    top, _, rest = Page(write_page(copied)).source.partition("In this report's own runs:")
+    for engine in ("exudyn, compliant-corners", "pybullet, impact-aware"):
+        for question in ("restitution", "overturning"):
+            assert re.search(f"{engine}[^<]* be trusted for {question}", top)
+    assert "May I trust it?" not in Page(write_page(copied, studies=NO_STUDIES)).source
 
 
 def test_page_needs_nothing_but_itself(folder):
