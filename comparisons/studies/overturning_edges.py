@@ -18,6 +18,7 @@ TOLERANCE = 1e-6  # of the analytic boundaries, relative
 BESIDE = 2e-5  # relative distance from a boundary at which the analytic run tells how long overturning takes
 LINGER = 5.0  # over omega_r, time that runs go on after that
 CUT = 0.45  # where a bracket is divided: not in the middle, which may be the analytic boundary itself
+WIDEST = 5e-3  # half-width of a bracket, relative, beyond which a boundary counts as not found
 ROOM = 0.9  # of the way to the middle between two boundaries, what a search may use
 
 
@@ -147,6 +148,8 @@ def locate(edge, ladder, tolerance):
         if answer is None:
             break
         low, high = (low, middle) if answer == edge.rises else (middle, high)
+    if high - low > 2 * WIDEST:
+        return Located(None, None, f"undecided between {100 * low:+.3g} and {100 * high:+.3g} %", len(known))
     return Located(0.5 * (low + high), 0.5 * (high - low), None, len(known))
 
 

@@ -85,6 +85,11 @@ def test_an_undecided_run_widens_the_bracket_instead_of_taking_a_side():
     assert 1e-4 <= found.half_width <= 2e-4
 
 
+def test_a_bracket_too_wide_to_tell_is_no_boundary():
+    found = search(EDGE, lambda amplitude: None if abs(amplitude / 5.0 - 1) < 0.011 else bool(amplitude > 5.0))
+    assert found.shift is None and found.reason == "undecided between -1.2 and +1.2 %"
+
+
 class Shifted:
     """In place of a workshop: the analytic model under `shift` times larger pulses, failing at some of them."""
 
