@@ -6,7 +6,6 @@ from .speed_error_measures import MEASURES
 from .speed_error_plots import draw_growth, draw_pareto
 from .speed_error_tables import (
     LEVELS,
-    TIE,
     cost_at_error,
     extras,
     growths,
@@ -55,15 +54,16 @@ def paragraphs(result):
         found.append("While the study ran, this code was edited; the numbers are those of the code before: "
                      + ", ".join(settings["changed_while_running"]) + ".")
     found += _failure_words(result) + _extra_words(result) + _law_words(result) + _growth_words(result)
-    pairs, changed = ranking_stability(result)
+    tie, pairs, changed = ranking_stability(result)
     broken = unrepeatable(result)
     found.append(f"Repetition: the errors of {len(ladder(result)) - len(broken)} of {len(ladder(result))} settings are "
                  "the same bit for bit in every round"
                  + ("" if not broken else " (not: " + ", ".join(sorted({row["family"] for row in broken})) + ")")
-                 + f"; of {pairs} pairs of solvers that reach the same error at CPU times more than "
-                 f"{number(100 * (TIE - 1), 2)} % apart, {len(changed)} swap places between the odd and the even rounds"
+                 + f". Of {pairs} pairs of solvers that reach the same error at CPU times more than a factor of "
+                 f"{number(tie, 3)} apart, {len(changed)} swap places between the odd and the even rounds"
                  + ("" if not changed else ": " + "; ".join(f"{one} and {other} ({_title(result, scene)}, {level:g})"
-                                                            for scene, level, one, other in changed)) + ".")
+                                                            for scene, level, one, other in changed))
+                 + ". Solvers nearer than that share a rank: the same setting differs as much between its own rounds.")
     return found
 
 

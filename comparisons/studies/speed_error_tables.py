@@ -9,7 +9,8 @@ from .speed_error_ladders import NEEDED
 
 LEVELS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-9)  # of the scene's principal measure
 FLOOR = 1e-13  # errors below it are rounding and tell no order
-TIE = 1.1  # solvers whose CPU times differ by less share a rank
+TIE = 1.1  # solvers whose CPU times differ by less share a rank, however quiet the machine was
+NOISE = 95  # percentile of the settings' spread over the rounds, below which two solvers are not told apart
 FULL_CONTACT = "full contact integrated as rocking"
 
 
@@ -59,11 +60,20 @@ def orders(result, scene, axis="value"):
 
 
 def ranking_stability(result):
-    """How the ranking of solvers repeats between the odd and the even rounds: (pairs, those that changed places).
+    """How the ranking of solvers repeats between the odd and the even rounds.
 
-    A pair is two solvers that both reach a level in a scene and differ by more than `TIE` in CPU time.
+    Returns
+    -------
+    tie : float
+        Ratio of CPU times that the study resolves: most settings differ by less than it between their own rounds.
+    pairs : int
+        Of solvers that both reach a level in a scene, at CPU times further apart than `tie`.
+    changed : list of (scene, level, solver, solver)
+        Those of them that changed places.
     """
     seconds = result.arrays["cpu_seconds"]
+    known = seconds[np.isfinite(seconds).all(axis=1)]
+    tie = max(TIE, float(np.percentile(known.max(axis=1) / known.min(axis=1), NOISE)))
     halves = [np.array([_median(line[k::2]) for line in seconds]) for k in (0, 1)]
     pairs, changed = 0, []
     for scene in result.settings["scenes"]:
@@ -73,13 +83,12 @@ def ranking_stability(result):
             common = [family for family in ranks[0] if family in ranks[1]]
             for i, one in enumerate(common):
                 for other in common[i + 1:]:
-                    if costs[other]["cpu_seconds"] < TIE * costs[one]["cpu_seconds"] < TIE**2 * costs[other][
-                            "cpu_seconds"]:
+                    if 1 / tie < costs[one]["cpu_seconds"] / costs[other]["cpu_seconds"] < tie:
                         continue
                     pairs += 1
                     if ranks[1].index(one) > ranks[1].index(other):
                         changed.append((scene, level, one, other))
-    return pairs, changed
+    return tie, pairs, changed
 
 
 def _median(values):

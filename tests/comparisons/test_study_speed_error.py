@@ -14,6 +14,7 @@ from comparisons.provenance import Result, read_result
 from comparisons.store import Store
 from comparisons.studies import speed_error_growth as growth
 from comparisons.studies import speed_error_models as models
+from comparisons.studies import speed_error_tables as tables
 from comparisons.studies.speed_error import section
 from comparisons.studies.speed_error_compute import KIND, run_study
 from comparisons.studies.speed_error_ladders import NEEDED
@@ -21,7 +22,7 @@ from comparisons.studies.speed_error_measures import errors
 from comparisons.studies.speed_error_plots import check_axes, draw_growth, draw_pareto
 from comparisons.studies.speed_error_runs import searched, timed
 from comparisons.studies.speed_error_scenes import margin, trials
-from comparisons.studies.speed_error_tables import cost_at_error, extras, orders
+from comparisons.studies.speed_error_tables import cost_at_error, extras, orders, ranking_stability
 from engines import get_engine
 
 
@@ -174,6 +175,23 @@ def test_observed_order_of_a_second_order_ladder():
     rows = [row("a", 1.0, 3 * step**2, step=step) for step in (1e-1, 1e-2, 1e-3)]
     order, spread, points = orders(result_of(rows), "s")["a"]
     assert order == pytest.approx(2.0, abs=1e-12) and points == 3 and spread < 1e-12
+
+
+@pytest.mark.parametrize("rounds, pairs, swapped", [
+    # a, b, c by rounds: quiet, all told apart; b swaps with c; noise of a factor of 2 tells only c from the others
+    ([[1.0, 1.0, 1.0, 1.0], [1.3, 1.3, 1.3, 1.3], [1.7, 1.7, 1.7, 1.7]], 3, 0),
+    ([[1.0, 1.0, 1.0, 1.0], [1.3, 1.5, 1.3, 1.5], [1.9, 1.4, 1.9, 1.4]], 3, 1),
+    ([[1.0, 2.0, 1.0, 2.0], [1.4, 1.4, 1.4, 1.4], [9.0, 9.0, 9.0, 9.0]], 2, 0),
+])
+def test_a_rank_counts_where_the_rounds_tell_two_solvers_apart(monkeypatch, rounds, pairs, swapped):
+    monkeypatch.setattr(tables, "LEVELS", (1e-3,))
+    monkeypatch.setattr(tables, "NOISE", 50 if swapped else tables.NOISE)  # of three settings, one is noisy
+    rows = [row(family, float(np.median(cpu)), 1e-5) for family, cpu in zip("abc", rounds, strict=True)]
+    result = dataclasses.replace(result_of(rows), arrays={"cpu_seconds": np.array(rounds)})
+    tie, found, changed = ranking_stability(result)
+    assert (found, len(changed)) == (pairs, swapped)
+    assert tie >= tables.TIE
+    assert swapped == 0 or changed == [("s", 1e-3, "b", "c")]
 
 
 def test_more_than_needed_stands_beside_what_is_needed():
