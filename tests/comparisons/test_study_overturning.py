@@ -14,7 +14,7 @@ from comparisons.studies.overturning_edges import Edge, Located, deciding_time, 
 from comparisons.studies.overturning_plots import draw_knobs, draw_maps, draw_shifts
 from comparisons.sweep import Row
 
-# physics.md's block: one sine, p = 2.14, slenderness .25, restitution .9
+# the block of the published boundaries: one sine, p = 2.14, slenderness .25, restitution .9
 GRAVITY, FREQUENCY, SLENDERNESS = 9.81, 2.14, 0.25
 RADIUS = 3 * GRAVITY / (4 * FREQUENCY**2)
 SCENE = Scene(block=Block(mass=1.0, radius=RADIUS, slenderness=SLENDERNESS, restitution=0.9), duration=1.0)
