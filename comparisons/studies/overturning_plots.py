@@ -75,14 +75,15 @@ def draw_shifts(result):
                               linestyle="none", elinewidth=1,
                               label=f"{solver}: overturning {'begins' if rises else 'ends (safe gap)'}")
         axis.set_yscale("symlog", linthresh=0.01)
-        axis.set_yticks([-0.5, -0.1, -0.01, 0, 0.01, 0.1, 0.5], ["−0.5", "−0.1", "−0.01", "0", "0.01", "0.1", "0.5"])
+        axis.set_yticks([-5, -0.5, -0.1, -0.01, 0, 0.01, 0.1, 0.5],
+                        ["−5", "−0.5", "−0.1", "−0.01", "0", "0.01", "0.1", "0.5"])
         axis.minorticks_off()
         axis.set(title=ground, xlabel="pulse frequency / $ω_r$ [-]")
         axis.grid(color="0.88", axis="y")
     low, high = axes[0].get_ylim()
     axes[0].set_ylim(min(low, -1), max(high, 1))
     axes[0].set_ylabel("shift of the boundary [%]")
-    axes[0].legend(fontsize="small", loc="upper left")
+    figure.legend(*axes[0].get_legend_handles_labels(), fontsize="small", loc="outside lower center", ncols=4)
     return figure
 
 
