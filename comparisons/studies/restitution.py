@@ -8,7 +8,7 @@ import typer
 
 
 def command(
-    quick: Annotated[bool, typer.Option(help="A coarse grid: under two minutes.")] = False,
+    quick: Annotated[bool, typer.Option(help="A coarse grid: some two minutes.")] = False,
     output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the result file, the figures and the runs "
                                                             "from which an interrupted study resumes.")]
     = "restitution-study",
