@@ -69,8 +69,7 @@ def _trust(result, solver):
     found = [row for row in rows if row["shift"] is not None]
     outside = _rows(result, "confusion", region="outside", solver=solver)
     wrong, size = sum(row["only_a"] + row["only_b"] for row in outside), sum(_size(row) for row in outside)
-    within = bool(found) and max(abs(row["shift"]) + row["half_width"] for row in found) <= LIMIT / 100
-    yes = within and len(found) == len(rows) and not wrong
+    yes = _all_within(rows) and not wrong
     largest = f", shifted by {percent(max(abs(row['shift']) for row in found))} at most" if found else ""
     return (f"{solver} {'may' if yes else 'is not to'} be trusted for overturning at its default setting, as long as "
             f"the block stays pressed on its base in the analytic model: {len(found)} of {len(rows)} boundaries found"
@@ -107,14 +106,16 @@ def _pulled_words(result):
     yield text
 
 
+def _all_within(rows):
+    return all(row["shift"] is not None and abs(row["shift"]) + row["half_width"] <= LIMIT / 100 for row in rows)
+
+
 def _within(rows):
     """Whether all boundaries were found within the limit, and the largest shift."""
     found = [row for row in rows if row["shift"] is not None]
     worst = max(found, key=lambda row: abs(row["shift"]))
-    reach = max(abs(row["shift"]) + row["half_width"] for row in found)
-    yes = reach <= LIMIT / 100 and len(found) == len(rows)
-    return (f"{'All boundaries lie' if yes else 'Not all boundaries lie'} within {LIMIT:g} % of the analytic ones; the "
-            f"largest shift is {percent(worst['shift'])} (± {percent(worst['half_width'], 1)}: {worst['shape']}, "
+    return (f"{'All boundaries lie' if _all_within(rows) else 'Not all boundaries lie'} within {LIMIT:g} % of the "
+            f"analytic ones; the largest shift is {percent(worst['shift'])} (± {percent(worst['half_width'], 1)}: {worst['shape']}, "
             f"{worst['ground']}, frequency {worst['frequency']:g}, amplitude {number(worst['amplitude'], 4)})")
 
 
