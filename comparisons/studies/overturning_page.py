@@ -115,8 +115,8 @@ def _within(rows):
     found = [row for row in rows if row["shift"] is not None]
     worst = max(found, key=lambda row: abs(row["shift"]))
     return (f"{'All boundaries lie' if _all_within(rows) else 'Not all boundaries lie'} within {LIMIT:g} % of the "
-            f"analytic ones; the largest shift is {percent(worst['shift'])} (± {percent(worst['half_width'], 1)}: {worst['shape']}, "
-            f"{worst['ground']}, frequency {worst['frequency']:g}, amplitude {number(worst['amplitude'], 4)})")
+            f"analytic ones; the largest shift is {percent(worst['shift'])} (± {percent(worst['half_width'], 1)}: "
+            f"{worst['shape']}, {worst['ground']}, frequency {worst['frequency']:g}, amplitude {number(worst['amplitude'], 4)})")
 
 
 def _least_normal(result, row):
