@@ -116,7 +116,8 @@ def _within(rows):
     worst = max(found, key=lambda row: abs(row["shift"]))
     return (f"{'All boundaries lie' if _all_within(rows) else 'Not all boundaries lie'} within {LIMIT:g} % of the "
             f"analytic ones; the largest shift is {percent(worst['shift'])} (± {percent(worst['half_width'], 1)}: "
-            f"{worst['shape']}, {worst['ground']}, frequency {worst['frequency']:g}, amplitude {number(worst['amplitude'], 4)})")
+            f"{worst['shape']}, {worst['ground']}, frequency {worst['frequency']:g}, "
+            f"amplitude {number(worst['amplitude'], 4)})")
 
 
 def _least_normal(result, row):
