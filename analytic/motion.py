@@ -31,11 +31,14 @@ class SampledMotion:
         Accelerations [m/s2], the first at t = 0; n >= 2. Kept read-only.
     label : str
         What the motion is, for plots and tables.
+    warnings : tuple of str
+        What is odd about it (a peak above 3 g, ...), as sentences; every response of a scene repeats them.
     """
 
     dt: float
     samples: np.ndarray = field(repr=False)
     label: str = "sampled motion"
+    warnings: tuple[str, ...] = ()
 
     def __post_init__(self):
         _positive("motion.dt", self.dt, "s")
@@ -77,7 +80,7 @@ class SampledMotion:
 
     def scaled(self, factor):
         """The same motion times `factor`."""
-        return SampledMotion(self.dt, self.samples * factor, self.label)
+        return SampledMotion(self.dt, self.samples * factor, self.label, self.warnings)
 
     def digest(self):
         """Content of the motion as a hash: equal motions have equal digests."""

@@ -109,6 +109,8 @@ class Response:
     settings: dict
     versions: dict
     scene: str = ""  # name
+    decided: bool = True  # False: it ended before the outcome was certain; see analytic/decision.py
+    warnings: tuple[str, ...] = ()  # sentences: where the result lies outside what was verified or modelled
     failure: Failure | None = None
     energy: Energy | None = None
     history: History | None = field(default=None, repr=False)
@@ -118,6 +120,11 @@ class Response:
             raise ValueError(f"outcome {self.outcome!r} is none of {OUTCOMES}")
         if (self.outcome == "failed") != (self.failure is not None):
             raise ValueError("a failed response carries a failure, and no other does")
+
+    @property
+    def verdict(self):
+        """The outcome in words for people: the outcome, or "undecided (rocks so far)"."""
+        return self.outcome if self.decided or self.outcome == "failed" else f"undecided ({self.outcome} so far)"
 
     @property
     def impact_count(self):

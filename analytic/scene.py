@@ -115,7 +115,9 @@ class Scene(_Part):
     """One thing to simulate. A part that is None is not modelled at all.
 
     Without a base the block stands on rigid ground; without bearings the base slides freely; without a
-    motion the block moves freely.
+    motion the block moves freely. Without a duration [s] a run goes on until its outcome is decided. friction:
+    coefficient between the block and what it stands on; the analytic model never slides and only compares its demand
+    with it, an engine uses it.
     """
 
     block: Block
@@ -123,7 +125,8 @@ class Scene(_Part):
     bearings: Bearings | None = None
     motion: SampledMotion | PulseMotion | None = None
     start: Start = Start()
-    duration: Positive
+    duration: Positive | None = None
+    friction: Positive | None = None
     gravity: Positive = 9.81
     name: str = ""
 

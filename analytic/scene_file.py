@@ -74,7 +74,7 @@ class _Motion(_Part):
 
 
 class _Run(_Part):
-    duration: Positive
+    duration: Positive | None = None
 
 
 class _SceneFile(_Part):
@@ -82,12 +82,13 @@ class _SceneFile(_Part):
 
     name: str = ""
     gravity: Positive = 9.81
+    friction: Positive | None = None
     block: Block
     base: Base | None = None
     bearings: Bearings | None = None
     motion: _Motion | None = None
     start: Start = Start()
-    run: _Run
+    run: _Run = _Run()
 
 
 def shipped_scenes():
@@ -127,7 +128,7 @@ def _scene(table, path):
         file = _SceneFile(**table)
         motion = file.motion.motion(path.parent) if file.motion else None
         return Scene(block=file.block, base=file.base, bearings=file.bearings, motion=motion, start=file.start,
-                     duration=file.run.duration, gravity=file.gravity, name=file.name or path.stem)
+                     duration=file.run.duration, gravity=file.gravity, friction=file.friction, name=file.name or path.stem)
     except ValidationError as error:
         raise _scene_error(error.errors()) from None
 

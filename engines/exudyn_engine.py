@@ -11,6 +11,7 @@ from analytic.response import Failure, State
 
 from . import exudyn_corners, exudyn_joints, exudyn_native
 from .checks import replay_bearing
+from .deciding import until_decided
 from .observe import failed_response, observe
 from .settings import choose, leave_restitution
 
@@ -36,6 +37,7 @@ def versions():
     return {"exudyn": version("exudyn"), "python": platform.python_version()}
 
 
+@until_decided
 def simulate(scene, *, variant=None, history=True, **settings):
     """The response of a scene in exudyn.
 

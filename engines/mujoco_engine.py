@@ -35,6 +35,7 @@ from analytic.bearing import BearingLaw
 from analytic.response import Failure
 from analytic.rocking import RockingModel
 
+from .deciding import until_decided
 from .ground_velocity import ground_velocity
 from .leapfrog_trace import raw_trace_of, trace_of
 from .observe import failed_response, observe
@@ -130,6 +131,7 @@ def versions():
     return {"mujoco": mujoco.__version__, "mujoco-library": mujoco.mj_versionString()}
 
 
+@until_decided
 def simulate(scene, *, variant=None, history=True, **settings):
     """The `Response` of a scene in MuJoCo; a run that went wrong has the outcome "failed" with its evidence.
 

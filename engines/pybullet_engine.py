@@ -12,6 +12,7 @@ from analytic.response import Failure
 
 from . import pybullet_first_script, pybullet_stepping
 from .checks import GAIN_LIMIT, HEIGHT_TOLERANCE, energy_gain, pivoting_centre
+from .deciding import until_decided
 from .leapfrog_trace import raw_trace_of, trace_of
 from .observe import observe
 from .pybullet_scene import MOST_VELOCITY, Mismatch, assemble
@@ -69,6 +70,7 @@ def versions():
     return {"pybullet": version("pybullet"), "bullet-api": str(pybullet.getAPIVersion())}
 
 
+@until_decided
 def simulate(scene, *, variant=None, history=True, **settings):
     """Simulate a scene in PyBullet.
 

@@ -1,0 +1,68 @@
+"""The range in which a variant of an engine was held against the analytic model, and the warnings outside it."""
+
+import math
+from dataclasses import dataclass, fields
+
+from analytic.bearing import BearingLaw
+
+ANY = (0.0, math.inf)
+
+
+@dataclass(frozen=True)
+class Range:
+    """Lowest and highest value of each quantity at which a variant is verified; the defaults do not limit.
+
+    slenderness [rad]; inertia: J_O/(m R^2); base_mass: m_b/m; radius R [m]; stiffness: step omega_b [-] with omega_b^2
+    = n_d k_a/m_b, the fastest vibration of the base on its bearings; damping: step n_d c/m_b [-], c the viscous
+    constant of a bearing; tilt: peak tilt over slenderness.
+    """
+
+    slenderness: tuple[float, float] = ANY
+    inertia: tuple[float, float] = ANY
+    base_mass: tuple[float, float] = ANY
+    radius: tuple[float, float] = ANY
+    stiffness: tuple[float, float] = ANY
+    damping: tuple[float, float] = ANY
+    tilt: tuple[float, float] = ANY
+
+
+WORDS = {"slenderness": "slenderness [rad]", "inertia": "J_O/(m R^2)", "base_mass": "base mass over block mass",
+         "radius": "radius R [m]", "stiffness": "step times the base's frequency on its bearings",
+         "damping": "step times viscous damping over base mass", "tilt": "peak tilt over slenderness"}
+
+
+def quantities(scene, step, peak_tilt=None):
+    """{name: value} of the quantities of `Range` that a scene has, at a step [s]; peak_tilt [rad]."""
+    block = scene.block
+    found = {"slenderness": block.slenderness, "inertia": block.inertia / (block.mass * block.radius**2),
+             "radius": block.radius}
+    if scene.base is not None:
+        found["base_mass"] = scene.base.mass / block.mass
+        law = BearingLaw.of(scene.bearings)
+        found["stiffness"] = step * math.sqrt(law.count * (law.kb + law.dk) / scene.base.mass)
+        found["damping"] = step * law.count * law.damping / scene.base.mass
+    if peak_tilt:
+        found["tilt"] = peak_tilt / block.slenderness
+    return found
+
+
+def outside(scene, verified, *, step, peak_tilt=None):
+    """Sentences, one for each quantity of a scene that lies outside the `Range` verified; () inside.
+
+    Parameters
+    ----------
+    scene : Scene
+    verified : Range
+    step : float
+        Step length of the engine [s].
+    peak_tilt : float or None
+        Largest tilt of the run [rad]; None or 0 where it never lifted.
+    """
+    found, sentences = quantities(scene, step, peak_tilt), []
+    for name in (field.name for field in fields(Range)):
+        low, high = getattr(verified, name)
+        value = found.get(name)
+        if value is not None and not low <= value <= high:
+            limit = f"below {low:.4g}" if value < low else f"above {high:.4g}"
+            sentences.append(f"{WORDS[name]} = {value:.4g} is {limit}, the limit of the range verified")
+    return tuple(sentences)
