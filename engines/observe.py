@@ -26,7 +26,7 @@ HISTORY_POINTS = 2000
 
 
 def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, versions, history=True, failure=None,
-            ended=None):
+            ended=None, warnings=()):
     """The response of an engine's run.
 
     Parameters
@@ -43,6 +43,8 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
     ended : str or None
         "overturned" where the adapter stopped the run at overturning: if the last step lies before
         |tilt| = pi/2, the block is taken to fall on at the model's acceleration.
+    warnings : iterable of str
+        Sentences of the engine, as of `engines.verified.outside`; those of the motion's record are added.
 
     Returns
     -------
@@ -64,7 +66,7 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
                  versions=versions, scene=scene.name)
     if trace is None:
         return failed_response(scene, failure, engine=engine, variant=variant, settings=settings,
-                               versions=versions, cpu_seconds=cpu_seconds, steps=steps)
+                               versions=versions, cpu_seconds=cpu_seconds, steps=steps, warnings=warnings)
     end = State(*(float(getattr(trace, name)[-1]) for name in Trace.COLUMNS))
     short = scene.duration * (1 - 1e-9) - end.time  # the last of equal steps need not end at the duration
     if failure is None and overturning_time is None and short > np.diff(trace.time).max():
@@ -90,10 +92,12 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
         peak_base_displacement=_peak(trace.time, trace.base_displacement, trace.base_velocity),
         peak_base_acceleration=acceleration, impacts=impacts, uplifts=uplifts, rests=rests,
         friction_demand=demand, min_normal_ratio=normal, end=end, failure=failure,
+        warnings=_warnings(scene, warnings),
         history=_history(scene, trace) if history else None, **given)
 
 
-def failed_response(scene, failure, *, engine, variant, settings, versions, cpu_seconds=math.nan, steps=0):
+def failed_response(scene, failure, *, engine, variant, settings, versions, cpu_seconds=math.nan, steps=0,
+                    warnings=()):
     """A response of outcome "failed" for a run that left no states: every number is NaN, the evidence is kept."""
     nan = math.nan
     return Response(
@@ -101,7 +105,13 @@ def failed_response(scene, failure, *, engine, variant, settings, versions, cpu_
         peak_tilt_ratio=nan, peak_base_displacement=nan, peak_base_acceleration=nan, impacts=(), uplifts=(),
         rests=(), friction_demand=nan, min_normal_ratio=nan, end=State(nan, nan, nan, nan, nan, nan),
         cpu_seconds=cpu_seconds, steps=steps, settings=settings, versions=versions, scene=scene.name,
-        failure=failure)
+        failure=failure, warnings=_warnings(scene, warnings))
+
+
+def _warnings(scene, warnings):
+    """The engine's sentences and those about the record of the motion, each once."""
+    record = getattr(scene.motion, "warnings", ())  # pulses have none
+    return tuple(dict.fromkeys((*record, *warnings)))
 
 
 def _finite_part(trace, failure):

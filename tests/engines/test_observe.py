@@ -271,6 +271,18 @@ def test_a_run_that_stops_early_fails_and_the_engines_own_failure_is_kept():
     assert own.failure.last_state.time == trace.time[499]
 
 
+def test_warnings_of_the_engine_and_of_the_record_reach_the_response_once():
+    scene = SCENES["rigid ground, shaken"]
+    odd = scene.with_(motion=dataclasses.replace(scene.motion, warnings=("the record is odd",)))
+    trace, _ = sampled(scene, 2e-3)
+    assert seen(scene, trace).warnings == ()
+    assert seen(odd, trace, warnings=["soft", "soft"]).warnings == ("the record is odd", "soft")
+    gone = dataclasses.replace(trace, tilt=np.full_like(trace.tilt, np.nan))
+    assert seen(odd, gone, warnings=("soft",)).warnings == ("the record is odd", "soft")
+    quiet = SCENES["rigid ground"]
+    assert seen(quiet, sampled(quiet, 2e-3)[0], warnings=("soft",)).warnings == ("soft",)
+
+
 def test_a_gain_of_energy_fails():
     scene = SCENES["rigid ground"]
     trace, _ = sampled(scene, 1e-3)
