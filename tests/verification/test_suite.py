@@ -1,0 +1,73 @@
+"""The tests themselves: found from every folder, and none of them can hang."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PROJECT = Path(__file__).parents[2]
+TESTS = PROJECT / "tests"
+# As the command `pytest` in an environment where the project's folder is not on the path.
+PLAIN = f"""
+import sys
+sys.path = [folder for folder in sys.path if folder not in ("", {str(PROJECT)!r})]
+import pytest
+sys.exit(pytest.main())
+"""
+
+
+def plain_pytest(folder, *arguments):
+    """The process of pytest, started in a folder."""
+    environment = {name: value for name, value in os.environ.items()
+                   if name != "PYTHONPATH" and not name.startswith("PYTEST_")}
+    return subprocess.Popen([sys.executable, "-P", "-c", PLAIN, "-p", "no:cacheprovider", "-q", *arguments],
+                            cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def said(process):
+    """(status, last words) of a process."""
+    out, _ = process.communicate(timeout=240)
+    return process.returncode, out[-3000:]
+
+
+def test_plain_pytest_finds_the_same_tests_from_every_folder():
+    runs = [(PROJECT, ()), (TESTS, ()), (Path("/"), (str(TESTS),))]
+    found = set()
+    for process in [plain_pytest(folder, "--collect-only", "--assert=plain", *given) for folder, given in runs]:
+        status, words = said(process)
+        assert status == 0, words
+        found.add(int(re.search(r"(\d+)(?:/\d+)? tests collected", words).group(1)))
+    assert len(found) == 1 and found.pop() > 1000
+
+
+@pytest.mark.parametrize("folder, files", [
+    (TESTS / "analytic", ["test_design.py"]),
+    (Path("/"), ["-n", "2", str(TESTS / "analytic" / "test_design.py")])])
+def test_plain_pytest_runs_from_another_folder_and_on_workers(folder, files):
+    status, words = said(plain_pytest(folder, *files))
+    assert status == 0, words
+
+
+def test_every_test_has_a_time_limit(request):
+    limit = float(request.config.getini("timeout"))
+    assert 0 < limit < float(request.config.getini("faulthandler_timeout"))
+    assert request.config.getini("faulthandler_exit_on_timeout")
+
+
+HANGS = {
+    "Python": "import time\ndef test_hangs():\n    while True:\n        time.sleep(.01)\n",
+    # signals wait for the end of compiled code
+    "compiled": ("import numba\n@numba.njit\ndef count(n):\n    while n > 0:\n        n = n % 7 + 1\n    return n\n"
+                 "def test_hangs():\n    count(3)\n"),
+}
+
+
+@pytest.mark.parametrize("where", HANGS)
+def test_a_test_that_hangs_fails(tmp_path, where):
+    (tmp_path / "test_hanging.py").write_text(HANGS[where])
+    status, words = said(plain_pytest(tmp_path, "-c", str(PROJECT / "pyproject.toml"), "--rootdir", str(tmp_path),
+                                      "-o", "timeout=1", "-o", "faulthandler_timeout=4", str(tmp_path)))
+    assert status == 1 and "Timeout" in words
