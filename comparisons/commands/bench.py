@@ -38,3 +38,43 @@ def analytic(
     if faulty:
         console.print(f"{len(faulty)} of {random} random scenes failed: {output}/random-scenes.json")
         raise typer.Exit(1)
+
+
+@app.command()
+def engines(
+    engine: Annotated[str, typer.Option(help="Engine, in its default variant.")],
+    scenes: Annotated[int, typer.Option(min=1, help="Scenes of the wide box.")] = 2000,
+    seed: Annotated[int, typer.Option(min=0, help="Of the ensemble.")] = 1,
+    workers: Annotated[int | None, typer.Option(min=1, help="Processes; without it one per core.")] = None,
+    time_limit: Annotated[float, typer.Option(min=0.1, help="Of an engine's run [s].")] = 60.0,
+    index: Annotated[int | None, typer.Option(min=0, help="Run this scene alone and print it.")] = None,
+    output: Annotated[str, typer.Option(metavar="DIR", help="Where runs and results go.")] = "bench-engines",
+):
+    """An engine against the analytic model on random scenes of a wide box. Status 1: a run was off in silence."""
+    import json
+
+    from rich.console import Console
+
+    from ..bench.engine_bench import bench_engines, examine
+    from ..bench.engine_tables import cause_table, class_table, off_table
+    from ..bench.random_scenes import describe
+    from ..provenance import json_ready
+
+    console = Console()
+    if index is not None:
+        scene, model, run, row = examine(engine, index, seed=seed, time_limit=time_limit)
+        for title, content in (("scene", describe(scene)), ("analytic", model.values), (engine, run.values)):
+            curves = {"tilts", "displacements"}
+            print(title, json.dumps({k: v for k, v in content.items() if k not in curves}))
+        print("verdict", json.dumps(json_ready(row), indent=1))
+        raise typer.Exit(row["class"] == "off and silent")
+    rows = bench_engines(engine, output, scenes=scenes, seed=seed, workers=workers, time_limit=time_limit)
+    from ..bench.engine_figure import draw  # matplotlib takes its time
+
+    draw(rows, f"{engine}: {scenes} random scenes", f"{output}/bench-engines-{engine}.png")
+    console.print(class_table(rows, f"{engine}, {scenes} random scenes, seed {seed}"))
+    console.print(cause_table(rows))
+    if any(row["class"] == "off and silent" for row in rows):
+        console.print(off_table(rows))
+    console.print(f"{output}/bench-engines-{engine}.json, {output}/bench-engines-{engine}.png")
+    raise typer.Exit(any(row["class"] == "off and silent" for row in rows))

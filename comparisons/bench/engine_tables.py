@@ -1,0 +1,83 @@
+"""Tables of ``rocking bench engines`` for the terminal."""
+
+import re
+from collections import Counter
+
+import numpy as np
+from rich.markup import escape
+from rich.table import Table
+
+from .engine_verdicts import CLASSES
+
+TELLING = 3  # quantities shown for a cause: those in which its scenes lie furthest from the others
+
+
+def causes(row):
+    """Why a row is not simply right: words, without numbers, that rows of one cause share."""
+    if row["class"] == "left out" or row["class"] == "failed and said":
+        return [re.sub(r"-?\d[\d.e+-]*", "#", row["cause"]) if row["class"] == "failed and said" else row["cause"]]
+    words = [f"off: {finding['quantity']}" for finding in row["findings"]]
+    return words + [f"warned: {re.split(r' = | is ', sentence)[0][:60]}" for sentence in row["warnings"]]
+
+
+def class_table(rows, title):
+    """Counts and shares of the classes, in all and in the core range; shares are of the scenes not left out."""
+    table = Table("class", "scenes", "share", "core range", "share", title=title)
+    core = [row for row in rows if row["place"]["core"]]
+    total, total_core = (max(sum(row["class"] != "left out" for row in part), 1) for part in (rows, core))
+    for name in CLASSES:
+        count, count_core = (sum(row["class"] == name for row in part) for part in (rows, core))
+        shares = ("-", "-") if name == "left out" else (f"{count / total:.1%}", f"{count_core / total_core:.1%}")
+        table.add_row(name, str(count), shares[0], str(count_core), shares[1])
+    notes = Counter(note for row in rows for note in row["notes"])
+    for note, count in notes.items():
+        table.add_row(f"  judged in part: {note}", str(count), "", "", "")
+    upto = sum(row["judged_until"] is not None for row in rows)
+    table.add_row("  judged up to the unstable point", str(upto), "", "", "")
+    return table
+
+
+def cause_table(rows):
+    """Every cause of every class but right: its count, and where in the box its scenes lie."""
+    table = Table("class", "cause", "scenes", "core", "examples", "where (10 to 90 % of its scenes)")
+    for name in CLASSES[1:]:
+        members = {}
+        for row in rows:
+            if row["class"] == name:
+                for cause in causes(row):
+                    members.setdefault(cause, []).append(row)
+        for cause, found in sorted(members.items(), key=lambda item: -len(item[1])):
+            examples = ", ".join(str(row["index"]) for row in found[:4])
+            core = sum(row["place"]["core"] for row in found)
+            table.add_row(name, escape(cause), str(len(found)), str(core), examples, where(found, rows))
+    return table
+
+
+def where(found, rows):
+    """In words: the quantities in which the rows found lie furthest from all rows, with their range there."""
+    words = []
+    for name in rows[0]["place"]:
+        every = np.array([row["place"].get(name) for row in rows if _number(row["place"].get(name))])
+        own = np.array([row["place"].get(name) for row in found if _number(row["place"].get(name))])
+        if len(own) and 2 * len(own) >= len(found):
+            rank = np.mean(np.searchsorted(np.sort(every), own) / len(every))
+            low, high = np.quantile(own, [0.1, 0.9])
+            words.append((abs(rank - 0.5), f"{name} {low:.2g} to {high:.2g}"))
+    return "; ".join(word for _, word in sorted(words, reverse=True)[:TELLING])
+
+
+def _number(value):
+    return isinstance(value, float | int) and not isinstance(value, bool)
+
+
+def off_table(rows):
+    """Every run that was off in silence."""
+    table = Table("index", "found", "outcome", "expected", "notes", "place", title="Off and silent")
+    for row in rows:
+        if row["class"] == "off and silent":
+            found = ", ".join(f"{one['quantity']} {one['error']:.3g}" if isinstance(one["error"], float)
+                              else f"{one['quantity']} {one['error']}" for one in row["findings"])
+            spot = ", ".join(f"{name} {value:.3g}" if _number(value) else f"{value}"
+                             for name, value in row["place"].items() if value is not None and name != "mass")
+            table.add_row(str(row["index"]), found, row["outcome"], row["expected"], ", ".join(row["notes"]), spot)
+    return table

@@ -1,0 +1,202 @@
+"""Is an engine's run of a scene right? Judged against the analytic model, from what `keep` keeps of both responses.
+
+Off is a run with at least one finding, each further from the analytic model than its limit:
+
+- restitution: an impact's rate after over rate before differs from eq. (7) by more than RESTITUTION. Impacts count that
+  meet at least RESOLVED of the largest rate of their run, and that lie between swings that would exceed LEAST_SWING of
+  the slenderness with the ground at rest: smaller ones an engine does not tell from the compliance of its contact.
+- tilt, displacement: a peak differs by more than PEAK of the model's. Below LEAST_TILT of the slenderness (the least
+  tilt of the box) and LEAST_DISPLACEMENT of R gamma (3 micrometres for the Caryatid) nothing is told from nothing.
+- outcome: another one; "rocks" below LEAST_TILT is not told from "stands".
+- lost impact: an impact of the model that counts has none in the engine on its side within half the intervals to its
+  neighbours.
+
+Three things are no fault of the engine, and each excuses as little as can be. *Left out* is a scene whose analytic run
+has N <= 0 or a friction demand above FRICTION at the contact; if that comes only after the tilt has passed the
+slenderness on the way to overturning, the rest is judged up to there. *Ill-conditioned* is a peak that the analytic
+model itself changes by more than PEAK for relative changes of 1e-4 of start, amplitude or restitution: it is
+compared up to the time where that begins. *Near a boundary* is an outcome that the model changes for a change of 1 % of
+start, amplitude or slenderness: it does not count, and peaks do only up to the time where those of the twins with
+another outcome part by more than APART.
+"""
+
+import math
+
+import numpy as np
+
+from analytic.rocking import RockingModel, restitution
+
+from ..horizon import twin_scenes
+
+RESTITUTION, PEAK, APART, RESOLVED = 1e-2, 0.02, 0.2, 0.1
+LEAST_TILT, LEAST_DISPLACEMENT, LEAST_SWING = 1e-4, 1e-5, 1e-3
+FRICTION = 5.0  # of every engine's default, where the scene names none
+SMALL, BOUNDARY = 1e-4, 1e-2  # relative changes of the twins
+GRID, MOST_IMPACTS = 50, 400  # points of the growing peaks, impacts kept
+CLASSES = ("right", "right but warned", "off and warned", "failed and said", "off and silent", "left out")
+
+
+def keep(response):
+    """Reducer: what the judgement needs of a response with its history, as JSON values."""
+    history = response.history
+    steps = np.searchsorted(history.time, history.time[1] * (2000 / GRID) * np.arange(1, GRID + 1) * (1 + 1e-9),
+                            side="right") - 1
+    rates = np.abs([impact.rate_before for impact in response.impacts])
+    counted = [impact for impact, rate in zip(response.impacts, rates, strict=True)
+               if not rate < 0.5 * RESOLVED * rates.max()][:MOST_IMPACTS]
+    return {"outcome": response.outcome, "decided": response.decided, "unstable": response.unstable_time,
+            "tilt": response.peak_tilt, "displacement": response.peak_base_displacement,
+            "tilts": np.maximum.accumulate(np.abs(history.tilt))[steps],
+            "displacements": np.maximum.accumulate(np.abs(history.base_displacement))[steps],
+            "impacts": [[impact.time, impact.rate_before, impact.rate_after] for impact in counted],
+            "normal": response.min_normal_ratio, "friction": response.friction_demand,
+            "warnings": response.warnings, "steps": response.steps}
+
+
+def near_twins(scene):
+    """{name: scene} of the twins that tell how well the peaks are determined."""
+    return {f"{name}, {SMALL:g}": twin for name, twin in twin_scenes(scene, SMALL).items()}
+
+
+def boundary_twins(scene):
+    """{name: scene} of the twins that tell whether another outcome is near."""
+    twins = {}
+    for sign, word in ((1, "up"), (-1, "down")):
+        factor = 1 + sign * BOUNDARY
+        twins[f"slenderness {word}"] = scene.with_(block={"slenderness": scene.block.slenderness * factor})
+        if scene.motion is not None:
+            twins[f"motion {word}"] = scene.with_(motion=scene.motion.scaled(factor))
+        changed = {name: value * factor for name, value in scene.start.model_dump().items()}
+        if changed != scene.start.model_dump():
+            twins[f"start {word}"] = scene.with_(start=changed)
+    return twins
+
+
+def rule(scene, model):
+    """Why a scene is left out, by the kept values of its analytic run, or None."""
+    if model["normal"] is None or model["normal"] <= 0:
+        return "N <= 0"
+    limit = scene.friction or FRICTION
+    if model["friction"] is None or model["friction"] > limit:
+        return f"friction demand above {limit:g}"
+    return None
+
+
+def findings(scene, model, run, until=math.inf):
+    """What is off in a run up to the time `until` [s]: list of {quantity, error, limit}; both as kept by `keep`."""
+    found = []
+    if _outcome(scene, model) != _outcome(scene, run):
+        found.append({"quantity": "outcome", "error": f"{run['outcome']}, not {model['outcome']}", "limit": None})
+    for name, error in peak_errors(scene, model, run, until).items():
+        if not error <= PEAK:  # not: NaN
+            found.append({"quantity": name, "error": error, "limit": PEAK})
+    error = restitution_error(scene, run, until)
+    if not error <= RESTITUTION:
+        found.append({"quantity": "restitution", "error": error, "limit": RESTITUTION})
+    if lost := lost_impacts(scene, model, run, until):
+        found.append({"quantity": "lost impact", "error": len(lost), "limit": 0})
+    return found
+
+
+def _outcome(scene, kept):
+    seen = kept["tilt"] is None or kept["tilt"] > LEAST_TILT * scene.block.slenderness
+    return kept["outcome"] if seen else "stands"
+
+
+def least(scene):
+    """{peak: value below which it is not told from nothing}: [rad], [m]."""
+    block = scene.block
+    return {"tilt": LEAST_TILT * block.slenderness,
+            "displacement": LEAST_DISPLACEMENT * block.radius * block.slenderness}
+
+
+def peak_errors(scene, model, run, until=math.inf):
+    """{"tilt", "displacement": |difference| of the peaks up to `until` over the model's}."""
+    last = _last(scene, until)
+    errors = {}
+    for name, floor in least(scene).items():
+        wanted, got = (kept[name] if last is None else kept[f"{name}s"][last] if last >= 0 else 0.0
+                       for kept in (model, run))
+        errors[name] = math.nan if got is None else abs(got - wanted) / max(wanted, floor)
+    return errors
+
+
+def _last(scene, until):
+    """Index of the last growing peak up to `until`; -1 where there is none, None where all count."""
+    return None if until >= scene.duration else math.floor(until / scene.duration * GRID * (1 + 1e-9)) - 1
+
+
+def resolved(scene, kept, until=math.inf):
+    """The impacts, rows of time, rate before and after, that count, up to `until`."""
+    model, impacts = RockingModel.of(scene), np.array(kept["impacts"], dtype=float).reshape(-1, 3)
+    before, after = np.abs(impacts[:, 1:]).T
+    pull = abs(model.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0])
+    least = math.sqrt(2 * pull * LEAST_SWING * model.gamma)
+    least_before = max(least, RESOLVED * np.nanmax(before, initial=0.0))
+    # A NaN counts: it must be found. So does a swing that is there and should not be.
+    small = (before < least_before) | (np.maximum(after, model.restitution * before) < least)
+    return impacts[~small & ~(impacts[:, 0] > until)]
+
+
+def restitution_error(scene, run, until=math.inf):
+    """Largest |e - eq. (7)| of the impacts that count; 0 without any."""
+    impacts = resolved(scene, run, until)
+    if not len(impacts):
+        return 0.0
+    expected = max(restitution(scene), 0.0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return float(np.abs(impacts[:, 2] / impacts[:, 1] - expected).max())
+
+
+def lost_impacts(scene, model, run, until=math.inf):
+    """Times [s] of the model's impacts that count and have none in the run."""
+    wanted, lost = resolved(scene, model), []
+    own = np.array(run["impacts"], dtype=float).reshape(-1, 3)
+    every = np.array(model["impacts"], dtype=float).reshape(-1, 3)[:, 0]
+    for time, before, _ in wanted:
+        if time > until:
+            continue
+        earlier, later = every[every < time], every[every > time]
+        low = time - (time - earlier[-1]) / 2 if len(earlier) else -math.inf
+        high = time + (later[0] - time) / 2 if len(later) else math.inf
+        near = own[(np.sign(own[:, 1]) == np.sign(before)) & (own[:, 0] >= low) & (own[:, 0] <= high)]
+        if not len(near):
+            lost.append(float(time))
+    return lost
+
+
+def parting(scene, model, twins, share):
+    """Time [s] up to which no twin's peaks part from the model's by more than a share; inf where none ever does."""
+    first = math.inf
+    for twin in twins:
+        if twin["outcome"] == "failed":
+            continue
+        for name, floor in least(scene).items():
+            apart = np.abs(np.subtract(twin[f"{name}s"], model[f"{name}s"]))
+            beyond = np.flatnonzero(apart > share * np.maximum(model[f"{name}s"], floor))
+            if len(beyond):
+                first = min(first, beyond[0] * scene.duration / GRID)
+            elif abs(twin[name] - model[name]) > share * max(model[name], floor):
+                first = min(first, (1 - 1 / GRID) * scene.duration)
+    return first
+
+
+def judge(scene, model, run, small, large, until=math.inf):
+    """(findings, notes) of a run; small, large: kept values of the near and the boundary twins, until: as `findings`.
+
+    notes: "ill-conditioned" or "near a boundary" where these took something from the comparison.
+    """
+    found = findings(scene, model, run, until)
+    if not found:
+        return found, []
+    notes, apart = [], parting(scene, model, small.values(), PEAK)
+    others = [twin for twin in [*small.values(), *large.values()] if _outcome(scene, twin) != _outcome(scene, model)]
+    if others and any(finding["quantity"] == "outcome" for finding in found):
+        notes, apart = ["near a boundary"], min(apart, parting(scene, model, others, APART))
+    elif apart < until:
+        notes = ["ill-conditioned"]
+    until = min(until, apart)
+    if notes:
+        found = [finding for finding in findings(scene, model, run, until)
+                 if finding["quantity"] != "outcome" or "near a boundary" not in notes]
+    return found, notes
