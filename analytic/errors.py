@@ -1,5 +1,27 @@
 """Errors a user can mend: each names where, what and the remedy."""
 
+KEY_LENGTH, VALUE_LENGTH, TEXT_LENGTH, FILE_LENGTH = 100, 120, 500, 400  # characters of a message's parts
+
+
+def cut(text, length):
+    """The text on one line, printable, its middle left out where it is longer than `length` characters."""
+    text = str(text)
+    if len(text) > length:
+        text = f"{text[:length * 2 // 3]} ... {text[-(length // 6):]} ({len(text)} characters)"
+    return "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in text)
+
+
+def _shown(value):
+    """The value as Python writes it, of readable length."""
+    if isinstance(value, int) and value.bit_length() > 4 * VALUE_LENGTH:
+        return f"an integer of {value.bit_length()} bits"
+    if isinstance(value, str) and len(value) > VALUE_LENGTH:
+        return repr(value[:VALUE_LENGTH * 2 // 3]) + f" ... ({len(value)} characters)"
+    try:
+        return cut(repr(value), VALUE_LENGTH)
+    except (ValueError, RecursionError):  # huge integers and deep nesting inside of it
+        return f"something that cannot be printed ({type(value).__name__})"
+
 
 class SceneError(ValueError):
     """A scene that cannot be simulated.
@@ -21,9 +43,11 @@ class SceneError(ValueError):
         super().__init__(key, value, problem, remedy, file)
 
     def __str__(self):
-        where = f"{self.file}: " if self.file else ""
-        found = "" if self.value is None else f" = {self.value!r}"
-        return f"{where}{self.key}{found}: {self.problem}; {self.remedy}"
+        """One line of readable length, whatever was found."""
+        where = f"{cut(self.file, FILE_LENGTH)}: " if self.file else ""
+        found = "" if self.value is None else f" = {_shown(self.value)}"
+        problem, remedy = cut(self.problem, TEXT_LENGTH), cut(self.remedy, TEXT_LENGTH)
+        return f"{where}{cut(self.key, KEY_LENGTH)}{found}: {problem}; {remedy}"
 
     def in_file(self, file):
         """The same error, naming the file it was found in."""

@@ -50,7 +50,8 @@ def test_line_ends(tmp_path, end):
 
 
 @pytest.mark.parametrize("data", ["  .1000E-02-.1230E+00-.4560E+00  .2500D+00\n-.15D+01 0. .75\n",
-                                  "0.1000E-02-.1230E+00-.4560E+000.2500E+00\n-.1500E+01+0.000E+000.7500E+00\n"])
+                                  "0.1000E-02-.1230E+00-.4560E+00+.2500E+00\n-.1500E+01+.0000E+00+.7500E+00\n",
+                                  "1.00E-003 -1.230E-001 -4.56e-001 2.5d-001 -15E-001 0E000 75.D-002\n"])
 def test_stuck_numbers_and_fortran_exponents(tmp_path, data):
     motion = read_record(write(tmp_path, f"{AT2_TOP}{COUNTS['padded']}\n{data}"))
     np.testing.assert_allclose(motion.samples, np.array(VALUES) * G, rtol=1e-15)
@@ -109,8 +110,9 @@ BAD = {
     "unreadable count": (AT2.replace("NPTS= 4", "NPTS= many") + "1 2 3 4", None, "NPTS = 'many': not a number of"),
     "velocity": (AT2.replace("UNITS OF G", "UNITS OF CM/S") + "1 2 3 4", None,
                  "line 3, UNITS OF = 'CM/S': not an acceleration in g; give the acceleration file"),
-    "AT2 with units": (AT2 + "1 2 3 4", "g", "motion.units = 'g': this record carries its own unit; remove units"),
-    "DYNA with units": (dyna(VALUES), "cm/s2", "motion.units = 'cm/s2': this record carries its own unit"),
+    "AT2 with other units": (AT2 + "1 2 3 4", "cm/s2", "motion.units = 'cm/s2': but the record carries its own unit, "
+                                                       "G (line 3); remove units, or correct the record"),
+    "DYNA with other units": (dyna(VALUES), "g", "motion.units = 'g': but the record carries its own unit, cm/s^2"),
     "DYNA without interval": (dyna(VALUES, SAMPLING_INTERVAL_S=None), None, "SAMPLING_INTERVAL_S: missing"),
     "DYNA without units": (dyna(VALUES, UNITS=""), None, "UNITS: missing from the header"),
     "DYNA velocity": (dyna(VALUES, UNITS="cm/s"), None, "UNITS = 'cm/s': not an acceleration"),

@@ -1,0 +1,86 @@
+"""Readers of recorded ground acceleration. A format is a module that recognises its lines and reads them."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import SceneError
+from ..motion import SampledMotion
+from . import columns, dyna, foreign, peer
+from .content import read_lines
+from .units import UNITS, G, resolve
+
+__all__ = ["FORMATS", "G", "UNITS", "read_record"]
+
+FORMATS = (peer, dyna, foreign, columns)  # the first that recognises the lines reads them
+NOT_ACCELERATIONS = {".vt2": "velocities", ".dt2": "displacements"}
+USUAL_PEAK = (1e-4 * G, 3 * G)  # m/s2
+USUAL_STEP = (1e-4, 0.1)  # s
+LARGEST_PEAK = 1e6 * G  # m/s2: a damaged number
+
+
+def read_record(path, units=None, scale=1.0):
+    """The ground motion in a record file; the format is recognised from the content.
+
+    Parameters
+    ----------
+    path : str or Path
+        PEER AT2, ESM/DYNA 1.2 ASCII (also as AFAD writes it) or two columns (time, acceleration; CSV).
+    units : {"m/s2", "cm/s2", "g"}, optional
+        Unit of a record whose own words state none; must not contradict them.
+    scale : float
+        Factor on the accelerations.
+
+    Returns
+    -------
+    SampledMotion
+        In m/s2; its time counts from the first sample. Its warnings say what is odd about the file.
+
+    Raises
+    ------
+    SceneError
+        Names the file, the line or header key, what was found and the remedy.
+    """
+    path = Path(path)
+    try:
+        return _motion(_content(path), path.name, units, scale)
+    except SceneError as error:
+        raise error.in_file(path) from None
+
+
+def _content(path):
+    lines = read_lines(path)
+    if path.suffix.lower() in NOT_ACCELERATIONS:
+        raise SceneError("record", None, f"holds {NOT_ACCELERATIONS[path.suffix.lower()]}, as {path.suffix} files do",
+                         "give the acceleration file (.AT2) of this record")
+    if not any(line.strip() for line in lines):
+        raise SceneError("record", None, "is empty", "give a record with at least two accelerations")
+    return next(form for form in FORMATS if form.recognises(lines)).read(lines)
+
+
+def _motion(content, name, units, scale):
+    """The `SampledMotion` of a `Content`: its unit, its label and what is odd about it."""
+    unit = resolve(content.unit, units, content.no_unit)
+    if len(content.values) < 2:
+        raise SceneError("record", None, f"holds {len(content.values)} samples", "give at least two accelerations")
+    samples = content.values * unit.factor
+    peak = float(np.abs(samples).max())
+    if peak > LARGEST_PEAK:
+        raise SceneError("record", None, f"its peak of {peak / G:.3g} g is no ground motion", "mend the damaged number")
+    if not abs(scale) * peak <= LARGEST_PEAK:
+        raise SceneError("motion.scale", scale, f"makes a peak of {abs(scale) * peak / G:.3g} g", "give a smaller one")
+    label = name if scale == 1 else f"{name} x {scale:g}"
+    odd = _odd(peak, content.dt, unit) + content.warnings
+    return SampledMotion(content.dt, samples * scale, label, tuple(f"{name}: {sentence}" for sentence in odd))
+
+
+def _odd(peak, dt, unit):
+    """Sentences on a peak [m/s2] or a step dt [s] that records seldom have."""
+    sentences = []
+    if not USUAL_PEAK[0] <= peak <= USUAL_PEAK[1]:
+        side = "above 3 g" if peak > USUAL_PEAK[1] else "below 1e-4 g"
+        sentences.append(f"the peak of {peak / G:.4g} g is {side}: check the unit (read in {unit.word}, {unit.where})")
+    if not USUAL_STEP[0] <= dt <= USUAL_STEP[1]:
+        side = "above .1 s" if dt > USUAL_STEP[1] else "below 1e-4 s"
+        sentences.append(f"the sampling interval of {dt:.4g} s is {side}: check the unit of time")
+    return tuple(sentences)

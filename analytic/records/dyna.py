@@ -1,0 +1,73 @@
+"""ESM/DYNA 1.2 ASCII, also as AFAD writes it: lines KEY: value, then one value a line."""
+
+import re
+
+import numpy as np
+
+from ..errors import SceneError
+from .content import HEADER_WIDTH, Content
+from .numbers import NUMBER, check_count, count, fortran_values
+from .times import interval
+from .units import Unit, factor_of
+
+NAME = "ESM/DYNA 1.2 ASCII"
+KEY = re.compile(r"([A-Z][A-Z0-9_/^]*+):(.*)")
+HEADER_LINES = 70  # 64 in version 1.2
+SIGNS = ("EVENT_NAME", "SAMPLING_INTERVAL_S", "HEADER_FORMAT")
+REMEDY = "give a complete ESM/DYNA 1.2 ASCII file"
+
+
+def recognises(lines):
+    """Whether the lines are an ESM/DYNA file."""
+    first = next((line for line in lines if line.strip()), "")
+    return bool(KEY.match(first)) and any(line.startswith(SIGNS) for line in lines[:HEADER_LINES])
+
+
+def read(lines):
+    """The `Content` of an ESM/DYNA file.
+
+    Raises
+    ------
+    SceneError
+        A key is missing, the data are no accelerations, an unreadable number, or another count than stated.
+    """
+    header, begin = _header(lines)
+    for key in ("SAMPLING_INTERVAL_S", "UNITS", "NDATA"):
+        if not header.get(key, ("",))[0]:
+            raise SceneError(key, None, "missing from the header", REMEDY)
+    stated, line = header["UNITS"]
+    kind = header.get("DATA_TYPE", ("acceleration",))[0]
+    factor = factor_of(stated)
+    if factor is None or (kind and not kind.lower().startswith("acc")):
+        key, value = ("UNITS", stated) if factor is None else ("DATA_TYPE", kind)
+        raise SceneError(key, value, "not an acceleration this reader knows",
+                         "give the acceleration file, in cm/s^2")
+    values = fortran_values(lines, begin)
+    check_count("NDATA", count("NDATA", header["NDATA"][0]), values)
+    dt = interval("SAMPLING_INTERVAL_S", header["SAMPLING_INTERVAL_S"][0])
+    return Content(dt, values, Unit(stated, factor, f"line {line}"), warnings=_peak(header, values))
+
+
+def _header(lines):
+    """{key: (value, line number)} and the index of the first line after them."""
+    header = {}
+    begin = next((index for index, line in enumerate(lines) if line.strip()), 0)
+    while begin < len(lines) and (match := KEY.match(lines[begin][:HEADER_WIDTH])):
+        key, value = match[1], match[2].strip()
+        if key in header and header[key][0] != value:
+            raise SceneError(f"line {begin + 1}, {key}", value, f"but line {header[key][1]} says {header[key][0]}",
+                             REMEDY)
+        header[key] = (value, begin + 1)
+        begin += 1
+    return header, begin
+
+
+def _peak(header, values):
+    """A sentence if the header states another peak than the data have."""
+    stated = header.get("PGA_CM/S^2", ("",))[0]
+    if not re.fullmatch(NUMBER, stated) or not len(values):
+        return ()
+    peak = float(np.abs(values).max())
+    if abs(abs(float(stated)) - peak) <= 0.01 * peak:
+        return ()
+    return (f"the header states a peak of {stated} cm/s2, the data have {peak:.6g}: check that the file is whole",)

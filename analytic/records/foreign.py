@@ -1,0 +1,28 @@
+"""Formats that are known and not read: each is refused by its name."""
+
+import re
+
+from ..errors import SceneError
+
+SIGNS = {
+    "COSMOS": re.compile(r"\(format v[0-9.]+ with", re.I),
+    "USGS SMC": re.compile(r"\s*[0-9] (?:un)?corrected (?:accelerogram|velocity|displacement)", re.I),
+    "CSMIP volume 1, 2 or 3": re.compile(r"\s*(?:un)?corrected accelerogram", re.I),
+    "K-NET": re.compile(r"origin time\b", re.I),
+}
+
+
+def recognises(lines):
+    """Whether the first line is that of a known format that is not read."""
+    return _name(lines) is not None
+
+
+def read(lines):
+    """Refuse the file, saying what to do instead."""
+    raise SceneError("record", None, f"is a {_name(lines)} file, which is not read",
+                     "write its accelerations as two columns, time [s] and acceleration, and give their units")
+
+
+def _name(lines):
+    first = next((line for line in lines if line.strip()), "")[:200]
+    return next((name for name, sign in SIGNS.items() if sign.search(first)), None)

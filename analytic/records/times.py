@@ -1,0 +1,110 @@
+"""The sampling interval: stated by a header with its unit of time, or found from a column of printed times."""
+
+import re
+from decimal import Decimal
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from ..errors import SceneError
+from .numbers import NUMBER, number
+
+PER_SECOND = {"": 1, "s": 1, "sec": 1, "secs": 1, "second": 1, "seconds": 1, "ms": 1000, "msec": 1000, "msecs": 1000,
+              "millisec": 1000, "millisecs": 1000, "millisecond": 1000, "milliseconds": 1000}
+USABLE = (1e-7, 1e3)  # s: beyond it no step is one of a ground motion
+JITTER = 0.01  # of the step: clocks and single precision
+_STEP = re.compile(rf"({NUMBER})([A-Za-zµ]*)")
+
+
+def interval(where, token, unit=""):
+    """Sampling interval [s] from a token (".02", "10ms") and a word for its unit, "" for seconds.
+
+    Raises
+    ------
+    SceneError
+        Not a number, not above 0, or a unit of time that is not known; names `where`.
+    """
+    match = _STEP.fullmatch(token)
+    value = number(where, match[1] if match else token)
+    unit = match[2] or unit
+    if unit.lower() not in PER_SECOND:
+        raise SceneError(where, f"{token} {unit}" if unit not in token else token, "not a time in s or ms",
+                         "write the step in SEC or MSEC")
+    return usable(where, value / PER_SECOND[unit.lower()])
+
+
+def usable(where, dt):
+    """The interval dt [s] itself, refused where no record can have it."""
+    if dt <= 0:
+        raise SceneError(where, dt, "not a sampling interval", "give a step above 0 s")
+    if not USABLE[0] <= dt <= USABLE[1]:
+        raise SceneError(where, dt, "not a sampling interval of a ground motion", "give the step in seconds")
+    return dt
+
+
+def uniform_step(tokens):
+    """The interval of equally spaced times [as printed], which rounding to the printed digits may have moved.
+
+    The printed times are a uniform series if one line passes within half a unit of the last printed digit of all of
+    them; the step returned is the roundest number (of its value or its frequency) that such a line has: times of
+    256 Hz printed to 3 decimals give 1/256.
+
+    Parameters
+    ----------
+    tokens : sequence of str
+        Times, with decimal points, n >= 2.
+
+    Raises
+    ------
+    SceneError
+        A gap, a repetition or a drift; names the sample.
+    """
+    first = _exact(tokens[0])
+    times = np.fromiter((float(_exact(token) - first) for token in tokens), float, len(tokens))  # epochs lose nothing
+    step = times[-1] / (len(times) - 1)
+    steps = np.diff(times)
+    if (steps > 0).all():
+        if np.ptp(steps) <= 1e-6 * step:
+            return float(f"{step:.12g}")
+        for unit in (_printed_unit(tokens), np.full(len(times), JITTER * step)):
+            if unit.max() <= 0.5 * step and (found := _fit(times, unit, step)):
+                return found
+    usual = float(np.median(steps))
+    worst = int(np.abs(steps - usual).argmax()) + 1
+    raise SceneError(f"sample {worst + 1}, time", float(_exact(tokens[worst])),
+                     f"the sampling is not uniform: this step is {steps[worst - 1]:.6g} s, most are {usual:.6g} s",
+                     "resample the record at equal intervals")
+
+
+def _exact(token):
+    return Decimal(token.replace("D", "E").replace("d", "e"))
+
+
+def _printed_unit(tokens):
+    """Unit of the last printed digit of each time, shape (n,): all have as many decimals, or as many digits."""
+    parts = np.array([(len(number.digits), number.exponent) for token in tokens
+                      if (number := _exact(token).as_tuple())])
+    digits, exponents = parts.T
+    return 10.0 ** np.maximum(exponents.min(), exponents + digits - digits.max())
+
+
+def _fit(times, unit, step):
+    """The roundest step of a line that passes within unit/2 of all times; None without such a line."""
+    count = np.arange(len(times))
+
+    def excess(h):
+        """By how much a line of slope h misses the intervals time +- unit/2; convex in h."""
+        off = times - h * count
+        return (off - unit / 2).max() - (off + unit / 2).min()
+
+    reach = 2 * unit.max() / (len(times) - 1)
+    best = minimize_scalar(excess, bounds=(step - reach, step + reach), method="bounded",
+                           options={"xatol": 1e-4 * reach}).x
+    allowed = 1e-3 * unit.max()
+    if excess(best) > allowed:
+        return None
+    for digits in range(1, 13):
+        for rounded in (float(f"{best:.{digits}g}"), 1 / float(f"{1 / best:.{digits}g}")):
+            if excess(rounded) <= allowed:
+                return rounded
+    return best
