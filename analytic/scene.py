@@ -5,13 +5,25 @@ import json
 import math
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from .errors import SceneError
 from .motion import PulseMotion, SampledMotion
 
-Positive = Annotated[float, Field(gt=0)]
-NotNegative = Annotated[float, Field(ge=0)]
+# No quantity of a scene is beyond these in SI units, and their products neither overflow nor vanish.
+LEAST, MOST = 1e-40, 1e40
+
+
+def _not_vanishing(value):
+    if value < LEAST:
+        raise PydanticCustomError("greater_than_equal", "vanishes in products", {"ge": LEAST})
+    return value
+
+
+Positive = Annotated[float, Field(gt=0, le=MOST), AfterValidator(_not_vanishing)]
+NotNegative = Annotated[float, Field(ge=0, le=MOST)]
+Number = Annotated[float, Field(ge=-MOST, le=MOST)]
 
 
 class _Part(BaseModel):
@@ -77,10 +89,10 @@ class Bearings(_Part):
     """
 
     law: Literal["algebraic", "linear", "bouc-wen"] = "algebraic"
-    count: Annotated[int, Field(ge=1)] = 1
+    count: Annotated[int, Field(ge=1, le=10**6)] = 1
     ka: Positive
     kb: NotNegative | None = None
-    alpha: Annotated[float, Field(gt=1)] | None = None
+    alpha: Annotated[float, Field(gt=1, le=MOST)] | None = None
     delta_k: Positive = 1e-20
     damping: NotNegative = 0.0
 
@@ -106,9 +118,9 @@ class Start(_Part):
     """
 
     tilt: Annotated[float, Field(gt=-math.pi / 2, lt=math.pi / 2)] = 0.0
-    tilt_rate: float = 0.0
-    base_displacement: float = 0.0
-    base_velocity: float = 0.0
+    tilt_rate: Number = 0.0
+    base_displacement: Number = 0.0
+    base_velocity: Number = 0.0
 
 
 class Scene(_Part):

@@ -8,11 +8,13 @@ from typing import Annotated, Literal
 from pydantic import Field, ValidationError
 
 from .errors import SceneError
+from .files import read_plain
 from .motion import PULSES, PulseMotion
 from .records import UNITS, read_record
-from .scene import Base, Bearings, Block, NotNegative, Positive, Scene, Start, _Part
+from .scene import Base, Bearings, Block, NotNegative, Number, Positive, Scene, Start, _Part
 from .synthetic import DEFAULT_SEED, STYLES, synthetic_motion
 
+LARGEST, DEEPEST = 100_000, 100  # bytes of a scene file and dots in a line of it: far more than its keys take
 SHIPPED = Path(__file__).parent / "scenes"
 
 KEY_UNITS = {
@@ -34,12 +36,12 @@ class _Motion(_Part):
     record: str | None = None
     units: Literal[*UNITS] | None = None
     pulse: Literal[*PULSES] | None = None
-    amplitude: float | None = None
+    amplitude: Number | None = None
     frequency: Positive | None = None
     start: NotNegative | None = None
     synthetic: Literal[*STYLES] | None = None
-    seed: Annotated[int, Field(ge=0)] | None = None
-    scale: float = 1.0
+    seed: Annotated[int, Field(ge=0, lt=2**64)] | None = None
+    scale: Number = 1.0
 
     def motion(self, folder):
         """The ground motion; records are looked up from `folder`."""
@@ -66,7 +68,7 @@ class _Motion(_Part):
         try:
             return read_record(path, self.units, self.scale)
         except SceneError as error:
-            if error.key == "motion.units":
+            if error.key in ("motion.units", "motion.scale"):
                 raise SceneError(error.key, error.value, f"{error.problem} ({path.name})", error.remedy) from None
             found = "" if error.value is None else f" = {error.value!r}"
             where = "" if error.key in ("record", "motion.record") else f"{error.key}{found}: "
@@ -105,7 +107,7 @@ def load_scene(path):
         Names the file, the key, what was found there and the remedy; the first mistake only.
     """
     path = Path(path)
-    if not path.exists() and str(path) in shipped_scenes():
+    if str(path) in shipped_scenes() and not path.exists():
         path = SHIPPED / f"{path}.toml"
     try:
         return _scene(_parse(path), path)
@@ -115,11 +117,20 @@ def load_scene(path):
 
 def _parse(path):
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        text = read_plain(path, LARGEST).decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+        for number, line in enumerate(text.split("\n"), 1):
+            if line.split("#")[0].count(".") > DEEPEST:  # the parser's time grows with the square of a key's parts
+                raise SceneError("scene", None, f"line {number} is nested too deeply",
+                                 "write the tables of a scene file, one level")
+        return tomllib.loads(text)
     except OSError as error:
         raise SceneError("scene", None, f"cannot be read ({error.strerror})",
                          "give a scene file or one of " + ", ".join(shipped_scenes())) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except RecursionError:
+        raise SceneError("scene", None, "is nested too deeply", "write the tables of a scene file, one level") from None
+    except SceneError:
+        raise
+    except ValueError as error:  # TOML and its encoding, and integers of thousands of digits
         raise SceneError("scene", None, f"is not valid TOML ({error})", "mend the line named") from error
 
 
@@ -136,7 +147,8 @@ def _scene(table, path):
 def _scene_error(problems):
     """The first problem pydantic found as a SceneError; unknown keys first, as they explain missing ones."""
     problem = min(problems, key=lambda found: found["type"] != "extra_forbidden")
-    key = ".".join(str(part) for part in problem["loc"])
+    loc = [str(part) for part in problem["loc"]]
+    key = ".".join(loc)
     kind, value, context = problem["type"], problem["input"], problem.get("ctx", {})
     unit = f" [{KEY_UNITS[key]}]" if key in KEY_UNITS else ""
     if kind == "value_error":
@@ -145,7 +157,7 @@ def _scene_error(problems):
     if kind == "missing":
         return _missing(key)
     if kind == "extra_forbidden":
-        return _unknown(key, value)
+        return _unknown(loc, value)
     if kind == "finite_number":
         return SceneError(key, value, "not finite", f"give a finite number{unit}")
     if kind == "literal_error":
@@ -166,13 +178,10 @@ def _missing(key):
     return SceneError(key, None, "missing", f"add {key.split('.')[-1]} = ...{unit}")
 
 
-def _unknown(key, value):
-    *tables, name = key.split(".")
-    if tables:
-        part = {"block": Block, "base": Base, "bearings": Bearings, "motion": _Motion, "start": Start,
-                "run": _Run}[tables[0]]
-    else:
-        part = _SceneFile
+def _unknown(loc, value):
+    *tables, name = loc
+    parts = {"block": Block, "base": Base, "bearings": Bearings, "motion": _Motion, "start": Start, "run": _Run}
+    part = parts[tables[0]] if tables else _SceneFile
     close = difflib.get_close_matches(name, part.model_fields, 1)
     hint = f"write {close[0]}" if close else "remove it, known are " + ", ".join(part.model_fields)
-    return SceneError(key, value, "unknown key", hint)
+    return SceneError(".".join(loc), value, "unknown key", hint)
