@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 
 from . import kernel, layout
+from .decision import CAP_PERIODS, longest_duration
 from .layout import Ground
 from .motion import PulseMotion, SampledMotion
 from .scene import Block, Scene
@@ -25,7 +26,7 @@ class Outcomes:
     """Outcomes of many runs, arrays of one common shape.
 
     overturns, lifted : bool. failed : bool, the kernel could not go on. peak_tilt [rad]; peak_base_displacement [m].
-    impacts : int, until the outcome was certain. unstable_time is not kept.
+    impacts : int, until the outcome was certain. decided : bool, False where a duration cut it before it was certain.
     """
 
     overturns: np.ndarray
@@ -34,6 +35,7 @@ class Outcomes:
     peak_tilt: np.ndarray
     peak_base_displacement: np.ndarray
     impacts: np.ndarray
+    decided: np.ndarray
 
     @classmethod
     def of(cls, totals, shape):
@@ -43,7 +45,7 @@ class Outcomes:
         status = column(layout.STATUS)
         return cls(column(layout.WILL_OVERTURN) > 0, column(layout.LIFTED) > 0,
                    (status == layout.STUCK) | (status == layout.NOT_FINITE), column(layout.PEAK_TILT),
-                   column(layout.PEAK_X), column(layout.IMPACTS).astype(int))
+                   column(layout.PEAK_X), column(layout.IMPACTS).astype(int), column(layout.CERTAIN) > 0)
 
 
 @njit(cache=True, nogil=True)
@@ -115,7 +117,8 @@ def overturning_map(scene, shape, frequency_ratios, amplitude_ratios, *, toleran
     Parameters
     ----------
     scene : Scene
-        Block, base and bearings; its motion is replaced by the pulse, its duration must cover it.
+        Block, base and bearings; its motion is replaced by the pulse. Without a duration each run goes on until its
+        outcome is decided; one that is given must cover the pulse.
     shape : str
         Pulse, see `PulseMotion`.
     frequency_ratios : array
@@ -130,6 +133,8 @@ def overturning_map(scene, shape, frequency_ratios, amplitude_ratios, *, toleran
     pulses = np.tile(np.array(columns), (len(amplitudes), 1))
     pulses[:, 0] = np.repeat(amplitudes, len(frequencies))
     rows = np.tile(np.array(parameters(scene), dtype=float), (len(pulses), 1))
+    if scene.duration is None:
+        rows[:, _field("duration")] = pulses[:, 4] + longest_duration(scene.with_(motion=None))
     shaking = ground(PulseMotion(shape, 1.0, frequencies[0]))
     totals = run_rows(rows, pulses, shaking, _outcome_options(tolerance, REST_RATE), workers)
     return Outcomes.of(totals, (len(amplitudes), len(frequencies)))
@@ -140,17 +145,18 @@ def rocking_spectrum(motion, periods, slenderness, *, restitution_value=None, gr
     """Outcomes of rectangular blocks on rigid ground against their rocking period T_r = 2 pi/omega_r, shape (n,).
 
     Fig. 5(a) of the Caryatid paper is peak_tilt against `periods` [s]. The radius follows from T_r and eq. (1);
-    the mass does not matter.
+    the mass does not matter. Without a duration each run goes on until its outcome is decided.
     """
     periods = np.asarray(periods, dtype=float)
     radii = 3 * gravity * (periods / (2 * np.pi)) ** 2 / 4  # (1) with J_O = 4/3 m R^2
-    duration = motion.end if duration is None else duration
     block = Block(mass=1.0, radius=1.0, slenderness=slenderness, restitution=restitution_value)
-    scene = Scene(block=block, motion=motion, duration=float(duration), gravity=gravity)
+    scene = Scene(block=block, motion=motion, duration=duration, gravity=gravity)
     rows = np.tile(np.array(parameters(scene), dtype=float), (len(periods), 1))
     rows[:, _field("R")] = radii
     rows[:, _field("J")] = 4 / 3 * radii**2
     rows[:, _field("p2")] = (2 * np.pi / periods) ** 2
+    if duration is None:
+        rows[:, _field("duration")] = motion.end + CAP_PERIODS * periods
     shaking = ground(motion)
     pulses = np.tile(np.array(_pulse_row(shaking)), (len(periods), 1))
     totals = run_rows(rows, pulses, shaking, _outcome_options(tolerance, REST_RATE), workers)

@@ -1,12 +1,234 @@
-"""When is the outcome of a run decided? (The rule is written here; the kernel and the engines' runs both end by it.)"""
+"""When is the outcome of a run decided, and when can its peaks no longer grow?
+
+After the ground motion nothing brings energy in. What can still reach the block is
+
+    E = kinetic + m g R (cos(s gamma - phi) - cos(gamma)) + n_d (kb x^2/2 + S(z)),
+
+less P^2/(2 M) on a base without bearings, whose momentum P stays. S(z) is what a bearing's hysteresis can give back
+(`recoverable_energy`). E never rises: impacts and viscous forces lose energy, and S is a storage function of the
+bearing, z dx >= dS, as unloading is never softer than loading. To overturn, the block must pass |phi| = gamma, where
+gravity alone holds B = m g R (1 - cos gamma). So the outcome is decided where
+
+(a) the block has lifted before and E < B: it rocks and will not overturn; or
+(b) it is in full contact and the largest force E allows gives less than the uplift acceleration g tan(gamma): it will
+    never lift again. An undamped base keeps E > B for ever and is decided by this; or
+(c) on rigid ground, by the energy integral of free rocking (`events.settle`): beyond the barrier and moving outward
+    it overturns.
+
+Decided is not finished: a run without a duration also waits until neither peak can grow by more than
+`PEAK_TOLERANCE`, and for some periods of the block and of the base, as one wants to see the swings.
+"""
 
 import math
 
-# A run without a duration goes on for at least these after the motion's end, and at most CAP_PERIODS.
-TAIL_PERIODS, CAP_PERIODS = 3.0, 200.0
+from numba import njit
+
+from .bearing import ALGEBRAIC, BOUC_WEN, BearingLaw
+
+# Share by which a reported peak could still grow when a run without a duration ends.
+PEAK_TOLERANCE = 1e-4
+# Periods after the motion (the longer of block and base): at least shown, and at most waited for a decision.
+TAIL_PERIODS, CAP_PERIODS = 3.0, 100.0
+# A base softer than this many rocking periods does not stretch the tail any further.
+SLOWEST_BASE = 10.0
+
+
+@njit(cache=True)
+def recoverable_energy(law, dk, alpha, d0, f0, z):
+    """S(z) [J] of one bearing: the integral of |z| dx on the way back to z = 0; at least z^2/(2 (ka - kb)).
+
+    bouc-wen: dz/dx = (ka - kb)/2 (1 + |z|/f0) on that way. algebraic: the path of eq. (11), (12) between the virtual
+    travels D of z and of 0, from D^-a = D0 + a (f0 + |z|)/(ka - kb) with a = alpha - 1.
+    """
+    z = abs(z)
+    if law < ALGEBRAIC or z == 0:
+        return 0.0
+    least = 0.5 * z * z / dk
+    if law == BOUC_WEN:
+        return max(least, 2 / dk * f0 * (z - f0 * math.log1p(z / f0)))
+    a = alpha - 1
+    begin, end = -math.log(d0 + a * (f0 + z) / dk) / a, -math.log(d0 + a * f0 / dk) / a  # log D
+    length = end - begin
+    if end > 600:
+        return math.inf  # alpha near 1: a tail without end
+    power = length if abs((1 - a) * length) < 1e-8 else math.expm1((1 - a) * length) / (1 - a)
+    travel = math.exp(begin) * math.expm1(length)
+    return max(least, (f0 + dk * d0 / a) * travel - dk / a * math.exp((1 - a) * begin) * power)
+
+
+@njit(cache=True)
+def remaining_energy(par, rocking, tilt, rate, x, v, z):
+    """E [J] that can still reach the block, see the module's docstring."""
+    kinetic, gravity, momentum = 0.5 * par.M * v * v, 0.0, par.M * v
+    if not par.on_base:
+        kinetic = 0.0
+    if rocking:
+        s = math.copysign(1.0, tilt if tilt != 0 else rate)
+        c = par.R * math.cos(s * par.gamma - tilt)
+        kinetic += 0.5 * par.J * rate * rate
+        if par.on_base:
+            kinetic += par.m * c * v * rate
+            momentum += par.m * c * rate
+        gravity = 2 * par.m * par.g * par.R * math.sin(par.gamma - 0.5 * abs(tilt)) * math.sin(0.5 * abs(tilt))
+    if not par.on_base:
+        return kinetic + gravity
+    if par.count == 0:
+        return max(kinetic - 0.5 * momentum * momentum / par.M, 0.0) + gravity
+    back = recoverable_energy(par.law, par.dk, par.alpha, par.d0, par.f0, z)
+    return kinetic + gravity + par.count * (0.5 * par.kb * x * x + back)
+
+
+@njit(cache=True)
+def largest_force(par, energy):
+    """Largest force of all bearings [N] that `energy` allows in full contact.
+
+    By Cauchy and Schwarz over kinetic, elastic and recoverable energy, the last at least z^2/(2 (ka - kb)); or with
+    the hysteretic part at its limit f0.
+    """
+    n = float(par.count)
+    viscous = n * n * par.damping * par.damping / par.M
+    if par.law < ALGEBRAIC:
+        return math.sqrt(2 * energy * (n * par.kb + viscous))
+    return min(math.sqrt(2 * energy * (n * (par.kb + par.dk) + viscous)),
+               n * par.f0 + math.sqrt(2 * energy * (n * par.kb + viscous)))
+
+
+@njit(cache=True)
+def will_not_overturn(par, rocking, lifted, tilt, rate, x, v, z):
+    """After the motion: is the outcome "stands" or "rocks" certain? Rules (a) and (b)."""
+    if not (rocking or par.on_base):
+        return True
+    energy = remaining_energy(par, rocking, tilt, rate, x, v, z)
+    if lifted and energy < par.m * par.g * par.R * (1 - math.cos(par.gamma)) and abs(tilt) < par.gamma:
+        return True  # (a)
+    return not rocking and largest_force(par, energy) < par.M * par.g * math.tan(par.gamma)  # (b)
+
+
+@njit(cache=True)
+def peaks_are_final(par, rocking, tilt, rate, x, v, z, peak_tilt, peak_x, peak_acceleration):
+    """After a decision: can no reported peak grow by more than `PEAK_TOLERANCE`? A negative peak is not asked for.
+
+    A base without bearings slides on for ever: its displacement has no peak.
+    """
+    energy, slack = remaining_energy(par, rocking, tilt, rate, x, v, z), 1 + PEAK_TOLERANCE
+    if not par.on_base:
+        highest = math.cos(par.gamma) + energy / (par.m * par.g * par.R)
+        return not rocking or highest <= 1 and par.gamma - math.acos(highest) <= peak_tilt * slack
+    if rocking or largest_force(par, energy) >= par.M * par.g * math.tan(par.gamma):
+        return False
+    if par.count == 0:
+        return True
+    stiffness, force = par.count * par.kb, par.count * (par.kb * x + z)
+    if peak_acceleration >= 0 and largest_force(par, energy) > peak_acceleration * par.M * slack:
+        return False
+    if stiffness == 0:  # the rest of the energy spent against the limit force
+        return energy <= PEAK_TOLERANCE * par.count * par.f0 * peak_x
+    # from the origin; or about the resting place, as no branch of a law is softer than kb
+    near = abs(x) + abs(force) / stiffness + math.sqrt(par.M / stiffness * v * v + (force / stiffness) ** 2)
+    return min(math.sqrt(2 * energy / stiffness), near) <= peak_x * slack
+
+
+def period(scene):
+    """The longer of rocking and isolation period [s]: 2 pi/omega_r and 2 pi sqrt((m + m_b)/(n_d k))."""
+    rocking = 2 * math.pi / scene.rocking_frequency
+    if scene.bearings is None:
+        return rocking
+    law = BearingLaw.of(scene.bearings)
+    stiffness = law.count * (law.kb or law.dk)
+    return max(rocking, min(2 * math.pi * math.sqrt(scene.total_mass / stiffness), SLOWEST_BASE * rocking))
+
+
+def motion_end(scene):
+    """End of the ground motion [s], 0 without one."""
+    return 0.0 if scene.motion is None else scene.motion.end
 
 
 def shortest_duration(scene):
-    """End of the motion and some rocking periods after it [s]."""
-    end = scene.motion.end if scene.motion is not None else 0.0
-    return end + TAIL_PERIODS * 2 * math.pi / scene.rocking_frequency
+    """What a run without a duration covers at least [s]: the motion and `TAIL_PERIODS` after it."""
+    return motion_end(scene) + TAIL_PERIODS * period(scene)
+
+
+def longest_duration(scene):
+    """Where a run without a duration ends, decided or not [s]: `CAP_PERIODS` after the motion."""
+    return motion_end(scene) + CAP_PERIODS * period(scene)
+
+
+def is_decided(scene, response, *, contact_tilt=0.0):
+    """Is the outcome of a run certain at its end? Rules (a), (b) and (c), applied to the run's own end state.
+
+    Parameters
+    ----------
+    scene : Scene
+    response : Response
+    contact_tilt : float
+        Tilt [rad] up to which the solver's block counts as in full contact.
+
+    Returns
+    -------
+    bool
+        False for a failed run, and where it ended before the ground motion.
+    """
+    return _at_end(scene, response, contact_tilt)[0]
+
+
+def is_finished(scene, response, *, contact_tilt=0.0):
+    """Is the outcome of a run certain at its end, and can its peaks no longer grow? See `is_decided`."""
+    decided, par, state = _at_end(scene, response, contact_tilt)
+    if not decided or state is None:
+        return decided
+    return bool(peaks_are_final(par, *state, response.peak_tilt, response.peak_base_displacement,
+                                response.peak_base_acceleration))
+
+
+def _at_end(scene, response, contact_tilt):
+    """(decided, kernel's parameters, (rocking, tilt, rate, x, v, z) or None where it has overturned or failed)."""
+    from .solver import parameters
+
+    if response.outcome in ("overturns", "failed"):
+        return response.outcome == "overturns", None, None
+    par, end = parameters(scene), response.end
+    if end.time < motion_end(scene) * (1 - 1e-9):
+        return False, par, None
+    x, v, z = end.base_displacement, end.base_velocity, 0.0
+    if par.count:
+        z = end.bearing_force / par.count - par.kb * x - par.damping * v
+        z = min(max(z, -par.f0), par.f0)
+    rocking = abs(end.tilt) > contact_tilt or contact_tilt == 0 and end.tilt_rate != 0
+    tilt, rate = (end.tilt, end.tilt_rate) if rocking else (0.0, 0.0)
+    state = rocking, tilt, rate, x, v, z
+    return bool(will_not_overturn(par, rocking, response.outcome == "rocks", tilt, rate, x, v, z)), par, state
+
+
+def until_decided(simulate, scene, *, at_least=0.0, finished=is_finished):
+    """``simulate(scene)`` with durations that grow until the run has finished, or the longest is reached.
+
+    Parameters
+    ----------
+    simulate : callable
+        From a scene with a duration to a `Response`.
+    scene : Scene
+        Without a duration.
+    at_least : float
+        The first duration tried [s], if it is longer than `shortest_duration`.
+    finished : callable
+        Of (scene, response): may the run end here?
+    """
+    longest, begin = longest_duration(scene), motion_end(scene)
+    duration = min(max(shortest_duration(scene), at_least), longest)
+    while True:
+        response = simulate(scene.with_(duration=duration))
+        if response.outcome == "failed" or duration >= longest or finished(scene, response):
+            return response
+        duration = min(begin + 2 * (duration - begin), longest)
+
+
+def model_warnings(scene, friction_demand, min_normal_ratio):
+    """Sentences on what the model assumes and this run does not keep: contact that only presses, and no sliding."""
+    found = []
+    if min_normal_ratio <= 0:
+        found.append(f"the least normal force at the contact is {min_normal_ratio:.3g} m g: the block would jump, and "
+                     "the verdict is outside the model")
+    if scene.friction is not None and friction_demand > scene.friction:
+        found.append(f"the friction demand {friction_demand:.3g} is above the scene's friction {scene.friction:.3g}: "
+                     "the block would slide, and the verdict is outside the model")
+    return tuple(found)

@@ -13,6 +13,7 @@ from numba import njit
 from . import layout as L
 from ._unowned import unowned
 from .bearing import ALGEBRAIC, BOUC_WEN, virtual_travel
+from .decision import peaks_are_final, will_not_overturn
 from .events import (
     NEARLY_ELASTIC,
     direction_from_rest,
@@ -78,6 +79,7 @@ def run(par, ground, options, totals):
     totals[:] = 0.0
     totals[L.UNSTABLE_TIME], totals[L.NORMAL] = -1.0, 1.0
     peak_tilt, peak_x, will_overturn = abs(par.tilt), abs(par.x), False
+    held_friction, held_normal = 0.0, 1.0
     written, n_impacts, n_uplifts, n_rests, steps, idle = 0, 0, 0, 0, 0, 0
 
     tilt, rate, bx, bv, z = par.tilt, par.rate, par.x, par.v, par.z
@@ -104,7 +106,8 @@ def run(par, ground, options, totals):
             elif segment == 1:
                 kind, a0, finish = ground_kind, scale, min(ground_end, par.duration)
         order = SHORT_ORDER if ground_kind == LINEAR_GROUND and segment < last_segment else options.order
-        free = kind == QUIET and finish == par.duration and not par.on_base
+        after = kind == QUIET and begin >= ground_end  # the motion is over
+        free = after and not par.on_base
         segment += 1
         length, tau = finish - begin, 0.0
         while tau < length:
@@ -112,13 +115,28 @@ def run(par, ground, options, totals):
             if h <= ROUNDING * finish:
                 break
             if kind == QUIET and mode == L.CONTACT and not par.on_base:  # nothing moves
+                if options.decide and after:
+                    h = min(h, max(options.shortest - t, 0.0))
+                    status = L.DECIDED
                 written = write_history(history, written, options.output_step, t, h, P, 0, False, False)
+                t += h
                 break
-            if free and options.decide and mode == L.ROCKING:
-                certain, will_overturn, top, more = settle(par, s, tilt, rate)
-                if certain:
-                    peak_tilt, n_impacts, status = max(peak_tilt, top), n_impacts + more, L.DECIDED
-                    break
+            if options.decide and after:
+                rocking = mode == L.ROCKING
+                if not record and not par.on_base:
+                    certain, will_overturn, top, more = settle(par, s, tilt, rate)
+                    if certain:
+                        peak_tilt, n_impacts, status = max(peak_tilt, top), n_impacts + more, L.DECIDED
+                        break
+                elif t >= options.shortest * (1 - ROUNDING):
+                    lifted = n_uplifts > 0 or par.tilt != 0 or par.rate != 0
+                    if will_not_overturn(par, rocking, lifted, tilt, rate, bx, bv, z) and peaks_are_final(
+                            par, rocking, tilt, rate, bx, bv, z, peak_tilt, peak_x,
+                            totals[L.PEAK_ACCELERATION] if record else -1.0):
+                        status = L.DECIDED
+                        break
+                else:
+                    h = min(h, options.shortest - t)
             steps += 1
 
             # ---- the series of this step, and how far it reaches
@@ -222,6 +240,8 @@ def run(par, ground, options, totals):
                 written = write_history(history, written, options.output_step, t, h, P, used, par.on_base, rocking)
             if record and h > 0:
                 read_contact(par, s, rocking, P, used, highest, h, totals)
+                if abs(tilt) <= par.gamma:  # what comes later is the last fall, or it comes back
+                    held_friction, held_normal = totals[L.FRICTION], totals[L.NORMAL]
                 if rocking or par.on_base:
                     read_energy(par, rocking, P, used, highest, h, totals)
             if rocking:
@@ -289,10 +309,18 @@ def run(par, ground, options, totals):
                 break
         if mode != L.OVERTURNED and status == L.COMPLETE:
             begin, t = finish, finish
+    if mode == L.OVERTURNED:
+        totals[L.FRICTION], totals[L.NORMAL] = held_friction, held_normal
     totals[L.STATUS], totals[L.MODE], totals[L.TIME] = status, mode, t
     workspace[0, 0], scratch[0, 0] = 0.0, ground_samples[0]  # used last, so alive until here
     totals[L.PEAK_TILT], totals[L.PEAK_X], totals[L.STEPS] = peak_tilt, peak_x, steps
     totals[L.IMPACTS], totals[L.UPLIFTS], totals[L.RESTS] = n_impacts, n_uplifts, n_rests
     totals[L.WILL_OVERTURN] = will_overturn
-    totals[L.LIFTED] = n_uplifts > 0 or par.tilt != 0 or par.rate != 0
+    lifted = n_uplifts > 0 or par.tilt != 0 or par.rate != 0
+    certain = mode == L.OVERTURNED or status == L.DECIDED
+    if status == L.COMPLETE and not certain and t >= ground_end:
+        certain = will_not_overturn(par, mode == L.ROCKING, lifted, tilt, rate, bx, bv, z)
+        if not certain and not par.on_base:
+            certain, will_overturn, _, _ = settle(par, s, tilt, rate)  # (c)
+    totals[L.LIFTED], totals[L.CERTAIN] = lifted, certain
     return (tilt, rate, bx, bv, z), impacts[:n_impacts], uplifts[:n_uplifts], rests[:n_rests], history[:written]

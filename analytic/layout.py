@@ -8,8 +8,8 @@ CONTACT, ROCKING, OVERTURNED = range(3)
 COMPLETE, DECIDED, STUCK, NOT_FINITE = range(4)
 # Slots of the totals a run returns.
 (STATUS, MODE, TIME, PEAK_TILT, PEAK_X, PEAK_ACCELERATION, UNSTABLE_TIME, FRICTION, NORMAL, INPUT, HYSTERETIC,
- VISCOUS, IMPACT_LOSS, STEPS, IMPACTS, UPLIFTS, RESTS, WILL_OVERTURN, LIFTED) = range(19)
-TOTALS = 19
+ VISCOUS, IMPACT_LOSS, STEPS, IMPACTS, UPLIFTS, RESTS, WILL_OVERTURN, LIFTED, CERTAIN) = range(20)
+TOTALS = 20
 # Rows of the workspace: Taylor coefficients of tilt, rate, sin and cos, base displacement and velocity, bearing memory,
 # bearing force, absolute base acceleration, ground acceleration; then scratch.
 (PHI, W, S, C, X, V, Q, F, ABSOLUTE, GROUND, EVENT, PRODUCT_A, PRODUCT_B) = range(13)
@@ -20,6 +20,6 @@ NONE, UPLIFT, IMPACT, REVERSAL, OVERTURNING = range(5)
 # Ground motion: sampled (dt, samples) or a pulse; `kind` is QUIET, LINEAR_GROUND (sampled), HARMONIC
 # (scale sin(phase + frequency (t - start))) or RICKER. A rectangular pulse is HARMONIC with frequency 0.
 Ground = namedtuple("Ground", "kind dt samples scale frequency phase start end")
-# What to do: `record` keeps events (up to `capacity` of a kind), ledger and diagnostics; `decide` stops as soon as the
-# outcome is certain.
-Options = namedtuple("Options", "tolerance order rest_rate record decide output_step capacity")
+# What to do: `record` keeps events (up to `capacity` of a kind), ledger and diagnostics; `decide` stops when
+# the outcome is certain and the peaks are final (decision.py), but not before the time `shortest`.
+Options = namedtuple("Options", "tolerance order rest_rate record decide output_step capacity shortest")

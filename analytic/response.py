@@ -101,6 +101,7 @@ class Response:
     impacts: tuple[Impact, ...]
     uplifts: tuple[float, ...]  # s
     rests: tuple[float, ...]  # s, limit times of accumulating impacts
+    # where it overturns, these two stop where |tilt| was last below the slenderness: any falling block loses contact
     friction_demand: float  # max |H|/N at the contact
     min_normal_ratio: float  # min N/(m g) at the contact
     end: State

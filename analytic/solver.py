@@ -8,6 +8,7 @@ import numpy as np
 
 from . import kernel, layout
 from .bearing import BearingLaw
+from .decision import longest_duration, model_warnings, shortest_duration
 from .errors import SettingError
 from .layout import Ground, Options
 from .motion import RICKER_PERIODS, SampledMotion
@@ -37,7 +38,8 @@ def parameters(scene):
     return Parameters(model.m, model.M, model.J, model.R, model.gamma, model.g, scene.rocking_frequency**2,
                       model.restitution, model.mass_share, model.on_base, law.law, law.count, law.kb, law.dk, law.alpha,
                       law.d0, law.f0, law.damping, start.tilt, start.tilt_rate, start.base_displacement,
-                      start.base_velocity, law.start(start.base_displacement), scene.duration)
+                      start.base_velocity, law.start(start.base_displacement),
+                      longest_duration(scene) if scene.duration is None else scene.duration)
 
 
 def ground(motion, scale=1.0):
@@ -57,7 +59,7 @@ def ground(motion, scale=1.0):
 
 
 def options(tolerance=TOLERANCE, order=ORDER, rest_rate=REST_RATE, record=True,
-            decide=False, output_step=0.0, capacity=CAPACITY):
+            decide=False, output_step=0.0, capacity=CAPACITY, shortest=0.0):
     """The kernel's `Options`, checked.
 
     Raises
@@ -71,11 +73,15 @@ def options(tolerance=TOLERANCE, order=ORDER, rest_rate=REST_RATE, record=True,
         raise SettingError(f"order = {order!r}: give an integer from 4 to {MAX_ORDER}")
     if not 0 < rest_rate <= 1e-2:
         raise SettingError(f"rest_rate = {rest_rate!r}: give a value above 0, up to 1e-2")
-    return Options(float(tolerance), order, float(rest_rate), record, decide, float(output_step), capacity)
+    return Options(float(tolerance), order, float(rest_rate), record, decide, float(output_step), capacity,
+                   float(shortest))
 
 
 def simulate(scene, *, history=True, tolerance=TOLERANCE, rest_rate=REST_RATE, output_step=None):
     """Simulate a scene with the analytic rocking model.
+
+    Without a duration the run ends when its outcome is decided and its peaks are final (`decision`). A block that the
+    duration cuts short on rigid ground where it is certain to overturn is followed until it has.
 
     Parameters
     ----------
@@ -88,7 +94,7 @@ def simulate(scene, *, history=True, tolerance=TOLERANCE, rest_rate=REST_RATE, o
     rest_rate : float
         Impacts slower than this fraction of omega_r are summed to their limit and end in rest.
     output_step : float or None
-        [s]; by default the sampling interval of the motion, or duration/2000.
+        [s]; by default the sampling interval of the motion, or a 2000th of the (shortest) duration.
 
     Returns
     -------
@@ -101,15 +107,21 @@ def simulate(scene, *, history=True, tolerance=TOLERANCE, rest_rate=REST_RATE, o
     """
     motion = scene.motion
     if output_step is None:
-        output_step = motion.dt if isinstance(motion, SampledMotion) else scene.duration / HISTORY_POINTS
+        span = shortest_duration(scene) if scene.duration is None else scene.duration
+        output_step = motion.dt if isinstance(motion, SampledMotion) else span / HISTORY_POINTS
     if output_step <= 0 or not math.isfinite(output_step):
         raise SettingError(f"output_step = {output_step!r}: give a time above 0 [s]")
     settings = {"tolerance": tolerance, "rest_rate": rest_rate, "order": ORDER, "short_order": SHORT_ORDER}
-    chosen = options(tolerance, rest_rate=rest_rate, output_step=output_step if history else 0.0)
+    chosen = options(tolerance, rest_rate=rest_rate, output_step=output_step if history else 0.0,
+                     decide=scene.duration is None,
+                     shortest=shortest_duration(scene) if scene.duration is None else 0.0)
     par, shaking, totals = parameters(scene), ground(motion), np.zeros(layout.TOTALS)
     _warm()
     begin = time.process_time()
     result = kernel.run(par, shaking, chosen, totals)
+    if totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCKING:  # cut while it falls
+        par = par._replace(duration=par.duration + longest_duration(scene))
+        result = kernel.run(par, shaking, chosen, totals)
     most = int(totals[[layout.IMPACTS, layout.UPLIFTS, layout.RESTS]].max())
     if most > chosen.capacity:
         result = kernel.run(par, shaking, chosen._replace(capacity=most), totals)
@@ -165,9 +177,19 @@ def _response(scene, par, totals, result, cpu, settings, history):
         uplifts=tuple(uplifts.tolist()), rests=tuple(rests.tolist()),
         friction_demand=float(totals[layout.FRICTION]), min_normal_ratio=float(totals[layout.NORMAL]),
         end=end, cpu_seconds=cpu, steps=int(totals[layout.STEPS]), settings=settings, versions=dict(versions()),
-        failure=failure, energy=_energy(scene, par, totals, end),
+        failure=failure, decided=failure is None and bool(totals[layout.CERTAIN]),
+        warnings=_warnings(scene, totals, v), energy=_energy(scene, par, totals, end),
         history=_history(scene, table, end) if history else None,
     )
+
+
+def _warnings(scene, totals, velocity):
+    found = list(getattr(scene.motion, "warnings", ()))
+    found += model_warnings(scene, float(totals[layout.FRICTION]), float(totals[layout.NORMAL]))
+    if scene.base is not None and scene.bearings is None and velocity != 0:
+        found.append(f"the base slides on at {velocity:.3g} m/s with no bearing to stop it: its displacement has no "
+                     "peak, the one given is that at the end of the run")
+    return tuple(found)
 
 
 def _peak_ground_acceleration(motion, until):

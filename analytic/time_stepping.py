@@ -7,12 +7,14 @@ exact one of eqs (7), (8), so everything that differs from the event-driven mode
 import math
 import platform
 import time
+from dataclasses import replace
 
 import numba
 import numpy as np
 from numba import njit
 
 from .bearing import hysteretic_force
+from .decision import is_decided, until_decided
 from .errors import SettingError
 from .response import History, Impact, Response, State
 from .rocking import RockingModel
@@ -41,6 +43,8 @@ def simulate_time_stepping(scene, *, step, history=True):
     """
     if not (step > 0 and math.isfinite(step)):
         raise SettingError(f"step = {step!r} is not positive: give a finite value above 0 [s]")
+    if scene.duration is None:
+        return until_decided(lambda cut: simulate_time_stepping(cut, step=step, history=history), scene)
     model, start, law = RockingModel.of(scene), scene.start, RockingModel.of(scene).bearing
     count = math.ceil(scene.duration / step * (1 - 1e-12))
     block = (model.m, model.M, model.J, model.R, model.gamma, model.g, model.on_base, model.restitution,
@@ -57,7 +61,7 @@ def simulate_time_stepping(scene, *, step, history=True):
     seconds = time.process_time() - started
     peak_tilt, peak_x, peak_acceleration, friction, normal = extremes
     rocked = start.tilt != 0 or start.tilt_rate != 0 or len(uplifts) > 0
-    return Response(
+    response = Response(
         engine="time-stepping", variant="semi-implicit Euler",
         outcome="overturns" if over else "rocks" if rocked else "stands",
         overturning_time=taken * step if over else None, unstable_time=None if unstable < 0 else unstable,
@@ -68,6 +72,7 @@ def simulate_time_stepping(scene, *, step, history=True):
         versions={"python": platform.python_version(), "numpy": np.__version__, "numba": numba.__version__},
         scene=scene.name,
         history=History(*rows[:taken + 1].T, ground[:taken + 1]) if history else None)
+    return replace(response, decided=is_decided(scene, response))
 
 
 @njit(cache=True)

@@ -5,9 +5,11 @@ would write. One stretch of smooth motion is one call of `solve_ivp`: it ends at
 motion, at an impact, an uplift, a reversal of the base (where the bearing's history is fixed) or at overturning.
 """
 
+import functools
 import math
 import platform
 import time
+from dataclasses import replace
 
 import numpy as np
 import scipy
@@ -15,6 +17,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from .bearing import ALGEBRAIC, BOUC_WEN
+from .decision import is_decided, model_warnings, until_decided
 from .errors import SettingError
 from .motion import SampledMotion
 from .response import Energy, Failure, History, Impact, Response, State
@@ -64,12 +67,16 @@ def simulate_twin(scene, *, method="DOP853", rtol=1e-10, atol=None, history=True
     for name, value in (("rtol", rtol), ("atol", atol), ("max_step", max_step), ("rest_rate", rest_rate)):
         if value is not None and not (value > 0 and math.isfinite(value)):
             raise SettingError(f"{name} = {value!r} is not positive: give a finite value above 0")
+    if scene.duration is None:
+        return until_decided(functools.partial(simulate_twin, method=method, rtol=rtol, atol=atol, history=history,
+                                               energy=energy, max_step=max_step, rest_rate=rest_rate), scene)
     run = _Run(scene, {"method": method, "rtol": rtol, "atol": rtol if atol is None else atol,
                        "max_step": max_step, "rest_rate": rest_rate}, history, energy)
     run.model.bearing.hysteretic(0.0, 1e-6)  # compiled before the clock starts
     started = time.process_time()
     failure = run.go()
-    return run.response(time.process_time() - started, failure)
+    response = run.response(time.process_time() - started, failure)
+    return replace(response, decided=is_decided(scene, response))
 
 
 class _Run:
@@ -114,6 +121,7 @@ class _Run:
         self.steps, self.stalled, self.impact_loss = 0, 0, 0.0
         self.peak_tilt, self.peak_x = abs(start.tilt), abs(start.base_displacement)
         self.peak_acceleration, self.friction, self.normal = 0.0, 0.0, 1.0
+        self.contact = []  # (friction demand, normal force over m g) since the block was last below its slenderness
         self.rows = [] if history else None
         self.stored = self.mechanical_energy()
 
@@ -361,8 +369,11 @@ class _Run:
             absolute = self.contact_acceleration(y, ground)
             horizontal, normal = model.m * absolute, model.m * model.g
         self.peak_acceleration = max(self.peak_acceleration, abs(absolute))
-        self.friction = max(self.friction, abs(horizontal) / normal if normal > 0 else math.inf)
-        self.normal = min(self.normal, normal / (model.m * model.g))
+        self.contact.append((abs(horizontal) / normal if normal > 0 else math.inf, normal / (model.m * model.g)))
+        if abs(tilt) <= model.gamma:  # what comes later is the last fall, or it comes back
+            self.friction = max(self.friction, *(demand for demand, _ in self.contact))
+            self.normal = min(self.normal, *(normal for _, normal in self.contact))
+            self.contact.clear()
         self.peak_tilt = max(self.peak_tilt, abs(tilt))
         x, v = (float(y[2]), float(y[3])) if model.on_base else (0.0, 0.0)
         self.peak_x = max(self.peak_x, abs(x))
@@ -381,6 +392,9 @@ class _Run:
     def response(self, cpu_seconds, failure):
         outcome = "rocks" if self.rocked else "stands"
         outcome = "failed" if failure else "overturns" if self.overturning is not None else outcome
+        if outcome != "overturns" and self.contact:
+            self.friction = max(self.friction, *(demand for demand, _ in self.contact))
+            self.normal = min(self.normal, *(normal for _, normal in self.contact))
         history = None
         if self.rows is not None:
             history = History(*np.array(self.rows).reshape(-1, len(History.COLUMNS)).T)
@@ -393,4 +407,5 @@ class _Run:
             min_normal_ratio=self.normal, end=self.state(), cpu_seconds=cpu_seconds, steps=self.steps,
             settings=dict(self.settings), scene=self.scene.name, failure=failure,
             versions={"python": platform.python_version(), "numpy": np.__version__, "scipy": scipy.__version__},
-            energy=self.ledger() if self.energy else None, history=history)
+            energy=self.ledger() if self.energy else None, history=history,
+            warnings=model_warnings(self.scene, self.friction, self.normal))
