@@ -3,13 +3,13 @@
 import functools
 
 import analytic
-from analytic.decision import until_decided
+from analytic import decision
 
 
-def run_until_decided(simulate):
+def until_decided(simulate):
     """Let an engine's ``simulate(scene, ...)`` take scenes without a duration.
 
-    The analytic model's end is where the first try ends, as engines end alike; an engine whose own end state is not
+    The first try ends where the analytic model's run does, as engines end alike; an engine whose own end state is not
     decided there goes on for longer (`analytic.decision.until_decided`).
     """
     @functools.wraps(simulate)
@@ -17,10 +17,7 @@ def run_until_decided(simulate):
         if scene.duration is not None:
             return simulate(scene, **options)
         end = analytic.simulate(scene, history=False).end.time
-        return until_decided(lambda cut: simulate(cut, **options), scene, at_least=end, finished=_decided)
+        return decision.until_decided(lambda cut: simulate(cut, **options), scene, at_least=end,
+                                      finished=lambda _, response: response.decided)
 
     return run
-
-
-def _decided(scene, response):
-    return response.decided

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
+from analytic.decision import is_decided
 from analytic.motion import SampledMotion
 from analytic.response import Failure, History, Impact, Response, State
 
@@ -78,7 +79,7 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
                           f"{gain:.3g} of its energy scale, at most {GAIN_LIMIT} can be error of the steps", end)
     swings = find_swings(trace)
     impacts, uplifts, rests = find_events(scene, trace, swings)
-    demand, normal, acceleration = contact_measures(scene, trace)
+    demand, normal, acceleration = contact_measures(scene, trace, falls=overturning_time is not None)
     peak = _peak(trace.time, trace.tilt, trace.tilt_rate)
     if failure is not None:
         outcome = "failed"
@@ -86,7 +87,7 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
         outcome = "overturns"
     else:
         outcome = "rocks" if len(swings) else "stands"
-    return Response(
+    response = Response(
         outcome=outcome, overturning_time=overturning_time, unstable_time=_unstable_time(scene, trace),
         peak_tilt=peak, peak_tilt_ratio=peak / scene.block.slenderness,
         peak_base_displacement=_peak(trace.time, trace.base_displacement, trace.base_velocity),
@@ -94,6 +95,7 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
         friction_demand=demand, min_normal_ratio=normal, end=end, failure=failure,
         warnings=_warnings(scene, warnings),
         history=_history(scene, trace) if history else None, **given)
+    return replace(response, decided=is_decided(scene, response, contact_tilt=trace.contact_tilt))
 
 
 def failed_response(scene, failure, *, engine, variant, settings, versions, cpu_seconds=math.nan, steps=0,
@@ -103,7 +105,7 @@ def failed_response(scene, failure, *, engine, variant, settings, versions, cpu_
     return Response(
         engine=engine, variant=variant, outcome="failed", overturning_time=None, unstable_time=None, peak_tilt=nan,
         peak_tilt_ratio=nan, peak_base_displacement=nan, peak_base_acceleration=nan, impacts=(), uplifts=(),
-        rests=(), friction_demand=nan, min_normal_ratio=nan, end=State(nan, nan, nan, nan, nan, nan),
+        rests=(), decided=False, friction_demand=nan, min_normal_ratio=nan, end=State(nan, nan, nan, nan, nan, nan),
         cpu_seconds=cpu_seconds, steps=steps, settings=settings, versions=versions, scene=scene.name,
         failure=failure, warnings=_warnings(scene, warnings))
 
@@ -271,8 +273,11 @@ def _contact_acceleration(model, scene, trace, steps=slice(None)):
     return scene.motion.acceleration(time) if scene.motion else np.zeros(len(time))
 
 
-def contact_measures(scene, trace):
-    """(max |H|/N, min N/(m g), max |absolute base acceleration| [m/s2]) over the steps of a trace."""
+def contact_measures(scene, trace, falls=False):
+    """(max |H|/N, min N/(m g), max |absolute base acceleration| [m/s2]) over the steps of a trace.
+
+    Where the block `falls`, the first two end at the last step below the slenderness.
+    """
     model = ArrayModel.of(scene)
     level = _contact_acceleration(model, scene, trace)
     # In contact above the uplift acceleration the block is off the base already, unseen by the engine's resolution.
@@ -288,7 +293,10 @@ def contact_measures(scene, trace):
         H, N = model.contact_forces(side, tilt, rate, tilting, absolute[flight])
         demand[flight] = np.where(N > 0, np.abs(H) / np.where(N > 0, N, 1.0), np.inf)
         normal[flight] = N / (model.m * model.g)
-    return float(demand.max()), float(normal.min()), float(np.abs(absolute).max())
+    held = slice(None)
+    if falls and (below := np.flatnonzero(np.abs(trace.tilt) <= scene.block.slenderness)).size:
+        held = slice(0, int(below[-1]) + 2)
+    return float(demand[held].max()), float(normal[held].min()), float(np.abs(absolute).max())
 
 
 def _history(scene, trace):
