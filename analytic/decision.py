@@ -53,7 +53,7 @@ def recoverable_energy(law, dk, alpha, d0, f0, z):
         return math.inf  # alpha near 1: a tail without end
     power = length if abs((1 - a) * length) < 1e-8 else math.expm1((1 - a) * length) / (1 - a)
     travel = math.exp(begin) * math.expm1(length)
-    return max(least, (f0 + dk * d0 / a) * travel - dk / a * math.exp((1 - a) * begin) * power)
+    return max(least, dk / a * math.exp((1 - a) * begin) * power - (f0 + dk * d0 / a) * travel)
 
 
 @njit(cache=True)

@@ -107,7 +107,6 @@ def run(par, ground, options, totals):
                 kind, a0, finish = ground_kind, scale, min(ground_end, par.duration)
         order = SHORT_ORDER if ground_kind == LINEAR_GROUND and segment < last_segment else options.order
         after = kind == QUIET and begin >= ground_end  # the motion is over
-        free = after and not par.on_base
         segment += 1
         length, tau = finish - begin, 0.0
         while tau < length:
@@ -315,12 +314,11 @@ def run(par, ground, options, totals):
     workspace[0, 0], scratch[0, 0] = 0.0, ground_samples[0]  # used last, so alive until here
     totals[L.PEAK_TILT], totals[L.PEAK_X], totals[L.STEPS] = peak_tilt, peak_x, steps
     totals[L.IMPACTS], totals[L.UPLIFTS], totals[L.RESTS] = n_impacts, n_uplifts, n_rests
-    totals[L.WILL_OVERTURN] = will_overturn
     lifted = n_uplifts > 0 or par.tilt != 0 or par.rate != 0
     certain = mode == L.OVERTURNED or status == L.DECIDED
     if status == L.COMPLETE and not certain and t >= ground_end:
         certain = will_not_overturn(par, mode == L.ROCKING, lifted, tilt, rate, bx, bv, z)
         if not certain and not par.on_base:
             certain, will_overturn, _, _ = settle(par, s, tilt, rate)  # (c)
-    totals[L.LIFTED], totals[L.CERTAIN] = lifted, certain
+    totals[L.LIFTED], totals[L.CERTAIN], totals[L.WILL_OVERTURN] = lifted, certain, will_overturn
     return (tilt, rate, bx, bv, z), impacts[:n_impacts], uplifts[:n_uplifts], rests[:n_rests], history[:written]

@@ -139,7 +139,8 @@ def _scene(table, path):
         file = _SceneFile(**table)
         motion = file.motion.motion(path.parent) if file.motion else None
         return Scene(block=file.block, base=file.base, bearings=file.bearings, motion=motion, start=file.start,
-                     duration=file.run.duration, gravity=file.gravity, friction=file.friction, name=file.name or path.stem)
+                     duration=file.run.duration, gravity=file.gravity, friction=file.friction,
+                     name=file.name or path.stem)
     except ValidationError as error:
         raise _scene_error(error.errors()) from None
 

@@ -74,8 +74,6 @@ BAD = {
     "no mass": (replaced("mass = 3172.05\n", ""), "block.mass: missing; add mass = ... [kg]"),
     "no block": (replaced("[block]\nmass = 3172.05\nradius = 1.0884\nslenderness = 0.28\n", ""),
                  "block: missing; add a table [block]"),
-    "no run": (replaced("[run]\nduration = 20.0\n", ""), "run: missing; add a table [run]"),
-    "no duration": (replaced("duration = 20.0\n", ""), "run.duration: missing; add duration = ... [s]"),
     "no base mass": (replaced("mass = 212.0\n", ""), "base.mass: missing; add mass = ... [kg]"),
     "no alpha": (replaced("alpha = 44.69\n", ""), "bearings.alpha: missing; add it: the algebraic law needs it"),
     "no kb": (replaced("kb = 6.22e3\n", ""), "bearings.kb: missing; add it: the algebraic law needs it"),

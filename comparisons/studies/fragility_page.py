@@ -134,14 +134,13 @@ def _cause(result, scene, label):
 
 
 def _checks(result):
-    parts = [f"{_scene_name(result, row['scene'])}: {row['decided_later']} of {row['runs']}"
-             for row in _part(result, "check")]
-    first = _part(result, "check")[0]
+    undecided = sum(row.get("undecided", row.get("decided_later")) for row in _part(result, "check"))
+    runs = sum(row["runs"] for row in _part(result, "check"))
     failed = len(_part(result, "failure"))
     unfitted = "".join(f" No curve fits {row['solver']} ({row['scene']}): {row['reason']}."
                        for row in _part(result, "fit") if row["median"] is None)
-    return (f"The runs end after {first['duration']:g} s of {first['whole']:g} s; outcomes of the analytic model that "
-            f"the rest would change: {'; '.join(parts)}. Runs that failed: {failed}. “{_twin(result)}” is the analytic "
+    return (f"Runs of the analytic model whose outcome was not decided at their end: {undecided} of {runs}. "
+            f"Runs that failed: {failed}. “{_twin(result)}” is the analytic "
             f"model with its restitution changed by 1 part in {1 / result.settings['twin']:.0f}: disagreements as many "
             "as it has with itself are nothing to blame an engine for." + unfitted)
 

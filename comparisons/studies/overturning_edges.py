@@ -16,7 +16,6 @@ LOWEST, HIGHEST = 0.5, 20.0  # of the amplitudes searched
 SCAN = 400  # points of the first scan, equidistant in the logarithm: 0.9 % apart
 TOLERANCE = 1e-6  # of the analytic boundaries, relative
 BESIDE = 2e-5  # relative distance from a boundary at which the analytic run tells how long overturning takes
-LINGER = 5.0  # over omega_r, time that runs go on after that
 CUT = 0.45  # where a bracket is divided: not in the middle, which may be the analytic boundary itself
 WIDEST = 5e-3  # half-width of a bracket, relative, beyond which a boundary counts as not found
 ROOM = 0.9  # of the way to the middle between two boundaries, what a search may use
@@ -27,7 +26,7 @@ class Edge:
     """A boundary of the analytic model along the amplitude.
 
     rises: overturning lies above it. mode: impacts before overturning. low, high: amplitudes half way to the
-    neighbouring boundaries. duration [s] in which runs beside it are decided. min_normal: least normal force over m g
+    neighbouring boundaries. min_normal: least normal force over m g
     of the analytic model beside it; below 0 that model holds the corner down, where a block would slide or jump.
     """
 
@@ -38,7 +37,6 @@ class Edge:
     mode: int
     low: float
     high: float
-    duration: float
     min_normal: float
 
 
@@ -61,7 +59,8 @@ def pulse(scene, shape, frequency, amplitude):
 def edges(scene, shape, frequencies):
     """All `Edge`s of the analytic model, a list for each frequency."""
     def evaluate(batch):
-        scenes = [_long(scene, pulse(scene, shape, frequencies[index], math.exp(point))) for index, point in batch]
+        scenes = [scene.with_(motion=pulse(scene, shape, frequencies[index], math.exp(point)), duration=None)
+                  for index, point in batch]
         outcomes = simulate_many(scenes)
         if outcomes.failed.any():
             raise RuntimeError(f"the analytic model failed on {scenes[int(outcomes.failed.argmax())].motion.label}")
@@ -82,22 +81,13 @@ def _edges(scene, shape, frequency, transitions):
         beside = amplitude * (1 + BESIDE if rises else 1 - BESIDE)
         found.append(Edge(shape, frequency, amplitude, rises, int(one.after if rises else one.before),
                           limits[k], limits[k + 1],
-                          *deciding_time(scene, pulse(scene, shape, frequency, beside))))
+                          least_normal(scene, pulse(scene, shape, frequency, beside))))
     return found
 
 
-def deciding_time(scene, motion):
-    """(duration [s] in which a run under `motion` is decided, least N/(m g) in the analytic model).
-
-    The duration reaches past the motion's end, and past overturning in the model.
-    """
-    response = simulate(_long(scene, motion), history=False)
-    decided = max(motion.end, response.overturning_time or 0.0)
-    return decided + LINGER / scene.rocking_frequency, response.min_normal_ratio
-
-
-def _long(scene, motion):
-    return scene.with_(motion=motion, duration=motion.end + 60.0 / scene.rocking_frequency)
+def least_normal(scene, motion):
+    """Least N/(m g) in the analytic model under `motion`."""
+    return simulate(scene.with_(motion=motion, duration=None), history=False).min_normal_ratio
 
 
 def locate(edge, ladder, tolerance):

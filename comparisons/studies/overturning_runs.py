@@ -10,7 +10,7 @@ from engines import get_engine
 from ..cases import Case
 from ..refine import drive
 from ..statistics import cohen_kappa, confusion
-from .overturning_edges import HIGHEST, LOWEST, deciding_time, edges, locate, pulse
+from .overturning_edges import HIGHEST, LOWEST, edges, least_normal, locate, pulse
 from .workshop import FIRST_SCRIPT_FRICTION, name_of, say
 
 SHAPES = ("one-sine", "one-cosine", "ricker")
@@ -23,7 +23,6 @@ BAND = 0.01  # relative distance from a boundary beyond which no solver may diff
 LADDER = ((2e-4, 1.2e-2), (3e-2,), (0.1,), (0.3,))
 KNOB_LADDER = ((2e-3, 2e-2), (0.1,), (0.3,))
 TOLERANCE, KNOB_TOLERANCE = 2e-5, 2e-4
-UNDECIDED = 0.9  # of the slenderness: a block that stands with more tilt than this at the end may yet overturn
 
 KNOB_FREQUENCIES = (2.0, 8.0)
 # (solver, variant, knob, values): the step, the accuracy or the stiffness, beside the default one
@@ -55,7 +54,7 @@ def compute(work, quick=False):
         solver (indices into the settings), frequency, amplitude, analytic outcome, solver's outcome (1 overturns,
         0 not, -1 failed or undecided), whether of the scan.
     """
-    grounds = {name: load_scene(shipped).with_(block=block, motion=None)
+    grounds = {name: load_scene(shipped).with_(block=block, motion=None, duration=None)
                for name, (shipped, block) in GROUNDS.items()}
     shapes = SHAPES[:1] if quick else SHAPES
     frequencies = (2.0, 4.0) if quick else FREQUENCIES
@@ -109,7 +108,7 @@ def _maps(grounds, shapes, quick):
     for ground, scene in grounds.items():
         for shape in shapes:
             say(f"analytic map: {ground}, {shape}")
-            outcomes = overturning_map(scene.with_(duration=60.0), shape, frequency, amplitude)
+            outcomes = overturning_map(scene, shape, frequency, amplitude)
             impacts = np.minimum(outcomes.impacts, 32767)
             arrays[f"{ground}/{shape}"] = np.where(outcomes.overturns, impacts, -1).astype(np.int16)
     return arrays
@@ -123,25 +122,22 @@ class _Log:
         self.points, self.failures = {}, []
 
     def run(self, points, label, scan=False):
-        """Outcomes (True, False, None) of (engine, ground, shape, frequency, amplitude, duration, least N) tuples."""
+        """Outcomes (True, False, None) of (engine, ground, shape, frequency, amplitude, least N) tuples."""
         cases = []
-        for (solver, variant, *settings), ground, shape, frequency, amplitude, duration, _ in points:
+        for (solver, variant, *settings), ground, shape, frequency, amplitude, _ in points:
             scene = self._grounds[ground]
             motion = pulse(scene, shape, frequency, amplitude)
-            cases.append(Case(scene.with_(motion=motion, duration=duration), solver, variant,
+            cases.append(Case(scene.with_(motion=motion), solver, variant,
                               {"history": False, **(settings[0] if settings else {})}))
         answers = []
         for point, row in zip(points, self._work.run(cases, label), strict=True):
-            engine, ground, shape, frequency, amplitude, duration, normal = point
+            engine, ground, shape, frequency, amplitude, normal = point
             answer = None
-            if not row.failed:
-                falls = row.values["outcome"] == "overturns"
-                slenderness = self._grounds[ground].block.slenderness
-                if falls or abs(row.values["end_tilt"]) < UNDECIDED * slenderness:
-                    answer = falls
+            if not row.failed and row.values["decided"]:
+                answer = row.values["outcome"] == "overturns"
             if answer is None:
-                failure = row.failure or {"kind": "undecided", "reason": "stands near the unstable point at the end",
-                                          "message": f"tilt {row.values['end_tilt']:.6g} rad at {duration:.6g} s"}
+                failure = row.failure or {"kind": "undecided", "reason": "the longest run ends without a certain outcome",
+                                          "message": f"tilt {row.values['end_tilt']:.6g} rad"}
                 self.failures.append({"part": "failure", "solver": _label(engine), "ground": ground, "shape": shape,
                                       "frequency": frequency, "amplitude": amplitude, "min_normal": normal, **failure})
             if engine in ENGINES:
@@ -156,8 +152,8 @@ class _Log:
             scene = self._grounds[ground]
             for frequency in columns:
                 for amplitude in map(float, amplitudes):
-                    duration, normal = deciding_time(scene, pulse(scene, shape, frequency, amplitude))
-                    points.append((engine, ground, shape, frequency, amplitude, duration, normal))
+                    normal = least_normal(scene, pulse(scene, shape, frequency, amplitude))
+                    points.append((engine, ground, shape, frequency, amplitude, normal))
         self.run(points, f"scan: {_label(engine)}", scan=True)
 
 
@@ -170,8 +166,7 @@ def _search(log, found, engines, part, ladder, tolerance):
         points = []
         for index, amplitude in batch:
             engine, ground, edge = jobs[index]
-            points.append((engine, ground, edge.shape, edge.frequency, float(amplitude), edge.duration,
-                           edge.min_normal))
+            points.append((engine, ground, edge.shape, edge.frequency, float(amplitude), edge.min_normal))
         return log.run(points, f"{part}: {', '.join(dict.fromkeys(_label(engine) for engine in engines))}")
 
     located = drive([locate(edge, ladder, tolerance) for _, _, edge in jobs], evaluate)
@@ -192,7 +187,7 @@ def _judge(log, grounds, shapes, found):
     for _, ground, shape, frequency, amplitude in keys:
         scene = grounds[ground]
         motion = pulse(scene, shape, frequency, amplitude)
-        scenes.append(scene.with_(motion=motion, duration=motion.end + 60.0 / scene.rocking_frequency))
+        scenes.append(scene.with_(motion=motion))
     responses = [simulate(scene, history=False) for scene in scenes]
     reference = np.array([response.outcome == "overturns" for response in responses])
     normal = np.array([response.min_normal_ratio for response in responses])

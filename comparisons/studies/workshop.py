@@ -25,7 +25,7 @@ FIRST_SCRIPT_FRICTION = 0.5 * 0.5  # of PyBullet's first-script: its default on 
 def outcome(response):
     """What the overturning studies keep of a run (a sweep's reducer)."""
     return {"outcome": response.outcome, "time": response.overturning_time, "impacts": response.impact_count,
-            "end_tilt": response.end.tilt}
+            "end_tilt": response.end.tilt, "decided": response.decided}
 
 
 @dataclass(frozen=True)

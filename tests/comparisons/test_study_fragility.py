@@ -82,7 +82,7 @@ def test_counts_are_those_of_single_simulations(tmp_path):
         assert row["overturned"] == (values == 1).sum() and row["size"] == COUNT
         assert (row["low"], row["high"]) == pytest.approx(wilson(row["overturned"], COUNT))
     check, = (row for row in result.rows if row["part"] == "check")
-    assert check["decided_later"] == 0
+    assert check["undecided"] == 0
 
 
 def test_failed_runs_are_left_out_in_pairs_and_told(tmp_path):

@@ -28,7 +28,7 @@ def cost_rows(motion, quick=False):
     Errors are those of the final displacement over the peak, of each law against its own tight solution.
     """
     rounds = 3 if quick else 7
-    record = {law: caryatid(ISOLATED, motion).with_(bearings={"law": law}) for law in LAWS}
+    record = {law: caryatid(ISOLATED, motion).with_(bearings={"law": law}, duration=motion.end) for law in LAWS}
     pulse = {law: scene.with_(motion=PulseMotion("one-sine", 3.0, math.pi), duration=10.0)
              for law, scene in record.items()}
     return [

@@ -22,7 +22,7 @@ HISTORY_STEP = 0.01  # s, at which histories are kept
 
 def caryatid(name, motion):
     """The free-standing or the isolated Caryatid under `motion`."""
-    return load_scene(SHIPPED[name]).with_(motion=motion, duration=motion.end)
+    return load_scene(SHIPPED[name]).with_(motion=motion, duration=None)
 
 
 def slender_block(motion, period, slenderness):
@@ -39,7 +39,7 @@ def oscillator(motion, period, damping):
     bearing = Bearings(law="linear", count=1, ka=float(scene.total_mass * omega**2),
                        damping=float(2 * damping * omega * scene.total_mass))
     return Scene(block=scene.block.model_copy(update={"slenderness": STOCKY}), base=Base(mass=scene.base.mass),
-                 bearings=bearing, motion=motion, duration=float(motion.end + period), gravity=scene.gravity)
+                 bearings=bearing, motion=motion, gravity=scene.gravity)
 
 
 def scalars(response):

@@ -54,7 +54,7 @@ def make_results(folder, motion, *, quick=False, progress=True, say=lambda text:
         rows, histories, missing = simulations(motion, store, quick, progress)
     say("spectra")
     arrays = spectra(motion, quick)
-    isolated = caryatid(ISOLATED, motion)
+    isolated = caryatid(ISOLATED, motion).with_(duration=motion.end)
     analytic = {row["scene"]: row for row in rows if row["part"] == "run" and row["solver"] == "analytic"}
     rows += equivalent_oscillators(motion, properties(isolated.bearings, isolated.total_mass, paper.X_MAX),
                                    analytic[ISOLATED]["peak_base_displacement"])

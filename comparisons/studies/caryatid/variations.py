@@ -128,12 +128,9 @@ def contact(motion, quick=False):
 
 
 def _demand(scene):
-    """(friction demand, least N/(m g), stays upright) of a run, up to its unstable point if it overturns."""
+    """(friction demand, least N/(m g), stays upright) of a run, up to its last fall if it overturns."""
     response = simulate(scene, history=False)
-    upright = response.outcome != "overturns"
-    if not upright:
-        response = simulate(scene.with_(duration=response.unstable_time), history=False)
-    return response.friction_demand, response.min_normal_ratio, upright
+    return response.friction_demand, response.min_normal_ratio, response.outcome != "overturns"
 
 
 def impact_friction(scene):
