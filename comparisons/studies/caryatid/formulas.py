@@ -146,6 +146,7 @@ def _rocking_run():
 def _momentum_residual():
     """Eq. (2) integrated: (m + m_b)(v + int a_g dt) + int n_d f dt over a run, over the largest of its impulses."""
     scene = load_scene("caryatid-isolated")
+    scene = scene.with_(duration=scene.motion.end)
     history = simulate(scene, output_step=scene.motion.dt / 8).history
     ground = cumulative_simpson(history.ground_acceleration, x=history.time, initial=0)
     bearings = cumulative_simpson(history.bearing_force, x=history.time, initial=0)
