@@ -14,8 +14,9 @@ NAME = "two columns"
 # A line that begins like a number is data and must be read, or else damage would pass as a header.
 DATA = re.compile(r"\s*(?:[-+.,;0-9]|(?:nan|inf|infinity)\b)", re.I)
 COMMENT = ("#", "%", "!", "//")
+HEADER_LINES = 200
 NUMERIC = re.compile(r"[-+]?[.,]?[0-9]")
-TIME = re.compile(r"(?<![a-z])(?:time|t)(?: ?[(\[,/] ?| in |[ _])(µs|[a-z]+)\b", re.I)
+TIME = re.compile(r"(?<![a-z])(?:time|t)[ ,:=_/(\[]+(?:in |units?[ :=]+)?[(\[]?(µs|[a-z]+)\b", re.I)
 OTHER_TIMES = {"us", "µs", "usec", "ns", "min", "minute", "minutes", "h", "hour", "hours", "samples"}
 REMEDY = "write time [s] and acceleration, two numbers a line"
 
@@ -67,7 +68,7 @@ def _split(lines):
             header.append((at, text))
         elif text:
             rows.append((at, text.split("#")[0].strip()))
-    if not rows:
+    if not rows or len(header) > HEADER_LINES:
         first = next(line for line in lines if line.strip())
         raise SceneError("line 1", first.strip()[:60], *UNKNOWN)
     return header, rows

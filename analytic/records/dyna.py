@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import SceneError
 from .content import HEADER_WIDTH, Content
-from .numbers import NUMBER, check_count, count, fortran_values
+from .numbers import NUMBER, check_count, count, fortran_values, number
 from .times import interval
 from .units import Unit, factor_of
 
@@ -68,6 +68,6 @@ def _peak(header, values):
     if not re.fullmatch(NUMBER, stated) or not len(values):
         return ()
     peak = float(np.abs(values).max())
-    if abs(abs(float(stated)) - peak) <= 0.01 * peak:
+    if abs(abs(number("PGA_CM/S^2", stated)) - peak) <= 0.01 * peak:
         return ()
     return (f"the header states a peak of {stated} cm/s2, the data have {peak:.6g}: check that the file is whole",)

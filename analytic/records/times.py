@@ -46,8 +46,8 @@ def uniform_step(tokens):
     """The interval of equally spaced times [as printed], which rounding to the printed digits may have moved.
 
     The printed times are a uniform series if one line passes within half a unit of the last printed digit of all of
-    them; the step returned is the roundest number (of its value or its frequency) that such a line has: times of
-    256 Hz printed to 3 decimals give 1/256.
+    them; the step returned is that of a whole frequency, or else the roundest, that such a line has: times of 256 Hz
+    printed to 3 decimals give 1/256.
 
     Parameters
     ----------
@@ -103,8 +103,7 @@ def _fit(times, unit, step):
     allowed = 1e-3 * unit.max()
     if excess(best) > allowed:
         return None
-    for digits in range(1, 13):
-        for rounded in (float(f"{best:.{digits}g}"), 1 / float(f"{1 / best:.{digits}g}")):
-            if excess(rounded) <= allowed:
-                return rounded
-    return best
+    whole = max(round(1 / best), 1)  # most instruments sample at a whole frequency
+    round_steps = (step for digits in range(1, 13)
+                   for step in (float(f"{best:.{digits}g}"), 1 / float(f"{1 / best:.{digits}g}")))
+    return next((step for step in (1 / whole, *round_steps) if excess(step) <= allowed), best)

@@ -25,7 +25,7 @@ _BY = r"(?:/|[ .*·](?=s(?:ec)?(?:\^|\*\*)?[-−⁻(])|(?=s-2))"  # "cm/s2", "cm
 _QUOTIENT = re.compile(rf"(?<![a-z0-9/.])({_LENGTH}{_BY}[^\s,;:\]=]+)", re.I)
 _AFTER_NUMBER = re.compile(r"[0-9.] ?$")
 # Short words are units only where a header introduces one.
-_INTRODUCED = re.compile(r"\bunits?\b(?: (?:of|in|is|are)\b)?[ :=]*[(\[]?((?:% ?)?[a-z][^\s,;:\]=]*)", re.I)
+_INTRODUCED = re.compile(r"\bunits?\b(?: (?:of|in|is|are)(?=[ :=(\[]))?[ :=]*[(\[]?((?:% ?)?[a-z][^\s,;:\]=]*)", re.I)
 _SUGGESTED = re.compile(r"(?:\bin |[(\[] ?|\b(?:acceleration|accel|acc)\.? (?!in ))((?:% ?)?[a-z][^\s,;:\]=]*)", re.I)
 _ACCELERATION = re.compile(r"(?<![a-z])acc(?:el|elerations?|elerograms?)?(?![a-z])", re.I)
 _OTHER = re.compile(r"(?<![a-z])(?:velocit(?:y|ies)|veloc|vel|displacements?|displ|disp)(?![a-z])", re.I)

@@ -1,0 +1,182 @@
+"""Damaged records and scene files against strict readers that share no code with the project's: both read the same, or
+the file is refused in one message. And the kept files that once broke something.
+"""
+
+import os
+import time
+import tomllib
+from collections import Counter
+from pathlib import Path
+
+import pytest
+import strict_records
+import strict_scenes
+from mutated_files import cases, records, scenes
+
+from analytic import SceneError, load_scene
+from analytic.errors import FILE_LENGTH, KEY_LENGTH, TEXT_LENGTH, VALUE_LENGTH
+from analytic.records import read_record
+
+CORPUS = Path(__file__).parent / "corpus"
+LONGEST_MESSAGE = FILE_LENGTH + KEY_LENGTH + VALUE_LENGTH + 2 * TEXT_LENGTH + 200  # characters
+HANG = 2.0  # s of CPU time
+DEFAULTS = {"gravity": 9.81, "start.tilt": 0.0, "start.tilt_rate": 0.0, "start.base_displacement": 0.0,
+            "start.base_velocity": 0.0, "bearings.law": "algebraic", "bearings.count": 1, "bearings.delta_k": 1e-20,
+            "bearings.damping": 0.0}
+
+
+def judged(kind, path, content, units):
+    """How the project's reader and the strict one judge a file: "same", "both refuse", "only ... reads", "differ"."""
+    path.write_bytes(content)
+    begin = time.process_time()
+    try:
+        found = read_record(path, units) if kind == "record" else load_scene(path)
+    except SceneError as error:
+        found = None
+        message = str(error)
+        assert message.startswith(f"{path}: ") and message.isprintable() and len(message) < LONGEST_MESSAGE
+        assert error.key is not None and error.remedy
+    assert time.process_time() - begin < HANG
+    try:
+        expected = strict_records.read(content, units) if kind == "record" else strict_scenes.read(content)
+    except (strict_records.Refused, strict_scenes.Refused):
+        return "both refuse" if found is None else "only the project reads"
+    if found is None:
+        return "only the strict one reads"
+    same = same_record if kind == "record" else same_scene
+    return "same" if same(found, expected) else "differ"
+
+
+def same_record(motion, expected):
+    least, largest, samples = expected
+    return (len(samples) == len(motion.samples) and least * (1 - 1e-12) <= motion.dt <= largest * (1 + 1e-12)
+            and all(abs(one - other) <= 1e-15 * abs(other) for one, other in zip(motion.samples, samples, strict=True)))
+
+
+def same_scene(scene, tables):
+    expected = DEFAULTS | {f"{table}.{key}" if table else key: value for table, part in tables.items()
+                           for key, value in part.items() if table != "motion"}
+    found = {"gravity": scene.gravity, "friction": scene.friction, "run.duration": scene.duration}
+    for table in ("block", "base", "bearings", "start"):
+        part = getattr(scene, table)
+        if (part is None) != (table not in tables and table != "start"):
+            return False
+        found |= {f"{table}.{key}": getattr(part, key) for key in type(part).model_fields} if part else {}
+    motion = tables.get("motion")
+    if motion and "pulse" in motion:
+        pulse = (motion["pulse"], motion["amplitude"] * motion.get("scale", 1.0), motion["frequency"],
+                 motion.get("start", 0.0))
+        if (scene.motion.shape, scene.motion.amplitude, scene.motion.frequency, scene.motion.start) != pulse:
+            return False
+    return (motion is None) == (scene.motion is None) and all(
+        value == expected.get(key) for key, value in found.items())
+
+
+def count_judgements(folder, number, seed):
+    """{judgement: count} of `number` damaged files, and the files on which the readers differ."""
+    counts, wrong = Counter(), []
+    for kind, name, content, units in cases(number, seed):
+        judgement = judged(kind, folder / "file", content, units)
+        counts[kind, judgement] += 1
+        if judgement in ("differ", "only the project reads"):
+            wrong.append((judgement, name, units, content))
+    return counts, wrong
+
+
+@pytest.mark.parametrize("name, text, units", records(), ids=[name for name, *_ in records()])
+def test_undamaged_records_are_judged_the_same(tmp_path, name, text, units):
+    judgement = judged("record", tmp_path / "file", text.encode(), units)
+    assert judgement == ("both refuse" if "velocities" in name else "same")
+
+
+@pytest.mark.parametrize("name, text", scenes(), ids=[name for name, _ in scenes()])
+def test_undamaged_scenes_are_judged_the_same(tmp_path, name, text):
+    assert judged("scene", tmp_path / "file", text.encode(), None) == "same"
+
+
+def test_damaged_files(tmp_path):
+    counts, wrong = count_judgements(tmp_path, 1500, seed=0)
+    assert not wrong
+    for kind in ("record", "scene"):  # the damage is neither all fatal nor all harmless
+        assert counts[kind, "same"] > 50 and counts[kind, "both refuse"] > 150
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(850)
+@pytest.mark.parametrize("seed", range(1, 4))
+def test_many_damaged_files(tmp_path, seed, record_property):
+    counts, wrong = count_judgements(tmp_path, 10_000, seed)
+    for (kind, judgement), number in sorted(counts.items()):
+        print(f"{kind:6s} {judgement:26s} {number}")
+        record_property(f"{kind}, {judgement}", number)
+    assert not wrong
+    assert sum(number for (_, judgement), number in counts.items() if "only" in judgement) <= 0.002 * 10_000
+
+
+def corpus():
+    return tomllib.loads((CORPUS / "index.toml").read_text(encoding="utf-8"))
+
+
+def test_every_file_of_the_corpus_is_listed():
+    assert set(corpus()) == {file.name for file in CORPUS.iterdir()} - {"index.toml"}
+
+
+@pytest.mark.parametrize("name", corpus())
+def test_corpus(name):
+    """A kept file is refused with the words listed, or read with the step, the samples and the warning listed."""
+    entry = corpus()[name]
+    path = CORPUS / name
+    begin = time.process_time()
+    if "refused" in entry:
+        with pytest.raises(SceneError) as caught:
+            load_scene(path) if name.endswith(".toml") else read_record(path, entry.get("units"))
+        assert entry["refused"] in str(caught.value)
+        assert len(str(caught.value)) < LONGEST_MESSAGE
+    else:
+        motion = read_record(path, entry.get("units"))
+        assert motion.dt == entry["dt"] and len(motion.samples) == entry["n"]
+        assert motion.samples[:2].tolist() == pytest.approx(entry["first"], rel=1e-15)
+        assert [word for word in ("peak", "interval") if word in " ".join(motion.warnings)] == entry.get("warned", [])
+    assert time.process_time() - begin < HANG
+
+
+LONG = {
+    "digits": "1" * 1_000_000,
+    "stuck numbers": "-1.0" * 300_000 + "x",
+    "points": "." * 1_000_000,
+    "commas": "0,1" * 300_000,
+    "exponents": "1E" * 500_000,
+    "blanks": "0 1" + " " * 1_000_000 + "x",
+    "letters": "a" * 1_000_000,
+    "brackets": "time (" * 200_000,
+    "units": "units of " * 300_000 + "\n0 1\n1 2\n",
+    "hashes": "0 1\n" + "#" * 1_000_000,
+    "NPTS": "NPTS=" * 200_000 + "\n0 1\n1 2\n",
+    "one-line header": "NPTS= " + "9" * 1_000_000 + ", DT= .01\n1 2\n",
+    "carriage returns": "\r" * 1_000_000,
+    "header lines": "UNITS: G\n" * 100_000 + "0 1 2\n",
+}
+
+
+@pytest.mark.parametrize("text", LONG.values(), ids=LONG)
+@pytest.mark.parametrize("top", ["", "a\nb\nACCELERATION IN UNITS OF G\nNPTS= 3, DT= .01 SEC\n", "EVENT_NAME: x\n"])
+def test_no_text_takes_more_than_one_pass(tmp_path, top, text):
+    path = tmp_path / "long.txt"
+    path.write_text(top + text)
+    begin = time.process_time()
+    with pytest.raises(SceneError) as caught:
+        read_record(path, "g")
+    assert time.process_time() - begin < HANG
+    assert len(str(caught.value)) < LONGEST_MESSAGE
+
+
+@pytest.mark.parametrize("read", [read_record, load_scene])
+@pytest.mark.parametrize("kind", ["pipe", "device", "folder", "NUL", "long", "half a character", "nothing"])
+def test_what_is_no_file_is_refused_at_once(tmp_path, read, kind):
+    path = {"device": "/dev/zero", "folder": tmp_path, "NUL": "a\0b", "long": "a" * 300, "nothing": "",
+            "half a character": "\udcff"}.get(kind, tmp_path / "pipe")
+    if kind == "pipe":
+        os.mkfifo(path)
+    with pytest.raises(SceneError, match="cannot be read") as caught:
+        read(path)
+    assert str(caught.value).isprintable()
