@@ -297,7 +297,8 @@ def _at2(lines):
         counts, steps = _named(line, "npts"), _named(line, "dt")
         if len(old) >= 4 and old[2] == "npts" and (old[3] == "dt" or old[3][:3] in ("dt(", "dt[")) and all(
                 sign in DIGITS for sign in old[0]):
-            inside = "".join(sign for sign in "".join(old[3:])[3:] if sign in LETTERS)
+            behind = "".join(old[3:])[2:]
+            inside = "".join(sign for sign in behind.partition(")")[0] if sign in LETTERS and behind[0] in "([")
             count, step = old[0], _step(old[1], inside)
         elif counts and steps:
             if len(counts) > 1 or len(steps) > 1:
