@@ -174,3 +174,24 @@ def test_real_records(name, units, dt, count, peak, unit):
         assert motion.peak == pytest.approx(abs(stated) * unit, rel=1e-6)
     last = float(text.split()[-1])
     assert motion.samples[-1] == pytest.approx(last * unit, rel=1e-12)
+
+
+@pytest.mark.skipif(not (RECORDS / "formats").is_dir(), reason="the recorded motions are not here (../shared/records)")
+def test_real_near_fault_record():
+    motion = read_record(RECORDS / "formats" / "RSN1063_NORTHR_RRS228.AT2")
+    assert (motion.dt, len(motion.samples), motion.warnings) == (0.01, 1991, ())
+    assert motion.peak / G == pytest.approx(0.8741, abs=5e-5)
+    assert motion.peak_time == pytest.approx(2.560, abs=1e-9)
+
+
+@pytest.mark.skipif(not (RECORDS / "formats").is_dir(), reason="the recorded motions are not here (../shared/records)")
+@pytest.mark.parametrize("name, problem", [
+    ("RSN1063_NORTHR_RRS228.AT2.gz", "is packed by gzip; unpack it first"),
+    ("ferndale.v2", "is a CSMIP volume 1, 2 or 3 file, which is not read; write its accelerations as two columns"),
+    ("ce36456p_CE36456.V2", "is a CSMIP"), ("CE89146.V2", "is a CSMIP"), ("CE58667.V2", "is a CSMIP"),
+    ("AOM001.EW", "is a K-NET file"), ("0111a.smc", "is a USGS SMC file"), ("cosmos.V2c", "is a COSMOS file"),
+    ("README.md", "not a known record format"),
+])
+def test_real_files_of_formats_that_are_not_read(name, problem):
+    with pytest.raises(SceneError, match=problem):
+        read_record(RECORDS / "formats" / name, "g")
