@@ -12,7 +12,7 @@ from .errors import SceneError
 from .motion import PulseMotion, SampledMotion
 
 # No quantity of a scene is beyond these in SI units, and their products neither overflow nor vanish.
-LEAST, MOST = 1e-40, 1e40
+LEAST, MOST = 1e-20, 1e20
 
 
 def _not_vanishing(value):

@@ -175,7 +175,7 @@ BAD = {
     "mass of thousands of digits": (replaced("3172.05", "9" * 5000), "scene: is not valid TOML (Exceeds the limit"),
     "huge mass": (replaced("3172.05", "1e308"), "block.mass = 1e+308: out of range; give a number up to 1e+40 [kg]"),
     "vanishing radius": (replaced("1.0884", "1e-308"),
-                         "block.radius = 1e-308: out of range; give a number from 1e-40 on [m]"),
+                         "block.radius = 1e-308: out of range; give a number from 1e-20 on [m]"),
     "huge count": (replaced("count = 4", "count = 10000000"),
                    "bearings.count = 10000000: out of range; give a number up to 1e+06"),
     "NUL in a path": (motion('record = "a\\u0000b"'), "motion.record = 'a\\x00b': cannot be read (no path has such"),

@@ -7,7 +7,7 @@ lines) is `Refused`, which is right for scenes: no key of theirs takes such a va
 import math
 
 LAWS, PULSES = ("algebraic", "linear", "bouc-wen"), ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
-MOST, LEAST = 1e40, 1e-40
+MOST, LEAST = 1e20, 1e-20
 BARE = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-"
 ESCAPES = {"b": "\b", "t": "\t", "n": "\n", "f": "\f", "r": "\r", '"': '"', "\\": "\\"}
 

@@ -247,3 +247,12 @@ def test_the_model_warns_where_its_contact_would_have_to_pull_or_stick():
     assert any("normal force" in sentence for sentence in response.warnings)
     assert response.to_json()["warnings"] == list(response.warnings)
     assert model_warnings(scene, 0.3, 0.1) == ()
+
+
+@pytest.mark.parametrize("radius", [1e-18, 1e-6, 1e6, 1e18])
+@pytest.mark.parametrize("mass", [1e-20, 1e20])
+def test_free_rocking_scales_with_size_to_the_ends_of_what_a_scene_may_hold(radius, mass):
+    one, other = (simulate(Scene(block=Block(mass=m, radius=R, slenderness=0.2), start=Start(tilt=0.1)), history=False)
+                  for m, R in ((1.0, 1.0), (mass, radius)))
+    assert (other.outcome, other.decided, other.impact_count) == (one.outcome, one.decided, one.impact_count)
+    assert other.impacts[0].time == pytest.approx(one.impacts[0].time * math.sqrt(radius), rel=1e-9)
