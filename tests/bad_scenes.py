@@ -173,7 +173,7 @@ BAD = {
     "seed of thousands of digits": (motion('synthetic = "duzce-like"\nseed = ' + "9" * 4000),
                                     "motion.seed = an integer of 13288 bits: out of range; give a number below"),
     "mass of thousands of digits": (replaced("3172.05", "9" * 5000), "scene: is not valid TOML (Exceeds the limit"),
-    "huge mass": (replaced("3172.05", "1e308"), "block.mass = 1e+308: out of range; give a number up to 1e+40 [kg]"),
+    "huge mass": (replaced("3172.05", "1e308"), "block.mass = 1e+308: out of range; give a number up to 1e+20 [kg]"),
     "vanishing radius": (replaced("1.0884", "1e-308"),
                          "block.radius = 1e-308: out of range; give a number from 1e-20 on [m]"),
     "huge count": (replaced("count = 4", "count = 10000000"),
