@@ -14,6 +14,7 @@ from .checks import replay_bearing
 from .deciding import until_decided
 from .observe import failed_response, observe
 from .settings import choose, leave_restitution
+from .verified import Range, outside
 
 _MODULES = {exudyn_corners.CompliantCorners: exudyn_corners,
             exudyn_joints.SwitchedJoints: exudyn_joints,
@@ -26,9 +27,20 @@ REPLAY_LIMIT = 1e-9
 DEFAULT_VARIANT = "compliant-corners"
 
 DECIDES = {
-    "compliant-corners": "exudyn decides contact, impact, sliding and rest through stiff corner springs",
+    "compliant-corners": "the integration decides contact, impact, sliding and rest; the corners' law, Hunt-Crossley "
+                         "contact with Coulomb's friction, is the adapter's: plastic, non-slipping (unless the scene "
+                         "gives a coefficient) and planar, as Housner assumes, so that an impact which agrees with "
+                         "him verifies law and integration",
     "switched-joints": "exudyn decides the motion; uplift, impact and rest are the adapter's",
     "native-contact": "exudyn decides contact, impact, sliding and rest through its sphere-triangle contact",
+}
+
+# Held against the analytic model in random scenes. compliant-corners adapts to size and start, and its steps follow
+# bearings of any stiffness and damping, or the run ends with a failure.
+VERIFIED = {
+    "compliant-corners": Range(),
+    "switched-joints": Range(),
+    "native-contact": Range(),
 }
 
 
@@ -63,14 +75,23 @@ def simulate(scene, *, variant=None, history=True, **settings):
     name, chosen = choose("exudyn", VARIANTS, DEFAULT_VARIANT, variant, settings)
     if name != "switched-joints":
         leave_restitution(scene, "use the variant switched-joints")
+        if scene.friction is not None:
+            chosen = replace(chosen, friction=scene.friction)
     run = _MODULES[type(chosen)].run(scene, chosen)
     if run.trace is None:
         failure = replace(run.failure or Failure("the run ended before its first step"), last_state=_start(scene))
         return failed_response(scene, failure, engine="exudyn", variant=name, settings=asdict(chosen),
                                versions=versions(), cpu_seconds=run.cpu_seconds, steps=max(run.steps, 0))
-    return observe(scene, run.trace, engine="exudyn", variant=name, cpu_seconds=run.cpu_seconds, steps=run.steps,
-                   settings=asdict(chosen), versions=versions(), history=history,
-                   failure=run.failure or _fault(scene, run), ended=run.ended)
+    step, peak = np.diff(run.trace.time).max(), np.abs(run.trace.tilt).max()
+    warnings = outside(scene, VERIFIED[name], step=float(step), peak_tilt=float(peak))
+    response = observe(scene, run.trace, engine="exudyn", variant=name, cpu_seconds=run.cpu_seconds, steps=run.steps,
+                       settings=asdict(chosen), versions=versions(), history=history,
+                       failure=run.failure or _fault(scene, run), ended=run.ended, warnings=warnings)
+    if name == "switched-joints" and scene.friction is not None and response.friction_demand > scene.friction:
+        slides = (f"friction demand {response.friction_demand:.4g} is above the scene's {scene.friction:.4g}: "
+                  "switched-joints never slides")
+        response = replace(response, warnings=(*response.warnings, slides))
+    return response
 
 
 def _fault(scene, run):

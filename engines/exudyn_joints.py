@@ -19,7 +19,7 @@ from analytic.response import Failure
 from analytic.rocking import RockingModel
 
 from .exudyn_ground import Ground
-from .exudyn_run import OVERTURNED, Run, check, make_trace, release, solver_settings
+from .exudyn_run import OVERTURNED, Run, check, interruptible, make_trace, release, solver_settings
 from .exudyn_scene import build
 
 REST = 0  # the side of a block in full contact
@@ -52,6 +52,7 @@ class Stepper:
             self.model.mbs.SetPreStepUserFunction(Ground(self.model, settings.step).prepare)
         self.model.mbs.SetPostStepUserFunction(self.keep)
         self.rows, self.z, self.time, self.side, self.watching = [], [], 0.0, REST, True
+        self.interrupts = []  # not empty once it shall end
 
     def _add_joints(self):
         model, mbs = self.model, self.model.mbs
@@ -73,7 +74,7 @@ class Stepper:
         if bearing is not None:
             self.z.append(bearing.commit(mbs, q.item(3)))
         tilt = -q.item(2)
-        if not abs(tilt) < OVERTURNED:
+        if not abs(tilt) < OVERTURNED or self.interrupts:
             return False
         return not (self.watching and self.event())
 
@@ -179,7 +180,7 @@ class Stepper:
             if tries > STUCK:
                 return Failure("uplift and rest alternate without progress", f"{tries} times at t = {reached:.9g} s")
             failure = self.advance(scene.duration)
-            if failure or not abs(self.rows[-1][1].item(2)) < OVERTURNED:
+            if failure or self.interrupts or not abs(self.rows[-1][1].item(2)) < OVERTURNED:
                 return failure
             if not self.event():
                 continue
@@ -207,11 +208,13 @@ def run(scene, settings):
     stepper = Stepper(scene, settings)
     began = time.process_time()
     try:
-        failure = stepper.run()
+        with interruptible() as stepper.interrupts:
+            failure = stepper.run()
     except exu.ExudynError as error:
         failure = Failure("the solver stopped with an error", f"{error} {stepper.solver.GetErrorString()}".strip())
+    finally:
+        release(stepper.model.mbs)
     cpu = time.process_time() - began
     trace = make_trace(scene, stepper.rows, stepper.z, stepper.model.bearing, 1e-9, 0.0)
     ended = "overturned" if trace is not None and abs(trace.tilt[-1]) >= OVERTURNED else None
-    release(stepper.model.mbs)
     return Run(trace, cpu, len(stepper.rows) - 1, 0, ended, failure)

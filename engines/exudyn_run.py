@@ -1,7 +1,10 @@
 """Stepping an exudyn model: record the accepted steps, commit the bearing's history, stop at overturning."""
 
 import math
+import signal
+import threading
 import time
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import exudyn as exu
@@ -14,6 +17,11 @@ from .exudyn_scene import read_back
 from .observe import Trace
 
 OVERTURNED = math.pi / 2
+
+# Steps after which a run is given up: so many per rocking period of the scene, the first one counted double. The
+# defaults take up to 3e4 per period where impacts are frequent; bearings that are stiff or viscous for the mass of
+# their base take what the stability of explicit steps asks for.
+STEPS_PER_PERIOD = 300_000
 
 
 class Mismatch(RuntimeError):
@@ -30,6 +38,36 @@ class Run:
     rejected: int
     ended: str | None
     failure: Failure | None
+
+
+@contextmanager
+def interruptible():
+    """Runs of exudyn in here end at Ctrl-C, as Python code does.
+
+    exudyn takes the KeyboardInterrupt that Python raises in a user function for a failure of its solver. So the
+    signal is only noted, the user functions stop the run, and the signal comes again, to its handler, afterwards.
+
+    Yields
+    ------
+    list
+        Not empty once the signal has come.
+    """
+    came, handler = [], signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(handler):
+        yield came  # signals are handled elsewhere, or not at all
+        return
+    signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
+    try:
+        yield came
+    finally:
+        signal.signal(signal.SIGINT, handler)
+        if came:
+            signal.raise_signal(signal.SIGINT)
+
+
+def step_limit(scene):
+    """Number of steps after which a run of a scene is given up."""
+    return int(STEPS_PER_PERIOD * (2 + scene.duration * scene.rocking_frequency / (2 * math.pi)))
 
 
 def solver_settings(scene, **time_integration):
@@ -67,18 +105,22 @@ def step_through(model, settings, solver, contact_tilt, longest, settle=0.0):
         For the trace [s].
     """
     exu.config.printToConsole = False
-    scene, mbs, bearing = model.scene, model.mbs, model.bearing
+    scene, mbs, bearing, anchor = model.scene, model.mbs, model.bearing, model.anchor
     check(model)
     system = mbs.systemData
     rows, forces = [], []
     coordinates, velocities = system.GetODE2Coordinates, system.GetODE2Coordinates_t
+    limit, interrupts = step_limit(scene), []
 
     def keep(mbs, t):
-        q = coordinates()
-        rows.append((t, q, velocities()))
+        q, v = coordinates(), velocities()
+        rows.append((t, q, v))
         if bearing is not None:
             forces.append(bearing.commit(mbs, q.item(3)))
-        return -OVERTURNED < q.item(2) < OVERTURNED  # False for NaN too
+        if anchor is not None:
+            anchor.commit(mbs, q, v)
+        # False for NaN too
+        return -OVERTURNED < q.item(2) < OVERTURNED and len(rows) <= limit and not interrupts
 
     mbs.SetPostStepUserFunction(keep)
     integration = settings.timeIntegration
@@ -95,16 +137,21 @@ def step_through(model, settings, solver, contact_tilt, longest, settle=0.0):
     began = time.process_time()
     failure = None
     try:
-        done = dynamic.SolveSystem(mbs, settings)
+        with interruptible() as interrupts:
+            done = dynamic.SolveSystem(mbs, settings)
         if not done:
             failure = Failure("the solver gave up", dynamic.GetErrorString())
     except exu.ExudynError as error:
         failure = Failure("the solver stopped with an error", f"{error} {dynamic.GetErrorString()}".strip())
+    finally:
+        release(mbs)
     cpu = time.process_time() - began
+    if failure is None and len(rows) > limit:
+        failure = Failure("the run took too many steps",
+                          f"{limit} steps reached t = {rows[-1][0]:.9g} s of {scene.duration:.9g} s")
     trace = make_trace(scene, rows, forces, bearing, contact_tilt, settle)
     ended = "overturned" if trace is not None and abs(trace.tilt[-1]) >= OVERTURNED else None
     steps = len(rows) - 1
-    release(mbs)
     return Run(trace, cpu, steps, dynamic.it.rejectedAutomaticStepSizeSteps, ended, failure)
 
 

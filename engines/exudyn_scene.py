@@ -42,6 +42,7 @@ class Model:
     block: object
     base: object
     bearing: "Bearing | None" = None
+    anchor: object | None = None  # of the friction, see exudyn_corners
     loads: list = field(default_factory=list)
     connectors: dict = field(default_factory=dict)
     keep: list = field(default_factory=list)
