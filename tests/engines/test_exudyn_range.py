@@ -1,0 +1,191 @@
+"""exudyn far from the studies' range, its friction and its way to end: one test per class of answers that were wrong."""
+
+import math
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+
+exu = pytest.importorskip("exudyn")
+
+from analytic import simulate as exact  # noqa: E402
+from analytic.bearing import BearingLaw  # noqa: E402
+from analytic.motion import PulseMotion  # noqa: E402
+from analytic.rocking import restitution  # noqa: E402
+from analytic.scene import Base, Bearings, Block, Scene, Start  # noqa: E402
+from engines import exudyn_corners, exudyn_engine, exudyn_run, get_engine  # noqa: E402
+from engines.exudyn_scene import Bearing  # noqa: E402
+
+simulate = get_engine("exudyn").simulate
+MASS, RADIUS = 3172.05, 1.0884
+VARIANTS = sorted(exudyn_engine.VARIANTS)
+
+
+def block(slenderness, inertia=4 / 3, mass=MASS, radius=RADIUS):
+    return Block(mass=mass, radius=radius, slenderness=slenderness, corner_inertia=inertia * mass * radius**2)
+
+
+def released(part, body, base=None, impacts=3, **parts):
+    """A block released at a part of its slenderness, up to the swing after some impacts of the model."""
+    scene = Scene(block=body, base=base, start=Start(tilt=part * body.slenderness), duration=12.0, **parts)
+    times = [impact.time for impact in exact(scene, history=False).impacts[:impacts + 1]]
+    return scene.with_(duration=0.3 * times[-2] + 0.7 * times[-1] if len(times) > 1 else 1.3 * times[0])
+
+
+def restitution_error(scene):
+    """Largest error of restitution, after as many impacts as the model has."""
+    response, reference = simulate(scene, history=False), exact(scene, history=False)
+    assert response.outcome == reference.outcome == "rocks", response.failure
+    assert len(response.impacts) == len(reference.impacts) > 0
+    return max(abs(impact.rate_after / impact.rate_before - restitution(scene)) for impact in response.impacts)
+
+
+@pytest.fixture
+def trace_of(monkeypatch):
+    """A function (scene, ...) -> the trace of exudyn's run."""
+    def run(scene, **settings):
+        traces, observe = [], exudyn_engine.observe
+        with monkeypatch.context() as patch:
+            patch.setattr(exudyn_engine, "observe",
+                          lambda given, trace, **rest: traces.append(trace) or observe(given, trace, **rest))
+            response = simulate(scene, **settings)
+        assert response.failure is None, response.failure
+        return traces[0]
+
+    return run
+
+
+# Impacts far from the studies' range.
+
+@pytest.mark.parametrize("slenderness", [0.55, 0.6, 0.7])
+def test_stocky_blocks_on_rigid_ground(slenderness):
+    """Friction slower than the normal force presses the other corner down: .6 was off by 3e-2."""
+    assert restitution_error(released(0.6, block(slenderness))) < 1e-3
+
+
+@pytest.mark.parametrize("slenderness, inertia", [(0.3, 1.05), (0.45, 1.05), (0.45, 1.2), (0.2, 1.02)])
+def test_corner_inertia_near_that_of_a_point_mass(slenderness, inertia):
+    assert restitution_error(released(0.6, block(slenderness, inertia))) < 1e-3
+
+
+@pytest.mark.parametrize("part", [1e-4, 1e-3, 1e-2])
+@pytest.mark.parametrize("slenderness", [0.1, 0.45])
+def test_small_starts_lose_no_impact(slenderness, part):
+    assert restitution_error(released(part, block(slenderness))) < 1e-4
+
+
+@pytest.mark.parametrize("mass, radius", [(1e-3, 1e-3), (0.1, 0.05), (1e6, 30.0)])
+def test_blocks_of_all_sizes(mass, radius):
+    assert restitution_error(released(0.6, block(0.2, mass=mass, radius=radius))) < 1e-4
+
+
+# Bases and bearings far from the studies' range: the base's displacement.
+
+@pytest.mark.parametrize("base, ka, damping", [(0.01, 6.22e4, 0.0), (1.0, 6.22e4, 0.0), (212.0, 1e8, 0.0),
+                                               (212.0, 1e9, 0.0), (212.0, 6.22e4, 1e5)])
+def test_light_bases_and_stiff_or_viscous_bearings(base, ka, damping):
+    scene = Scene(block=block(0.28), base=Base(mass=base), duration=0.6,
+                  bearings=Bearings(law="linear", count=4, ka=ka, damping=damping),
+                  motion=PulseMotion("one-sine", 5.0, 2 * math.pi / 0.5))
+    response, reference = simulate(scene, history=False), exact(scene, history=False)
+    assert response.outcome == reference.outcome
+    assert response.peak_base_displacement == pytest.approx(reference.peak_base_displacement, rel=0.02)
+    assert response.peak_tilt == pytest.approx(reference.peak_tilt, rel=0.02, abs=1e-5)
+
+
+# Coulomb's law.
+
+@pytest.mark.parametrize("friction, slenderness, push, duration", [(0.2, 0.45, 0.3, 0.05), (0.1, 0.3, 0.25, 0.05),
+                                                                   (0.3, 0.45, 0.4, 0.1)])
+def test_a_block_that_slid_stays_where_it_came_to_rest(trace_of, friction, slenderness, push, duration):
+    """It was drawn back to where it had stood; the slip of a push of acceleration a for T: v T/2 + v^2/(2 mu g)."""
+    scene = Scene(block=block(slenderness), friction=friction, duration=1.0,
+                  motion=PulseMotion("rectangular", push * 9.81, 2 * math.pi / duration))
+    trace, lasting = trace_of(scene), scene.motion.end
+    speed = (push - friction) * 9.81 * lasting
+    slip = 0.5 * speed * lasting + speed**2 / (2 * friction * 9.81)
+    assert -trace.centre[-1, 0] == pytest.approx(slip, rel=0.03)
+    assert abs(trace.centre[-1, 2]) < 1e-4 * speed
+
+
+def test_a_push_below_friction_moves_nothing(trace_of):
+    scene = Scene(block=block(0.45), friction=0.31, duration=0.3,
+                  motion=PulseMotion("rectangular", 0.3 * 9.81, 2 * math.pi / 0.1))
+    assert np.abs(trace_of(scene).centre[:, 0]).max() < 1e-5 * RADIUS
+
+
+def test_the_scenes_friction_comes_before_the_settings():
+    scene = Scene(block=block(0.2), friction=0.7, duration=0.01, start=Start(tilt=0.1))
+    for variant in ("compliant-corners", "native-contact"):
+        assert simulate(scene, variant=variant, friction=2.0).settings["friction"] == 0.7
+
+
+def test_joints_that_cannot_slide_say_where_the_block_would():
+    scene = Scene(block=block(0.3), friction=0.1, duration=0.5, start=Start(tilt=0.2))
+    (warning,) = simulate(scene, variant="switched-joints").warnings
+    assert "friction demand" in warning and "0.1" in warning
+    assert simulate(scene.with_(friction=2.0), variant="switched-joints").warnings == ()
+
+
+# What is put in.
+
+@pytest.mark.parametrize("base", [None, 212.0])
+def test_a_block_left_alone_does_not_sink(trace_of, base):
+    """It starts on the corners as they carry it."""
+    scene = Scene(block=block(0.2), base=Base(mass=base) if base else None, duration=0.2)
+    _, contact_tilt = exudyn_corners.assemble(scene, exudyn_corners.scaled(scene, exudyn_corners.CompliantCorners()))
+    sink = contact_tilt * scene.block.half_width
+    height = trace_of(scene).centre[:, 1]
+    assert height[0] == pytest.approx(-sink, rel=1e-9)
+    assert np.ptp(height) < 0.1 * sink  # what the tolerance of the steps leaves
+
+
+@pytest.mark.parametrize("law", ["algebraic", "bouc-wen", "linear"])
+@pytest.mark.parametrize("way", [-3e-2, -1e-4, 2e-5, 1e-3, 0.2])
+def test_force_within_a_step_is_the_law_in_full(law, way):
+    """The expression that exudyn evaluates, over steps so long that a wrong exponent shows."""
+    rule = BearingLaw.of(Bearings(law=law, count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, damping=300.0))
+    bearing, Real = Bearing(rule, 0.01), exu.symbolic.Real
+    found = bearing.force([Real(way)], [Real(0.4)], [Real(value) for value in bearing.memory()])[0].Evaluate()
+    assert found == pytest.approx(rule.force(0.01 + way, rule.hysteretic(bearing.z, way), 0.4), rel=1e-10)
+
+
+# How runs end.
+
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_interrupt_ends_the_run_within_a_second_and_is_no_failure(variant):
+    scene = Scene(block=block(0.2), start=Start(tilt=0.12), duration=1e4)
+    simulate(scene.with_(duration=0.01), variant=variant)  # compiled
+    sent, before = [], signal.getsignal(signal.SIGINT)
+
+    def interrupt():
+        sent.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Timer(0.5, interrupt).start()
+    with pytest.raises(KeyboardInterrupt):
+        simulate(scene, variant=variant)
+    assert time.monotonic() - sent[0] < 1.0
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_run_of_too_many_steps_ends_with_its_evidence(monkeypatch):
+    monkeypatch.setattr(exudyn_run, "STEPS_PER_PERIOD", 200)
+    response = simulate(Scene(block=block(0.2), start=Start(tilt=0.12), duration=1.0))
+    assert response.outcome == "failed" and "too many steps" in response.failure.reason
+    assert "of 1 s" in response.failure.message
+    assert response.steps <= 200 * 3
+
+
+def test_every_variant_has_a_verified_range():
+    assert sorted(exudyn_engine.VERIFIED) == VARIANTS
+
+
+@pytest.mark.parametrize("slenderness, inertia, base", [(0.1, 1.2, None), (0.45, 2.0, 0.05 * MASS)])
+def test_default_does_not_warn_within_the_core_range(slenderness, inertia, base):
+    scene = Scene(block=block(slenderness, inertia), base=Base(mass=base) if base else None,
+                  start=Start(tilt=1e-4 * slenderness), duration=0.02)
+    assert simulate(scene).warnings == ()
