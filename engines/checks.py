@@ -34,9 +34,12 @@ def _replay(z, x, law, dk, alpha, d0, f0):
 def replayed_force(scene, trace):
     """Force of all bearings together [N] at the steps, by the law on the trace's displacements, eqs (9)-(14)."""
     law = BearingLaw.of(scene.bearings)
-    x = trace.base_displacement
-    z = _replay(law.start(float(x[0])), x, law.law, law.dk, law.alpha, law.d0, law.f0)
-    return law.force(x, z, trace.base_velocity)
+    return law.force(trace.base_displacement, replay(law, trace.base_displacement), trace.base_velocity)
+
+
+def replay(law, x):
+    """Hysteretic force of one bearing [N] along displacements x [m], monotonic in between, from x[0] on."""
+    return _replay(law.start(float(x[0])), x, law.law, law.dk, law.alpha, law.d0, law.f0)
 
 
 def replay_bearing(scene, trace):
@@ -131,6 +134,15 @@ def energy_gain(scene, trace):
     block = scene.block
     unit = block.mass * scene.gravity * block.radius * (1 - math.cos(block.slenderness))
     return float((balance - np.minimum.accumulate(balance)).max() / max(unit, kinetic.max()))
+
+
+def check_energy(scene, trace):
+    """A `Failure` where a run gained energy beyond `GAIN_LIMIT`, or its energy overflows, else None."""
+    gain = energy_gain(scene, trace)
+    if gain <= GAIN_LIMIT:
+        return None
+    return Failure("the run gained energy from nowhere",
+                   f"{gain:.3g} of its energy scale, at most {GAIN_LIMIT} can be error of the steps")
 
 
 def _settled(trace):

@@ -45,4 +45,4 @@ def raw_trace_of(rows, scene, contact_tilt):
     """The `Trace` of rows taken as they are, as a first script takes them; it does not look where the block is."""
     t, _, tilt, rate, x, v, _, force = np.array(rows).T[:8]
     law = RockingModel.of(scene).bearing
-    return Trace(t, tilt, rate, x, v, force + law.count * law.damping * v, contact_tilt)
+    return Trace(t, tilt, rate, x, v, force + law.count * law.damping * v, contact_tilt, first_script=True)

@@ -5,27 +5,26 @@ the engine, so that no engine is judged by its own measure. The time this takes 
 """
 
 import math
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from analytic.decision import is_decided
+from analytic.decision import is_decided, model_warnings
 from analytic.motion import SampledMotion
-from analytic.response import Failure, History, Impact, Response, State
+from analytic.response import Failure, History, Response, State
 
-from .checks import GAIN_LIMIT, check_place, energy_gain, replay_bearing
-from .swings import ArrayModel, Trace, find_swings, to_contact
+from .checks import check_energy, check_place, energy_gain, replay_bearing
+from .events import check_impacts, contact_measures, find_events
+from .momentum import check_impulse
+from .swings import ArrayModel, Trace, find_swings
 
 __all__ = ["Trace", "energy_gain", "failed_response", "observe", "replay_bearing"]
-
-# A landing after which the block stays in flat contact counts as an impact with rate 0 after it where the rate
-# before it is this many times the rate that leads to the edge of contact; a weaker one is the tail of a chatter.
-LANDING = 10.0
 
 HISTORY_POINTS = 2000
 
 
+@np.errstate(all="ignore")  # what overflows shows in the numbers, and these are looked at
 def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, versions, history=True, failure=None,
             ended=None, warnings=()):
     """The response of an engine's run.
@@ -45,7 +44,8 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
         "overturned" where the adapter stopped the run at overturning: if the last step lies before
         |tilt| = pi/2, the block is taken to fall on at the model's acceleration.
     warnings : iterable of str
-        Sentences of the engine, as of `engines.verified.outside`; those of the motion's record are added.
+        Sentences of the engine, as of `engines.verified.outside`; those of the motion's record, and where the run is
+        outside the model (`analytic.decision.model_warnings`), are added.
 
     Returns
     -------
@@ -56,8 +56,11 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
     An impact is reported where the swings before and after it are both resolved, that is exceed contact_tilt;
     its rates and base velocities are carried to tilt = 0 by the model's equations of flight. Where no such
     swing follows, the block came to rest: at the limit of the model's impacts after the last landing.
-    Friction demand and normal force follow from the states and the model's accelerations. A block off its place
-    (`check_place`) and an energy gain beyond `GAIN_LIMIT` are failures too.
+    Friction demand and normal force follow from the states and the model's accelerations.
+
+    A failure too, with its numbers: a block off its place (`check_place`), a gain of energy (`check_energy`), an impact
+    that gives energy, that cannot be resolved or that the steps leap over (`check_impacts`), a motion that is not the
+    bearings' (`check_impulse`; of a first script a warning), and a measure that is not finite.
     """
     trace, failure = _finite_part(trace, failure)
     overturning_time = None
@@ -72,15 +75,22 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
     short = scene.duration * (1 - 1e-9) - end.time  # the last of equal steps need not end at the duration
     if failure is None and overturning_time is None and short > np.diff(trace.time).max():
         failure = Failure("the run ended early", f"last step at {end.time:.9g} s of {scene.duration:.9g} s", end)
-    if failure is None:
-        failure = check_place(scene, trace, overturning_time is not None)
-    if failure is None and not (gain := energy_gain(scene, trace)) <= GAIN_LIMIT:  # not: NaN of an overflow
-        failure = Failure("the run gained energy from nowhere",
-                          f"{gain:.3g} of its energy scale, at most {GAIN_LIMIT} can be error of the steps", end)
     swings = find_swings(trace)
-    impacts, uplifts, rests = find_events(scene, trace, swings)
+    impacts, uplifts, rests, missed = find_events(scene, trace, swings)
     demand, normal, acceleration = contact_measures(scene, trace, falls=overturning_time is not None)
     peak = _peak(trace.time, trace.tilt, trace.tilt_rate)
+    displacement = _peak(trace.time, trace.base_displacement, trace.base_velocity)
+    measured = {"a peak": [peak, displacement, acceleration], "the normal force": [normal], "an uplift": uplifts,
+                "a rest": rests, "an impact": np.array([astuple(impact) for impact in impacts]).ravel()}
+    failure = (failure or check_place(scene, trace, overturning_time is not None) or check_energy(scene, trace)
+               or check_impacts(scene, trace, impacts, missed) or _check_finite(measured))
+    pushed = check_impulse(scene, trace) if failure is None else None
+    if pushed and trace.first_script:
+        warnings = (*warnings, f"{pushed.reason}: {pushed.message}")
+    else:
+        failure = failure or pushed
+    if failure is not None and failure.last_state is None:
+        failure = replace(failure, last_state=end)
     if failure is not None:
         outcome = "failed"
     elif overturning_time is not None:
@@ -90,10 +100,9 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
     response = Response(
         outcome=outcome, overturning_time=overturning_time, unstable_time=_unstable_time(scene, trace),
         peak_tilt=peak, peak_tilt_ratio=peak / scene.block.slenderness,
-        peak_base_displacement=_peak(trace.time, trace.base_displacement, trace.base_velocity),
-        peak_base_acceleration=acceleration, impacts=impacts, uplifts=uplifts, rests=rests,
-        friction_demand=demand, min_normal_ratio=normal, end=end, failure=failure,
-        warnings=_warnings(scene, warnings),
+        peak_base_displacement=displacement, peak_base_acceleration=acceleration, impacts=impacts, uplifts=uplifts,
+        rests=rests, friction_demand=demand, min_normal_ratio=normal, end=end, failure=failure,
+        warnings=_warnings(scene, (*warnings, *model_warnings(scene, demand, normal))),
         history=_history(scene, trace) if history else None, **given)
     return replace(response, decided=is_decided(scene, response, contact_tilt=trace.contact_tilt))
 
@@ -114,6 +123,12 @@ def _warnings(scene, warnings):
     """The engine's sentences and those about the record of the motion, each once."""
     record = getattr(scene.motion, "warnings", ())  # pulses have none
     return tuple(dict.fromkeys((*record, *warnings)))
+
+
+def _check_finite(measured):
+    """A `Failure` where a measure, {name: numbers}, is not finite, else None."""
+    wrong = [name for name, numbers in measured.items() if not np.isfinite(numbers).all()]
+    return Failure("measuring the run gave no number", f"not finite: {', '.join(wrong)}") if wrong else None
 
 
 def _finite_part(trace, failure):
@@ -193,110 +208,6 @@ def _peak(time, value, rate):
             roots = cubic.derivative().roots(extrapolate=False)
             best = max(best, *np.abs(cubic(roots)), 0.0)
     return float(best)
-
-
-def find_events(scene, trace, swings):
-    """(impacts, uplifts, rests) of the swings of a trace; see `observe`."""
-    n = len(swings)
-    if n == 0:
-        return (), (), ()
-    model = ArrayModel.of(scene)
-    land, before, v_before = to_contact(scene, trace, swings, 1)
-    lift, after, v_after = to_contact(scene, trace, swings, -1)
-    edge = trace.contact_tilt
-    impacts, uplifts, rests = [], [], []
-    for i in range(n):
-        first, last = swings.first[i], swings.last[i]
-        if i == 0 and scene.start.tilt == 0 and scene.start.tilt_rate == 0:
-            uplifts.append(_uplift_time(model, scene, trace, 0, first))
-        if last == len(trace.time) - 1:
-            break  # the trace ends in flight
-        following = swings.first[i + 1] if i + 1 < n else None
-        if following is not None:
-            slack = 2 * max(trace.time[last + 1] - trace.time[last], trace.time[following] - trace.time[following - 1])
-            slack += edge / abs(before[i]) + edge / abs(after[i + 1])
-            # A compliant contact's hop after an impact shifts the lift carried back, not the time in contact.
-            contact = min(lift[i + 1] - land[i], trace.time[following] - trace.time[last])
-            crossed = swings.side[i + 1] == -swings.side[i] and contact <= slack  # False for NaN
-            if crossed or (swings.side[i + 1] == -swings.side[i] and following == last + 1
-                           and np.isfinite(before[i] + after[i + 1])):
-                impacts.append(Impact(float(land[i]), float(before[i]), float(after[i + 1]),
-                                      float(v_after[i + 1] - v_before[i])))
-                continue
-            if swings.side[i + 1] == swings.side[i] and not np.isfinite(land[i]):
-                continue  # it grazed contact without landing
-        landing = float(land[i]) if np.isfinite(land[i]) else float(trace.time[last])
-        limit, pull = _limit_time(model, scene, trace, last, swings.side[i], landing, before[i])
-        if following is not None and trace.time[following] < limit:
-            continue  # still chattering, below resolution
-        strong = pull > 0 and abs(before[i]) > LANDING * math.sqrt(2 * pull * edge)
-        if strong:
-            k = min(int(np.searchsorted(trace.time, landing)) + 1, len(trace.time) - 1)
-            impacts.append(Impact(landing, float(before[i]), 0.0, float(trace.base_velocity[k] - v_before[i])))
-        if following is None:
-            if limit <= trace.time[-1]:
-                rests.append(limit)
-        else:
-            uplift = _uplift_time(model, scene, trace, last + 1, following)
-            rests.append(min(limit, uplift))
-            uplifts.append(uplift)
-    return tuple(impacts), tuple(uplifts), tuple(float(rest) for rest in rests)
-
-
-def _limit_time(model, scene, trace, last, side, landing, rate):
-    """(time at which the model's impacts after a landing accumulate, |tilt''| toward contact there)."""
-    ground = float(scene.motion.acceleration(landing)) if scene.motion else 0.0
-    pull = -side * float(model.accelerations(side, 0.0, 0.0, ground, trace.bearing_force[last])[0])
-    e = model.restitution
-    if not (pull > 0 and np.isfinite(rate) and e < 1):
-        return landing, pull
-    return landing + 2 * e * abs(float(rate)) / (pull * (1 - e)), pull
-
-
-def _uplift_time(model, scene, trace, begin, first):
-    """Time at which |absolute base acceleration| last rose through g tan(gamma) in steps begin..first, eq. (2)."""
-    steps = slice(begin, first + 1)
-    size = np.abs(_contact_acceleration(model, scene, trace, steps)) - model.uplift_acceleration
-    rising = np.flatnonzero((size[:-1] <= 0) & (size[1:] > 0))
-    if not len(rising):
-        return float(trace.time[begin] if size[0] > 0 else trace.time[first])
-    k = int(rising[-1])
-    t0, t1 = trace.time[begin + k], trace.time[begin + k + 1]
-    return float(t0 - size[k] * (t1 - t0) / (size[k + 1] - size[k]))
-
-
-def _contact_acceleration(model, scene, trace, steps=slice(None)):
-    """Absolute acceleration of the base in full contact [m/s2] at the steps, eq. (2)."""
-    if model.on_base:
-        return model.contact_acceleration(trace.bearing_force[steps])
-    time = trace.time[steps]
-    return scene.motion.acceleration(time) if scene.motion else np.zeros(len(time))
-
-
-def contact_measures(scene, trace, falls=False):
-    """(max |H|/N, min N/(m g), max |absolute base acceleration| [m/s2]) over the steps of a trace.
-
-    Where the block `falls`, the first two end at the last step below the slenderness.
-    """
-    model = ArrayModel.of(scene)
-    level = _contact_acceleration(model, scene, trace)
-    # In contact above the uplift acceleration the block is off the base already, unseen by the engine's resolution.
-    lifting = np.abs(level) > model.uplift_acceleration
-    flight = lifting | (np.abs(trace.tilt) > trace.contact_tilt)
-    demand, normal, absolute = np.abs(level) / model.g, np.ones(len(level)), level.copy()
-    if flight.any():
-        tilt, rate = trace.tilt[flight], trace.tilt_rate[flight]
-        side = np.where(np.abs(tilt) > trace.contact_tilt, np.sign(tilt), -np.sign(level[flight]))
-        ground = scene.motion.acceleration(trace.time[flight]) if scene.motion else np.zeros(len(tilt))
-        tilting, sliding = model.accelerations(side, tilt, rate, ground, trace.bearing_force[flight])
-        absolute[flight] = ground + sliding
-        H, N = model.contact_forces(side, tilt, rate, tilting, absolute[flight])
-        demand[flight] = np.where(N > 0, np.abs(H) / np.where(N > 0, N, 1.0), np.inf)
-        normal[flight] = N / (model.m * model.g)
-    held = slice(None)
-    if falls and (below := np.flatnonzero(np.abs(trace.tilt) <= scene.block.slenderness)).size:
-        held = slice(0, int(below[-1]) + 2)
-    return float(demand[held].max()), float(normal[held].min()), float(np.abs(absolute).max())
 
 
 def _history(scene, trace):

@@ -5,6 +5,7 @@ contact are therefore not trusted: the last state in clean flight is carried for
 after the impact backward to it.
 """
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,8 +13,12 @@ import numpy as np
 from analytic.rocking import RockingModel
 
 # Carrying one step of an engine to tilt = 0: classical Runge-Kutta steps, and corrections of the end time.
-# 4 steps over 1/60 s leave 1e-11 rad/s; each correction cubes the error of the end time.
+# 4 steps over 1/60 s leave 1e-11 rad/s; each correction cubes the error of the end time. A base that moves fast on
+# its bearings takes more: each step lasts at most PACE of its time constant, well inside the limit of stability of 2.8.
 RK_STEPS, CORRECTIONS = 4, 3
+PACE, MOST_STEPS = 0.5, 256
+# Backward in time viscous damping grows: by more than e to this power it would carry nothing but the steps' errors.
+GROWTH = 1.0
 
 
 class ArrayModel(RockingModel):
@@ -45,6 +50,8 @@ class Trace:
     centre : array, shape (n, 4), or None
         Of the block, as the engine has it: x and z [m] from the place of a block standing at the origin, x' and z'
         [m/s], relative to the ground. None: not read, taken to pivot about its corner.
+    first_script : bool
+        The engine's own motors and dampers are left on: that the motion is not the bearings' is a warning, no failure.
 
     Raises
     ------
@@ -61,6 +68,7 @@ class Trace:
     contact_tilt: float
     settle: float = 0.0
     centre: np.ndarray | None = None
+    first_script: bool = False
 
     COLUMNS = ("time", "tilt", "tilt_rate", "base_displacement", "base_velocity", "bearing_force")
 
@@ -141,7 +149,9 @@ def to_contact(scene, trace, swings, direction):
     time, rate, velocity : arrays, shape (n,)
         Time [s], tilt rate [rad/s] and base velocity [m/s] at tilt = 0; NaN where the flight does not reach it.
 
-    The bearings' elastic and hysteretic force is the trace's within the swing, and follows the law outside.
+    The bearings' elastic and hysteretic force is the trace's within the swing, and follows the law outside. Where the
+    base is too fast for that (forward: `MOST_STEPS`, backward: `GROWTH`), all of the force is the trace's, outside the
+    swing along its last two steps.
     """
     model = ArrayModel.of(scene)
     law, side = model.bearing, swings.side
@@ -150,20 +160,30 @@ def to_contact(scene, trace, swings, direction):
     t, tilt, rate, x, v = (getattr(trace, name)[index].copy() for name in Trace.COLUMNS[:5])
     if len(t) == 0:
         return t, rate, v
-    lasting = trace.bearing_force - law.count * law.damping * trace.base_velocity
+    viscous = law.count * law.damping
+    lasting = trace.bearing_force - viscous * trace.base_velocity
     beyond = _branch(law, trace.base_displacement[edge], lasting[edge], trace.base_velocity[edge])
+    along = _tangent(trace, swings, direction)
+    pace, decay = _paces(model)
 
     def slope(t, tilt, rate, x, v):
         within = (direction < 0) & (t > trace.time[edge])
-        force = np.where(within, np.interp(t, trace.time, lasting), beyond(x)) + law.count * law.damping * v
+        force = np.where(within, np.interp(t, trace.time, lasting), beyond(x)) + viscous * v
+        if fast.any():
+            given = np.where(within, np.interp(t, trace.time, trace.bearing_force), along(t))
+            force = np.where(fast, given, force)
         tilting, sliding = model.accelerations(side, tilt, rate, ground(t), force)
         return np.stack([rate, tilting, v, np.broadcast_to(sliding, rate.shape)])
 
-    state = np.stack([tilt, rate, x, v])
+    state, fast = np.stack([tilt, rate, x, v]), np.zeros(len(t), dtype=bool)
     for correction in range(1 + CORRECTIONS):
         pull = side * slope(t, *state)[1]
         wanted = _time_to_zero(side * state[0], side * state[1], pull, direction if correction == 0 else 0)
-        steps = RK_STEPS if correction == 0 else 1
+        longest = np.nan_to_num(np.abs(wanted), nan=0.0, posinf=0.0)
+        if correction == 0:
+            fast = (pace * longest > PACE * MOST_STEPS) if direction > 0 else (decay * longest > GROWTH)
+        least = RK_STEPS if correction == 0 else 1
+        steps = int(np.clip(math.ceil(min(pace * longest.max() / PACE, MOST_STEPS)), least, MOST_STEPS))
         h = wanted / steps
         for _ in range(steps):
             k1 = slope(t, *state)
@@ -172,16 +192,40 @@ def to_contact(scene, trace, swings, direction):
             k4 = slope(t + h, *(state + h * k3))
             state = state + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
             t = t + h
-    missed = side * state[1] * direction > 0  # moving out of contact where it should move in
+    # moving out of contact where it should move in, or not there at all
+    missed = (side * state[1] * direction > 0) | ~(np.abs(state[0]) <= trace.contact_tilt)
     return tuple(np.where(missed, np.nan, value) for value in (t, state[1], state[3]))
 
 
+def _paces(model):
+    """(fastest rate, decay rate) of the base on its bearings while the block rocks [1/s]."""
+    if not model.on_base:
+        return 0.0, 0.0
+    law, height = model.bearing, model.R * math.cos(model.gamma)
+    mass = model.M - (model.m * height) ** 2 / model.J  # what a force on the base has to move
+    decay = law.count * law.damping / mass
+    return max(decay, math.sqrt(law.count * (law.kb + law.dk) / mass)), decay
+
+
+def _tangent(trace, swings, direction):
+    """The bearings' force as function of time [s], along the last (or first) two steps of each swing."""
+    end = swings.last if direction > 0 else swings.first
+    inner = np.maximum(swings.last - 1, swings.first) if direction > 0 else np.minimum(swings.first + 1, swings.last)
+    span = trace.time[inner] - trace.time[end]
+    rise = np.where(span != 0, (trace.bearing_force[inner] - trace.bearing_force[end]) / np.where(span, span, 1.0), 0.0)
+    return lambda t: trace.bearing_force[end] + rise * (t - trace.time[end])
+
+
 def _time_to_zero(p, q, a, direction):
-    """Root of p + q h + a h^2/2 on the side of `direction`, the nearer one for 0; NaN where there is none."""
+    """Root of p + q h + a h^2/2 on the side of `direction`, the nearer one for 0; NaN where there is none.
+
+    Where a alone leaves none, as a stiff bearing's may that swings to and fro, that of p + q h.
+    """
     with np.errstate(invalid="ignore", divide="ignore"):
-        root = np.sqrt(q * q - 2 * a * p)
+        square = q * q - 2 * a * p
         sign = direction if direction else np.where(q > 0, -1, 1)
-        return np.where(p == 0, 0.0, sign * 2 * p / (root - sign * q))
+        found = np.where(square >= 0, sign * 2 * p / (np.sqrt(square) - sign * q), -p / q)
+        return np.where(p == 0, 0.0, np.where(found * direction >= 0, found, np.nan))
 
 
 # Exponent beyond which the bearing is on its limit force, whatever the number [-].

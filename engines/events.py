@@ -1,0 +1,196 @@
+"""Impacts, uplifts and rests of a trace, and the forces at its contact: measured by the model's equations."""
+
+import math
+
+import numpy as np
+
+from analytic.response import Failure, Impact
+
+from .swings import ArrayModel, to_contact
+
+# A landing after which the block stays in flat contact counts as an impact with rate 0 after it where the rate
+# before it is this many times the rate that leads to the edge of contact; a weaker one is the tail of a chatter.
+LANDING = 10.0
+# Impacts count as ones that no engine may miss from this share of the largest tilt rate on, and from CLEAR times the
+# rate that leads to the edge of contact: coarse steps step over the smaller ones at the end of a chatter.
+STRONG, CLEAR = 0.2, 3.0
+# Rate after an impact over that before above which a run counts as failed: no impact gives energy. Tuned variants
+# stay below 1, exact motions read at random steps too; first scripts come to 1.1 by the errors of their steps.
+MOST_RESTITUTION = 1.2
+
+
+def find_events(scene, trace, swings):
+    """(impacts, uplifts, rests, missed) of the swings of a trace; see `observe`.
+
+    missed: times [s] at which a swing ends and the next begins on the other side, with no impact or landing resolved
+    between, though both count by `strong_swings`.
+    """
+    n = len(swings)
+    if n == 0:
+        return (), (), (), ()
+    model = ArrayModel.of(scene)
+    counts, missed = strong_swings(model, trace, swings), []
+    land, before, v_before = to_contact(scene, trace, swings, 1)
+    lift, after, v_after = to_contact(scene, trace, swings, -1)
+    edge = trace.contact_tilt
+    impacts, uplifts, rests = [], [], []
+    for i in range(n):
+        first, last = swings.first[i], swings.last[i]
+        if i == 0 and scene.start.tilt == 0 and scene.start.tilt_rate == 0:
+            uplifts.append(_uplift_time(model, scene, trace, 0, first))
+        if last == len(trace.time) - 1:
+            break  # the trace ends in flight
+        following = swings.first[i + 1] if i + 1 < n else None
+        if following is not None:
+            slack = 2 * max(trace.time[last + 1] - trace.time[last], trace.time[following] - trace.time[following - 1])
+            slack += edge / abs(before[i]) + edge / abs(after[i + 1])
+            # A compliant contact's hop after an impact shifts the lift carried back, not the time in contact.
+            contact = min(lift[i + 1] - land[i], trace.time[following] - trace.time[last])
+            crossed = swings.side[i + 1] == -swings.side[i] and contact <= slack  # False for NaN
+            if crossed or (swings.side[i + 1] == -swings.side[i] and following == last + 1
+                           and np.isfinite(before[i] + after[i + 1])):
+                impacts.append(Impact(float(land[i]), float(before[i]), float(after[i + 1]),
+                                      float(v_after[i + 1] - v_before[i])))
+                continue
+            if swings.side[i + 1] == swings.side[i] and not np.isfinite(land[i]):
+                continue  # it grazed contact without landing
+        landing = float(land[i]) if np.isfinite(land[i]) else float(trace.time[last])
+        limit, pull = _limit_time(model, scene, trace, last, swings.side[i], landing, before[i])
+        turned = following is not None and swings.side[i + 1] == -swings.side[i] and counts[i] and counts[i + 1]
+        if following is not None and trace.time[following] < limit:
+            if turned:
+                missed.append(float(trace.time[last]))
+            continue  # still chattering, below resolution
+        strong = pull > 0 and abs(before[i]) > LANDING * math.sqrt(2 * pull * edge)
+        if strong:
+            k = min(int(np.searchsorted(trace.time, landing)) + 1, len(trace.time) - 1)
+            impacts.append(Impact(landing, float(before[i]), 0.0, float(trace.base_velocity[k] - v_before[i])))
+        elif turned:
+            missed.append(float(trace.time[last]))
+        if following is None:
+            if limit <= trace.time[-1]:
+                rests.append(limit)
+        else:
+            uplift = _uplift_time(model, scene, trace, last + 1, following)
+            rests.append(min(limit, uplift))
+            uplifts.append(uplift)
+    return tuple(impacts), tuple(uplifts), tuple(float(rest) for rest in rests), tuple(missed)
+
+
+def strong_swings(model, trace, swings):
+    """Whether the block would, left alone, reach the impact at a speed that counts; shape of `swings`."""
+    bounds = np.column_stack([swings.first, swings.last + 1]).ravel()[:-1]
+    speed = np.maximum.reduceat(_speeds(model, trace), bounds)[::2]
+    return speed >= _least_speed(model, trace, speed.max())
+
+
+def _pull(model):
+    """|tilt''| toward contact of an unforced block at tilt = 0 [rad/s2]."""
+    return abs(float(model.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0]))
+
+
+def _speeds(model, trace):
+    """|Tilt rate| [rad/s] at which an unforced block reaches tilt = 0 from each step, at constant acceleration."""
+    return np.sqrt(trace.tilt_rate**2 + 2 * _pull(model) * np.abs(trace.tilt))
+
+
+def _least_speed(model, trace, fastest):
+    """|Tilt rate| [rad/s] from which on an impact counts."""
+    return max(STRONG * fastest, CLEAR * math.sqrt(2 * _pull(model) * trace.contact_tilt))
+
+
+def straddled(scene, trace):
+    """Times [s] of steps in flight that last longer than the way to the impact and the whole swing after it.
+
+    By the model's restitution and the acceleration at the step; where what is left of the speed counts.
+    """
+    model = ArrayModel.of(scene)
+    k = np.flatnonzero(np.abs(trace.tilt[:-1]) > trace.contact_tilt)
+    if not len(k):
+        return k
+    side, step = np.sign(trace.tilt[k]), np.diff(trace.time)[k]
+    ground = scene.motion.acceleration(trace.time[k]) if scene.motion else np.zeros(len(k))
+    gain = side * model.accelerations(side, trace.tilt[k], trace.tilt_rate[k], ground, trace.bearing_force[k])[0]
+    p, q = np.abs(trace.tilt[k]), side * trace.tilt_rate[k]
+    speed = np.sqrt(np.maximum(q * q - 2 * gain * p, 0.0))
+    falls = (gain < 0) & (model.restitution * speed >= _least_speed(model, trace, _speeds(model, trace)[k].max()))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        needed = (q + speed + 2 * model.restitution * speed) / -gain
+    return trace.time[k[falls & (step > needed)]]
+
+
+def check_impacts(scene, trace, impacts, missed):
+    """A `Failure` where an impact gave energy or was not resolved, else None; `missed` as of `find_events`."""
+    least = _least_speed(ArrayModel.of(scene), trace, max((abs(one.rate_before) for one in impacts), default=0.0))
+    for impact in impacts:
+        before, after = abs(impact.rate_before), abs(impact.rate_after)
+        if before >= least and not after <= MOST_RESTITUTION * before:  # not: NaN
+            return Failure("an impact gave energy",
+                           f"at {impact.time:.9g} s the tilt rate goes from {impact.rate_before:.6g} to "
+                           f"{impact.rate_after:.6g} rad/s; error of the steps: at most {MOST_RESTITUTION} times")
+    if missed:
+        return Failure("an impact could not be resolved",
+                       f"at {missed[0]:.9g} s the tilt changes side, and no tilt rate before and after can be told"
+                       f"{f'; {len(missed)} such times' if len(missed) > 1 else ''}")
+    stepped = straddled(scene, trace)
+    if len(stepped):
+        return Failure("the steps are longer than whole swings",
+                       f"the step after {stepped[0]:.9g} s leaps over an impact and the swing that follows"
+                       f"{f'; {len(stepped)} such steps' if len(stepped) > 1 else ''}")
+    return None
+
+
+def _limit_time(model, scene, trace, last, side, landing, rate):
+    """(time at which the model's impacts after a landing accumulate, |tilt''| toward contact there)."""
+    ground = float(scene.motion.acceleration(landing)) if scene.motion else 0.0
+    pull = -side * float(model.accelerations(side, 0.0, 0.0, ground, trace.bearing_force[last])[0])
+    e = model.restitution
+    if not (pull > 0 and np.isfinite(rate) and e < 1):
+        return landing, pull
+    return landing + 2 * e * abs(float(rate)) / (pull * (1 - e)), pull
+
+
+def _uplift_time(model, scene, trace, begin, first):
+    """Time at which |absolute base acceleration| last rose through g tan(gamma) in steps begin..first, eq. (2)."""
+    steps = slice(begin, first + 1)
+    size = np.abs(_contact_acceleration(model, scene, trace, steps)) - model.uplift_acceleration
+    rising = np.flatnonzero((size[:-1] <= 0) & (size[1:] > 0))
+    if not len(rising):
+        return float(trace.time[begin] if size[0] > 0 else trace.time[first])
+    k = int(rising[-1])
+    t0, t1 = trace.time[begin + k], trace.time[begin + k + 1]
+    return float(t0 - size[k] * (t1 - t0) / (size[k + 1] - size[k]))
+
+
+def _contact_acceleration(model, scene, trace, steps=slice(None)):
+    """Absolute acceleration of the base in full contact [m/s2] at the steps, eq. (2)."""
+    if model.on_base:
+        return model.contact_acceleration(trace.bearing_force[steps])
+    time = trace.time[steps]
+    return scene.motion.acceleration(time) if scene.motion else np.zeros(len(time))
+
+
+def contact_measures(scene, trace, falls=False):
+    """(max |H|/N, min N/(m g), max |absolute base acceleration| [m/s2]) over the steps of a trace.
+
+    Where the block `falls`, the first two end at the last step below the slenderness.
+    """
+    model = ArrayModel.of(scene)
+    level = _contact_acceleration(model, scene, trace)
+    # In contact above the uplift acceleration the block is off the base already, unseen by the engine's resolution.
+    lifting = np.abs(level) > model.uplift_acceleration
+    flight = lifting | (np.abs(trace.tilt) > trace.contact_tilt)
+    demand, normal, absolute = np.abs(level) / model.g, np.ones(len(level)), level.copy()
+    if flight.any():
+        tilt, rate = trace.tilt[flight], trace.tilt_rate[flight]
+        side = np.where(np.abs(tilt) > trace.contact_tilt, np.sign(tilt), -np.sign(level[flight]))
+        ground = scene.motion.acceleration(trace.time[flight]) if scene.motion else np.zeros(len(tilt))
+        tilting, sliding = model.accelerations(side, tilt, rate, ground, trace.bearing_force[flight])
+        absolute[flight] = ground + sliding
+        H, N = model.contact_forces(side, tilt, rate, tilting, absolute[flight])
+        demand[flight] = np.where(N > 0, np.abs(H) / np.where(N > 0, N, 1.0), np.inf)
+        normal[flight] = N / (model.m * model.g)
+    held = slice(None)
+    if falls and (below := np.flatnonzero(np.abs(trace.tilt) <= scene.block.slenderness)).size:
+        held = slice(0, int(below[-1]) + 2)
+    return float(demand[held].max()), float(normal[held].min()), float(np.abs(absolute).max())
