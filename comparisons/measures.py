@@ -110,17 +110,20 @@ def graph_distance(response, reference, *, tilt_scale, time_scale, until=math.in
     The measure for motions whose velocity jumps (M. D. P. Monteiro Marques 1987, doi:10.1016/0022-0396(87)90143-4;
     V. Acary 2012, doi:10.1016/j.apnum.2012.06.026), here with the Euclidean norm in place of the maximum norm:
     an impact that is late by dt costs dt/time_scale, however large the difference at one instant. Distances
-    are from the samples of one graph to the straight lines between the samples of the other.
+    are from the samples of one graph to the straight lines between the samples of the other. Both are taken over the
+    same span, up to `until` or to where the shorter one ends; what the other does just after it may be nearest.
     """
-    graphs = []
-    for one in (response, reference):
-        history = _history(one)
-        keep = history.time <= until
-        if keep.sum() < 2:
+    graphs = [_history(one) for one in (response, reference)]
+    end = min(until, *(history.time[-1] for history in graphs))
+    (ta, ya), (tb, yb) = lines = [(history.time / time_scale, history.tilt / tilt_scale) for history in graphs]
+    spans = []
+    for time, tilt in lines:
+        inside = time < end / time_scale
+        if inside.sum() < 2:
             raise ValueError(f"until = {until!r} s leaves fewer than two samples of the history")
-        graphs.append((history.time[keep] / time_scale, history.tilt[keep] / tilt_scale))
-    (ta, ya), (tb, yb) = graphs
-    return float(max(_directed(ta, ya, tb, yb), _directed(tb, yb, ta, ya)))
+        last = np.interp(end / time_scale, time, tilt)
+        spans.append((np.append(time[inside], end / time_scale), np.append(tilt[inside], last)))
+    return float(max(_directed(*spans[0], tb, yb), _directed(*spans[1], ta, ya)))
 
 
 @njit(cache=True)
