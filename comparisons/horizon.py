@@ -1,7 +1,8 @@
 """How long a trajectory means anything: the sensitivity horizon of a scene.
 
 Rocking under a long record is chaotic: a restitution changed in the fourth digit soon gives another motion, in the
-exact model too. Point-wise agreement of two solvers can be asked for only until then.
+exact model too. Point-wise agreement of two solvers can be asked for only until then. When that is depends on how
+large the solvers' errors are: each solver has its own horizon.
 """
 
 from dataclasses import dataclass
@@ -9,28 +10,42 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic import simulate
-from analytic.rocking import restitution
+from analytic.rocking import RockingModel, restitution
 
-# Relative changes of the twins: of the size of a good engine's error in restitution (1e-4).
+from .measures import state_restitution
+
+# Relative changes of the twins where no solver is asked for; a good engine's are 1e-5 to 1e-3 (`perturbation_of`).
 PERTURBATION = 1e-4
+# Sizes that a solver's perturbation is given: from the least on, in these steps, to the most.
+LEAST, LADDER, MOST = 1e-6, 2.0, 0.5
 # Twins further apart than this share of the slenderness no longer show the same motion.
 SPREAD = 0.01
+# Share of SPREAD at which a solver's own distance from the model is taken as the measure of its errors: early enough
+# to foretell where it reaches SPREAD, and above what sampling its history costs.
+EARLY = 0.1
 # Sampling of the twins: periods 2 pi/omega_r contain this many samples, so that no part of a swing is overlooked.
-SAMPLES_PER_PERIOD = 400
+SAMPLES_PER_PERIOD = 1000
 
 
 @dataclass(frozen=True, eq=False)
 class Horizon:
-    """The sensitivity horizon [s], the run's end where the twins never part; and the spread it comes from.
+    """The sensitivity horizon [s], the last time before a twin parts or the run's end; and the spread it comes from.
 
-    time [s] and spread, arrays of shape (n,): the largest |tilt of a twin - tilt of the scene| / slenderness up to
-    each time. Twins are told apart by name in `twins`: the time [s] at which each parted, or None.
+    perturbation: relative change of the twins [-]. time [s] and spread, arrays of shape (n,): the largest |tilt of a
+    twin - tilt of the scene| / slenderness up to each time. Twins are told apart by name in `twins`: the time [s] at
+    which each parted, or None.
     """
 
     horizon: float
+    perturbation: float
     time: np.ndarray
     spread: np.ndarray
     twins: dict
+
+    @property
+    def parts(self):
+        """Whether a twin parts before the run ends."""
+        return any(time is not None for time in self.twins.values())
 
 
 def twin_scenes(scene, perturbation=PERTURBATION):
@@ -73,7 +88,7 @@ def sensitivity_horizon(scene, *, perturbation=PERTURBATION, spread=SPREAD):
     if not 0 < perturbation < 1 or not spread > 0:
         raise ValueError(f"perturbation = {perturbation!r} must lie in (0, 1), spread = {spread!r} above 0")
     period = 2 * np.pi / scene.rocking_frequency
-    step = min(period / SAMPLES_PER_PERIOD, scene.duration / 2)
+    step = min(period / SAMPLES_PER_PERIOD, (scene.duration or period) / 2)
     base = simulate(scene, output_step=step).history
     largest = np.zeros(len(base.time))
     parted = {}
@@ -83,7 +98,60 @@ def sensitivity_horizon(scene, *, perturbation=PERTURBATION, spread=SPREAD):
         tilt = np.interp(base.time, other.time, other.tilt)
         apart = np.abs(tilt - base.tilt) / scene.block.slenderness
         beyond = np.flatnonzero(apart > spread)
-        parted[name] = float(base.time[beyond[0]]) if len(beyond) else None
+        parted[name] = float(base.time[max(beyond[0] - 1, 0)]) if len(beyond) else None
         largest = np.maximum(largest, apart)
     times = [time for time in parted.values() if time is not None]
-    return Horizon(min(times, default=float(base.time[-1])), base.time, np.maximum.accumulate(largest), parted)
+    return Horizon(min(times, default=float(base.time[-1])), perturbation, base.time, np.maximum.accumulate(largest),
+                   parted)
+
+
+def perturbation_of(scene, response, reference):
+    """Size of the relative change of `twin_scenes` that moves the model as far as a solver's errors move the solver.
+
+    Measured in the run: from `restitution_error` on, `LADDER` times as large until the twins are as far off the model
+    as the solver's tilt is where it is first off by `EARLY` of `SPREAD`. That holds whatever moves the block:
+    compliance, steps, times of uplift, lost impacts.
+
+    Parameters
+    ----------
+    scene : Scene
+    response, reference : Response
+        The solver's, and the analytic model's; with histories.
+
+    Returns
+    -------
+    float
+        At least `LEAST`, at most `MOST`.
+
+    Raises
+    ------
+    ValueError
+        A history is missing.
+    """
+    if response.history is None or reference.history is None:
+        raise ValueError("perturbation_of needs histories: simulate with history=True")
+    own, model = response.history, reference.history
+    time = model.time[model.time <= own.time[-1]]
+    apart = np.abs(np.interp(time, own.time, own.tilt) - model.tilt[:len(time)]) / scene.block.slenderness
+    off = np.flatnonzero(apart > EARLY * SPREAD)
+    size = max(LEAST, restitution_error(scene, response, until=time[off[0]] if len(off) else np.inf))
+    if len(off) and off[0] > 0:
+        short = scene.with_(duration=float(time[off[0]]))
+        while size < MOST and sensitivity_horizon(short, perturbation=size).spread[-1] < apart[off[0]]:
+            size *= LADDER
+    return float(min(size, MOST))
+
+
+def restitution_error(scene, response, *, until=np.inf):
+    """Relative error of e_phi, rms over the impacts resolved up to `until` [s], weighted by rate; 0 without any."""
+    rates = np.array([impact.rate_before for impact in response.impacts if impact.time <= until])
+    e = RockingModel.of(scene).restitution
+    if not len(rates) or e == 0:
+        return 0.0
+    errors = state_restitution(response)[:len(rates)] / e - 1
+    return float(np.sqrt(np.sum((rates * errors) ** 2) / np.sum(rates**2)))
+
+
+def solver_horizon(scene, response, reference, *, spread=SPREAD):
+    """The `Horizon` of one solver: that of its own size of perturbation, `perturbation_of`."""
+    return sensitivity_horizon(scene, perturbation=perturbation_of(scene, response, reference), spread=spread)
