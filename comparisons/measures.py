@@ -118,11 +118,14 @@ def graph_distance(response, reference, *, tilt_scale, time_scale, until=math.in
     (ta, ya), (tb, yb) = lines = [(history.time / time_scale, history.tilt / tilt_scale) for history in graphs]
     spans = []
     for time, tilt in lines:
-        inside = time < end / time_scale
+        inside = time <= end / time_scale
         if inside.sum() < 2:
             raise ValueError(f"until = {until!r} s leaves fewer than two samples of the history")
-        last = np.interp(end / time_scale, time, tilt)
-        spans.append((np.append(time[inside], end / time_scale), np.append(tilt[inside], last)))
+        span = time[inside], tilt[inside]
+        if span[0][-1] < end / time_scale:
+            last = np.interp(end / time_scale, time, tilt)
+            span = np.append(span[0], end / time_scale), np.append(span[1], last)
+        spans.append(span)
     return float(max(_directed(*spans[0], tb, yb), _directed(*spans[1], ta, ya)))
 
 
@@ -130,7 +133,9 @@ def graph_distance(response, reference, *, tilt_scale, time_scale, until=math.in
 def _segment_distance(t, y, t0, y0, t1, y1):
     dt, dy = t1 - t0, y1 - y0
     along = ((t - t0) * dt + (y - y0) * dy) / (dt * dt + dy * dy)
-    along = min(1.0, max(0.0, along))
+    if along >= 1.0:
+        return math.hypot(t - t1, y - y1)
+    along = max(0.0, along)
     return math.hypot(t - t0 - along * dt, y - y0 - along * dy)
 
 

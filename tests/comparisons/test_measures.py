@@ -126,6 +126,28 @@ def test_graph_distance_of_shifted_lines_is_the_perpendicular():
         0.5 / math.sqrt(5), rel=1e-9)
 
 
+@pytest.mark.parametrize("cut", [0.0, 0.003, 0.4])
+def test_graph_distance_is_over_the_same_span(cut):
+    """A falling block whose history ends `cut` seconds before the other's, off its samples."""
+    response = simulate(free())
+    time = np.linspace(0, 2, 201)
+    fall = with_tilt(response, time, np.exp(time))
+    short = np.append(time[time < 2 - cut], 2 - cut)
+    part = with_tilt(response, short, np.interp(short, time, np.exp(time)))
+    for pair in ((fall, part), (part, fall)):
+        assert graph_distance(*pair, tilt_scale=1.0, time_scale=1.0) < 1e-12
+        assert graph_distance(*pair, tilt_scale=1.0, time_scale=1.0, until=1.234) < 1e-12
+
+
+def test_graph_distance_of_blocks_that_fall_one_after_the_other_is_the_delay():
+    response = simulate(free())
+    time, delay = np.linspace(0, 3, 3001), 2e-3
+    falls = [with_tilt(response, t, np.expm1(3 * (t - d).clip(0)))
+             for d in (0.0, delay) for t in (np.append(time[time < 2 + d], 2 + d),)]
+    distance = graph_distance(*falls, tilt_scale=1.0, time_scale=1.0)
+    assert 0.9 * delay < distance <= delay
+
+
 def test_energy_errors_vanish_for_exact_runs_and_see_a_drift():
     scene = Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=0.2), base=Base(mass=212.0),
                   start=Start(tilt=0.12), duration=4.0)
