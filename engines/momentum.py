@@ -15,6 +15,8 @@ from .ground_velocity import ground_velocity
 IMPULSE_LIMIT = 0.1
 # Share of the momentum below which an impulse of the bearings does not matter, and is not asked for.
 LEAST_IMPULSE = 0.1
+# Share of a rocking block's momentum below which nothing moves but round-off.
+LEAST_MOMENTUM = 1e-3
 
 
 def bearing_impulse(scene, trace):
@@ -70,8 +72,11 @@ def impulse_error(scene, trace):
     first = np.searchsorted(trace.time, begins)
     last = np.searchsorted(trace.time, begins + period)
     windows = [slice(a, b + 1) for a, b in zip(first, last, strict=True)]
-    scale = max(max(np.ptp(law[window]) for window in windows), LEAST_IMPULSE * np.ptp(momentum(scene, trace)))
-    return float(max(np.ptp(missing[window]) for window in windows) / scale) if scale > 0 else 0.0
+    block = scene.block
+    rocking = block.mass * block.radius * scene.rocking_frequency * block.slenderness  # momentum at such a tilt rate
+    scale = max(max(np.ptp(law[window]) for window in windows), LEAST_IMPULSE * np.ptp(momentum(scene, trace)),
+                LEAST_MOMENTUM * rocking)
+    return float(max(np.ptp(missing[window]) for window in windows) / scale)
 
 
 def check_impulse(scene, trace):
