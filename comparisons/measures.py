@@ -133,10 +133,9 @@ def graph_distance(response, reference, *, tilt_scale, time_scale, until=math.in
 def _segment_distance(t, y, t0, y0, t1, y1):
     dt, dy = t1 - t0, y1 - y0
     along = ((t - t0) * dt + (y - y0) * dy) / (dt * dt + dy * dy)
-    if along >= 1.0:
-        return math.hypot(t - t1, y - y1)
-    along = max(0.0, along)
-    return math.hypot(t - t0 - along * dt, y - y0 - along * dy)
+    along = min(1.0, max(0.0, along))
+    # The end is taken as it is: rounding along the line would leave a distance from a point of the line itself.
+    return min(math.hypot(t - t1, y - y1), math.hypot(t - t0 - along * dt, y - y0 - along * dy))
 
 
 @njit(cache=True)
