@@ -134,8 +134,7 @@ def _segment_distance(t, y, t0, y0, t1, y1):
     dt, dy = t1 - t0, y1 - y0
     along = ((t - t0) * dt + (y - y0) * dy) / (dt * dt + dy * dy)
     along = min(1.0, max(0.0, along))
-    # The end is taken as it is: rounding along the line would leave a distance from a point of the line itself.
-    return min(math.hypot(t - t1, y - y1), math.hypot(t - t0 - along * dt, y - y0 - along * dy))
+    return math.hypot(t - t0 - along * dt, y - y0 - along * dy)
 
 
 @njit(cache=True)

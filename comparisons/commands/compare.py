@@ -20,7 +20,7 @@ def command(
     from engines import installed_engines
 
     from ..files import check_writable, write_text
-    from ..horizon import sensitivity_horizon
+    from ..horizon import solver_horizon
     from ..solving import ANALYTIC, simulate, spinner
 
     check_writable([None if json_file == "-" else json_file], picture=plot)
@@ -30,11 +30,15 @@ def command(
     with spinner(what.name) as say:
         for number, name in enumerate([ANALYTIC, *names], 1):
             say(f"{what.name}: {name} ({number} of {len(names) + 1})")
-            responses.append(simulate(what, name, history=bool(plot)))
-        found = sensitivity_horizon(what)
-    horizon = found.horizon if any(time is not None for time in found.twins.values()) else None
+            responses.append(simulate(what, name, history=True))
+        horizons = {response.engine: solver_horizon(what, response, responses[0])
+                    for response in responses[1:] if not response.failure}
+    horizon = min((found.horizon for found in horizons.values() if found.parts), default=None)
     if json_file:
         content = {"scene": what.name, "sensitivity_horizon": horizon,
+                   "sensitivity": {name: {"perturbation": found.perturbation,
+                                          "horizon": found.horizon if found.parts else None}
+                                   for name, found in horizons.items()},
                    "responses": [response.to_json() for response in responses]}
         text = json.dumps(content, indent=2, allow_nan=False) + "\n"
         sys.stdout.write(text) if json_file == "-" else write_text(json_file, text)
@@ -47,7 +51,7 @@ def command(
 
         from ..tables import comparison
 
-        Console().print(comparison(what, responses, horizon))
+        Console().print(comparison(what, responses, horizons))
     for response in responses:
         if response.failure:
             print(f"{response.engine} failed: {response.failure.reason}. {response.failure.message}", file=sys.stderr)

@@ -57,8 +57,8 @@ def histories(result, name, column, label, scale=1.0, limits=(None, None)):
     below.ticklabel_format(axis="y", scilimits=(-2, 2))
     apart = "; ".join(f"{solver} {number(value, 2)}" for solver, value in worst.items()) or "no engine ran"
     dotted = "" if not parts else (
-        f" Dotted: the sensitivity horizon, {number(horizon)} s; after it no two solutions can be compared point by "
-        "point.")
+        f" Dotted: the earliest sensitivity horizon of a solver, {number(horizon)} s; after it "
+        "no two solutions can be compared point by point.")
     return figure_of(figure, f"{title}: {label} over time, {', '.join(solvers)} over each other.",
                      f"{title}: {label}. Below, the difference from the analytic model; largest: {apart}.{dotted}")
 

@@ -13,7 +13,7 @@ from analytic.rocking import base_jump_length, restitution
 from engines import ENGINES, available_engines, get_engine
 
 from ..cases import Case
-from ..horizon import sensitivity_horizon
+from ..horizon import sensitivity_horizon, solver_horizon
 from ..measures import base_jump_error, compare, state_restitution
 from ..provenance import write_result
 from ..sweep import Processes, Serial, Store, run_sweep
@@ -133,7 +133,7 @@ def _write_caryatid(path, rows, scenes, motion, missing, modules):
                         "bearings": scene.bearings and scene.bearings.model_dump(),
                         "half_width": scene.block.half_width, "half_height": scene.block.half_height,
                         "rocking_frequency": scene.rocking_frequency, "restitution": restitution(scene),
-                        "horizon": horizons[name].horizon}
+                        "horizon": float(horizons[name].time[-1])}  # the earliest of the engines'
                  for name, scene in scenes.items()}
     references = {row.case.tag["scene"]: response_of(row.values) for row in rows
                   if row.case.solver == "analytic" and not row.failed}
@@ -149,8 +149,12 @@ def _write_caryatid(path, rows, scenes, motion, missing, modules):
             entry["cpu_per_second"] = row.cost["cpu_seconds"] / response.end.time
             entry["bearing_work"] = float(trapezoid(response.history.bearing_force, response.history.base_displacement))
             if name in references:
-                agreement = compare(scenes[name], response, references[name], until=horizons[name].horizon)
-                entry["agreement"] = asdict(agreement)
+                own = horizons[name]
+                if row.case.solver != "analytic":
+                    own = solver_horizon(scenes[name], response, references[name])
+                    described[name]["horizon"] = min(described[name]["horizon"], own.horizon)
+                agreement = compare(scenes[name], response, references[name], until=own.horizon)
+                entry.update(agreement=asdict(agreement), perturbation=own.perturbation)
         kept.append(entry)
     settings = {"motion": {"label": motion.label, "peak": motion.peak, "peak_time": motion.peak_time,
                            "dt": motion.dt, "end": motion.end},
