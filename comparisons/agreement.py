@@ -13,6 +13,7 @@ from analytic import PulseMotion, SampledMotion, Scene, Start, load_scene, simul
 from analytic.bearing import BearingLaw
 from analytic.rocking import restitution
 from engines import get_engine
+from engines.momentum import impulse_error
 
 from .caryatid import BASE, BEARINGS, caryatid_block
 from .measures import base_jump_error, compare, state_restitution, swing_restitution
@@ -237,6 +238,17 @@ def bearing_replay(engine, variant, scenes, runs):
     trace, law = traces[0], BearingLaw.of(scene.bearings)
     force = paper_force(law, trace.base_displacement)
     return float(np.abs(trace.bearing_force - force).max() / (law.count * law.f0))
+
+
+def bearing_impulse(engine, variant, scenes, runs):
+    """What the momentum of the engine's own motion shows of the bearings' force, against the law: relative error.
+
+    Unlike `bearing_replay` it does not ask the adapter what the force was.
+    """
+    scene = named_scene(scenes)
+    with recorded_traces(engine) as traces:
+        run(engine, variant, scene)
+    return impulse_error(scene, traces[-1])
 
 
 def paper_force(law, x):

@@ -79,6 +79,7 @@ QUANTITIES = {
     "overturning time": (agreement.overturning_time, "s"),
     "overturning boundary": (agreement.boundary_shift, "relative"),
     "bearing force replayed": (agreement.bearing_replay, "f0"),
+    "bearing impulse in the motion": (agreement.bearing_impulse, "relative"),
     "corner lift at rest": (agreement.corner_lift, "m"),
     "base drift at rest": (agreement.base_drift, "m"),
 }
@@ -88,6 +89,7 @@ APPROACH = "share of its speed that the block gains in the step of the impact (a
 STEP = "step; first order, by the phase of the impact in it"
 LARGE_STEP = "steps in flight and at rest"
 HELD = "what the contact gives at rest"
+READING = "steps, and their force and momentum as read between them"
 ROUNDING = "history committed once per accepted step; round-off"
 
 # engine and variant: rows of (quantity, scenes, bound, measured, source)
@@ -107,6 +109,8 @@ _BOUNDS = {
         ("overturning boundary", HARD_PULSES, 2.2e-3, 1.18e-3, STIFFNESS),
         ("bearing force replayed", DRIVEN, 1e-9, 2.2e-13, ROUNDING),
         ("bearing force replayed", ISOLATED, 1e-9, 4.4e-13, ROUNDING),
+        ("bearing impulse in the motion", DRIVEN, 3.2e-7, 1.70e-7, READING),
+        ("bearing impulse in the motion", ISOLATED, 9e-7, 4.72e-7, READING),
         ("corner lift at rest", STANDING, 2.8e-7, 1.40e-7, HELD),
         ("base drift at rest", STANDING_ISOLATED, 1.5e-6, 7.92e-7, HELD),
     ),
@@ -125,6 +129,8 @@ _BOUNDS = {
         ("overturning boundary", HARD_PULSES, 1.5e-3, 8.03e-4, APPROACH),
         ("bearing force replayed", DRIVEN, 1e-9, 8.7e-14, ROUNDING),
         ("bearing force replayed", ISOLATED, 1e-9, 2.2e-13, ROUNDING),
+        ("bearing impulse in the motion", DRIVEN, 3.8e-5, 1.96e-5, READING),
+        ("bearing impulse in the motion", ISOLATED, 3.5e-5, 1.78e-5, READING),
         ("corner lift at rest", STANDING, 9e-9, 4.63e-9, HELD),
         ("base drift at rest", STANDING_ISOLATED, 4.5e-7, 2.36e-7, LARGE_STEP),
     ),
@@ -133,6 +139,7 @@ _BOUNDS = {
         ("restitution, rms", SLIDING_2, 4.6e-9, 2.35e-9, "step squared; the impact is the model's own"),
         ("base velocity jump, rms", SLIDING_2, 4.3e-9, 2.19e-9, "step squared; the impact is the model's own"),
         ("bearing force replayed", DRIVEN, 1e-9, 9.4e-14, ROUNDING),
+        ("bearing impulse in the motion", DRIVEN, 1.2e-5, 6.37e-6, READING),
     ),
     ("pybullet", "fixed-step"): (
         ("restitution, rms", RIGID_2, 1.2e-3, 6.18e-4, STEP),
@@ -154,6 +161,8 @@ _BOUNDS = {
         ("overturning boundary", HARD_PULSES, 1.2e-3, 6.44e-4, APPROACH),
         ("bearing force replayed", DRIVEN, 1e-9, 1.8e-13, ROUNDING),
         ("bearing force replayed", ISOLATED, 1e-9, 3.6e-13, ROUNDING),
+        ("bearing impulse in the motion", DRIVEN, 1e-6, 5.32e-7, READING),
+        ("bearing impulse in the motion", ISOLATED, 1.45e-6, 7.51e-7, READING),
         ("corner lift at rest", STANDING, 2.5e-8, 1.31e-8, HELD),
         ("base drift at rest", STANDING_ISOLATED, 4.5e-8, 2.26e-8, LARGE_STEP),
     ),

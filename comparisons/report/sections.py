@@ -73,7 +73,8 @@ def caryatid_sections(result):
             "Impact times and tilt graphs are compared up to the end, or up to the solver's sensitivity horizon where "
             "that comes first: beyond it a change of restitution, motion and start as small as the solver's own errors "
             "makes another motion, so that a difference says no more about it. The distance of two tilt graphs "
-            "(Hausdorff) is how far a point of one can lie from the other, time in units of 2 π/ω_r and tilt in units of γ.",),
+            "(Hausdorff) is how far a point of one can lie from the other, time in units of 2 π/ω_r and tilt in units "
+            "of γ.",),
                 tuple(table for name in scenes for table in (_outcomes(result, name), *_agreement(result, name))),
                 evidence=failed),
         Section("Histories and hysteresis", (

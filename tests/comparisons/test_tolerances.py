@@ -42,7 +42,8 @@ def test_every_installed_default_variant_has_its_rows():
         quantities = {row.quantity for row in TABLE if (row.engine, row.variant) == (engine, default)}
         assert quantities == {"restitution, rms", "base velocity jump, rms", "impact times", "peak tilt", "tilt graph",
                               "peak displacement", "overturning time", "overturning boundary",
-                              "bearing force replayed", "corner lift at rest", "base drift at rest"}
+                              "bearing force replayed", "bearing impulse in the motion",
+                              "corner lift at rest", "base drift at rest"}
 
 
 def test_the_papers_law_agrees_with_the_models_between_many_reversals():
