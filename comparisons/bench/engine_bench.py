@@ -10,12 +10,13 @@ not changed is not run again, so that a broken-off bench goes on, and a mended e
 
 import math
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from analytic.errors import SettingError
 from engines import get_engine
 
 from ..provenance import write_result
-from ..sweep import Case, Row, Store, run_sweep
+from ..sweep import Case, Processes, Store, run_sweep
 from .engine_verdicts import (
     boundary_twins,
     findings,
@@ -61,16 +62,17 @@ def bench_engines(engine, output, *, scenes=2000, seed=1, workers=None, time_lim
     except OSError as error:
         raise SettingError(f"--output {output.name}: no folder can be made there ({error.strerror})") from error
     ensemble = [wide_scene(seed, index) for index in range(scenes)]
-    with Store(output / "reference.jsonl") as reference, Store(output / f"{engine}.jsonl") as store:
-        options = dict(workers=workers, reduce=keep, progress=progress)
+    with (Store(output / "reference.jsonl") as reference, Store(output / f"{engine}.jsonl") as store,
+          Processes(workers, ("analytic", engine)) as executor):
+        options = dict(executor=executor, reduce=keep, progress=progress)
 
         def model_runs(cases, label):
             return run_sweep(cases, store=reference, time_limit=KERNEL_SECONDS, label=label, **options)
 
-        models = model_runs([Case(scene) for scene in ensemble], "analytic model")
-        runs = run_sweep([Case(scene, engine) for scene in ensemble], store=store, time_limit=time_limit,
-                         label=engine, **options)
-        rows = judged(ensemble, models, runs, model_runs)
+        def engine_runs(cases):
+            return run_sweep(cases, store=store, time_limit=time_limit, label=engine, **options)
+
+        rows = judged(ensemble, engine, model_runs, engine_runs)
     for index, (row, scene) in enumerate(zip(rows, ensemble, strict=True)):
         row["index"] = index
         if row["class"] == "off and silent":
@@ -82,73 +84,88 @@ def bench_engines(engine, output, *, scenes=2000, seed=1, workers=None, time_lim
     return rows
 
 
-def judged(ensemble, models, runs, model_runs):
-    """Rows of all scenes; `model_runs(cases, label)` runs twins of those that need them."""
-    rows, spans = [None] * len(ensemble), [math.inf] * len(ensemble)
-    cut = []  # overturning ones that may be left out: is the model sound up to the unstable point?
+def judged(ensemble, engine, model_runs, engine_runs):
+    """Rows of all scenes; `model_runs(cases, label)` and `engine_runs(cases)` run them, the engine only what counts."""
+    models = model_runs([Case(scene) for scene in ensemble], "analytic model")
+    reasons, spans = _left_out(ensemble, models, model_runs)
+    counted = [k for k, reason in enumerate(reasons) if reason is None]
+    runs = dict(zip(counted, engine_runs([Case(ensemble[k], engine) for k in counted]), strict=True))
+    doubtful = [k for k, run in runs.items()
+                if not run.failed and findings(ensemble[k], models[k].values, run.values, spans[k])]
+    families = [{**near_twins(ensemble[k]), **boundary_twins(ensemble[k])} for k in doubtful]
+    found = iter(model_runs([Case(twin) for family in families for twin in family.values()],
+                            "twins of doubtful scenes"))
+    twins = {k: {name: next(found) for name in family} for k, family in zip(doubtful, families, strict=True)}
+    rows = []
     for k, (scene, model) in enumerate(zip(ensemble, models, strict=True)):
-        reason = _unusable(scene, model)
-        if reason and not model.failed and model.values["outcome"] == "overturns" and model.values["unstable"]:
-            cut.append(k)
-        elif reason:
-            rows[k] = _row(scene, model, runs[k], "left out", cause=reason)
-    upto = model_runs([Case(ensemble[k].with_(duration=models[k].values["unstable"])) for k in cut],
-                      "up to the unstable point")
-    for k, model in zip(cut, upto, strict=True):
-        reason = _unusable(ensemble[k], model)
-        if reason:
-            rows[k] = _row(ensemble[k], models[k], runs[k], "left out", cause=reason)
+        run, off, notes, cause = runs.get(k), [], [], reasons[k]
+        if cause:
+            word = "left out"
+        elif run.failed:
+            word, cause = "failed and said", run.failure["reason"]
         else:
-            spans[k] = models[k].values["unstable"]
-    doubtful = []
-    for k, (scene, model, run) in enumerate(zip(ensemble, models, runs, strict=True)):
-        if rows[k] is None and run.failed:
-            rows[k] = _row(scene, model, run, "failed and said", cause=run.failure["reason"])
-        elif rows[k] is None and findings(scene, model.values, run.values, spans[k]):
-            doubtful.append(k)
-    twins = [{**near_twins(ensemble[k]), **boundary_twins(ensemble[k])} for k in doubtful]
-    found = iter(model_runs([Case(twin) for family in twins for twin in family.values()], "twins of doubtful scenes"))
-    twins = {k: {name: next(found) for name in family} for k, family in zip(doubtful, twins, strict=True)}
-    for k, (scene, model, run) in enumerate(zip(ensemble, models, runs, strict=True)):
-        if rows[k] is None:
             sound = {name: twin.values for name, twin in twins.get(k, {}).items() if not twin.failed}
-            small = {name: sound[name] for name in near_twins(scene) if name in sound}
-            large = {name: sound[name] for name in sound if name not in small}
-            off, notes = judge(scene, model.values, run.values, small, large, spans[k])
-            warned = bool(run.values["warnings"])
-            word = ("off and warned" if warned else "off and silent") if off else (
-                "right but warned" if warned else "right")
-            rows[k] = _row(scene, model, run, word, off, notes, span=spans[k])
+            small = {name: sound.pop(name) for name in near_twins(scene) if name in sound}
+            off, notes = judge(scene, model.values, run.values, small, sound, spans[k])
+            word = _WORDS[bool(off), bool(run.values["warnings"])]
+        rows.append(_row(scene, model, run, word, cause, off, notes, spans[k]))
     return rows
 
 
-def _unusable(scene, model: Row):
+_WORDS = {(False, False): "right", (False, True): "right but warned",
+          (True, False): "off and silent", (True, True): "off and warned"}
+
+
+def _left_out(ensemble, models, model_runs):
+    """(why each scene is left out, or None; the time up to which it is judged, inf if to its end)."""
+    reasons = [_unusable(scene, model) for scene, model in zip(ensemble, models, strict=True)]
+    spans = [math.inf] * len(ensemble)
+    fallen = [k for k, model in enumerate(models)
+              if reasons[k] and model.values["outcome"] == "overturns" and model.values["unstable"]]
+    upto = model_runs([Case(ensemble[k].with_(duration=models[k].values["unstable"])) for k in fallen],
+                      "up to the unstable point")
+    for k, model in zip(fallen, upto, strict=True):
+        reasons[k] = _unusable(ensemble[k], model)
+        if reasons[k] is None:
+            spans[k] = models[k].values["unstable"]
+    return reasons, spans
+
+
+def _unusable(scene, model):
     return model.failure["reason"] if model.failed else rule(scene, model.values)
 
 
-def _row(scene, model, run, word, off=(), notes=(), cause=None, span=math.inf):
-    sound = not (model.failed or run.failed)
-    return {"class": word, "cause": cause, "findings": list(off), "notes": list(notes),
-            "warnings": list(run.values.get("warnings") or ()), "failure": run.failure and run.failure["reason"],
-            "message": (run.failure or {}).get("message", "")[:300], "outcome": run.values["outcome"],
-            "expected": model.values["outcome"], "judged_until": None if math.isinf(span) else span,
-            "errors": {**peak_errors(scene, model.values, run.values, span),
-                       "restitution": restitution_error(scene, run.values, span)} if sound else {},
-            "cpu_seconds": run.cost.get("cpu_seconds"), "model_cpu_seconds": model.cost.get("cpu_seconds"),
-            "simulated": scene.duration, "place": place(scene)}
+def _row(scene, model, run, word, cause, off, notes, span):
+    values = run.values if run else {}
+    failure = (run.failure if run else None) or {}
+    errors = {}
+    if run and not run.failed:
+        errors = {**peak_errors(scene, model.values, values, span),
+                  "restitution": restitution_error(scene, values, span)}
+    return {"class": word, "cause": cause, "findings": off, "notes": notes, "errors": errors,
+            "warnings": list(values.get("warnings") or ()), "message": failure.get("message", "")[:300],
+            "outcome": values.get("outcome"), "expected": model.values["outcome"],
+            "judged_until": None if math.isinf(span) else span,
+            "cpu_seconds": run.cost.get("cpu_seconds") if run else None,
+            "model_cpu_seconds": model.cost.get("cpu_seconds"), "simulated": scene.duration, "place": place(scene)}
 
 
 def examine(engine, index, *, seed=1, time_limit=60.0):
-    """(scene, analytic row, engine row, row of the bench) of one scene, run again; nothing is stored."""
-    scene = wide_scene(seed, index)
+    """(scene, kept analytic values, kept engine values, row of the bench) of one scene, run again; nothing stored."""
+    scene, seen = wide_scene(seed, index), {}
+    with (TemporaryDirectory() as folder, Store(Path(folder) / "runs.jsonl") as store,
+          Processes(1, ("analytic", engine)) as executor):
+        options = dict(store=store, executor=executor, reduce=keep, progress=False)
 
-    def fresh(case, limit):
-        import tempfile
+        def model_runs(cases, label):
+            rows = run_sweep(cases, time_limit=KERNEL_SECONDS, **options) if cases else []
+            seen.setdefault("analytic", rows and rows[0].values)
+            return rows
 
-        with tempfile.TemporaryDirectory() as folder:
-            return run_sweep([case], store=Path(folder) / "one.jsonl", workers=1, time_limit=limit, reduce=keep,
-                             progress=False)[0]
+        def engine_runs(cases):
+            rows = run_sweep(cases or [Case(scene, engine)], time_limit=time_limit, **options)
+            seen[engine] = rows[0].values
+            return rows[:len(cases)]
 
-    model, run = fresh(Case(scene), KERNEL_SECONDS), fresh(Case(scene, engine), time_limit)
-    row, = judged([scene], [model], [run], lambda cases, label: [fresh(case, KERNEL_SECONDS) for case in cases])
-    return scene, model, run, {"index": index, **row}
+        row, = judged([scene], engine, model_runs, engine_runs)
+    return scene, seen["analytic"], seen[engine], {"index": index, **row}

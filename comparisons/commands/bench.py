@@ -63,7 +63,7 @@ def engines(
     console = Console()
     if index is not None:
         scene, model, run, row = examine(engine, index, seed=seed, time_limit=time_limit)
-        for title, content in (("scene", describe(scene)), ("analytic", model.values), (engine, run.values)):
+        for title, content in (("scene", describe(scene)), ("analytic", model), (engine, run)):
             curves = {"tilts", "displacements"}
             print(title, json.dumps({k: v for k, v in content.items() if k not in curves}))
         print("verdict", json.dumps(json_ready(row), indent=1))

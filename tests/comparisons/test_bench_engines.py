@@ -10,9 +10,11 @@ import pytest
 from analytic import Base, Block, PulseMotion, Scene, Start, simulate
 from analytic.rocking import restitution
 from comparisons.bench import engine_tables, engine_verdicts, wide_box
+from comparisons.bench.engine_bench import bench_engines, examine, judged
 from comparisons.bench.engine_figure import draw
 from comparisons.bench.engine_verdicts import boundary_twins, findings, judge, keep, lost_impacts, near_twins, rule
 from comparisons.provenance import json_ready
+from comparisons.sweep import Row
 
 FREE = Scene(block=Block(mass=10.0, radius=1.0, slenderness=0.25), base=Base(mass=5.0), start=Start(tilt=0.15),
              duration=4.0)
@@ -157,19 +159,55 @@ def test_scenes_outside_the_model_are_left_out_by_the_model_alone():
     assert rule(FREE.with_(friction=0.2), {**run, "friction": 0.3}) == "friction demand above 0.2"
 
 
+def rows_of(cases, changes=None, failure=None):
+    """What a sweep would hand back, run here with the analytic model and changed."""
+    rows = []
+    for case in cases:
+        values = {**kept(case.scene), **(changes or {})}
+        rows.append(Row(case, values, failure, {"cpu_seconds": 1e-3}, False))
+    return rows
+
+
+@pytest.mark.parametrize("changes, failure, expected", [
+    ({}, None, "right"), ({"warnings": ["w"]}, None, "right but warned"), ({"tilt": 0.2}, None, "off and silent"),
+    ({"tilt": 0.2, "warnings": ["w"]}, None, "off and warned"),
+    ({}, {"kind": "time limit", "reason": "no result", "message": "m"}, "failed and said")])
+def test_classes(changes, failure, expected):
+    row, = judged([FREE], "exudyn", lambda cases, label: rows_of(cases),
+                  lambda cases: rows_of(cases, changes, failure))
+    assert row["class"] == expected
+    assert row["cause"] == ("no result" if failure else None)
+    assert json.loads(json.dumps(json_ready(row)))["place"]["slenderness"] == 0.25
+
+
+def test_overturning_is_judged_up_to_the_unstable_point_where_it_then_leaves_the_model():
+    scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.25), duration=4.0,
+                  motion=PulseMotion("one-sine", 8.0, 6.0))  # falls, and is thrown off its corner at the end
+    assert kept(scene)["outcome"] == "overturns" and rule(scene, kept(scene))
+    for changes, expected in (({}, "right"), ({"tilt": 9.9, "displacement": 9.9}, "right"),
+                              ({"outcome": "rocks"}, "off and silent"), ({"tilts": [9.9] * 50}, "off and silent")):
+        row, = judged([scene], "exudyn", lambda cases, label: rows_of(cases), lambda cases: rows_of(cases, changes))
+        assert row["class"] == expected and row["judged_until"] == kept(scene)["unstable"]
+
+
+def test_what_the_model_leaves_out_the_engine_is_not_asked():
+    scene = FREE.with_(base={"mass": 5e-3}, start={"tilt": 0.0, "tilt_rate": 4.0})  # thrown off its corner at once
+    assert rule(scene, kept(scene)) is not None
+    row, = judged([scene], "exudyn", lambda cases, label: rows_of(cases), lambda cases: rows_of(cases) * len(cases))
+    assert row["class"] == "left out" and row["cause"] == rule(scene, kept(scene)) and row["outcome"] is None
+
+
 def test_bench_from_scenes_to_figure(tmp_path):
     pytest.importorskip("pybullet", reason="PyBullet's wheels end at CPython 3.11")
-    from comparisons.bench.engine_bench import bench_engines, examine
-
-    rows = bench_engines("pybullet", tmp_path, scenes=5, seed=3, workers=1, progress=False)
-    again = bench_engines("pybullet", tmp_path, scenes=5, seed=3, workers=1, progress=False)
+    rows = bench_engines("pybullet", tmp_path, scenes=3, seed=10, workers=1, progress=False)
+    again = bench_engines("pybullet", tmp_path, scenes=3, seed=10, workers=1, progress=False)
     assert json.dumps(rows) == json.dumps(again)  # nothing was run twice: CPU seconds are the same
-    assert [row["index"] for row in rows] == list(range(5))
+    assert [row["index"] for row in rows] == list(range(3))
     assert {row["class"] for row in rows} <= set(engine_verdicts.CLASSES)
     right = next(row["index"] for row in rows if row["class"] == "right")
-    assert examine("pybullet", right, seed=3)[3]["class"] == "right"
+    assert examine("pybullet", right, seed=10)[3]["class"] == "right"
     stored = json.loads((tmp_path / "bench-engines-pybullet.json").read_text())
-    assert stored["rows"] == json_ready(rows) and stored["provenance"]["seed"] == 3
+    assert stored["rows"] == json_ready(rows) and stored["provenance"]["seed"] == 10
     draw(rows, "test", tmp_path / "figure.png")
     assert (tmp_path / "figure.png").stat().st_size > 20_000
 
