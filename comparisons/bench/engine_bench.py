@@ -21,12 +21,12 @@ from .engine_verdicts import (
     boundary_twins,
     findings,
     judge,
-    keep,
     near_twins,
     peak_errors,
     restitution_error,
     rule,
 )
+from .kept import keep
 from .random_scenes import describe
 from .wide_box import place, wide_scene
 

@@ -1,4 +1,4 @@
-"""Is an engine's run of a scene right? Judged against the analytic model, from what `keep` keeps of both responses.
+"""Is an engine's run of a scene right? Judged against the analytic model, from what `kept.keep` keeps of both.
 
 Off is a run with at least one finding, each further from the analytic model than its limit:
 
@@ -27,30 +27,13 @@ import numpy as np
 from analytic.rocking import RockingModel, restitution
 
 from ..horizon import twin_scenes
+from .kept import GRID, RESOLVED
 
-RESTITUTION, PEAK, APART, RESOLVED = 1e-2, 0.02, 0.2, 0.1
+RESTITUTION, PEAK, APART = 1e-2, 0.02, 0.2
 LEAST_TILT, LEAST_DISPLACEMENT, LEAST_SWING = 1e-4, 1e-5, 1e-3
 FRICTION = 5.0  # of every engine's default, where the scene names none
 SMALL, BOUNDARY = 1e-4, 1e-2  # relative changes of the twins
-GRID, MOST_IMPACTS = 50, 400  # points of the growing peaks, impacts kept
 CLASSES = ("right", "right but warned", "off and warned", "failed and said", "off and silent", "left out")
-
-
-def keep(response):
-    """Reducer: what the judgement needs of a response with its history, as JSON values."""
-    history = response.history
-    steps = np.searchsorted(history.time, history.time[1] * (2000 / GRID) * np.arange(1, GRID + 1) * (1 + 1e-9),
-                            side="right") - 1
-    rates = np.abs([impact.rate_before for impact in response.impacts])
-    counted = [impact for impact, rate in zip(response.impacts, rates, strict=True)
-               if not rate < 0.5 * RESOLVED * rates.max()][:MOST_IMPACTS]
-    return {"outcome": response.outcome, "decided": response.decided, "unstable": response.unstable_time,
-            "tilt": response.peak_tilt, "displacement": response.peak_base_displacement,
-            "tilts": np.maximum.accumulate(np.abs(history.tilt))[steps],
-            "displacements": np.maximum.accumulate(np.abs(history.base_displacement))[steps],
-            "impacts": [[impact.time, impact.rate_before, impact.rate_after] for impact in counted],
-            "normal": response.min_normal_ratio, "friction": response.friction_demand,
-            "warnings": response.warnings, "steps": response.steps}
 
 
 def near_twins(scene):

@@ -3,6 +3,7 @@
 import copy
 import json
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -12,7 +13,8 @@ from analytic.rocking import restitution
 from comparisons.bench import engine_tables, engine_verdicts, wide_box
 from comparisons.bench.engine_bench import bench_engines, examine, judged
 from comparisons.bench.engine_figure import draw
-from comparisons.bench.engine_verdicts import boundary_twins, findings, judge, keep, lost_impacts, near_twins, rule
+from comparisons.bench.engine_verdicts import boundary_twins, findings, judge, lost_impacts, near_twins, rule
+from comparisons.bench.kept import keep
 from comparisons.provenance import json_ready
 from comparisons.sweep import Row
 
@@ -186,7 +188,7 @@ def test_overturning_is_judged_up_to_the_unstable_point_where_it_then_leaves_the
     assert kept(scene)["outcome"] == "overturns" and rule(scene, kept(scene))
     for changes, expected in (({}, "right"), ({"tilt": 9.9, "displacement": 9.9}, "right"),
                               ({"outcome": "rocks"}, "off and silent"), ({"tilts": [9.9] * 50}, "off and silent")):
-        row, = judged([scene], "exudyn", lambda cases, label: rows_of(cases), lambda cases: rows_of(cases, changes))
+        row, = judged([scene], "exudyn", lambda cases, label: rows_of(cases), partial(rows_of, changes=changes))
         assert row["class"] == expected and row["judged_until"] == kept(scene)["unstable"]
 
 
