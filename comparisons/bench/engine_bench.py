@@ -23,8 +23,10 @@ from .engine_verdicts import (
     judge,
     near_twins,
     peak_errors,
+    range_warnings,
     restitution_error,
     rule,
+    span,
 )
 from .kept import keep
 from .random_scenes import describe
@@ -87,7 +89,9 @@ def bench_engines(engine, output, *, scenes=2000, seed=1, workers=None, time_lim
 def judged(ensemble, engine, model_runs, engine_runs):
     """Rows of all scenes; `model_runs(cases, label)` and `engine_runs(cases)` run them, the engine only what counts."""
     models = model_runs([Case(scene) for scene in ensemble], "analytic model")
-    reasons, spans = _left_out(ensemble, models, model_runs)
+    reasons = [_unusable(scene, model) for scene, model in zip(ensemble, models, strict=True)]
+    spans = [math.inf if reason else span(scene, model.values)
+             for scene, model, reason in zip(ensemble, models, reasons, strict=True)]
     counted = [k for k, reason in enumerate(reasons) if reason is None]
     runs = dict(zip(counted, engine_runs([Case(ensemble[k], engine) for k in counted]), strict=True))
     doubtful = [k for k, run in runs.items()
@@ -107,7 +111,7 @@ def judged(ensemble, engine, model_runs, engine_runs):
             sound = {name: twin.values for name, twin in twins.get(k, {}).items() if not twin.failed}
             small = {name: sound.pop(name) for name in near_twins(scene) if name in sound}
             off, notes = judge(scene, model.values, run.values, small, sound, spans[k])
-            word = _WORDS[bool(off), bool(run.values["warnings"])]
+            word = _WORDS[bool(off), bool(range_warnings(model.values, run.values))]
         rows.append(_row(scene, model, run, word, cause, off, notes, spans[k]))
     return rows
 
@@ -116,36 +120,22 @@ _WORDS = {(False, False): "right", (False, True): "right but warned",
           (True, False): "off and silent", (True, True): "off and warned"}
 
 
-def _left_out(ensemble, models, model_runs):
-    """(why each scene is left out, or None; the time up to which it is judged, inf if to its end)."""
-    reasons = [_unusable(scene, model) for scene, model in zip(ensemble, models, strict=True)]
-    spans = [math.inf] * len(ensemble)
-    fallen = [k for k, model in enumerate(models)
-              if reasons[k] and model.values["outcome"] == "overturns" and model.values["unstable"]]
-    upto = model_runs([Case(ensemble[k].with_(duration=models[k].values["unstable"])) for k in fallen],
-                      "up to the unstable point")
-    for k, model in zip(fallen, upto, strict=True):
-        reasons[k] = _unusable(ensemble[k], model)
-        if reasons[k] is None:
-            spans[k] = models[k].values["unstable"]
-    return reasons, spans
-
-
 def _unusable(scene, model):
     return model.failure["reason"] if model.failed else rule(scene, model.values)
 
 
-def _row(scene, model, run, word, cause, off, notes, span):
+def _row(scene, model, run, word, cause, off, notes, until):
     values = run.values if run else {}
     failure = (run.failure if run else None) or {}
-    errors = {}
+    errors, warnings = {}, []
     if run and not run.failed:
-        errors = {**peak_errors(scene, model.values, values, span),
-                  "restitution": restitution_error(scene, values, span)}
+        errors = {**peak_errors(scene, model.values, values, until),
+                  "restitution": restitution_error(scene, values, until)}
+        warnings = range_warnings(model.values, values)
     return {"class": word, "cause": cause, "findings": off, "notes": notes, "errors": errors,
-            "warnings": list(values.get("warnings") or ()), "message": failure.get("message", "")[:300],
+            "warnings": warnings, "message": failure.get("message", "")[:300],
             "outcome": values.get("outcome"), "expected": model.values["outcome"],
-            "judged_until": None if math.isinf(span) else span,
+            "judged_until": None if math.isinf(until) else until,
             "cpu_seconds": run.cost.get("cpu_seconds") if run else None,
             "model_cpu_seconds": model.cost.get("cpu_seconds"), "simulated": scene.duration, "place": place(scene)}
 

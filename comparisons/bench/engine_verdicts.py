@@ -11,9 +11,11 @@ Off is a run with at least one finding, each further from the analytic model tha
 - lost impact: an impact of the model that counts has none in the engine on its side within half the intervals to its
   neighbours.
 
+A block that overturns is judged up to its first passage of the slenderness, and by its outcome: falling, every block
+loses the contact that the model assumes. A run cut short before its outcome is decided has none that could be another.
+
 Three things are no fault of the engine, and each excuses as little as can be. *Left out* is a scene whose analytic run
-has N <= 0 or a friction demand above FRICTION at the contact; if that comes only after the tilt has passed the
-slenderness on the way to overturning, the rest is judged up to there. *Ill-conditioned* is a peak that the analytic
+has N <= 0 or a friction demand above FRICTION at the contact. *Ill-conditioned* is a peak that the analytic
 model itself changes by more than PEAK for relative changes of 1e-4 of start, amplitude or restitution: it is
 compared up to the time where that begins. *Near a boundary* is an outcome that the model changes for a change of 1 % of
 start, amplitude or slenderness: it does not count, and peaks do only up to the time where those of the twins with
@@ -21,6 +23,7 @@ another outcome part by more than APART.
 """
 
 import math
+import re
 
 import numpy as np
 
@@ -34,6 +37,16 @@ LEAST_TILT, LEAST_DISPLACEMENT, LEAST_SWING = 1e-4, 1e-5, 1e-3
 FRICTION = 5.0  # of every engine's default, where the scene names none
 SMALL, BOUNDARY = 1e-4, 1e-2  # relative changes of the twins
 CLASSES = ("right", "right but warned", "off and warned", "failed and said", "off and silent", "left out")
+
+
+def range_warnings(model, run):
+    """The warnings of a run that are about the engine: those that the analytic model's run does not give as well."""
+    known = {_cause(sentence) for sentence in model["warnings"]}
+    return [sentence for sentence in run["warnings"] if _cause(sentence) not in known]
+
+
+def _cause(sentence):
+    return re.split(r"-?\d", sentence)[0]
 
 
 def near_twins(scene):
@@ -65,10 +78,15 @@ def rule(scene, model):
     return None
 
 
+def span(scene, model):
+    """Time [s] up to which a scene is judged: inf, or where a block that overturns first passes the slenderness."""
+    return min(scene.duration, model["unstable"]) if model["outcome"] == "overturns" else math.inf
+
+
 def findings(scene, model, run, until=math.inf):
     """What is off in a run up to the time `until` [s]: list of {quantity, error, limit}; both as kept by `keep`."""
     found = []
-    if _outcome(scene, model) != _outcome(scene, run):
+    if _other(scene, model, run):
         found.append({"quantity": "outcome", "error": f"{run['outcome']}, not {model['outcome']}", "limit": None})
     for name, error in peak_errors(scene, model, run, until).items():
         if not error <= PEAK:  # not: NaN
@@ -82,8 +100,18 @@ def findings(scene, model, run, until=math.inf):
 
 
 def _outcome(scene, kept):
+    """The outcome as it is told from others; None while the block falls, with neither outcome certain."""
+    if kept["outcome"] == "overturns":
+        return "overturns"
+    if not kept["decided"]:
+        return None
     seen = kept["tilt"] is None or kept["tilt"] > LEAST_TILT * scene.block.slenderness
     return kept["outcome"] if seen else "stands"
+
+
+def _other(scene, one, other):
+    outcomes = {_outcome(scene, one), _outcome(scene, other)}
+    return None not in outcomes and len(outcomes) > 1
 
 
 def least(scene):
@@ -98,15 +126,15 @@ def peak_errors(scene, model, run, until=math.inf):
     last = _last(scene, until)
     errors = {}
     for name, floor in least(scene).items():
-        wanted, got = (kept[name] if last is None else kept[f"{name}s"][last] if last >= 0 else 0.0
-                       for kept in (model, run))
+        wanted, got = (kept[name] if last is None or kept[name] is None else
+                       kept[f"{name}s"][last] if last >= 0 else 0.0 for kept in (model, run))
         errors[name] = math.nan if got is None else abs(got - wanted) / max(wanted, floor)
     return errors
 
 
 def _last(scene, until):
     """Index of the last growing peak up to `until`; -1 where there is none, None where all count."""
-    return None if until >= scene.duration else math.floor(until / scene.duration * GRID * (1 + 1e-9)) - 1
+    return None if until > scene.duration else math.floor(until / scene.duration * GRID * (1 + 1e-9)) - 1
 
 
 def resolved(scene, kept, until=math.inf):
@@ -173,7 +201,7 @@ def judge(scene, model, run, small, large, until=math.inf):
     if not found:
         return found, []
     notes, apart = [], parting(scene, model, small.values(), PEAK)
-    others = [twin for twin in [*small.values(), *large.values()] if _outcome(scene, twin) != _outcome(scene, model)]
+    others = [twin for twin in [*small.values(), *large.values()] if _other(scene, twin, model)]
     if others and any(finding["quantity"] == "outcome" for finding in found):
         notes, apart = ["near a boundary"], min(apart, parting(scene, model, others, APART))
     elif apart < until:

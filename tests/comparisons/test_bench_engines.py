@@ -13,7 +13,15 @@ from analytic.rocking import restitution
 from comparisons.bench import engine_tables, engine_verdicts, wide_box
 from comparisons.bench.engine_bench import bench_engines, examine, judged
 from comparisons.bench.engine_figure import draw
-from comparisons.bench.engine_verdicts import boundary_twins, findings, judge, lost_impacts, near_twins, rule
+from comparisons.bench.engine_verdicts import (
+    boundary_twins,
+    findings,
+    judge,
+    lost_impacts,
+    near_twins,
+    range_warnings,
+    rule,
+)
 from comparisons.bench.kept import keep
 from comparisons.provenance import json_ready
 from comparisons.sweep import Row
@@ -182,14 +190,29 @@ def test_classes(changes, failure, expected):
     assert json.loads(json.dumps(json_ready(row)))["place"]["slenderness"] == 0.25
 
 
-def test_overturning_is_judged_up_to_the_unstable_point_where_it_then_leaves_the_model():
+def test_overturning_is_judged_up_to_the_unstable_point_and_by_its_outcome():
     scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.25), duration=4.0,
-                  motion=PulseMotion("one-sine", 8.0, 6.0))  # falls, and is thrown off its corner at the end
-    assert kept(scene)["outcome"] == "overturns" and rule(scene, kept(scene))
+                  motion=PulseMotion("one-sine", 8.0, 6.0))
+    run = kept(scene)
+    assert run["outcome"] == "overturns" and rule(scene, run) is None
     for changes, expected in (({}, "right"), ({"tilt": 9.9, "displacement": 9.9}, "right"),
-                              ({"outcome": "rocks"}, "off and silent"), ({"tilts": [9.9] * 50}, "off and silent")):
+                              ({"outcome": "rocks"}, "off and silent"), ({"tilts": [9.9] * 50}, "off and silent"),
+                              ({"outcome": "rocks", "decided": False}, "right")):
         row, = judged([scene], "exudyn", lambda cases, label: rows_of(cases), partial(rows_of, changes=changes))
-        assert row["class"] == expected and row["judged_until"] == kept(scene)["unstable"]
+        assert row["class"] == expected and row["judged_until"] == run["unstable"]
+    thrown = scene.with_(motion=None, start={"tilt": 0.1, "tilt_rate": 2.0})
+    cut = thrown.with_(duration=kept(thrown)["unstable"] * 1.05)
+    assert kept(cut)["outcome"] == "overturns"  # the model follows a certain fall to its end, an engine may not
+    short = {"outcome": "rocks", "decided": False, "tilt": 1.2 * 0.25}
+    row, = judged([cut], "exudyn", lambda cases, label: rows_of(cases), partial(rows_of, changes=short))
+    assert row["class"] == "right"
+
+
+def test_a_warning_that_the_model_gives_too_is_none_about_the_engine():
+    model, run = ({"warnings": [f"the base slides on at {speed} m/s"]} for speed in ("1e-3", "2e-3"))
+    assert range_warnings(model, run) == []
+    radius = "radius R [m] = 0.001 is below 0.01, the limit of the range verified"
+    assert range_warnings(model, {"warnings": [*run["warnings"], radius]}) == [radius]
 
 
 def test_what_the_model_leaves_out_the_engine_is_not_asked():
