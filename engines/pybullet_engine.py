@@ -15,7 +15,7 @@ from .checks import GAIN_LIMIT, HEIGHT_TOLERANCE, energy_gain, pivoting_centre
 from .deciding import until_decided
 from .leapfrog_trace import raw_trace_of, trace_of
 from .observe import observe
-from .pybullet_scene import MOST_VELOCITY, Mismatch, assemble
+from .pybullet_scene import MOST_VELOCITY, Mismatch, Units, assemble
 from .settings import choose, leave_restitution
 
 NAME = "pybullet"
@@ -70,6 +70,10 @@ def versions():
     return {"pybullet": version("pybullet"), "bullet-api": str(pybullet.getAPIVersion())}
 
 
+class TooManySteps(RuntimeError):
+    """A run would take more than `MOST_ROWS` steps."""
+
+
 @until_decided
 def simulate(scene, *, variant=None, history=True, **settings):
     """Simulate a scene in PyBullet.
@@ -116,12 +120,14 @@ def _attempt(scene, chosen, places=False):
         rows, ended, place, cpu = _run(client, scene, chosen, places)
     except Mismatch as error:
         failure = Failure("Bullet does not use what it was given", str(error))
+    except TooManySteps as error:
+        failure = Failure("too many steps", str(error))
     except pybullet.error as error:
         failure = Failure("Bullet raised an error", str(error))
     finally:
         pybullet.disconnect(client)
     if len(rows) < 2:
-        rows = [(float(k), 1.0, *[math.nan] * 6) for k in range(2)]
+        rows = np.array([(float(k), 1.0, *[math.nan] * 6) for k in range(2)])
     if isinstance(chosen, FirstScript):
         trace = raw_trace_of(rows, scene, 1e-3 * scene.block.slenderness)
     else:
@@ -138,12 +144,19 @@ def _run(client, scene, chosen, places):
         return rows, ended, None, time.process_time() - clock
     aware = isinstance(chosen, ImpactAware)
     largest, accuracy = (chosen.largest_step, chosen.accuracy) if aware else (chosen.step, None)
-    assembly = assemble(client, scene, largest)
+    units = Units.of(scene)
+    sized = units.scale(scene)
+    largest = pybullet_stepping.longest_step(sized, units, largest)
+    row_limit = int(min(MOST_ROWS, ROWS_PER_STEP * sized.duration / largest + 100_000))
+    if sized.duration / largest > MOST_ROWS:
+        raise TooManySteps(f"steps of {largest * units.time:.3g} s that follow the bearings: "
+                           f"{sized.duration / largest:.3g} for {scene.duration:.6g} s; at most {MOST_ROWS}")
+    assembly = assemble(client, sized, largest)
     clock = time.process_time()
-    row_limit = int(min(MOST_ROWS, ROWS_PER_STEP * scene.duration / largest + 100_000))
-    rows, ended = pybullet_stepping.run(assembly, scene, largest, accuracy, row_limit, places)
+    rows, ended = pybullet_stepping.run(assembly, sized, units, largest, accuracy, row_limit, places)
     cpu = time.process_time() - clock
-    place = [state[0] for state in pybullet.getJointStates(assembly.body, (assembly.slide, assembly.lift), client)]
+    place = [units.length * state[0]
+             for state in pybullet.getJointStates(assembly.body, (assembly.slide, assembly.lift), client)]
     return rows, ended, place, cpu
 
 

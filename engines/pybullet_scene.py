@@ -6,10 +6,12 @@ All traps named here were met with PyBullet 3.2.7; see the comments.
 import math
 from dataclasses import dataclass
 
+import numpy as np
 import pybullet
 
-# Lateral frictions of two bodies multiply; 5 x 5 stands for the model's "no sliding".
-FRICTION = 5.0
+# Coefficient between the block and what it stands on where the scene gives none: the model's "no sliding". Bullet
+# multiplies the frictions of two bodies and cuts the product to 10, in silence.
+FRICTION = 10.0
 
 # Gap [m] below which Bullet keeps contact points. Process-global, leaks from client to client and is not returned
 # by the getter: set in every client. Bullet's default is 0.02.
@@ -25,13 +27,12 @@ CORRECTION_RATE, MOST_CORRECTION = 30.0, 0.1
 # (tilt 8e-6 of gamma at rest at 1 ms, slenderness .45; the spheres 8e-11).
 CORNER_RADIUS = 1e-6
 
-# Sequential impulses per step. Around one corner 10 are enough: e is the same with 1000. Standing on two corners they
-# converge the slower the more slender the block, as exp(-3 n tan^2 gamma); too few let a standing block rock (10: at
-# 9e-5 of gamma under shaking of .9 of the uplift threshold, gamma .1; 250: 3e-8). The direct solver (Dantzig) stands
-# too, but its friction is wrong on two corners: under a horizontal load the block and its base part. The default
-# solverResidualThreshold does not end the iterations early.
-ROCKING_ITERATIONS, STANDING_ITERATIONS, MOST_ITERATIONS = 10, 3.0, 600
-
+# What the sequential impulses of a step may leave undone, as a share, rocking on one corner and standing on two; see
+# `iterations`. The least are those of J_O = 4/3 m R^2 and slenderness .45, where e is the same with 1000. With too few e
+# is .99998 for .64 (J_O = 1.05 m R^2) and a standing block rocks (10: at 9e-5 of gamma under shaking of .9 of the uplift
+# threshold, gamma .1). The direct solver (Dantzig) stands too, but its friction is wrong on two corners: under a
+# horizontal load the block and its base part. The default solverResidualThreshold does not end the iterations early.
+ROCKING_REST, STANDING_REST, LEAST_ITERATIONS, MOST_ITERATIONS = 1e-6, 1e-4, (10, 20), 20_000
 
 MOST_VELOCITY = 1e9  # m/s and rad/s, above which Bullet would cut a joint's; its default is 100
 
@@ -68,14 +69,56 @@ def placement(scene):
             start.base_velocity + c * start.tilt_rate, n * start.tilt_rate)
 
 
-def standing_iterations(scene):
-    """Iterations of the contact solver that a standing block needs."""
-    needed = math.ceil(STANDING_ITERATIONS / math.tan(scene.block.slenderness) ** 2)
-    return min(max(needed, 2 * ROCKING_ITERATIONS), MOST_ITERATIONS)
+@dataclass(frozen=True)
+class Units:
+    """Size of Bullet's units of length [m] and time [s]; those of acceleration, mass and force are SI.
+
+    Bullet has thresholds in metres, and step lengths go with sqrt(R/g): a block of .5 m <= R < 2 m stays as it is, others
+    are brought there. By powers of 4, so nothing is rounded.
+    """
+
+    length: float
+    time: float
+
+    @classmethod
+    def of(cls, scene):
+        power = round(math.log(scene.block.radius, 4))
+        return cls(4.0**power, 2.0**power)
+
+    def scale(self, scene):
+        """The scene in these units, but for its motion and bearings, which stay in SI."""
+        block, start, length, speed = scene.block, scene.start, self.length, self.length / self.time
+        inertia = None if block.corner_inertia is None else block.corner_inertia / length**2
+        duration = None if scene.duration is None else scene.duration / self.time
+        return scene.with_(
+            block={"radius": block.radius / length, "corner_inertia": inertia}, duration=duration,
+            start={"tilt_rate": start.tilt_rate * self.time, "base_displacement": start.base_displacement / length,
+                   "base_velocity": start.base_velocity / speed})
+
+
+def iterations(scene, corners):
+    """Iterations of the contact solver until ROCKING_REST (one corner) or STANDING_REST (two) is left.
+
+    Sequential impulses are Gauss-Seidel's method, the normals first: its rate is an eigenvalue, near 1 for J_O near
+    m R^2, and for slender blocks on two corners as 1 - 3 tan^2 gamma. The forces on a light base are shared out by
+    friction: there is more to undo.
+    """
+    block = scene.block
+    b, h, light = block.half_width, block.half_height, scene.base.mass if scene.base else math.inf
+    mobility = np.diag([1 / block.mass, 1 / block.mass, 1 / block.centre_inertia, 1 / light])
+    across = (b,) if corners == 1 else (-b, b)
+    directions = np.array([[0, 1, -x, 0] for x in across] + [[1, 0, -h, -1] for _ in across])
+    delassus = directions @ mobility @ directions.T
+    lower = np.tril(delassus)
+    rates = np.abs(np.linalg.eigvals(np.linalg.solve(lower, lower - delassus)))
+    rate = rates[rates < 1 - 1e-9].max()  # 1: the two corners' shares of the friction, which do not matter
+    rest = (ROCKING_REST, STANDING_REST)[corners - 1]
+    needed = math.log(rest * min(1.0, light / block.mass)) / math.log(rate) if rate > 0 else 1.0
+    return min(max(math.ceil(needed), LEAST_ITERATIONS[corners - 1]), MOST_ITERATIONS)
 
 
 def assemble(client, scene, step):
-    """Build the planar chain of a scene in a fresh client.
+    """Build the planar chain of a scene, in Bullet's `Units`, in a fresh client.
 
     The block, on x-prismatic, z-prismatic and y-revolute joints without mass, touches with two corners. The base is
     a plane on an x-prismatic joint of the same multibody (one call then reads both), or a fixed plane for rigid
@@ -87,11 +130,12 @@ def assemble(client, scene, step):
         What Bullet reports back differs from what was asked for.
     """
     block, start = scene.block, scene.start
-    iterations = standing_iterations(scene)
+    many = iterations(scene, 2)
+    rough = math.sqrt(FRICTION if scene.friction is None else scene.friction)  # of each body
     b, h, inertia = block.half_width, block.half_height, block.centre_inertia
     pybullet.setPhysicsEngineParameter(
         fixedTimeStep=step, numSubSteps=0, contactSlop=0.0, contactERP=correction(step),
-        contactBreakingThreshold=BREAKING_THRESHOLD, numSolverIterations=iterations,
+        contactBreakingThreshold=BREAKING_THRESHOLD, numSolverIterations=many,
         physicsClientId=client)
     pybullet.setGravity(0.0, 0.0, -scene.gravity, client)
     r = CORNER_RADIUS * block.radius
@@ -106,7 +150,7 @@ def assemble(client, scene, step):
     ground = base = None
     if scene.base is None:
         ground = pybullet.createMultiBody(0, plane, physicsClientId=client)
-        pybullet.changeDynamics(ground, -1, lateralFriction=FRICTION, restitution=0.0, physicsClientId=client)
+        pybullet.changeDynamics(ground, -1, lateralFriction=rough, restitution=0.0, physicsClientId=client)
     else:
         base = 3
         links.append((scene.base.mass, plane, [0, 0, 0], sliding, [1, 0, 0], 0))
@@ -122,7 +166,7 @@ def assemble(client, scene, step):
         # Damping and velocity limits in a call force its linkIndex to -1: friction goes in a call of its own.
         pybullet.changeDynamics(body, link, linearDamping=0.0, angularDamping=0.0, maxJointVelocity=MOST_VELOCITY,
                                 physicsClientId=client)
-        pybullet.changeDynamics(body, link, lateralFriction=FRICTION, rollingFriction=0.0, spinningFriction=0.0,
+        pybullet.changeDynamics(body, link, lateralFriction=rough, rollingFriction=0.0, spinningFriction=0.0,
                                 restitution=0.0, jointDamping=0.0, physicsClientId=client)
         if link >= 0:  # joints come with a motor of 1 N s per step
             pybullet.setJointMotorControl2(body, link, pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client)
@@ -134,11 +178,11 @@ def assemble(client, scene, step):
     if base is not None:
         pybullet.resetJointState(body, base, start.base_displacement, start.base_velocity, physicsClientId=client)
     assembly = Assembly(client, body, ground, 0, 1, 2, base)
-    check_readback(assembly, scene, step, iterations)
+    check_readback(assembly, scene, step, many, rough)
     return assembly
 
 
-def check_readback(assembly, scene, step, iterations):
+def check_readback(assembly, scene, step, many, rough):
     """Compare what Bullet reports with what the scene needs; raises `Mismatch` naming what differs.
 
     contactERP, contactSlop and contactBreakingThreshold have no getter in Bullet.
@@ -152,7 +196,7 @@ def check_readback(assembly, scene, step, iterations):
     engine = pybullet.getPhysicsEngineParameters(client)
     expect("time step", engine["fixedTimeStep"], step)
     expect("substeps", engine["numSubSteps"], 0)
-    expect("solver iterations", engine["numSolverIterations"], iterations)
+    expect("solver iterations", engine["numSolverIterations"], many)
     expect("gravity", engine["gravityAccelerationZ"], -scene.gravity)
     expect("joints", pybullet.getNumJoints(body, client), 3 if assembly.base is None else 4)
     parts = [("block", body, assembly.tilt, scene.block.mass)]
@@ -164,7 +208,7 @@ def check_readback(assembly, scene, step, iterations):
     for name, owner, link, mass in parts:
         info = pybullet.getDynamicsInfo(owner, link, client)
         expect(f"{name}: mass", info[0], mass)
-        expect(f"{name}: friction", info[1], FRICTION)
+        expect(f"{name}: friction", info[1], rough)
         expect(f"{name}: restitution", info[5], 0.0)
         if name == "block":
             expect("block: inertia", info[2][1], scene.block.centre_inertia)

@@ -43,7 +43,7 @@ def free_block_3d(scene, *, step, history=True):
     from engines.leapfrog_trace import trace_of
     from engines.observe import observe
     from engines.pybullet_engine import versions
-    from engines.pybullet_scene import BREAKING_THRESHOLD, FRICTION, correction, standing_iterations
+    from engines.pybullet_scene import BREAKING_THRESHOLD, FRICTION, correction, iterations
     from engines.pybullet_stepping import FLAT
 
     client = pybullet.connect(pybullet.DIRECT)
@@ -51,7 +51,7 @@ def free_block_3d(scene, *, step, history=True):
         body, slab = script.build(client, scene, step)
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=step, numSubSteps=0, contactSlop=0.0, contactERP=correction(step),
-            contactBreakingThreshold=BREAKING_THRESHOLD, numSolverIterations=standing_iterations(scene),
+            contactBreakingThreshold=BREAKING_THRESHOLD, numSolverIterations=iterations(scene, 2),
             physicsClientId=client)
         for part, link in ((body, -1), (slab, -1), *(((slab, 0),) if scene.base else ())):
             pybullet.changeDynamics(part, link, linearDamping=0.0, angularDamping=0.0, physicsClientId=client)
