@@ -16,6 +16,7 @@ from .pybullet_scene import placement
 THICKNESS = 1.0  # m, of the slab
 # Bullet's own default [m]. Process-global: without it a planar run earlier in the process would leave its own here.
 BREAKING_THRESHOLD = 0.02
+MOST_VELOCITY = 100.0  # m/s and rad/s: where Bullet cuts a joint's by default, in silence
 
 
 def build(client, scene, step):
@@ -43,6 +44,10 @@ def build(client, scene, step):
     x, z, vx, vz = placement(scene)
     turn = pybullet.getQuaternionFromEuler([0, scene.start.tilt, 0])
     body = pybullet.createMultiBody(block.mass, box, -1, [x, 0, z + h], turn, physicsClientId=client)
+    if scene.friction is not None:  # Bullet multiplies the two
+        pybullet.changeDynamics(body, -1, lateralFriction=math.sqrt(scene.friction), physicsClientId=client)
+        pybullet.changeDynamics(slab, -1 if scene.base is None else 0, lateralFriction=math.sqrt(scene.friction),
+                                physicsClientId=client)
     pybullet.resetBaseVelocity(body, [vx, 0, vz], [0, scene.start.tilt_rate, 0], physicsClientId=client)
     return body, slab
 

@@ -11,7 +11,8 @@ import pybullet
 
 # Coefficient between the block and what it stands on where the scene gives none: the model's "no sliding". Bullet
 # multiplies the frictions of two bodies and cuts the product to 10, in silence.
-FRICTION = 10.0
+MOST_FRICTION = 10.0
+FRICTION = MOST_FRICTION
 
 # Gap [m] below which Bullet keeps contact points. Process-global, leaks from client to client and is not returned
 # by the getter: set in every client. Bullet's default is 0.02.
@@ -131,7 +132,7 @@ def assemble(client, scene, step):
     """
     block, start = scene.block, scene.start
     many = iterations(scene, 2)
-    rough = math.sqrt(FRICTION if scene.friction is None else scene.friction)  # of each body
+    rough = math.sqrt(FRICTION if scene.friction is None else min(scene.friction, MOST_FRICTION))  # of each body
     b, h, inertia = block.half_width, block.half_height, block.centre_inertia
     pybullet.setPhysicsEngineParameter(
         fixedTimeStep=step, numSubSteps=0, contactSlop=0.0, contactERP=correction(step),

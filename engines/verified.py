@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 from analytic.bearing import BearingLaw
 
 ANY = (0.0, math.inf)
+NOWHERE = "this variant is verified in no range: its settings are not meant to be right"
 
 
 @dataclass(frozen=True)
@@ -52,12 +53,15 @@ def outside(scene, verified, *, step, peak_tilt=None):
     Parameters
     ----------
     scene : Scene
-    verified : Range
+    verified : Range or None
+        None: no range at all.
     step : float
         Step length of the engine [s].
     peak_tilt : float or None
         Largest tilt of the run [rad]; None or 0 where it never lifted.
     """
+    if verified is None:
+        return (NOWHERE,)
     found, sentences = quantities(scene, step, peak_tilt), []
     for name in (field.name for field in fields(Range)):
         low, high = getattr(verified, name)
