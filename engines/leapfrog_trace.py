@@ -7,13 +7,14 @@ from analytic.rocking import RockingModel
 from .swings import Trace
 
 
-def trace_of(rows, scene, contact_tilt):
+def trace_of(rows, scene, contact_tilt, smeared=None):
     """The `Trace` of rows (time, step, tilt, tilt rate, x, v, z, force, and the centre's x, z, x', z' where read).
 
     Rates are half a step early.
 
     A velocity at t_n is the mean of its neighbours, weighted by their distance. Contact solvers spread an impact over
     the steps that reach contact and leave it: there only the neighbour in flight is used, and the gain beyond it.
+    smeared: number of steps on each side of tilt = 0 for which that can be; None: any at the edge of contact.
     """
     t, h, tilt, rate, x, v, _, force, *centre = np.array(rows).T
     law = RockingModel.of(scene).bearing
@@ -22,6 +23,12 @@ def trace_of(rows, scene, contact_tilt):
         changes = side[1:] != side[:-1]
         leaving = np.append(changes, False) & (side != 0)  # the next step is at contact or beyond
         coming = np.append(False, changes) & (side != 0)
+        if smeared is not None:
+            crossed = np.flatnonzero((tilt[1:] > 0) != (tilt[:-1] > 0))
+            close = np.zeros(len(t), dtype=bool)
+            for shift in range(1 - smeared, smeared + 1):
+                close[np.clip(crossed + shift, 0, len(t) - 1)] = True
+            leaving, coming = leaving & close, coming & close
         rate, v, *centre[2:] = (_synchronised(value, h, leaving & ~coming, coming & ~leaving)
                                 for value in (rate, v, *centre[2:]))
     return Trace(t, tilt, rate, x, v, force + law.count * law.damping * v, contact_tilt,

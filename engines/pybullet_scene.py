@@ -18,10 +18,8 @@ FRICTION = MOST_FRICTION
 # by the getter: set in every client. Bullet's default is 0.02.
 BREAKING_THRESHOLD = 1e-3
 
-# Contact error reduction per second: penetration decays at this rate whatever the step. A fixed share of .08 per step
-# left the base velocity jump 2 to 5 % off at every step.
-CORRECTION_RATE, MOST_CORRECTION = 30.0, 0.1
-
+# Not set is contactERP, the share of a penetration that a step takes back: with these corners nothing penetrates.
+# Between 0 and .9 a step e is the same to 2e-9 at every accuracy; with a box's contact it matters.
 
 # The block touches by a sphere at each bottom corner, radius in shares of R (1e-9 gives the same e to 1e-6). A box
 # shows Bullet only its lowest corners: on a box it lost weak impacts (e off by .3), on a plane it did not stand still
@@ -29,9 +27,9 @@ CORRECTION_RATE, MOST_CORRECTION = 30.0, 0.1
 CORNER_RADIUS = 1e-6
 
 # What the sequential impulses of a step may leave undone, as a share, rocking on one corner and standing on two; see
-# `iterations`. The least are those of J_O = 4/3 m R^2 and slenderness .45, where e is the same with 1000. With too few e
-# is .99998 for .64 (J_O = 1.05 m R^2) and a standing block rocks (10: at 9e-5 of gamma under shaking of .9 of the uplift
-# threshold, gamma .1). The direct solver (Dantzig) stands too, but its friction is wrong on two corners: under a
+# `iterations`. The least are those of J_O = 4/3 m R^2 and slenderness .45, where e is the same with 1000. With too few
+# e is .99998 for .64 (J_O = 1.05 m R^2) and a standing block rocks (10: at 9e-5 of gamma under shaking of .9 of the
+# uplift threshold, gamma .1). The direct solver (Dantzig) stands too, but its friction is wrong on two corners: under a
 # horizontal load the block and its base part. The default solverResidualThreshold does not end the iterations early.
 ROCKING_REST, STANDING_REST, LEAST_ITERATIONS, MOST_ITERATIONS = 1e-6, 1e-4, (10, 20), 20_000
 
@@ -55,11 +53,6 @@ class Assembly:
     base: int | None
 
 
-def correction(step):
-    """contactERP for a step [s]."""
-    return min(MOST_CORRECTION, CORRECTION_RATE * step)
-
-
 def placement(scene):
     """Centre of the block and its velocity at the start: (x, z [m], x', z' [m/s]), z from its standing height."""
     start, block = scene.start, scene.block
@@ -74,8 +67,8 @@ def placement(scene):
 class Units:
     """Size of Bullet's units of length [m] and time [s]; those of acceleration, mass and force are SI.
 
-    Bullet has thresholds in metres, and step lengths go with sqrt(R/g): a block of .5 m <= R < 2 m stays as it is, others
-    are brought there. By powers of 4, so nothing is rounded.
+    Bullet has thresholds in metres, and step lengths go with sqrt(R/g): a block of .5 to 2 m stays as it is, others are
+    brought there. By powers of 4, so nothing is rounded.
     """
 
     length: float
@@ -135,7 +128,7 @@ def assemble(client, scene, step):
     rough = math.sqrt(FRICTION if scene.friction is None else min(scene.friction, MOST_FRICTION))  # of each body
     b, h, inertia = block.half_width, block.half_height, block.centre_inertia
     pybullet.setPhysicsEngineParameter(
-        fixedTimeStep=step, numSubSteps=0, contactSlop=0.0, contactERP=correction(step),
+        fixedTimeStep=step, numSubSteps=0, contactSlop=0.0,
         contactBreakingThreshold=BREAKING_THRESHOLD, numSolverIterations=many,
         physicsClientId=client)
     pybullet.setGravity(0.0, 0.0, -scene.gravity, client)
@@ -186,7 +179,7 @@ def assemble(client, scene, step):
 def check_readback(assembly, scene, step, many, rough):
     """Compare what Bullet reports with what the scene needs; raises `Mismatch` naming what differs.
 
-    contactERP, contactSlop and contactBreakingThreshold have no getter in Bullet.
+    contactSlop and contactBreakingThreshold have no getter in Bullet.
     """
     client, body = assembly.client, assembly.body
     used, wanted = {}, {}

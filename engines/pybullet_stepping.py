@@ -19,7 +19,7 @@ from analytic.bearing import LINEAR, hysteretic_force
 from analytic.rocking import RockingModel
 
 from .ground_velocity import ground_velocity
-from .pybullet_scene import correction, iterations, placement
+from .pybullet_scene import iterations, placement
 
 # The next four are no accuracy knobs: measured on free rocking (slenderness .1 and .45, rigid ground and m_b = 212 kg),
 # e moved by at most 4e-6 and the number of steps by at most 8 % over the ranges given.
@@ -82,7 +82,7 @@ def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
     Returns
     -------
     rows : array, shape (steps + 1, 8), with `places` 12
-        In SI, per step, the start first: time [s], length of the step that led there [s], tilt [rad], tilt rate [rad/s],
+        In SI, per step, the start first: time [s], length of the step that led there [s], tilt [rad], its rate [rad/s],
         base displacement [m] and velocity [m/s], hysteretic force of one bearing [N], total force without viscous
         part [N]; with `places` the centre of the block [m] and its velocity [m/s], as `Trace.centre`. Rates are
         Bullet's own, half a step early.
@@ -178,7 +178,7 @@ def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
         landing = landing or standing
         if wanted != step or landing != stood:
             step, stood = wanted, landing
-            engine_step(fixedTimeStep=step, contactERP=correction(step), physicsClientId=client,
+            engine_step(fixedTimeStep=step, physicsClientId=client,
                         numSolverIterations=many if landing else few)
         scale = 1.0 if step == h else 0.5 * (step + h) / step
         if ground is not None:

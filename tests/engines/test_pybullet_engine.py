@@ -9,6 +9,7 @@ pytest.importorskip("pybullet", reason="pybullet is not installed (its wheels en
 
 from analytic import Base, Bearings, Block, PulseMotion, Start  # noqa: E402
 from analytic import Scene as AnyScene  # noqa: E402
+from analytic import simulate as exact  # noqa: E402
 from analytic.rocking import RockingModel, restitution  # noqa: E402
 from engines import (  # noqa: E402
     pybullet_engine,
@@ -153,3 +154,128 @@ def test_clients_are_closed(monkeypatch):
 
 def test_bullets_contact_solver_is_named():
     assert "contact solver" in pybullet_engine.DECIDES
+
+
+# Far from the usual scenes: each was wrong in silence once.
+
+def worst_restitution(given, **settings):
+    response = simulate(given, history=False, **settings)
+    assert response.outcome == "rocks" and len(response.impacts) >= 3, response.failure
+    return max(abs(k.rate_after / k.rate_before - restitution(given)) for k in response.impacts[:3])
+
+
+@pytest.mark.parametrize("slenderness, inertia", [(0.1, 1.01), (0.45, 1.05), (0.3, 1.02)])
+def test_corner_inertia_near_its_least_value_takes_more_iterations(slenderness, inertia):
+    block = Block(mass=10.0, radius=1.0, slenderness=slenderness, corner_inertia=10.0 * inertia)
+    given = AnyScene(block=block, start=Start(tilt=0.6 * slenderness), duration=2.5)
+    assert worst_restitution(given) < 1e-4
+
+
+def test_slender_blocks_and_little_inertia_need_many_iterations():
+    usual = pybullet_scene.iterations(scene(0.45), 1), pybullet_scene.iterations(scene(0.45), 2)
+    slender = pybullet_scene.iterations(scene(0.05), 2)
+    little = scene(0.45).with_(block={"corner_inertia": 1.05 * 3172.05 * 1.0884**2})
+    assert usual[0] <= 12 and usual[1] < 40
+    assert slender > 9.2 * 0.9 / (3 * math.tan(0.05) ** 2)  # 1e-4 at a rate of 1 - 3 tan^2
+    assert pybullet_scene.iterations(little, 1) > 4 * usual[0]
+
+
+@pytest.mark.parametrize("power", [-5, 2])
+def test_any_size_moves_as_one_of_a_metre_does(power):
+    """Lengths by 4^n, times by 2^n: no digit changes."""
+    size, time = 4.0**power, 2.0**power
+    given = scene(0.25, 212.0, 1.5, start=Start(tilt=0.15))
+    other = given.with_(block={"radius": size * 1.0884}, duration=time * 1.5)
+    here, there = simulate(given, history=False), simulate(other, history=False)
+    assert there.steps == here.steps and there.peak_base_displacement == size * here.peak_base_displacement
+    assert [time * k.time for k in here.impacts] == pytest.approx([k.time for k in there.impacts], rel=1e-9)
+
+
+@pytest.mark.parametrize("base, ka, damping", [
+    (212.0, 6.22e4, 1e5), (212.0, 6.22e4, 1e6), (0.067, 6.22e4, 500.0), (0.01, 6.22e4, 0.0), (212.0, 1e8, 0.0),
+    (1.0, 1e7, 1e4)], ids=["1e5 N s/m", "1e6 N s/m", "base of 67 g", "base of 10 g", "1e8 N/m", "all at once"])
+@pytest.mark.parametrize("start", [0.0, 0.06])
+def test_stiff_damped_and_light_bases_move_as_the_exact_solution(base, ka, damping, start):
+    given = scene(0.15, base, 1.5, bearings=Bearings(law="linear", count=4, ka=ka, damping=damping),
+                  motion=None if start else PulseMotion("one-sine", 1.0, 6.0), start=Start(tilt=start))
+    response, reference = simulate(given, history=False), exact(given, history=False)
+    assert response.outcome == reference.outcome
+    assert response.peak_tilt == pytest.approx(reference.peak_tilt, rel=1e-2, abs=1e-6)
+    assert response.peak_base_displacement == pytest.approx(reference.peak_base_displacement, rel=1e-2)
+    if start and not damping:
+        assert response.impacts[0].rate_after / response.impacts[0].rate_before == pytest.approx(
+            restitution(given), abs=1e-3)
+
+
+def test_mass_added_for_damping_is_exact_and_bounded():
+    """v' after an interval under c v alone: v exp(-c t/m)."""
+    for damping in (1e-9, 1.0, 50.0, 1e9):
+        added = pybullet_stepping.added_mass(damping, 0.1, 2.0)
+        after = 1 - damping * 0.1 / (2.0 + added)
+        assert after == pytest.approx(math.exp(-damping * 0.05), abs=1e-9)
+
+
+def test_stiff_linear_bearings_keep_their_phase():
+    """A base that swings 300 rad: leapfrog alone is .5 rad ahead at these steps."""
+    bearings = Bearings(law="linear", ka=(3172.05 + 31720.0) * 300.0**2)
+    given = scene(0.5, 31720.0, 1.0, bearings=bearings, start=Start(base_displacement=1e-5))
+    response, reference = simulate(given), exact(given)
+    assert response.steps < 3000
+    at = np.linspace(0.9, 1.0, 50)
+    shift = (np.interp(at, response.history.time, response.history.base_displacement)
+             - np.interp(at, reference.history.time, reference.history.base_displacement))
+    assert np.abs(shift).max() < 0.03 * 1e-5
+
+
+def test_bearings_too_stiff_for_any_number_of_steps_fail_at_once():
+    given = scene(0.2, 212.0, 1e4, bearings=Bearings(law="linear", ka=1e12))
+    response = simulate(given)
+    assert response.outcome == "failed" and response.failure.reason == "too many steps"
+    assert "that follow the bearings" in response.failure.message
+
+
+def test_a_given_friction_is_the_coefficient():
+    """A push of .3 g for .05 s at a coefficient of .2: v = (.3 - .2) g t, then back to rest at .2 g: 1.839 mm."""
+    given = scene(0.45, motion=PulseMotion("rectangular", 0.3 * 9.81, math.pi / 0.05), duration=0.3, friction=0.2)
+    trace = pybullet_engine._attempt(given, pybullet_engine.VARIANTS["impact-aware"], places=True)[0]
+    slip = abs(trace.centre[-1, 0])
+    assert slip == pytest.approx(0.5 * 0.1 * 9.81 * 0.05**2 * (1 + 0.1 / 0.2), rel=0.01)
+    held = simulate(given.with_(friction=0.35))
+    assert held.outcome == "stands"
+
+
+def test_bullet_cuts_friction_and_the_response_says_so():
+    given = scene(0.2, start=Start(tilt=0.1), friction=20.0)
+    assert any("friction = 20 is above 10" in sentence for sentence in simulate(given, history=False).warnings)
+    assert simulate(given.with_(friction=2.0), history=False).warnings == ()
+
+
+@pytest.mark.parametrize("slenderness", [0.1, 0.45])
+@pytest.mark.parametrize("inertia", [1.2, 2.0])
+@pytest.mark.parametrize("base", [None, 0.05 * 3172.05])
+def test_no_warning_within_the_usual_range(slenderness, inertia, base):
+    given = scene(slenderness, base, 0.3, start=Start(tilt=1e-3 * slenderness))
+    given = given.with_(block={"corner_inertia": inertia * 3172.05 * 1.0884**2})
+    assert simulate(given, history=False).warnings == ()
+
+
+@pytest.mark.parametrize("change, words", [
+    ({"slenderness": 1.3}, "slenderness"), ({"radius": 40.0}, "radius"),
+    ({"corner_inertia": 3172.05 * 1.0884**2 * 1.001}, "J_O"), ({"corner_inertia": 3172.05 * 1.0884**2 * 4}, "J_O")])
+def test_outside_the_verified_range_is_said(change, words):
+    given = scene(0.2, duration=0.05, start=Start(tilt=0.05)).with_(block=change)
+    (sentence,) = simulate(given, history=False).warnings
+    assert words in sentence and "limit" in sentence
+
+
+def test_coarse_settings_and_small_tilts_at_a_fixed_step_are_said():
+    given = scene(0.2, duration=0.3, start=Start(tilt=0.01))
+    assert any("step = 0.001 is above" in line for line in simulate(given, variant="fixed-step", step=1e-3).warnings)
+    assert any("peak tilt" in line for line in simulate(given, variant="fixed-step").warnings)
+    assert simulate(given, variant="first-script").warnings
+
+
+def test_first_script_that_reaches_bullets_velocity_limit_fails():
+    given = scene(0.2, 212.0, 1.0, start=Start(base_velocity=150.0))
+    response = simulate(given, variant="first-script")
+    assert response.outcome == "failed" and "velocit" in response.failure.reason
