@@ -35,11 +35,9 @@ def summary(scene, response):
 
 def comparison(scene, responses, horizons):
     """Responses of several solvers side by side, the first being the reference; horizons: {solver: its `Horizon`}."""
-    limit = "Not sensitive: the histories can be compared to the end."
-    if any(found.parts for found in horizons.values()):
-        limit = "Sensitivity horizon, beyond which only outcomes can be compared,\nby each solver's own size of error:"
-        limit += "".join(f"\n{name} {f'{found.horizon:.3g} s' if found.parts else 'none'} ({found.perturbation:.0e})"
-                         for name, found in horizons.items())
+    limit = "Sensitivity horizon, beyond which only outcomes can be compared,\nby each solver's own size of error:"
+    limit += "".join(f"\n{name} {f'{found.horizon:.3g} s' if found.parts else 'none, to the end'} "
+                     f"({found.perturbation:.0e})" for name, found in horizons.items())
     table = Table(title=scene.name, box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0),
                   caption="over: time of overturning; tilt: peak tilt over slenderness;\n"
                           "base: peak base displacement; d: difference from the first row.\n"

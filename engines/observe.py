@@ -97,12 +97,14 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
         outcome = "overturns"
     else:
         outcome = "rocks" if len(swings) else "stands"
+    if failure is None:  # the forces of a failed run say nothing about the scene
+        warnings = (*warnings, *model_warnings(scene, demand, normal))
     response = Response(
         outcome=outcome, overturning_time=overturning_time, unstable_time=_unstable_time(scene, trace),
         peak_tilt=peak, peak_tilt_ratio=peak / scene.block.slenderness,
         peak_base_displacement=displacement, peak_base_acceleration=acceleration, impacts=impacts, uplifts=uplifts,
         rests=rests, friction_demand=demand, min_normal_ratio=normal, end=end, failure=failure,
-        warnings=_warnings(scene, (*warnings, *model_warnings(scene, demand, normal))),
+        warnings=_warnings(scene, warnings),
         history=_history(scene, trace) if history else None, **given)
     return replace(response, decided=is_decided(scene, response, contact_tilt=trace.contact_tilt))
 

@@ -166,6 +166,8 @@ def test_compare(rocking, tmp_path):
     content = json.loads(result.read_text())
     names = [response["engine"] for response in content["responses"]]
     assert content["sensitivity_horizon"] is None  # free rocking forgets its past
+    assert all(one["horizon"] is None and 0 < one["perturbation"] < 1e-2 for one in content["sensitivity"].values())
+    assert tuple(content["sensitivity"]) == tuple(installed_engines())
     assert names == ["analytic", *installed_engines()]
     assert all(name in out for name in names)
     assert picture.read_bytes().startswith(PNG)

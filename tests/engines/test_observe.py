@@ -244,6 +244,15 @@ def test_warnings_of_the_engine_and_of_the_record_reach_the_response_once():
     assert seen(quiet, sampled(quiet, 2e-3)[0], warnings=("soft",)).warnings == ("soft",)
 
 
+def test_a_run_outside_the_model_is_warned_of_but_not_a_failed_one():
+    scene = SCENES["rigid ground, shaken"]
+    trace, reference = sampled(scene, 2e-3)
+    slippery = scene.with_(friction=0.5 * reference.friction_demand)
+    assert any("friction demand" in line for line in seen(slippery, trace).warnings)
+    assert seen(scene.with_(friction=2 * reference.friction_demand), trace).warnings == ()
+    assert seen(slippery, trace, failure=Failure("it broke")).warnings == ()
+
+
 def test_a_gain_of_energy_fails():
     scene = SCENES["rigid ground"]
     trace, _ = sampled(scene, 1e-3)
