@@ -23,12 +23,15 @@ Real = exu.symbolic.Real
 MEASURED = 3172.05, 1.0884, 9.81
 MEASURED_START = 0.3
 
-# Time for the corners to relax after an impact, over sqrt(R/g): 20 ms for the Caryatid, of which a
-# stocky block spends 15 in the air.
-SETTLE = 0.06
+# Time for the corners to relax after an impact, over sqrt(m/k): the landing corner is pushed out at the rebound speed
+# for a third of it, 3 ms for the Caryatid. At most this over sqrt(R/g), which is 20 ms for it.
+RELAX, MOST_RELAX = 75.0, 0.06
 
 # Least sticking stiffness over what the bearings ask of it, so that a light base moves with the block.
 STICKS = 200.0
+
+# Most by which `slip` grows for slender blocks.
+EASE = 10.0
 
 # Change of the anchor that is not worth telling exudyn, over the sticking spring's stretch under the block's weight.
 SLOP = 1e-3
@@ -60,7 +63,8 @@ class CompliantCorners:
     damping: float = 0.5
     # Sliding speed [m/s] at which the viscous part of friction, which grows with the normal force, would equal it.
     # A corner must stick as fast as it lands: if the normal impulse comes first it presses the other corner down, which
-    # then takes part in the impact, for sin^2 gamma > J_O/(m R^2) - 1 (gamma .6: e off by 3e-2 without this part).
+    # then takes part in the impact, for sin^2 gamma > J_O/(m R^2) - 1 (gamma .6: e off by 3e-2 without this part). For
+    # less it is larger as there is less need, by up to EASE: it costs steps.
     slip: float = 0.1
     # Local error per step [m, rad, m/s, rad/s]. Stability of the stiff contact, not this, sets the step:
     # 1e-6 costs as much within 10 %.
@@ -89,11 +93,12 @@ def scaled(scene, settings):
     speed, time = (math.sqrt(value) for value in (scene.gravity * block.radius / (gravity * radius),
                                                   block.radius / scene.gravity / (radius / gravity)))
     weight = block.mass * scene.gravity / block.radius / (mass * gravity / radius)
+    need = block.mass * block.half_width**2 / block.centre_inertia  # above 1: see `slip`
     # a corner of a block with a small moment of inertia gives way easily: the same damping would cost many more steps
-    easy = (1 + block.mass * block.half_width**2 / block.centre_inertia) / (1 + 3 * math.sin(block.slenderness) ** 2)
+    easy = (1 + need) / (1 + 3 * math.sin(block.slenderness) ** 2)
     return replace(settings, stiffness=settings.stiffness * weight / share,
                    rebound=settings.rebound * speed * math.sqrt(share * max(1.0, easy)),
-                   slip=settings.slip * speed * math.sqrt(share),
+                   slip=settings.slip * speed * math.sqrt(share) * min(max(1.0, math.sqrt(0.5 / need)), EASE),
                    tolerance=settings.tolerance * min(speed, 1 / speed, 1.0) * share,
                    longest_step=settings.longest_step * min(time, 1.0) * math.sqrt(share))
 
@@ -205,5 +210,6 @@ def run(scene, settings):
     solver = solver_settings(
         scene, numberOfSteps=steps, automaticStepSize=True, initialStepSize=2e-3 * settings.longest_step,
         minimumStepSize=1e-13, relativeTolerance=1e-14, absoluteTolerance=settings.tolerance)
-    return step_through(model, solver, exu.DynamicSolverType.DOPRI5, 2 * contact_tilt, settings.longest_step,
-                        settle=SETTLE * math.sqrt(scene.block.radius / scene.gravity))
+    settle = min(RELAX * math.sqrt(scene.block.mass / settings.stiffness),
+                 MOST_RELAX * math.sqrt(scene.block.radius / scene.gravity))
+    return step_through(model, solver, exu.DynamicSolverType.DOPRI5, 2 * contact_tilt, settings.longest_step, settle)

@@ -1,5 +1,6 @@
 """exudyn: ``get_engine("exudyn").simulate(scene, variant=...)``."""
 
+import math
 import platform
 from dataclasses import asdict, replace
 from importlib.metadata import version
@@ -35,13 +36,20 @@ DECIDES = {
     "native-contact": "exudyn decides contact, impact, sliding and rest through its sphere-triangle contact",
 }
 
-# Held against the analytic model in random scenes. compliant-corners adapts to size and start, and its steps follow
-# bearings of any stiffness and damping, or the run ends with a failure.
+# Held against the analytic model in random scenes. The constants of compliant-corners follow size and start, and its
+# steps bearings of any stiffness and damping, or the run ends as one of too many steps. At the fixed step of
+# switched-joints a base that vibrates faster is off by 3 to 20 %; smaller and flatter swings are too short for it.
 VERIFIED = {
-    "compliant-corners": Range(),
-    "switched-joints": Range(),
-    "native-contact": Range(),
+    "compliant-corners": Range(slenderness=(0.03, 1.2), inertia=(1.01, 3.0), base_mass=(1e-5, 100.0),
+                               radius=(1e-3, 30.0)),
+    "switched-joints": Range(slenderness=(0.03, 1.2), inertia=(1.01, 3.0), base_mass=(1e-4, 100.0),
+                             radius=(0.05, 30.0), stiffness=(0.0, 0.3), damping=(0.0, 10.0), tilt=(0.01, math.inf)),
+    "native-contact": Range(slenderness=(0.1, 0.3), inertia=(1.2, 2.0), base_mass=(0.05, 100.0), radius=(0.5, 2.0),
+                            tilt=(0.1, math.inf)),
 }
+# Said of every run of a variant.
+CAVEATS = {"native-contact": ("native-contact is set up as a first script would: its restitution is off by 1 to 10 %, "
+                              "whatever the step",)}
 
 
 def versions():
@@ -82,8 +90,10 @@ def simulate(scene, *, variant=None, history=True, **settings):
         failure = replace(run.failure or Failure("the run ended before its first step"), last_state=_start(scene))
         return failed_response(scene, failure, engine="exudyn", variant=name, settings=asdict(chosen),
                                versions=versions(), cpu_seconds=run.cpu_seconds, steps=max(run.steps, 0))
-    step, peak = np.diff(run.trace.time).max(), np.abs(run.trace.tilt).max()
-    warnings = outside(scene, VERIFIED[name], step=float(step), peak_tilt=float(peak))
+    step, peak = float(np.diff(run.trace.time).max()), float(np.abs(run.trace.tilt).max())
+    rocks = peak > run.trace.contact_tilt  # NaN does not
+    warnings = (*CAVEATS.get(name, ()),
+                *outside(scene, VERIFIED[name], step=step, peak_tilt=peak if rocks else None))
     response = observe(scene, run.trace, engine="exudyn", variant=name, cpu_seconds=run.cpu_seconds, steps=run.steps,
                        settings=asdict(chosen), versions=versions(), history=history,
                        failure=run.failure or _fault(scene, run), ended=run.ended, warnings=warnings)
