@@ -100,10 +100,10 @@ def versions(name):
 
 
 def name_of(function):
-    """``module:function`` of a module-level function, None for None."""
+    """``module:function`` of a module-level function, ``module:class`` of an object that is called; None for None."""
     if function is None:
         return None
-    name = f"{function.__module__}:{function.__qualname__}"
+    name = f"{function.__module__}:{getattr(function, '__qualname__', type(function).__qualname__)}"
     if "<" in name:
         raise ValueError(f"reducer {name} cannot travel to a worker process; make it a module-level function")
     return name
