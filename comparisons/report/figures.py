@@ -43,7 +43,8 @@ def histories(result, name, column, label, scale=1.0, limits=(None, None)):
             worst[solver] = np.abs(apart / scale).max()
     horizon = result.settings["scenes"][name]["horizon"]
     ends = [result.arrays[f"{name}/{solver}/time"][-1] for solver in solvers]
-    parts = horizon is not None and horizon < 0.99 * max(ends)  # twins of a block that overturns part as it falls: nothing to mark
+    # twins of a block that overturns part as it falls: nothing to mark
+    parts = horizon is not None and horizon < 0.99 * max(ends)
     for axis in (above, below):
         axis.axhline(0, color="0.85", linewidth=0.8, zorder=0)
         if parts:

@@ -47,7 +47,7 @@ def make_results(folder, motion, *, duration=None, slendernesses=SLENDERNESSES, 
         Made if it does not exist. A report that is broken off goes on from what it finds here.
     motion : SampledMotion
     duration : float or None
-        Of the Caryatid's runs [s]; None: the whole motion.
+        Of the Caryatid's runs [s]; None: until their outcome is decided.
     slendernesses : sequence of float
         Of the free rocking blocks [rad].
     say : callable
@@ -56,7 +56,7 @@ def make_results(folder, motion, *, duration=None, slendernesses=SLENDERNESSES, 
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     engines, missing = available_engines()
-    scenes = caryatid_scenes(motion, duration or motion.end)
+    scenes = caryatid_scenes(motion, duration)
     caryatid = [Case(scene, solver, tag={"scene": name})
                 for solver in ("analytic", *engines) for name, scene in scenes.items()]
     free = free_rocking_cases(engines, slendernesses)
