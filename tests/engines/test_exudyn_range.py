@@ -1,4 +1,4 @@
-"""exudyn far from the studies' range, its friction and its way to end: one test per class of answers that were wrong."""
+"""exudyn far from the studies' range, its friction, its way to end: one test per class of answers that were wrong."""
 
 import math
 import os
