@@ -54,6 +54,10 @@ class SampledMotion:
         object.__setattr__(self, "samples", samples)
         object.__setattr__(self, "dt", float(self.dt))
 
+    def __reduce__(self):
+        """Built anew in another process: a copy alone could be written to, for which the kernel is compiled again."""
+        return type(self), (self.dt, self.samples, self.label, self.warnings)
+
     @property
     def start(self):
         return 0.0

@@ -78,7 +78,8 @@ def compile_kernels(names):
     Else every worker process would compile it by itself, within its time limit.
     """
     scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), start=Start(tilt=0.1), duration=0.1)
-    for name in COMPILED.keys() & set(names):
+    needed = {"analytic" if name in ENGINES else name for name in names}  # engines ask it how long to run
+    for name in COMPILED.keys() & needed:
         solver(name)(scene, **COMPILED[name])
 
 
@@ -100,10 +101,10 @@ def versions(name):
 
 
 def name_of(function):
-    """``module:function`` of a module-level function, None for None."""
+    """``module:function`` of a module-level function, ``module:class`` of an object that is called; None for None."""
     if function is None:
         return None
-    name = f"{function.__module__}:{function.__qualname__}"
+    name = f"{function.__module__}:{getattr(function, '__qualname__', type(function).__qualname__)}"
     if "<" in name:
         raise ValueError(f"reducer {name} cannot travel to a worker process; make it a module-level function")
     return name

@@ -49,8 +49,8 @@ def comparison(scene, responses, horizons):
     limit = "Not sensitive: the histories can be compared to the end." if horizons else "No sensitivity horizon known."
     if any(found.parts for found in horizons.values()):
         limit = "Sensitivity horizon, beyond which only outcomes can be compared,\nby each solver's own size of error:"
-        limit += "".join(f"\n{name} {f'{found.horizon:.3g} s' if found.parts else 'none, to the end'} ({found.perturbation:.0e})"
-                         for name, found in horizons.items())
+        limit += "".join(f"\n{name} {f'{found.horizon:.3g} s' if found.parts else 'none, to the end'} "
+                         f"({found.perturbation:.0e})" for name, found in horizons.items())
     table = Table(title=Text(_name(scene)), box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0),
                   caption="over: time of overturning; tilt: peak tilt over slenderness;\n"
                           "base: peak base displacement; d: difference from the first row.\n"

@@ -33,19 +33,18 @@ def histories(result, name, column, label, scale=1.0, limits=(None, None)):
                in result.arrays]
     figure = Figure(figsize=(WIDTH, 4.0), layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 2])
-    reference = [result.arrays[f"{name}/analytic/{key}"] for key in ("time", column)]
     worst = {}
     for solver in solvers:
         time, values = (result.arrays[f"{name}/{solver}/{key}"] for key in ("time", column))
         above.plot(time, values / scale, label=solver, **style(solver))
-        if solver != "analytic":
-            both = reference[0] <= min(time[-1], reference[0][-1])
-            apart = (np.interp(reference[0][both], time, values) - reference[1][both]) / scale
-            below.plot(reference[0][both], apart, **style(solver))
-            worst[solver] = np.abs(apart).max()
+        if solver != "analytic" and f"{name}/{solver}/apart/time" in result.arrays:
+            time, apart = (result.arrays[f"{name}/{solver}/apart/{key}"] for key in ("time", column))
+            below.plot(time, apart / scale, **style(solver))
+            worst[solver] = np.abs(apart / scale).max()
     horizon = result.settings["scenes"][name]["horizon"]
     ends = [result.arrays[f"{name}/{solver}/time"][-1] for solver in solvers]
-    parts = horizon < 0.99 * max(ends)  # twins of a block that overturns part as it falls: nothing to mark
+    # twins of a block that overturns part as it falls: nothing to mark
+    parts = horizon is not None and horizon < 0.99 * max(ends)
     for axis in (above, below):
         axis.axhline(0, color="0.85", linewidth=0.8, zorder=0)
         if parts:

@@ -1,5 +1,6 @@
 """The runs behind the report: the Caryatid in every solver, and free rocking in every variant; as result files."""
 
+import shutil
 from dataclasses import asdict
 from pathlib import Path
 
@@ -8,15 +9,16 @@ from scipy.integrate import trapezoid
 
 from analytic import load_scene, simulate
 from analytic.closed_form import free_rocking
-from analytic.response import History, Impact, Response, State
+from analytic.response import History
 from analytic.rocking import base_jump_length, restitution
 from engines import ENGINES, available_engines, get_engine
 
 from ..cases import Case
-from ..horizon import sensitivity_horizon, solver_horizon
+from ..horizon import solver_horizon
 from ..measures import base_jump_error, compare, state_restitution
 from ..provenance import write_result
 from ..sweep import Processes, Serial, Store, run_sweep
+from .histories import ToFile, differences, response_of, thinned
 
 CARYATID, FREE_ROCKING = "caryatid.json", "free-rocking.json"
 SCENES = ("caryatid-rigid", "caryatid-isolated")
@@ -28,8 +30,12 @@ BASES = {"rigid ground": None, "sliding base": {"mass": 212.0}}  # kg
 FREE_SECONDS = 3.0
 # Impacts slower than this share of the first are left out: engines come to rest in a chatter of their own.
 SLOWEST_IMPACT = 0.1
-# Outer limit of a run [s]; the longest takes a few. A hang becomes a failed row.
-TIME_LIMIT = 60.0
+# Outer limit of a run [s], and what a second and a sample of the motion add to it; the longest under a usual record
+# takes a few seconds. A hang becomes a failed row.
+TIME_LIMIT, LIMIT_PER_SECOND, LIMIT_PER_SAMPLE = 60.0, 1.0, 1e-3
+# Under a record of more samples one engine runs at a time: each needs some 100 bytes a step several times over.
+SHORT_RECORD = 200_000
+UNFINISHED = "unfinished"  # folder of what a report that is broken off goes on from
 
 
 def make_results(folder, motion, *, duration=None, slendernesses=SLENDERNESSES, say=lambda text: None):
@@ -41,7 +47,7 @@ def make_results(folder, motion, *, duration=None, slendernesses=SLENDERNESSES, 
         Made if it does not exist. A report that is broken off goes on from what it finds here.
     motion : SampledMotion
     duration : float or None
-        Of the Caryatid's runs [s]; None: the whole motion.
+        Of the Caryatid's runs [s]; None: until their outcome is decided.
     slendernesses : sequence of float
         Of the free rocking blocks [rad].
     say : callable
@@ -50,35 +56,39 @@ def make_results(folder, motion, *, duration=None, slendernesses=SLENDERNESSES, 
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     engines, missing = available_engines()
-    scenes = caryatid_scenes(motion, duration or motion.end)
+    scenes = caryatid_scenes(motion, duration)
     caryatid = [Case(scene, solver, tag={"scene": name})
                 for solver in ("analytic", *engines) for name, scene in scenes.items()]
     free = free_rocking_cases(engines, slendernesses)
-    store = folder / "runs.jsonl"
+    unfinished = folder / UNFINISHED
+    unfinished.mkdir(exist_ok=True)
+    reducers = ToFile(str(unfinished.resolve())), impacts_only
+    samples = len(motion.samples)
+    limit = TIME_LIMIT + LIMIT_PER_SECOND * motion.end + LIMIT_PER_SAMPLE * samples
     say("analytic model (the first run on a machine compiles it)")
-    simulate(next(iter(scenes.values())))  # before workers start, so that they find the compiled kernel
+    simulate(next(iter(scenes.values())), history=False)  # before workers start, so that they find the compiled kernel
     rows = []
-    with Store(store) as opened:
-        for cases, reduce in ((caryatid, with_history), (free, impacts_only)):
+    with Store(unfinished / "runs.jsonl") as opened:
+        for cases, reduce in zip((caryatid, free), reducers, strict=True):
             ours = [case for case in cases if case.solver == "analytic"]
             rows.append(run_sweep(ours, store=opened, reduce=reduce, executor=Serial(), progress=False))
         # One pool for both: the long runs of the Caryatid first.
-        with Processes(solvers=engines) as pool:
+        with Processes(None if samples <= SHORT_RECORD else 1, solvers=engines) as pool:
             say(f"the Caryatid in {', '.join(engines)}" if engines else "no engine installed")
-            for place, (cases, reduce, label) in enumerate(((caryatid, with_history, "Caryatid"),
-                                                            (free, impacts_only, "free rocking"))):
+            for place, (cases, reduce, label) in enumerate(zip((caryatid, free), reducers, ("Caryatid", "free rocking"),
+                                                               strict=True)):
                 theirs = [case for case in cases if case.solver != "analytic"]
                 rows[place] += run_sweep(theirs, store=opened, reduce=reduce, executor=pool,
-                                         time_limit=TIME_LIMIT, label=label) if theirs else []
+                                         time_limit=limit, label=label) if theirs else []
     modules = ["comparisons.report.runs", *(ENGINES[name][0] for name in engines)]
     _write_caryatid(folder / CARYATID, rows[0], scenes, motion, missing, modules)
     _write_free_rocking(folder / FREE_ROCKING, rows[1], modules, engines)
-    store.unlink()  # complete: the next report measures its times afresh
+    shutil.rmtree(unfinished)  # complete: the next report measures its times afresh
 
 
-def caryatid_scenes(motion, duration):
+def caryatid_scenes(motion, duration=None):
     """The free-standing and the isolated Caryatid (Table 1 of the paper) under `motion`, by name."""
-    return {name: load_scene(name).with_(motion=motion, duration=float(duration)) for name in SCENES}
+    return {name: load_scene(name).with_(motion=motion, duration=duration) for name in SCENES}
 
 
 def free_rocking_cases(engines, slendernesses):
@@ -103,63 +113,59 @@ def free_rocking_cases(engines, slendernesses):
     return cases
 
 
-def with_history(response):
-    """Reducer: everything, the history as lists."""
-    history = {name: getattr(response.history, name).tolist() for name in History.COLUMNS}
-    return {**response.to_json(), "history": history}
-
-
 def impacts_only(response):
     """Reducer: everything but the history."""
     return response.to_json()
 
 
-def response_of(values):
-    """The `Response` a reducer's values came from; None stays where a number was not finite."""
-    values = {key: value for key, value in values.items() if key != "impact_count"}
-    history = values.pop("history", None)
-    impacts = tuple(Impact(**impact) for impact in values.pop("impacts"))
-    tuples = {name: tuple(values.pop(name)) for name in ("uplifts", "rests")}
-    values.update(end=State(**values["end"]), energy=None, cpu_seconds=values.get("cpu_seconds", 0.0))
-    history = history and History(*(np.array(history[name]) for name in History.COLUMNS))
-    return Response(impacts=impacts, history=history, **tuples, **values)
-
-
 def _write_caryatid(path, rows, scenes, motion, missing, modules):
-    arrays = {"motion/time": motion.dt * np.arange(len(motion.samples)), "motion/acceleration": motion.samples}
-    horizons = {name: sensitivity_horizon(scene) for name, scene in scenes.items()}
-    described = {name: {"name": scene.name, "duration": scene.duration, "gravity": scene.gravity,
-                        "block": scene.block.model_dump(), "base": scene.base and scene.base.model_dump(),
-                        "bearings": scene.bearings and scene.bearings.model_dump(),
-                        "half_width": scene.block.half_width, "half_height": scene.block.half_height,
-                        "rocking_frequency": scene.rocking_frequency, "restitution": restitution(scene),
-                        "horizon": float(horizons[name].time[-1])}  # the earliest of the engines'
-                 for name, scene in scenes.items()}
-    references = {row.case.tag["scene"]: response_of(row.values) for row in rows
-                  if row.case.solver == "analytic" and not row.failed}
-    kept = []
-    for row in rows:
-        name = row.case.tag["scene"]
-        values = {key: value for key, value in row.values.items() if key != "history"}
-        entry = {**values, "scene": name, "solver": row.case.solver, "failure": row.failure, **row.cost}
-        if not row.failed:
-            response = response_of(row.values)
-            for column in History.COLUMNS:
-                arrays[f"{name}/{row.case.solver}/{column}"] = getattr(response.history, column)
-            entry["cpu_per_second"] = row.cost["cpu_seconds"] / response.end.time
-            entry["bearing_work"] = float(trapezoid(response.history.bearing_force, response.history.base_displacement))
-            if name in references:
-                own = horizons[name]
-                if row.case.solver != "analytic":
-                    own = solver_horizon(scenes[name], response, references[name])
-                    described[name]["horizon"] = min(described[name]["horizon"], own.horizon)
-                agreement = compare(scenes[name], response, references[name], until=own.horizon)
-                entry.update(agreement=asdict(agreement), perturbation=own.perturbation)
-        kept.append(entry)
+    """The result file of the Caryatid's runs; memory holds two histories at a time, one the analytic model's."""
+    folder = path.parent / UNFINISHED
+    shown = thinned(motion.samples)
+    arrays = {"motion/time": motion.dt * shown, "motion/acceleration": motion.samples[shown]}
+    described, entries = {}, []
+    for name, scene in scenes.items():
+        ours = [row for row in rows if row.case.tag["scene"] == name]
+        reference = next((response_of(row.values, folder) for row in ours
+                          if row.case.solver == "analytic" and not row.failed), None)
+        horizons = []
+        for row in ours:
+            entry, drawn = _caryatid_entry(scene, row, reference, folder)
+            entries.append({**entry, "scene": name})
+            horizons += [entry["agreement"]["until"]] if "agreement" in entry else []
+            arrays.update({f"{name}/{row.case.solver}/{column}": values for column, values in drawn.items()})
+        described[name] = {
+            "name": scene.name, "duration": scene.duration, "gravity": scene.gravity,
+            "block": scene.block.model_dump(), "base": scene.base and scene.base.model_dump(),
+            "bearings": scene.bearings and scene.bearings.model_dump(), "half_width": scene.block.half_width,
+            "half_height": scene.block.half_height, "rocking_frequency": scene.rocking_frequency,
+            "restitution": restitution(scene), "horizon": min(horizons, default=None)}  # the earliest of a solver
     settings = {"motion": {"label": motion.label, "peak": motion.peak, "peak_time": motion.peak_time,
                            "dt": motion.dt, "end": motion.end},
                 "scenes": described, "missing": missing}
-    write_result(path, "report-caryatid", settings, kept, arrays, modules=modules)
+    write_result(path, "report-caryatid", settings, entries, arrays, modules=modules)
+
+
+def _caryatid_entry(scene, row, reference, folder):
+    """(what is told of one run, what is drawn of it); measured from all samples, drawn from `thinned` ones."""
+    values = {key: value for key, value in row.values.items() if key != "history"}
+    entry = {**values, "solver": row.case.solver, "failure": row.failure, **row.cost}
+    if row.failed:
+        return {**entry, "verdict": "failed"}, {}
+    response = response_of(row.values, folder)
+    history = response.history
+    entry.update(verdict=response.verdict, cpu_per_second=row.cost["cpu_seconds"] / response.end.time,
+                 bearing_work=float(trapezoid(history.bearing_force, history.base_displacement)))
+    shown = thinned(history.tilt, history.base_displacement, history.bearing_force)
+    drawn = {column: getattr(history, column)[shown] for column in History.COLUMNS}
+    if reference is not None:
+        until = reference.end.time
+        if row.case.solver != "analytic":
+            own = solver_horizon(scene, response, reference)
+            until, entry["perturbation"] = own.horizon, own.perturbation
+        entry["agreement"] = asdict(compare(scene, response, reference, until=until))
+        drawn.update(differences(history, reference.history))
+    return entry, drawn
 
 
 def _write_free_rocking(path, rows, modules, engines):
@@ -204,6 +210,7 @@ def _restitution_entry(solver, variant, ground, slenderness, members):
             "ground": ground, "slenderness": slenderness, "restitution": formula,
             "base_jump_length": base_jump_length(scene), "runs": len(members),
             "failures": [row.failure for row in members if row.failed], "impacts": impacts,
+            "warnings": list(dict.fromkeys(warning for row in sound for warning in row.values["warnings"])),
             "bias": _of(errors, np.mean), "rms": _of(errors, _rms), "worst": _of(np.abs(errors), np.max),
             "jump_rms": _of(jumps, _rms) if scene.base else None, "time_rms": _of(time_errors, _rms),
             "settings": sound[0].values["settings"] if sound else None,

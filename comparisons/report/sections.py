@@ -23,8 +23,8 @@ def trust(rms, failed):
 def variant_groups(result):
     """One dict a solver and variant, over all grounds and slendernesses of ``free-rocking.json``.
 
-    solver, name, default, impacts (their number), rms, worst, jump_rms, time_rms, cpu_per_second, failures; root mean
-    squares are weighted by the number of impacts behind them.
+    solver, name, default, impacts (their number), rms, worst, jump_rms, time_rms, cpu_per_second, failures, warnings;
+    root mean squares are weighted by the number of impacts behind them.
     """
     groups = {}
     for row in result.rows:
@@ -41,6 +41,7 @@ def _group(solver, variant, rows):
             "worst": max((row["worst"] for row in measured), default=None),
             "cpu_per_second": cpu / simulated if measured else None,
             "failures": [failure for row in rows for failure in row["failures"]],
+            "warnings": list(dict.fromkeys(warning for row in rows for warning in row["warnings"])),
             **{measure: _pooled(measured, measure) for measure in ("rms", "jump_rms", "time_rms")}}
 
 
@@ -68,15 +69,19 @@ def caryatid_sections(result):
             f"Each solver on the same scenes under {motion}. A block that never lifts “stands”, one that lifts and "
             "stays upright “rocks”; it “overturns” at |φ| = 90°. |H|/N, horizontal over normal force under the block, "
             "is the friction coefficient needed not to slide; where the normal force N falls to 0 the block would "
-            "jump. The model allows neither. Both are taken over the whole run: where a block overturns they "
-            "include the fall.",
+            "jump. The model allows neither. Both are taken over the run, but for the fall of a block that overturns.",
+            "A run goes on until its outcome is decided: until nothing that may still come can make the block overturn "
+            "or keep it from it. One that ended earlier is “undecided”, with what it was so far. A warning names "
+            "what lies outside the range in which a solver was verified, outside what the model describes, or is odd "
+            "about the record; the outcome beside it is then to be doubted.",
             "Impact times and tilt graphs are compared up to the end, or up to the solver's sensitivity horizon where "
             "that comes first: beyond it a change of restitution, motion and start as small as the solver's own errors "
             "makes another motion, so that a difference says no more about it. The distance of two tilt graphs "
             "(Hausdorff) is how far a point of one can lie from the other, time in units of 2 π/ω_r and tilt in units "
             "of γ.",),
-                tuple(table for name in scenes for table in (_outcomes(result, name), *_agreement(result, name))),
-                evidence=failed),
+                tuple(table for name in scenes for table in (
+                    _outcomes(result, name), *_warnings(scenes[name]["name"], warned(result, name)),
+                    *_agreement(result, name))), evidence=failed),
         Section("Histories and hysteresis", (
             "Upper axes: all solvers over each other; lower axes: by how much they differ from the analytic model. The "
             "bearings' damping of 30 % in Table 1(a) of the paper is W_D/(2 π E_s), with W_D the energy of a loop and "
@@ -108,18 +113,19 @@ def _parameters(scenes):
                 ("k_a of each [N/m]", lambda scene: (scene["bearings"] or {}).get("ka")),
                 ("k_b of each [N/m]", lambda scene: (scene["bearings"] or {}).get("kb")),
                 ("α [-]", lambda scene: (scene["bearings"] or {}).get("alpha")),
-                ("duration [s]", lambda scene: scene["duration"])):
+                ("duration [s]", lambda scene: scene["duration"] or "until decided")):
             values = [pick(scene) for scene in scenes.values()]
-            yield [label, *("–" if value is None else f"{value:.6g}" for value in values)]
+            yield [label, *("–" if value is None else value if isinstance(value, str) else f"{value:.6g}"
+                            for value in values)]
     return Table("Parameters", ("quantity", *(scene["name"] for scene in scenes.values())), list(rows()))
 
 
 # quantity with unit, key of the row, significant digits; a base's own last
-OUTCOMES = (("outcome", "outcome", None), ("overturns at [s]", "overturning_time", 5),
+OUTCOMES = (("outcome", "verdict", None), ("overturns at [s]", "overturning_time", 5),
             ("peak |φ|/γ [-]", "peak_tilt_ratio", 4), ("impacts [-]", "impact_count", None),
             ("peak |H|/N [-]", "friction_demand", 3), ("least N/(m g) [-]", "min_normal_ratio", 3),
-            ("steps [-]", "steps", None), ("CPU time [s]", "cpu_seconds", 2),
-            ("CPU time per simulated second [s/s]", "cpu_per_second", 2))
+            ("warnings [-]", "warnings", None), ("run until [s]", "end", 5), ("steps [-]", "steps", None),
+            ("CPU time [s]", "cpu_seconds", 2), ("CPU time per simulated second [s/s]", "cpu_per_second", 2))
 BASE_OUTCOMES = (("peak base displacement [m]", "peak_base_displacement", 5),
                  ("peak absolute base acceleration [m/s²]", "peak_base_acceleration", 4),
                  ("work of the bearings [J]", "bearing_work", 5))
@@ -130,12 +136,36 @@ def _outcomes(result, name):
     rows = [row for row in result.rows if row["scene"] == name]
     scene = result.settings["scenes"][name]
     quantities = [*OUTCOMES, *(BASE_OUTCOMES if scene["base"] else ())]
-    return Table(f"{scene['name']}, {scene['duration']:g} s at most", ("quantity", *(row["solver"] for row in rows)),
+    return Table(f"{scene['name']}, {_span(scene)}", ("quantity", *(row["solver"] for row in rows)),
                  [[label, *(_value(row, key, digits) for row in rows)] for label, key, digits in quantities])
+
+
+def _span(scene):
+    return "until decided" if scene["duration"] is None else f"{scene['duration']:g} s at most"
+
+
+def warned(result, name):
+    """{warning: the solvers whose runs of a scene carry it}."""
+    found = {}
+    for row in result.rows:
+        if row["scene"] == name:
+            for warning in row.get("warnings", ()):
+                found.setdefault(warning, []).append(row["solver"])
+    return found
+
+
+def _warnings(name, found):
+    """A table of `warned`, none where there is nothing to warn of."""
+    rows = [[", ".join(solvers), warning] for warning, solvers in found.items()]
+    return (Table(f"{name}: warnings", ("solver", "outside what was verified or modelled"), rows),) if rows else ()
 
 
 def _value(row, key, digits):
     value = row.get(key)
+    if key == "end":
+        value = value["time"] if value else None
+    if key == "warnings":
+        value = str(len(value)) if value else "none"
     if key == "friction_demand" and value is None and row.get("min_normal_ratio", 1) <= 0:
         return "∞ (N ≤ 0)"
     if digits is None:
@@ -204,7 +234,9 @@ def restitution_sections(result):
                    ("solver", "restitution", "impacts [-]", "restitution error, rms [-]",
                     "restitution error, worst [-]",
                     "base velocity jump, relative error, rms [-]", "impact times, relative error, rms [-]",
-                    "CPU time per simulated second [s/s]", "failed runs [-]"), rows),),
+                    "CPU time per simulated second [s/s]", "failed runs [-]"), rows),
+             *_warnings("Free rocking", {warning: [group["name"] for group in groups if warning in group["warnings"]]
+                                         for group in groups for warning in group["warnings"]})),
             (figures.error_and_cost(groups),)),
     ]
 

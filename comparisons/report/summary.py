@@ -3,6 +3,7 @@
 from .content import number, percent
 
 WORDS = {"stands": "never lifts", "rocks": "rocks and stays upright", "overturns": "overturns"}
+MOST_WARNINGS = 3  # of a scene, at the top of the page
 
 
 def summary(caryatid, groups):
@@ -10,7 +11,7 @@ def summary(caryatid, groups):
     sentences = []
     for name, scene in caryatid.settings["scenes"].items():
         rows = [row for row in caryatid.rows if row["scene"] == name]
-        sentences.append(f"{scene['name']}: {outcomes(rows)}{_times(rows)}{_displacement(rows)}.")
+        sentences.append(f"{scene['name']}: {outcomes(rows)}{_times(rows)}{_displacement(rows)}.{_warnings(rows)}")
     reference = next((group for group in groups if group["solver"] == "analytic"), None)
     for group in groups:
         if group["default"] and group["solver"] != "analytic" and group["rms"] is not None:
@@ -39,13 +40,24 @@ def outcomes(rows):
     """Who found what: "in all 3 solvers it overturns", or the solvers by outcome."""
     by_outcome = {}
     for row in rows:
-        by_outcome.setdefault(WORDS.get(row["outcome"], row["outcome"]), []).append(row["solver"])
+        undecided = not row.get("decided", True) and row["outcome"] != "failed"
+        words = f"is {row['verdict']}" if undecided else WORDS.get(row["outcome"], row["outcome"])
+        by_outcome.setdefault(words, []).append(row["solver"])
     if len(by_outcome) == 1:
         (outcome, solvers), = by_outcome.items()
         many = {1: solvers[0], 2: "both solvers"}.get(len(solvers), f"all {len(solvers)} solvers")
         return f"in {many} it {outcome}"
     return "the solvers disagree: " + ", ".join(
         f"in {' and '.join(solvers)} it {outcome}" for outcome, solvers in by_outcome.items())
+
+
+def _warnings(rows):
+    """The warnings of a scene's runs, each once; the table beside the outcomes says whose they are."""
+    found = list(dict.fromkeys(warning for row in rows for warning in row.get("warnings", ())))
+    if not found:
+        return ""
+    more = f"; {len(found) - MOST_WARNINGS} more in the table of warnings" if len(found) > MOST_WARNINGS else ""
+    return f" Warning: {'; '.join(text.rstrip('.') for text in found[:MOST_WARNINGS])}{more}."
 
 
 def _times(rows):

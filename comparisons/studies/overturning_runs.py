@@ -136,8 +136,9 @@ class _Log:
             if not row.failed and row.values["decided"]:
                 answer = row.values["outcome"] == "overturns"
             if answer is None:
-                failure = row.failure or {"kind": "undecided", "reason": "the longest run ends without a certain outcome",
-                                          "message": f"tilt {row.values['end_tilt']:.6g} rad"}
+                failure = row.failure or {
+                    "kind": "undecided", "reason": "the longest run ends without a certain outcome",
+                    "message": f"tilt {row.values['end_tilt']:.6g} rad"}
                 self.failures.append({"part": "failure", "solver": _label(engine), "ground": ground, "shape": shape,
                                       "frequency": frequency, "amplitude": amplitude, "min_normal": normal, **failure})
             if engine in ENGINES:

@@ -1,12 +1,15 @@
 """Sampled motions and pulses."""
 
 import math
+import pickle
 
+import numba
 import numpy as np
 import pytest
 
 from analytic import PulseMotion, SampledMotion, SceneError
 from analytic.motion import PULSES
+from analytic.solver import ground
 
 
 def test_sampled_motion_is_linear_between_samples_and_zero_outside():
@@ -14,6 +17,13 @@ def test_sampled_motion_is_linear_between_samples_and_zero_outside():
     times = [-1e-9, 0.0, 0.25, 0.5, 0.75, 1.0, 1.0 + 1e-9, 9.0]
     np.testing.assert_allclose(motion.acceleration(times), [0, 1, 2, 3, 0.5, -2, 0, 0], atol=1e-15)
     assert (motion.start, motion.end, motion.peak, motion.peak_time) == (0.0, 1.0, 3.0, 0.5)
+
+
+def test_a_motion_from_another_process_is_of_the_type_the_kernel_is_compiled_for():
+    motion = SampledMotion(0.01, [1.0, 2.0, 3.0], "mine", ("it is odd",))
+    again = pickle.loads(pickle.dumps(motion))
+    assert again.digest() == motion.digest() and (again.label, again.warnings) == ("mine", ("it is odd",))
+    assert numba.typeof(ground(again)) == numba.typeof(ground(motion)) == numba.typeof(ground(None))
 
 
 def test_samples_are_kept_read_only_and_apart_from_the_callers():

@@ -16,16 +16,17 @@ import pytest
 
 from analytic import EngineNotInstalled, load_scene, simulate, synthetic_motion
 from analytic.records import read_record
+from analytic.response import History
 from comparisons.cli import main
-from comparisons.provenance import read_result, write_result
-from comparisons.report import runs, write
+from comparisons.provenance import ResultError, read_result, write_result
+from comparisons.report import histories, runs, write
 from comparisons.report.content import Section, Table, number, percent
 from comparisons.report.write import write_page
 from engines import available_engines, installed_engines
 
 pytestmark = pytest.mark.xdist_group("report")  # one worker: its runs are made once
 
-DURATION = 7.0  # s: the free-standing Caryatid overturns within it
+CUT = 7.0  # s: the free-standing Caryatid overturns within it, the isolated one's outcome is still open
 SLENDERNESS = 0.3
 NO_STUDIES = Path(__file__).parent / "no such folder"
 DUZCE = Path(__file__).parents[3] / "shared" / "records" / "RSN1605_DUZCE_DZC270.AT2"
@@ -83,7 +84,7 @@ def value(cell):
 def folder(tmp_path_factory):
     """A report on the synthetic motion, with every engine installed here."""
     folder = tmp_path_factory.mktemp("report")
-    runs.make_results(folder, synthetic_motion(), duration=DURATION, slendernesses=(SLENDERNESS,))
+    runs.make_results(folder, synthetic_motion(), slendernesses=(SLENDERNESS,))
     write_page(folder, studies=NO_STUDIES)
     return folder
 
@@ -114,9 +115,9 @@ def test_outcomes_in_the_page_are_those_of_the_solvers(folder):
     page = Page(folder / "report.html")
     engines = installed_engines()
     for name in runs.SCENES:
-        scene = load_scene(name).with_(duration=DURATION)
+        scene = load_scene(name)
         expected = simulate(scene)
-        table = page.table(f"{scene.name}, 7 s")
+        table = page.table(f"{scene.name}, until decided")
         assert table["outcome", "analytic"] == expected.outcome
         assert value(table["peak |φ|/γ [-]", "analytic"]) == pytest.approx(expected.peak_tilt_ratio, rel=1e-3)
         assert {head for _, head in table} == {"quantity", "analytic", *engines}
@@ -133,7 +134,7 @@ def test_every_cell_of_the_outcome_tables_equals_the_result_file(folder):
              "CPU time [s]": "cpu_seconds", "work of the bearings [J]": "bearing_work"}
     compared = 0
     for row in result.rows:
-        table = page.table(f"{result.settings['scenes'][row['scene']]['name']}, 7 s")
+        table = page.table(f"{result.settings['scenes'][row['scene']]['name']}, until decided")
         for label, key in shown.items():
             cell = table.get((label, row["solver"]), "–")
             if cell != "–":
@@ -144,7 +145,7 @@ def test_every_cell_of_the_outcome_tables_equals_the_result_file(folder):
 
 def test_histories_in_the_result_file_are_those_of_the_model(folder):
     arrays = read_result(folder / runs.CARYATID).arrays
-    history = simulate(load_scene("caryatid-isolated").with_(duration=DURATION)).history
+    history = simulate(load_scene("caryatid-isolated")).history
     for column in history.COLUMNS:
         np.testing.assert_array_equal(arrays[f"caryatid-isolated/analytic/{column}"], getattr(history, column))
 
@@ -235,11 +236,13 @@ def test_missing_engines_are_named_with_their_remedy(tmp_path, monkeypatch):
         raise EngineNotInstalled(f"engine {name!r} needs the package {name}: install it so")
 
     monkeypatch.setattr("engines.get_engine", nothing_installed)
-    runs.make_results(tmp_path, synthetic_motion(), duration=DURATION, slendernesses=(SLENDERNESS,))
+    runs.make_results(tmp_path, synthetic_motion(), duration=CUT, slendernesses=(SLENDERNESS,))
     page = Page(write_page(tmp_path, studies=NO_STUDIES))
     assert any("Not in this report: pybullet. engine 'pybullet' needs the package pybullet: install it so" in item
                for item in page.items)
-    assert page.table("Caryatid isolated, 7 s")["outcome", "analytic"] == "stands"
+    assert page.table("Caryatid on rigid ground, 7 s")["outcome", "analytic"] == "overturns"
+    assert page.table("Caryatid isolated, 7 s")["outcome", "analytic"] == "undecided (stands so far)"
+    assert any("in analytic it is undecided (stands so far)" in item for item in page.items)
 
 
 def test_a_failed_run_shows_its_evidence(folder, copied):
@@ -272,11 +275,68 @@ def test_a_study_is_shown_by_its_own_section_and_says_when_it_is_old(folder, cop
     assert write_page(copied, studies=studies).read_text().count("Out of date") == warnings + 1
 
 
-def test_responses_survive_the_way_through_a_result_file():
+def test_responses_survive_the_way_through_a_result_file(tmp_path):
     response = simulate(load_scene("caryatid-isolated").with_(duration=5.0))
-    values = json.loads(json.dumps(runs.with_history(response)))
-    again = runs.response_of(values)
-    assert runs.with_history(again) == {**runs.with_history(response), "energy": None}
+    values = json.loads(json.dumps(histories.ToFile(str(tmp_path))(response)))
+    again = histories.response_of(values, tmp_path)
+    assert again.to_json() == {**response.to_json(), "energy": None}
+    for column in History.COLUMNS:
+        np.testing.assert_array_equal(getattr(again.history, column), getattr(response.history, column))
+
+
+def test_a_lost_history_of_a_report_that_was_broken_off_is_said(tmp_path):
+    values = histories.ToFile(str(tmp_path))(simulate(load_scene("caryatid-rigid").with_(duration=0.1)))
+    (tmp_path / values["history"]).unlink()
+    with pytest.raises(ResultError, match="missing; remove the folder"):
+        histories.response_of(values, tmp_path)
+
+
+def test_thinning_keeps_ends_and_the_extremes_of_every_part():
+    generator = np.random.default_rng(5)
+    columns = generator.normal(size=(3, 1_000_000))
+    columns[0, 123_456], columns[1, 777_777], columns[2, 999_998] = 50.0, -60.0, 70.0  # one sample wide
+    shown = histories.thinned(*columns)
+    assert len(shown) <= histories.MOST_SHOWN and (np.diff(shown) > 0).all()
+    assert {0, 123_456, 777_777, 999_998, 999_999} <= set(shown)
+    for begin in range(0, 1_000_000, 10_000):  # the band that a drawn line covers
+        inside = shown[(shown >= begin) & (shown < begin + 10_000)]
+        for column in columns:
+            part = column[begin:begin + 10_000]
+            assert column[inside].min() == part.min() and column[inside].max() == part.max()
+    np.testing.assert_array_equal(histories.thinned(columns[0, :5177]), np.arange(5177))
+
+
+def test_differences_are_those_of_all_samples():
+    time = np.linspace(0.0, 100.0, 100_001)
+    zeros = np.zeros_like(time)
+    model = History(time, np.sin(time), *5 * [zeros])
+    spike = np.where(np.arange(len(time)) == 54_321, 1e-3, 0.0)
+    apart = histories.differences(History(time, np.sin(time) + spike, zeros, zeros - 2e-3, *3 * [zeros]), model)
+    assert len(apart["apart/time"]) < 20_000
+    assert np.abs(apart["apart/tilt"]).max() == pytest.approx(1e-3, rel=1e-9)
+    assert apart["apart/time"][np.abs(apart["apart/tilt"]).argmax()] == time[54_321]
+    assert (apart["apart/base_displacement"] == -2e-3).all()
+
+
+def test_undecided_outcomes_and_warnings_stand_beside_the_outcomes_and_at_the_top(copied):
+    def cut(content):
+        for row in content["rows"]:
+            if row["scene"] == "caryatid-rigid":
+                row.update(outcome="rocks", overturning_time=None, decided=False,
+                           verdict="undecided (rocks so far)", warnings=["the record peaks at 5 g"])
+        content["rows"][-1]["warnings"] = ["the base is light"]
+
+    changed(copied / runs.CARYATID, cut)
+    changed(copied / runs.FREE_ROCKING, lambda content: content["rows"][-1].update(warnings=["the block is small"]))
+    page = Page(write_page(copied, studies=NO_STUDIES))
+    last = read_result(copied / runs.CARYATID).rows[-1]["solver"]
+    free, isolated = (page.table(f"Caryatid {name}, until decided") for name in ("on rigid ground", "isolated"))
+    assert free["outcome", "analytic"] == "undecided (rocks so far)" and free["warnings [-]", "analytic"] == "1"
+    assert isolated["warnings [-]", "analytic"] == "none" and isolated["warnings [-]", last] == "1"
+    words = "outside what was verified or modelled"
+    assert page.table("Caryatid isolated: warnings")[last, words] == "the base is light"
+    assert "the block is small" in page.table("Free rocking: warnings").values()
+    assert any("it is undecided (rocks so far). Warning: the record peaks at 5 g." in item for item in page.items)
 
 
 @pytest.mark.parametrize("given, shown", [
@@ -304,9 +364,9 @@ def test_mistakes_end_with_one_message(arguments, words, capsys):
 
 @pytest.mark.skipif(not DUZCE.exists(), reason="the Duzce record does not lie beside the project")
 def test_duzce_record_overturns_the_free_caryatid_and_not_the_isolated_one(tmp_path):
-    runs.make_results(tmp_path, read_record(DUZCE), duration=10.0, slendernesses=(SLENDERNESS,))
+    runs.make_results(tmp_path, read_record(DUZCE), slendernesses=(SLENDERNESS,))
     page = Page(write_page(tmp_path, studies=NO_STUDIES))
-    free, isolated = page.table("Caryatid on rigid ground, 10 s"), page.table("Caryatid isolated, 10 s")
+    free, isolated = (page.table(f"Caryatid {name}, until decided") for name in ("on rigid ground", "isolated"))
     for solver in {"analytic", "exudyn", "pybullet"} - set(available_engines()[1]):
         assert free["outcome", solver] == "overturns"
         assert 6 < value(free["overturns at [s]", solver]) < 9

@@ -99,8 +99,8 @@ class Shifted:
             motion = case.scene.motion
             response = simulate(case.scene.with_(motion=motion.scaled(1 / (1 + self.shift))), history=False)
             failed = {"kind": "solver", "reason": "it failed", "message": "raw evidence"} if self.fails(case) else None
-            rows.append(Row(case, {"outcome": response.outcome, "end_tilt": response.end.tilt, "decided": response.decided}, failed,
-                            {"cpu_seconds": 0.1}, False))
+            values = {"outcome": response.outcome, "end_tilt": response.end.tilt, "decided": response.decided}
+            rows.append(Row(case, values, failed, {"cpu_seconds": 0.1}, False))
         return rows
 
 

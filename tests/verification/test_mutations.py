@@ -161,6 +161,31 @@ def test_a_bearing_force_that_lags_one_step_fails(monkeypatch, engine, lag):
     assert_caught([one])
 
 
+# A mutation that changes nothing: no test can see it, and none has to as long as this holds.
+
+@pytest.mark.parametrize("scenes", [agreement.RIGID, agreement.SLIDING])
+def test_the_share_of_a_penetration_that_bullet_takes_back_does_not_matter(monkeypatch, scenes):
+    """contactERP at .08; where it shows one day, it must be set."""
+    pytest.importorskip("pybullet")
+    from engines import pybullet_scene
+
+    def measured():
+        responses = [agreement.run("pybullet", "impact-aware", family[3]) for family in
+                     agreement.free_rocking(scenes).values()]
+        return np.array([(impact.rate_after / impact.rate_before, impact.base_velocity_jump)
+                         for response in responses for impact in response.impacts[:agreement.IMPACTS]])
+
+    usual, set_parameters, asked = measured(), pybullet_scene.pybullet.setPhysicsEngineParameter, []
+
+    def with_share(**given):
+        asked.append(given)
+        return set_parameters(**given, contactERP=0.08)
+
+    monkeypatch.setattr(pybullet_scene.pybullet, "setPhysicsEngineParameter", with_share)
+    np.testing.assert_allclose(measured(), usual, rtol=0, atol=1e-7)
+    assert asked
+
+
 # Step size, and what stands for it in an adaptive engine.
 
 @pytest.mark.parametrize("engine, variant, changes, quantity, scenes", [

@@ -60,8 +60,8 @@ def test_every_test_has_a_time_limit(request):
 HANGS = {
     "Python": "import time\ndef test_hangs():\n    while True:\n        time.sleep(.01)\n",
     # signals wait for the end of compiled code
-    "compiled": ("import numba\n@numba.njit('i8(i8)')\ndef count(n):\n    while n > 0:\n        n = n % 7 + 1\n    return n\n"
-                 "def test_hangs():\n    count(3)\n"),
+    "compiled": ("import numba\n@numba.njit('i8(i8)')\ndef count(n):\n    while n > 0:\n        n = n % 7 + 1\n"
+                 "    return n\ndef test_hangs():\n    count(3)\n"),
 }
 
 

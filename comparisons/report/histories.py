@@ -1,0 +1,76 @@
+"""Histories of the report's runs: in files while it is made, so that memory holds one at a time; thinned for drawing.
+
+Measured is what was computed; thinned only what a figure or the result file shows of a long record.
+"""
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from analytic.response import History, Impact, Response, State
+
+from ..provenance import ResultError
+
+# A history of up to so many samples is shown whole; of a longer one the extremes in each of so many parts.
+MOST_SHOWN, PARTS = 20_000, 1_500
+
+
+@dataclass(frozen=True)
+class ToFile:
+    """Reducer: everything, the history as a file in `folder`, shape (columns of `History`, samples)."""
+
+    folder: str
+
+    def __call__(self, response):
+        content = (response.scene, response.engine, response.variant)
+        name = hashlib.sha256(repr(content).encode()).hexdigest()[:16] + ".npy"
+        np.save(Path(self.folder) / name, [getattr(response.history, column) for column in History.COLUMNS])
+        return {**response.to_json(), "history": name}
+
+
+def response_of(values, folder=None):
+    """The `Response` a reducer's values came from, its history from `folder`; None where a number was not finite."""
+    values = {key: value for key, value in values.items() if key != "impact_count"}
+    file = values.pop("history", None)
+    impacts = tuple(Impact(**impact) for impact in values.pop("impacts"))
+    tuples = {name: tuple(values.pop(name)) for name in ("uplifts", "rests", "warnings")}
+    values.update(end=State(**values["end"]), energy=None, cpu_seconds=values.get("cpu_seconds", 0.0))
+    return Response(impacts=impacts, history=file and folder and _history(Path(folder) / file), **tuples, **values)
+
+
+def _history(path):
+    if not path.exists():
+        raise ResultError(f"{path.parent.name}/{path.name}: missing; remove the folder {path.parent.name} and make the "
+                          "report again")
+    return History(*np.load(path))
+
+
+def differences(history, reference):
+    """{"apart/time", "apart/tilt", "apart/base_displacement": array}: history minus reference, thinned.
+
+    At the reference's samples up to the end of the shorter one.
+    """
+    time = reference.time[reference.time <= history.time[-1]]
+    apart = {column: np.interp(time, history.time, getattr(history, column)) - getattr(reference, column)[:len(time)]
+             for column in ("tilt", "base_displacement")}
+    shown = thinned(*apart.values())
+    return {f"apart/{column}": values[shown] for column, values in {"time": time, **apart}.items()}
+
+
+def thinned(*columns, most=MOST_SHOWN, parts=PARTS):
+    """Indices, in order, of the samples to draw of columns of equal length.
+
+    All of up to `most` samples. Else both ends, and where each column is least and greatest in each of so many
+    equal parts: no peak is lost, and a line through them covers what a line through all covers.
+    """
+    count = len(columns[0])
+    if count <= most:
+        return np.arange(count)
+    edges = np.linspace(0, count, parts + 1).astype(int)
+    kept = [0, count - 1]
+    for column in columns:
+        for begin, end in zip(edges[:-1], edges[1:], strict=True):
+            kept += [begin + int(column[begin:end].argmin()), begin + int(column[begin:end].argmax())]
+    return np.unique(kept)
