@@ -19,7 +19,7 @@ IMPEDANCE = 0.999
 MOST_RECOVERY = 0.1
 
 UNIT_RADIUS = 1.0884  # m
-VIBRATION, MOST_REFINEMENT = 0.3, 10.0
+VIBRATION, MOST_REFINEMENT = 0.15, 20.0
 
 
 class Mismatch(RuntimeError):
@@ -42,6 +42,12 @@ def recovery_rate(scene, chosen):
     return None if chosen.recovery is None else chosen.recovery / size_scale(scene)
 
 
+def impedance(scene):
+    """Impedance d of the contacts: 1 - d is the share of a landing that they leave, more so where J_O is near m R^2."""
+    block = scene.block
+    return 1 - (1 - IMPEDANCE) * min(1.0, max(0.1, 3 * block.centre_inertia / (block.mass * block.radius**2)))
+
+
 def longest_step(scene, chosen):
     """Length of the steps in flight and at rest [s]: the variant's, less for a small block and for stiff bearings."""
     if chosen.recovery is None:
@@ -49,7 +55,7 @@ def longest_step(scene, chosen):
     step = chosen.largest_step * size_scale(scene)
     if scene.bearings is None:
         return step
-    frequency = math.sqrt(scene.bearings.count * scene.bearings.ka / least_mass(scene))
+    frequency = math.sqrt(scene.bearings.count * scene.bearings.ka / scene.base.mass)
     return min(step, max(VIBRATION / frequency, step / MOST_REFINEMENT))
 
 
@@ -99,9 +105,11 @@ def build(scene, chosen):
         solref, option, geom = None, "", "" if scene.friction is None else f'friction="{friction!r} 0 0"'
         shape = f'<geom type="box" size="{b!r} {b!r} {h!r}" {geom}/>'
     else:
-        k, d = solref = contact_reference(step, recovery_rate(scene, chosen))
+        stiffness, damping = solref = contact_reference(step, recovery_rate(scene, chosen))
         option = 'cone="elliptic"'
-        geom = f'friction="{friction!r} 0 0" solref="{k!r} {d!r}" solimp="{IMPEDANCE!r} {IMPEDANCE!r} 1 .5 2"'
+        d = impedance(scene)
+        geom = (f'friction="{friction!r} 0 0" solref="{stiffness!r} {damping!r}" '
+                f'solimp="{d!r} {d!r} 1 .5 2"')
         shape = "".join(f'<geom type="sphere" size="{r!r}" pos="{x!r} 0 {r - h!r}" {geom}/>' for x in (-b, b))
     damped = chosen.recovery is not None and scene.bearings is not None and scene.bearings.damping > 0
     damper = '<equality><joint joint1="base" active="false"/></equality>' if damped else ""
@@ -149,7 +157,7 @@ def check_readback(model, data, scene, step, solref, friction):
         for contact in data.contact:
             expected += [("contact: friction", contact.friction[:2], friction), ("contact: dimension", contact.dim, 3),
                          ("contact: solref", contact.solref, solref), ("contact: margin", contact.includemargin, 0.0),
-                         ("contact: solimp", contact.solimp, [IMPEDANCE, IMPEDANCE, 1, 0.5, 2]),
+                         ("contact: solimp", contact.solimp, [impedance(scene), impedance(scene), 1, 0.5, 2]),
                          ("contact: depth", contact.dist, depth)]
         mujoco.mj_resetData(model, data)
     wrong = [f"{name} is {np.asarray(used).tolist()}, not {np.asarray(wanted).tolist()}"
