@@ -3,8 +3,6 @@
 import math
 from dataclasses import dataclass, fields
 
-from analytic.bearing import BearingLaw
-
 ANY = (0.0, math.inf)
 NOWHERE = "this variant is verified in no range: its settings are not meant to be right"
 
@@ -39,9 +37,10 @@ def quantities(scene, step, peak_tilt=None):
              "radius": block.radius}
     if scene.base is not None:
         found["base_mass"] = scene.base.mass / block.mass
-        law = BearingLaw.of(scene.bearings)
-        found["stiffness"] = step * math.sqrt(law.count * (law.kb + law.dk) / scene.base.mass)
-        found["damping"] = step * law.count * law.damping / scene.base.mass
+    if scene.bearings is not None:
+        bearings = scene.bearings
+        found["stiffness"] = step * math.sqrt(bearings.count * bearings.ka / scene.base.mass)
+        found["damping"] = step * bearings.count * bearings.damping / scene.base.mass
     if peak_tilt:
         found["tilt"] = peak_tilt / block.slenderness
     return found

@@ -143,14 +143,14 @@ def lag_pybullet(monkeypatch):
 
 
 def lag_mujoco(monkeypatch):
-    from engines import mujoco_engine
+    from engines import mujoco_stepping
 
     class Lagging(BearingLaw):
         @functools.cached_property
         def hysteretic(self):
             return late(super().hysteretic)
 
-    monkeypatch.setattr(mujoco_engine, "BearingLaw", Lagging)
+    monkeypatch.setattr(mujoco_stepping, "BearingLaw", Lagging)
 
 
 # exudyn is not among them: it commits inside a compiled call.

@@ -1,0 +1,167 @@
+"""The scene as a MuJoCo model."""
+
+import math
+
+import mujoco
+import numpy as np
+
+FRICTION = 5.0  # stands for the model's "no sliding"; of two geoms MuJoCo takes the larger; e is the same with 1
+CORNER_RADIUS = 1e-6  # share of R: the block touches by a sphere at each bottom corner; e is the same with 1e-8
+# Of the contacts, at any depth. Largest error of e at steps up to 4e-4 s: 6.4e-5 at .99, 4.3e-5 at .999, 6.2e-5 at
+# .9999 (one start 2e-3 at a smaller accuracy).
+IMPEDANCE = 0.999
+
+# A sink decays at the variant's rate `recovery`, by at most this share in a step. Steps along a tangent sink the pivot
+# by h^2 phi'^2 R/2 each. At a small rate it sinks so far that a slender block lands early (gamma .1 on a base, steps up
+# to .5 ms: velocity jump off by 1.4e-3 at 100, 1.1e-3 at 150); a large one throws the landing corner up (gamma .45 on a
+# base: e off by 5e-5 at 150, 1.4e-4 at 200). At fixed steps of 1e-4 s only the second matters (rigid ground, gamma .45:
+# e off by 4e-4 at 30, 7e-4 at 60, 1.8e-3 at 150).
+MOST_RECOVERY = 0.1
+
+UNIT_RADIUS = 1.0884  # m
+VIBRATION, MOST_REFINEMENT = 0.15, 20.0
+
+
+class Mismatch(RuntimeError):
+    """MuJoCo does not use what it was given."""
+
+
+def least_mass(scene):
+    """Least inertia [kg] that a push on the base meets while the block stands or rocks on it, eqs (3)-(6)."""
+    block = scene.block
+    return scene.total_mass - (block.mass * block.radius) ** 2 / block.inertia
+
+
+def size_scale(scene):
+    """What times set for a block of `UNIT_RADIUS` are multiplied with: rocking goes with sqrt(R/g)."""
+    return math.sqrt(scene.block.radius / UNIT_RADIUS)
+
+
+def recovery_rate(scene, chosen):
+    """Rate [1/s] at which a sink decays, None where MuJoCo's defaults are to stay."""
+    return None if chosen.recovery is None else chosen.recovery / size_scale(scene)
+
+
+def impedance(scene):
+    """Impedance d of the contacts: 1 - d is the share of a landing that they leave, more so where J_O is near m R^2."""
+    block = scene.block
+    return 1 - (1 - IMPEDANCE) * min(1.0, max(0.1, 3 * block.centre_inertia / (block.mass * block.radius**2)))
+
+
+def longest_step(scene, chosen):
+    """Length of the steps in flight and at rest [s]: the variant's, less for a small block and for stiff bearings."""
+    if chosen.recovery is None:
+        return chosen.largest_step
+    step = chosen.largest_step * size_scale(scene)
+    if scene.bearings is None:
+        return step
+    frequency = math.sqrt(scene.bearings.count * scene.bearings.ka / scene.base.mass)
+    return min(step, max(VIBRATION / frequency, step / MOST_REFINEMENT))
+
+
+def placement(scene):
+    """Coordinates and velocities at the start: base (if any), block's centre x, z from its standing height, tilt."""
+    start, block = scene.start, scene.block
+    s = math.copysign(1.0, start.tilt or start.tilt_rate)
+    angle = s * block.slenderness - start.tilt
+    c, n = block.radius * math.cos(angle), block.radius * math.sin(angle)
+    position = [start.base_displacement + s * block.half_width - n, c - block.half_height, start.tilt]
+    velocity = [start.base_velocity + c * start.tilt_rate, n * start.tilt_rate, start.tilt_rate]
+    if scene.base is None:
+        return position, velocity
+    return [start.base_displacement, *position], [start.base_velocity, *velocity]
+
+
+def _ground(scene, geom=""):
+    """MJCF of what the block stands on, its top at z = 0: a plane, or a slab on a slide joint for a base."""
+    if scene.base is None:
+        return f'<geom type="plane" size="0 0 1" {geom}/>'
+    reach, depth = 100 * scene.block.radius, scene.block.radius  # a plane cannot move in MuJoCo
+    return (f'<body><joint name="base" type="slide" axis="1 0 0"/><inertial pos="0 0 0" mass="{scene.base.mass!r}" '
+            f'diaginertia="{scene.base.mass!r} {scene.base.mass!r} {scene.base.mass!r}"/>'
+            f'<geom type="box" pos="0 0 {-depth!r}" size="{reach!r} {reach!r} {depth!r}" mass="0" {geom}/></body>')
+
+
+def contact_reference(step, recovery):
+    """solref for a step [s]: -stiffness and -damping per unit of mass that stop a corner in this very step.
+
+    A corner that has sunk by r then moves up at r min(MOST_RECOVERY/step, recovery), whatever its speed was.
+    """
+    return -min(MOST_RECOVERY / step, recovery) / step, -1.0 / step
+
+
+def build(scene, chosen):
+    """(model, data) of the block on slide-x, slide-z and hinge-y joints over its ground or base, at the start.
+
+    Raises
+    ------
+    Mismatch
+        MuJoCo does not take the scene, or reports other values than it was given.
+    """
+    block, step = scene.block, longest_step(scene, chosen)
+    friction = FRICTION if scene.friction is None else scene.friction
+    b, h, r, i = block.half_width, block.half_height, CORNER_RADIUS * block.radius, block.centre_inertia
+    if chosen.recovery is None:
+        solref, option, geom = None, "", "" if scene.friction is None else f'friction="{friction!r} 0 0"'
+        shape = f'<geom type="box" size="{b!r} {b!r} {h!r}" {geom}/>'
+    else:
+        stiffness, damping = solref = contact_reference(step, recovery_rate(scene, chosen))
+        option = 'cone="elliptic"'
+        d = impedance(scene)
+        geom = (f'friction="{friction!r} 0 0" solref="{stiffness!r} {damping!r}" '
+                f'solimp="{d!r} {d!r} 1 .5 2"')
+        shape = "".join(f'<geom type="sphere" size="{r!r}" pos="{x!r} 0 {r - h!r}" {geom}/>' for x in (-b, b))
+    damped = chosen.recovery is not None and scene.bearings is not None and scene.bearings.damping > 0
+    damper = '<equality><joint joint1="base" active="false"/></equality>' if damped else ""
+    try:
+        model = mujoco.MjModel.from_xml_string(f"""<mujoco>
+            <option timestep="{step!r}" gravity="0 0 {-scene.gravity!r}" {option}>
+              <flag autoreset="disable" diagexact="{"enable" if solref else "disable"}"/></option>
+            <worldbody>{_ground(scene, geom)}<body pos="0 0 {h!r}">
+              <joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/><joint type="hinge" axis="0 1 0"/>
+              <inertial pos="0 0 0" mass="{block.mass!r}" diaginertia="{i!r} {i!r} {i!r}"/>{shape}
+            </body></worldbody>{damper}</mujoco>""")
+    except ValueError as error:
+        raise Mismatch(str(error)) from error
+    data = mujoco.MjData(model)
+    check_readback(model, data, scene, step, solref, friction)
+    data.qpos[:], data.qvel[:] = placement(scene)
+    return model, data
+
+
+def check_readback(model, data, scene, step, solref, friction):
+    """Compare what MuJoCo holds with what the scene needs; raises `Mismatch` naming what differs.
+
+    The contacts are looked at as MuJoCo combines them: the block is pushed into its base for it, and put back.
+    They, and the solver, are left out where solref is None: those are MuJoCo's defaults.
+    """
+    option, block, depth = model.opt, scene.block, -1e-3 * scene.block.radius
+    masses = [block.mass] if scene.base is None else [scene.base.mass, block.mass]
+    expected = [
+        ("time step", option.timestep, step), ("gravity", option.gravity, [0.0, 0.0, -scene.gravity]),
+        ("integrator", option.integrator, int(mujoco.mjtIntegrator.mjINT_EULER)),
+        ("disabled parts", option.disableflags, int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)),
+        ("density and viscosity", [option.density, option.viscosity], 0.0),
+        ("masses", model.body_mass[1:], masses), ("inertia", model.body_inertia[-1], block.centre_inertia),
+        ("centre of mass", model.body_ipos, 0.0), ("coordinates", model.nq, 2 + len(masses)),
+        *((name, getattr(model, name), 0.0)
+          for name in ("dof_damping", "dof_frictionloss", "dof_armature", "jnt_stiffness")),
+    ]
+    if solref:
+        data.qpos[-2] = depth
+        mujoco.mj_fwdPosition(model, data)
+        expected += [("cone", option.cone, int(mujoco.mjtCone.mjCONE_ELLIPTIC)),
+                     ("solver", option.solver, int(mujoco.mjtSolver.mjSOL_NEWTON)),
+                     ("enabled parts", option.enableflags, int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)),
+                     ("contacts of a standing block", data.ncon, 2)]
+        for contact in data.contact:
+            expected += [("contact: friction", contact.friction[:2], friction), ("contact: dimension", contact.dim, 3),
+                         ("contact: solref", contact.solref, solref), ("contact: margin", contact.includemargin, 0.0),
+                         ("contact: solimp", contact.solimp, [impedance(scene), impedance(scene), 1, 0.5, 2]),
+                         ("contact: depth", contact.dist, depth)]
+        mujoco.mj_resetData(model, data)
+    wrong = [f"{name} is {np.asarray(used).tolist()}, not {np.asarray(wanted).tolist()}"
+             for name, used, wanted in expected
+             if np.size(wanted) not in (1, np.size(used)) or not np.allclose(used, wanted, 1e-12, 1e-14)]
+    if wrong:
+        raise Mismatch("; ".join(wrong))

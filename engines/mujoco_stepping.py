@@ -1,0 +1,174 @@
+"""Stepping a scene in MuJoCo: loads, step length, readback."""
+
+import math
+
+import mujoco
+
+from analytic.bearing import BearingLaw
+from analytic.rocking import RockingModel
+
+from .ground_velocity import ground_velocity
+from .mujoco_scene import contact_reference, least_mass, recovery_rate, size_scale
+
+# No accuracy knobs: over the ranges given e moves by at most 2e-5 and the number of steps by 2 % (gamma .1 and .45 on
+# a base of 212 kg, steps up to 4e-4 s).
+GROWTH = 1.5  # most growth from step to step; 1.25 to 2
+APPROACH = 0.15  # share of the remaining time to the impact that a step may take; .1 to .3
+SETTLING = 4  # steps that stay as small after an impact as at it; 1 to 8
+FLAT = 1e-6  # swings below this share of gamma do not matter, their impacts are stepped over; 1e-7 to 1e-5
+SMALLEST_STEP = 1e-7  # s, at `UNIT_RADIUS`; 1e-8 to 1e-6
+# Viscous impulse of a step over the base's momentum from which on it is solved with the contacts. (MuJoCo's least
+# impedance is 1e-4.) Below, it is taken at the velocity half a step earlier: an error of half of this.
+LEAST_RATIO = 2e-4
+# Steps after which a run is given up: this many per largest step of the duration, and a reserve for the impacts.
+ROWS_PER_STEP, MOST_ROWS = 50, 20_000_000
+
+
+def run(model, data, scene, chosen):
+    """Step until the duration is over, the block has overturned or a state is not finite.
+
+    MuJoCo's Euler is leapfrog: displacements live at the steps' ends, velocities half a step earlier. A load that
+    acts for the mean of two steps is scaled by (h + h')/(2 h'), see pybullet_stepping. Not so for a first script.
+
+    Returns
+    -------
+    rows, ended
+        As pybullet_stepping.run.
+    """
+    largest, recovery, as_it_comes = model.opt.timestep, recovery_rate(scene, chosen), chosen.recovery is None
+    law, g, start = BearingLaw.of(scene.bearings), scene.gravity, scene.start
+    pace = Pace(scene, largest, chosen.accuracy) if chosen.accuracy else None
+    ground, sampled = ground_velocity(scene.motion), scene.motion.acceleration if scene.motion else None
+    half_height, half_width = scene.block.half_height, scene.block.half_width
+    viscous = None if as_it_comes else Viscous.of(scene, model, data)
+    advance, state, speed, push = mujoco.mj_step, data.qpos, data.qvel, data.qfrc_applied
+    option, gravity, solref = model.opt, model.opt.gravity, model.geom_solref
+    on_base, loaded, damping = scene.base is not None, scene.bearings is not None, law.count * law.damping
+    end, limit = scene.duration - 1e-9 * largest, 0.5 * math.pi
+    row_limit = int(min(MOST_ROWS, ROWS_PER_STEP * scene.duration / largest + 100_000))
+    t, h, used = 0.0, 0.0, largest
+    tilt, rate, x, v = start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity
+    z = law.start(x)
+    force, gained, interval, last_scale, jumped = law.force(x, z), 0.0, 1.0, 1.0, False
+    rows = [(t, h, tilt, rate, x, v, z, force, *state[-3:-1].tolist(), *speed[-3:-1].tolist())]
+    while t < end:
+        step = pace.next(tilt, rate, jumped, interval) if pace else largest
+        if t + step > end + 2e-9 * largest:
+            step = scene.duration - t
+        if step != used:
+            option.timestep = used = step
+            if not as_it_comes:
+                solref[:] = contact_reference(step, recovery)
+        scale = 1.0 if as_it_comes else 0.5 * (step + h) / step
+        if sampled and as_it_comes:
+            gravity[0] = -float(sampled(t))
+        elif ground:
+            reached = ground(t + 0.5 * step)
+            gravity[0] = (gained - reached) / step
+            gained = reached
+        if scale != last_scale:
+            gravity[2] = -g * scale
+            last_scale = scale
+        if loaded:
+            pushed = force
+            if as_it_comes:
+                pushed += damping * v
+            elif viscous and not viscous.solved(h, step, scale, jumped or (tilt > 0) != (tilt + step * rate > 0)):
+                pushed += viscous.most(step) * v
+            push[0] = -pushed * scale
+        advance(model, data)
+        if data.ncon and not as_it_comes:
+            # On a corner the centre moves on an arc, not along its tangent as MuJoCo moves it: that would lift the
+            # corner out of contact every now and then, and a bearing flings a light base away within one step.
+            turned = 0.5 * (step * speed.item(-1)) ** 2
+            state[-2] -= turned * (state.item(-2) + half_height)
+            state[-3] -= turned * (state.item(-3) - (state.item(0) if on_base else 0.0)
+                                   - (half_width if state.item(-1) > 0 else -half_width))
+        interval, side = 0.5 * (step + h), tilt > 0
+        tilt, rate = state.item(-1), speed.item(-1)
+        if on_base:
+            before, x, v = x, state.item(0), speed.item(0)
+            if loaded:
+                z = law.hysteretic(z, x - before)
+                force = law.force(x, z)
+        t, h, jumped = t + step, step, (tilt > 0) != side
+        rows.append((t, h, tilt, rate, x, v, z, force, state.item(-3), state.item(-2), speed.item(-3), speed.item(-2)))
+        if not -limit < tilt < limit:
+            return rows, "overturned" if math.isfinite(tilt) else "not finite"
+        if len(rows) > row_limit:
+            return rows, "too many steps"
+    return rows, "done"
+
+
+class Viscous:
+    """The bearings' viscous force as a constraint that MuJoCo solves with its contacts, so that no step is too long.
+
+    A soft constraint on the base's joint gives it the force -(a + b v)/R, a its acceleration in the step and v its
+    velocity before. With b = 1/(theta h), R = 1/(c theta h) that is -c (v + theta h a), the damper at a velocity
+    between the step's ends. Not in the step of an impact: there the damper would hold the base that the block kicks.
+    """
+
+    def __init__(self, model, data, damping, mass, lightest):
+        self.model, self.active = model, data.eq_active
+        self.damping, self.mass, self.lightest = damping, mass, lightest
+
+    @classmethod
+    def of(cls, scene, model, data):
+        law = BearingLaw.of(scene.bearings)
+        if not law.count * law.damping:
+            return None
+        return cls(model, data, law.count * law.damping, scene.base.mass, least_mass(scene))
+
+    def solved(self, h, step, scale, landing):
+        """Set the constraint for a step [s] after one of h; False where the force is to be applied by itself."""
+        pull = self.damping * scale * step
+        # v at the end of the step before is the mean of its neighbours, weighted; where that would ring, the later one.
+        share = max(h / (h + step), 1 - self.lightest / pull)
+        ratio = pull * share / self.mass
+        self.active[0] = ratio >= LEAST_RATIO and not landing
+        if not self.active[0]:
+            return False
+        d = ratio / (1 + ratio)
+        self.model.eq_solimp[0, :2] = d
+        self.model.eq_solref[0] = 0.0, -d / (share * step)
+        return True
+
+    def most(self, step):
+        """The damping [N s/m] to apply in a step [s], at most that which stops the base in it."""
+        return min(self.damping, self.lightest / step)
+
+
+class Pace:
+    """Length of the next step: large in flight and at rest, small on the way to an impact and just after it."""
+
+    def __init__(self, scene, largest, fraction):
+        model = RockingModel.of(scene)
+        self.largest, self.fraction, self.smallest = largest, fraction, SMALLEST_STEP * size_scale(scene)
+        self.least_pull = abs(model.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0])  # |tilt''| toward contact, unforced
+        self.weak = 2 * self.least_pull * FLAT * scene.block.slenderness  # square of the speed at such an impact
+        # A first swing may be short: start small and let the step grow.
+        self.step = min(largest, max(self.smallest, fraction * abs(scene.start.tilt_rate) / self.least_pull,
+                                     1e-2 * largest))
+        self.before, self.settling = None, 0
+
+    def next(self, tilt, rate, jumped, interval):
+        """Step [s] from a state; jumped: it lies on the other side than the one before, interval [s] earlier."""
+        toward, size = (-rate, tilt) if tilt > 0 else (rate, -tilt)
+        least = self.least_pull
+        energy = toward * toward + 2 * least * size  # of the swing, as the square of its speed at the impact
+        gain = 0.0 if self.before is None or jumped else (self.before - rate if tilt > 0 else rate - self.before)
+        first, self.before = self.before is None, rate
+        if jumped:
+            self.settling = SETTLING if energy > self.weak else 0
+        if self.settling:
+            self.settling -= 1
+        elif not first:
+            wanted = min(self.step * GROWTH, self.largest)
+            if energy > self.weak:
+                pull = max(least, gain / interval)  # what the last step gained, where that is more: the ground may push
+                speed = math.sqrt(toward * toward + 2 * pull * size)
+                finest = max(self.smallest, self.fraction * speed / pull)
+                near = APPROACH * ((speed - toward) / pull - 3 * finest)
+                wanted = min(wanted, max(near, finest))
+            self.step = wanted
+        return self.step
