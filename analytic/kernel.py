@@ -52,7 +52,7 @@ ROUNDING = 4e-16
 ONSET = 1e-9
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)  # so that Ctrl-C is heard
 def run(par, ground, options, totals):
     """Simulate; fills `totals` (slots of layout.py) and returns (end state, impacts, uplifts, rests, history).
 

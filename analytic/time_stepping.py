@@ -75,7 +75,7 @@ def simulate_time_stepping(scene, *, step, history=True):
     return replace(response, decided=is_decided(scene, response))
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _march(h, ground, y, block, bearing, rows):
     """All steps; returns (steps taken, overturned?, impacts, uplifts, rests, unstable time or -1, extremes, end)."""
     m, M, J, R, gamma, g, on_base, e, share = block

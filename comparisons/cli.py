@@ -1,51 +1,93 @@
-"""The command ``rocking``. Each command is one file in ``commands/``, imported only when it is asked for."""
+"""The command ``rocking``: runs a command and turns its end into a status and at most one message.
 
-import importlib
-import pkgutil
+Status 0: done; 1: a solver failed, or nobody reads the output; 2: a mistake the user can mend; 130: Ctrl-C.
+Heavy modules are imported inside `main`, where Ctrl-C is taken care of.
+"""
+
+import contextlib
+import os
 import sys
 
-import typer
-from typer.core import TyperGroup
-
-from analytic.errors import EngineNotInstalled, SceneError, SettingError
-
-from . import commands
-
-MENDABLE = (SceneError, SettingError, EngineNotInstalled)
+from .interrupts import Stopped, open_streams, stoppable
 
 
-class _LazyGroup(TyperGroup):
-    """A command ``rocking NAME`` is the module ``commands/NAME.py`` with a function ``command`` or a Typer ``app``."""
+def mendable():
+    """The errors a user can mend: told without a traceback."""
+    from analytic.errors import EngineNotInstalled, SceneError, SettingError
 
-    def list_commands(self, ctx):
-        return sorted(module.name for module in pkgutil.iter_modules(commands.__path__))
+    from .files import PlaceError
+    from .provenance import ResultError
+    from .store import StoreError
 
-    def get_command(self, ctx, name):
-        if name not in self.list_commands(ctx):
-            return None
-        module = importlib.import_module(f"{commands.__name__}.{name}")
-        app = getattr(module, "app", None)
-        if app is None:
-            app = typer.Typer(add_completion=False, rich_markup_mode=None)
-            app.command(name)(module.command)
-        command = typer.main.get_command(app)
-        command.name = name
-        return command
-
-
-app = typer.Typer(cls=_LazyGroup, add_completion=False, rich_markup_mode=None, no_args_is_help=True,
-                  pretty_exceptions_enable=False)
-
-
-@app.callback()
-def _about():
-    """How far a multibody engine can be trusted with a rocking block on lead-rubber bearings, and at what cost."""
+    return SceneError, SettingError, EngineNotInstalled, PlaceError, ResultError, StoreError
 
 
 def main(arguments=None):
-    """Run the command line; mistakes of the user end with status 2 and one message, no traceback."""
+    """Run the command line and exit with its status."""
+    open_streams()
     try:
-        app(arguments)
-    except MENDABLE as error:
-        print(f"Error: {error}", file=sys.stderr)
-        sys.exit(2)
+        with stoppable():
+            status = _status(arguments)
+    except Stopped as stop:
+        status = stop.status
+    sys.exit(status)
+
+
+def _status(arguments):
+    try:
+        from .application import app
+
+        status = app(arguments, standalone_mode=False)
+        sys.stdout.flush()
+        return status if isinstance(status, int) else 0
+    except BrokenPipeError:  # the reader has seen enough
+        _silence()
+        return 1
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            sys.stdout.flush()
+        message = f"{error.filename}: {error.strerror}" if error.filename else error.strerror or error
+        return _mistake(f"{message}; give another place, or make room there")
+    except MemoryError as error:
+        return _mistake(f"not enough memory ({error}); ask for less")
+    except Exception as error:
+        if hasattr(error, "format_message"):  # click's, wherever Typer keeps it: a usage error or a help page
+            return _usage(error)
+        if isinstance(error, mendable()):
+            return _mistake(error)
+        raise
+
+
+def _mistake(message):
+    from .wording import readable
+
+    with contextlib.suppress(OSError):
+        print(f"Error: {readable(message)}", file=sys.stderr, flush=True)
+    _silence(only_if_broken=True)
+    return 2
+
+
+def _usage(error):
+    from .wording import readable
+
+    if error.message and "\n" not in error.message:  # a help page stays whole
+        error.message = readable(error.message)
+    with contextlib.suppress(OSError):
+        error.show()
+    return error.exit_code
+
+
+def _silence(only_if_broken=False):
+    """Send what is left for standard output nowhere: the interpreter would fail to write it at its end."""
+    if only_if_broken:
+        try:
+            return sys.stdout.flush()
+        except OSError:
+            pass
+    null = os.open(os.devnull, os.O_WRONLY)
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except OSError:
+            os.dup2(null, stream.fileno())
+    os.close(null)

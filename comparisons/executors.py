@@ -17,14 +17,19 @@ from collections.abc import Callable
 from concurrent.futures import TimeoutError
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from multiprocessing import forkserver
 from typing import Protocol
 
 from pebble import ProcessExpired, ProcessPool
+
+from analytic.errors import SettingError
+from engines.guard import end_with_parent
 
 from .cases import Case, module_of
 from .provenance import json_ready, scrub
 
 MOST_BROKEN = 3
+MOST_WORKERS = 64  # where there are no more cores than that
 GRACE_SECONDS = 0.5  # beyond the time limit, for the worker to write down where it hangs
 EVIDENCE_CHARACTERS = 4000
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
@@ -107,6 +112,9 @@ class Processes(_Closing):
 
     def __init__(self, workers=None, solvers=()):
         self._workers = workers or os.cpu_count()
+        most = max(MOST_WORKERS, os.cpu_count())
+        if not 1 <= self._workers <= most:
+            raise SettingError(f"{workers} worker processes: give 1 to {most}")
         self.slots = 2 * self._workers
         self._ended = queue.SimpleQueue()
         self._evidence = tempfile.TemporaryDirectory(prefix="sweep-")
@@ -114,6 +122,8 @@ class Processes(_Closing):
         self._context = multiprocessing.get_context("forkserver" if server else "spawn")
         if server:
             self._context.set_forkserver_preload(["comparisons.executors", *map(module_of, solvers)])
+            with _one_thread(), _ctrl_c_blocked():  # the server and its workers leave Ctrl-C to this process
+                forkserver.ensure_running()
         self._under_way = {}  # future: task and its log
         self._broken = 0  # pools in a row that ended without finishing a task
         self._pool = self._new_pool()
@@ -207,8 +217,19 @@ def _lines(task):
     return tuple(lines), time.monotonic() - start
 
 
+@contextlib.contextmanager
+def _ctrl_c_blocked():
+    """What is started inside does not hear Ctrl-C."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def _start_worker(path):
     sys.path[:] = path  # a preloaded server keeps its own
+    end_with_parent()
     parent = multiprocessing.parent_process()
     if parent is not None:
         threading.Thread(target=_end_with, args=(parent,), daemon=True).start()

@@ -1,30 +1,184 @@
-"""Result files and folders: refused before the work if they cannot be written."""
+"""Result files and folders: refused before the work if they cannot be written, kept elsewhere if that fails after it."""
 
+import contextlib
+import os
+import shutil
+import stat
+import sys
+import tempfile
 from pathlib import Path
 
 from analytic.errors import SettingError
 
 PICTURES = (".png", ".svg", ".pdf")
+STANDARD_OUTPUT = "-"
+PROBE_BYTES = 4096  # a place without room for this is full
 
 
-def check_writable(paths, picture=None):
-    """Raise `SettingError` if a file (None is skipped) lies in no folder, or is one; or no picture format is meant."""
+class PlaceError(RuntimeError):
+    """A result could not be written where it was asked for; the message says where it is instead."""
+
+
+def check_writable(paths, picture=None, inputs=()):
+    """Raise `SettingError` if a file cannot be written.
+
+    Parameters
+    ----------
+    paths : iterable of str or None
+        Files to be written; None and "-" are skipped.
+    picture : str or None
+        One more, whose name must end in a picture format.
+    inputs : iterable of str
+        Files that are read, and must not be written over.
+    """
     if picture and Path(picture).suffix.lower() not in PICTURES:
         raise SettingError(f"{picture}: not a known picture format; end the name in {', '.join(PICTURES)}")
-    for path in filter(None, [*paths, picture]):
-        path = Path(path)
-        if path.is_dir():
-            raise SettingError(f"{path}: is a folder; give a file name")
-        if not path.parent.is_dir():
-            raise SettingError(f"{path}: there is no folder {path.parent}; make it first")
+    taken = {os.path.realpath(path): "is read by this command" for path in inputs if "\0" not in path}
+    for path in (path for path in [*paths, picture] if path is not None and path != STANDARD_OUTPUT):
+        _check_file(path)
+        place = os.path.realpath(path)
+        if place in taken:
+            raise SettingError(f"{path}: {taken[place]}; give another file")
+        taken[place] = "is given for two results"
 
 
-def check_folder(output):
-    """Raise `SettingError` if `output`, the folder to write to, is a file; it need not exist."""
-    if Path(output).exists() and not Path(output).is_dir():
-        raise SettingError(f"--output {output}: is a file; give a folder")
+def check_folder(output, option="--output"):
+    """Raise `SettingError` if `output`, the folder to write to, is a file or cannot be written; it need not exist."""
+    mode = _mode(output, f"{option} {output}")
+    if mode is not None and not stat.S_ISDIR(mode):
+        what = "is a file" if stat.S_ISREG(mode) else "is a device or a pipe"
+        raise SettingError(f"{option} {output}: {what}; give a folder")
+    above = Path(output)
+    while not above.exists():
+        above = above.parent
+    if not above.is_dir():
+        raise SettingError(f"{option} {output}: {above} is no folder; give another place")
+    _probe(above, f"{option} {output}")
+
+
+def write(path, writer):
+    """Write a result file by ``writer(path)``, whole or not at all.
+
+    Raises
+    ------
+    PlaceError
+        It could not be written; the message names the file in which the result is kept instead, if any.
+    """
+    place = Path(os.path.realpath(path))
+    part = _part(place.parent, place.suffix)
+    try:
+        writer(part)
+        if place.exists():
+            shutil.copymode(place, part)
+        os.replace(part, place)
+    except OSError as error:
+        raise _kept(path, error, writer, place.suffix) from error
+    finally:
+        with contextlib.suppress(OSError):
+            part.unlink(missing_ok=True)
 
 
 def write_text(path, text):
-    """Write `text` to the file `path` in UTF-8."""
-    Path(path).write_text(text, encoding="utf-8")
+    """Write `text` to the file `path` in UTF-8, or to standard output where that is "-"; see `write`."""
+    def writer(place):
+        Path(place).write_text(text, encoding="utf-8")
+
+    if path != STANDARD_OUTPUT:
+        return write(path, writer)
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise _kept("standard output", error, writer, ".json") from error
+
+
+def write_all(writers):
+    """Write several results, {path: function of a path, or text}; return the `PlaceError` of those that failed.
+
+    One that fails does not keep the others from being written. None: all are written.
+    """
+    problems = []
+    for path, content in writers.items():
+        try:
+            write_text(path, content) if isinstance(content, str) else write(path, content)
+        except PlaceError as error:
+            problems.append(str(error))
+    return PlaceError("; ".join(problems)) if problems else None
+
+
+def _mode(path, named):
+    """Mode of what is at `path`, None where there is nothing."""
+    try:
+        return os.stat(path).st_mode
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError) as error:  # ValueError: a NUL character
+        raise SettingError(f"{named}: no name for a file ({getattr(error, 'strerror', error)}); "
+                           "give another") from None
+
+
+def _check_file(path):
+    mode, place = _mode(path, path), Path(os.path.realpath(path))
+    if mode is not None and stat.S_ISDIR(mode):
+        raise SettingError(f"{path}: is a folder; give a file name")
+    if mode is not None and not stat.S_ISREG(mode):
+        raise SettingError(f"{path}: is a device or a pipe; give a file name")
+    if not place.parent.is_dir():
+        raise SettingError(f"{path}: there is no folder {Path(path).parent}; make it first")
+    if mode is not None and not os.access(place, os.W_OK):
+        raise SettingError(f"{path}: is read-only; give another file name")
+    if mode is None:
+        _probe_name(place, path)
+    _probe(place.parent, path)
+
+
+def _probe_name(place, named):
+    try:
+        os.close(os.open(place, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
+        place.unlink()
+    except FileExistsError:
+        pass
+    except OSError as error:
+        raise _refused(named, error) from None
+
+
+def _probe(folder, named):
+    part = _part(Path(folder), "")
+    try:
+        with open(part, "xb") as file:
+            file.write(bytes(PROBE_BYTES))
+    except OSError as error:
+        raise _refused(named, error) from None
+    finally:
+        with contextlib.suppress(OSError):
+            part.unlink(missing_ok=True)
+
+
+def _refused(named, error):
+    return SettingError(f"{named}: nothing can be written there ({error.strerror}); give another place")
+
+
+def _part(folder, suffix):
+    return folder / f".rocking-{os.getpid()}{suffix}"
+
+
+def _kept(path, error, writer, suffix):
+    reason = f"{path}: could not be written ({error.strerror or error})"
+    for folder in dict.fromkeys((_temporary(), os.getcwd(), str(Path.home()))):
+        kept = Path(folder) / f"rocking-{os.getpid()}{suffix}"
+        try:
+            writer(kept)
+            return PlaceError(f"{reason}; the result is in {kept}")
+        except OSError:
+            with contextlib.suppress(OSError):
+                kept.unlink(missing_ok=True)
+    return PlaceError(f"{reason}, nor anywhere else; make room and run again")
+
+
+def _temporary():
+    try:
+        return tempfile.gettempdir()
+    except OSError:  # no folder can be written
+        return os.getcwd()

@@ -1,7 +1,11 @@
 """Plots that several commands share. Colours are those of Okabe and Ito, told apart by colour-blind readers."""
 
+import warnings
+
 import numpy as np
 from matplotlib.figure import Figure
+
+from .wording import readable
 
 # solver: (colour, dashes, width); the reference lies wide underneath
 STYLES = {
@@ -10,6 +14,7 @@ STYLES = {
     "pybullet": ("#0072B2", ":", 1.8),
     "mujoco": ("#CC79A7", "-.", 1.3),
 }
+TITLE_CHARACTERS = 100
 TILT_RANGE = (0.05, 2.0)  # least and greatest limit of a tilt axis, over slenderness
 SPARE = ("#009E73", (0, (5, 1)), 1.3)
 
@@ -34,13 +39,14 @@ def draw_histories(scene, responses, horizon=None):
     for row in rows:
         axes[row].axhline(0, color="0.8", linewidth=0.8, zorder=0)
         axes[row].sharex(axes[rows[0]])
+    end = max(response.end.time for response in responses)
     if scene.motion is not None:
-        _draw_ground(axes["ground"], scene)
+        _draw_ground(axes["ground"], scene.motion, end)
     for response in responses:
         history, line = response.history, style(response.engine)
         if len(responses) == 1:
             line["linewidth"] = 1.2  # nothing to lie underneath
-        label = f"{response.engine}, {response.variant}: {response.outcome}"
+        label = f"{response.engine}, {response.variant}: {response.verdict}"
         axes["tilt"].plot(history.time, history.tilt / scene.block.slenderness, label=label, **line)
         if "displacement" in axes:
             axes["displacement"].plot(history.time, history.base_displacement, label=label, **line)
@@ -54,7 +60,7 @@ def draw_histories(scene, responses, horizon=None):
                          label="unstable point" if level > 0 else None)
     if horizon is not None:
         for row in set(rows) - {"ground"}:
-            axes[row].axvspan(horizon, scene.duration, color="0.93", zorder=-1, label="beyond the sensitivity horizon")
+            axes[row].axvspan(horizon, end, color="0.93", zorder=-1, label="beyond the sensitivity horizon")
     low, high = tilt.get_ylim()  # neither a tilt of 1e-6 nor an overturned block sets the scale
     tilt.set_ylim(min(max(low, -TILT_RANGE[1]), -TILT_RANGE[0]), max(min(high, TILT_RANGE[1]), TILT_RANGE[0]))
     tilt.legend(fontsize="small", loc="best")
@@ -63,18 +69,19 @@ def draw_histories(scene, responses, horizon=None):
     if loop:
         axes["loop"].set(xlabel="base displacement [m]", ylabel="force of all bearings [kN]")
     axes[rows[-1]].set_xlabel("time [s]")
-    figure.suptitle(scene.name)
+    figure.suptitle(readable(scene.name, TITLE_CHARACTERS), parse_math=False)
     return figure
 
 
-def _draw_ground(axis, scene):
-    times = np.linspace(0, scene.duration, 4001) if not hasattr(scene.motion, "dt") else np.arange(
-        0, scene.duration, scene.motion.dt)
-    axis.plot(times, scene.motion.acceleration(times), color="0.35", linewidth=0.8)
+def _draw_ground(axis, motion, end):
+    times = np.arange(0, end, motion.dt) if hasattr(motion, "dt") else np.linspace(0, end, 4001)
+    axis.plot(times, motion.acceleration(times), color="0.35", linewidth=0.8)
     axis.set_ylabel("ground\nacceleration [m/s²]")
-    axis.set_title(scene.motion.label, fontsize="small")
+    axis.set_title(readable(motion.label, TITLE_CHARACTERS), fontsize="small", parse_math=False)
 
 
 def save(figure, path):
     """Write a figure; the format follows from the name (see `files.check_writable`)."""
-    figure.savefig(path, dpi=150)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing")  # a name in letters the font lacks is shown as boxes
+        figure.savefig(path, dpi=150)

@@ -4,12 +4,18 @@ import contextlib
 import dataclasses
 import inspect
 import json
+import math
 import os
 import sys
 
 from analytic.errors import SettingError
 
+from .wording import readable
+
 ANALYTIC = "analytic"
+TIME_LIMIT = 300.0  # s, of one run
+TIME_LIMIT_HELP = "A run that takes longer is ended, and counts as failed."
+SHOWN = 60  # characters of what is under way
 
 
 def parse_settings(pairs):
@@ -18,17 +24,20 @@ def parse_settings(pairs):
     Raises
     ------
     SettingError
-        A pair without "=".
+        A pair without "=", or a number that is not finite.
     """
     settings = {}
     for pair in pairs:
         name, equals, text = pair.partition("=")
         if not (equals and name):
             raise SettingError(f"--set {pair}: write name=value")
+        name = name.strip()
         try:
-            settings[name.strip()] = json.loads(text)
-        except ValueError:
-            settings[name.strip()] = text
+            settings[name] = json.loads(text)
+        except (ValueError, RecursionError):  # no JSON, or nested too deep for a setting
+            settings[name] = text
+        if isinstance(settings[name], int | float):
+            _check_size(name, settings[name])
     return settings
 
 
@@ -50,8 +59,12 @@ def ground_motion(record=None, units=None):
     return read_record(record, units) if record else synthetic_motion()
 
 
-def simulate(scene, solver=ANALYTIC, variant=None, settings=None, history=True):
-    """The `Response` of the solver called `solver`.
+def simulate(scene, solver=ANALYTIC, variant=None, settings=None, history=True, time_limit=TIME_LIMIT,
+             words=None):
+    """The `Response` of the solver called `solver`, run in a process of its own while `words` are shown.
+
+    What is odd about the record stands among its warnings. A run that crashes, or takes more than `time_limit` [s], is
+    a response of outcome "failed" with the evidence.
 
     Raises
     ------
@@ -60,18 +73,50 @@ def simulate(scene, solver=ANALYTIC, variant=None, settings=None, history=True):
     EngineNotInstalled
         The engine cannot be imported here; says how to install it.
     """
-    settings = settings or {}
-    with stdout_to_stderr():  # engines print greetings to standard output, from C as well
-        if solver == ANALYTIC:
-            return _analytic(scene, variant, settings, history)
-        from engines import get_engine
+    from engines.guard import OUT_OF_TIME, alone
+    from engines.observe import failed_response
 
-        try:
-            engine = get_engine(solver)
-        except KeyError as error:
-            raise SettingError(f"{error.args[0]}, or {ANALYTIC}") from None
-        _check_types(engine, variant, settings)
-        return engine.simulate(scene, variant=variant, history=history, **settings)
+    from .cases import versions
+
+    settings = settings or {}
+    check_solver(solver)
+    response, failure = alone(_simulate, scene, solver, variant, settings, history, time_limit=time_limit,
+                              meanwhile=words and spinner(words))
+    if failure:
+        if failure.reason == OUT_OF_TIME:
+            failure = dataclasses.replace(failure, message=f"{failure.message}; --time-limit allows more")
+        response = failed_response(scene, failure, engine=solver, variant=variant or "", settings=dict(settings),
+                                   versions=versions(solver))
+    odd = [text for text in getattr(scene.motion, "warnings", ()) if text not in response.warnings]
+    return dataclasses.replace(response, warnings=(*odd, *response.warnings))
+
+
+def check_solver(name):
+    """Raise `SettingError` if no solver is called `name`."""
+    from engines import ENGINES
+
+    if name != ANALYTIC and name not in ENGINES:
+        raise SettingError(f"unknown engine {name!r}: choose one of {', '.join(ENGINES)}, or {ANALYTIC}")
+
+
+def check_time_limit(seconds):
+    """Raise `SettingError` if a run cannot be given so many seconds."""
+    from engines.guard import check_time_limit
+
+    try:
+        check_time_limit(seconds)
+    except ValueError as error:
+        raise SettingError(f"--{error}".replace("time_limit", "time-limit", 1)) from None
+
+
+def _simulate(scene, solver, variant, settings, history):
+    if solver == ANALYTIC:
+        return _analytic(scene, variant, settings, history)
+    from engines import get_engine
+
+    engine = get_engine(solver)
+    _check_types(engine, variant, settings)
+    return engine.simulate(scene, variant=variant, history=history, **settings)
 
 
 def _analytic(scene, variant, settings, history):
@@ -108,6 +153,25 @@ def _check_types(engine, variant, settings):
 def _check_number(name, value, whole=False):
     if isinstance(value, bool) or not isinstance(value, int if whole else int | float):
         raise SettingError(f"{name} = {value!r}: give a {'whole ' if whole else ''}number")
+    _check_size(name, value)
+
+
+def _check_size(name, value):
+    """Numbers a solver can take: those that are finite as a double."""
+    try:
+        finite = math.isfinite(value)
+    except OverflowError:  # a whole number beyond the doubles, with hundreds of digits
+        raise SettingError(f"{name}: not a finite number; give one below 1e308") from None
+    if not finite:
+        raise SettingError(f"{name} = {value!r}: not a finite number; give one")
+
+
+def tell_failures(responses):
+    """Name the failed ones of the responses on standard error, with what a terminal can hold of the evidence."""
+    for response in responses:
+        if response.failure:
+            evidence = readable(response.failure.message.partition("\n")[0])
+            say(f"{response.engine} failed: {response.failure.reason}. {evidence}".rstrip(". ") + ".")
 
 
 def say(text):
@@ -122,10 +186,10 @@ def spinner(text):
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     console = Console(stderr=True)
-    with Progress(SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn(), transient=True,
-                  console=console, disable=not console.is_terminal) as progress:
-        task = progress.add_task(text)
-        yield lambda words: progress.update(task, description=words)
+    columns = SpinnerColumn(), TextColumn("{task.description}", markup=False), TimeElapsedColumn()
+    with Progress(*columns, transient=True, console=console, disable=not console.is_terminal) as progress:
+        task = progress.add_task(readable(text, SHOWN))
+        yield lambda words: progress.update(task, description=readable(words, SHOWN))
 
 
 @contextlib.contextmanager

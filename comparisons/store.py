@@ -1,5 +1,7 @@
 """Results as they arrive: one line of JSON per run, appended; what a killed sweep leaves is found again."""
 
+import contextlib
+import io
 import json
 import os
 import time
@@ -26,16 +28,25 @@ class Store:
     Raises
     ------
     StoreError
-        Another sweep has the file open, or a whole line in it is no row.
+        Another sweep has the file open, it cannot be read and written, or a whole line in it is no row.
     """
 
     def __init__(self, path):
         self.path = Path(path)
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        self._file = open(self.path, "ab+")
-        self._lock()
         self.torn = False
-        self.rows = self._read()
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            if self.path.exists() and not self.path.is_file():
+                raise StoreError(f"{self.path}: is no file; remove it, or give another place")
+            self._file = open(self.path, "ab+", buffering=0)
+        except (OSError, ValueError) as error:  # ValueError: a NUL character
+            raise self._unusable(error) from error
+        try:
+            self._lock()
+            self.rows = self._read()
+        except BaseException:
+            self._file.close()
+            raise
         self._synced = time.monotonic()
 
     def __enter__(self):
@@ -52,12 +63,24 @@ class Store:
         return self.rows.get(key)
 
     def append(self, lines):
-        """Write rows given as lines of JSON (str, no line end) and return them as dicts."""
+        """Write rows given as lines of JSON (str, no line end) and return them as dicts.
+
+        Raises
+        ------
+        StoreError
+            The disk is full or failed; the file holds the rows before these.
+        """
         rows = [json.loads(line) for line in lines]
-        self._file.write("".join(line + "\n" for line in lines).encode())
-        self._file.flush()
-        if time.monotonic() - self._synced > SYNC_SECONDS:
-            self.sync()
+        data, end = memoryview("".join(line + "\n" for line in lines).encode()), self._file.seek(0, os.SEEK_END)
+        try:
+            while data:
+                data = data[self._file.write(data):]
+            if time.monotonic() - self._synced > SYNC_SECONDS:
+                self.sync()
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                self._file.truncate(end)
+            raise self._unusable(error, "the rows so far are kept: make room and run again") from error
         self.rows.update((row["key"], row) for row in rows)
         return rows
 
@@ -68,8 +91,12 @@ class Store:
 
     def close(self):
         if not self._file.closed:
-            self.sync()
+            with contextlib.suppress(OSError):  # said when the rows were written
+                self.sync()
             self._file.close()
+
+    def _unusable(self, error, remedy="give another place"):
+        return StoreError(f"{self.path}: rows cannot be stored there ({getattr(error, 'strerror', error)}); {remedy}")
 
     def _lock(self):
         if fcntl is None:
@@ -77,14 +104,15 @@ class Store:
         try:
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
-            self._file.close()
-            raise StoreError(f"{self.path.name}: another sweep is writing to it; wait for it or give another "
-                             "file") from error
+            raise StoreError(f"{self.path}: another sweep is writing to it; wait for it or give another "
+                             "place") from error
+        except OSError:  # a file system without locks
+            pass
 
     def _read(self):
         self._file.seek(0)
         rows, end = {}, 0
-        for number, line in enumerate(self._file, 1):
+        for number, line in enumerate(io.BufferedReader(io.FileIO(self._file.fileno(), closefd=False)), 1):
             if not line.endswith(b"\n"):
                 self.torn = True
                 self._file.truncate(end)
@@ -93,8 +121,7 @@ class Store:
             try:
                 row = json.loads(line)
                 rows[row["key"]] = row
-            except (ValueError, KeyError, TypeError) as error:
-                raise StoreError(f"{self.path.name}, line {number}: not a row of results ({error}); remove the "
+            except (ValueError, KeyError, TypeError, RecursionError) as error:
+                raise StoreError(f"{self.path}, line {number}: not a row of results ({error}); remove the "
                                  "line, or the file to start afresh") from error
-        self._file.seek(0, os.SEEK_END)
         return rows

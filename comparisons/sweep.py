@@ -159,11 +159,12 @@ def _kind(case):
 
 def _settled(row, time_limit):
     """Whether a stored row stands; a run stopped from outside, or by a shorter time limit, deserves another try."""
-    if row is None:
+    fields = (("values", dict), ("failure", dict | None), ("cost", dict))
+    if row is None or not all(name in row and isinstance(row[name], kind) for name, kind in fields):
         return False
     failure = row["failure"] or {}
     if failure.get("kind") == "time limit":
-        return failure["time_limit"] >= time_limit
+        return failure.get("time_limit", 0.0) >= time_limit
     return failure.get("exit_code") not in (-9, -15)  # SIGKILL, SIGTERM: no solver sends them to itself
 
 

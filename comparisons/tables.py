@@ -2,21 +2,32 @@
 
 import dataclasses
 import inspect
+import math
 
 from rich import box
+from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from .wording import readable
+
+TITLE_CHARACTERS = 100
+
 
 def _number(value, form=".4g"):
-    return "-" if value is None else f"{value:{form}}"
+    return "-" if value is None or math.isnan(value) else f"{value:{form}}"
+
+
+def _name(scene):
+    return readable(scene.name, TITLE_CHARACTERS)
 
 
 def summary(scene, response):
     """The main figures of one response, as a table."""
-    table = Table(title=f"{scene.name}: {response.engine}, {response.variant}", box=box.SIMPLE, show_header=False)
+    title = Text(f"{_name(scene)}: {response.engine}" + (f", {response.variant}" if response.variant else ""))
+    table = Table(title=title, box=box.SIMPLE, show_header=False)
     rows = {
-        "outcome": response.outcome,
+        "outcome": response.verdict,
         "overturning time [s]": _number(response.overturning_time, ".6g"),
         "peak tilt [rad]": _number(response.peak_tilt),
         "peak tilt / slenderness": _number(response.peak_tilt_ratio),
@@ -29,7 +40,7 @@ def summary(scene, response):
         "steps": str(response.steps),
     }
     for name, value in rows.items():
-        table.add_row(Text(name), value)  # as text: a unit in brackets is no markup
+        table.add_row(Text(name), Text(value))  # as text: a unit in brackets is no markup
     return table
 
 
@@ -40,7 +51,7 @@ def comparison(scene, responses, horizons):
         limit = "Sensitivity horizon, beyond which only outcomes can be compared,\nby each solver's own size of error:"
         limit += "".join(f"\n{name} {f'{found.horizon:.3g} s' if found.parts else 'none'} ({found.perturbation:.0e})"
                          for name, found in horizons.items())
-    table = Table(title=scene.name, box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0),
+    table = Table(title=Text(_name(scene)), box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0),
                   caption="over: time of overturning; tilt: peak tilt over slenderness;\n"
                           "base: peak base displacement; d: difference from the first row.\n"
                           + limit)
@@ -50,16 +61,26 @@ def comparison(scene, responses, horizons):
     reference = responses[0]
     for response in responses:
         tilt, displacement = "", ""
-        if response is not reference and not response.failure:
+        if response is not reference and not response.failure and not reference.failure:
             if "overturns" not in (response.outcome, reference.outcome):
                 tilt = f"{response.peak_tilt_ratio - reference.peak_tilt_ratio:+.0e}"
             if reference.peak_base_displacement > 0:
                 displacement = f"{100 * (response.peak_base_displacement / reference.peak_base_displacement - 1):+.0e}"
-        table.add_row(f"{response.engine}\n{response.variant}", response.outcome,
+        outcome = response.verdict.replace(" ", "\n", 1)  # narrow: undecided, and so far what
+        table.add_row(f"{response.engine}\n{response.variant}".rstrip(), outcome,
                       _number(response.overturning_time, ".4f"), _number(response.peak_tilt_ratio, ".4f"), tilt,
                       _number(response.peak_base_displacement, ".4f"), displacement, str(response.impact_count),
-                      f"{1e3 * response.cpu_seconds:.1f}")
+                      _number(1e3 * response.cpu_seconds, ".1f"))
     return table
+
+
+def show(table, responses):
+    """Print a table of responses, and below it the warnings they carry."""
+    console = Console()
+    console.print(table)
+    for response in responses:
+        for sentence in response.warnings:
+            console.print(Text(f"Warning, {response.engine}: {readable(sentence)}"), soft_wrap=True)
 
 
 def engine_text(name, engine):

@@ -1,21 +1,31 @@
-"""An engine's run in a process of its own, so that a hang or a crash costs that run only."""
+"""A run in a process of its own, so that a hang, a crash or Ctrl-C costs that run only."""
 
+import contextlib
+import ctypes
+import faulthandler
 import math
 import multiprocessing
+import os
 import signal
-from concurrent.futures import TimeoutError
+import sys
+import tempfile
+import traceback
+from multiprocessing import connection
+from multiprocessing.reduction import ForkingPickler
 
-from pebble import ProcessExpired, ProcessPool
-
-from analytic.errors import SceneError, SettingError
+from analytic.errors import EngineNotInstalled, SceneError, SettingError
 from analytic.response import Failure
 
 from . import get_engine
 from .observe import failed_response
 
-
-def _simulate(engine_name, scene, settings):
-    return get_engine(engine_name).simulate(scene, **settings)
+LONGEST = 1e6  # s; longer time limits overflow the system's timers
+GRACE_SECONDS = 0.3  # beyond the time limit, for the process to write down where it hangs
+EVIDENCE_CHARACTERS = 4000
+OUT_OF_TIME = "the run did not end in time"
+MISTAKES = (SettingError, SceneError, EngineNotInstalled)  # the caller's, not the engine's
+STOPPING = {signal.SIGINT, signal.SIGTERM}
+PR_SET_PDEATHSIG = 1
 
 
 def guarded_simulate(engine_name, scene, *, time_limit, **settings):
@@ -26,7 +36,7 @@ def guarded_simulate(engine_name, scene, *, time_limit, **settings):
     engine_name : str
     scene : Scene
     time_limit : float
-        Wall-clock time [s] after which the run is killed, start of the process and import of the engine included.
+        Wall-clock time [s] after which the run is killed, start of the process included.
     **settings
         Passed to the engine.
 
@@ -43,10 +53,9 @@ def guarded_simulate(engine_name, scene, *, time_limit, **settings):
     SettingError, SceneError
         The run cannot be asked for; this is the caller's mistake and no failure of the engine.
     ValueError
-        `time_limit` is not positive.
+        `time_limit` is not positive, or above `LONGEST`.
     """
-    if not (math.isfinite(time_limit) and time_limit > 0):
-        raise ValueError(f"time_limit = {time_limit!r}: give a time above 0 [s]")
+    check_time_limit(time_limit)
     versions = get_engine(engine_name).versions()
     return guarded(_simulate, engine_name, scene, settings, time_limit, versions)
 
@@ -56,22 +65,135 @@ def guarded(run, engine_name, scene, settings, time_limit, versions=None):
 
     `run` is a function at the top of a module, so that the process can import it.
     """
-    # Spawned, not forked: the engine starts from nothing, with no thread or engine state of this process.
-    context = multiprocessing.get_context("spawn")
-    with ProcessPool(max_workers=1, max_tasks=1, context=context) as pool:
-        try:
-            return pool.schedule(run, args=(engine_name, scene, settings), timeout=time_limit).result()
-        except TimeoutError:
-            failure = Failure("the run did not end in time", f"killed after the time limit of {time_limit:g} s")
-        except ProcessExpired as error:
-            failure = Failure("the engine's process died", _last_words(error.exitcode))
-        except (SettingError, SceneError):
-            raise
-        except Exception as error:  # whatever an engine raises, its message is the evidence
-            trace = getattr(error, "traceback", "")
-            failure = Failure("the run raised an error", f"{type(error).__name__}: {error}\n{trace}".strip())
+    response, failure = alone(run, engine_name, scene, settings, time_limit=time_limit)
+    if failure is None:
+        return response
     return failed_response(scene, failure, engine=engine_name, variant=str(settings.get("variant") or ""),
                            settings=dict(settings), versions=versions or {})
+
+
+def check_time_limit(time_limit):
+    """Raise `ValueError` unless `time_limit` [s] is positive and at most `LONGEST`."""
+    if not (math.isfinite(time_limit) and 0 < time_limit <= LONGEST):
+        raise ValueError(f"time_limit = {time_limit!r}: give a time above 0 and up to {LONGEST:g} [s]")
+
+
+def alone(function, *arguments, time_limit, meanwhile=None):
+    """(what ``function(*arguments)`` returns, None), or (None, the `Failure`) where its process did not get that far.
+
+    Parameters
+    ----------
+    function : callable
+        At the top of a module. What it prints goes to standard error.
+    *arguments
+        What can be pickled.
+    time_limit : float
+        Wall-clock time [s] after which the process is killed.
+    meanwhile : context manager or None
+        Entered while the process runs, such as a progress bar: its threads are not forked.
+
+    Raises
+    ------
+    SettingError, SceneError, EngineNotInstalled
+        As the function raised them.
+    """
+    # Forked where that is safe: starting Python and importing the model anew takes longer than most runs.
+    context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
+    reader, writer = context.Pipe(duplex=False)
+    with _evidence() as log:
+        process = context.Process(target=_work, args=(writer, _number(context, log), function, arguments, time_limit))
+        # Blocked until the process ignores Ctrl-C, which is this one's to handle: an engine would take it for an
+        # error of its own.
+        blocked = signal.pthread_sigmask(signal.SIG_BLOCK, STOPPING) if hasattr(signal, "pthread_sigmask") else None
+        try:
+            process.start()
+            if blocked is not None:
+                signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
+            writer.close()
+            with meanwhile or contextlib.nullcontext():
+                answer = _answer(reader, process, time_limit)
+        finally:
+            if process.pid is not None:
+                process.kill()
+                process.join()
+            reader.close()
+            if blocked is not None:
+                signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
+        log.seek(0)
+        printed = log.read().decode(errors="replace")
+    kind, content = answer
+    if kind == "mistake":
+        raise content
+    if kind == "value":
+        if printed:
+            print(printed, end="", file=sys.stderr, flush=True)
+        return content, None
+    return None, Failure(content[0], f"{content[1]}\n{printed[-EVIDENCE_CHARACTERS:]}".strip())
+
+
+def _simulate(engine_name, scene, settings):
+    return get_engine(engine_name).simulate(scene, **settings)
+
+
+def _answer(reader, process, time_limit):
+    """("value", what the function returned), ("mistake", an error) or ("failure", (reason, message))."""
+    if not connection.wait([reader, process.sentinel], time_limit + GRACE_SECONDS):
+        return "failure", (OUT_OF_TIME, f"killed after the time limit of {time_limit:g} s")
+    try:
+        if reader.poll():
+            return reader.recv()
+    except (EOFError, OSError):  # closed without a word
+        pass
+    process.join()
+    return "failure", ("the engine's process died", _last_words(process.exitcode))
+
+
+def _work(writer, log, function, arguments, time_limit):
+    """In the process: answers through `writer`; `log` is a file number for what is printed, or None."""
+    signal.set_wakeup_fd(-1)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPPING)
+    end_with_parent()
+    if hasattr(signal, "setitimer"):  # and should it outlive it all the same
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        signal.setitimer(signal.ITIMER_REAL, time_limit + 10 * GRACE_SECONDS)
+    place = 2 if log is None else log
+    if log is not None:
+        os.dup2(log, 2)
+    os.dup2(2, 1)
+    faulthandler.enable(place, all_threads=False)
+    faulthandler.dump_traceback_later(time_limit, file=place)
+    try:
+        answer = ForkingPickler.dumps(("value", function(*arguments)))
+    except MISTAKES as error:
+        answer = ForkingPickler.dumps(("mistake", error))
+    except BaseException as error:  # whatever an engine raises, its message is the evidence
+        message = f"{type(error).__name__}: {error}\n{traceback.format_exc()}"[:EVIDENCE_CHARACTERS]
+        answer = ForkingPickler.dumps(("failure", ("the run raised an error", message)))
+    sys.stdout.flush(), sys.stderr.flush()
+    faulthandler.cancel_dump_traceback_later()
+    writer.send_bytes(answer)
+    os._exit(0)  # no engine gets a chance to fail at its end
+
+
+def end_with_parent():
+    """Let this process end when its parent does, whatever compiled code it is in, where the system can do that."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def _evidence():
+    try:
+        return tempfile.TemporaryFile()
+    except OSError:  # no room: the run goes on, without evidence
+        return open(os.devnull, "r+b")
+
+
+def _number(context, log):
+    """The file number of `log` as a forked process has it; a spawned one has none."""
+    return log.fileno() if context.get_start_method() == "fork" else None
 
 
 def _last_words(code):

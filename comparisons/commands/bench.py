@@ -26,7 +26,9 @@ def analytic(
 
     from ..bench.analytic_bench import bench_analytic
     from ..bench.tables import figure_table, solver_table
+    from ..files import check_folder
 
+    check_folder(output)
     notes = Console(stderr=True)
     with notes.status("problems") as status:
         found, rows, faulty = bench_analytic(output, quick=quick, random_scenes=random, record=record,
@@ -34,9 +36,9 @@ def analytic(
     console = Console()
     console.print(solver_table(rows))
     console.print(figure_table(found))
-    console.print(f"{output}/bench-analytic.json, {output}/bench-analytic.png")
+    console.print(f"{output}/bench-analytic.json, {output}/bench-analytic.png", markup=False)
     if faulty:
-        console.print(f"{len(faulty)} of {random} random scenes failed: {output}/random-scenes.json")
+        console.print(f"{len(faulty)} of {random} random scenes failed: {output}/random-scenes.json", markup=False)
         raise typer.Exit(1)
 
 

@@ -1,10 +1,22 @@
 """``rocking compare``: all solvers on one scene."""
 
 import json
-import sys
 from typing import Annotated
 
 import typer
+
+from ..solving import (
+    ANALYTIC,
+    TIME_LIMIT,
+    TIME_LIMIT_HELP,
+    check_solver,
+    check_time_limit,
+    say,
+    simulate,
+    spinner,
+    tell_failures,
+)
+from ..wording import readable
 
 
 def command(
@@ -14,44 +26,72 @@ def command(
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Overlay the histories (.png, .svg, .pdf).")] = None,
     json_file: Annotated[str | None, typer.Option("--json", metavar="FILE",
                                                   help="Write the results; - prints them.")] = None,
+    time_limit: Annotated[float, typer.Option(metavar="SECONDS", help=TIME_LIMIT_HELP)] = TIME_LIMIT,
 ):
-    """Simulate one scene with the analytic model and the engines: outcomes, errors and CPU time side by side."""
+    """Simulate one scene with the analytic model and the engines: outcomes, errors and CPU time side by side.
+
+    An engine that fails costs its own row. Status 1: the analytic model failed.
+    """
+    from analytic.errors import EngineNotInstalled
     from analytic.scene_file import load_scene
-    from engines import installed_engines
+    from engines import ENGINES
+    from engines.guard import alone
 
-    from ..files import check_writable, write_text
-    from ..horizon import solver_horizon
-    from ..solving import ANALYTIC, simulate, spinner
+    from ..files import check_writable, write_all
 
-    check_writable([None if json_file == "-" else json_file], picture=plot)
+    check_time_limit(time_limit)
+    check_writable([json_file], picture=plot, inputs=[scene])
+    for name in engine or ():
+        check_solver(name)
     what = load_scene(scene)
-    names = [name for name in engine or installed_engines() if name != ANALYTIC]
+    names = [ANALYTIC, *(name for name in dict.fromkeys(engine or ENGINES) if name != ANALYTIC)]
     responses = []
-    with spinner(what.name) as say:
-        for number, name in enumerate([ANALYTIC, *names], 1):
-            say(f"{what.name}: {name} ({number} of {len(names) + 1})")
-            responses.append(simulate(what, name, history=True))
-        horizons = {response.engine: solver_horizon(what, response, responses[0])
-                    for response in responses[1:] if not response.failure}
+    for number, name in enumerate(names, 1):
+        try:
+            responses.append(simulate(what, name, history=True, time_limit=time_limit,
+                                      words=f"{what.name}: {name} ({number} of {len(names)})"))
+        except EngineNotInstalled:
+            if engine:  # asked for by name
+                raise
+    horizons = {}
+    if not responses[0].failure:
+        horizons, failure = alone(_horizons, what, responses, time_limit=time_limit,
+                                  meanwhile=spinner(f"{what.name}: sensitivity horizons"))
+        if failure:
+            horizons = {}
+            say(f"no sensitivity horizons: {failure.reason}. {readable(failure.message.partition(chr(10))[0])}")
     horizon = min((found.horizon for found in horizons.values() if found.parts), default=None)
+    results = {}
     if json_file:
         content = {"scene": what.name, "sensitivity_horizon": horizon,
                    "sensitivity": {name: {"perturbation": found.perturbation,
                                           "horizon": found.horizon if found.parts else None}
                                    for name, found in horizons.items()},
                    "responses": [response.to_json() for response in responses]}
-        text = json.dumps(content, indent=2, allow_nan=False) + "\n"
-        sys.stdout.write(text) if json_file == "-" else write_text(json_file, text)
-    if plot:
+        results[json_file] = json.dumps(content, indent=2, allow_nan=False) + "\n"
+    drawn = [response for response in responses if response.history] if plot else []
+    if drawn:
         from ..plots import draw_histories, save
 
-        save(draw_histories(what, [response for response in responses if response.history], horizon), plot)
+        figure = draw_histories(what, drawn, horizon)
+        results[plot] = lambda path: save(figure, path)
+    elif plot:
+        say("there is no history to draw")
+    problem = write_all(results)
     if json_file != "-":
-        from rich.console import Console
+        from ..tables import comparison, show
 
-        from ..tables import comparison
+        show(comparison(what, responses, horizons), responses)
+    tell_failures(responses)
+    if problem:
+        raise problem
+    if responses[0].failure:
+        raise typer.Exit(1)
 
-        Console().print(comparison(what, responses, horizons))
-    for response in responses:
-        if response.failure:
-            print(f"{response.engine} failed: {response.failure.reason}. {response.failure.message}", file=sys.stderr)
+
+def _horizons(scene, responses):
+    """{solver: its `Horizon`} of all that did not fail; the first is the reference."""
+    from ..horizon import solver_horizon
+
+    return {response.engine: solver_horizon(scene, response, responses[0])
+            for response in responses[1:] if not response.failure}

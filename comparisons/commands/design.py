@@ -2,7 +2,6 @@
 
 import dataclasses
 import json
-import sys
 from typing import Annotated
 
 import typer
@@ -26,13 +25,13 @@ def command(
 
     from ..files import check_writable, write_text
 
-    check_writable([None if json_file == "-" else json_file])
+    check_writable([json_file])
     bearings = design_bearings(mass, period, damping, xmax, count=count, stiffness_ratio=ratio, definition=definition)
     back = properties(bearings, mass, xmax)
     if json_file:
         content = {"bearings": bearings.model_dump(), "properties": dataclasses.asdict(back)}
         text = json.dumps(content, indent=2, allow_nan=False) + "\n"
-        sys.stdout.write(text) if json_file == "-" else write_text(json_file, text)
+        write_text(json_file, text)
     if json_file == "-":
         return
     console = Console(highlight=False, soft_wrap=True)

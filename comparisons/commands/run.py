@@ -6,6 +6,16 @@ from typing import Annotated
 
 import typer
 
+from ..solving import (
+    TIME_LIMIT,
+    TIME_LIMIT_HELP,
+    check_solver,
+    check_time_limit,
+    parse_settings,
+    simulate,
+    tell_failures,
+)
+
 
 def command(
     scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
@@ -17,36 +27,39 @@ def command(
                                                   help="Write the result; - prints it.")] = None,
     csv: Annotated[str | None, typer.Option(metavar="FILE", help="Write the history.")] = None,
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the history (.png, .svg or .pdf).")] = None,
+    time_limit: Annotated[float, typer.Option(metavar="SECONDS", help=TIME_LIMIT_HELP)] = TIME_LIMIT,
 ):
-    """Simulate one scene. Status 1: the solver failed on it; 2: the scene or a setting is wrong."""
+    """Simulate one scene. Status 1: the solver failed on it; 2: the scene, a setting or a place is wrong."""
     from analytic.scene_file import load_scene
 
-    from ..files import check_writable, write_text
-    from ..solving import parse_settings, simulate, spinner
+    from ..files import check_writable, write_all
 
-    check_writable([None if json_file == "-" else json_file, csv], picture=plot)
+    check_time_limit(time_limit)
+    check_writable([json_file, csv], picture=plot, inputs=[scene])
+    check_solver(engine)
     what = load_scene(scene)
-    chosen = parse_settings(settings or [])
-    with spinner(f"{what.name}: {engine}"):
-        response = simulate(what, engine, variant, chosen, history=bool(csv or plot))
+    response = simulate(what, engine, variant, parse_settings(settings or []), history=bool(csv or plot),
+                        time_limit=time_limit, words=f"{what.name}: {engine}")
+    results = {}
     if json_file:
-        text = json.dumps(response.to_json(), indent=2, allow_nan=False) + "\n"
-        sys.stdout.write(text) if json_file == "-" else write_text(json_file, text)
+        results[json_file] = json.dumps(response.to_json(), indent=2, allow_nan=False) + "\n"
     if (csv or plot) and response.history is None:
         print("there is no history to write", file=sys.stderr)
         csv = plot = None
     if csv:
-        response.history.to_csv(csv)
+        results[csv] = response.history.to_csv
     if plot:
         from ..plots import draw_histories, save
 
-        save(draw_histories(what, [response]), plot)
+        figure = draw_histories(what, [response])
+        results[plot] = lambda path: save(figure, path)
+    problem = write_all(results)
     if json_file != "-":
-        from rich.console import Console
+        from ..tables import show, summary
 
-        from ..tables import summary
-
-        Console().print(summary(what, response))
+        show(summary(what, response), [response])
+    tell_failures([response])
+    if problem:
+        raise problem
     if response.failure:
-        print(f"{response.engine} failed: {response.failure.reason}. {response.failure.message}", file=sys.stderr)
         raise typer.Exit(1)
