@@ -8,7 +8,7 @@ import contextlib
 import os
 import sys
 
-from .interrupts import Stopped, open_streams, stoppable
+from .interrupts import open_streams, stoppable
 
 
 def mendable():
@@ -24,12 +24,9 @@ def mendable():
 
 def main(arguments=None):
     """Run the command line and exit with its status."""
-    open_streams()
-    try:
-        with stoppable():
-            status = _status(arguments)
-    except Stopped as stop:
-        status = stop.status
+    with stoppable():
+        open_streams()
+        status = _status(arguments)
     sys.exit(status)
 
 

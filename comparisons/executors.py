@@ -17,7 +17,7 @@ from collections.abc import Callable
 from concurrent.futures import TimeoutError
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from multiprocessing import forkserver
+from multiprocessing import forkserver, resource_tracker
 from typing import Protocol
 
 from pebble import ProcessExpired, ProcessPool
@@ -122,6 +122,7 @@ class Processes(_Closing):
         self._context = multiprocessing.get_context("forkserver" if server else "spawn")
         if server:
             self._context.set_forkserver_preload(["comparisons.executors", *map(module_of, solvers)])
+            resource_tracker.ensure_running()  # of the forkserver, whose start would undo the blocking
             with _one_thread(), _ctrl_c_blocked():  # the server and its workers leave Ctrl-C to this process
                 forkserver.ensure_running()
         self._under_way = {}  # future: task and its log

@@ -1,4 +1,4 @@
-"""Result files and folders: refused before the work if they cannot be written, kept elsewhere if that fails after it."""
+"""Result files and folders: refused before the work if they cannot be written; kept elsewhere if that fails later."""
 
 import contextlib
 import os

@@ -6,7 +6,7 @@ import signal
 import sys
 import threading
 
-GRACE_SECONDS = 0.6  # to close workers and files in good order; then the process is ended
+GRACE_SECONDS = 0.5  # to close workers and files in good order; then the process is ended
 SHOW_CURSOR = b"\x1b[?25h"  # a progress bar that was cut off has hidden it
 
 
@@ -21,9 +21,10 @@ class Stopped(BaseException):
 
 @contextlib.contextmanager
 def stoppable():
-    """SIGINT and SIGTERM raise `Stopped` inside; where compiled code keeps that from happening, the process is ended.
+    """SIGINT and SIGTERM raise `Stopped` inside, and then end the process with status 130 or 143.
 
-    Does nothing outside the main thread, where signals cannot be handled.
+    Where compiled code does not let the exception through, the process is ended in the midst. Does nothing outside the
+    main thread, where signals cannot be handled.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -37,17 +38,15 @@ def stoppable():
     watch.start()
     try:
         yield
-    except Stopped as stop:
-        state.tell(stop)
-        raise
+    except Stopped as stop:  # all is closed by now
+        _end(state, stop)
     finally:
-        if not state.stopped:  # else the watch stays, lest the end of the process hangs
-            for number, handler in handlers.items():
-                signal.signal(number, handler)
-            signal.set_wakeup_fd(wakeup)
-            os.close(write)
-            watch.join()
-            os.close(read)
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+        signal.set_wakeup_fd(wakeup)
+        os.close(write)
+        watch.join()
+        os.close(read)
 
 
 class _State:
@@ -71,7 +70,10 @@ def _watch(read, state):
     if not told:
         return
     threading.Event().wait(GRACE_SECONDS)
-    stop = Stopped(told[0])
+    _end(state, Stopped(told[0]))
+
+
+def _end(state, stop):
     state.tell(stop)
     with contextlib.suppress(Exception):
         _end_children()
@@ -79,9 +81,8 @@ def _watch(read, state):
 
 
 def _end_children():
-    import psutil
-
-    for child in psutil.Process().children(recursive=True):
+    psutil = sys.modules.get("psutil")  # where processes are started it has been imported; guarded runs end anyway
+    for child in psutil.Process().children(recursive=True) if psutil else ():
         with contextlib.suppress(psutil.Error):
             child.kill()
 

@@ -26,6 +26,7 @@ OUT_OF_TIME = "the run did not end in time"
 MISTAKES = (SettingError, SceneError, EngineNotInstalled)  # the caller's, not the engine's
 STOPPING = {signal.SIGINT, signal.SIGTERM}
 PR_SET_PDEATHSIG = 1
+TRACE = getattr(signal, "SIGUSR1", None)  # tells a process that hangs to write down where
 
 
 def guarded_simulate(engine_name, scene, *, time_limit, **settings):
@@ -128,7 +129,7 @@ def alone(function, *arguments, time_limit, meanwhile=None):
         if printed:
             print(printed, end="", file=sys.stderr, flush=True)
         return content, None
-    return None, Failure(content[0], f"{content[1]}\n{printed[-EVIDENCE_CHARACTERS:]}".strip())
+    return None, Failure(content[0], f"{content[1]}\n{_ends(printed)}".strip())
 
 
 def _simulate(engine_name, scene, settings):
@@ -137,7 +138,10 @@ def _simulate(engine_name, scene, settings):
 
 def _answer(reader, process, time_limit):
     """("value", what the function returned), ("mistake", an error) or ("failure", (reason, message))."""
-    if not connection.wait([reader, process.sentinel], time_limit + GRACE_SECONDS):
+    if not connection.wait([reader, process.sentinel], time_limit):
+        if TRACE is not None:
+            os.kill(process.pid, TRACE)
+            process.join(GRACE_SECONDS)
         return "failure", (OUT_OF_TIME, f"killed after the time limit of {time_limit:g} s")
     try:
         if reader.poll():
@@ -164,7 +168,8 @@ def _work(writer, log, function, arguments, time_limit):
         os.dup2(log, 2)
     os.dup2(2, 1)
     faulthandler.enable(place, all_threads=False)
-    faulthandler.dump_traceback_later(time_limit, file=place)
+    if TRACE is not None:
+        faulthandler.register(TRACE, file=place, all_threads=False)
     try:
         answer = ForkingPickler.dumps(("value", function(*arguments)))
     except MISTAKES as error:
@@ -173,7 +178,6 @@ def _work(writer, log, function, arguments, time_limit):
         message = f"{type(error).__name__}: {error}\n{traceback.format_exc()}"[:EVIDENCE_CHARACTERS]
         answer = ForkingPickler.dumps(("failure", ("the run raised an error", message)))
     sys.stdout.flush(), sys.stderr.flush()
-    faulthandler.cancel_dump_traceback_later()
     writer.send_bytes(answer)
     os._exit(0)  # no engine gets a chance to fail at its end
 
@@ -194,6 +198,12 @@ def _evidence():
 def _number(context, log):
     """The file number of `log` as a forked process has it; a spawned one has none."""
     return log.fileno() if context.get_start_method() == "fork" else None
+
+
+def _ends(text):
+    """Beginning and end of what was printed: the engine's words come first, where it was comes last."""
+    half = EVIDENCE_CHARACTERS // 2
+    return text if len(text) <= 2 * half else f"{text[:half]}\n[...]\n{text[-half:]}"
 
 
 def _last_words(code):

@@ -31,6 +31,25 @@ def leave(engine, scene, settings):
     os._exit(3)
 
 
+def speak(engine, scene, settings):
+    os.write(1, b"engine: assertion failed in contact\n")
+    os.abort()
+
+
+def unsendable(engine, scene, settings):
+    return lambda: None
+
+
+def interrupted(engine, scene, settings):
+    raise KeyboardInterrupt
+
+
+def ignores_ctrl_c(engine, scene, settings):
+    os.kill(os.getpid(), signal.SIGINT)
+    time.sleep(0.2)
+    return simulate(scene)
+
+
 def err(engine, scene, settings):
     raise RuntimeError("Newton did not converge at 0.25 s")
 
@@ -45,7 +64,11 @@ def work(engine, scene, settings):
 
 @pytest.mark.parametrize("run, limit, reason, evidence", [
     (hang, 4.0, "did not end in time", "time limit of 4 s"),
+    (hang, 1.0, "did not end in time", "in hang"),  # where it hung
     (kill, 30.0, "process died", "SIGKILL"),
+    (speak, 30.0, "process died", "assertion failed in contact"),
+    (unsendable, 30.0, "raised an error", "pickle"),
+    (interrupted, 30.0, "raised an error", "KeyboardInterrupt"),
     (segfault, 30.0, "process died", "SIGSEGV"),
     (leave, 30.0, "process died", "exit code 3"),
     (err, 30.0, "raised an error", "RuntimeError: Newton did not converge at 0.25 s"),
@@ -65,6 +88,10 @@ def test_a_good_run_comes_back_as_it_is():
     response, here = guarded(work, "fake", SCENE, {}, 60.0), simulate(SCENE)
     assert response.impacts == here.impacts
     assert (response.history.tilt == here.history.tilt).all()
+
+
+def test_ctrl_c_is_the_parents_to_handle():
+    assert guarded(ignores_ctrl_c, "fake", SCENE, {}, 60.0).outcome == "rocks"
 
 
 def test_a_wrong_setting_is_the_callers_mistake():
