@@ -110,6 +110,8 @@ def write_all(writers):
 
 def _mode(path, named):
     """Mode of what is at `path`, None where there is nothing."""
+    if not os.fspath(path):
+        raise SettingError(f"{named!r}: no name for a file (empty); give one")
     try:
         return os.stat(path).st_mode
     except FileNotFoundError:

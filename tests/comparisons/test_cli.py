@@ -195,9 +195,13 @@ def test_failed_run_is_told_and_has_a_status_of_its_own(rocking, monkeypatch, tm
     assert status == 1 and "there is no history to write" in err and not (tmp_path / "x.png").exists()
 
 
-def test_other_errors_are_not_hidden(monkeypatch):
+def test_other_errors_are_not_hidden(rocking, monkeypatch):
     monkeypatch.setattr("analytic.simulate", lambda scene, *, history: 1 / 0)
-    with pytest.raises(ZeroDivisionError):
+    status, out, err = rocking("run", "free-rocking-rigid", "--json", "-")  # in the solver: evidence
+    assert status == 1 and "ZeroDivisionError: division by zero" in err
+    assert "Traceback" in json.loads(out)["failure"]["message"]
+    monkeypatch.setattr("analytic.scene_file.load_scene", lambda path: 1 / 0)
+    with pytest.raises(ZeroDivisionError):  # in the command: as it is
         cli.main(["run", "free-rocking-rigid"])
 
 
