@@ -24,8 +24,8 @@ def mendable():
 
 def main(arguments=None):
     """Run the command line and exit with its status."""
+    open_streams()  # first: else another file takes the number of one that is closed
     with stoppable():
-        open_streams()
         status = _status(arguments)
     sys.exit(status)
 

@@ -84,7 +84,8 @@ def simulate(scene, solver=ANALYTIC, variant=None, settings=None, history=True, 
                               meanwhile=words and spinner(words))
     if failure:
         if failure.reason == OUT_OF_TIME:
-            failure = dataclasses.replace(failure, message=f"{failure.message}; --time-limit allows more")
+            first, end, rest = failure.message.partition("\n")
+            failure = dataclasses.replace(failure, message=f"{first}; --time-limit allows more{end}{rest}")
         response = failed_response(scene, failure, engine=solver, variant=variant or "", settings=dict(settings),
                                    versions=versions(solver))
     odd = [text for text in getattr(scene.motion, "warnings", ()) if text not in response.warnings]

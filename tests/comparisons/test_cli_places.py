@@ -22,6 +22,7 @@ from comparisons.files import check_writable
 from comparisons.plots import draw_histories, save
 from comparisons.store import Store
 from comparisons.wording import readable
+from engines import get_engine, installed_engines
 
 QUICK = ("run", "free-rocking-rigid")
 ODD_NAMES = ("$x_$", "$\\frac{1$", "[/red]", "[bold]b[/bold]", "a\nb\x1b[31mc", "é 石 \udcff", "%s {0} \\", "x" * 5000,
@@ -140,7 +141,11 @@ def test_names_the_terminal_cannot_show(tmp_path):
 @pytest.mark.parametrize("value", ["1e400", "-1e400", "NaN", "nan", "1" * 400, "1" * 5000, "[" * 50000, "{}", "null",
                                    '"1"', "", "1e-400"])
 def test_absurd_settings(rocking, value):
-    for solver, name in (("analytic", "tolerance"), ("exudyn", "step"), ("pybullet", "accuracy")):
+    for solver, name in (("analytic", "tolerance"), ("exudyn", ""), ("pybullet", "")):
+        if solver != "analytic":
+            if solver not in installed_engines():  # also loads them, once
+                continue
+            name = next(iter(vars(get_engine(solver).VARIANTS[get_engine(solver).DEFAULT_VARIANT])))
         assert told(*rocking(*QUICK, "--engine", solver, "--set", f"{name}={value}")), (solver, name)
 
 
@@ -295,7 +300,7 @@ def test_no_combination_of_bad_words_and_places_ends_in_a_traceback(rocking, tmp
         command = draw.choice(COMMANDS)
         words = WORDS + DESIGN if command[:1] == ["design"] else WORDS
         if command[:2] == ["report", "--output"] or command[:1] == ["study"]:
-            arguments = [*command, draw.choice(["/proc/x", "/dev/full", "\0", "a" * 300, "1e400", "-1", ""])]
+            arguments = [*command, draw.choice(["/proc/x", "/dev/full", "\0", "a" * 300, "a/" * 3000, ""])]
         else:
             arguments = [*command, *draw.choices(words, k=draw.randrange(1, 4))]
         status, out, err = rocking(*arguments)
