@@ -33,10 +33,12 @@ def stoppable():
     read, write = os.pipe()
     os.set_blocking(write, False)
     wakeup = signal.set_wakeup_fd(write, warn_on_full_buffer=False)  # written to in C, at once
-    handlers = {number: signal.signal(number, state.handle) for number in (signal.SIGINT, signal.SIGTERM)}
     watch = threading.Thread(target=_watch, args=(read, state), daemon=True)
     watch.start()
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
+        for number in handlers:
+            signal.signal(number, state.handle)
         yield
     except Stopped as stop:  # all is closed by now
         _end(state, stop)

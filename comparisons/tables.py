@@ -46,7 +46,7 @@ def summary(scene, response):
 
 def comparison(scene, responses, horizons):
     """Responses of several solvers side by side, the first being the reference; horizons: {solver: its `Horizon`}."""
-    limit = "Not sensitive: the histories can be compared to the end."
+    limit = "Not sensitive: the histories can be compared to the end." if horizons else "No sensitivity horizon known."
     if any(found.parts for found in horizons.values()):
         limit = "Sensitivity horizon, beyond which only outcomes can be compared,\nby each solver's own size of error:"
         limit += "".join(f"\n{name} {f'{found.horizon:.3g} s' if found.parts else 'none'} ({found.perturbation:.0e})"
