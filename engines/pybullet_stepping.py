@@ -104,9 +104,9 @@ def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
     constants = (law.law, law.dk, law.alpha, law.d0, law.f0)
     count, length, spring = law.count, units.length, law.count * law.kb * units.length
     damping, mass = law.count * law.damping * units.length / units.time, driven_mass(model)
-    heavier = 0.0
-    if law.law == LINEAR and largest * math.sqrt(spring / mass) > STIFF:
-        heavier = LEAPFROG * spring
+    # Small vibrations of a hysteretic bearing are those of about half its initial excess of stiffness.
+    elastic = spring + (0.0 if law.law == LINEAR else 0.5 * count * law.dk * length)
+    heavier = LEAPFROG * elastic if largest * math.sqrt(elastic / mass) > STIFF else 0.0
     sharpest = VISCOUS * fraction * model.M / damping if damping else math.inf
     start, end, limit = scene.start, scene.duration, 0.5 * math.pi
     step_simulation, set_gravity = pybullet.stepSimulation, pybullet.setGravity
