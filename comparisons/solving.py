@@ -74,15 +74,16 @@ def simulate(scene, solver=ANALYTIC, variant=None, settings=None, history=True, 
         The engine cannot be imported here; says how to install it.
     """
     from engines.guard import OUT_OF_TIME, alone
-    from engines.observe import failed_response
-
-    from .cases import versions
 
     settings = settings or {}
     check_solver(solver)
     response, failure = alone(_simulate, scene, solver, variant, settings, history, time_limit=time_limit,
                               meanwhile=words and spinner(words))
     if failure:
+        from engines.observe import failed_response
+
+        from .cases import versions
+
         if failure.reason == OUT_OF_TIME:
             first, end, rest = failure.message.partition("\n")
             failure = dataclasses.replace(failure, message=f"{first}; --time-limit allows more{end}{rest}")
