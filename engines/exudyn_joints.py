@@ -215,6 +215,7 @@ def run(scene, settings):
     finally:
         release(stepper.model.mbs)
     cpu = time.process_time() - began
-    trace = make_trace(scene, stepper.rows, stepper.z, stepper.model.bearing, 1e-9, 0.0)
+    columns = map(np.array, zip(*stepper.rows, strict=True))
+    trace = make_trace(scene, *columns, stepper.z, stepper.model.bearing, 1e-9, 0.0)
     ended = "overturned" if trace is not None and abs(trace.tilt[-1]) >= OVERTURNED else None
     return Run(trace, cpu, len(stepper.rows) - 1, 0, ended, failure)
