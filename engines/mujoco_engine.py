@@ -29,6 +29,7 @@ from dataclasses import asdict, dataclass, replace
 from typing import ClassVar
 
 import mujoco
+import numpy as np
 
 from analytic.response import Failure
 
@@ -144,7 +145,7 @@ def simulate(scene, *, variant=None, history=True, **settings):
         return failed_response(scene, Failure("MuJoCo does not run the scene", str(error)), **given)
     finally:
         mujoco.set_mju_user_warning(handler)
-    peak, slenderness = max(abs(row[2]) for row in rows), scene.block.slenderness
+    peak, slenderness = float(np.nanmax(np.abs(rows[:, 2]))), scene.block.slenderness
     if isinstance(chosen, FirstScript):
         trace = replace(raw_trace_of(rows, scene, FIRST_CONTACT_TILT * slenderness), settle=FIRST_SETTLE)
         doubts = [NOT_VERIFIED]

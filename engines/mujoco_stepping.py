@@ -1,8 +1,10 @@
 """Stepping a scene in MuJoCo: loads, step length, readback."""
 
 import math
+from array import array
 
 import mujoco
+import numpy as np
 
 from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel
@@ -50,7 +52,8 @@ def run(model, data, scene, chosen):
     tilt, rate, x, v = start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity
     z = law.start(x)
     force, gained, interval, last_scale, jumped = law.force(x, z), 0.0, 1.0, 1.0, False
-    rows = [(t, h, tilt, rate, x, v, z, force, *state[-3:-1].tolist(), *speed[-3:-1].tolist())]
+    rows = array("d", (t, h, tilt, rate, x, v, z, force, *state[-3:-1].tolist(), *speed[-3:-1].tolist()))
+    ended, width = "done", len(rows)
     while t < end:
         step = pace.next(tilt, rate, jumped, interval) if pace else largest
         if t + step > end + 2e-9 * largest:
@@ -92,12 +95,14 @@ def run(model, data, scene, chosen):
                 z = law.hysteretic(z, x - before)
                 force = law.force(x, z)
         t, h, jumped = t + step, step, (tilt > 0) != side
-        rows.append((t, h, tilt, rate, x, v, z, force, state.item(-3), state.item(-2), speed.item(-3), speed.item(-2)))
+        rows.extend((t, h, tilt, rate, x, v, z, force, state.item(-3), state.item(-2), speed.item(-3), speed.item(-2)))
         if not -limit < tilt < limit:
-            return rows, "overturned" if math.isfinite(tilt) else "not finite"
-        if len(rows) > row_limit:
-            return rows, "too many steps"
-    return rows, "done"
+            ended = "overturned" if math.isfinite(tilt) else "not finite"
+            break
+        if len(rows) > row_limit * width:
+            ended = "too many steps"
+            break
+    return np.frombuffer(rows).reshape(-1, width), ended
 
 
 class Viscous:

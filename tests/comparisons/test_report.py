@@ -1,17 +1,21 @@
 """The report: the page says what the result files say, and needs nothing but itself."""
 
 import base64
+import contextlib
 import importlib.machinery
 import json
 import math
 import re
+import subprocess
 import sys
 import types
 from html.parser import HTMLParser
 from pathlib import Path
+from time import sleep
 from xml.etree import ElementTree
 
 import numpy as np
+import psutil
 import pytest
 
 from analytic import EngineNotInstalled, load_scene, simulate, synthetic_motion
@@ -360,6 +364,38 @@ def test_mistakes_end_with_one_message(arguments, words, capsys):
         main(["report", *arguments])
     assert ended.value.code == 2
     assert words in capsys.readouterr().err
+
+
+def memory(process):
+    """Memory [B] of a process and its children, shared pages counted once."""
+    total = 0
+    for one in [process, *process.children(recursive=True)]:
+        with contextlib.suppress(psutil.Error):
+            used = one.memory_full_info()
+            total += getattr(used, "pss", used.uss)
+    return total
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1400)
+def test_a_report_on_a_million_samples_stays_under_800_mb(tmp_path):
+    motion, step, count = synthetic_motion(), 2e-4, 1_000_000
+    time = step * np.arange(count)
+    shaking = 0.7 * motion.acceleration(time % motion.end)  # rocks for 200 s and does not overturn
+    np.savetxt(tmp_path / "long.txt", np.column_stack([time, shaking]), fmt="%.6f")
+    with open(tmp_path / "log", "w") as log:
+        run = subprocess.Popen([sys.executable, "-m", "comparisons", "report", "--record", tmp_path / "long.txt",
+                                "--units", "m/s2", "--output", tmp_path / "report"], stdout=log, stderr=log)
+        most, process = 0, psutil.Process(run.pid)
+        while run.poll() is None:
+            with contextlib.suppress(psutil.Error):
+                most = max(most, memory(process))
+            sleep(0.2)
+    assert run.returncode == 0, (tmp_path / "log").read_text()[-2000:]
+    assert most < 800e6, f"{most / 1e6:.0f} MB"
+    result = read_result(tmp_path / "report" / runs.CARYATID)
+    assert {row["outcome"] for row in result.rows if row["scene"] == "caryatid-rigid"} == {"rocks"}
+    assert max(len(values) for values in result.arrays.values()) <= histories.MOST_SHOWN
 
 
 @pytest.mark.skipif(not DUZCE.exists(), reason="the Duzce record does not lie beside the project")
