@@ -93,7 +93,7 @@ class Bearings(_Part):
     ka: Positive
     kb: NotNegative | None = None
     alpha: Annotated[float, Field(gt=1, le=MOST)] | None = None
-    delta_k: Positive = 1e-20
+    delta_k: Annotated[float, Field(gt=0, le=MOST)] = 1e-20
     damping: NotNegative = 0.0
 
     @model_validator(mode="after")

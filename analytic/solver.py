@@ -3,6 +3,7 @@
 import functools
 import math
 import time
+from dataclasses import replace
 
 import numpy as np
 
@@ -80,8 +81,9 @@ def options(tolerance=TOLERANCE, order=ORDER, rest_rate=REST_RATE, record=True,
 def simulate(scene, *, history=True, tolerance=TOLERANCE, rest_rate=REST_RATE, output_step=None):
     """Simulate a scene with the analytic rocking model.
 
-    Without a duration the run ends when its outcome is decided and its peaks are final (`decision`). A block that the
-    duration cuts short on rigid ground where it is certain to overturn is followed until it has.
+    Without a duration the run ends when its outcome is decided and its peaks are final (`decision`). Where a duration
+    cuts it while the block is certain to overturn (rigid ground, after the motion), the outcome says so, and the time
+    of overturning lies beyond the end.
 
     Parameters
     ----------
@@ -119,14 +121,16 @@ def simulate(scene, *, history=True, tolerance=TOLERANCE, rest_rate=REST_RATE, o
     _warm()
     begin = time.process_time()
     result = kernel.run(par, shaking, chosen, totals)
-    if totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCKING:  # cut while it falls
-        par = par._replace(duration=par.duration + longest_duration(scene))
-        result = kernel.run(par, shaking, chosen, totals)
     most = int(totals[[layout.IMPACTS, layout.UPLIFTS, layout.RESTS]].max())
     if most > chosen.capacity:
         result = kernel.run(par, shaking, chosen._replace(capacity=most), totals)
     cpu = time.process_time() - begin
-    return _response(scene, par, totals, result, cpu, settings, history)
+    response = _response(scene, par, totals, result, cpu, settings, history)
+    if totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCKING:  # cut while it falls
+        later = par._replace(duration=par.duration + longest_duration(scene))
+        kernel.run(later, shaking, options(tolerance, rest_rate=rest_rate), totals)
+        response = replace(response, outcome="overturns", overturning_time=float(totals[layout.TIME]))
+    return response
 
 
 @functools.cache

@@ -149,6 +149,7 @@ def test_a_motion_that_ends_while_the_block_topples_overturns():
             response = simulate(run)
             assert (response.outcome, response.decided) == ("overturns", True)
             assert response.overturning_time > cut.motion.end
+            assert run.duration is None or response.end.time == run.duration < response.history.time[-1] + motion.dt
         assert simulate_twin(cut, rtol=1e-8, history=False).outcome == "overturns"
         assert simulate_many([cut.with_(duration=cut.motion.end)]).overturns[0]
 
