@@ -13,12 +13,14 @@ free rocking on rigid ground, gamma .2 (e = .9408) and .45 (.7162), steps of 1 m
     MuJoCo's defaults                      4e-3, 3e-3      gamma .1: 2e-2, m_b = 212 kg: 3e-2 to 2e-1; whatever the step
 
 Without the flag diagexact a base of 1e-4 m moves 2 % too little (gamma .05). Small steps at impacts alone
-(impact-aware) give, over 8 starts and 3 impacts each:
+(impact-aware), and a block kept on the arc about its corner (mujoco_stepping), give over 2 starts and 3 impacts each:
 
-    gamma                        .1       .2       .3       .45
-    e, rigid ground              1.0e-5   5e-6     1.0e-5   2.6e-5     .021 to .022 CPU seconds per second
-    e, m_b = 212 kg              1.1e-5   7e-6     1.2e-5   3.4e-5     .021 to .026
-    base velocity jump           2.4e-4   4e-5     4e-5     5e-5
+    gamma                        .05      .1       .2       .3       .45
+    e, rigid ground              1.6e-5   4e-6     3e-6     5e-6     1.5e-5
+    e, m_b = 212 kg              1.5e-5   6e-6     4e-6     1.0e-5   1.8e-5
+
+At the tangent instead, at steps of 2e-4 s and as much CPU time: rms over gamma and bases 2.4e-5, now 1.0e-5; base
+velocity jump (relative) 2.3e-3, now 8e-4.
 
 All with mujoco 4.0.0; diagexact needs 3.9.
 """
@@ -60,17 +62,17 @@ class ImpactAware:
 
     # Table above. At a largest step of 4e-4 s: e within 1.3e-4 at 2e-5, 2.7e-4 at 5e-5; 2e-6 changes little.
     accuracy: float = 5e-6
-    # Rocking on bearings the error goes with it, as friction stops the corner along the step's first tangent: under
-    # Duzce (gamma .15) the tilt is off by 6e-3 of gamma to the sensitivity horizon, by 2e-3 at 1e-4 s, 2e-2 at 4e-4 s.
-    # In free rocking 4e-4 s (e within 4.3e-5, velocity jump 5e-4) is enough, at half the cost.
-    largest_step: float = 2e-4
+    # For the Caryatid's R; times of flight and rest go with sqrt(R/g), and so do the steps. On the Caryatid's bearings
+    # under a sine (gamma .15, 2.2 m/s2) the tilt is off by up to 1.2e-2 of gamma on its way to overturning, by 1e-3 at
+    # .28 and 5 m/s2.
+    largest_step: float = 2.4e-4
 
-    recovery: ClassVar = 75.0  # 1/s, see MOST_RECOVERY
+    recovery: ClassVar = 75.0  # 1/s, for the Caryatid's R; see MOST_RECOVERY
 
 
 @dataclass(frozen=True)
 class FixedStep:
-    """The same model at one step: `step` [s] is the one knob."""
+    """The same model at one step: `step` [s], for the Caryatid's R, is the one knob."""
 
     # e within 2e-4 (gamma .1 to .3, rigid ground) to 2.4e-3 (.45, m_b = 212 kg), .034 to .040 CPU s per s.
     step: float = 1e-4

@@ -11,14 +11,15 @@ CORNER_RADIUS = 1e-6  # share of R: the block touches by a sphere at each bottom
 # .9999 (one start 2e-3 at a smaller accuracy).
 IMPEDANCE = 0.999
 
-# A sink decays at the variant's rate `recovery`, by at most this share in a step. Steps along a tangent sink the pivot
-# by h^2 phi'^2 R/2 each. At a small rate it sinks so far that a slender block lands early (gamma .1 on a base, steps up
-# to .5 ms: velocity jump off by 1.4e-3 at 100, 1.1e-3 at 150); a large one throws the landing corner up (gamma .45 on a
-# base: e off by 5e-5 at 150, 1.4e-4 at 200). At fixed steps of 1e-4 s only the second matters (rigid ground, gamma .45:
-# e off by 4e-4 at 30, 7e-4 at 60, 1.8e-3 at 150).
+# A sink decays at the variant's rate `recovery`, by at most this share in a step. Landing corners leave it; a small
+# rate lets a slender block land early (gamma .05 on rigid ground: e off by 2.0e-5 at 50, 1.1e-5 at 100, 6e-6 at 150),
+# a large one throws the landing corner up (gamma .45: 8e-6 at 50, 3.0e-5 at 150). At fixed steps of 1e-4 s only the
+# second matters (gamma .45, before the arc: 4e-4 at 30, 1.8e-3 at 150).
 MOST_RECOVERY = 0.1
 
-UNIT_RADIUS = 1.0884  # m
+UNIT_RADIUS = 1.0884  # m, of the Caryatid, for which the variants' times are given
+# Most radians of the base's vibration on its bearings in a step (at .3 a displacement of the wide box was off by 4 %);
+# what it shortens the steps to at most, as a share.
 VIBRATION, MOST_REFINEMENT = 0.15, 20.0
 
 

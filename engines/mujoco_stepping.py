@@ -41,7 +41,7 @@ def run(model, data, scene, chosen):
     law, g, start = BearingLaw.of(scene.bearings), scene.gravity, scene.start
     pace = Pace(scene, largest, chosen.accuracy) if chosen.accuracy else None
     ground, sampled = ground_velocity(scene.motion), scene.motion.acceleration if scene.motion else None
-    half_height, half_width = scene.block.half_height, scene.block.half_width
+    corners, half_height, half_width = not as_it_comes, scene.block.half_height, scene.block.half_width
     viscous = None if as_it_comes else Viscous.of(scene, model, data)
     advance, state, speed, push = mujoco.mj_step, data.qpos, data.qvel, data.qfrc_applied
     option, gravity, solref = model.opt, model.opt.gravity, model.geom_solref
@@ -80,22 +80,22 @@ def run(model, data, scene, chosen):
                 pushed += viscous.most(step) * v
             push[0] = -pushed * scale
         advance(model, data)
-        if data.ncon and not as_it_comes:
-            # On a corner the centre moves on an arc, not along its tangent as MuJoCo moves it: that would lift the
-            # corner out of contact every now and then, and a bearing flings a light base away within one step.
-            turned = 0.5 * (step * speed.item(-1)) ** 2
-            state[-2] -= turned * (state.item(-2) + half_height)
-            state[-3] -= turned * (state.item(-3) - (state.item(0) if on_base else 0.0)
-                                   - (half_width if state.item(-1) > 0 else -half_width))
-        interval, side = 0.5 * (step + h), tilt > 0
-        tilt, rate = state.item(-1), speed.item(-1)
+        interval, before, was = 0.5 * (step + h), x, tilt > 0
+        tilt, rate, across, up = state.item(-1), speed.item(-1), state.item(-3), state.item(-2)
         if on_base:
-            before, x, v = x, state.item(0), speed.item(0)
+            x, v = state.item(0), speed.item(0)
             if loaded:
                 z = law.hysteretic(z, x - before)
                 force = law.force(x, z)
-        t, h, jumped = t + step, step, (tilt > 0) != side
-        rows.extend((t, h, tilt, rate, x, v, z, force, state.item(-3), state.item(-2), speed.item(-3), speed.item(-2)))
+        if corners and data.ncon:
+            # On a corner the centre moves on an arc, not along its tangent as MuJoCo moves it: that would lift the
+            # corner out of contact every now and then, and a bearing flings a light base away within one step.
+            turned = step * rate
+            turned *= 0.5 * turned
+            state[-3] = across = across - turned * (across - x - (half_width if tilt > 0 else -half_width))
+            state[-2] = up = up - turned * (up + half_height)
+        t, h, jumped = t + step, step, (tilt > 0) != was
+        rows.extend((t, h, tilt, rate, x, v, z, force, across, up, speed.item(-3), speed.item(-2)))
         if not -limit < tilt < limit:
             ended = "overturned" if math.isfinite(tilt) else "not finite"
             break
