@@ -3,6 +3,12 @@
 import os
 from pathlib import Path
 
+from hypothesis import settings
+
+# In CI the same scenes every time: a new counterexample is found where somebody can look at it.
+settings.register_profile("ci", derandomize=True)
+settings.load_profile("ci" if os.environ.get("CI") else "default")
+
 PROJECT = Path(__file__).parents[1]
 
 

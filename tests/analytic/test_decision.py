@@ -220,8 +220,10 @@ def test_nothing_changes_after_the_end_of_a_decided_run(scene):
     later = simulate(scene.with_(duration=response.end.time + 20 * shortest_duration(scene)), history=False)
     assert later.outcome == response.outcome
     if response.end.time < longest_duration(scene) * (1 - 1e-9):
-        for name in ("peak_tilt", "peak_base_displacement", "peak_base_acceleration"):
+        for name in ("peak_tilt", "peak_base_displacement"):
             assert getattr(later, name) <= getattr(response, name) * (1 + 1.01 * PEAK_TOLERANCE) + 1e-15, name
+        # read at five points a step, and the steps differ: good to some 1e-3 only
+        assert later.peak_base_acceleration <= response.peak_base_acceleration * 1.005 + 1e-15
     many = simulate_many([scene])
     assert many.decided[0] and many.overturns[0] == (response.outcome == "overturns")
     if response.outcome != "overturns" and scene.base is not None:
