@@ -48,8 +48,8 @@ NAME = "mujoco"
 DECIDES = (
     "MuJoCo's contact solver decides when a corner lands, sticks or lifts and what an impact does to the tilt rate and "
     "the base velocity; no restitution is given to it. The adapter gives it the bearings' force and the ground's "
-    "acceleration, chooses the length of the steps, and (not in first-script) puts the centre of a pivoting block back on "
-    "its arc after each step, as MuJoCo moves it along the tangent."
+    "acceleration, chooses the length of the steps, and (not in first-script) puts the centre of a pivoting block back "
+    "on its arc after each step, as MuJoCo moves it along the tangent."
 )
 
 
