@@ -5,8 +5,9 @@ Off is a run with at least one finding, each further from the analytic model tha
 - restitution: an impact's rate after over rate before differs from eq. (7) by more than RESTITUTION. Impacts count that
   meet at least RESOLVED of the largest rate of their run, and that lie between swings that would exceed LEAST_SWING of
   the slenderness with the ground at rest: smaller ones an engine does not tell from the compliance of its contact.
-- tilt, displacement: a peak differs by more than PEAK of the model's. Below LEAST_TILT of the slenderness (the least
-  tilt of the box) and LEAST_DISPLACEMENT of R gamma (3 micrometres for the Caryatid) nothing is told from nothing.
+- tilt, displacement: a peak differs by more than PEAK of the model's. One below LEAST_TILT of the slenderness (the
+  least tilt of the box) or LEAST_DISPLACEMENT of R gamma (3 micrometres for the Caryatid) counts as one of that size:
+  a block that stands on compliant corners tilts a little.
 - outcome: another one; "rocks" below LEAST_TILT is not told from "stands".
 - lost impact: an impact of the model that counts has none in the engine on its side within half the intervals to its
   neighbours.
@@ -128,7 +129,7 @@ def peak_errors(scene, model, run, until=math.inf):
     for name, floor in least(scene).items():
         wanted, got = (kept[name] if last is None or kept[name] is None else
                        kept[f"{name}s"][last] if last >= 0 else 0.0 for kept in (model, run))
-        errors[name] = math.nan if got is None else abs(got - wanted) / max(wanted, floor)
+        errors[name] = math.nan if got is None else abs(max(got, floor) / max(wanted, floor) - 1)
     return errors
 
 
@@ -183,11 +184,11 @@ def parting(scene, model, twins, share):
         if twin["outcome"] == "failed":
             continue
         for name, floor in least(scene).items():
-            apart = np.abs(np.subtract(twin[f"{name}s"], model[f"{name}s"]))
-            beyond = np.flatnonzero(apart > share * np.maximum(model[f"{name}s"], floor))
-            if len(beyond):
+            other, own = (np.maximum([*kept[f"{name}s"], kept[name]], floor) for kept in (twin, model))
+            beyond = np.flatnonzero(np.abs(other / own - 1) > share)
+            if len(beyond) and beyond[0] < GRID:
                 first = min(first, beyond[0] * scene.duration / GRID)
-            elif abs(twin[name] - model[name]) > share * max(model[name], floor):
+            elif len(beyond):
                 first = min(first, (1 - 1 / GRID) * scene.duration)
     return first
 

@@ -110,7 +110,7 @@ def test_peaks_count_from_their_least_value_on(name, scale):
         assert quantities(findings(FREE, run, {**run, name: factor * run[name]})) == expected
     least = engine_verdicts.least(FREE)[name]
     still = {**run, name: 0.0}
-    for value, expected in ((0.019 * least, set()), (0.021 * least, {name})):
+    for value, expected in ((0.99 * least, set()), (1.019 * least, set()), (1.021 * least, {name})):
         assert quantities(findings(FREE, still, {**run, name: value})) - {"outcome"} == expected
     assert quantities(findings(FREE, run, {**run, name: None})) >= {name}
 
