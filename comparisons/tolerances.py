@@ -149,7 +149,7 @@ _BOUNDS = {
     ("mujoco", "impact-aware"): (
         ("restitution, rms", RIGID, 4.8e-5, 2.50e-5, APPROACH),
         ("restitution, rms", SLIDING, 6.5e-5, 3.34e-5, APPROACH),
-        ("base velocity jump, rms", SLIDING, 1.1e-5, 5.99e-6, APPROACH),
+        ("base velocity jump, rms", SLIDING, 1.6e-6, 8.33e-7, APPROACH),
         ("impact times", RIGID, 2.8e-4, 1.45e-4, LARGE_STEP),
         ("impact times", SLIDING, 1.4e-4, 7.23e-5, LARGE_STEP),
         ("peak tilt", DRIVEN, 2.1e-4, 1.05e-4, LARGE_STEP),

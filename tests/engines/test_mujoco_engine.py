@@ -202,6 +202,16 @@ def test_viscous_bearings_of_any_strength(base, damping):
     assert_like_the_model(released(base=base, damping=damping, duration=1.5), error=8e-3)
 
 
+@pytest.mark.parametrize("base", [0.067, 0.5, 5.0])
+def test_restitution_is_read_before_a_strong_damper_stops_the_base(base):
+    """n_d c/M of 1e4 1/s: off by .09, .03 and 3e-4 where flat contact began at 1e-4 of the slenderness."""
+    mass = 3172.05
+    total = (1 + base) * mass
+    given = scene(0.28, base * mass, 2.0, start=Start(tilt=0.2),
+                  bearings=Bearings(law="linear", ka=4 * total, damping=1e4 * total))
+    assert assert_like_the_model(given, error=6e-3).warnings == ()
+
+
 def test_viscous_force_is_of_second_order():
     """At the velocity half a step early or late it is of first: the errors of twice the step are twice as large."""
     given = AnyScene(block=Block(mass=100.0, radius=1.0, slenderness=0.6), base=Base(mass=20.0), duration=0.2,
