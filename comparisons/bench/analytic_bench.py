@@ -7,7 +7,7 @@ from analytic.errors import SettingError
 from analytic.records import read_record
 from analytic.synthetic import synthetic_motion
 
-from ..provenance import machine, write_result
+from ..running.provenance import machine, write_result
 from . import figures, peers
 from .problems import block_problems, record_problems
 from .random_scenes import check_random_scenes

@@ -15,8 +15,8 @@ from tempfile import TemporaryDirectory
 from analytic.errors import SettingError
 from engines import get_engine
 
-from ..provenance import write_result
-from ..sweep import Case, Processes, Store, run_sweep
+from ..running.provenance import write_result
+from ..running.sweep import Case, Processes, Store, run_sweep
 from .engine_verdicts import (
     boundary_twins,
     findings,

@@ -30,7 +30,7 @@ import numpy as np
 
 from analytic.rocking import RockingModel, restitution
 
-from ..horizon import twin_scenes
+from ..measuring.horizon import twin_scenes
 from .kept import GRID, RESOLVED
 
 RESTITUTION, PEAK, APART = 1e-2, 0.02, 0.2

@@ -6,10 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from analytic import Scene, simulate
+from analytic.caryatid import BASE, BEARINGS, caryatid_block
 from analytic.problems import problem_a, problem_b
 from analytic.solver import REST_RATE
-
-from ..caryatid import BASE, BEARINGS, caryatid_block
 
 TIGHTEST = 1e-17
 SLENDER = 0.18  # rad: the isolated Caryatid rocks without overturning, under the Duzce record and the synthetic motion

@@ -9,7 +9,7 @@ from pebble import ProcessExpired, ProcessPool
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, simulate
 from analytic.motion import PULSES
 
-from ..provenance import json_ready
+from ..running.provenance import json_ready
 
 IMBALANCE_LIMIT = 1e-6  # of the largest energy in the run
 LOSS_ROUND_OFF = 1e-12  # an impact may seem to add this share of the energy it meets

@@ -26,7 +26,7 @@ def analytic(
 
     from ..bench.analytic_bench import bench_analytic
     from ..bench.tables import figure_table, solver_table
-    from ..files import check_folder
+    from ..running.files import check_folder
 
     check_folder(output)
     notes = Console(stderr=True)
@@ -60,7 +60,7 @@ def engines(
     from ..bench.engine_bench import bench_engines, examine
     from ..bench.engine_tables import cause_table, class_table, off_table
     from ..bench.random_scenes import describe
-    from ..provenance import json_ready
+    from ..running.provenance import json_ready
 
     console = Console()
     if index is not None:

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from ..solving import (
+from ..running.solving import (
     ANALYTIC,
     TIME_LIMIT,
     TIME_LIMIT_HELP,
@@ -16,7 +16,7 @@ from ..solving import (
     spinner,
     tell_failures,
 )
-from ..wording import readable
+from ..showing.wording import readable
 
 
 def command(
@@ -37,7 +37,7 @@ def command(
     from engines import ENGINES
     from engines.guard import alone
 
-    from ..files import check_writable, write_all
+    from ..running.files import check_writable, write_all
 
     check_time_limit(time_limit)
     check_writable([json_file], picture=plot, inputs=[scene])
@@ -71,7 +71,7 @@ def command(
         results[json_file] = json.dumps(content, indent=2, allow_nan=False) + "\n"
     drawn = [response for response in responses if response.history] if plot else []
     if drawn:
-        from ..plots import draw_histories, save
+        from ..showing.plots import draw_histories, save
 
         figure = draw_histories(what, drawn, horizon)
         results[plot] = lambda path: save(figure, path)
@@ -79,7 +79,7 @@ def command(
         say("there is no history to draw")
     problem = write_all(results)
     if json_file != "-":
-        from ..tables import comparison, show
+        from ..showing.tables import comparison, show
 
         show(comparison(what, responses, horizons), responses)
     tell_failures(responses)
@@ -91,7 +91,7 @@ def command(
 
 def _horizons(scene, responses):
     """{solver: its `Horizon`} of all that did not fail; the first is the reference."""
-    from ..horizon import solver_horizon
+    from ..measuring.horizon import solver_horizon
 
     return {response.engine: solver_horizon(scene, response, responses[0])
             for response in responses[1:] if not response.failure}

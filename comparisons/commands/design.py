@@ -23,7 +23,7 @@ def command(
 
     from analytic.design import design_bearings, properties
 
-    from ..files import check_writable, write_text
+    from ..running.files import check_writable, write_text
 
     check_writable([json_file])
     bearings = design_bearings(mass, period, damping, xmax, count=count, stiffness_ratio=ratio, definition=definition)

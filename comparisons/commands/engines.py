@@ -7,8 +7,8 @@ def command():
 
     from engines import ENGINES, available_engines, get_engine
 
-    from ..solving import stdout_to_stderr
-    from ..tables import engine_text
+    from ..running.solving import stdout_to_stderr
+    from ..showing.tables import engine_text
 
     console = Console(highlight=False, soft_wrap=True)
     with stdout_to_stderr():  # engines greet on standard output

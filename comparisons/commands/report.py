@@ -13,10 +13,10 @@ def command(
                                                             "result files.")] = "report",
 ):
     """All solvers on the Caryatid, free-standing and isolated: one HTML page and the result files it is made from."""
-    from ..files import check_folder
     from ..report.runs import make_results
     from ..report.write import write_page
-    from ..solving import ground_motion, say, stdout_to_stderr
+    from ..running.files import check_folder
+    from ..running.solving import ground_motion, say, stdout_to_stderr
 
     check_folder(output)
     motion = ground_motion(record, units)

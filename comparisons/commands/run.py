@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from ..solving import (
+from ..running.solving import (
     TIME_LIMIT,
     TIME_LIMIT_HELP,
     check_solver,
@@ -32,7 +32,7 @@ def command(
     """Simulate one scene. Status 1: the solver failed on it; 2: the scene, a setting or a place is wrong."""
     from analytic.scene_file import load_scene
 
-    from ..files import check_writable, write_all
+    from ..running.files import check_writable, write_all
 
     check_time_limit(time_limit)
     check_writable([json_file, csv], picture=plot, inputs=[scene])
@@ -49,13 +49,13 @@ def command(
     if csv:
         results[csv] = response.history.to_csv
     if plot:
-        from ..plots import draw_histories, save
+        from ..showing.plots import draw_histories, save
 
         figure = draw_histories(what, [response])
         results[plot] = lambda path: save(figure, path)
     problem = write_all(results)
     if json_file != "-":
-        from ..tables import show, summary
+        from ..showing.tables import show, summary
 
         show(summary(what, response), [response])
     tell_failures([response])

@@ -3,7 +3,7 @@
 `runs.make_results` simulates and writes the result files; `write.write_page` reads them and writes the page.
 
 Studies appear in the page too. For every file ``comparisons/results/<study>.json`` (written with
-`comparisons.provenance.write_result`, its kind being the study's name) the page looks for the module
+`comparisons.running.provenance.write_result`, its kind being the study's name) the page looks for the module
 ``comparisons.studies.<study>`` (``-`` written ``_``) and shows what its function ::
 
     section(result: Result) -> Section

@@ -4,8 +4,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from ..plots import style
-from .content import figure_of, number
+from ..showing.parts import figure_of, number
+from ..showing.plots import style
 
 WIDTH = 5.4  # in: narrow, so that the words stay readable on a phone
 MARKERS = "osD^v"

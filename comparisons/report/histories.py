@@ -11,7 +11,7 @@ import numpy as np
 
 from analytic.response import History, Impact, Response, State
 
-from ..provenance import ResultError
+from ..running.provenance import ResultError
 
 # A history of up to so many samples is shown whole; of a longer one the extremes in each of so many parts.
 MOST_SHOWN, PARTS = 20_000, 1_500

@@ -13,11 +13,11 @@ from analytic.response import History
 from analytic.rocking import base_jump_length, restitution
 from engines import ENGINES, available_engines, get_engine
 
-from ..cases import Case
-from ..horizon import solver_horizon
-from ..measures import base_jump_error, compare, state_restitution
-from ..provenance import write_result
-from ..sweep import Processes, Serial, Store, run_sweep
+from ..measuring.horizon import solver_horizon
+from ..measuring.measures import base_jump_error, compare, state_restitution
+from ..running.cases import Case
+from ..running.provenance import write_result
+from ..running.sweep import Processes, Serial, Store, run_sweep
 from .histories import ToFile, differences, response_of, thinned
 
 CARYATID, FREE_ROCKING = "caryatid.json", "free-rocking.json"

@@ -2,9 +2,9 @@
 
 import math
 
+from ..showing.drawing import draw_scenes
+from ..showing.parts import Section, Table, number
 from . import figures
-from .content import Section, Table, number
-from .drawing import draw_scenes
 
 # Root mean square error of restitution: measured restitution of stone scatters by some per cent.
 TRUSTED, USABLE = 1e-3, 1e-2

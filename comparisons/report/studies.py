@@ -4,8 +4,8 @@ import importlib
 import importlib.util
 from dataclasses import replace
 
-from ..provenance import PROJECT_FOLDER, ResultError, age, read_result
-from .content import Section
+from ..running.provenance import PROJECT_FOLDER, ResultError, age, read_result
+from ..showing.parts import Section
 
 RESULTS = PROJECT_FOLDER / "comparisons" / "results"
 ORDER = ("restitution", "overturning", "fragility", "speed-error", "stability", "caryatid")

@@ -1,6 +1,6 @@
 """The answer in plain words, put together from the numbers of the result files."""
 
-from .content import number, percent
+from ..showing.parts import number, percent
 
 WORDS = {"stands": "never lifts", "rocks": "rocks and stays upright", "overturns": "overturns"}
 MOST_WARNINGS = 3  # of a scene, at the top of the page

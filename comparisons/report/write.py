@@ -4,8 +4,8 @@ from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from ..provenance import PACKAGES, age, read_result
-from .content import Section, Table
+from ..running.provenance import PACKAGES, age, read_result
+from ..showing.parts import Section, Table
 from .runs import CARYATID, FREE_ROCKING
 from .sections import caryatid_sections, restitution_sections, variant_groups
 from .studies import RESULTS, study_sections

@@ -13,10 +13,10 @@ def command(
     """How far each engine is from the analytic model, beside what it is held to. Status 1: a row does not hold."""
     from engines import ENGINES, get_engine, installed_engines
 
-    from ..files import check_folder
-    from ..provenance import write_result
-    from ..solving import spinner, stdout_to_stderr
-    from ..tolerances import TABLE, measure_all
+    from ..measuring.tolerances import TABLE, measure_all
+    from ..running.files import check_folder
+    from ..running.provenance import write_result
+    from ..running.solving import spinner, stdout_to_stderr
 
     check_folder(output)
     results = []
@@ -26,7 +26,7 @@ def command(
             default = get_engine(engine).DEFAULT_VARIANT
             results += measure_all([row for row in TABLE if row.engine == engine
                                     and (row.variant == default or not quick)])
-    modules = ["comparisons.tolerances", *(ENGINES[name][0] for name in engines)]
+    modules = ["comparisons.measuring.tolerances", *(ENGINES[name][0] for name in engines)]
     path = write_result(Path(output) / "tolerances.json", "tolerances", {"engines": engines, "quick": quick}, results,
                         modules=modules)
     print(path)
@@ -40,7 +40,7 @@ def command(
 
 def section(result):
     """The table as a section of the report."""
-    from ..report.content import Section, Table, number
+    from ..showing.parts import Section, Table, number
 
     broken = [row for row in result.rows if not row["holds"]]
     text = (f"{len(result.rows)} tolerances, each the assertion of a test; a bound is at most twice the worst measured "

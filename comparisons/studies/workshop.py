@@ -8,11 +8,11 @@ from pathlib import Path
 
 from analytic import SettingError
 
-from ..cases import module_of
-from ..executors import Processes
-from ..files import check_folder
-from ..store import Store
-from ..sweep import run_sweep
+from ..running.cases import module_of
+from ..running.executors import Processes
+from ..running.files import check_folder
+from ..running.store import Store
+from ..running.sweep import run_sweep
 
 STORE = ".sweep"  # folder of the rows of single runs, beside the result
 TIME_LIMIT = 300.0  # s, of one run

@@ -9,8 +9,8 @@ import pytest
 from analytic import simulate
 from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel, base_jump_length_as_printed, restitution
-from comparisons import agreement
-from comparisons.tolerances import TABLE
+from comparisons.measuring import agreement
+from comparisons.measuring.tolerances import TABLE
 from engines import get_engine
 
 

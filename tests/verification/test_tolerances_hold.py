@@ -2,7 +2,7 @@
 
 import pytest
 
-from comparisons.tolerances import SLACK, TABLE
+from comparisons.measuring.tolerances import SLACK, TABLE
 
 
 @pytest.fixture(scope="module")

@@ -13,8 +13,8 @@ def command(
     output: Annotated[str, typer.Option(metavar="DIR", help="Folder for results and figures.")] = "study-caryatid",
 ):
     """The Caryatid paper: every equation, figure and table reproduced or corrected, and what it leaves out."""
-    from ...files import check_folder
-    from ...solving import ground_motion, say, stdout_to_stderr
+    from ...running.files import check_folder
+    from ...running.solving import ground_motion, say, stdout_to_stderr
     from .figures import draw
     from .study import make_results
 

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import ScalarFormatter
 
-from ...plots import style
-from ...provenance import read_result
+from ...running.provenance import read_result
+from ...showing.plots import style
 from .paper import X_MAX
 from .runs import FREE, ISOLATED
 from .variations import CATEGORIES, FRICTION_LIMITS, ONLY_FREE, ONLY_ISOLATED

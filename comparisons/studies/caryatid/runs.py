@@ -6,8 +6,8 @@ from analytic import Base, Bearings, Scene, load_scene, rocking_spectrum
 from analytic.linear_oscillator import displacement_spectrum
 from engines import available_engines
 
-from ...cases import Case
-from ...sweep import run_sweep
+from ...running.cases import Case
+from ...running.sweep import run_sweep
 
 FREE, ISOLATED = "free-standing", "isolated"
 SHIPPED = {FREE: "caryatid-rigid", ISOLATED: "caryatid-isolated"}

@@ -1,6 +1,6 @@
 """The study's result files as sections of the report."""
 
-from ...report.content import Section, Table, figure_of, number, percent
+from ...showing.parts import Section, Table, figure_of, number, percent
 from . import paper
 from .figures import drawings
 from .runs import FREE, ISOLATED

@@ -6,7 +6,7 @@ import numpy as np
 
 from analytic import rocking_spectrum, simulate, simulate_many
 
-from ...refine import boundaries, drive
+from ...running.refine import boundaries, drive
 from . import paper
 from .runs import FREE, ISOLATED, caryatid
 

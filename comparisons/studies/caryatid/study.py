@@ -8,9 +8,9 @@ import numpy as np
 from analytic.design import properties
 from analytic.linear_oscillator import displacement_spectrum
 
-from ...cases import module_of
-from ...provenance import write_result
-from ...sweep import Store
+from ...running.cases import module_of
+from ...running.provenance import write_result
+from ...running.sweep import Store
 from . import paper
 from .cost import cost_rows
 from .formulas import formulas

@@ -7,7 +7,7 @@ import numpy as np
 from analytic import simulate, simulate_many, synthetic_motion
 from analytic.rocking import restitution
 
-from ...refine import boundaries, drive
+from ...running.refine import boundaries, drive
 from . import paper
 from .runs import FREE, ISOLATED, caryatid
 

@@ -1,0 +1,288 @@
+"""How far an engine is from the analytic model, measured: one function for each quantity of the tolerance table.
+
+Each takes (engine, variant, scenes, runs) and returns one number, the worst found. scenes: what to run, one of the
+names below. runs: a dict in which simulations are kept that several measures share.
+"""
+
+import contextlib
+import math
+
+import numpy as np
+
+from analytic import PulseMotion, SampledMotion, Scene, Start, load_scene, simulate
+from analytic.bearing import BearingLaw
+from analytic.caryatid import BASE, BEARINGS, caryatid_block
+from analytic.rocking import restitution
+from engines import get_engine
+from engines.momentum import impulse_error
+
+from .measures import base_jump_error, compare, state_restitution, swing_restitution
+
+STARTS = (0.3, 0.37, 0.44, 0.51, 0.59, 0.66, 0.73, 0.8)  # released tilt over slenderness
+SLENDERNESSES = (0.1, 0.2, 0.3, 0.45)
+IMPACTS = 3
+
+# Names of scenes; the first four are families of free rocking
+RIGID, SLIDING = "rigid ground", "sliding base"
+RIGID_2, SLIDING_2 = "rigid ground, slenderness 0.2", "sliding base, slenderness 0.2"
+DRIVEN, ISOLATED = "rocking on bearings, one-sine", "isolated Caryatid, synthetic motion"
+FALLING = "one-sine of 3.8 g slenderness, rigid ground"
+PULSES = "one-sine at 2 and 5 times omega_r, rigid ground"
+HARD_PULSES = "one-sine at 7, one-cosine at 2 times omega_r, rigid ground"  # the overturning study's largest shifts
+STANDING, STANDING_ISOLATED = ("60 s of shaking below uplift, rigid ground",
+                               "60 s of shaking below uplift, on bearings")
+
+FREE_ROCKING = {RIGID: (None, SLENDERNESSES), SLIDING: (BASE, SLENDERNESSES),
+                RIGID_2: (None, (0.2,)), SLIDING_2: (BASE, (0.2,))}
+# (slenderness, ((pulse, its frequency over omega_r), ...)) by the name of the scenes
+BOUNDARIES = {PULSES: (0.25, (("one-sine", 2.0), ("one-sine", 5.0))),
+              HARD_PULSES: (0.28, (("one-sine", 7.0), ("one-cosine", 2.0)))}
+
+
+class Unmeasurable(RuntimeError):
+    """The engine's run failed, or lacks what is to be measured; says which and why."""
+
+
+def run(engine, variant, scene, history=True):
+    """The engine's response; raises `Unmeasurable` where it failed."""
+    response = get_engine(engine).simulate(scene, variant=variant, history=history)
+    if response.failure is not None:
+        raise Unmeasurable(f"{engine}, {variant} failed: {response.failure.reason}. {response.failure.message}")
+    return response
+
+
+def free_rocking(scenes):
+    """{slenderness: scenes} of a family: free rocking from every start, up to past the third impact's swing."""
+    base, slendernesses = FREE_ROCKING[scenes]
+    family = {}
+    for slenderness in slendernesses:
+        block = caryatid_block(slenderness)
+        for start in STARTS:
+            scene = Scene(block=block, base=base, start=Start(tilt=start * slenderness), duration=12.0)
+            times = [impact.time for impact in simulate(scene, history=False).impacts[:IMPACTS + 1]]
+            family.setdefault(slenderness, []).append(
+                scene.with_(duration=times[-2] + 0.75 * (times[-1] - times[-2])))
+    return family
+
+
+def _free_responses(engine, variant, scenes, runs):
+    key = engine, variant, scenes
+    if key not in runs:
+        runs[key] = {slenderness: [(scene, run(engine, variant, scene)) for scene in family]
+                     for slenderness, family in free_rocking(scenes).items()}
+    return runs[key]
+
+
+def _worst_rms(groups):
+    return max(float(np.sqrt(np.mean(np.square(np.concatenate(values))))) for values in groups)
+
+
+def restitution_rms(engine, variant, scenes, runs):
+    """Error of e_phi against eq. (7) from the states at the first three impacts, rms over starts; worst slenderness."""
+    return _worst_rms([[state_restitution(response)[:IMPACTS] - restitution(scene) for scene, response in pairs]
+                       for pairs in _free_responses(engine, variant, scenes, runs).values()])
+
+
+def swing_restitution_bias(engine, variant, scenes, runs):
+    """|mean| error of e_phi against eq. (7) from the energies of the swings around the first three impacts."""
+    errors = [swing_restitution(scene, response)[:IMPACTS] - restitution(scene)
+              for pairs in _free_responses(engine, variant, scenes, runs).values() for scene, response in pairs]
+    return float(abs(np.nanmean(np.concatenate(errors))))
+
+
+def base_jump_rms(engine, variant, scenes, runs):
+    """Relative error of the base velocity jump against momentum, rms over starts and impacts; worst slenderness."""
+    return _worst_rms([[base_jump_error(scene, response)[:IMPACTS] for scene, response in pairs]
+                       for pairs in _free_responses(engine, variant, scenes, runs).values()])
+
+
+def impact_times(engine, variant, scenes, runs):
+    """Largest error of the times of the first three impacts [s]."""
+    worst = 0.0
+    for pairs in _free_responses(engine, variant, scenes, runs).values():
+        for scene, response in pairs:
+            wanted = [impact.time for impact in simulate(scene, history=False).impacts[:IMPACTS]]
+            found = [impact.time for impact in response.impacts[:IMPACTS]]
+            if len(found) < len(wanted):
+                raise Unmeasurable(f"{engine}, {variant}: {len(found)} impacts, the model has {len(wanted)}")
+            worst = max(worst, *np.abs(np.subtract(found, wanted)))
+    return float(worst)
+
+
+def named_scene(name):
+    """The scenes of the table that are one scene each."""
+    if name == ISOLATED:
+        return load_scene("caryatid-isolated")
+    if name == DRIVEN:
+        return Scene(block=caryatid_block(0.15), base=BASE, bearings=BEARINGS,
+                     motion=PulseMotion("one-sine", 3.0, 8.0), duration=3.0)
+    if name == FALLING:
+        return Scene(block=caryatid_block(0.2), motion=PulseMotion("one-sine", 3.8 * 9.81 * 0.2, 5.2),
+                     duration=5.0)
+    shaking = 0.01 * np.arange(6001)
+    level = np.sin(8 * shaking) + 0.5 * np.sin(26 * shaking)
+    if name == STANDING:
+        peak = 0.9 * 9.81 * math.tan(0.2)
+        return Scene(block=caryatid_block(0.2), duration=60.0,
+                     motion=SampledMotion(0.01, level / np.abs(level).max() * peak))
+    if name == STANDING_ISOLATED:
+        return Scene(block=caryatid_block(0.2), base=BASE, bearings=BEARINGS, duration=60.0,
+                     motion=SampledMotion(0.01, level / np.abs(level).max() * 0.5))
+    raise KeyError(f"no scene is called {name!r}")
+
+
+def _agreement(engine, variant, scenes, runs):
+    key = engine, variant, scenes
+    if key not in runs:
+        scene = named_scene(scenes)
+        runs[key] = compare(scene, run(engine, variant, scene), simulate(scene))
+    if not runs[key].same_outcome:
+        raise Unmeasurable(f"{engine}, {variant}: another outcome than the model's in {scenes}")
+    return runs[key]
+
+
+def peak_tilt(engine, variant, scenes, runs):
+    """|Error| of the peak tilt over slenderness."""
+    return abs(_agreement(engine, variant, scenes, runs).peak_tilt_error)
+
+
+def peak_displacement(engine, variant, scenes, runs):
+    """|Error| of the peak base displacement, relative."""
+    return abs(_agreement(engine, variant, scenes, runs).peak_displacement_error)
+
+
+def tilt_graph(engine, variant, scenes, runs):
+    """Distance of the tilt graphs over the whole scene: tilt over slenderness, time over 2 pi/omega_r."""
+    return _agreement(engine, variant, scenes, runs).graph_distance
+
+
+def overturning_time(engine, variant, scenes, runs):
+    """|Error| of the time of overturning [s]."""
+    return abs(_agreement(engine, variant, scenes, runs).overturning_time_error)
+
+
+def boundary_scene(slenderness, pulse, frequency, amplitude):
+    """One pulse of frequency times omega_r and amplitude times g tan(slenderness), on rigid ground."""
+    scene = Scene(block=caryatid_block(slenderness), duration=1.0)
+    motion = PulseMotion(pulse, amplitude * 9.81 * math.tan(slenderness), frequency * scene.rocking_frequency)
+    return scene.with_(motion=motion, duration=motion.end + 6.0)
+
+
+def _overturns(engine, variant, scene):
+    if engine == "analytic":
+        return simulate(scene, history=False).outcome == "overturns"
+    return run(engine, variant, scene, history=False).outcome == "overturns"
+
+
+def first_boundary(*pulse):
+    """Least amplitude over g tan(slenderness) at which the model overturns; found by scanning, then halving.
+
+    pulse : slenderness, shape, frequency, as `boundary_scene`.
+    """
+    def falls(amplitude):
+        return _overturns("analytic", None, boundary_scene(*pulse, amplitude))
+
+    amplitudes = np.arange(1.0, 12.0, 0.02)
+    over = next(k for k, a in enumerate(amplitudes) if falls(float(a)))
+    low, high = float(amplitudes[over - 1]), float(amplitudes[over])
+    while high - low > 1e-7 * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if falls(middle) else (middle, high)
+    return high
+
+
+def boundary_shift(engine, variant, scenes, runs):
+    """Largest relative shift of the first overturning boundary, its bracket included, under the pulses `scenes`."""
+    slenderness, pulses = BOUNDARIES[scenes]
+    worst = 0.0
+    for pulse in pulses:
+        exact = first_boundary(slenderness, *pulse)
+
+        def falls(shift, exact=exact, pulse=pulse):
+            return _overturns(engine, variant, boundary_scene(slenderness, *pulse, exact * (1 + shift)))
+
+        low, high = -1e-4, 1e-4
+        while falls(low):
+            low *= 4
+        while not falls(high):
+            high *= 4
+        while high - low > max(1.3e-5, 0.05 * max(-low, high)):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if falls(middle) else (middle, high)
+        worst = max(worst, abs(low), abs(high))
+    return worst
+
+
+@contextlib.contextmanager
+def recorded_traces(engine):
+    """List of the traces (accepted steps) that the engine's adapter hands over inside the block."""
+    module, traces = get_engine(engine), []
+    observe = module.observe
+
+    def recording(scene, trace, **given):
+        traces.append(trace)
+        return observe(scene, trace, **given)
+
+    module.observe = recording
+    try:
+        yield traces
+    finally:
+        module.observe = observe
+
+
+def bearing_replay(engine, variant, scenes, runs):
+    """Largest difference of the engine's bearing force from `paper_force` on its own displacements, over n_d f0."""
+    scene = named_scene(scenes)
+    with recorded_traces(engine) as traces:
+        run(engine, variant, scene)
+    trace, law = traces[0], BearingLaw.of(scene.bearings)
+    force = paper_force(law, trace.base_displacement)
+    return float(np.abs(trace.bearing_force - force).max() / (law.count * law.f0))
+
+
+def bearing_impulse(engine, variant, scenes, runs):
+    """What the momentum of the engine's own motion shows of the bearings' force, against the law: relative error.
+
+    Unlike `bearing_replay` it does not ask the adapter what the force was.
+    """
+    scene = named_scene(scenes)
+    with recorded_traces(engine) as traces:
+        run(engine, variant, scene)
+    return impulse_error(scene, traces[-1])
+
+
+def paper_force(law, x):
+    """Force of all bearings [N] along displacements x [m], shape (n,), x[0] = 0, by the paper's eqs (9)-(12).
+
+    With its own history, the reversal points, and (12) with the sign mended: a second implementation beside
+    `analytic.bearing`, whose history is the last point. Travel since a reversal up to 1.3 m.
+    """
+    a, double = 1 - law.alpha, 2 * law.x0
+    force, s, shift = np.zeros(len(x)), 0.0, 0.0
+    for i in range(1, len(x)):
+        way = math.copysign(1.0, x[i] - x[i - 1]) if x[i] != x[i - 1] else s
+        if way != s:  # a reversal, or the first step: x_j from the point where it happens, eqs (10), (12)
+            z = force[i - 1] - law.kb * x[i - 1]
+            shift = x[i - 1] + way * (1 + double - (law.d0 + a * (way * z - law.f0) / law.dk) ** (1 / a))
+            s = way
+        if s:
+            bracket = (1 + s * x[i] - s * shift + double) ** a - law.d0
+            force[i] = law.kb * x[i] + law.dk * bracket / (s * a) + s * law.f0  # (9), (11)
+    return law.count * force
+
+
+def corner_lift(engine, variant, scenes, runs):
+    """Largest lift of a corner of a block that should stand [m]."""
+    scene = named_scene(scenes)
+    response = run(engine, variant, scene, history=False)
+    if response.outcome != "stands":
+        raise Unmeasurable(f"{engine}, {variant}: {response.outcome} in {scenes}")
+    return 2 * scene.block.half_width * response.peak_tilt
+
+
+def base_drift(engine, variant, scenes, runs):
+    """Largest difference of the base displacement from the model's [m] while the block stands."""
+    scene = named_scene(scenes)
+    found, reference = run(engine, variant, scene).history, simulate(scene).history
+    return float(np.abs(np.interp(reference.time, found.time, found.base_displacement)
+                        - reference.base_displacement).max())

@@ -1,0 +1,304 @@
+"""Where the runs of a sweep are done: in this process, or in worker processes that may crash or hang."""
+
+import contextlib
+import faulthandler
+import json
+import multiprocessing
+import os
+import queue
+import signal
+import sys
+import tempfile
+import threading
+import time
+import traceback
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import TimeoutError
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from multiprocessing import forkserver, resource_tracker
+from typing import Protocol
+
+from pebble import ProcessExpired, ProcessPool
+
+from analytic.errors import SettingError
+from engines.guard import end_with_parent
+
+from .cases import Case, module_of
+from .provenance import json_ready, scrub
+
+MOST_BROKEN = 3
+MOST_WORKERS = 64  # where there are no more cores than that
+GRACE_SECONDS = 0.5  # beyond the time limit, for the worker to write down where it hangs
+EVIDENCE_CHARACTERS = 4000
+THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+
+
+@dataclass(frozen=True)
+class Task:
+    """Cases done one after the other by one worker.
+
+    The worker stops after `enough` seconds and hands back what it has by then, at least one line. The time
+    limit [s] holds for the task as a whole.
+    """
+
+    ticket: str
+    cases: tuple[Case, ...]
+    keys: tuple[str, ...]
+    reduce: Callable | None
+    time_limit: float
+    enough: float
+
+
+@dataclass(frozen=True)
+class Done:
+    """What became of a task: lines of JSON for its first cases and the seconds they took, or why it was lost."""
+
+    ticket: str
+    lines: tuple[str, ...] = ()
+    seconds: float = 0.0
+    lost: dict | None = None  # failure: kind, reason, message
+
+
+class Executor(Protocol):
+    """What a sweep asks of the place where its runs are done; a cluster needs these members and no more."""
+
+    slots: int  # tasks to keep submitted so that no worker waits
+
+    def submit(self, task: Task) -> None:
+        """Take a task; returns at once."""
+
+    def next(self) -> Done:
+        """Wait for any submitted task to end; every task ends, lost or done."""
+
+    def close(self) -> None:
+        """Stop working, drop what is under way."""
+
+
+class _Closing:
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+
+class Serial(_Closing):
+    """Runs in this process: for debugging. A crash or a hang of a solver is a crash or a hang of the sweep."""
+
+    slots = 1
+
+    def __init__(self):
+        self._tasks = deque()
+
+    def submit(self, task):
+        self._tasks.append(task)
+
+    def next(self):
+        task = self._tasks.popleft()
+        return Done(task.ticket, *_lines(task))
+
+    def close(self):
+        self._tasks.clear()
+
+
+class Processes(_Closing):
+    """Runs in `workers` processes (default: one per core), each with one numerical thread.
+
+    Workers are forked from a server that has imported the `solvers`: one that crashed is replaced in
+    hundredths of a second, and nothing of this process's state reaches them.
+    """
+
+    def __init__(self, workers=None, solvers=()):
+        self._workers = workers or os.cpu_count()
+        most = max(MOST_WORKERS, os.cpu_count())
+        if not 1 <= self._workers <= most:
+            raise SettingError(f"{workers} worker processes: give 1 to {most}")
+        self.slots = 2 * self._workers
+        self._ended = queue.SimpleQueue()
+        self._evidence = tempfile.TemporaryDirectory(prefix="sweep-")
+        server = "forkserver" in multiprocessing.get_all_start_methods()
+        self._context = multiprocessing.get_context("forkserver" if server else "spawn")
+        if server:
+            self._context.set_forkserver_preload(["comparisons.running.executors", *map(module_of, solvers)])
+            resource_tracker.ensure_running()  # of the forkserver, whose start would undo the blocking
+            with _one_thread(), _ctrl_c_blocked():  # the server and its workers leave Ctrl-C to this process
+                forkserver.ensure_running()
+        self._under_way = {}  # future: task and its log
+        self._broken = 0  # pools in a row that ended without finishing a task
+        self._pool = self._new_pool()
+
+    def submit(self, task):
+        log = os.path.join(self._evidence.name, f"{task.ticket}.log")
+        with _one_thread():  # workers started by this inherit it
+            if not self._pool.active:
+                self._renew()
+            future = self._pool.schedule(_work, (task, log), timeout=task.time_limit + GRACE_SECONDS)
+        self._under_way[future] = task, log
+        future.add_done_callback(self._ended.put)
+
+    def next(self):
+        while True:
+            try:
+                future = self._ended.get(timeout=GRACE_SECONDS)
+            except queue.Empty:
+                if not self._pool.active:  # what it had not yet taken up it never will
+                    self._renew()
+                continue
+            if future not in self._under_way:
+                continue
+            if isinstance(future.exception(), BrokenProcessPool):
+                self._renew()
+                continue
+            task, log = self._under_way.pop(future)
+            self._broken = 0
+            try:
+                return Done(task.ticket, *future.result())
+            except TimeoutError:
+                reason = f"no result within the time limit of {task.time_limit:g} s"
+                lost = {"kind": "time limit", "reason": reason, "time_limit": task.time_limit}
+            except ProcessExpired as error:
+                lost = {"kind": "crash", "reason": f"the worker process ended: {_exit(error.exitcode)}",
+                        "exit_code": error.exitcode}
+            lost["message"] = _tail(log)
+            return Done(task.ticket, lost=lost)
+
+    def close(self):
+        self._close_pool()
+        self._evidence.cleanup()
+
+    def _new_pool(self):
+        return ProcessPool(self._workers, initializer=_start_worker, initargs=(tuple(sys.path),),
+                           context=self._context)
+
+    def _renew(self):
+        """A new pool: a pool ends when a worker dies that has no task, as when it is killed while idle."""
+        self._broken += 1
+        if self._broken > MOST_BROKEN:
+            raise RuntimeError("worker processes end before they take up any run; try one case with the Serial "
+                               "executor to see why. Rows done so far are kept")
+        self._close_pool()
+        self._pool = self._new_pool()
+        unfinished = {future: entry for future, entry in self._under_way.items()
+                      if not future.done() or future.exception() is not None}
+        for future, (task, _) in unfinished.items():
+            del self._under_way[future]
+            self.submit(task)
+
+    def _close_pool(self):
+        self._pool.stop()
+        self._pool.join()
+
+
+def _lines(task):
+    start, lines = time.monotonic(), []
+    for case, key in zip(task.cases, task.keys, strict=True):
+        row = {"key": key, "values": {}, "failure": None, "cost": {}}
+        try:
+            response = case.run()
+            row["cost"] = {"cpu_seconds": response.cpu_seconds}
+            if response.outcome == "failed":
+                # Reducers see sound responses only; of a failed one everything is kept as evidence.
+                row["values"] = response.to_json()
+                row["failure"] = {"kind": "solver", **row["values"].pop("failure")}
+            else:
+                row["values"] = response.to_json() if task.reduce is None else task.reduce(response)
+            row["values"] = json_ready(row["values"])
+            row["values"].pop("cpu_seconds", None)
+            line = json.dumps(row, allow_nan=False)
+        except Exception as error:
+            row["values"] = {"outcome": "failed"}
+            row["failure"] = {"kind": "exception", "reason": f"{type(error).__name__}: {scrub(str(error))}",
+                              "message": scrub(traceback.format_exc())[-EVIDENCE_CHARACTERS:]}
+            line = json.dumps(row)
+        lines.append(line)
+        if time.monotonic() - start > task.enough:
+            break
+    return tuple(lines), time.monotonic() - start
+
+
+@contextlib.contextmanager
+def _ctrl_c_blocked():
+    """What is started inside does not hear Ctrl-C."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _start_worker(path):
+    sys.path[:] = path  # a preloaded server keeps its own
+    end_with_parent()
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+
+
+def _end_with(parent):
+    parent.join()  # kill -9 of the sweep: do not outlive it
+    os._exit(1)
+
+
+def _work(task, log):
+    """In a worker: the lines of a task and the seconds they took; what it prints and where it hangs goes to `log`."""
+    with open(log, "wb") as file, _output_to(file):
+        faulthandler.enable(file, all_threads=False)
+        faulthandler.dump_traceback_later(task.time_limit, file=file)
+        if hasattr(signal, "setitimer"):  # ends an orphan that hangs in compiled code, where no thread gets a turn
+            signal.signal(signal.SIGALRM, signal.SIG_DFL)
+            signal.setitimer(signal.ITIMER_REAL, task.time_limit + 10 * GRACE_SECONDS)
+        try:
+            result = _lines(task)
+        finally:
+            faulthandler.cancel_dump_traceback_later()
+            faulthandler.disable()
+            if hasattr(signal, "setitimer"):
+                signal.setitimer(signal.ITIMER_REAL, 0)
+    os.unlink(log)
+    return result
+
+
+@contextlib.contextmanager
+def _output_to(file):
+    """Standard output and error of this process, the engines' own C code included, into `file`."""
+    sys.stdout.flush(), sys.stderr.flush()
+    kept = os.dup(1), os.dup(2)
+    os.dup2(file.fileno(), 1), os.dup2(file.fileno(), 2)
+    try:
+        yield
+    finally:
+        sys.stdout.flush(), sys.stderr.flush()
+        for descriptor, copy in enumerate(kept, 1):
+            os.dup2(copy, descriptor)
+            os.close(copy)
+
+
+@contextlib.contextmanager
+def _one_thread():
+    """One numerical thread for processes started inside: libraries read these variables when loaded."""
+    before = {name: os.environ.get(name) for name in THREAD_VARIABLES}
+    os.environ.update(dict.fromkeys(THREAD_VARIABLES, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+def _exit(code):
+    if code is not None and code < 0:
+        return f"signal {-code} ({signal.Signals(-code).name})"
+    return f"exit code {code}"
+
+
+def _tail(log):
+    try:
+        with open(log, "rb") as file:
+            return scrub(file.read().decode(errors="replace"))[-EVIDENCE_CHARACTERS:].strip()
+    except FileNotFoundError:
+        return ""

@@ -1,0 +1,220 @@
+"""Result files: rows and arrays with the machine, versions, commit, source code and seed they come from."""
+
+import hashlib
+import json
+import platform
+import re
+import site
+import subprocess
+import sys
+import tempfile
+from dataclasses import asdict, dataclass, field, is_dataclass
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import numpy as np
+import psutil
+
+from engines import ENGINES
+
+from .sources import source_digests
+
+SCHEMA = 1  # of the result files; raise it when a reader of the old ones would go wrong
+PROJECT_FOLDER = Path(__file__).parents[2]
+PACKAGES = ("numpy", "scipy", "numba", *(package for _, package, _ in ENGINES.values()))
+
+
+class ResultError(RuntimeError):
+    """A result file that cannot be written or read; the message names it and the remedy."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a study found: kind, its settings, rows (list of dict), arrays (dict of ndarray), provenance."""
+
+    kind: str
+    settings: dict
+    rows: list
+    provenance: dict
+    arrays: dict = field(default_factory=dict)
+
+
+def provenance(modules=("analytic",), seed=None):
+    """Where numbers computed here and now come from, as a JSON-ready dict without paths or names.
+
+    Parameters
+    ----------
+    modules : iterable of str
+        The modules whose code the numbers depend on; their project imports are followed.
+    seed : int, list or None
+        Of the random numbers used; None where none are.
+    """
+    sources = source_digests(modules)
+    return {"time": datetime.now(UTC).isoformat(timespec="seconds"), "machine": machine(),
+            "python": platform.python_version(), "packages": {name: _version(name) for name in PACKAGES},
+            **_checkout(), "sources": {name: digest[:16] for name, digest in sources.items()}, "seed": seed}
+
+
+def machine():
+    """Processor model, cores (physical and logical), memory [GiB], operating system."""
+    model = platform.processor()
+    if Path("/proc/cpuinfo").exists():
+        found = re.search(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
+        model = found.group(1) if found else model
+    return {"processor": model or platform.machine(), "cores": psutil.cpu_count(logical=False),
+            "logical_cores": psutil.cpu_count(), "memory_gib": round(psutil.virtual_memory().total / 2**30, 1),
+            "system": f"{platform.system()} {platform.machine()}"}
+
+
+def write_result(path, kind, settings, rows, arrays=None, *, modules, seed=None):
+    """Write a result file: JSON at `path`, and the arrays, if any, beside it as ``.npz``.
+
+    Parameters
+    ----------
+    path : path
+        Ends in ``.json``.
+    kind : str
+        Which study.
+    settings : dict
+    rows : list of dict
+        JSON-ready after `json_ready`.
+    arrays : dict of ndarray, optional
+    modules, seed
+        See `provenance`.
+
+    Raises
+    ------
+    ResultError
+        The content names a path of this machine, or `path` is no ``.json``.
+    """
+    path = Path(path)
+    if path.suffix != ".json":
+        raise ResultError(f"{path.name}: a result file ends in .json; rename it")
+    content = json_ready({"schema": SCHEMA, "kind": kind, "provenance": provenance(modules, seed),
+                          "settings": settings, "arrays": None, "rows": rows})
+    text = json.dumps(content, allow_nan=False)
+    if any(root in text for root, _ in _roots()):
+        raise ResultError(f"{path.name}: the content names a folder of this machine; pass file names without "
+                          "folders, or messages through scrub()")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if arrays:
+        beside = path.with_suffix(".npz")
+        np.savez_compressed(beside, **arrays)
+        content["arrays"] = {"file": beside.name, "digest": _digest(beside)}
+    path.write_text(_layout(content))
+    return path
+
+
+def read_result(path):
+    """The `Result` in the file at `path`.
+
+    Raises
+    ------
+    ResultError
+        The file is missing, of another schema, or its arrays are missing or another study's.
+    """
+    path = Path(path)
+    try:
+        content = json.loads(path.read_text())
+    except FileNotFoundError as error:
+        raise ResultError(f"{path.name}: no such result file; run the study that writes it") from error
+    except ValueError as error:
+        raise ResultError(f"{path.name}: not JSON ({error}); run the study again") from error
+    schema = content.get("schema") if isinstance(content, dict) else None
+    if schema != SCHEMA:
+        raise ResultError(f"{path.name}: schema {schema!r}, this version reads {SCHEMA}; run the study again")
+    arrays = {}
+    if content["arrays"]:
+        beside = path.with_name(content["arrays"]["file"])
+        if not beside.exists() or _digest(beside) != content["arrays"]["digest"]:
+            raise ResultError(f"{beside.name}: missing or not the one {path.name} was written with; run the study "
+                              "again")
+        with np.load(beside) as stored:
+            arrays = {name: stored[name] for name in stored.files}
+    return Result(content["kind"], content["settings"], content["rows"], content["provenance"], arrays)
+
+
+def age(result):
+    """In words: None if the code behind `result` is the code here, else what has changed since.
+
+    Comments and docstrings do not count, and neither do package versions.
+    """
+    then = result.provenance["sources"]
+    now = {}
+    for name in then:
+        try:
+            now[name] = source_digests([name])[name][:16]
+        except ModuleNotFoundError:
+            now[name] = None
+    changed = [name for name in then if now[name] != then[name]]
+    if not changed:
+        return None
+    commit = result.provenance["commit"]
+    origin = f"at commit {commit[:7]}" if commit else "outside a checkout"
+    return (f"older than the code: computed on {result.provenance['time'][:10]} {origin}; since then changed: "
+            + ", ".join(changed))
+
+
+def scrub(text):
+    """`text` without this machine's paths and addresses: project files stay readable, others lose their folders."""
+    for root, name in _roots():
+        text = text.replace(root, name)
+    text = re.sub(r'(File ")/[^"]*/', r"\1", text)  # paths in tracebacks that are none of these
+    return re.sub(r"0x[0-9a-fA-F]{6,}", "0x...", text)
+
+
+def json_ready(value):
+    """`value` as plain JSON types; arrays become lists, numbers that are not finite become None."""
+    if is_dataclass(value) and not isinstance(value, type):
+        value = asdict(value)
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, dict):
+        return {str(key): json_ready(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [json_ready(item) for item in value]
+    if isinstance(value, float) and not np.isfinite(value):
+        return None
+    return value
+
+
+def _roots():
+    """Folders of this machine and what to call them, the inner ones first."""
+    roots = [(str(PROJECT_FOLDER), ".")] + [(path, "site-packages") for path in site.getsitepackages()]
+    roots += [(sys.prefix, "<environment>"), (sys.base_prefix, "<python>"),
+              (tempfile.gettempdir(), "<temporary>"), (str(Path.home()), "~")]
+    # "/usr" and "/" are everyone's and may be part of a word
+    return [(root, name) for root, name in roots if root not in ("/", "/usr", "/usr/local")]
+
+
+def _layout(content):
+    """JSON with one line per row: small, and readable in a diff."""
+    rows = content.pop("rows")
+    lines = ",\n  ".join(json.dumps(row, allow_nan=False) for row in rows)
+    head = json.dumps(content, indent=1, allow_nan=False)[:-2]
+    return f'{head},\n "rows": [\n  {lines}\n ]\n}}\n' if rows else f'{head},\n "rows": []\n}}\n'
+
+
+def _checkout():
+    """Commit of the project's checkout, and whether tracked files differ from it; None outside one."""
+    def git(*words):
+        return subprocess.run(["git", "-C", str(PROJECT_FOLDER), *words], capture_output=True, text=True,
+                              check=True, timeout=20).stdout.strip()
+    try:
+        if Path(git("rev-parse", "--show-toplevel")).resolve() != PROJECT_FOLDER.resolve():
+            return {"commit": None, "dirty": None}  # installed inside some other checkout
+        return {"commit": git("rev-parse", "HEAD"), "dirty": bool(git("status", "--porcelain", "-uno"))}
+    except (OSError, subprocess.SubprocessError):
+        return {"commit": None, "dirty": None}
+
+
+def _version(package):
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None
+
+
+def _digest(file):
+    return hashlib.sha256(Path(file).read_bytes()).hexdigest()

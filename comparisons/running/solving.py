@@ -1,0 +1,208 @@
+"""One run as a user asks for it: ground motion, solver and settings by name, checked; progress on standard error."""
+
+import contextlib
+import dataclasses
+import inspect
+import json
+import math
+import os
+import sys
+
+from analytic.errors import SettingError
+
+from ..showing.wording import readable
+
+ANALYTIC = "analytic"
+TIME_LIMIT = 300.0  # s, of one run
+TIME_LIMIT_HELP = "A run that takes longer is ended, and counts as failed."
+SHOWN = 60  # characters of what is under way
+
+
+def parse_settings(pairs):
+    """``["step=1e-4"]`` -> ``{"step": 0.0001}``; values are JSON, anything else is text.
+
+    Raises
+    ------
+    SettingError
+        A pair without "=", or a number that is not finite.
+    """
+    settings = {}
+    for pair in pairs:
+        name, equals, text = pair.partition("=")
+        if not (equals and name):
+            raise SettingError(f"--set {pair}: write name=value")
+        name = name.strip()
+        try:
+            settings[name] = json.loads(text)
+        except (ValueError, RecursionError):  # no JSON, or nested too deep for a setting
+            settings[name] = text
+        if isinstance(settings[name], int | float):
+            _check_size(name, settings[name])
+    return settings
+
+
+def ground_motion(record=None, units=None):
+    """The motion in the file `record`, or the shipped synthetic one without it; `units` of a record in two columns.
+
+    Raises
+    ------
+    SettingError
+        Units without a record.
+    SceneError
+        The record cannot be read.
+    """
+    from analytic import synthetic_motion
+    from analytic.records import read_record
+
+    if units and not record:
+        raise SettingError(f"--units {units}: belongs to a record; give --record FILE")
+    return read_record(record, units) if record else synthetic_motion()
+
+
+def simulate(scene, solver=ANALYTIC, variant=None, settings=None, history=True, time_limit=TIME_LIMIT,
+             words=None):
+    """The `Response` of the solver called `solver`, run in a process of its own while `words` are shown.
+
+    What is odd about the record stands among its warnings. A run that crashes, or takes more than `time_limit` [s], is
+    a response of outcome "failed" with the evidence.
+
+    Raises
+    ------
+    SettingError
+        Unknown solver, variant or setting, or a setting of the wrong type.
+    EngineNotInstalled
+        The engine cannot be imported here; says how to install it.
+    """
+    from engines.guard import OUT_OF_TIME, alone
+
+    settings = settings or {}
+    check_solver(solver)
+    response, failure = alone(_simulate, scene, solver, variant, settings, history, time_limit=time_limit,
+                              meanwhile=words and spinner(words))
+    if failure:
+        from engines.observe import failed_response
+
+        from .cases import versions
+
+        if failure.reason == OUT_OF_TIME:
+            first, end, rest = failure.message.partition("\n")
+            failure = dataclasses.replace(failure, message=f"{first}; --time-limit allows more{end}{rest}")
+        response = failed_response(scene, failure, engine=solver, variant=variant or "", settings=dict(settings),
+                                   versions=versions(solver))
+    odd = [text for text in getattr(scene.motion, "warnings", ()) if text not in response.warnings]
+    return dataclasses.replace(response, warnings=(*odd, *response.warnings))
+
+
+def check_solver(name):
+    """Raise `SettingError` if no solver is called `name`."""
+    from engines import ENGINES
+
+    if name != ANALYTIC and name not in ENGINES:
+        raise SettingError(f"unknown engine {name!r}: choose one of {', '.join(ENGINES)}, or {ANALYTIC}")
+
+
+def check_time_limit(seconds):
+    """Raise `SettingError` if a run cannot be given so many seconds."""
+    from engines.guard import check_time_limit
+
+    try:
+        check_time_limit(seconds)
+    except ValueError as error:
+        raise SettingError(f"--{error}".replace("time_limit", "time-limit", 1)) from None
+
+
+def _simulate(scene, solver, variant, settings, history):
+    if solver == ANALYTIC:
+        return _analytic(scene, variant, settings, history)
+    from engines import get_engine
+
+    engine = get_engine(solver)
+    _check_types(engine, variant, settings)
+    return engine.simulate(scene, variant=variant, history=history, **settings)
+
+
+def _analytic(scene, variant, settings, history):
+    import analytic
+
+    if variant is not None:
+        raise SettingError(f"the analytic model has no variant {variant!r}: leave --variant out")
+    parameters = inspect.signature(analytic.simulate).parameters
+    known = [name for name in parameters if name not in ("scene", "history")]
+    for name, value in settings.items():
+        if name not in known:
+            raise SettingError(f"the analytic model has no setting {name!r}: its settings are {', '.join(known)}")
+        _check_number(name, value)
+    return analytic.simulate(scene, history=history, **settings)
+
+
+def _check_types(engine, variant, settings):
+    """Unknown names are the engine's to refuse; a text where a number belongs is refused here."""
+    defaults = engine.VARIANTS.get(variant or engine.DEFAULT_VARIANT)
+    if defaults is None:
+        return
+    for field in dataclasses.fields(defaults):
+        default = getattr(defaults, field.name)
+        if field.name not in settings or default is None:
+            continue
+        value = settings[field.name]
+        if isinstance(default, bool) or isinstance(default, str):
+            if type(value) is not type(default):
+                raise SettingError(f"{field.name} = {value!r}: give a value such as {json.dumps(default)}")
+        elif isinstance(default, int | float):
+            _check_number(field.name, value, whole=isinstance(default, int))
+
+
+def _check_number(name, value, whole=False):
+    if isinstance(value, bool) or not isinstance(value, int if whole else int | float):
+        raise SettingError(f"{name} = {value!r}: give a {'whole ' if whole else ''}number")
+    _check_size(name, value)
+
+
+def _check_size(name, value):
+    """Numbers a solver can take: those that are finite as a double."""
+    try:
+        finite = math.isfinite(value)
+    except OverflowError:  # a whole number beyond the doubles, with hundreds of digits
+        raise SettingError(f"{name}: not a finite number; give one below 1e308") from None
+    if not finite:
+        raise SettingError(f"{name} = {value!r}: not a finite number; give one")
+
+
+def tell_failures(responses):
+    """Name the failed ones of the responses on standard error, with what a terminal can hold of the evidence."""
+    for response in responses:
+        if response.failure:
+            evidence = readable(response.failure.message.partition("\n")[0])
+            say(f"{response.engine} failed: {response.failure.reason}. {evidence}".rstrip(". ") + ".")
+
+
+def say(text):
+    """A line of progress on standard error."""
+    print(text, file=sys.stderr, flush=True)
+
+
+@contextlib.contextmanager
+def spinner(text):
+    """A line on standard error with the time elapsed, while something runs; nothing where that is no terminal."""
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True)
+    columns = SpinnerColumn(), TextColumn("{task.description}", markup=False), TimeElapsedColumn()
+    with Progress(*columns, transient=True, console=console, disable=not console.is_terminal) as progress:
+        task = progress.add_task(readable(text, SHOWN))
+        yield lambda words: progress.update(task, description=readable(words, SHOWN))
+
+
+@contextlib.contextmanager
+def stdout_to_stderr():
+    """What this process prints to standard output, compiled code included, goes to standard error."""
+    sys.stdout.flush()
+    kept = os.dup(1)
+    os.dup2(2, 1)
+    try:
+        yield
+    finally:
+        sys.stdout.flush()
+        os.dup2(kept, 1)
+        os.close(kept)

@@ -1,0 +1,229 @@
+"""The runs behind the overturning study: analytic maps, a scan of all solvers, their boundaries, their knobs."""
+
+import math
+
+import numpy as np
+
+from analytic import load_scene, overturning_map, simulate
+from engines import get_engine
+
+from ...measuring.statistics import cohen_kappa, confusion
+from ...running.cases import Case
+from ...running.refine import drive
+from ..workshop import FIRST_SCRIPT_FRICTION, name_of, say
+from .edges import HIGHEST, LOWEST, edges, least_normal, locate, pulse
+
+SHAPES = ("one-sine", "one-cosine", "ricker")
+# The isolated Caryatid itself overturns at base displacements far beyond its bearings' 0.30 m only; a more slender
+# block on the same bearings does at amplitudes of a strong earthquake.
+GROUNDS = {"rigid ground": ("caryatid-rigid", {}), "isolated base": ("caryatid-isolated", {"slenderness": 0.15})}
+FREQUENCIES = (2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0)
+SCAN = np.geomspace(1.05, 19.5, 11)
+BAND = 0.01  # relative distance from a boundary beyond which no solver may differ
+LADDER = ((2e-4, 1.2e-2), (3e-2,), (0.1,), (0.3,))
+KNOB_LADDER = ((2e-3, 2e-2), (0.1,), (0.3,))
+TOLERANCE, KNOB_TOLERANCE = 2e-5, 2e-4
+
+KNOB_FREQUENCIES = (2.0, 8.0)
+# (solver, variant, knob, values): the step, the accuracy or the stiffness, beside the default one
+KNOBS = (
+    ("time-stepping", None, "step", (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5)),
+    ("pybullet", "fixed-step", "step", (1 / 240, 1e-3, 3e-4, 1e-4)),
+    ("pybullet", "impact-aware", "accuracy", (1e-2, 1e-3, 1e-4)),
+    ("exudyn", "compliant-corners", "stiffness", (1e8, 1e9, 1e10)),
+)
+FIRST_SCRIPTS = (("pybullet", "first-script", "step", (1 / 240,)), ("exudyn", "native-contact", "step", (1e-4,)))
+ENGINES = (("exudyn", "compliant-corners"), ("pybullet", "impact-aware"))  # the defaults, by name
+# Asked where the analytic model holds the corner down: this one does so, too.
+HELD = ("exudyn", "switched-joints", {"step": 1e-4})
+
+
+def compute(work, quick=False):
+    """Yields (settings, rows, arrays) of the study, first without other settings than the defaults, then growing.
+
+    Yields
+    ------
+    settings : dict
+    rows : list of dict
+        By "part": "edge" (a boundary of the analytic model), "shift" (a solver's beside it, at default settings),
+        "held" (the same with the corner held, where the normal force is negative), "knob" (the same at other
+        settings), "confusion", "surprise" (a disagreement outside the band) and "failure".
+    arrays : dict
+        frequency, amplitude; ``<ground>/<shape>``: int16, shape (amplitudes, frequencies), impacts before
+        overturning in the analytic model, -1 where it does not overturn. ``points``: shape (n, 8): ground, shape,
+        solver (indices into the settings), frequency, amplitude, analytic outcome, solver's outcome (1 overturns,
+        0 not, -1 failed or undecided), whether of the scan.
+    """
+    grounds = {name: load_scene(shipped).with_(block=block, motion=None, duration=None)
+               for name, (shipped, block) in GROUNDS.items()}
+    shapes = SHAPES[:1] if quick else SHAPES
+    frequencies = (2.0, 4.0) if quick else FREQUENCIES
+    scan = SCAN[::4] if quick else SCAN
+    arrays = _maps(grounds, shapes, quick)
+    found = {}
+    for ground, scene in grounds.items():
+        for shape in shapes:
+            say(f"analytic boundaries: {ground}, {shape}")
+            found[ground, shape] = dict(zip(frequencies, edges(scene, shape, frequencies), strict=True))
+    rows = [{"part": "edge", "ground": ground, **vars(edge)} for (ground, _), columns in found.items()
+            for column in columns.values() for edge in column]
+    log = _Log(work, grounds)
+    for engine in ENGINES:
+        log.scan(engine, found, scan)
+    rows += _search(log, found, ENGINES, "shift", LADDER, TOLERANCE)
+    pulled = {key: {frequency: [edge for edge in column if edge.min_normal < 0]
+                    for frequency, column in columns.items()} for key, columns in found.items()}
+    rows += _search(log, pulled, [HELD], "held", LADDER, TOLERANCE)
+    arrays["points"], judged = _judge(log, grounds, shapes, found)
+    rows += judged
+    settings = {"quick": quick, "grounds": {
+        name: {"scene": GROUNDS[name][0], "block": scene.block.model_dump(), "omega_r": scene.rocking_frequency,
+               "unit": scene.gravity * math.tan(scene.block.slenderness),
+               "tan_slenderness": math.tan(scene.block.slenderness),
+               "base": scene.base.model_dump() if scene.base else None,
+               "bearings": scene.bearings.model_dump() if scene.bearings else None}
+        for name, scene in grounds.items()},
+        "shapes": list(shapes), "frequencies": list(frequencies), "scan": list(scan),
+        "amplitudes": [LOWEST, HIGHEST], "band": BAND, "tolerance": TOLERANCE,
+        "knob_tolerance": KNOB_TOLERANCE,
+        "solvers": [name_of(*one) for one in ENGINES], "held": _label(HELD),
+        "knobs": [[solver, variant, knob] for solver, variant, knob, _ in (*KNOBS, *FIRST_SCRIPTS)],
+        "default_knobs": {name_of(*one): getattr(get_engine(one[0]).VARIANTS[one[1]], knob)
+                          for one, knob in zip(ENGINES, ("stiffness", "accuracy"), strict=True)},
+        "first_scripts": [name_of(*one[:2]) for one in FIRST_SCRIPTS],
+        "first_script_friction": FIRST_SCRIPT_FRICTION}
+    yield settings, rows + log.failures, arrays
+    chosen = {(ground, "one-sine"): {f: column for f, column in found[ground, "one-sine"].items()
+                                     if f in KNOB_FREQUENCIES[:1 if quick else None]} for ground in grounds}
+    for solver, variant, knob, values in (*FIRST_SCRIPTS[:1 if quick else None], *KNOBS):
+        for value in values[1:2] if quick and len(values) > 1 else values:
+            rows += _search(log, chosen, [(solver, variant, {knob: value})], "knob", KNOB_LADDER, KNOB_TOLERANCE)
+        yield settings, rows + log.failures, arrays
+
+
+def _maps(grounds, shapes, quick):
+    frequency = np.linspace(1.5, 8.5, 36 if quick else 141)
+    amplitude = np.geomspace(LOWEST, HIGHEST, 60 if quick else 240)
+    arrays = {"frequency": frequency, "amplitude": amplitude}
+    for ground, scene in grounds.items():
+        for shape in shapes:
+            say(f"analytic map: {ground}, {shape}")
+            outcomes = overturning_map(scene, shape, frequency, amplitude)
+            impacts = np.minimum(outcomes.impacts, 32767)
+            arrays[f"{ground}/{shape}"] = np.where(outcomes.overturns, impacts, -1).astype(np.int16)
+    return arrays
+
+
+class _Log:
+    """Runs points of the map through the solvers and remembers all outcomes and failures."""
+
+    def __init__(self, work, grounds):
+        self._work, self._grounds = work, grounds
+        self.points, self.failures = {}, []
+
+    def run(self, points, label, scan=False):
+        """Outcomes (True, False, None) of (engine, ground, shape, frequency, amplitude, least N) tuples."""
+        cases = []
+        for (solver, variant, *settings), ground, shape, frequency, amplitude, _ in points:
+            scene = self._grounds[ground]
+            motion = pulse(scene, shape, frequency, amplitude)
+            cases.append(Case(scene.with_(motion=motion), solver, variant,
+                              {"history": False, **(settings[0] if settings else {})}))
+        answers = []
+        for point, row in zip(points, self._work.run(cases, label), strict=True):
+            engine, ground, shape, frequency, amplitude, normal = point
+            answer = None
+            if not row.failed and row.values["decided"]:
+                answer = row.values["outcome"] == "overturns"
+            if answer is None:
+                failure = row.failure or {
+                    "kind": "undecided", "reason": "the longest run ends without a certain outcome",
+                    "message": f"tilt {row.values['end_tilt']:.6g} rad"}
+                self.failures.append({"part": "failure", "solver": _label(engine), "ground": ground, "shape": shape,
+                                      "frequency": frequency, "amplitude": amplitude, "min_normal": normal, **failure})
+            if engine in ENGINES:
+                self.points[engine, ground, shape, frequency, amplitude] = answer, scan
+            answers.append(answer)
+        return answers
+
+    def scan(self, engine, found, amplitudes):
+        """A coarse map of one engine, wherever the boundaries of the analytic model are."""
+        points = []
+        for (ground, shape), columns in found.items():
+            scene = self._grounds[ground]
+            for frequency in columns:
+                for amplitude in map(float, amplitudes):
+                    normal = least_normal(scene, pulse(scene, shape, frequency, amplitude))
+                    points.append((engine, ground, shape, frequency, amplitude, normal))
+        self.run(points, f"scan: {_label(engine)}", scan=True)
+
+
+def _search(log, found, engines, part, ladder, tolerance):
+    """Rows of the solvers' boundaries beside the analytic ones in `found`."""
+    jobs = [(engine, ground, edge) for engine in engines for (ground, _), columns in found.items()
+            for column in columns.values() for edge in column]
+
+    def evaluate(batch):
+        points = []
+        for index, amplitude in batch:
+            engine, ground, edge = jobs[index]
+            points.append((engine, ground, edge.shape, edge.frequency, float(amplitude), edge.min_normal))
+        return log.run(points, f"{part}: {', '.join(dict.fromkeys(_label(engine) for engine in engines))}")
+
+    located = drive([locate(edge, ladder, tolerance) for _, _, edge in jobs], evaluate)
+    return [{"part": part, "solver": name_of(*engine[:2]), "settings": engine[2] if engine[2:] else {},
+             "ground": ground, "shape": edge.shape, "frequency": edge.frequency, "amplitude": edge.amplitude,
+             "rises": edge.rises, "mode": edge.mode, "room": min(1 - edge.low / edge.amplitude,
+                                                                 edge.high / edge.amplitude - 1), **vars(one)}
+            for (engine, ground, edge), one in zip(jobs, located, strict=True)]
+
+
+def _judge(log, grounds, shapes, found):
+    """(points, rows): the default engines' outcomes beside the analytic ones, in and outside the band.
+
+    Outside it those are apart ("pulled") in which the normal force of the analytic model becomes negative.
+    """
+    keys = list(log.points)
+    scenes = []
+    for _, ground, shape, frequency, amplitude in keys:
+        scene = grounds[ground]
+        motion = pulse(scene, shape, frequency, amplitude)
+        scenes.append(scene.with_(motion=motion))
+    responses = [simulate(scene, history=False) for scene in scenes]
+    reference = np.array([response.outcome == "overturns" for response in responses])
+    normal = np.array([response.min_normal_ratio for response in responses])
+    answers = [log.points[key][0] for key in keys]
+    scanned = np.array([log.points[key][1] for key in keys])
+    distance = np.array([min((abs(amplitude / edge.amplitude - 1) for edge in found[ground, shape][frequency]),
+                             default=math.inf) for _, ground, shape, frequency, amplitude in keys])
+    decided = np.array([answer is not None for answer in answers])
+    own = np.array([bool(answer) for answer in answers])
+    rows = []
+    for engine in ENGINES:
+        for ground in grounds:
+            here = np.array([key[0] == engine and key[1] == ground for key in keys]) & decided
+            outside = distance > BAND
+            for region, mask in (("scan", scanned), ("outside", outside & (normal >= 0)),
+                                 ("pulled", outside & (normal < 0)), ("inside", ~outside)):
+                chosen = here & mask
+                if not chosen.any():
+                    continue
+                table = confusion(reference[chosen], own[chosen])
+                kappa, low, high = cohen_kappa(table.table())
+                rows.append({"part": "confusion", "solver": _label(engine), "ground": ground, "region": region,
+                             **vars(table), "kappa": kappa, "kappa_low": low, "kappa_high": high})
+    for k in np.flatnonzero(decided & (distance > BAND) & (reference != own)):
+        engine, ground, shape, frequency, amplitude = keys[k]
+        rows.append({"part": "surprise", "solver": _label(engine), "ground": ground, "shape": shape,
+                     "frequency": frequency, "amplitude": amplitude, "analytic_overturns": bool(reference[k]),
+                     "distance": float(distance[k]), "min_normal": float(normal[k])})
+    names = list(grounds)
+    points = np.array([(names.index(ground), shapes.index(shape), ENGINES.index(engine), frequency, amplitude,
+                        reference[k], own[k] if decided[k] else -1, scanned[k])
+                       for k, (engine, ground, shape, frequency, amplitude) in enumerate(keys)], dtype=float)
+    return points, rows
+
+
+def _label(engine):
+    name = name_of(*engine[:2])
+    return name if not engine[2:] else f"{name}, " + ", ".join(f"{k} {v:g}" for k, v in engine[2].items())

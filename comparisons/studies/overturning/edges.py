@@ -1,0 +1,150 @@
+"""Where overturning begins and ends: the analytic boundaries, and a solver's boundary searched for beside one of them.
+
+Amplitudes are over g tan(slenderness), frequencies over omega_r.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic import PulseMotion, simulate, simulate_many
+
+from ...running.refine import boundaries, drive
+
+LOWEST, HIGHEST = 0.5, 20.0  # of the amplitudes searched
+SCAN = 400  # points of the first scan, equidistant in the logarithm: 0.9 % apart
+TOLERANCE = 1e-6  # of the analytic boundaries, relative
+BESIDE = 2e-5  # relative distance from a boundary at which the analytic run tells how long overturning takes
+CUT = 0.45  # where a bracket is divided: not in the middle, which may be the analytic boundary itself
+WIDEST = 5e-3  # half-width of a bracket, relative, beyond which a boundary counts as not found
+ROOM = 0.9  # of the way to the middle between two boundaries, what a search may use
+
+
+@dataclass(frozen=True)
+class Edge:
+    """A boundary of the analytic model along the amplitude.
+
+    rises: overturning lies above it. mode: impacts before overturning. low, high: amplitudes half way to the
+    neighbouring boundaries. min_normal: least normal force over m g
+    of the analytic model beside it; below 0 that model holds the corner down, where a block would slide or jump.
+    """
+
+    shape: str
+    frequency: float
+    amplitude: float
+    rises: bool
+    mode: int
+    low: float
+    high: float
+    min_normal: float
+
+
+@dataclass(frozen=True)
+class Located:
+    """A solver's boundary: its relative shift and the half-width of the bracket; shift None where it was not found."""
+
+    shift: float | None
+    half_width: float | None
+    reason: str | None
+    runs: int
+
+
+def pulse(scene, shape, frequency, amplitude):
+    """The `PulseMotion` of the two ratios."""
+    unit = scene.gravity * math.tan(scene.block.slenderness)
+    return PulseMotion(shape, amplitude * unit, frequency * scene.rocking_frequency)
+
+
+def edges(scene, shape, frequencies):
+    """All `Edge`s of the analytic model, a list for each frequency."""
+    def evaluate(batch):
+        scenes = [scene.with_(motion=pulse(scene, shape, frequencies[index], math.exp(point)), duration=None)
+                  for index, point in batch]
+        outcomes = simulate_many(scenes)
+        if outcomes.failed.any():
+            raise RuntimeError(f"the analytic model failed on {scenes[int(outcomes.failed.argmax())].motion.label}")
+        return np.where(outcomes.overturns, outcomes.impacts, -1).tolist()
+
+    columns = drive([boundaries(math.log(LOWEST), math.log(HIGHEST), SCAN, TOLERANCE) for _ in frequencies], evaluate)
+    return [_edges(scene, shape, frequency, [one for one in column.transitions if -1 in (one.before, one.after)])
+            for frequency, column in zip(frequencies, columns, strict=True)]
+
+
+def _edges(scene, shape, frequency, transitions):
+    amplitudes = [math.exp(one.position) for one in transitions]
+    middles = [math.sqrt(a * b) for a, b in zip(amplitudes, amplitudes[1:], strict=False)]
+    found = []
+    limits = [LOWEST, *middles, 1.5 * HIGHEST]
+    for k, (one, amplitude) in enumerate(zip(transitions, amplitudes, strict=True)):
+        rises = one.before == -1
+        beside = amplitude * (1 + BESIDE if rises else 1 - BESIDE)
+        found.append(Edge(shape, frequency, amplitude, rises, int(one.after if rises else one.before),
+                          limits[k], limits[k + 1],
+                          least_normal(scene, pulse(scene, shape, frequency, beside))))
+    return found
+
+
+def least_normal(scene, motion):
+    """Least N/(m g) in the analytic model under `motion`."""
+    return simulate(scene.with_(motion=motion, duration=None), history=False).min_normal_ratio
+
+
+def locate(edge, ladder, tolerance):
+    """Search for a solver's boundary beside an analytic one, outward in the steps of `ladder`, then by bisection.
+
+    Of several boundaries the nearest is taken. Where two boundaries lie closer than the ladder reaches, it is
+    shortened to their middle.
+
+    Parameters
+    ----------
+    edge : Edge
+    ladder : sequence of tuples of float
+        Relative distances above 0; a further tuple is tried only where those before show no boundary.
+    tolerance : float
+        Largest width of the bracket, relative.
+
+    Returns
+    -------
+    generator
+        For `refine.drive`; yields lists of amplitudes, is sent True (overturns), False or None (failed, undecided),
+        returns a `Located`.
+    """
+    known, failed = {}, 0
+    below, above = ROOM * (edge.low / edge.amplitude - 1), ROOM * (edge.high / edge.amplitude - 1)
+    bracket = None
+    for distances in ladder:
+        offsets = {max(-d, below) for d in distances} | {min(d, above) for d in distances}
+        points = sorted(offsets - set(known))
+        if not points:
+            continue
+        answers = yield [edge.amplitude * (1 + point) for point in points]
+        known.update(zip(points, answers, strict=True))
+        bracket = _nearest(known, edge.rises)
+        if bracket:
+            break
+    failed = sum(answer is None for answer in known.values())
+    if bracket is None:
+        seen = {answer for answer in known.values() if answer is not None}
+        reason = ("no run was decided" if not seen else "overturns on both sides" if seen == {True} else
+                  "stands on both sides" if seen == {False} else "outcomes the other way round")
+        reach = f"from {100 * min(known):+.3g} to {100 * max(known):+.3g} %"
+        return Located(None, None, f"{reason}, {reach}" + (f"; {failed} undecided" if failed else ""), len(known))
+    low, high = bracket
+    while high - low > tolerance:
+        middle = low + CUT * (high - low)
+        answer, = yield [edge.amplitude * (1 + middle)]
+        known[middle] = answer
+        if answer is None:
+            break
+        low, high = (low, middle) if answer == edge.rises else (middle, high)
+    if high - low > 2 * WIDEST:
+        return Located(None, None, f"undecided between {100 * low:+.3g} and {100 * high:+.3g} %", len(known))
+    return Located(0.5 * (low + high), 0.5 * (high - low), None, len(known))
+
+
+def _nearest(known, rises):
+    """The pair of neighbouring offsets between which the outcome changes the way of the edge, nearest to 0."""
+    points = sorted(point for point, answer in known.items() if answer is not None)
+    pairs = [(a, b) for a, b in zip(points, points[1:], strict=False) if known[a] == (not rises) and known[b] == rises]
+    return min(pairs, key=lambda pair: abs(pair[0] + pair[1]), default=None)

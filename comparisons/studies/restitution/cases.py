@@ -1,0 +1,145 @@
+"""The runs of the restitution study: blocks released from rest, in every engine, variant and accuracy setting.
+
+Two parts: the grid (slenderness x base x accuracy knob), and experiments that change one suspected cause of error
+at a time.
+"""
+
+import dataclasses
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from analytic import simulate
+from analytic.caryatid import BASE, MASS, RADIUS
+from analytic.scene import Base, Block, Scene, Start
+from engines import get_engine
+
+from ...running.cases import Case
+
+CARYATID_BASE = BASE.mass / MASS  # its m_b/m
+IMPACTS = 3  # used of each run; on rigid ground the slowest is about as fast as the first from a third of the tilt
+
+# Accuracy knob of each variant and the values it runs through; the variant's default comes with them.
+LADDERS = {
+    ("exudyn", "compliant-corners"): ("stiffness", (1e9, 1e10, 1e12)),
+    ("exudyn", "switched-joints"): ("step", (1.6e-2, 4e-3)),
+    ("exudyn", "native-contact"): ("step", (1e-3, 3e-4)),
+    ("pybullet", "impact-aware"): ("accuracy", (1e-3, 1e-4, 1e-6)),
+    ("pybullet", "fixed-step"): ("step", (4e-3, 1e-3, 2.5e-4)),
+    ("pybullet", "first-script"): ("step", (1 / 60, 1 / 1000)),
+    ("mujoco", "impact-aware"): ("accuracy", (1e-3, 1e-4)),
+    ("mujoco", "fixed-step"): ("step", (4e-3, 1e-3)),
+    ("mujoco", "first-script"): ("step", (1 / 120, 5e-4)),
+}
+
+
+@dataclass(frozen=True)
+class Grid:
+    """What the study covers: slendernesses [rad], m_b/m (None: rigid ground), starts (tilt over slenderness).
+
+    ladder: (slenderness, m_b/m) where the accuracy knobs run through their ladders.
+    """
+
+    slendernesses: tuple
+    ratios: tuple
+    starts: tuple
+    ladder: tuple
+    phase_starts: int  # of the experiment on the phase of the steps
+
+
+STARTS = tuple(round(float(start), 4) for start in np.linspace(0.3, 0.8, 8))
+FULL = Grid((0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45), (None, 10.0, 1.0, 0.3, CARYATID_BASE, 0.01), STARTS,
+            tuple((gamma, ratio) for gamma in (0.1, 0.2, 0.3, 0.45) for ratio in (None, 1.0, CARYATID_BASE)), 48)
+QUICK = Grid((0.1, 0.2, 0.3, 0.45), (None, 10.0, 1.0, CARYATID_BASE), STARTS,
+             ((0.2, None), (0.2, CARYATID_BASE)), 16)
+
+
+def free_scene(slenderness, ratio, start, scale=1.0):
+    """A block on rigid ground (ratio None) or on a freely sliding base of ratio times its mass, tilted and let go.
+
+    It ends past the peak of the swing after the third impact of the model, or a little after coming to rest.
+    scale: size of the block over the Caryatid's.
+    """
+    scene = Scene(block=Block(mass=MASS, radius=RADIUS * scale, slenderness=slenderness),
+                  base=Base(mass=ratio * MASS) if ratio else None, start=Start(tilt=start * slenderness),
+                  duration=12.0 * math.sqrt(scale))
+    times = [impact.time for impact in simulate(scene, history=False).impacts[:IMPACTS + 1]]
+    if len(times) > IMPACTS:
+        return scene.with_(duration=times[-2] + 0.75 * (times[-1] - times[-2]))
+    return scene.with_(duration=times[-1] + 0.2 * math.sqrt(scale))
+
+
+def knob_of(engine, variant):
+    """(name, default, values) of a variant's accuracy knob; its first setting, at its default, if not in `LADDERS`."""
+    settings = get_engine(engine).VARIANTS[variant]
+    name, values = LADDERS.get((engine, variant), (dataclasses.fields(settings)[0].name, ()))
+    default = getattr(settings, name)
+    return name, default, tuple(sorted({*values, default}))
+
+
+def variants_of(engines):
+    """(engine, variant) pairs."""
+    return [(engine, variant) for engine in engines for variant in get_engine(engine).VARIANTS]
+
+
+def grid_cases(grid, engines):
+    """The grid as cases, tagged with part, ratio, slenderness, start and knob value."""
+    cases = []
+    for ratio in grid.ratios:
+        for slenderness in grid.slendernesses:
+            scenes = [(start, free_scene(slenderness, ratio, start)) for start in grid.starts]
+            climbs = (slenderness, ratio) in grid.ladder
+            for engine, variant in variants_of(engines):
+                name, default, values = knob_of(engine, variant)
+                for value in values if climbs else (default,):
+                    settings = {} if value == default else {name: value}
+                    cases += [Case(scene, engine, variant, settings,
+                                   {"part": "grid", "ratio": ratio, "slenderness": slenderness, "start": start,
+                                    "knob": value}) for start, scene in scenes]
+    return cases
+
+
+# name of an experiment: engine, variant, the setting it changes, its values, slenderness
+EXPERIMENTS = {
+    "stiffness": ("exudyn", "compliant-corners", "stiffness", (1e8, 1e9, 1e10, 1e11, 1e12)),
+    "rebound": ("exudyn", "compliant-corners", "rebound", (1e-4, 1e-3, 1e-2, 1e-1)),
+    "sticking": ("exudyn", "compliant-corners", "sticking", (0.03, 0.1, 0.3, 1.0)),
+    "damping": ("exudyn", "compliant-corners", "damping", (0.1, 0.5, 1.0)),
+    "friction": ("exudyn", "compliant-corners", "friction", (0.05, 0.1, 0.15, 0.2, 0.3, 0.6, 5.0)),
+    "largest step": ("pybullet", "impact-aware", "largest_step", (5e-4, 1e-3, 2e-3, 4e-3)),
+}
+EXPERIMENT_SLENDERNESS = 0.2
+EXPERIMENT_RATIOS = (None, CARYATID_BASE)
+PHASE_STEPS = (4e-3, 1e-3, 2.5e-4)  # s
+SCALES = (0.25, 1.0, 4.0)  # of the block, to tell (8) from (8) as printed
+
+
+def experiment_cases(grid, engines):
+    """One suspected cause at a time; tagged with part, experiment, ratio, slenderness, start and value."""
+    cases = []
+    gamma = EXPERIMENT_SLENDERNESS
+    for name, (engine, variant, setting, values) in EXPERIMENTS.items():
+        if engine not in engines:
+            continue
+        for ratio in EXPERIMENT_RATIOS:
+            for start in grid.starts[::2]:
+                scene = free_scene(gamma, ratio, start)
+                cases += [Case(scene, engine, variant, {setting: value},
+                               {"part": "experiment", "experiment": name, "ratio": ratio, "slenderness": gamma,
+                                "start": start, "value": value}) for value in values]
+    if "pybullet" in engines:
+        # Starts so close together that the first impacts lie within one of the longest steps.
+        for start in np.linspace(0.600, 0.604, grid.phase_starts):
+            scene = free_scene(gamma, None, float(start))
+            cases += [Case(scene, "pybullet", "fixed-step", {"step": step},
+                           {"part": "experiment", "experiment": "phase", "ratio": None, "slenderness": gamma,
+                            "start": float(start), "value": step}) for step in PHASE_STEPS]
+    for engine in engines:
+        variant = get_engine(engine).DEFAULT_VARIANT
+        for scale in SCALES:
+            scene = free_scene(gamma, CARYATID_BASE, 0.6, scale)
+            cases.append(Case(scene, engine, variant, {},
+                              {"part": "experiment", "experiment": "size", "ratio": CARYATID_BASE,
+                               "slenderness": gamma, "start": 0.6, "value": scale}))
+    return cases

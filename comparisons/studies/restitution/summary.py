@@ -1,0 +1,257 @@
+"""From the runs of the restitution study to its result: errors of each cell, each setting and each experiment."""
+
+import math
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from analytic import simulate
+from analytic.caryatid import MASS, RADIUS
+from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
+from engines import get_engine
+
+from .cases import (
+    CARYATID_BASE,
+    EXPERIMENT_SLENDERNESS,
+    EXPERIMENTS,
+    IMPACTS,
+    SCALES,
+    free_scene,
+    knob_of,
+    variants_of,
+)
+from .measure import SLOWEST_IMPACT, measured, strong_impacts
+
+GROUNDS = ("rigid ground", "sliding base")
+# Bullet's default damping of a multibody: force and moment of d m v (1 + |v|) and d I w (1 + |w|), SI units.
+BULLET_DAMPING = 0.04
+DIGITS = 4
+
+
+def result_of(grid, rows):
+    """(settings, rows, arrays) of the result file, from the rows of the sweep."""
+    engines = list(dict.fromkeys(row.case.solver for row in rows))
+    cells, experiments = {}, {}
+    for row in rows:
+        tag = row.case.tag
+        if tag["part"] == "grid":
+            key = (row.case.solver, row.case.variant, tag["knob"], tag["ratio"], tag["slenderness"])
+            cells.setdefault(key, []).append(row)
+        else:
+            key = (tag["experiment"], row.case.solver, row.case.variant, tag["ratio"], tag["value"])
+            experiments.setdefault(key, []).append(row)
+    pooled = {key: _Pool(members) for key, members in cells.items()}
+    entries = [_cell(key, pool) for key, pool in pooled.items()]
+    entries += _summaries(pooled, engines, grid)
+    phases = {key[-1]: members for key, members in experiments.items() if key[0] == "phase"}
+    entries += [_experiment(key, _Pool(members)) for key, members in experiments.items() if key[0] != "phase"]
+    found, arrays = _phases(phases)
+    entries += found + _flight_damping(pooled) + _failures(rows)
+    scenes = {(ratio, gamma): free_scene(gamma, ratio, 0.6) for ratio in grid.ratios for gamma in grid.slendernesses}
+    settings = {
+        "slendernesses": grid.slendernesses, "ratios": grid.ratios, "starts": grid.starts, "impacts": IMPACTS,
+        "slowest_impact": SLOWEST_IMPACT, "mass": MASS, "radius": RADIUS, "engines": engines,
+        "knobs": [dict(zip(("engine", "variant", "knob", "default", "values"), (*one, *knob_of(*one)), strict=True))
+                  for one in variants_of(engines)],
+        "default_variants": {engine: get_engine(engine).DEFAULT_VARIANT for engine in engines},
+        "experiments": {name: {"engine": one[0], "variant": one[1], "setting": one[2],
+                               "slenderness": EXPERIMENT_SLENDERNESS} for name, one in EXPERIMENTS.items()},
+        "friction_needed": {ground: friction_needed(free_scene(EXPERIMENT_SLENDERNESS, ratio, 0.6))
+                            for ground, ratio in zip(GROUNDS, (None, CARYATID_BASE), strict=True)},
+        "formulas": [{"ratio": ratio, "slenderness": gamma, "restitution": restitution(scene),
+                      "jump_length": base_jump_length(scene), "jump_length_printed": base_jump_length_as_printed(scene)}
+                     for (ratio, gamma), scene in scenes.items()],
+        "printed_factors": {scale: free_scene(EXPERIMENT_SLENDERNESS, 1.0, 0.6, scale).block.half_height
+                            for scale in SCALES}}
+    return settings, [_short(entry) for entry in entries], arrays
+
+
+class _Pool:
+    """The runs of one cell, measured: arrays of all impacts together."""
+
+    def __init__(self, members):
+        self.runs, self.members = len(members), members
+        self.sound = [row for row in members if not row.failed]
+        errors = [measured(row.case.scene, row.values, IMPACTS) for row in self.sound]
+        self.errors = {name: np.concatenate([one[name] for one in errors if name in one])
+                       for name in {name for one in errors for name in one}}
+        self.expected = sum(len(_model_times(row.case.scene)) for row in self.sound)
+        late = [one["time"][:len(times)] / times[:len(one["time"])] - 1 for one, times in
+                ((one, _model_times(row.case.scene)) for one, row in zip(errors, self.sound, strict=True))]
+        self.late = np.concatenate(late) if late else np.empty(0)
+        self.cpu = sum(row.cost["cpu_seconds"] for row in self.sound)
+        self.simulated = sum(row.values["end"] for row in self.sound)
+        self.steps = sum(row.values["steps"] for row in self.sound)
+
+    def get(self, name):
+        values = self.errors.get(name, np.empty(0))
+        return values[np.isfinite(values)]
+
+
+def _model_times(scene):
+    return np.array([impact.time for impact in strong_impacts(simulate(scene, history=False))[:IMPACTS]])
+
+
+def _measures(pools):
+    """Errors and cost of one or more pools together."""
+    def of(name, measure):
+        values = np.concatenate([pool.get(name) for pool in pools])
+        return float(measure(values)) if len(values) else None
+
+    late = np.concatenate([pool.late for pool in pools])
+    simulated = sum(pool.simulated for pool in pools)
+    return {"runs": sum(pool.runs for pool in pools), "failed": sum(pool.runs - len(pool.sound) for pool in pools),
+            "impacts": sum(len(pool.get("swing")) for pool in pools),
+            "lost": sum(pool.expected - len(pool.late) for pool in pools),
+            "bias": of("swing", np.mean), "rms": of("swing", _rms), "worst": of("swing", _largest),
+            "rms_state": of("state", _rms), "jump_rms": of("jump", _rms), "jump_worst": of("jump", _largest),
+            "jump_8": of("jump_8", _rms), "jump_8_printed": of("jump_8_printed", _rms),
+            "time_rms": float(_rms(late)) if len(late) else None,
+            "cpu_per_second": sum(pool.cpu for pool in pools) / simulated if simulated else None,
+            "steps_per_second": sum(pool.steps for pool in pools) / simulated if simulated else None}
+
+
+def _rms(values):
+    return np.sqrt(np.mean(np.square(values)))
+
+
+def _largest(values):
+    return np.abs(values).max()
+
+
+def _cell(key, pool):
+    engine, variant, value, ratio, slenderness = key
+    return {"part": "cell", "engine": engine, "variant": variant, "value": value, "ratio": ratio,
+            "slenderness": slenderness, **_measures([pool])}
+
+
+def _summaries(pooled, engines, grid):
+    """All cells of a variant together, on rigid ground and on bases: at its default, and at each step of its ladder.
+
+    A row "order" holds the slope of log error over log knob value along the ladder.
+    """
+    entries = []
+    for engine, variant in variants_of(engines):
+        _, default, values = knob_of(engine, variant)
+        for ground in GROUNDS:
+            def pools(value, where, one=(engine, variant), ground=ground):
+                return [pool for key, pool in pooled.items() if key[:3] == (*one, value)
+                        and (key[3] is None) == (ground == GROUNDS[0])
+                        and (where is None or (key[4], key[3]) in where)]
+
+            given = {"engine": engine, "variant": variant, "ground": ground}
+            everywhere = pools(default, None)
+            if everywhere:
+                entries.append({"part": "summary", "scope": "all", **given, "value": default, **_measures(everywhere)})
+            ladder = [{"part": "summary", "scope": "ladder", **given, "value": value, **_measures(found)}
+                      for value in values if (found := pools(value, grid.ladder))]
+            found = [(row["value"], row["rms"]) for row in ladder if row["rms"]]
+            order = np.polyfit(*np.log(np.transpose(found)), 1)[0] if len(found) > 1 else None
+            entries += [*ladder, {"part": "order", **given, "order": order and float(order)}]
+    return entries
+
+
+def _experiment(key, pool):
+    name, engine, variant, ratio, value = key
+    return {"part": "experiment", "experiment": name, "engine": engine, "variant": variant, "ratio": ratio,
+            "value": value, **_measures([pool])}
+
+
+def _phases(members):
+    """Error of the first impact against where in the step the model's impact falls, for each step length.
+
+    `explained`: share of the error's variance that a sawtooth of that phase explains; `least`, `most`: its ends,
+    error over step [1/s].
+    """
+    entries, arrays = [], {}
+    for step, rows in members.items():
+        sound = [row for row in rows if not row.failed]
+        phase = np.array([_model_times(row.case.scene)[0] / step % 1.0 for row in sound])
+        error = np.array([measured(row.case.scene, row.values, 1)["swing"][0] for row in sound])
+        fits = []
+        for cut in np.sort(phase):
+            basis = np.column_stack([np.ones(len(phase)), (phase - cut) % 1.0])
+            constants = np.linalg.lstsq(basis, error, rcond=None)[0]
+            fits.append((float(np.sum((error - basis @ constants) ** 2)), constants))
+        left, (begin, rise) = min(fits, key=lambda fit: fit[0])
+        arrays[f"phase/{step:g}/phase"], arrays[f"phase/{step:g}/error"] = phase, error
+        ends = sorted((float(begin / step), float((begin + rise) / step)), key=abs)
+        entries.append({"part": "phase", "step": step, "runs": len(rows), "bias": float(error.mean()),
+                        "rms": float(_rms(error)), "explained": 1 - left / float(np.sum((error - error.mean()) ** 2)),
+                        "least": ends[0], "most": ends[1]})
+    return entries, arrays
+
+
+def _flight_damping(pooled):
+    """Bullet's default damping as the cause of first-script's error on rigid ground: predicted beside measured."""
+    entries = []
+    for key, pool in pooled.items():
+        if key[:2] != ("pybullet", "first-script") or key[3] is not None:
+            continue
+        predicted = [damped_error(row.case.scene, BULLET_DAMPING) for row in pool.sound]
+        if predicted and len(pool.get("swing")):
+            entries.append({"part": "flight damping", "step": key[2], "slenderness": key[4],
+                            "friction_needed": friction_needed(pool.members[0].case.scene),
+                            "predicted": float(np.mean(np.concatenate(predicted))),
+                            "measured": float(pool.get("swing").mean())})
+    return entries
+
+
+def damped_error(scene, damping):
+    """Error of restitution by swing energies, shape (impacts,), of a block on rigid ground that Bullet damps in flight.
+
+    J_O phi'' = -m g R sin(gamma - phi) - d phi' [J_O + (m R^3 + I_c) |phi'|], d = damping [1/s]; impacts by eq. (7).
+    """
+    block = scene.block
+    p2, gamma, e = scene.rocking_frequency**2, block.slenderness, max(restitution(scene), 0.0)
+    quadratic = (block.mass * block.radius**3 + block.centre_inertia) / block.inertia
+
+    def fall(t, y):
+        return y[1], -p2 * math.sin(gamma - y[0]) - damping * y[1] * (1 + quadratic * abs(y[1]))
+
+    def landing(t, y):
+        return y[0]
+
+    def peak(t, y):
+        return y[1]
+
+    landing.terminal = peak.terminal = True
+    landing.direction = peak.direction = -1
+    tilt, energies = abs(scene.start.tilt), []
+    for _ in range(IMPACTS + 1):
+        energies.append(math.cos(gamma - tilt) - math.cos(gamma))
+        down = solve_ivp(fall, (0, 30), (tilt, 0.0), events=landing, rtol=1e-9, atol=1e-12)
+        up = solve_ivp(fall, (0, 30), (1e-12, -e * down.y[1, -1]), events=peak, rtol=1e-9, atol=1e-12)
+        tilt = up.y[0, -1]
+    energies = np.array(energies)
+    return np.sqrt(energies[1:] / energies[:-1]) - e
+
+
+def friction_needed(scene):
+    """Friction that an impact of the model needs: horizontal over vertical impulse on the block.
+
+    Centre of mass: before, velocity (h, -b) |w|, after, (e h, e b) |w|, less the base's jump.
+    """
+    model, block = RockingModel.of(scene), scene.block
+    after, jump = model.impact(-1.0)
+    horizontal = block.half_height * (1 + after) - abs(jump)
+    return abs(horizontal) / (block.half_width * (1 - after))
+
+
+def _failures(rows):
+    """Each distinct reason of failure with its count, one message and where it first happened."""
+    found = {}
+    for row in rows:
+        if row.failed:
+            key = (row.case.solver, row.case.variant, row.failure["reason"])
+            found.setdefault(key, []).append(row)
+    return [{"part": "failure", "engine": key[0], "variant": key[1], "reason": key[2], "count": len(members),
+             "message": members[0].failure["message"], "tag": members[0].case.tag,
+             "last_state": members[0].failure.get("last_state")} for key, members in found.items()]
+
+
+def _short(entry):
+    """Numbers to `DIGITS` significant digits, but for the coordinates of the grid."""
+    exact = ("value", "ratio", "slenderness", "step", "tag", "last_state")
+    return {key: float(f"{value:.{DIGITS}g}") if isinstance(value, float) and key not in exact and math.isfinite(value)
+            else value for key, value in entry.items()}

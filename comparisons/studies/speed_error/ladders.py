@@ -1,0 +1,160 @@
+"""Every solver and the ladder of its accuracy knob: what is run on which scene."""
+
+from dataclasses import dataclass, field, fields
+
+from engines import get_engine, installed_engines
+
+from ...bench import peers
+from ...running.cases import fingerprint, module_of
+from . import models
+from .scenes import Trial
+
+RUNNER = "comparisons.studies.speed_error.timing:timed"
+THREE_D = "comparisons.studies.speed_error.models:free_block_3d"
+TRANSPARENT = ("free-rigid", "near-overturning")  # scenes without base or record: what the peers are written for
+SAMPLED = ("isolated-standing", "isolated-rocking")
+
+NEEDED = "as needed"
+HEAVY_BASE, SPRINGS, FREE_3D = "rigid ground as a heavy base", "rigid ground as stiff springs", "free block in 3-D"
+
+
+@dataclass(frozen=True, eq=False)
+class Entry:
+    """One solver at one setting on one trial.
+
+    family: how tables call the solver. solver, variant, settings: what is run. knob, value: the accuracy knob.
+    model: `NEEDED`, or what is modelled beyond what the scene needs. scene_of: Trial -> scene simulated.
+    """
+
+    trial: Trial
+    family: str
+    solver: str
+    knob: str
+    value: float
+    variant: str | None = None
+    settings: dict = field(default_factory=dict)
+    law: str | None = None
+    model: str = NEEDED
+    scene_of: object = None
+
+    @property
+    def scene(self):
+        return self.trial.scene if self.scene_of is None else self.scene_of(self.trial.scene)
+
+    def arguments(self, turn):
+        """Settings of the sweep's case: what `speed_error_runs.timed` takes."""
+        boundary = self.trial.boundary
+        return {"solver": self.solver, "variant": self.variant, "settings": {**self.settings, self.knob: self.value},
+                "boundary": boundary and [boundary.amplitude, boundary.slope], "round": turn,
+                "code": fingerprint(code_module(self.solver))}
+
+
+def code_module(solver):
+    """A solver whose code and versions the result depends on, as `comparisons.running.cases.fingerprint` takes it."""
+    return "comparisons.bench.peers:RUNS" if solver.startswith("peer:") else solver
+
+
+def modules(entries):
+    """Modules behind all entries, for the result file's provenance."""
+    return sorted({module_of(code_module(entry.solver)) for entry in entries})
+
+
+def powers(*exponents):
+    return tuple(10.0**exponent for exponent in exponents)
+
+
+# engine, variant: (full ladder, quick ladder) of its knob; a variant that is not listed here gets its default times
+# `FACTORS`
+ENGINE_LADDERS = {
+    ("exudyn", "compliant-corners"): (powers(8, 9, 10, 11, 12), powers(9, 11)),
+    ("exudyn", "switched-joints"): ((1e-2, 3e-3, 1e-3, 3e-4, 1e-4), (1e-2, 1e-3)),
+    ("exudyn", "native-contact"): ((1e-3, 3e-4, 1e-4), (1e-3,)),
+    ("pybullet", "impact-aware"): (powers(-2, -3, -4, -5, -6), powers(-3, -5)),
+    ("pybullet", "fixed-step"): ((1 / 240, 1e-3, 3e-4, 1e-4, 3e-5), (1 / 240, 1e-3)),
+    ("pybullet", "first-script"): ((1 / 60, 1 / 240, 1e-3, 2e-4), (1 / 240, 1e-3)),
+}
+FREE_3D_STEPS = 4
+FACTORS = ((8, 4, 2, 1), (1,))
+KERNEL = (powers(-3, -4, -6, -8, -10, -12, -14, -16), powers(-4, -8, -12))
+STEPPING = (powers(-2, -2.5, -3, -3.5, -4, -4.5, -5, -6), powers(-2, -3, -4))
+# a restart at every sample makes a scipy run under a record cost seconds
+TWIN = {"DOP853": (powers(-3, -5, -7, -9, -11, -12), powers(-5, -9)),
+        "RK45": (powers(-3, -5, -7, -9, -11), powers(-5, -9)),
+        "LSODA": (powers(-3, -5, -7, -9, -11), powers(-7)), "Radau": (powers(-3, -5, -7), powers(-5))}
+TWIN_SAMPLED = {"DOP853": (powers(-3, -6, -9), ()), "RK45": (powers(-3, -6, -9), ()),
+                "LSODA": (powers(-6), ()), "Radau": (powers(-3), ())}
+PEER_LADDERS = {"heyoka": (powers(-6, -9, -12, -15), powers(-9)), "CyRK DOP853": (powers(-6, -9, -12, -14), powers(-9)),
+                "CVODE Adams": (powers(-6, -9, -12), powers(-9))}
+TWIN_SETTINGS = {"energy": False}
+
+
+def entries(trials, quick):
+    """All entries, ordered so that solvers alternate."""
+    pick = 1 if quick else 0
+    found = []
+    for trial in trials:
+        here = _analytic(trial, pick) + _engines(trial, pick)
+        if trial.name in TRANSPARENT:
+            here += _peers(trial, pick)
+        if trial.name in SAMPLED:
+            here += _bouc_wen(trial, pick)
+        found.append(here + _extras(trial, pick))
+    return [entry for group in found for entry in _alternating(group)]
+
+
+def _analytic(trial, pick):
+    found = [Entry(trial, "kernel", "analytic", "tolerance", value) for value in KERNEL[pick]]
+    found += [Entry(trial, "time-stepping", "time-stepping", "step", value) for value in STEPPING[pick]]
+    ladders = TWIN_SAMPLED if trial.name in SAMPLED else TWIN
+    return found + [Entry(trial, f"scipy {method}", "twin", "rtol", value, settings={**TWIN_SETTINGS, "method": method})
+                    for method, ladder in ladders.items() for value in ladder[pick]]
+
+
+def _engines(trial, pick):
+    found = []
+    for name in installed_engines():
+        for variant, defaults in get_engine(name).VARIANTS.items():
+            knob = fields(defaults)[0].name
+            ladder = ENGINE_LADDERS.get((name, variant))
+            values = ladder[pick] if ladder else [getattr(defaults, knob) * factor for factor in FACTORS[pick]]
+            found += [Entry(trial, f"{name}, {variant}", name, knob, value, variant=variant) for value in values]
+    return found
+
+
+def _peers(trial, pick):
+    return [Entry(trial, name, f"peer:{name}", "tolerance", value)
+            for name in peers.installed() for value in PEER_LADDERS[name][pick]]
+
+
+def _bouc_wen(trial, pick):
+    law = trial.with_law("bouc-wen")
+    found = [Entry(law, "kernel, Bouc-Wen", "analytic", "tolerance", value, law="bouc-wen") for value in KERNEL[pick]]
+    found += [Entry(law, "time-stepping, Bouc-Wen", "time-stepping", "step", value, law="bouc-wen")
+              for value in STEPPING[pick]]
+    return found + [Entry(law, "scipy DOP853, Bouc-Wen", "twin", "rtol", value, law="bouc-wen",
+                          settings={**TWIN_SETTINGS, "method": "DOP853"}) for value in TWIN_SAMPLED["DOP853"][pick]]
+
+
+def _extras(trial, pick):
+    """The same scene with more than it needs."""
+    found = []
+    if trial.name in TRANSPARENT:
+        ways = [(SPRINGS, models.on_stiff_springs)]
+        if trial.scene.motion is None:  # a free base does not feel the ground's motion
+            ways.append((HEAVY_BASE, models.on_heavy_base))
+        found += [Entry(trial, "kernel", "analytic", "tolerance", value, model=model, scene_of=change)
+                  for model, change in ways for value in powers(-8, -12)[pick:]]
+    if "pybullet" in installed_engines() and trial.scene.bearings is None:
+        values = ENGINE_LADDERS["pybullet", "fixed-step"][pick][:FREE_3D_STEPS]
+        found += [Entry(trial, "pybullet, fixed-step", THREE_D, "step", value, model=FREE_3D) for value in values]
+    return found
+
+
+def _alternating(group):
+    """The first setting of every solver, then the second of every solver, and so on."""
+    rank, ordered = {}, []
+    for entry in group:
+        key = entry.family, entry.law, entry.model
+        rank[key] = rank.get(key, -1) + 1
+        ordered.append((rank[key], entry))
+    return [entry for _, entry in sorted(ordered, key=lambda pair: pair[0])]

@@ -1,0 +1,96 @@
+"""Errors of one run against the reference, the same code for every solver; nothing here knows who made the run."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+
+from analytic.response import Impact
+from analytic.rocking import restitution
+
+from ...measuring.measures import impact_time_errors, state_restitution
+
+# measure: (label with unit, words)
+MEASURES = {
+    "restitution": ("restitution error, rms [-]", "restitution"),
+    "impact_time": ("impact time error, rms [s]", "impact times"),
+    "peak_tilt": ("error of peak tilt / slenderness [-]", "peak tilt"),
+    "peak_displacement": ("relative error of the peak base displacement [-]", "peak displacement"),
+    "end_tilt": ("error of |tilt| / slenderness at the end [-]", "tilt at the end"),
+    "boundary_shift": ("relative shift of the overturning boundary [-]", "overturning boundary"),
+}
+SLOWEST = 0.1  # of the fastest impact: those that are judged; below, engines may rest where the model still chatters
+
+# A boundary search that still moves this far has found none. Where steps are fixed, the boundary depends on where in a
+# step the impact falls, which differs from run to run: the root mean square of the last positions stands for it.
+STRAY, LAST = 0.025, 3
+
+
+def errors(trial, values, shifts=None):
+    """Absolute errors by measure, of those the trial asks for and the run can show; and "lost_impacts".
+
+    Parameters
+    ----------
+    trial : Trial
+    values : dict
+        `Response.to_json()` of the run, or of the first run of a boundary search.
+    shifts : list of float or None
+        Relative position of the boundary against the reference's, one per run of the search. A solver without a
+        boundary nearby has no error "boundary_shift".
+    """
+    found = {}
+    impacts = SimpleNamespace(impacts=[Impact(**impact) for impact in values["impacts"]])
+    if values["settings"].get("knows_impacts", True):
+        found["lost_impacts"] = _lost(impacts, trial.reference)
+        if "restitution" in trial.measures:
+            found["restitution"] = _restitution_error(trial.scene, impacts)
+        if "impact_time" in trial.measures:
+            found["impact_time"] = _impact_time_error(impacts, trial.reference)
+    gamma = trial.scene.block.slenderness
+    if "peak_tilt" in trial.measures and values["peak_tilt"] is not None:
+        found["peak_tilt"] = abs(values["peak_tilt"] - trial.reference.peak_tilt) / gamma
+    if "peak_displacement" in trial.measures and values["peak_base_displacement"] is not None:
+        found["peak_displacement"] = abs(values["peak_base_displacement"] / trial.reference.peak_base_displacement - 1)
+    end = values["end"]
+    if "end_tilt" in trial.measures and abs(end["time"] - trial.scene.duration) < 1e-9:
+        found["end_tilt"] = abs(abs(end["tilt"]) - abs(trial.reference.end.tilt)) / gamma
+    if shifts and abs(shifts[-1] - shifts[-2]) < STRAY:
+        found["boundary_shift"] = float(np.sqrt(np.mean(np.square(shifts[-LAST:]))))
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def _strong(reference):
+    rates = np.abs([impact.rate_before for impact in reference.impacts])
+    return rates >= SLOWEST * rates.max(initial=0.0)
+
+
+def _lost(impacts, reference):
+    """Impacts of the reference without a partner."""
+    if not reference.impacts:
+        return 0
+    return int(np.isnan(impact_time_errors(impacts, reference)[_strong(reference)]).sum())
+
+
+def _impact_time_error(impacts, reference):
+    found = impact_time_errors(impacts, reference)[_strong(reference)]
+    found = found[np.isfinite(found)]
+    return float(np.sqrt(np.mean(found**2))) if len(found) else None
+
+
+def _restitution_error(scene, impacts):
+    """Root mean square of e - eq. (7) over the impacts fast enough.
+
+    In free motion the swing between two impacts keeps its energy (and the base's momentum), so the rate before the
+    next impact is the rate after this one: e is read from successive rates, and a solver that applies eq. (7)
+    exactly is judged by what it does to the swing. Under a motion e is that of the states at the impact.
+    """
+    before = np.array([impact.rate_before for impact in impacts.impacts])
+    fast = np.abs(before) >= SLOWEST * np.abs(before).max(initial=0.0)
+    if scene.motion is None and scene.bearings is None:
+        kept = fast[:-1] & fast[1:] & (before[:-1] * before[1:] < 0)
+        found = np.abs(before[1:] / before[:-1])[kept]
+    else:
+        found = state_restitution(impacts)[fast]
+    if not len(found):
+        return None
+    return math.sqrt(np.mean((found - restitution(scene)) ** 2))

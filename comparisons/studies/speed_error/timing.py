@@ -1,0 +1,129 @@
+"""One measurement in a worker: warm, repeated if short; error and CPU time from the very same runs."""
+
+import dataclasses
+import functools
+import math
+import time
+
+import numpy as np
+
+from analytic.response import Response, State
+
+from ...running.cases import solver as solver_function
+from .scenes import BOUNDARY_RUNS, Boundary, at_amplitude, margin
+
+TICK = 4e-3  # s of CPU: shorter measurements are repeated until they took as long, and the mean counts
+MOST_REPEATS = 200
+WARM_SECONDS = 0.02  # s simulated before the clock counts: code and caches are loaded
+STRIDE = 0.05  # longest move of a boundary search, relative; it ends within six of them or finds no boundary
+SMALL = 1e-3  # margin below which the reference's slope alone is as good as a chord
+
+
+def timed(scene, *, solver, variant=None, settings=None, boundary=None, **_):
+    """The `Response` of a measurement, as a solver of the sweep: cpu_seconds is the mean over its runs.
+
+    Parameters
+    ----------
+    scene : Scene
+    solver, variant, settings
+        Any solver of `comparisons.running.cases`, or "peer:NAME" for one of `comparisons.bench.peers`.
+    boundary : list or None
+        (amplitude, slope) of a `Boundary` to search; its shifts come back as settings["boundary_shifts"].
+    **_
+        What only makes measurements different (round, digest of the code).
+    """
+    goal = Boundary(*boundary) if boundary else None
+    run = _run_of(solver, variant, settings or {})
+    _warm(solver, variant, scene.bearings and scene.bearings.law, run, scene)
+    response, shifts, cpu = _measure(run, scene, goal)
+    runs = BOUNDARY_RUNS if goal else 1
+    repeats = 1
+    if 0 < cpu < TICK and response.outcome != "failed":
+        repeats = min(MOST_REPEATS, math.ceil(TICK / cpu))
+        cpu = sum(_measure(run, scene, goal)[2] for _ in range(repeats)) / repeats
+    extra = {"boundary_shifts": shifts, "repeats": repeats, "knows_impacts": not solver.startswith("peer:")}
+    return dataclasses.replace(response, cpu_seconds=cpu / runs, settings={**response.settings, **extra})
+
+
+def searched(run, scene, boundary):
+    """(the first response, boundary shifts or None): a single run, or a search for the solver's own boundary.
+
+    The margin is smooth in the amplitude, so moving by the reference's slope converges at once for a solver near the
+    reference; one far from it is bracketed.
+    """
+    return _measure(run, scene, boundary)[:2]
+
+
+def _measure(run, scene, boundary):
+    """(first response, shifts or None, CPU seconds of all runs)."""
+    if boundary is None:
+        response = run(scene)
+        return response, None, response.cpu_seconds
+    shift, shifts, cpu, first, known = 0.0, [], 0.0, None, {}
+    for _ in range(BOUNDARY_RUNS):
+        moved = at_amplitude(scene, boundary.amplitude * (1 + shift))
+        response = run(moved)
+        first = first or response
+        cpu += response.cpu_seconds
+        if response.outcome == "failed":
+            return response, None, cpu
+        known[shift] = margin(moved, response.end) / boundary.slope
+        shift = _next(known, shift)
+        shifts.append(shift)
+    return first, shifts, cpu
+
+
+def _next(known, last):
+    """Where to look next: by the chord of the two nearest points on either side, else by the reference's slope."""
+    below = max((at for at, value in known.items() if value <= 0), default=None)
+    above = min((at for at, value in known.items() if value > 0), default=None)
+    if below is None or above is None or abs(known[last]) < SMALL:
+        return last - min(max(known[last], -STRIDE), STRIDE)
+    if below > above:  # not monotone here: stay
+        return last
+    return below + (above - below) * min(max(-known[below] / (known[above] - known[below]), 0.1), 0.9)
+
+
+def _run_of(name, variant, settings):
+    """A function scene -> Response."""
+    if name.startswith("peer:"):
+        return functools.partial(peer_response, name=name[5:], **settings)
+    chosen = {} if variant is None else {"variant": variant}
+    return functools.partial(solver_function(name), history=False, **chosen, **settings)
+
+
+_warmed = set()
+
+
+def _warm(name, variant, law, run, scene):
+    """A short run the first time a process meets a solver: its code, and the libraries' caches, are then loaded."""
+    met = name, variant, law, scene.base is None, scene.motion is None
+    if met not in _warmed and not name.startswith("peer:"):
+        run(scene.with_(duration=min(scene.duration, WARM_SECONDS)))
+        _warmed.add(met)
+
+
+@functools.lru_cache(maxsize=64)
+def _peer_run(name, tolerance, scene):
+    """The peer's function for a scene, compiled and run once."""
+    from ...bench.peers import RUNS
+    from ...bench.problems import Problem
+
+    unit = np.ones(1)
+    run = RUNS[name](Problem(scene.name, scene, scene.duration, 1e-8, 0, unit, unit), tolerance)
+    run()
+    return run
+
+
+def peer_response(scene, *, name, tolerance):
+    """What a peer of the benchmark found: its end state only; it keeps no impacts and counts no steps."""
+    run = _peer_run(name, tolerance, scene)
+    begin = time.process_time()
+    state, impacts = run()
+    cpu = time.process_time() - begin
+    nan = math.nan
+    end = State(scene.duration, float(state[0]), float(state[1]) if len(state) > 1 else nan, 0.0, 0.0, 0.0)
+    return Response(engine=name, variant="", outcome="rocks", overturning_time=None, unstable_time=None,
+                    peak_tilt=nan, peak_tilt_ratio=nan, peak_base_displacement=nan, peak_base_acceleration=nan,
+                    impacts=(), uplifts=(), rests=(), friction_demand=nan, min_normal_ratio=nan, end=end,
+                    cpu_seconds=cpu, steps=0, settings={"tolerance": tolerance, "impacts": impacts}, versions={})

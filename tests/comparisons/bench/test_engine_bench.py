@@ -1,0 +1,255 @@
+"""The wide box and its judgement: what is off is found, what is excused is excused by the model, not by the engine."""
+
+import copy
+import json
+import math
+from functools import partial
+
+import numpy as np
+import pytest
+
+from analytic import Base, Block, PulseMotion, Scene, Start, simulate
+from analytic.rocking import restitution
+from comparisons.bench import engine_tables, engine_verdicts, wide_box
+from comparisons.bench.engine_bench import bench_engines, examine, judged
+from comparisons.bench.engine_figure import draw
+from comparisons.bench.engine_verdicts import (
+    boundary_twins,
+    findings,
+    judge,
+    lost_impacts,
+    near_twins,
+    range_warnings,
+    rule,
+)
+from comparisons.bench.kept import keep
+from comparisons.running.provenance import json_ready
+from comparisons.running.sweep import Row
+
+FREE = Scene(block=Block(mass=10.0, radius=1.0, slenderness=0.25), base=Base(mass=5.0), start=Start(tilt=0.15),
+             duration=4.0)
+
+
+def kept(scene, **options):
+    return json_ready(keep(simulate(scene, **options)))
+
+
+def verdict(scene, run):
+    twins = [{name: kept(twin) for name, twin in family(scene).items()} for family in (near_twins, boundary_twins)]
+    return judge(scene, kept(scene), run, *twins)
+
+
+def quantities(found):
+    return {finding["quantity"] for finding in found}
+
+
+@pytest.fixture(scope="module")
+def ensemble():
+    return [wide_box.wide_scene(1, index) for index in range(600)]
+
+
+def test_scenes_lie_in_the_box_and_fill_it(ensemble):
+    assert wide_box.wide_scene(1, 7).digest() == ensemble[7].digest() != wide_box.wide_scene(2, 7).digest()
+    places = [wide_box.place(scene) for scene in ensemble]
+    box = {"slenderness": (0.03, 1.2), "inertia": (1.01, 3.0), "base": (1e-5, 100.0), "radius": (1e-3, 30.0),
+           "mass": (1e-3, 1e6), "tilt": (1e-4, 0.99), "stiffness": (0.0, 1e9)}
+    for name, (low, high) in box.items():
+        values = np.array([place[name] for place in places if place[name] is not None])
+        assert low * (1 - 1e-9) <= values.min() and values.max() <= high * (1 + 1e-9), name
+        if low:
+            spread = np.log(values / low) / math.log(high / low)
+            assert spread.min() < 0.1 and spread.max() > 0.95, name
+    assert all(scene.bearings.damping <= 1e6 for scene in ensemble if scene.bearings)
+    core = np.mean([place["core"] for place in places])
+    assert 1 / 3 <= core <= 0.5
+    assert {place["law"] for place in places} == {None, "algebraic", "linear", "bouc-wen"}
+    assert sum(scene.base is None for scene in ensemble) > 100
+    assert sum(scene.base is not None and scene.bearings is None for scene in ensemble) > 50
+
+
+def test_the_model_itself_is_right(ensemble):
+    for scene in ensemble[:40]:
+        if scene.bearings is None:
+            run = kept(scene)
+            assert findings(scene, run, kept(scene, tolerance=1e-13)) == []
+
+
+def test_a_restitution_off_by_more_than_a_hundredth_is_found():
+    run, e = kept(FREE), restitution(FREE)
+    for off, expected in ((0.009, set()), (0.011, {"restitution"})):
+        wrong = copy.deepcopy(run)
+        wrong["impacts"][1][2] = (e + off) * wrong["impacts"][1][1]
+        assert quantities(findings(FREE, run, wrong)) == expected
+    wrong["impacts"][1][2] = None  # NaN in JSON
+    assert quantities(findings(FREE, run, wrong)) == {"restitution"}
+
+
+def test_impacts_too_small_to_see_do_not_count():
+    run = kept(FREE)
+    rates = np.abs([rate for _, rate, _ in run["impacts"]])
+    small = next(k for k in range(len(rates)) if rates[k] < 0.1 * rates[0])
+    wrong = copy.deepcopy(run)
+    wrong["impacts"][small][2] *= 0.5
+    assert findings(FREE, run, wrong) == []
+    del wrong["impacts"][small:]
+    assert findings(FREE, run, wrong) == []
+
+
+def test_a_lost_impact_is_found():
+    run = kept(FREE)
+    wrong = copy.deepcopy(run)
+    time = wrong["impacts"].pop(1)[0]
+    assert lost_impacts(FREE, run, wrong) == [time]
+    assert quantities(findings(FREE, run, wrong)) == {"lost impact"}
+
+
+@pytest.mark.parametrize("name, scale", [("tilt", 0.25), ("displacement", 0.25)])
+def test_peaks_count_from_their_least_value_on(name, scale):
+    run = kept(FREE)
+    for factor, expected in ((1.019, set()), (1.021, {name}), (0.979, {name})):
+        assert quantities(findings(FREE, run, {**run, name: factor * run[name]})) == expected
+    least = engine_verdicts.least(FREE)[name]
+    still = {**run, name: 0.0}
+    for value, expected in ((0.99 * least, set()), (1.019 * least, set()), (1.021 * least, {name})):
+        assert quantities(findings(FREE, still, {**run, name: value})) - {"outcome"} == expected
+    assert quantities(findings(FREE, run, {**run, name: None})) >= {name}
+
+
+def pulse(amplitude, duration=4.0):
+    return Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.25), duration=duration,
+                 motion=PulseMotion("one-sine", amplitude, 6.0))
+
+
+@pytest.fixture(scope="module")
+def boundary():
+    """Amplitude [m/s2] at which the block of `pulse` first overturns."""
+    low, high = 3.0, 12.0
+    assert [simulate(pulse(a), history=False).outcome for a in (low, high)] == ["rocks", "overturns"]
+    while high - low > 1e-6:
+        middle = (low + high) / 2
+        low, high = (low, middle) if simulate(pulse(middle), history=False).outcome == "overturns" else (middle, high)
+    return high
+
+
+def test_another_outcome_counts_unless_the_boundary_is_within_a_percent(boundary):
+    near, far = pulse(boundary * 0.9998), pulse(boundary * 0.95)
+    overturns = kept(pulse(boundary * 1.0002))
+    assert verdict(near, overturns) == ([], ["near a boundary"])
+    found, notes = verdict(far, kept(pulse(boundary * 1.01)))
+    assert "outcome" in quantities(found) and notes == []
+
+
+def test_near_a_boundary_the_motion_before_it_still_counts(boundary):
+    near, run = pulse(boundary * 0.9998), kept(pulse(boundary * 1.0002))
+    run["tilts"] = (1.3 * np.array(run["tilts"])).tolist()  # wrong from the first instant on
+    found, notes = verdict(near, run)
+    assert quantities(found) == {"tilt"} and notes == ["near a boundary"]
+
+
+def test_an_ill_conditioned_peak_is_compared_as_long_as_it_is_determined(boundary):
+    close = pulse(boundary * (1 - 2e-6), duration=6.0)  # lingers at the unstable point
+    for factor, expected in ((1 + 3e-5, set()), (1.1, {"tilt"})):
+        run = kept(close.with_(motion=close.motion.scaled(1 - 3e-5)))
+        run["tilts"] = (factor * np.array(run["tilts"])).tolist()
+        run["tilt"] *= 0.95
+        found, notes = verdict(close, run)
+        assert notes == ["ill-conditioned"] and quantities(found) == expected
+
+
+def test_a_well_conditioned_peak_is_not_excused():
+    found, notes = verdict(FREE, {**kept(FREE), "displacement": 0.9 * kept(FREE)["displacement"]})
+    assert quantities(found) == {"displacement"} and notes == []
+
+
+def test_scenes_outside_the_model_are_left_out_by_the_model_alone():
+    run = kept(FREE)
+    assert rule(FREE, run) is None
+    assert rule(FREE, {**run, "normal": -0.1}) == "N <= 0"
+    assert rule(FREE, {**run, "friction": 5.1}) == "friction demand above 5"
+    assert rule(FREE.with_(friction=0.2), {**run, "friction": 0.3}) == "friction demand above 0.2"
+
+
+def rows_of(cases, changes=None, failure=None):
+    """What a sweep would hand back, run here with the analytic model and changed."""
+    rows = []
+    for case in cases:
+        values = {**kept(case.scene), **(changes or {})}
+        rows.append(Row(case, values, failure, {"cpu_seconds": 1e-3}, False))
+    return rows
+
+
+@pytest.mark.parametrize("changes, failure, expected", [
+    ({}, None, "right"), ({"warnings": ["w"]}, None, "right but warned"), ({"tilt": 0.2}, None, "off and silent"),
+    ({"tilt": 0.2, "warnings": ["w"]}, None, "off and warned"),
+    ({}, {"kind": "time limit", "reason": "no result", "message": "m"}, "failed and said")])
+def test_classes(changes, failure, expected):
+    row, = judged([FREE], "exudyn", lambda cases, label: rows_of(cases),
+                  lambda cases: rows_of(cases, changes, failure))
+    assert row["class"] == expected
+    assert row["cause"] == ("no result" if failure else None)
+    assert json.loads(json.dumps(json_ready(row)))["place"]["slenderness"] == 0.25
+
+
+def test_overturning_is_judged_up_to_the_unstable_point_and_by_its_outcome():
+    scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.25), duration=4.0,
+                  motion=PulseMotion("one-sine", 8.0, 6.0))
+    run = kept(scene)
+    assert run["outcome"] == "overturns" and rule(scene, run) is None
+    for changes, expected in (({}, "right"), ({"tilt": 9.9, "displacement": 9.9}, "right"),
+                              ({"outcome": "rocks"}, "off and silent"), ({"tilts": [9.9] * 50}, "off and silent"),
+                              ({"outcome": "rocks", "decided": False}, "right")):
+        row, = judged([scene], "exudyn", lambda cases, label: rows_of(cases), partial(rows_of, changes=changes))
+        assert row["class"] == expected and row["judged_until"] == run["unstable"]
+    thrown = scene.with_(motion=None, start={"tilt": 0.1, "tilt_rate": 2.0})
+    cut = thrown.with_(duration=kept(thrown)["unstable"] * 1.05)
+    assert kept(cut)["outcome"] == "overturns"  # the model follows a certain fall to its end, an engine may not
+    short = {"outcome": "rocks", "decided": False, "tilt": 1.2 * 0.25}
+    row, = judged([cut], "exudyn", lambda cases, label: rows_of(cases), partial(rows_of, changes=short))
+    assert row["class"] == "right"
+
+
+def test_a_warning_that_the_model_gives_too_is_none_about_the_engine():
+    model, run = ({"warnings": [f"the base slides on at {speed} m/s"]} for speed in ("1e-3", "2e-3"))
+    assert range_warnings(model, run) == []
+    radius = "radius R [m] = 0.001 is below 0.01, the limit of the range verified"
+    assert range_warnings(model, {"warnings": [*run["warnings"], radius]}) == [radius]
+
+
+def test_what_the_model_leaves_out_the_engine_is_not_asked():
+    scene = FREE.with_(base={"mass": 5e-3}, start={"tilt": 0.0, "tilt_rate": 4.0})  # thrown off its corner at once
+    assert rule(scene, kept(scene)) is not None
+    row, = judged([scene], "exudyn", lambda cases, label: rows_of(cases), lambda cases: rows_of(cases) * len(cases))
+    assert row["class"] == "left out" and row["cause"] == rule(scene, kept(scene)) and row["outcome"] is None
+
+
+def test_bench_from_scenes_to_figure(tmp_path):
+    pytest.importorskip("pybullet", reason="PyBullet's wheels end at CPython 3.11")
+    rows = bench_engines("pybullet", tmp_path, scenes=3, seed=10, workers=1, progress=False)
+    again = bench_engines("pybullet", tmp_path, scenes=3, seed=10, workers=1, progress=False)
+    assert json.dumps(rows) == json.dumps(again)  # nothing was run twice: CPU seconds are the same
+    assert [row["index"] for row in rows] == list(range(3))
+    assert {row["class"] for row in rows} <= set(engine_verdicts.CLASSES)
+    right = next(row["index"] for row in rows if row["class"] == "right")
+    assert examine("pybullet", right, seed=10)[3]["class"] == "right"
+    stored = json.loads((tmp_path / "bench-engines-pybullet.json").read_text())
+    assert stored["rows"] == json_ready(rows) and stored["provenance"]["seed"] == 10
+    draw(rows, "test", tmp_path / "figure.png")
+    assert (tmp_path / "figure.png").stat().st_size > 20_000
+
+
+def test_tables_count_every_scene_and_name_every_cause():
+    place = wide_box.place(FREE)
+    common = {"notes": [], "judged_until": None, "place": place, "cause": None, "findings": [], "warnings": [],
+              "outcome": "rocks", "expected": "rocks"}
+    warning = "radius R [m] = 0.001 is below 0.01, the limit of the range verified"
+    off = [{"quantity": "tilt", "error": 0.03, "limit": 0.02}]
+    changes = [{"class": "right"}, {"class": "right but warned", "warnings": [warning]},
+               {"class": "off and silent", "findings": off}, {"class": "left out", "cause": "N <= 0"},
+               {"class": "failed and said", "cause": "no result within the time limit of 60 s"}]
+    rows = [{**common, **change, "index": k} for k, change in enumerate(changes)]
+    assert [engine_tables.causes(row) for row in rows[1:]] == [
+        ["warned: radius R [m]"], ["off: tilt"], ["N <= 0"], ["no result within the time limit of # s"]]
+    table = engine_tables.class_table(rows, "five")
+    assert list(table.columns[1].cells)[:6] == ["1", "1", "0", "1", "1", "1"]
+    assert list(table.columns[2].cells)[0] == "25.0%"  # of the four that are not left out
+    assert engine_tables.cause_table(rows).row_count == 4 and engine_tables.off_table(rows).row_count == 1

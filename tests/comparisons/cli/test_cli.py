@@ -1,0 +1,255 @@
+"""The command line, called as a user calls it: in this process where that is enough, else in a new one."""
+
+import csv
+import dataclasses
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from bad_scenes import BAD, SCENE, write_scene
+
+from analytic import EngineNotInstalled, Failure, load_scene, simulate
+from comparisons import cli
+from comparisons.commands.study import STUDIES
+from comparisons.running import solving
+from engines import ENGINES, get_engine, installed_engines
+
+PNG = b"\x89PNG\r\n"
+NEEDED = {"engine", "outcome", "overturning_time", "peak_tilt", "peak_tilt_ratio", "peak_base_displacement",
+          "peak_base_acceleration", "impacts", "impact_count", "uplifts", "friction_demand", "min_normal_ratio", "end",
+          "cpu_seconds", "steps", "settings", "versions"}
+
+
+@pytest.fixture
+def rocking(capfd):
+    """Runs ``rocking ARGUMENTS`` in this process; returns (exit status, standard output, standard error)."""
+    def call(*arguments):
+        capfd.readouterr()
+        with pytest.raises(SystemExit) as end:
+            cli.main([str(argument) for argument in arguments])
+        out, err = capfd.readouterr()
+        return end.value.code or 0, out, err
+    return call
+
+
+def test_run_writes_json_csv_and_plot(rocking, tmp_path):
+    files = [tmp_path / name for name in ("r.json", "r.csv", "r.png")]
+    status, out, _ = rocking("run", "free-rocking-isolated", "--json", files[0], "--csv", files[1], "--plot", files[2])
+    assert status == 0
+    assert "Free rocking on the isolated base" in out and "peak base displacement [m]" in out
+    result = json.loads(files[0].read_text())
+    expected = simulate(load_scene("free-rocking-isolated"))
+    assert NEEDED <= set(result)
+    assert result["outcome"] == "rocks"
+    assert result["impact_count"] == len(result["impacts"]) == expected.impact_count
+    assert result["impacts"][0].keys() == {"time", "rate_before", "rate_after", "base_velocity_jump"}
+    assert result["end"].keys() == {"time", "tilt", "tilt_rate", "base_displacement", "base_velocity", "bearing_force"}
+    assert result["peak_base_displacement"] == expected.peak_base_displacement
+    with files[1].open() as file:
+        rows = list(csv.reader(file))
+    assert ",".join(rows[0]) == ("time,tilt,tilt_rate,base_displacement,base_velocity,bearing_force,"
+                                 "ground_acceleration")
+    assert len(rows) - 1 == len(expected.history.time)
+    assert float(rows[-1][3]) == expected.history.base_displacement[-1]
+    assert files[2].read_bytes().startswith(PNG)
+
+
+def test_json_to_standard_output_is_alone_there(rocking):
+    status, out, _ = rocking("run", "caryatid-isolated", "--json", "-")
+    assert status == 0
+    assert json.loads(out)["outcome"] == "stands"
+    assert out.startswith("{") and out.endswith("}\n")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_json_of_an_engine_is_alone_too(engine):
+    """In a new process: an engine may greet when it is loaded, or when C flushes its buffers at exit."""
+    if engine not in installed_engines():
+        pytest.skip(f"{engine} is not installed")
+    done = subprocess.run([sys.executable, "-m", "comparisons", "run", "free-rocking-rigid", "--engine", engine,
+                           "--json", "-"], capture_output=True, text=True, timeout=120)
+    assert json.loads(done.stdout)["engine"] == engine
+    assert done.returncode == 0, done.stderr
+
+
+def test_module_and_status_in_a_new_process(tmp_path):
+    path = write_scene(tmp_path, SCENE.replace("3172.05", "-1"))
+    done = subprocess.run([sys.executable, "-m", "comparisons", "run", str(path)], capture_output=True, text=True,
+                          timeout=120)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"Error: {path}: block.mass = -1: out of range; give a number above 0 [kg]\n"
+
+
+@pytest.mark.parametrize("change, message", BAD.values(), ids=BAD)
+def test_bad_scene(rocking, tmp_path, change, message):
+    path = write_scene(tmp_path, change(SCENE))
+    status, out, err = rocking("run", path)
+    assert status == 2
+    assert err.startswith(f"Error: {path}: {message}")
+    assert out == "" and "Traceback" not in err and err.count("\n") == 1
+
+
+@pytest.mark.parametrize("command", ["run", "compare"])
+def test_no_such_scene(rocking, command):
+    status, out, err = rocking(command, "no-such-scene")
+    assert (status, out) == (2, "")
+    assert "no-such-scene: scene: cannot be read" in err and "caryatid-isolated" in err
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (["--engine", "ode"], "unknown engine 'ode': choose one of exudyn, pybullet, mujoco, or analytic"),
+    (["--variant", "fast"], "the analytic model has no variant 'fast': leave --variant out"),
+    (["--set", "tolerance"], "--set tolerance: write name=value"),
+    (["--set", "tolerance=tight"], "tolerance = 'tight': give a number"),
+    (["--set", "tolerance=true"], "tolerance = True: give a number"),
+    (["--set", "tolerance=-1"], "tolerance = -1: give a value from"),
+    (["--set", "speed=1"], "the analytic model has no setting 'speed': its settings are tolerance"),
+    (["--set", "history=1"], "the analytic model has no setting 'history'"),
+    (["--plot", "picture.foo"], "picture.foo: not a known picture format; end the name in .png, .svg, .pdf"),
+    (["--csv", "no-folder/x.csv"], "there is no folder no-folder; make it first"),
+    (["--json", "no-folder/x.json"], "there is no folder no-folder; make it first"),
+])
+def test_bad_option(rocking, arguments, message):
+    status, out, err = rocking("run", "free-rocking-rigid", *arguments)
+    assert (status, out) == (2, "")
+    assert message in err and "Traceback" not in err and err.startswith("Error: ")
+
+
+@pytest.mark.parametrize("arguments", [["run"], ["run", "caryatid-rigid", "--nonsense"], ["nonsense"]])
+def test_usage(rocking, arguments):
+    status, out, err = rocking(*arguments)
+    assert (status, out) == (2, "")
+    assert "Usage" in err and "Traceback" not in err
+
+
+@pytest.mark.parametrize("engine", installed_engines())
+def test_bad_engine_option(rocking, engine):
+    knob = next(iter(vars(get_engine(engine).VARIANTS[get_engine(engine).DEFAULT_VARIANT])))
+    for arguments in (["--variant", "fastest"], ["--set", "nonsense=1"], ["--set", f"{knob}=much"]):
+        status, out, err = rocking("run", "free-rocking-rigid", "--engine", engine, *arguments)
+        assert (status, out) == (2, ""), arguments
+        assert arguments[1].partition("=")[0] in err and "Traceback" not in err
+
+
+def test_setting_reaches_the_solver(rocking):
+    _, out, _ = rocking("run", "free-rocking-rigid", "--set", "tolerance=1e-6", "--json", "-")
+    assert json.loads(out)["settings"]["tolerance"] == 1e-6
+
+
+@pytest.mark.parametrize("command", [["run", "caryatid-rigid", "--engine", "mujoco"],
+                                     ["compare", "caryatid-rigid", "--engine", "mujoco"]])
+def test_engine_that_is_not_installed(rocking, monkeypatch, command):
+    monkeypatch.setitem(sys.modules, "mujoco", None)  # what Python does for a package that cannot be imported
+    status, out, err = rocking(*command)
+    assert (status, out) == (2, "")
+    assert "pip install 'rocking[mujoco]'" in err and "Traceback" not in err
+
+
+def test_engines_lists_what_is_there_and_what_is_not(rocking, monkeypatch):
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    status, out, _ = rocking("engines")
+    assert status == 0
+    assert "mujoco: not installed. engine 'mujoco' needs the package mujoco: pip install 'rocking[mujoco]'" in out
+    for name in installed_engines():
+        engine = get_engine(name)
+        assert f"{name} (" in out and f"--variant {engine.DEFAULT_VARIANT} (default)" in out
+        for variant, settings in engine.VARIANTS.items():
+            assert variant in out
+            assert all(f"{setting}=" in out for setting in vars(settings))
+
+
+def test_compare(rocking, tmp_path):
+    picture, result = tmp_path / "c.png", tmp_path / "c.json"
+    status, out, _ = rocking("compare", "free-rocking-rigid", "--plot", picture, "--json", result)
+    assert status == 0
+    content = json.loads(result.read_text())
+    names = [response["engine"] for response in content["responses"]]
+    assert content["sensitivity_horizon"] is None  # free rocking forgets its past
+    assert all(one["horizon"] is None and 0 < one["perturbation"] < 1e-2 for one in content["sensitivity"].values())
+    assert tuple(content["sensitivity"]) == tuple(installed_engines())
+    assert names == ["analytic", *installed_engines()]
+    assert all(name in out for name in names)
+    assert picture.read_bytes().startswith(PNG)
+
+
+def test_comparison_table_fits_a_terminal(rocking):
+    _, out, _ = rocking("compare", "caryatid-rigid")
+    assert max(len(line) for line in out.splitlines()) <= 80
+    assert "…" not in out
+
+
+def test_failed_run_is_told_and_has_a_status_of_its_own(rocking, monkeypatch, tmp_path):
+    class Broken:
+        VARIANTS, DEFAULT_VARIANT = {}, None
+
+        @staticmethod
+        def simulate(scene, *, variant, history):
+            return dataclasses.replace(simulate(scene, history=False), engine="exudyn", outcome="failed",
+                                       failure=Failure("Newton gave up", "SolverError: no convergence"))
+
+    monkeypatch.setattr("engines.get_engine", lambda name: Broken)
+    status, out, err = rocking("run", "free-rocking-rigid", "--engine", "exudyn", "--json", "-")
+    assert status == 1
+    assert json.loads(out)["failure"]["reason"] == "Newton gave up"
+    assert "exudyn failed: Newton gave up. SolverError: no convergence" in err
+    status, _, err = rocking("run", "free-rocking-rigid", "--engine", "exudyn", "--plot", tmp_path / "x.png")
+    assert status == 1 and "there is no history to write" in err and not (tmp_path / "x.png").exists()
+
+
+def test_other_errors_are_not_hidden(rocking, monkeypatch):
+    monkeypatch.setattr("analytic.simulate", lambda scene, *, history: 1 / 0)
+    status, out, err = rocking("run", "free-rocking-rigid", "--json", "-")  # in the solver: evidence
+    assert status == 1 and "ZeroDivisionError: division by zero" in err
+    assert "Traceback" in json.loads(out)["failure"]["message"]
+    monkeypatch.setattr("analytic.scene_file.load_scene", lambda path: 1 / 0)
+    with pytest.raises(ZeroDivisionError):  # in the command: as it is
+        cli.main(["run", "free-rocking-rigid"])
+
+
+def test_parse_settings():
+    assert solving.parse_settings(["a=1e-4", "b=true", "c=word", "d=x=y", 'e="1"']) == {
+        "a": 1e-4, "b": True, "c": "word", "d": "x=y", "e": "1"}
+
+
+def test_help_loads_no_engine_and_no_plots():
+    code = ("import sys; from comparisons import cli\n"
+            "try: cli.main(['--help'])\n"
+            "except SystemExit: pass\n"
+            "heavy = [m for m in ('exudyn', 'pybullet', 'mujoco', 'matplotlib') if m in sys.modules]\n"
+            "sys.exit(f'loaded: {heavy}' if heavy else 0)")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    for name in ("run", "compare", "engines"):
+        assert f"  {name} " in done.stdout
+
+
+def test_entry_point_is_the_one_installed():
+    assert 'rocking = "comparisons.cli:main"' in (Path(__file__).parents[3] / "pyproject.toml").read_text()
+
+
+def test_errors_told_without_traceback_are_those_a_user_can_mend():
+    assert EngineNotInstalled in cli.mendable() and ValueError not in cli.mendable()
+
+
+@pytest.mark.parametrize("command", [["report"], *(["study", name] for name in STUDIES)], ids=" ".join)
+def test_an_output_that_is_a_file_is_refused_before_the_work(rocking, command):
+    status, out, err = rocking(*command, "--output", __file__)
+    assert status == 2 and not out and f"--output {__file__}: is a file; give a folder" in err
+
+
+TARGETS = ("design", "--period", "2", "--damping", "0.3", "--xmax", "0.3")
+
+
+def test_design_as_json_is_the_papers_bearing(rocking):
+    status, out, _ = rocking(*TARGETS, "--json", "-")
+    design = json.loads(out)
+    assert status == 0
+    assert design["bearings"]["alpha"] == pytest.approx(44.69, abs=0.01)
+    assert design["properties"]["period"] == pytest.approx(2.0, rel=1e-9)
+
+
+def test_design_for_a_file_that_cannot_be_written_is_a_mistake(rocking, tmp_path):
+    status, out, err = rocking(*TARGETS, "--json", tmp_path / "none" / "design.json")
+    assert status == 2 and not out and "there is no folder" in err

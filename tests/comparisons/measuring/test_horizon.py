@@ -1,0 +1,185 @@
+"""Horizons of motions whose sensitivity is known: none for a pendulum-like one, short for a chaotic one."""
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, simulate
+from analytic.records import read_record
+from analytic.rocking import restitution
+from comparisons.measuring.horizon import (
+    EARLY,
+    LADDER,
+    LEAST,
+    SPREAD,
+    perturbation_of,
+    restitution_error,
+    sensitivity_horizon,
+    solver_horizon,
+    twin_scenes,
+)
+from engines import get_engine
+
+RECORDS = Path(__file__).parents[3].parent / "shared" / "records"
+
+BLOCK = Block(mass=3172.05, radius=1.0884, slenderness=0.2)
+
+
+def long_shaking(slenderness=0.2, seed=3):
+    noise = np.random.default_rng(seed).standard_normal(2000)
+    return Scene(block=BLOCK.model_copy(update={"slenderness": slenderness}), duration=20.0,
+                 motion=SampledMotion(0.01, 2.5 * np.sin(5 * 0.01 * np.arange(2000)) + 0.6 * noise))
+
+
+def test_free_rocking_is_never_parted():
+    scene = Scene(block=BLOCK, start=Start(tilt=0.1), duration=10.0)
+    horizon = sensitivity_horizon(scene)
+    assert horizon.horizon == 10.0
+    assert 0 < horizon.spread[-1] < SPREAD
+    assert (np.diff(horizon.spread) >= 0).all()
+
+
+def test_long_shaking_parts_and_sooner_for_larger_perturbations():
+    scene = long_shaking()
+    times = [sensitivity_horizon(scene, perturbation=size).horizon for size in (1e-6, 1e-4, 1e-2)]
+    assert 0 < times[2] < times[1] < scene.duration
+    assert times[1] <= times[0]
+
+
+def test_the_horizon_is_where_the_spread_crosses_its_bound():
+    horizon = sensitivity_horizon(long_shaking())
+    first = np.flatnonzero(horizon.spread > SPREAD)[0]
+    assert horizon.time[first - 1] == horizon.horizon == min(t for t in horizon.twins.values() if t is not None)
+    assert horizon.parts and horizon.spread[first - 1] <= SPREAD
+
+
+def test_an_independent_twin_parts_at_the_horizon():
+    scene = long_shaking()
+    horizon = sensitivity_horizon(scene)
+    twin = scene.with_(motion=scene.motion.scaled(1.0001))
+    one, other = (simulate(s, output_step=1e-3).history for s in (scene, twin))
+    n = min(len(one.time), len(other.time))
+    apart = np.abs(one.tilt[:n] - other.tilt[:n]) / 0.2
+    before = one.time[:n] < horizon.horizon - 0.05
+    assert apart[before].max() < SPREAD
+
+
+def test_no_rocking_no_horizon():
+    scene = Scene(block=BLOCK, base=Base(mass=212.0),
+                  bearings=Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69),
+                  motion=PulseMotion("one-sine", 1.0, 6.0), duration=5.0)
+    horizon = sensitivity_horizon(scene)
+    assert horizon.horizon == 5.0 and horizon.spread[-1] == 0.0
+
+
+def test_every_twin_differs_and_nothing_that_is_zero_is_scaled():
+    scene = long_shaking()
+    twins = twin_scenes(scene)
+    assert set(twins) == {"restitution up", "restitution down", "motion up", "motion down"}
+    assert len({twin.digest() for twin in twins.values()} | {scene.digest()}) == 5
+    with pytest.raises(ValueError, match="perturbation = 0"):
+        sensitivity_horizon(scene, perturbation=0)
+
+
+def solver(scene, size):
+    """A solver whose restitution is off by `size`: the model's response of another scene."""
+    return simulate(scene.with_(block={"restitution": restitution(scene) * (1 + size)}), output_step=2e-3)
+
+
+@pytest.mark.parametrize("size", [1e-5, 1e-4, 1e-3, -1e-3, 1e-2])
+def test_the_perturbation_of_a_solver_is_the_error_it_was_given(size):
+    scene = long_shaking()
+    reference = simulate(scene, output_step=2e-3)
+    found = perturbation_of(scene, solver(scene, size), reference)
+    assert abs(size) * 0.99 <= found <= LADDER * abs(size)
+
+
+def test_a_perfect_solver_has_the_least_perturbation_and_the_longest_horizon():
+    scene = long_shaking()
+    reference = simulate(scene, output_step=2e-3)
+    assert perturbation_of(scene, reference, reference) == LEAST
+    horizons = [solver_horizon(scene, solver(scene, size), reference) for size in (0.0, 1e-4, 1e-2)]
+    assert horizons[0].horizon > horizons[1].horizon > horizons[2].horizon
+    assert horizons[1].perturbation == pytest.approx(1e-4, rel=LADDER - 1)
+
+
+def test_errors_that_are_none_of_restitution_are_measured_by_what_they_move():
+    """The motion off by 1e-3: every impact is right, the tilt is not."""
+    scene = long_shaking()
+    reference = simulate(scene, output_step=2e-3)
+    response = simulate(scene.with_(motion=scene.motion.scaled(1.001)), output_step=2e-3)
+    assert restitution_error(scene, response) < 1e-9
+    assert 1e-4 < perturbation_of(scene, response, reference) < 1e-2
+
+
+def test_lost_small_impacts_count_by_what_they_move():
+    """A solver that comes to rest where the model still rocks by a hundredth of its slenderness."""
+    scene = long_shaking()
+    reference = simulate(scene, output_step=2e-3)
+    history = reference.history
+    still = np.where(np.abs(history.tilt) < 0.01 * scene.block.slenderness, 0.0, history.tilt)
+    lost = dataclasses.replace(reference, history=dataclasses.replace(history, tilt=still))
+    assert restitution_error(scene, lost) < 1e-9
+    assert perturbation_of(scene, lost, reference) > 1e-3 > EARLY * SPREAD / 2
+
+
+def test_restitution_errors_are_weighted_by_the_rate():
+    scene = Scene(block=BLOCK, start=Start(tilt=0.1), duration=10.0)
+    response = simulate(scene)
+    e, (first, *_) = restitution(scene), response.impacts
+    rate = first.rate_before
+    impacts = (dataclasses.replace(first, rate_after=rate * e * 1.01),
+               dataclasses.replace(first, rate_before=0.1 * rate, rate_after=0.1 * rate * e * 1.5))
+    rms = restitution_error(scene, dataclasses.replace(response, impacts=impacts))
+    assert rms == pytest.approx(np.sqrt((0.01**2 + 0.05**2) / 1.01), rel=1e-6)
+    assert restitution_error(scene, dataclasses.replace(response, impacts=())) == 0.0
+
+
+def test_perturbation_needs_histories():
+    scene = long_shaking()
+    response = simulate(scene, history=False)
+    with pytest.raises(ValueError, match="history=True"):
+        perturbation_of(scene, response, response)
+
+
+def largest_distance(scene, response, reference, until):
+    """Largest difference of the tilt up to `until` [s] and the unstable point, over the slenderness."""
+    until = min(until, reference.unstable_time or np.inf, response.history.time[-1])
+    time = reference.history.time[reference.history.time < until]
+    own = np.interp(time, response.history.time, response.history.tilt)
+    return np.abs(own - reference.history.tilt[:len(time)]).max() / scene.block.slenderness
+
+
+def assert_no_engine_parts_before_its_own_horizon(engine, scenes):
+    pytest.importorskip(engine)
+    for scene in scenes:
+        reference = simulate(scene, output_step=2e-3)
+        response = get_engine(engine).simulate(scene)
+        own = solver_horizon(scene, response, reference)
+        distance = largest_distance(scene, response, reference, own.horizon)
+        # By the spread: 1.2 for the sampling of the twins, whose tilt changes fast at an impact.
+        assert distance < 1.2 * SPREAD, f"{scene.name}: {distance:.3g} by {own.horizon:.3g} s, {own.perturbation:.2g}"
+
+
+@pytest.mark.parametrize("engine", ["exudyn", "pybullet", "mujoco"])
+def test_no_engine_parts_before_its_own_horizon(engine):
+    """Small rocking under long shaking, where exudyn's corners were off before the horizon of 1e-4."""
+    scenes = [long_shaking(0.15, seed).with_(name=f"seed {seed}", duration=12.0) for seed in (3, 4)]
+    assert_no_engine_parts_before_its_own_horizon(engine, scenes)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("engine", ["exudyn", "pybullet", "mujoco"])
+@pytest.mark.parametrize("name", ["RSN1605_DUZCE_DZC270.AT2", "IELC180.AT2", "ARL360.at2",
+                                  "formats/RSN1063_NORTHR_RRS228.AT2"])
+def test_no_engine_parts_before_its_own_horizon_on_a_record(engine, name):
+    if not (RECORDS / name).exists():
+        pytest.skip(f"the record {name} is not here")
+    motion = read_record(RECORDS / name)
+    scenes = [Scene(name=f"{slenderness}, {share} of uplift", duration=min(motion.end, 20.0),
+                    block=BLOCK.model_copy(update={"slenderness": slenderness}),
+                    motion=motion.scaled(share * 9.81 * np.tan(slenderness) / motion.peak))
+              for slenderness in (0.15, 0.25) for share in (1.3, 2.0)]
+    assert_no_engine_parts_before_its_own_horizon(engine, scenes)

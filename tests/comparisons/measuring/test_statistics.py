@@ -1,0 +1,165 @@
+"""Statistics against published examples, exact enumeration and simulation."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+from comparisons.measuring.statistics import (
+    Confusion,
+    cohen_kappa,
+    compare,
+    confusion,
+    detectable_difference,
+    fit_fragility,
+    holm,
+    mcnemar,
+    wilson,
+)
+
+
+@pytest.mark.parametrize("count, size, low, high", [
+    (81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611), (1, 29, 0.0061, 0.1718)])
+def test_wilson_intervals_of_newcombe_1998(count, size, low, high):
+    # Newcombe (1998), Statistics in Medicine 17, Table I, method 3
+    assert wilson(count, size) == pytest.approx((low, high), abs=5e-5)
+
+
+@pytest.mark.parametrize("size", [10, 57])
+def test_wilson_solves_its_own_quadratic(size):
+    for count in range(1, size):
+        for bound in wilson(count, size):
+            z = (count / size - bound) / math.sqrt(bound * (1 - bound) / size)
+            assert abs(z) == pytest.approx(1.959963984540054, abs=1e-9)
+
+
+def test_exact_mcnemar():
+    # Fagerland, Lydersen and Laake (2013), BMC Med Res Methodol 13:91: airway responsiveness, 1 and 7 discordant
+    assert mcnemar(Confusion(12, 1, 1, 7)) == pytest.approx(0.0703, abs=5e-5)
+    assert mcnemar(Confusion(0, 0, 6, 16)) == pytest.approx(2 * sum(math.comb(22, k) for k in range(7)) / 2**22)
+    assert mcnemar(Confusion(50, 50, 0, 0)) == 1.0
+    assert mcnemar(Confusion(0, 0, 5, 0)) == 2 / 2**5 and mcnemar(Confusion(9, 9, 3, 3)) == 1.0
+
+
+def test_cohen_kappa_of_fleiss_cohen_everitt():
+    # Fleiss, Cohen and Everitt (1969): two raters, three diagnoses, 200 patients: kappa 0.429, its standard
+    # error 0.0538 (Fleiss, Statistical Methods for Rates and Proportions, 2nd ed., section 13.1)
+    table = 200 * np.array([[0.53, 0.05, 0.02], [0.11, 0.14, 0.05], [0.01, 0.06, 0.03]])
+    kappa, low, high = cohen_kappa(table)
+    assert kappa == pytest.approx(0.429, abs=5e-4)
+    assert (high - low) / (2 * 1.959964) == pytest.approx(0.0538, abs=2e-4)
+
+
+def test_cohen_kappa_without_disagreement_and_without_variety():
+    assert cohen_kappa([[20, 5], [10, 15]])[0] == pytest.approx(0.4)  # the usual textbook table
+    kappa, low, high = cohen_kappa([[10, 0], [0, 10]])
+    assert kappa == high == 1.0 and 0.5 < low < 0.9  # 20 agreements prove no perfect agreement
+    assert cohen_kappa([[1000, 0], [0, 1000]])[1] > low
+    assert cohen_kappa([[20, 0], [0, 0]]) == (None, None, None)
+
+
+def test_interval_of_kappa_covers_the_truth_as_often_as_it_says():
+    p = np.array([[0.45, 0.06], [0.09, 0.40]])
+    truth, _, _ = cohen_kappa(p * 1e9)
+    random = np.random.default_rng(1)
+    covered = [low <= truth <= high for _, low, high in
+               (cohen_kappa(counts.reshape(2, 2)) for counts in random.multinomial(200, p.ravel(), 2000))]
+    assert np.mean(covered) == pytest.approx(0.95, abs=0.015)  # 3 standard errors of 2000 draws
+
+
+def test_confusion_counts_and_refuses_what_is_not_paired():
+    a = np.array([True, True, True, False, False])
+    b = np.array([True, False, False, True, False])
+    table = confusion(a, b)
+    assert table == Confusion(both_stand=1, both_overturn=1, only_a=2, only_b=1) and table.size == 5
+    assert table.table().tolist() == [[1, 1], [2, 1]]
+    for wrong in (a[:-1], a.astype(float), a[:0]):
+        with pytest.raises(ValueError, match="leave failed runs out in pairs"):
+            confusion(wrong, b if len(wrong) else b[:0])
+
+
+@pytest.mark.parametrize("size, discordance", [(50, 0.2), (200, 0.05), (200, 0.0)])
+def test_a_detectable_difference_is_detected_as_often_as_it_says(size, discordance):
+    difference = detectable_difference(size, discordance)
+    rate = max(discordance, difference)
+    random = np.random.default_rng(2)
+    draws = random.multinomial(size, [(rate + difference) / 2, max(rate - difference, 0) / 2, 1 - rate], 4000)
+    found = np.mean([mcnemar(Confusion(int(rest), 0, int(one), int(other))) <= 0.05 for one, other, rest in draws])
+    assert found == pytest.approx(0.8, abs=0.02)  # 3 standard errors of 4000 draws
+
+
+def test_five_pairs_can_show_no_difference_and_more_pairs_show_smaller_ones():
+    assert detectable_difference(5, 0.0) is None  # 5 of 5 on one side: p = 0.0625
+    assert detectable_difference(6, 0.0) is not None
+    least = [detectable_difference(size, 0.02) for size in (50, 100, 200, 1200)]
+    assert least == sorted(least, reverse=True)
+    with pytest.raises(ValueError, match="discordance"):
+        detectable_difference(50, 1.5)
+
+
+def test_holm_adjusts_step_by_step():
+    # Holm (1979): smallest times n, next times n - 1, never falling, never above 1
+    assert holm([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
+    assert holm([[0.9, 0.8]]).tolist() == [[1.0, 1.0]]
+
+
+def test_the_statement_says_it_plainly_with_its_numbers():
+    a = np.zeros(200, dtype=bool)
+    a[:80] = True
+    b = a.copy()
+    b[:2] = False
+    same = compare(a, b, ("analytic", "exudyn"))
+    assert not same["differ"] and same["difference"] == -0.01
+    assert same["statement"].startswith("no difference found at this sample size (200 motions: 2 overturn in analytic "
+                                        "alone, 0 in exudyn alone; exact McNemar p = 0.5; a difference of ")
+    b[:20] = False
+    different = compare(a, b, ("analytic", "exudyn"))
+    assert different["differ"] and different["statement"].startswith("they differ (200 motions: 20 overturn")
+    assert different["both_overturn"] == 60 and different["kappa_interval"][0] < different["kappa"]
+    few = compare(a[:3], a[:3])
+    assert "no difference, however large, can be found" in few["statement"] and few["kappa"] is None
+
+
+# Bliss (1935), beetles killed by carbon disulphide; probit by maximum likelihood:
+# intercept -34.935 (s.e. 2.648), slope 19.728 (s.e. 1.487) per log10 dose (Dobson; Agresti)
+DOSE = np.array([1.6907, 1.7242, 1.7552, 1.7842, 1.8113, 1.8369, 1.8610, 1.8839])
+SIZE = np.array([59, 60, 62, 56, 63, 59, 62, 60])
+KILLED = np.array([6, 13, 18, 28, 52, 53, 61, 60])
+
+
+def test_fragility_of_bliss_1935():
+    fit = fit_fragility(np.exp(DOSE), KILLED, SIZE)
+    assert 1 / fit.dispersion == pytest.approx(19.728, abs=1e-3)
+    assert math.log(fit.median) / fit.dispersion == pytest.approx(34.935, abs=2e-3)
+    low, high = np.log(fit.dispersion_interval)
+    # published with the expected information; standard error of ln(slope) = 1.487/19.728
+    assert (high - low) / (2 * 1.959964) == pytest.approx(1.487 / 19.728, rel=2e-3)
+
+
+def test_fragility_finds_a_known_curve_and_its_interval_covers_it():
+    random = np.random.default_rng(3)
+    intensity = np.array([0.3, 0.5, 0.8, 1.0, 1.4, 2.0])
+    truth = norm.cdf(np.log(intensity / 0.9) / 0.4)
+    fits = [fit_fragility(intensity, random.binomial(200, truth), np.full(6, 200)) for _ in range(400)]
+    assert np.mean([fit.median for fit in fits]) == pytest.approx(0.9, rel=5e-3)
+    assert np.mean([fit.dispersion for fit in fits]) == pytest.approx(0.4, rel=2e-2)
+    for name, value in (("median_interval", 0.9), ("dispersion_interval", 0.4)):
+        covered = np.mean([getattr(fit, name)[0] <= value <= getattr(fit, name)[1] for fit in fits])
+        assert covered == pytest.approx(0.95, abs=0.035)  # 3 standard errors of 400 draws
+    assert fits[0].probability(fits[0].median) == pytest.approx(0.5)
+
+
+def test_fragility_does_not_depend_on_the_unit_of_intensity():
+    counts = ([1.0, 2.0, 4.0], [2, 9, 17], [20, 20, 20])
+    one, other = fit_fragility(*counts), fit_fragility(np.array(counts[0]) * 9.81, *counts[1:])
+    assert other.median == pytest.approx(9.81 * one.median, rel=1e-6)
+    assert other.dispersion == pytest.approx(one.dispersion, rel=1e-6)
+
+
+@pytest.mark.parametrize("overturned, said", [
+    ([0, 0, 20], "do not overlap"), ([0, 7, 20], "do not overlap"), ([0, 0, 0], "do not overlap"),
+    ([20, 20, 20], "do not overlap"), ([15, 10, 5], "does not become likelier")])
+def test_counts_that_determine_no_curve_are_an_error(overturned, said):
+    with pytest.raises(ValueError, match=said):
+        fit_fragility([1.0, 2.0, 3.0], overturned, [20, 20, 20])

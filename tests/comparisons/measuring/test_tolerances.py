@@ -1,0 +1,92 @@
+"""The table of tolerances is as tight as it says; its measures see what they should."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from analytic import Scene, simulate
+from analytic.bearing import BearingLaw
+from comparisons.measuring import agreement
+from comparisons.measuring.tolerances import SLACK, TABLE, measure_all
+from comparisons.running.provenance import Result
+from comparisons.studies import tolerances
+from engines import get_engine, installed_engines
+
+ROWS = pytest.mark.parametrize("row", TABLE, ids=lambda row: row.name)
+
+
+@ROWS
+def test_bounds_are_no_looser_than_twice_the_measured_worst(row):
+    assert row.measured <= row.bound
+    assert row.round_off or row.bound <= SLACK * row.measured
+    assert row.least == 0 or row.least >= row.measured / SLACK
+
+
+@ROWS
+def test_rows_name_variants_and_scenes_that_exist(row):
+    pytest.importorskip(row.engine)
+    assert row.variant in get_engine(row.engine).VARIANTS
+    if row.scenes not in agreement.FREE_ROCKING and row.measure is not agreement.boundary_shift:
+        assert isinstance(agreement.named_scene(row.scenes), Scene)
+
+
+def test_rows_are_named_apart():
+    assert len({row.name for row in TABLE}) == len(TABLE)
+
+
+def test_every_installed_default_variant_has_its_rows():
+    for engine in installed_engines():
+        default = get_engine(engine).DEFAULT_VARIANT
+        quantities = {row.quantity for row in TABLE if (row.engine, row.variant) == (engine, default)}
+        assert quantities == {"restitution, rms", "base velocity jump, rms", "impact times", "peak tilt", "tilt graph",
+                              "peak displacement", "overturning time", "overturning boundary",
+                              "bearing force replayed", "bearing impulse in the motion",
+                              "corner lift at rest", "base drift at rest"}
+
+
+def test_the_papers_law_agrees_with_the_models_between_many_reversals():
+    scene = agreement.named_scene("isolated Caryatid, synthetic motion")
+    history = simulate(scene).history
+    law, x = BearingLaw.of(scene.bearings), history.base_displacement
+    z, forces = law.start(x[0]), [law.start(x[0])]
+    for dx in np.diff(x):
+        z = law.hysteretic(z, dx)
+        forces.append(z)
+    expected = law.force(x, np.array(forces))
+    assert (np.diff(np.sign(np.diff(x))) != 0).sum() > 10
+    np.testing.assert_allclose(agreement.paper_force(law, x), expected, atol=1e-9 * law.count * law.f0)
+
+
+@pytest.mark.parametrize("frequency, amplitude", [(2.0, 1.25090), (5.0, 3.03234)])
+def test_the_first_boundary_is_the_published_one(monkeypatch, frequency, amplitude):
+    """Published over g slenderness, and for a restitution of 0.9; what falls 6 s after the pulse counts as standing."""
+    scene = agreement.boundary_scene
+    monkeypatch.setattr(agreement, "boundary_scene", lambda *given: scene(*given).with_(block={"restitution": 0.9}))
+    found = agreement.first_boundary(0.25, "one-sine", frequency)
+    assert found * math.tan(0.25) / 0.25 == pytest.approx(amplitude, rel=1e-5)
+
+
+def test_a_failed_run_is_a_row_that_does_not_hold(monkeypatch):
+    row = next(row for row in TABLE if row.quantity == "overturning time")
+
+    def fails(*_):
+        raise agreement.Unmeasurable("exudyn failed: it sank")
+
+    broken = type(row)(**{**vars(row), "measure": fails})
+    (result,) = measure_all((broken,))
+    assert not result["holds"] and result["found"] is None and "sank" in result["failure"]
+    json.dumps(result, allow_nan=False)
+
+
+def test_the_section_shows_every_row_and_says_what_does_not_hold():
+    rows = [{"quantity": row.quantity, "engine": row.engine, "variant": row.variant, "scenes": row.scenes,
+             "least": row.least, "bound": row.bound, "unit": row.unit, "measured": row.measured, "source": row.source,
+             "found": 3 * row.bound if k == 0 else row.measured, "holds": k > 0, "failure": None}
+            for k, row in enumerate(TABLE)]
+    section = tolerances.section(Result("tolerances", {}, rows, {}))
+    (table,) = section.tables
+    assert len(table.rows) == len(TABLE) and {len(row) for row in table.rows} == {len(table.columns)}
+    assert "1 of them do not hold" in section.text[1]
+    assert [row[6] for row in table.rows[:2]] == ["no", "yes"]

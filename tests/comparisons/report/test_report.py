@@ -1,0 +1,410 @@
+"""The report: the page says what the result files say, and needs nothing but itself."""
+
+import base64
+import contextlib
+import importlib.machinery
+import json
+import math
+import re
+import subprocess
+import sys
+import types
+from html.parser import HTMLParser
+from pathlib import Path
+from time import sleep
+from xml.etree import ElementTree
+
+import numpy as np
+import psutil
+import pytest
+
+from analytic import EngineNotInstalled, load_scene, simulate, synthetic_motion
+from analytic.records import read_record
+from analytic.response import History
+from comparisons.cli import main
+from comparisons.report import histories, runs, write
+from comparisons.report.write import write_page
+from comparisons.running.provenance import ResultError, read_result, write_result
+from comparisons.showing.parts import Section, Table, number, percent
+from engines import available_engines, installed_engines
+
+pytestmark = pytest.mark.xdist_group("report")  # one worker: its runs are made once
+
+CUT = 7.0  # s: the free-standing Caryatid overturns within it, the isolated one's outcome is still open
+SLENDERNESS = 0.3
+NO_STUDIES = Path(__file__).parent / "no such folder"
+DUZCE = Path(__file__).parents[4] / "shared" / "records" / "RSN1605_DUZCE_DZC270.AT2"
+
+
+class Page(HTMLParser):
+    """Tables by caption, images, links, texts and tags of a page."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.source = path.read_text(encoding="utf-8")
+        self.tables, self.images, self.links, self.tags, self.items = {}, [], [], [], []
+        self._inside, self._words, self._row, self._rows = None, [], [], []
+        self.feed(self.source)
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        self.tags.append(tag)
+        self.links += [attributes[key] for key in ("href", "src", "data", "action") if key in attributes]
+        if tag == "img":
+            self.images.append(attributes)
+        if tag == "table":
+            self._rows = []
+        if tag in ("caption", "th", "td", "li"):
+            self._words = []
+
+    def handle_data(self, data):
+        self._words.append(data)
+
+    def handle_endtag(self, tag):
+        words = "".join(self._words).strip()
+        if tag == "caption":
+            self.tables[words] = self._rows
+        if tag in ("th", "td"):
+            self._row.append(words)
+        if tag == "tr":
+            self._rows.append(self._row)
+            self._row = []
+        if tag == "li":
+            self.items.append(" ".join(words.split()))
+
+    def table(self, caption):
+        """{(row, column): cell} of the table whose caption starts so."""
+        (rows,) = [rows for words, rows in self.tables.items() if words.startswith(caption)]
+        return {(row[0], head): cell for row in rows[1:] for head, cell in zip(rows[0], row, strict=True)}
+
+
+def value(cell):
+    """The number a cell of the page shows."""
+    digits = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹−", "-0123456789-")
+    return float(re.sub(r"·10(.+)", lambda found: "e" + found.group(1), cell).translate(digits))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A report on the synthetic motion, with every engine installed here."""
+    folder = tmp_path_factory.mktemp("report")
+    runs.make_results(folder, synthetic_motion(), slendernesses=(SLENDERNESS,))
+    write_page(folder, studies=NO_STUDIES)
+    return folder
+
+
+@pytest.fixture
+def copied(folder, tmp_path):
+    """A copy of the result files that a test may change."""
+    for file in folder.glob("*.*"):
+        if file.suffix in (".json", ".npz"):
+            (tmp_path / file.name).write_bytes(file.read_bytes())
+    return tmp_path
+
+
+def displacement(folder):
+    """Peak base displacement of the isolated Caryatid in the analytic model [m], from the result file."""
+    (peak,) = [row["peak_base_displacement"] for row in read_result(folder / runs.CARYATID).rows
+               if (row["scene"], row["solver"]) == ("caryatid-isolated", "analytic")]
+    return peak
+
+
+def changed(path, change):
+    content = json.loads(path.read_text())
+    change(content)
+    path.write_text(json.dumps(content))
+
+
+def test_outcomes_in_the_page_are_those_of_the_solvers(folder):
+    page = Page(folder / "report.html")
+    engines = installed_engines()
+    for name in runs.SCENES:
+        scene = load_scene(name)
+        expected = simulate(scene)
+        table = page.table(f"{scene.name}, until decided")
+        assert table["outcome", "analytic"] == expected.outcome
+        assert value(table["peak |φ|/γ [-]", "analytic"]) == pytest.approx(expected.peak_tilt_ratio, rel=1e-3)
+        assert {head for _, head in table} == {"quantity", "analytic", *engines}
+        if expected.outcome == "overturns":
+            assert value(table["overturns at [s]", "analytic"]) == pytest.approx(expected.overturning_time, rel=1e-4)
+        if scene.base:
+            assert value(table["peak base displacement [m]", "analytic"]) == pytest.approx(
+                expected.peak_base_displacement, rel=1e-4)
+
+
+def test_every_cell_of_the_outcome_tables_equals_the_result_file(folder):
+    page, result = Page(folder / "report.html"), read_result(folder / runs.CARYATID)
+    shown = {"overturns at [s]": "overturning_time", "peak base displacement [m]": "peak_base_displacement",
+             "CPU time [s]": "cpu_seconds", "work of the bearings [J]": "bearing_work"}
+    compared = 0
+    for row in result.rows:
+        table = page.table(f"{result.settings['scenes'][row['scene']]['name']}, until decided")
+        for label, key in shown.items():
+            cell = table.get((label, row["solver"]), "–")
+            if cell != "–":
+                assert value(cell) == pytest.approx(row[key], rel=0.05 if key == "cpu_seconds" else 1e-4)
+                compared += 1
+    assert compared >= 2 * len(result.rows)
+
+
+def test_histories_in_the_result_file_are_those_of_the_model(folder):
+    arrays = read_result(folder / runs.CARYATID).arrays
+    history = simulate(load_scene("caryatid-isolated")).history
+    for column in history.COLUMNS:
+        np.testing.assert_array_equal(arrays[f"caryatid-isolated/analytic/{column}"], getattr(history, column))
+
+
+def test_restitution_table_equals_the_impacts_in_the_file_and_the_momentum_formula(folder):
+    page, result = Page(folder / "report.html"), read_result(folder / runs.FREE_ROCKING)
+    block = load_scene("caryatid-rigid").block
+    b2, h2 = (block.radius * math.sin(SLENDERNESS)) ** 2, (block.radius * math.cos(SLENDERNESS)) ** 2
+    share = {"rigid ground": 0.0, "sliding base": block.mass / (block.mass + 212.0)}
+    for row in result.rows:
+        table = page.table("Error of restitution on " + ("a " if "base" in row["ground"] else "") + row["ground"])
+        formula = 1 - 2 * b2 / (4 / 3 * block.radius**2 - share[row["ground"]] * h2)  # (7)
+        assert value(table["eq. (7) itself [-]", "γ = 0.3 rad"]) == pytest.approx(formula, abs=1e-6)
+        if row["impacts"]:
+            errors = [impact["restitution"] - formula for impact in row["impacts"]]
+            cell = table[f"{row['solver']}, {row['variant']}", "γ = 0.3 rad"]
+            assert value(cell) == pytest.approx(math.sqrt(np.mean(np.square(errors))), rel=0.06, abs=1e-15)
+
+
+def test_summary_follows_the_numbers(folder, copied):
+    def items():
+        return Page(write_page(copied, studies=NO_STUDIES)).items
+
+    count = 1 + len(installed_engines())
+    solvers = {1: "analytic", 2: "both solvers"}.get(count, f"all {count} solvers")
+    assert any(f"in {solvers} it overturns" in item for item in items())
+    assert any("it never lifts" in item and f"{displacement(folder):.4f} m" in item for item in items())
+
+    def analytic_stands(content):
+        (row,) = [row for row in content["rows"] if (row["scene"], row["solver"]) == ("caryatid-rigid", "analytic")]
+        row.update(outcome="rocks", overturning_time=None)
+
+    changed(copied / runs.CARYATID, analytic_stands)
+    assert any("in analytic it rocks and stays upright" in item for item in items())
+
+
+def test_verdicts_of_the_studies_stand_at_the_top(copied):
+    top, _, rest = Page(write_page(copied)).source.partition("In this report's own runs:")
+    for engine in ("exudyn, compliant-corners", "pybullet, impact-aware"):
+        for question in ("restitution", "overturning"):
+            assert re.search(f"{engine}[^<]* be trusted for {question}", top)
+    assert "May I trust it?" not in Page(write_page(copied, studies=NO_STUDIES)).source
+
+
+def test_page_needs_nothing_but_itself(folder):
+    page = Page(folder / "report.html")
+    assert all(link.startswith(("#", "data:image/svg+xml;base64,")) for link in page.links)
+    assert not {"script", "link", "iframe", "object"} & set(page.tags)
+    assert not re.search(r"https?://|@import|url\(", page.source)
+    anchors = set(re.findall(r'id="([^"]+)"', page.source))
+    assert {link[1:] for link in page.links if link.startswith("#")} <= anchors
+    assert len(anchors) == len(re.findall(r' id="', page.source))
+
+
+def test_every_image_is_a_picture_with_a_text_for_those_who_cannot_see_it(folder):
+    images = Page(folder / "report.html").images
+    assert len(images) == 8
+    for image in images:
+        root = ElementTree.fromstring(base64.b64decode(image["src"].partition(",")[2]))
+        assert root.tag == "{http://www.w3.org/2000/svg}svg"
+        references = [found for part in root.iter() for key, found in part.attrib.items() if key.endswith("href")]
+        assert all(found.startswith("#") for found in references)
+        assert len(image["alt"]) > 40
+    assert len({image["src"] for image in images}) == len(images)
+
+
+def test_synthetic_motion_is_named_so(folder):
+    page = Page(folder / "report.html")
+    title = re.search("<title>(.*?)</title>", page.source).group(1)
+    assert "synthetic" in title
+    assert page.source.count("synthetic duzce-like motion") >= 4
+
+
+def test_no_path_of_this_machine_and_no_leftovers(folder):
+    names = {file.name for file in folder.iterdir()}
+    assert names == {"caryatid.json", "caryatid.npz", "free-rocking.json", "free-rocking.npz", "report.html"}
+    assert str(Path(__file__).parents[3]) not in (folder / "report.html").read_text()
+
+
+def test_equal_result_files_give_equal_pages(folder, copied, monkeypatch):
+    monkeypatch.setattr(write, "age", lambda result: None)  # the code may be edited meanwhile
+    first = write_page(folder, studies=NO_STUDIES).read_bytes()
+    assert write_page(copied, studies=NO_STUDIES).read_bytes() == first
+
+
+def test_missing_engines_are_named_with_their_remedy(tmp_path, monkeypatch):
+    def nothing_installed(name):
+        raise EngineNotInstalled(f"engine {name!r} needs the package {name}: install it so")
+
+    monkeypatch.setattr("engines.get_engine", nothing_installed)
+    runs.make_results(tmp_path, synthetic_motion(), duration=CUT, slendernesses=(SLENDERNESS,))
+    page = Page(write_page(tmp_path, studies=NO_STUDIES))
+    assert any("Not in this report: pybullet. engine 'pybullet' needs the package pybullet: install it so" in item
+               for item in page.items)
+    assert page.table("Caryatid on rigid ground, 7 s")["outcome", "analytic"] == "overturns"
+    assert page.table("Caryatid isolated, 7 s")["outcome", "analytic"] == "undecided (stands so far)"
+    assert any("in analytic it is undecided (stands so far)" in item for item in page.items)
+
+
+def test_a_failed_run_shows_its_evidence(folder, copied):
+    def fail(content):
+        row = content["rows"][-1]
+        row.update(outcome="failed", failure={"kind": "crash", "reason": "the worker ended", "message": "<SIGSEGV>"})
+        row.pop("agreement", None)
+
+    changed(copied / runs.CARYATID, fail)
+    page = Page(write_page(copied, studies=NO_STUDIES))
+    assert any(item.startswith("Failed runs:") and "the worker ended" in item for item in page.items)
+    assert "<pre>&lt;SIGSEGV&gt;</pre>" in page.source
+
+
+def test_a_study_is_shown_by_its_own_section_and_says_when_it_is_old(folder, copied, tmp_path_factory, monkeypatch):
+    studies = tmp_path_factory.mktemp("results")
+    file = write_result(studies / "fake.json", "fake", {}, [{"kappa": 0.75}], modules=["analytic.errors"])
+    module = types.ModuleType("comparisons.studies.fake")
+    module.__spec__ = importlib.machinery.ModuleSpec(module.__name__, None)
+    module.section = lambda result: Section("A fake study", ("Two paragraphs < one.",), (
+        Table("Agreement", ("solver", "kappa [-]"), [["exudyn", str(result.rows[0]["kappa"])]]),))
+    page = Page(write_page(copied, studies=studies))
+    assert "there is no module comparisons.studies.fake" in page.source
+    monkeypatch.setitem(sys.modules, module.__name__, module)
+    page = Page(write_page(copied, studies=studies))
+    assert page.table("Agreement")["exudyn", "kappa [-]"] == "0.75"
+    assert "Two paragraphs &lt; one." in page.source
+    warnings = page.source.count("Out of date")
+    changed(file, lambda content: content["provenance"]["sources"].update({"analytic.errors": "another"}))
+    assert write_page(copied, studies=studies).read_text().count("Out of date") == warnings + 1
+
+
+def test_responses_survive_the_way_through_a_result_file(tmp_path):
+    response = simulate(load_scene("caryatid-isolated").with_(duration=5.0))
+    values = json.loads(json.dumps(histories.ToFile(str(tmp_path))(response)))
+    again = histories.response_of(values, tmp_path)
+    assert again.to_json() == {**response.to_json(), "energy": None}
+    for column in History.COLUMNS:
+        np.testing.assert_array_equal(getattr(again.history, column), getattr(response.history, column))
+
+
+def test_a_lost_history_of_a_report_that_was_broken_off_is_said(tmp_path):
+    values = histories.ToFile(str(tmp_path))(simulate(load_scene("caryatid-rigid").with_(duration=0.1)))
+    (tmp_path / values["history"]).unlink()
+    with pytest.raises(ResultError, match="missing; remove the folder"):
+        histories.response_of(values, tmp_path)
+
+
+def test_thinning_keeps_ends_and_the_extremes_of_every_part():
+    generator = np.random.default_rng(5)
+    columns = generator.normal(size=(3, 1_000_000))
+    columns[0, 123_456], columns[1, 777_777], columns[2, 999_998] = 50.0, -60.0, 70.0  # one sample wide
+    shown = histories.thinned(*columns)
+    assert len(shown) <= histories.MOST_SHOWN and (np.diff(shown) > 0).all()
+    assert {0, 123_456, 777_777, 999_998, 999_999} <= set(shown)
+    for begin in range(0, 1_000_000, 10_000):  # the band that a drawn line covers
+        inside = shown[(shown >= begin) & (shown < begin + 10_000)]
+        for column in columns:
+            part = column[begin:begin + 10_000]
+            assert column[inside].min() == part.min() and column[inside].max() == part.max()
+    np.testing.assert_array_equal(histories.thinned(columns[0, :5177]), np.arange(5177))
+
+
+def test_differences_are_those_of_all_samples():
+    time = np.linspace(0.0, 100.0, 100_001)
+    zeros = np.zeros_like(time)
+    model = History(time, np.sin(time), *5 * [zeros])
+    spike = np.where(np.arange(len(time)) == 54_321, 1e-3, 0.0)
+    apart = histories.differences(History(time, np.sin(time) + spike, zeros, zeros - 2e-3, *3 * [zeros]), model)
+    assert len(apart["apart/time"]) < 20_000
+    assert np.abs(apart["apart/tilt"]).max() == pytest.approx(1e-3, rel=1e-9)
+    assert apart["apart/time"][np.abs(apart["apart/tilt"]).argmax()] == time[54_321]
+    assert (apart["apart/base_displacement"] == -2e-3).all()
+
+
+def test_undecided_outcomes_and_warnings_stand_beside_the_outcomes_and_at_the_top(copied):
+    def cut(content):
+        for row in content["rows"]:
+            if row["scene"] == "caryatid-rigid":
+                row.update(outcome="rocks", overturning_time=None, decided=False,
+                           verdict="undecided (rocks so far)", warnings=["the record peaks at 5 g"])
+        content["rows"][-1]["warnings"] = ["the base is light"]
+
+    changed(copied / runs.CARYATID, cut)
+    changed(copied / runs.FREE_ROCKING, lambda content: content["rows"][-1].update(warnings=["the block is small"]))
+    page = Page(write_page(copied, studies=NO_STUDIES))
+    last = read_result(copied / runs.CARYATID).rows[-1]["solver"]
+    free, isolated = (page.table(f"Caryatid {name}, until decided") for name in ("on rigid ground", "isolated"))
+    assert free["outcome", "analytic"] == "undecided (rocks so far)" and free["warnings [-]", "analytic"] == "1"
+    assert isolated["warnings [-]", "analytic"] == "none" and isolated["warnings [-]", last] == "1"
+    words = "outside what was verified or modelled"
+    assert page.table("Caryatid isolated: warnings")[last, words] == "the base is light"
+    assert "the block is small" in page.table("Free rocking: warnings").values()
+    assert any("it is undecided (rocks so far). Warning: the record peaks at 5 g." in item for item in page.items)
+
+
+@pytest.mark.parametrize("given, shown", [
+    (None, "–"), (math.nan, "–"), (0.0, "0"), (0.21234, "0.212"), (-1.5, "−1.50"), (12345.6, "12346"),
+    (0.001, "0.00100"), (0.000999, "9.99·10⁻⁴"), (-1.25e-17, "−1.25·10⁻¹⁷"), (123456.0, "1.23·10⁵")])
+def test_numbers_are_written_for_reading(given, shown):
+    assert number(given) == shown
+
+
+def test_fractions_in_per_cent():
+    assert percent(0.0213) == "2.1 %"
+    assert percent(None) == "–"
+
+
+@pytest.mark.parametrize("arguments, words", [
+    (["--units", "g"], "--units g: belongs to a record"),
+    (["--record", "no-such-record.AT2"], "motion.record = 'no-such-record.AT2': cannot be read"),
+    (["--output", __file__], "is a file; give a folder")])
+def test_mistakes_end_with_one_message(arguments, words, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["report", *arguments])
+    assert ended.value.code == 2
+    assert words in capsys.readouterr().err
+
+
+def memory(process):
+    """Memory [B] of a process and its children, shared pages counted once."""
+    total = 0
+    for one in [process, *process.children(recursive=True)]:
+        with contextlib.suppress(psutil.Error):
+            used = one.memory_full_info()
+            total += getattr(used, "pss", used.uss)
+    return total
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1400)
+def test_a_report_on_a_million_samples_stays_under_800_mb(tmp_path):
+    motion, step, count = synthetic_motion(), 2e-4, 1_000_000
+    time = step * np.arange(count)
+    shaking = 0.7 * motion.acceleration(time % motion.end)  # rocks for 200 s and does not overturn
+    np.savetxt(tmp_path / "long.txt", np.column_stack([time, shaking]), fmt="%.6f")
+    with open(tmp_path / "log", "w") as log:
+        run = subprocess.Popen([sys.executable, "-m", "comparisons", "report", "--record", tmp_path / "long.txt",
+                                "--units", "m/s2", "--output", tmp_path / "report"], stdout=log, stderr=log)
+        most, process = 0, psutil.Process(run.pid)
+        while run.poll() is None:
+            with contextlib.suppress(psutil.Error):
+                most = max(most, memory(process))
+            sleep(0.2)
+    assert run.returncode == 0, (tmp_path / "log").read_text()[-2000:]
+    assert most < 800e6, f"{most / 1e6:.0f} MB"
+    result = read_result(tmp_path / "report" / runs.CARYATID)
+    assert {row["outcome"] for row in result.rows if row["scene"] == "caryatid-rigid"} == {"rocks"}
+    assert max(len(values) for values in result.arrays.values()) <= histories.MOST_SHOWN
+
+
+@pytest.mark.skipif(not DUZCE.exists(), reason="the Duzce record does not lie beside the project")
+def test_duzce_record_overturns_the_free_caryatid_and_not_the_isolated_one(tmp_path):
+    runs.make_results(tmp_path, read_record(DUZCE), slendernesses=(SLENDERNESS,))
+    page = Page(write_page(tmp_path, studies=NO_STUDIES))
+    free, isolated = (page.table(f"Caryatid {name}, until decided") for name in ("on rigid ground", "isolated"))
+    for solver in {"analytic", "exudyn", "pybullet"} - set(available_engines()[1]):
+        assert free["outcome", solver] == "overturns"
+        assert 6 < value(free["overturns at [s]", solver]) < 9
+        assert isolated["outcome", solver] == "stands"
+        assert value(isolated["peak base displacement [m]", solver]) == pytest.approx(0.212, rel=0.01)

@@ -1,0 +1,119 @@
+"""Result files: what went in comes out, says where it comes from, names no machine, and notices its age."""
+
+import json
+import platform
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from comparisons.report.studies import RESULTS
+from comparisons.running import provenance as module
+from comparisons.running.provenance import ResultError, age, json_ready, provenance, read_result, scrub, write_result
+
+ROWS = [{"engine": "exudyn", "error": 1.25e-5, "outcome": "rocks"}, {"engine": "analytic", "error": 0.1 + 0.2}]
+
+
+def written(folder, **options):
+    return write_result(folder / "r.json", "restitution", {"quick": True}, ROWS, modules=["analytic"], **options)
+
+
+def test_a_result_comes_back_as_it_was(tmp_path):
+    arrays = {"map": np.linspace(0, 1, 12).reshape(3, 4), "empty": np.empty((0, 2))}
+    result = read_result(written(tmp_path, arrays=arrays, seed=7))
+    assert (result.kind, result.settings, result.rows) == ("restitution", {"quick": True}, ROWS)
+    assert set(result.arrays) == set(arrays) and result.provenance["seed"] == 7
+    for name, array in arrays.items():
+        assert np.array_equal(result.arrays[name], array)
+    assert read_result(written(tmp_path)).arrays == {}
+    assert (tmp_path / "r.json").read_text().count("\n  {") == len(ROWS)  # a row a line
+
+
+def test_no_rows_and_numbers_that_are_not_finite_are_valid_json(tmp_path):
+    write_result(tmp_path / "r.json", "k", {"limit": np.inf}, [], modules=["analytic"])
+    content = json.loads((tmp_path / "r.json").read_text(), parse_constant=lambda name: pytest.fail(name))
+    assert content["rows"] == [] and content["settings"] == {"limit": None}
+    assert json_ready((np.float64(1.5), np.arange(2), float("nan"), True)) == [1.5, [0, 1], None, True]
+
+
+def test_provenance_names_machine_versions_and_sources_but_neither_paths_nor_host():
+    here = provenance(["engines", "analytic"], seed=[1, 2])
+    assert here["machine"]["logical_cores"] >= 1 and here["machine"]["memory_gib"] > 0
+    assert here["packages"]["numpy"] == np.__version__ and here["python"] == platform.python_version()
+    assert {"analytic.scene", "analytic.bearing", "engines"} <= set(here["sources"])
+    text = json.dumps(here)
+    assert str(Path.home()) + "/" not in text and str(Path(__file__).parents[3]) not in text
+    assert platform.node() not in text.split('"')
+
+
+def test_commit_and_dirty_flag_are_those_of_the_checkout_and_none_outside(tmp_path, monkeypatch):
+    def git(*words):
+        subprocess.run(["git", "-C", tmp_path, "-c", "user.name=n", "-c", "user.email=e", *words], check=True,
+                       capture_output=True)
+    monkeypatch.setattr(module, "PROJECT_FOLDER", tmp_path)
+    assert module._checkout() == {"commit": None, "dirty": None}
+    git("init")
+    (tmp_path / "a.py").write_text("x = 1\n")
+    git("add", "a.py")
+    git("commit", "-m", "a")
+    first = module._checkout()
+    assert len(first["commit"]) == 40 and first["dirty"] is False
+    (tmp_path / "a.py").write_text("x = 2\n")
+    assert module._checkout() == {"commit": first["commit"], "dirty": True}
+    (tmp_path / "inner").mkdir()
+    monkeypatch.setattr(module, "PROJECT_FOLDER", tmp_path / "inner")
+    assert module._checkout()["commit"] is None  # installed inside some other checkout
+
+
+def test_age_names_the_modules_that_changed(tmp_path, monkeypatch):
+    result = read_result(written(tmp_path))
+    assert age(result) is None
+    result.provenance["sources"]["analytic.scene"] = "0" * 16
+    result.provenance["sources"]["analytic.gone"] = "1" * 16
+    words = age(result)
+    assert words.startswith("older than the code: computed on 2")
+    assert words.endswith("since then changed: analytic.scene, analytic.gone")
+    result.provenance["commit"] = None
+    assert "outside a checkout" in age(result)
+
+
+def test_content_that_names_a_folder_of_this_machine_is_refused(tmp_path):
+    with pytest.raises(ResultError, match="names a folder of this machine"):
+        write_result(tmp_path / "r.json", "k", {"record": str(tmp_path / "a.AT2")}, [], modules=["analytic"])
+    assert not (tmp_path / "r.json").exists()
+
+
+def test_scrub_keeps_project_files_readable(tmp_path):
+    here = Path(__file__)
+    text = scrub(f'File "{here}", line 3\nFile "/opt/x/y.py", line 1\n{tmp_path}/z at 0x7f00aa11bb22')
+    assert 'File "./tests/comparisons/running/test_provenance.py", line 3' in text and 'File "y.py", line 1' in text
+    assert str(tmp_path) not in text and "0x7f" not in text
+
+
+def test_files_that_cannot_be_used_are_errors_with_a_remedy(tmp_path):
+    with pytest.raises(ResultError, match="no such result file; run the study"):
+        read_result(tmp_path / "none.json")
+    with pytest.raises(ResultError, match="ends in .json"):
+        write_result(tmp_path / "r.txt", "k", {}, [], modules=["analytic"])
+    path = written(tmp_path, arrays={"a": np.arange(3)})
+    np.savez(tmp_path / "r.npz", a=np.arange(4))
+    with pytest.raises(ResultError, match="r.npz: missing or not the one r.json was written with"):
+        read_result(path)
+    (tmp_path / "r.npz").unlink()
+    with pytest.raises(ResultError, match="r.npz: missing"):
+        read_result(path)
+    path.write_text(path.read_text().replace('"schema": 1', '"schema": 99'))
+    with pytest.raises(ResultError, match="schema 99, this version reads 1"):
+        read_result(path)
+    path.write_text("{")
+    with pytest.raises(ResultError, match="not JSON"):
+        read_result(path)
+
+
+def test_every_committed_result_can_be_read_and_says_where_it_comes_from():
+    for file in RESULTS.glob("*.json"):
+        result = read_result(file)
+        # <study>.json, or <study>-<part>.json where a study has several
+        study = result.kind
+        assert (file.stem == study or file.stem.startswith(f"{study}-")) and result.provenance["commit"], file.name

@@ -1,0 +1,56 @@
+"""Source digests: imports are followed, words do not count, code does."""
+
+import importlib
+import os
+import sys
+import time
+
+import pytest
+
+from comparisons.running.sources import digest_of, source_digests
+
+
+@pytest.fixture
+def package(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(str(tmp_path))
+    folder = tmp_path / "some_package"
+    folder.mkdir()
+    files = {"__init__": "", "a": "import math\nfrom .b import f\n", "c": "x = 1\n", "alone": "y = 1\n",
+             "b": "def f():\n    from . import c\n    return c\n"}
+
+    def write(name, text):
+        (folder / f"{name}.py").write_text(text)
+        os.utime(folder / f"{name}.py", ns=(time.time_ns(), time.time_ns()))
+
+    for name, text in files.items():
+        write(name, text)
+    importlib.invalidate_caches()
+    yield write
+    sys.modules.pop("some_package", None)  # the next test's is another one
+
+
+def test_imports_are_followed_within_the_package_inside_functions_too(package):
+    assert list(source_digests(["some_package.a"])) == ["some_package", "some_package.a", "some_package.b",
+                                                        "some_package.c"]
+    assert list(source_digests(["some_package.alone"])) == ["some_package", "some_package.alone"]
+
+
+@pytest.mark.parametrize("text, same", [
+    ("# why\nx   =  1\n", True), ('"""What."""\nx = 1\n', True), ("x = 2\n", False), ("x = 1.0\n", False),
+    ("x = 1\nx += 1\n", False), ("x = '1'\n", False), ("y = 1\n", False)])
+def test_code_counts_and_words_do_not(package, text, same):
+    before = source_digests(["some_package.a"])
+    package("c", text)
+    after = source_digests(["some_package.a"])
+    assert (digest_of(before) == digest_of(after)) == same
+    assert {name for name in before if before[name] != after[name]} == (set() if same else {"some_package.c"})
+
+
+def test_the_reference_does_not_depend_on_engines_nor_studies():
+    names = list(source_digests(["analytic"]))
+    assert "analytic.scene" in names and all(name.startswith("analytic") for name in names)
+
+
+def test_an_unknown_module_is_an_error():
+    with pytest.raises(ModuleNotFoundError, match="no source file for module 'analytic.nothing'"):
+        source_digests(["analytic.nothing"])

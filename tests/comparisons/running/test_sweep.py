@@ -1,0 +1,251 @@
+"""The sweep layer: resumable after kill -9, proof against crashes and hangs, independent of order and workers."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from analytic import Block, EngineNotInstalled, Scene, Start
+from comparisons.running.sweep import Case, Processes, Serial, Store, run_sweep
+
+HERE = Path(__file__).parent
+
+
+@pytest.fixture(autouse=True)
+def fakes(monkeypatch):
+    monkeypatch.syspath_prepend(str(HERE))
+    import fake_solvers
+    return fake_solvers
+
+
+def scene(tilt):
+    return Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), start=Start(tilt=tilt), duration=1.0)
+
+
+def cases(solver="sound", count=10, **settings):
+    return [Case(scene(round(0.01 * i, 6)), f"fake_solvers:{solver}", settings=settings, tag={"i": i})
+            for i in range(count)]
+
+
+def sweep(which, store, **options):
+    return run_sweep(which, store=store, progress=False, **options)
+
+
+def results(rows):
+    """Everything that must not depend on order, workers or interruption."""
+    return [(row.case.tag, row.values, row.failure) for row in rows]
+
+
+def test_rows_come_in_the_order_of_the_cases_with_costs_apart(tmp_path, fakes):
+    rows = sweep(cases(), tmp_path / "s.jsonl", reduce=fakes.tilt)
+    assert [row.case.tag["i"] for row in rows] == list(range(10))
+    assert [row.values for row in rows] == [{"outcome": "stands", "peak": round(0.01 * i, 6) ** 2} for i in range(10)]
+    assert all(row.cost["cpu_seconds"] > 0 and "cpu_seconds" not in row.values for row in rows)
+    assert not any(row.reused or row.failed for row in rows)
+
+
+def test_without_a_reducer_the_row_holds_the_whole_response(tmp_path):
+    row, = sweep(cases(count=1), tmp_path / "s.jsonl", executor=Serial())
+    assert row.values["outcome"] == "stands" and row.values["end"]["time"] == 1.0
+
+
+def test_one_and_two_workers_and_this_process_agree_in_any_order(tmp_path, fakes):
+    which = cases(count=60)
+    one = sweep(which, tmp_path / "1.jsonl", workers=1, reduce=fakes.tilt)
+    two = sweep(which[::-1], tmp_path / "2.jsonl", workers=2, reduce=fakes.tilt)
+    here = sweep(which, tmp_path / "0.jsonl", executor=Serial(), reduce=fakes.tilt)
+    assert results(one) == results(two)[::-1] == results(here)
+
+
+def test_rows_are_reused_and_equal_cases_run_once(tmp_path):
+    log, store = tmp_path / "log", tmp_path / "s.jsonl"
+    which = cases("counted", 5, log=str(log))
+    first = sweep(which + which, store)
+    again = sweep(which[::-1], store)
+    assert len(log.read_text().split()) == 5
+    assert results(first[:5]) == results(first[5:]) == results(again)[::-1]
+    assert all(row.reused for row in again) and not any(row.reused for row in first)
+
+
+def test_a_key_follows_scene_solver_variant_settings_and_reducer_but_not_the_tag(fakes):
+    base = Case(scene(0.1), "fake_solvers:sound", settings={"work": 1})
+    others = [Case(scene(0.2), "fake_solvers:sound", settings={"work": 1}),
+              Case(scene(0.1), "fake_solvers:raises", settings={"work": 1}),
+              Case(scene(0.1), "fake_solvers:sound", "fast", {"work": 1}),
+              Case(scene(0.1), "fake_solvers:sound", settings={"work": 2})]
+    assert len({base.key(), base.key(fakes.tilt), *(other.key() for other in others)}) == 6
+    assert Case(scene(0.1), base.solver, settings={"work": 1}, tag={"i": 1}).key() == base.key()
+
+
+def test_a_key_follows_versions_and_source_code(tmp_path, monkeypatch):
+    import comparisons.running.cases as module
+    monkeypatch.syspath_prepend(str(tmp_path))
+    file = tmp_path / "changing_solver.py"
+
+    def key(text):
+        file.write_text(text)
+        os.utime(file, ns=(time.time_ns(), time.time_ns()))
+        module._fingerprint.cache_clear()
+        return Case(scene(0.1), "changing_solver:simulate").key()
+
+    first = key("def simulate(scene):\n    return 1\n")
+    assert key('"""Better words."""\ndef simulate(scene):\n    return 1  # one\n') == first
+    assert key("def simulate(scene):\n    return 2\n") != first
+    assert key("def simulate(scene):\n    return 1\n") == first
+    monkeypatch.setattr(module, "version", lambda package: "0.0")
+    assert key("def simulate(scene):\n    return 1\n") != first
+
+
+@pytest.mark.parametrize("solver, said", [("exits", "exit code 3"), ("segfaults", "SIGSEGV")])
+def test_a_crashing_worker_costs_one_row_with_evidence(tmp_path, solver, said):
+    rows = sweep(cases(solver, 40), tmp_path / "s.jsonl")
+    assert [row.case.tag["i"] for row in rows if row.failed] == [5]
+    failure = rows[5].failure
+    assert failure["kind"] == "crash" and said in failure["reason"] and rows[5].values == {"outcome": "failed"}
+    assert {"exits": "engine: assertion failed in contact", "segfaults": "in segfaults"}[solver] in failure["message"]
+    assert all(row.reused for row in sweep(cases(solver, 40), tmp_path / "s.jsonl"))
+
+
+def test_a_hanging_worker_costs_one_row_with_the_place_it_hung_at(tmp_path):
+    store, which = tmp_path / "s.jsonl", cases("hangs", 12, seconds=2.0)
+    rows = sweep(which, store, time_limit=0.5)
+    assert [row.case.tag["i"] for row in rows if row.failed] == [5]
+    assert rows[5].failure["kind"] == "time limit" and "0.5 s" in rows[5].failure["reason"]
+    assert "in hangs" in rows[5].failure["message"]
+    # A lower limit does not run it again; a higher one does, and that alone.
+    assert all(row.reused for row in sweep(which, store, time_limit=0.4))
+    rows = sweep(which, store, time_limit=20.0)
+    assert [row.case.tag["i"] for row in rows if not row.reused] == [5] and not rows[5].failed
+
+
+def test_a_worker_killed_from_outside_is_a_failed_row_and_runs_again_next_time(tmp_path):
+    rows = sweep(cases("killed", 1), tmp_path / "s.jsonl")
+    assert "SIGKILL" in rows[0].failure["reason"]
+    assert not sweep(cases("killed", 1), tmp_path / "s.jsonl")[0].reused
+
+
+def test_exceptions_and_failed_responses_become_failed_rows(tmp_path, fakes):
+    raised = sweep(cases("raises"), tmp_path / "s.jsonl", executor=Serial(), reduce=fakes.tilt)
+    assert [row.case.tag["i"] for row in raised if row.failed] == [5]
+    assert raised[5].failure["reason"] == "ValueError: Newton did not converge"
+    failed, = sweep(cases("fails", 1), tmp_path / "s.jsonl", executor=Serial(), reduce=fakes.tilt)
+    assert failed.failure["kind"] == "solver" and failed.failure["reason"] == "energy gain"
+    assert failed.failure["last_state"]["time"] == 0.5 and failed.values["outcome"] == "failed"
+    unfit, = sweep(cases(count=1), tmp_path / "s.jsonl", executor=Serial(), reduce=fakes.broken)
+    assert unfit.failure["reason"].startswith("TypeError") and "JSON" in unfit.failure["reason"]
+
+
+def test_failures_name_no_path_of_this_machine(tmp_path):
+    rows = sweep(cases("raises", 6) + cases("segfaults", 6), tmp_path / "s.jsonl")
+    text = json.dumps([row.failure for row in rows if row.failed])
+    assert text.count("fake_solvers.py") >= 2
+    for root in (str(HERE), str(Path.home()) + "/", sys.prefix, str(tmp_path)):
+        assert root not in text
+
+
+def test_unknown_solvers_and_reducers_that_cannot_travel_are_errors_before_anything_runs(tmp_path, monkeypatch):
+    log = tmp_path / "log"
+    first = cases("counted", 1, log=str(log))
+    with pytest.raises(KeyError, match="unknown solver 'exodyn': choose one of analytic"):
+        sweep([*first, Case(scene(0.1), "exodyn")], tmp_path / "s.jsonl")
+    with pytest.raises(ValueError, match="module-level function"):
+        sweep(first, tmp_path / "s.jsonl", reduce=lambda response: {})
+    monkeypatch.setitem(sys.modules, "pybullet", None)
+    with pytest.raises(EngineNotInstalled, match="pip install"):
+        sweep([*first, Case(scene(0.1), "pybullet")], tmp_path / "s.jsonl")
+    assert not log.exists()
+
+
+def test_an_executor_is_shared_by_several_sweeps(tmp_path):
+    with Processes(1) as executor, Store(tmp_path / "s.jsonl") as store:
+        rows = [sweep(cases(count=n), store, executor=executor) for n in (3, 6)]
+    assert [row.reused for row in rows[1]] == [True] * 3 + [False] * 3
+
+
+def test_two_workers_do_nearly_twice_as_much_as_one(tmp_path):
+    # Runs that sleep: what is measured is the sweep layer, whatever else the machine is doing.
+    seconds = {}
+    for workers in (1, 2):
+        with Processes(workers) as executor, Store(tmp_path / f"{workers}.jsonl") as store:
+            sweep(cases(count=4, sleep=0.01), store, executor=executor)
+            start = time.monotonic()
+            sweep(cases(count=24, sleep=0.05), store, executor=executor)
+            seconds[workers] = time.monotonic() - start
+    assert seconds[1] > 1.6 * seconds[2]
+
+
+def test_workers_killed_while_idle_are_replaced(tmp_path):
+    with Processes(2) as executor, Store(tmp_path / "s.jsonl") as store:
+        sweep(cases(count=3), store, executor=executor)
+        for worker in executor._pool._pool_manager.worker_manager.workers.values():
+            worker.kill()
+        assert not any(row.failed for row in sweep(cases(count=12), store, executor=executor))
+
+
+def test_workers_that_cannot_start_are_an_error_not_an_endless_loop(tmp_path, monkeypatch):
+    import comparisons.running.executors as module
+    monkeypatch.setattr(module, "_start_worker", os._exit)  # the initializer ends every worker
+    with pytest.raises(RuntimeError, match="end before they take up any run"):
+        sweep(cases(count=3), tmp_path / "s.jsonl", workers=1)
+
+
+def test_the_analytic_model_gives_the_same_rows_here_and_in_workers_without_compiling_there(tmp_path, fakes):
+    which = [Case(scene(0.05 * i), settings={"history": False}) for i in range(1, 6)]
+    here = sweep(which, tmp_path / "0.jsonl", executor=Serial(), reduce=fakes.tilt)
+    # Compiling takes longer than this limit; compile_kernels has left the workers a cache.
+    there = sweep(which, tmp_path / "2.jsonl", workers=2, reduce=fakes.tilt, time_limit=8.0)
+    assert results(here) == results(there) and not any(row.failed for row in there)
+
+
+KILLED_SWEEP = """
+import sys
+sys.path.insert(0, {here!r})
+from test_sweep_cases import slow
+from comparisons.running.sweep import run_sweep
+if __name__ == "__main__":
+    run_sweep(slow({log!r}), store={store!r}, workers=2, progress=False)
+"""
+
+
+def test_kill_9_then_resume_equals_an_uninterrupted_sweep(tmp_path):
+    log, store = tmp_path / "log", tmp_path / "s.jsonl"
+    (tmp_path / "test_sweep_cases.py").write_text(
+        "from analytic import Block, Scene, Start\nfrom comparisons.running.sweep import Case\n"
+        "def slow(log):\n"
+        "    scene = lambda t: Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), start=Start(tilt=t),"
+        " duration=1.0)\n"
+        "    return [Case(scene(0.001 * i), 'fake_solvers:counted', settings={'log': log, 'sleep': 0.05})"
+        " for i in range(40)]\n")
+    script = tmp_path / "study.py"
+    script.write_text(KILLED_SWEEP.format(here=str(tmp_path), log=str(log), store=str(store)))
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE), str(HERE.parents[2])])}
+    process = subprocess.Popen([sys.executable, str(script)], env=environment)
+    deadline = time.monotonic() + 60
+    while time.monotonic() < deadline and not (store.exists() and store.read_bytes().count(b"\n") >= 10):
+        time.sleep(0.01)
+    family = psutil.Process(process.pid).children(recursive=True)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    saved = store.read_bytes().count(b"\n")
+    assert 10 <= saved < 40
+    gone, alive = psutil.wait_procs(family, timeout=10)
+    assert not alive  # no orphan goes on computing
+    begun = len(log.read_text().split())
+    # Lost at most: the tasks in flight, two workers' worth of a few runs each.
+    assert begun - saved <= 2 * 6
+
+    subprocess.run([sys.executable, str(script)], env=environment, check=True, timeout=60)
+    assert len(log.read_text().split()) - begun == 40 - saved
+    script.write_text(KILLED_SWEEP.format(here=str(tmp_path), log=str(log), store=str(tmp_path / "whole.jsonl")))
+    subprocess.run([sys.executable, str(script)], env=environment, check=True, timeout=60)
+
+    def content(file):
+        with Store(file) as opened:
+            return {key: (row["values"], row["failure"]) for key, row in opened.rows.items()}
+    assert content(store) == content(tmp_path / "whole.jsonl") and len(content(store)) == 40

@@ -1,0 +1,228 @@
+"""The Caryatid study: its parts against closed forms and single runs, and the command end to end on a short motion."""
+
+import math
+
+import numpy as np
+import pytest
+
+from analytic import PulseMotion, SampledMotion, load_scene, simulate, synthetic_motion
+from analytic.linear_oscillator import displacement_spectrum
+from analytic.records import read_record
+from analytic.rocking import RockingModel
+from comparisons.cli import main
+from comparisons.running.provenance import PROJECT_FOLDER, read_result
+from comparisons.running.refine import Transition
+from comparisons.studies.caryatid import section
+from comparisons.studies.caryatid.cost import DIVISIONS, _cpu_at, _fixed_step
+from comparisons.studies.caryatid.figures import draw
+from comparisons.studies.caryatid.formulas import formulas
+from comparisons.studies.caryatid.paper import CORRECTED, NOT_REPRODUCIBLE, REPRODUCED, judged
+from comparisons.studies.caryatid.runs import FREE, ISOLATED, caryatid, oscillator, slender_block
+from comparisons.studies.caryatid.slenderness import _intervals, _overlap, claims, uplift_slenderness
+from comparisons.studies.caryatid.study import is_papers_motion, make_results
+from comparisons.studies.caryatid.variations import (
+    BOTH,
+    NEITHER,
+    ONLY_FREE,
+    ONLY_ISOLATED,
+    benefit,
+    contact,
+    impact_friction,
+)
+
+DUZCE = PROJECT_FOLDER.parent / "shared" / "records" / "RSN1605_DUZCE_DZC270.AT2"
+
+
+@pytest.fixture(scope="module")
+def short():
+    """A sampled one-sine acceleration of 0.55 g and 1.5 Hz, 4 s long: the free-standing Caryatid overturns."""
+    dt = 0.01
+    pulse = PulseMotion("one-sine", 0.55 * 9.81, 3 * math.pi, start=0.2)
+    return SampledMotion(dt, pulse.acceleration(dt * np.arange(401)), "a short pulse")
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return formulas()[0]
+
+
+def test_every_equation_and_table_has_a_row(rows):
+    numbers = [row["number"] for row in rows if row["part"] == "equation"]
+    assert numbers == ["(1)", "(2)", "(3)–(6)", "(7)", "(8)", "(9)–(11)", "(12)", "(13)", "(14)", "Fig. 3",
+                       "Table 1(a)", "Table 1(b)"]
+    checks = {row["number"]: row["value"] for row in rows if row["part"] == "equation"}
+    assert checks["(2)"] < 1e-7 and checks["(3)–(6)"] < 1e-9 and checks["(9)–(11)"] < 1e-9 and checks["(8)"] < 1e-12
+    corrected = [row["number"] for row in rows if row["part"] == "equation" and row["status"] == CORRECTED]
+    assert corrected == ["(8)", "(12)"]
+
+
+def test_numbers_without_motion(rows):
+    values = {row["quantity"]: row for row in rows if row["part"] == "value"}
+    assert [row["where"] for row in values.values() if row["status"] == NOT_REPRODUCIBLE] == ["Figs 1, 2"]
+    assert values["α [-]"]["study"] == pytest.approx(44.69, abs=0.005)
+    assert values["damping ξ as W_D/(4π E_s) [%]"]["study"] == pytest.approx(15.0, abs=0.05)
+    assert values["period T_bi [s]"]["study"] == pytest.approx(1.9993, abs=5e-5)
+
+
+def test_misprints_are_seen_in_numbers(rows):
+    found = {row["where"]: row for row in rows if row["part"] == "misprint"}
+    assert found["eq. (8)"]["value_corrected"] == pytest.approx(1, abs=1e-12)
+    # momentum share of the base's jump: (1 - e_phi) (R cos gamma - 1) of the whole
+    isolated = load_scene("caryatid-isolated")
+    after, _ = RockingModel.of(isolated).impact(1.0)
+    assert found["eq. (8)"]["value_printed"] == pytest.approx(1 + (1 - after) * (isolated.block.half_height - 1),
+                                                              rel=1e-9)
+    assert found["eq. (12)"]["value_corrected"] < 1e-9
+    assert found["eq. (12)"]["value_printed"] == pytest.approx(1, abs=1e-3)
+    assert found["Table 1(a), ξ"]["value_printed"] == pytest.approx(30.0, abs=0.05)
+
+
+def test_a_number_outside_the_printed_digits_is_not_reproduced():
+    assert judged("", "", 0.212, 0.2124, 0.0005).status == REPRODUCED
+    assert judged("", "", 0.212, 0.2126, 0.0005).status == NOT_REPRODUCIBLE
+
+
+@pytest.mark.parametrize(("period", "damping"), [(2.0, 0.05), (2.0, 0.30)])
+def test_oscillator_scene_is_the_linear_oscillator(short, period, damping):
+    response = simulate(oscillator(short, period, damping), history=False)
+    assert response.outcome == "stands"
+    expected = displacement_spectrum(short, [period], [damping])[0, 0]
+    assert response.peak_base_displacement == pytest.approx(expected, rel=1e-9)
+
+
+def test_slender_block_has_the_period_asked_for(short):
+    assert 2 * math.pi / slender_block(short, 3.7, 0.28).rocking_frequency == pytest.approx(3.7, rel=1e-12)
+
+
+def test_slenderness_claims_on_a_pulse(short):
+    found, arrays = claims(short, quick=True)
+    intervals = {row["claim"]: row["intervals"] for row in found if row["part"] == "claim"}
+    # bisection with the kernel against the acceleration of a block that stays down
+    (low, high), = intervals["isolated does not rock"]
+    assert low == pytest.approx(uplift_slenderness(short), abs=2e-5) and high == 0.45
+    _, edge = intervals["free-standing overturns"][-1]
+    free = caryatid(FREE, short).with_(duration=20.0)  # time to fall
+    assert simulate(free.with_(block={"slenderness": edge - 1e-4})).outcome == "overturns"
+    assert simulate(free.with_(block={"slenderness": edge + 1e-4})).outcome != "overturns"
+    assert len(arrays["claims/slenderness"]) == len(arrays["claims/vulnerable period"])
+
+
+def test_intervals_and_their_overlap():
+    changes = [Transition(0.2, 0.2001, False, True), Transition(0.3, 0.3001, True, False)]
+    assert _intervals(changes, False) == [[0.2001, 0.3]]
+    assert _intervals(changes[1:], True) == [[0.1, 0.3]]
+    assert _intervals([], False) == [] and _intervals([], True) == [[0.1, 0.45]]
+    assert _overlap([[0.1, 0.3], [0.35, 0.4]], [[0.2, 0.36]]) == [[0.2, 0.3], [0.35, 0.36]]
+
+
+def test_benefit_map_against_single_runs(short):
+    slendernesses, intensities = np.array([0.12, 0.2, 0.28, 0.4]), np.array([0.5, 1.0, 2.0, 3.0])
+    category, lifted, displacement = benefit(short, slendernesses, intensities)
+    named = {(False, False): BOTH, (True, False): ONLY_ISOLATED, (False, True): ONLY_FREE, (True, True): NEITHER}
+    for i, gamma in enumerate(slendernesses):
+        for k, factor in enumerate(intensities):
+            change = {"block": {"slenderness": gamma}, "motion": short.scaled(factor), "duration": 20.0}
+            free, isolated = (simulate(caryatid(name, short).with_(**change), history=False)
+                              for name in (FREE, ISOLATED))
+            assert category[i, k] == named[free.outcome == "overturns", isolated.outcome == "overturns"]
+            assert lifted[i, k] == (isolated.outcome != "stands")
+            if isolated.outcome == "overturns":
+                assert np.isnan(displacement[i, k])
+            else:
+                assert displacement[i, k] == pytest.approx(isolated.peak_base_displacement, rel=1e-6)
+    assert len(np.unique(category)) >= 3
+
+
+def test_friction_of_an_impact():
+    for gamma in (0.1, 0.28, 0.45):
+        rigid = load_scene("caryatid-rigid").with_(block={"slenderness": gamma})
+        sine, cosine = math.sin(gamma), math.cos(gamma)
+        assert impact_friction(rigid) == pytest.approx(1.5 * sine * cosine / (2 - 1.5 * sine**2), rel=1e-12)
+        # on the base: change of the block's momentum, sideways and upward
+        scene = load_scene("caryatid-isolated").with_(block={"slenderness": gamma})
+        w, (b, h) = -1.0, (scene.block.half_width, scene.block.half_height)
+        after, jump = RockingModel.of(scene).impact(w)
+        sideways, upward = jump + h * (after - w), b * (abs(after) + abs(w))
+        assert impact_friction(scene) == pytest.approx(abs(sideways) / upward, rel=1e-12)
+
+
+def test_contact_of_a_block_that_stays_down_is_its_acceleration(short):
+    found, arrays = contact(short, quick=True)
+    free, isolated = found
+    assert isolated["min_normal_ratio"] == 1
+    response = simulate(caryatid(ISOLATED, short), history=False)
+    assert response.outcome == "stands"
+    assert isolated["friction_demand"] == pytest.approx(response.peak_base_acceleration / 9.81, rel=1e-9)
+    falling = simulate(caryatid(FREE, short))
+    assert falling.outcome == "overturns"  # what comes in the last fall does not count
+    before = simulate(caryatid(FREE, short).with_(duration=falling.unstable_time), history=False)
+    assert free["friction_demand"] == pytest.approx(before.friction_demand, rel=1e-3)
+    assert not arrays[f"contact/{FREE} upright"].all() and arrays[f"contact/{ISOLATED} upright"].any()
+
+
+@pytest.mark.parametrize("law", ["algebraic", "bouc-wen"])
+def test_fixed_step_of_the_cost_claim_solves_the_same_problem(law):
+    scene = caryatid(ISOLATED, synthetic_motion()).with_(bearings={"law": law}, duration=synthetic_motion().end)
+    exact = simulate(scene, history=False)
+    errors = [abs(_fixed_step(scene, n)[1] - exact.end.base_displacement) / exact.peak_base_displacement
+              for n in (DIVISIONS[0], DIVISIONS[-1])]
+    assert errors[0] < 1e-4 and errors[1] < 1e-2 * errors[0]
+
+
+def test_cost_at_an_error_lies_between_the_rungs():
+    errors, cpu = [1e-4, 1e-6, 1e-8], [1.0, 10.0, 100.0]
+    assert _cpu_at(1e-5, errors, cpu) == pytest.approx(math.sqrt(10))
+    assert _cpu_at(1e-3, errors, cpu) is None and _cpu_at(1e-9, errors, cpu) is None
+
+
+def test_end_to_end(short, tmp_path):
+    files = make_results(tmp_path, short, quick=True, progress=False)
+    draw(files)
+    assert len(files) == 3 and len(list(tmp_path.glob("*.png"))) == 12
+    for file in files:
+        assert file.with_suffix(".npz").stat().st_size < 500_000
+        shown = section(read_result(file))
+        assert shown.figures and all(figure.alt and figure.caption for figure in shown.figures)
+    under = read_result(files[1])
+    runs = [row for row in under.rows if row["part"] == "run"]
+    assert {row["scene"] for row in runs} == {FREE, ISOLATED}
+    for row in runs:
+        assert row["outcome"] == ("overturns" if row["scene"] == FREE else "stands"), row["failure"]
+    reference = next(row for row in runs if row["scene"] == ISOLATED and row["solver"] == "analytic")
+    for row in runs:
+        if row["scene"] == ISOLATED:
+            assert row["peak_base_displacement"] == pytest.approx(reference["peak_base_displacement"], rel=1e-3)
+    # what may be passed on holds no value of the motion
+    for name, values in under.arrays.items():
+        assert values.size < 1 or not np.isin(np.float32(short.samples[30:50]), values).any(), name
+    # the numbers of another motion are never said to be the paper's
+    values = [row for row in under.rows if row["part"] == "value" and row["where"] == "Fig. 6"]
+    assert {row["status"] for row in values} == {"other motion"}
+
+
+def test_only_a_duzce_record_has_to_meet_the_papers_numbers(short):
+    assert is_papers_motion(SampledMotion(short.dt, short.samples, "RSN1605_DUZCE_DZC270.AT2"))
+    assert not is_papers_motion(synthetic_motion()) and "duzce" in synthetic_motion().label
+    assert not is_papers_motion(short)
+
+
+@pytest.mark.skipif(not DUZCE.exists(), reason="the Duzce record lies in ../shared/records, which is absent")
+def test_the_paper_with_its_record():
+    motion = read_record(DUZCE)
+    free, isolated = (simulate(caryatid(name, motion), history=False) for name in (FREE, ISOLATED))
+    assert free.outcome == "overturns" and free.overturning_time - motion.peak_time == pytest.approx(3.6, abs=1.0)
+    assert isolated.outcome == "stands"
+    assert isolated.peak_base_displacement == pytest.approx(0.212, abs=5e-4)
+    assert isolated.peak_base_acceleration / 9.81 == pytest.approx(0.236, abs=5e-4)
+
+
+@pytest.mark.parametrize(("arguments", "message"), [
+    (["--record", "no-such-record.AT2"], "no-such-record.AT2"),
+    (["--units", "g"], "--record"),
+    (["--output", __file__], "is a file"),
+])
+def test_mistakes_end_with_status_2_before_any_run(arguments, message, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["study", "caryatid", *arguments])
+    assert ended.value.code == 2
+    assert message in capsys.readouterr().err

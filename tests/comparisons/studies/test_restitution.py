@@ -1,0 +1,159 @@
+"""The restitution study: its measures on responses whose error is known, and a small run from end to end."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from analytic import SettingError, simulate
+from analytic.rocking import restitution
+from comparisons.running.provenance import read_result
+from comparisons.studies import restitution as study
+from comparisons.studies.restitution.cases import CARYATID_BASE, FULL, QUICK, Grid, free_scene, grid_cases
+from comparisons.studies.restitution.measure import kept, measured, strong_impacts
+from comparisons.studies.restitution.summary import BULLET_DAMPING, damped_error, friction_needed
+
+pytestmark = pytest.mark.xdist_group("restitution study")  # the small study is run once
+
+
+@pytest.mark.parametrize("grid", [QUICK, FULL])
+def test_the_grids_cover_what_they_must(grid):
+    assert {0.1, 0.2, 0.3, 0.45} <= set(grid.slendernesses)
+    assert {None, CARYATID_BASE, 1.0, 10.0} <= set(grid.ratios)
+    assert len(grid.starts) >= 8 and min(grid.starts) == 0.3 and max(grid.starts) == 0.8
+
+
+@pytest.mark.parametrize("ratio", [None, 10.0, CARYATID_BASE])
+@pytest.mark.parametrize("slenderness", [0.1, 0.45])
+def test_exact_responses_have_no_error_and_the_printed_jump_has(slenderness, ratio):
+    scene = free_scene(slenderness, ratio, 0.5)
+    errors = measured(scene, json.loads(json.dumps(kept(simulate(scene)))), 3)
+    assert len(errors["time"]) == 3
+    assert np.abs(errors["swing"]).max() < 1e-8
+    assert np.abs(errors["state"]).max() < 1e-9
+    if ratio:
+        assert np.abs(errors["jump"]).max() < 1e-9
+        assert np.abs(errors["jump_8"]).max() < 1e-9
+        np.testing.assert_allclose(errors["jump_8_printed"], 1 / scene.block.half_height - 1, atol=1e-9)
+
+
+def test_another_impact_law_is_measured_as_what_it_is():
+    scene = free_scene(0.2, None, 0.6)
+    wrong = simulate(scene.with_(block={"restitution": 0.9}))
+    errors = measured(scene, kept(wrong), 3)
+    np.testing.assert_allclose(errors["swing"], 0.9 - restitution(scene), atol=1e-8)
+
+
+def test_chatter_does_not_count_as_impacts():
+    scene = free_scene(0.2, None, 0.6).with_(duration=30.0)
+    response = simulate(scene)
+    rates = [abs(impact.rate_before) for impact in strong_impacts(response)]
+    assert len(rates) < len(response.impacts)
+    assert min(rates) >= 0.1 * max(rates)
+
+
+@pytest.mark.parametrize("start", [0.3, 0.8])
+def test_scenes_end_past_the_third_swing(start):
+    scene = free_scene(0.2, CARYATID_BASE, start)
+    history = simulate(scene).history
+    assert len(simulate(scene).impacts) == 3
+    assert history.tilt_rate[-1] * history.tilt[-1] < 0  # past its peak
+
+
+def test_damping_in_flight_lowers_restitution_by_what_it_takes():
+    scene = free_scene(0.2, None, 0.6)
+    assert np.abs(damped_error(scene, 0.0)).max() < 1e-9
+    weak, double = (damped_error(scene, damping) for damping in (1e-4, 2e-4))
+    assert (weak < 0).all()
+    np.testing.assert_allclose(double / weak, 2.0, rtol=1e-3)
+
+
+def test_friction_of_an_impact_is_the_ratio_of_its_impulses():
+    scene = free_scene(0.3, None, 0.5)
+    b, h, e = scene.block.half_width, scene.block.half_height, restitution(scene)
+    assert friction_needed(scene) == pytest.approx(h * (1 - e) / (b * (1 + e)))
+    heavy = free_scene(0.3, 1e6, 0.5)
+    assert friction_needed(heavy) == pytest.approx(friction_needed(scene), rel=1e-5)
+
+
+def test_cases_are_tagged_and_run_default_settings_unless_on_the_ladder():
+    pytest.importorskip("pybullet")
+    cases = grid_cases(Grid((0.2, 0.3), (None,), (0.5,), ((0.2, None),), 4), ("pybullet",))
+    assert {case.settings.get("accuracy") for case in cases if case.variant == "impact-aware"
+            and case.tag["slenderness"] == 0.2} == {None, 1e-3, 1e-4, 1e-6}
+    assert all(not case.settings for case in cases if case.tag["slenderness"] == 0.3)
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    pytest.importorskip("pybullet")
+    folder = tmp_path_factory.mktemp("study")
+    grid = Grid((0.2,), (None, CARYATID_BASE), (0.5, 0.7), ((0.2, None),), 8)
+    path, figures = study.run(folder, grid, workers=2, progress=False, engines=("pybullet",))
+    return folder, grid, path, figures
+
+
+def test_a_small_study_finds_what_is_known(small):
+    result = read_result(small[2])
+    def one(part, **wanted):
+        (row,) = [row for row in result.rows if row["part"] == part
+                  and all(row[key] == value for key, value in wanted.items())]
+        return row
+
+    aware = one("summary", scope="all", variant="impact-aware", ground="rigid ground")
+    assert aware["rms"] < 1e-4 and aware["impacts"] == 6 and aware["failed"] == aware["lost"] == 0
+    assert 0.8 < one("order", variant="fixed-step", ground="rigid ground")["order"] < 1.2
+    assert one("phase", step=1e-3)["explained"] > 0.95
+    damped = one("flight damping", step=1e-3)
+    assert damped["measured"] == pytest.approx(damped["predicted"], rel=0.15)
+    assert BULLET_DAMPING == 0.04
+    large = one("experiment", experiment="size", value=4.0)
+    assert large["jump_8"] < 1e-3 and large["jump_8_printed"] > 0.5
+    assert all(row["cpu_per_second"] > 0 for row in result.rows if row["part"] == "cell")
+
+
+def test_figures_and_section_come_from_the_result_alone(small):
+    folder, _, path, figures = small
+    assert len(figures) == 5 and all(figure.stat().st_size > 10_000 for figure in figures)
+    section = study.section(read_result(path))
+    words = " ".join(section.text)
+    assert "pybullet, impact-aware (accuracy = 1.0·10⁻⁵) may be trusted for restitution" in words
+    assert "not to be trusted" in words and "Step phase." in words and "Eq. (8)." in words
+    for table in section.tables:
+        assert table.rows and all(len(row) == len(table.columns) for row in table.rows)
+    assert len(section.figures) == 5 and all(figure.alt and figure.caption for figure in section.figures)
+    json.dumps([section.title, section.text])
+
+
+def test_a_broken_off_study_resumes_to_the_same_result(small):
+    folder, grid, path, _ = small
+    before = read_result(path)
+    store = folder / "runs.jsonl"
+    lines = store.read_text().splitlines(keepends=True)
+    store.write_text("".join(lines[:len(lines) // 2]) + lines[-1][:40])  # the last line cut off, as kill -9 leaves it
+    study.run(folder, grid, workers=1, progress=False, engines=("pybullet",))
+    after = read_result(path)
+
+    def without_cost(rows):
+        return [{key: value for key, value in row.items() if key != "cpu_per_second"} for row in rows]
+
+    assert without_cost(after.rows) == without_cost(before.rows)
+    assert len(store.read_text().splitlines()) >= len(lines)
+
+
+def test_an_output_that_is_a_file_is_refused(tmp_path):
+    (tmp_path / "taken").write_text("")
+    with pytest.raises(SettingError, match="taken: is a file"):
+        study.command(output=str(tmp_path / "taken"))
+
+
+def test_results_hold_numbers_only(small):
+    def check(value):
+        if isinstance(value, dict):
+            return all(map(check, value.values()))
+        if isinstance(value, list):
+            return all(map(check, value))
+        return not isinstance(value, float) or math.isfinite(value)
+
+    assert all(map(check, read_result(small[2]).rows))
