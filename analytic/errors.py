@@ -58,5 +58,23 @@ class EngineNotInstalled(ImportError):
     """An engine was asked for that is not installed; the message says how to install it."""
 
 
+class EngineBroken(EngineNotInstalled):
+    """An engine is declared by another package and cannot be used; the message names who declares it.
+
+    Parameters
+    ----------
+    origin : str
+        The entry and its distribution.
+    problem : str
+    """
+
+    def __init__(self, origin, problem):
+        self.origin, self.problem = origin, problem
+        super().__init__(origin, problem)
+
+    def __str__(self):
+        return f"{self.origin}: {cut(self.problem, TEXT_LENGTH)}; mend or uninstall that package"
+
+
 class SettingError(ValueError):
     """A solver setting that does not exist or is out of range."""

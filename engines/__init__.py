@@ -1,26 +1,24 @@
 """The same scene in multibody engines: ``get_engine("exudyn").simulate(scene)``.
 
-A new engine is one new file and one line here. The file holds ``simulate(scene, *, variant=None, history=True,
-**settings)``, which returns a `Response`, made by `observe` (imported by that name: tests look at what it is given);
-``VARIANTS``, by name a frozen dataclass of settings, the accuracy knob first; ``DEFAULT_VARIANT``; ``DECIDES``, in
-words what the engine decides by itself; ``versions()``.
+An engine is a package with an `engines.contract.Engine` called ``ENGINE``; those of this project stand in `BUILT_IN`,
+others are declared by their packages (`engines.plugins`).
 """
 
 from importlib import import_module
 
 from analytic.errors import EngineNotInstalled
 
-# name: (module, package that must be importable, how to install it)
-ENGINES = {
-    "exudyn": ("engines.exudyn_engine", "exudyn", "pip install exudyn"),
-    "pybullet": ("engines.pybullet_engine", "pybullet",
-                 "pip install pybullet (its wheels end at CPython 3.11: use Python 3.11)"),
-    "mujoco": ("engines.mujoco_engine", "mujoco", "pip install 'rocking[mujoco]'"),
-}
+from .plugins import find_engines
+
+BUILT_IN = ("exudyn", "pybullet", "mujoco")
+# By name; imported so, not by statement, a result of one engine does not depend on the records of the others.
+ENGINES = {name: import_module(f"{__name__}.{name}").ENGINE for name in BUILT_IN}
+_found, BROKEN = find_engines(ENGINES)  # BROKEN: the errors of entries that hold no engine, by name
+ENGINES |= _found
 
 
 def get_engine(name):
-    """The engine module called `name`.
+    """The `Engine` called `name`, with its adapter loaded.
 
     Raises
     ------
@@ -28,27 +26,27 @@ def get_engine(name):
         The name is unknown; the message lists the known ones.
     EngineNotInstalled
         The engine's package cannot be imported; the message says how to install it.
+    EngineBroken
+        Another package declares it, and it cannot be used; the message names who declares it.
     """
+    if name in BROKEN:
+        raise BROKEN[name]
     if name not in ENGINES:
         raise KeyError(f"unknown engine {name!r}: choose one of {', '.join(ENGINES)}")
-    module, package, remedy = ENGINES[name]
-    try:
-        import_module(package)
-    except ImportError as error:
-        raise EngineNotInstalled(f"engine {name!r} needs the package {package}: {remedy}") from error
-    return import_module(module)
+    ENGINES[name].load()
+    return ENGINES[name]
 
 
-def available_engines(names=ENGINES):
-    """(those of the engines `names` that are installed, {name: why it is missing} of the others).
+def available_engines(names=None):
+    """(those of the engines `names` that can be used, {name: why not} of the others); None: all that are declared.
 
     Raises
     ------
     ImportError
-        An adapter is broken: that must not pass for a package that is absent.
+        An adapter of this project is broken: that must not pass for a package that is absent.
     """
     present, missing = [], {}
-    for name in names:
+    for name in (*ENGINES, *BROKEN) if names is None else names:
         try:
             get_engine(name)
         except EngineNotInstalled as error:

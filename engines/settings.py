@@ -6,17 +6,14 @@ from dataclasses import fields, replace
 from analytic.errors import SceneError, SettingError
 
 
-def choose(engine, variants, default, variant, changes):
-    """(name, settings) of a variant with fields replaced.
+def choose(engine, variant, changes):
+    """(name, settings) of an engine's variant with fields replaced.
 
     Parameters
     ----------
-    engine : str
-        For the message.
-    variants : dict
-        Frozen dataclasses of numbers above 0, by name.
-    default : str
-        Name of the variant taken where `variant` is None.
+    engine : Engine
+    variant : str or None
+        None is the default one.
     changes : dict
         {field: number}
 
@@ -25,20 +22,23 @@ def choose(engine, variants, default, variant, changes):
     SettingError
         Unknown variant or setting, or a value that is no finite number above 0.
     """
-    name = default if variant is None else variant
+    name, variants = engine.default_variant if variant is None else variant, engine.variants
     if name not in variants:
-        raise SettingError(f"{engine} has no variant {name!r}: choose one of {', '.join(variants)}")
-    known = [field.name for field in fields(variants[name])]
+        raise SettingError(f"{engine.name} has no variant {name!r}: choose one of {', '.join(variants)}")
+    settings = variants[name].settings
+    known = [field.name for field in fields(settings)]
     for key, value in changes.items():
         if key not in known:
-            raise SettingError(f"{engine} {name} has no setting {key!r}: its settings are {', '.join(known)}")
+            raise SettingError(f"{engine.name} {name} has no setting {key!r}: its settings are {', '.join(known)}")
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < math.inf:
-            raise SettingError(f"{engine} {name}: {key} = {value!r} is not a positive number")
-    return name, replace(variants[name], **{key: float(value) for key, value in changes.items()})
+            raise SettingError(f"{engine.name} {name}: {key} = {value!r} is not a positive number")
+    return name, replace(settings, **{key: float(value) for key, value in changes.items()})
 
 
-def leave_restitution(scene, remedy="use the analytic model"):
-    """Raise `SceneError` where a scene overrides the restitution, which a contact engine decides itself."""
+def leave_restitution(engine, scene):
+    """Raise `SceneError` where a scene gives the restitution, which a contact engine decides itself."""
     if scene.block.restitution is not None:
+        able = [name for name, variant in engine.variants.items() if variant.takes_restitution]
+        remedy = f"use the variant {able[0]}" if able else "use the analytic model"
         raise SceneError("block.restitution", scene.block.restitution, "a contact engine decides the impact itself",
                          f"leave it out, or {remedy}")

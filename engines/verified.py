@@ -30,6 +30,20 @@ WORDS = {"slenderness": "slenderness [rad]", "inertia": "J_O/(m R^2)", "base_mas
          "damping": "step times viscous damping over base mass", "tilt": "peak tilt over slenderness"}
 
 
+def in_words(verified):
+    """The limits of a `Range`, or that there is none."""
+    if verified is None:
+        return "nowhere"
+    limits = {field.name: getattr(verified, field.name) for field in fields(Range)}
+    return "; ".join(f"{WORDS[name]} {_limits(*pair)}" for name, pair in limits.items() if pair != ANY) or "anywhere"
+
+
+def _limits(low, high):
+    if low <= 0 or high == math.inf:
+        return f"at most {high:.4g}" if low <= 0 else f"at least {low:.4g}"
+    return f"{low:.4g} to {high:.4g}"
+
+
 def quantities(scene, step, peak_tilt=None):
     """{name: value} of the quantities of `Range` that a scene has, at a step [s]; peak_tilt [rad]."""
     block = scene.block

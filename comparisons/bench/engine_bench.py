@@ -80,9 +80,9 @@ def bench_engines(engine, output, *, scenes=2000, seed=1, workers=None, time_lim
         if row["class"] == "off and silent":
             row["scene"] = describe(scene)
     settings = {"engine": engine, "versions": get_engine(engine).versions(), "scenes": scenes, "time_limit": time_limit,
-                "variant": get_engine(engine).DEFAULT_VARIANT}
+                "variant": get_engine(engine).default_variant}
     write_result(output / f"bench-engines-{engine}.json", "bench engines", settings, rows,
-                 modules=("comparisons.bench.engine_bench", "analytic.kernel", get_engine(engine).__name__), seed=seed)
+                 modules=("comparisons.bench.engine_bench", "analytic.kernel", get_engine(engine).adapter), seed=seed)
     return rows
 
 

@@ -2,17 +2,22 @@
 
 
 def command():
-    """List the engines: version, what each decides by itself, variants with their settings (the knob first)."""
+    """List the engines: version, variants with rung and settings, where each is verified, and who decides what."""
     from rich.console import Console
 
-    from engines import ENGINES, available_engines, get_engine
+    from analytic.errors import EngineBroken, EngineNotInstalled
+    from engines import BROKEN, ENGINES, get_engine
 
     from ..running.solving import stdout_to_stderr
     from ..showing.tables import engine_text
 
     console = Console(highlight=False, soft_wrap=True)
-    with stdout_to_stderr():  # engines greet on standard output
-        _, missing = available_engines()
-    for name in ENGINES:
-        text = f"{name}: not installed. {missing[name]}\n" if name in missing else engine_text(name, get_engine(name))
+    for name in (*ENGINES, *BROKEN):
+        try:
+            with stdout_to_stderr():  # engines greet on standard output
+                text = engine_text(get_engine(name))
+        except EngineBroken as error:
+            text = f"{name}: cannot be used. {error}\n"
+        except EngineNotInstalled as error:
+            text = f"{name}: not installed. {error}\n"
         console.print(text, markup=False)

@@ -4,7 +4,6 @@ Each takes (engine, variant, scenes, runs) and returns one number, the worst fou
 names below. runs: a dict in which simulations are kept that several measures share.
 """
 
-import contextlib
 import math
 
 import numpy as np
@@ -43,12 +42,17 @@ class Unmeasurable(RuntimeError):
     """The engine's run failed, or lacks what is to be measured; says which and why."""
 
 
-def run(engine, variant, scene, history=True):
-    """The engine's response; raises `Unmeasurable` where it failed."""
-    response = get_engine(engine).simulate(scene, variant=variant, history=history)
+def traced(engine, variant, scene, history=True):
+    """(the engine's response, its accepted steps as a `Trace`); raises `Unmeasurable` where it failed."""
+    response, trace = get_engine(engine).traced(scene, variant=variant, history=history)
     if response.failure is not None:
         raise Unmeasurable(f"{engine}, {variant} failed: {response.failure.reason}. {response.failure.message}")
-    return response
+    return response, trace
+
+
+def run(engine, variant, scene, history=True):
+    """The engine's response; raises `Unmeasurable` where it failed."""
+    return traced(engine, variant, scene, history)[0]
 
 
 def free_rocking(scenes):
@@ -213,29 +217,10 @@ def boundary_shift(engine, variant, scenes, runs):
     return worst
 
 
-@contextlib.contextmanager
-def recorded_traces(engine):
-    """List of the traces (accepted steps) that the engine's adapter hands over inside the block."""
-    module, traces = get_engine(engine), []
-    observe = module.observe
-
-    def recording(scene, trace, **given):
-        traces.append(trace)
-        return observe(scene, trace, **given)
-
-    module.observe = recording
-    try:
-        yield traces
-    finally:
-        module.observe = observe
-
-
 def bearing_replay(engine, variant, scenes, runs):
     """Largest difference of the engine's bearing force from `paper_force` on its own displacements, over n_d f0."""
     scene = named_scene(scenes)
-    with recorded_traces(engine) as traces:
-        run(engine, variant, scene)
-    trace, law = traces[0], BearingLaw.of(scene.bearings)
+    trace, law = traced(engine, variant, scene)[1], BearingLaw.of(scene.bearings)
     force = paper_force(law, trace.base_displacement)
     return float(np.abs(trace.bearing_force - force).max() / (law.count * law.f0))
 
@@ -246,9 +231,7 @@ def bearing_impulse(engine, variant, scenes, runs):
     Unlike `bearing_replay` it does not ask the adapter what the force was.
     """
     scene = named_scene(scenes)
-    with recorded_traces(engine) as traces:
-        run(engine, variant, scene)
-    return impulse_error(scene, traces[-1])
+    return impulse_error(scene, traced(engine, variant, scene)[1])
 
 
 def paper_force(law, x):

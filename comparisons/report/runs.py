@@ -80,7 +80,7 @@ def make_results(folder, motion, *, duration=None, slendernesses=SLENDERNESSES, 
                 theirs = [case for case in cases if case.solver != "analytic"]
                 rows[place] += run_sweep(theirs, store=opened, reduce=reduce, executor=pool,
                                          time_limit=limit, label=label) if theirs else []
-    modules = ["comparisons.report.runs", *(ENGINES[name][0] for name in engines)]
+    modules = ["comparisons.report.runs", *(ENGINES[name].adapter for name in engines)]
     _write_caryatid(folder / CARYATID, rows[0], scenes, motion, missing, modules)
     _write_free_rocking(folder / FREE_ROCKING, rows[1], modules, engines)
     shutil.rmtree(unfinished)  # complete: the next report measures its times afresh
@@ -97,8 +97,8 @@ def free_rocking_cases(engines, slendernesses):
     solvers = [("analytic", None, STARTS)]
     for name in engines:
         engine = get_engine(name)
-        solvers += [(name, variant, STARTS if variant == engine.DEFAULT_VARIANT else VARIANT_STARTS)
-                    for variant in engine.VARIANTS]
+        solvers += [(name, variant, STARTS if variant == engine.default_variant else VARIANT_STARTS)
+                    for variant in engine.variants]
     cases = []
     for solver, variant, starts in solvers:
         for ground, base in BASES.items():
@@ -181,7 +181,8 @@ def _write_free_rocking(path, rows, modules, engines):
                                               for slenderness in arrays["curve/slenderness"]])
     settings = {"starts": STARTS, "variant_starts": VARIANT_STARTS, "seconds": FREE_SECONDS,
                 "slowest_impact": SLOWEST_IMPACT, "bases": BASES,
-                "decides": {name: get_engine(name).DECIDES for name in engines}}
+                "decides": {name: {variant: one.decides for variant, one in get_engine(name).variants.items()}
+                            for name in engines}}
     write_result(path, "report-free-rocking", settings, entries, arrays, modules=modules)
 
 

@@ -85,12 +85,12 @@ def compile_kernels(names):
 
 def module_of(name):
     """The module that holds the solver `name`."""
-    return ENGINES[name][0] if name in ENGINES else _place(name)[0]
+    return ENGINES[name].adapter if name in ENGINES else _place(name)[0]
 
 
 def versions(name):
     """Versions of Python and of the packages that the solver `name` rests on."""
-    packages = ["numpy", "scipy", "numba"] + ([ENGINES[name][1]] if name in ENGINES else [])
+    packages = ["numpy", "scipy", "numba"] + ([ENGINES[name].package] if name in ENGINES else [])
     found = {"python": platform.python_version()}
     for package in packages:
         try:

@@ -22,7 +22,7 @@ from .sources import source_digests
 
 SCHEMA = 1  # of the result files; raise it when a reader of the old ones would go wrong
 PROJECT_FOLDER = Path(__file__).parents[2]
-PACKAGES = ("numpy", "scipy", "numba", *(package for _, package, _ in ENGINES.values()))
+PACKAGES = ("numpy", "scipy", "numba", *(engine.package for engine in ENGINES.values()))
 
 
 class ResultError(RuntimeError):

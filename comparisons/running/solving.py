@@ -95,8 +95,10 @@ def simulate(scene, solver=ANALYTIC, variant=None, settings=None, history=True, 
 
 def check_solver(name):
     """Raise `SettingError` if no solver is called `name`."""
-    from engines import ENGINES
+    from engines import BROKEN, ENGINES
 
+    if name in BROKEN:
+        raise BROKEN[name]
     if name != ANALYTIC and name not in ENGINES:
         raise SettingError(f"unknown engine {name!r}: choose one of {', '.join(ENGINES)}, or {ANALYTIC}")
 
@@ -137,11 +139,11 @@ def _analytic(scene, variant, settings, history):
 
 def _check_types(engine, variant, settings):
     """Unknown names are the engine's to refuse; a text where a number belongs is refused here."""
-    defaults = engine.VARIANTS.get(variant or engine.DEFAULT_VARIANT)
-    if defaults is None:
+    chosen = engine.variants.get(variant or engine.default_variant)
+    if chosen is None:
         return
-    for field in dataclasses.fields(defaults):
-        default = getattr(defaults, field.name)
+    for field in dataclasses.fields(chosen.settings):
+        default = getattr(chosen.settings, field.name)
         if field.name not in settings or default is None:
             continue
         value = settings[field.name]

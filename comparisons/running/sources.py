@@ -15,7 +15,7 @@ def source_digests(modules):
     Parameters
     ----------
     modules : iterable of str
-        Dotted names (``analytic``, ``engines.exudyn_engine``). Imports are followed, inside functions too,
+        Dotted names (``analytic``, ``engines.exudyn.adapter``). Imports are followed, inside functions too,
         but only within `PROJECT` and the top-level packages of `modules` themselves.
 
     Returns

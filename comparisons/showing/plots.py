@@ -5,15 +5,14 @@ import warnings
 import numpy as np
 from matplotlib.figure import Figure
 
+from engines import ENGINES
+
 from .wording import readable
 
-# solver: (colour, dashes, width); the reference lies wide underneath
-STYLES = {
-    "analytic": ("#000000", "-", 2.4),
-    "exudyn": ("#E69F00", "--", 1.4),
-    "pybullet": ("#0072B2", ":", 1.8),
-    "mujoco": ("#CC79A7", "-.", 1.3),
-}
+# solver: (colour, dashes, width); the reference lies wide underneath, dots need width to be seen
+STYLES = {"analytic": ("#000000", "-", 2.4),
+          **{name: (engine.colour, engine.dashes, 1.8 if engine.dashes == ":" else 1.4)
+             for name, engine in ENGINES.items()}}
 TITLE_CHARACTERS = 100
 TILT_RANGE = (0.05, 2.0)  # least and greatest limit of a tilt axis, over slenderness
 SPARE = ("#009E73", (0, (5, 1)), 1.3)

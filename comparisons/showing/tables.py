@@ -83,17 +83,22 @@ def show(table, responses):
             console.print(Text(f"Warning, {response.engine}: {readable(sentence)}"), soft_wrap=True)
 
 
-def engine_text(name, engine):
-    """What an engine module says of itself: versions, what it decides, variants and settings, the knob first."""
+def engine_text(engine):
+    """What an `Engine` says of itself: versions, and of each variant rung, settings (the knob first), ladder, who
+    decides what, and where it is verified."""
+    from engines.verified import in_words
+
     versions = ", ".join(f"{package} {version}" for package, version in engine.versions().items())
-    lines = [f"{name} ({versions})"]
-    decides = engine.DECIDES if isinstance(engine.DECIDES, dict) else {"": engine.DECIDES}
-    lines += [f"  {variant + ': ' if variant else ''}{text}" for variant, text in decides.items()]
-    for variant, settings in engine.VARIANTS.items():
-        default = " (default)" if variant == engine.DEFAULT_VARIANT else ""
-        about = inspect.getdoc(type(settings)).split("\n\n")[0].replace("\n", " ")
-        values = [f"{name}={value:g}" if isinstance(value, float) else f"{name}={value}"
-                  for name, value in dataclasses.asdict(settings).items()]
+    lines = [f"{engine.name} ({versions})"]
+    for name, variant in engine.variants.items():
+        default = "default, " if name == engine.default_variant else ""
+        about = inspect.getdoc(type(variant.settings)).split("\n\n")[0].replace("\n", " ")
+        values = [f"{field}={value:.6g}" if isinstance(value, float) else f"{field}={value}"
+                  for field, value in dataclasses.asdict(variant.settings).items()]
         values[:1] = [f"{value} (knob)" for value in values[:1]]
-        lines += [f"  --variant {variant}{default}: {about}", "      settings: " + ", ".join(values)]
+        lines += [f"  --variant {name} ({default}{variant.rung}): {about}",
+                  f"      settings: {', '.join(values)}",
+                  f"      ladder, coarse to fine: {', '.join(f'{value:.4g}' for value in variant.ladder)}",
+                  f"      verified: {in_words(variant.verified)}",
+                  f"      decides: {variant.decides}"]
     return "\n".join(lines) + "\n"

@@ -23,10 +23,10 @@ def command(
     with stdout_to_stderr(), spinner("tolerances"):  # engines greet on standard output
         engines = installed_engines()
         for engine in engines:
-            default = get_engine(engine).DEFAULT_VARIANT
+            default = get_engine(engine).default_variant
             results += measure_all([row for row in TABLE if row.engine == engine
                                     and (row.variant == default or not quick)])
-    modules = ["comparisons.measuring.tolerances", *(ENGINES[name][0] for name in engines)]
+    modules = ["comparisons.measuring.tolerances", *(ENGINES[name].adapter for name in engines)]
     path = write_result(Path(output) / "tolerances.json", "tolerances", {"engines": engines, "quick": quick}, results,
                         modules=modules)
     print(path)

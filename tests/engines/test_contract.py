@@ -1,4 +1,4 @@
-"""What every engine and each of its variants must fulfil; an engine is covered by its line in `engines.ENGINES`.
+"""What every engine and each of its variants must fulfil; an engine is covered by its name in `engines.BUILT_IN`.
 
 Measured bounds stand by engine and variant in tables here; one that is not in a table is held to the table's default.
 """
@@ -36,6 +36,7 @@ from analytic.response import History
 from analytic.rocking import RockingModel, restitution
 from engines import ENGINES, get_engine, guard
 from engines.checks import pivoting_centre
+from engines.contract import RUNGS
 
 BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 PULSE = PulseMotion("one-sine", 6.0, 4.0)
@@ -53,8 +54,8 @@ def cases(keep):
         except EngineNotInstalled as error:
             yield pytest.param(name, None, marks=pytest.mark.skip(reason=str(error)))
             continue
-        for variant in engine.VARIANTS:
-            if keep(name, variant, engine.DEFAULT_VARIANT):
+        for variant in engine.variants:
+            if keep(name, variant, engine.default_variant):
                 yield pytest.param(name, variant)
 
 
@@ -74,22 +75,6 @@ def simulate(engine, variant, given, **settings):
     return get_engine(engine).simulate(given, variant=variant, **settings)
 
 
-@pytest.fixture
-def recorded_trace(monkeypatch):
-    """A function (engine, variant, scene) -> (response, the trace that the adapter handed to `observe`)."""
-    def run(engine, variant, given):
-        module, traces = get_engine(engine), []
-        observe = module.observe
-        with monkeypatch.context() as patch:
-            patch.setattr(module, "observe",
-                          lambda given, trace, **rest: traces.append(trace) or observe(given, trace, **rest))
-            response = simulate(engine, variant, given)
-        (trace,) = traces
-        return response, trace
-
-    return run
-
-
 def bearings(law, damping):
     return Bearings(law=law, count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, damping=damping)
 
@@ -100,31 +85,49 @@ def shaking(peak, duration=6.0):
     return SampledMotion(0.01, level / np.abs(level).max() * peak)
 
 
-# What an engine's module holds, and what it refuses.
+# What an engine's record holds, and what it refuses.
 
 @default_variant
-def test_module_holds_what_the_contract_names(engine, variant):
-    module, package = get_engine(engine), ENGINES[engine][1]
-    assert engine in engines.installed_engines()
-    for settings in module.VARIANTS.values():
-        assert is_dataclass(settings) and settings.__dataclass_params__.frozen
-        assert fields(settings) and all(0 < value < math.inf for value in asdict(settings).values())
-    distribution = metadata.packages_distributions()[package][0]
-    assert module.versions()[package] == metadata.version(distribution)
-    decides = module.DECIDES if isinstance(module.DECIDES, dict) else dict.fromkeys(module.VARIANTS, module.DECIDES)
-    assert list(decides) == list(module.VARIANTS)
-    assert all("decides" in text and "impact" in text for text in decides.values())
+def test_record_holds_what_the_contract_names(engine, variant):
+    record = get_engine(engine)
+    assert record is ENGINES[engine] and record.installed and engine in engines.installed_engines()
+    for name, one in record.variants.items():
+        assert is_dataclass(one.settings) and one.settings.__dataclass_params__.frozen
+        assert fields(one.settings) and all(0 < value < math.inf for value in asdict(one.settings).values())
+        assert one.rung in RUNGS and (name == record.default_variant) == (one.rung == "best")
+        assert "decides" in one.decides and "impact" in one.decides
+        assert one.verified is not None or one.caveats
+        down = sorted(one.ladder, reverse=True)  # from coarse to fine; of a stiffness the finer is the larger
+        assert list(one.ladder) == (down[::-1] if one.knob == "stiffness" else down) and len(one.ladder) > 1
+    distribution = metadata.packages_distributions()[record.package][0]
+    assert record.versions()[record.package] == metadata.version(distribution)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_records_are_light_and_shadow_no_package(engine):
+    """The folder of an engine here has the name of the package it uses."""
+    program = f"""
+import sys
+from engines import ENGINES
+record = ENGINES[{engine!r}]
+assert record.package not in sys.modules and record.adapter not in sys.modules
+if record.installed:
+    assert sys.modules[record.package] is not sys.modules["engines." + record.name]
+    assert "engines" not in (sys.modules[record.package].__file__ or "")
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
 
 
 @default_variant
 def test_unknown_variant_is_refused_and_the_known_ones_are_named(engine, variant):
-    with pytest.raises(SettingError, match=f"'best'.*: choose one of {', '.join(get_engine(engine).VARIANTS)}$"):
+    with pytest.raises(SettingError, match=f"'best'.*: choose one of {', '.join(get_engine(engine).variants)}$"):
         simulate(engine, "best", scene(0.2))
 
 
 @every_variant
 def test_unknown_setting_is_refused_and_the_known_ones_are_named(engine, variant):
-    known = ", ".join(field.name for field in fields(get_engine(engine).VARIANTS[variant]))
+    known = ", ".join(field.name for field in fields(get_engine(engine).variants[variant].settings))
     with pytest.raises(SettingError, match=f"{engine} {variant}.*: .* {known}$") as caught:
         simulate(engine, variant, scene(0.2), steep=1e-3)
     assert "'steep'" in str(caught.value)
@@ -133,7 +136,7 @@ def test_unknown_setting_is_refused_and_the_known_ones_are_named(engine, variant
 @every_variant
 @pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf, True, "1", None])
 def test_setting_that_is_not_a_positive_number_is_refused(engine, variant, value):
-    for field in fields(get_engine(engine).VARIANTS[variant]):
+    for field in fields(get_engine(engine).variants[variant].settings):
         with pytest.raises(SettingError, match=f"{field.name} = {value!r} .*positive number"):
             simulate(engine, variant, scene(0.2), **{field.name: value})
 
@@ -153,23 +156,23 @@ def test_given_restitution_is_refused_or_kept_but_never_ignored(engine, variant)
 
 @every_variant
 def test_response_says_what_ran_and_what_it_cost(engine, variant):
-    module, given = get_engine(engine), scene(0.2, 212.0, 0.3, start=Start(tilt=0.12))
+    record, given = get_engine(engine), scene(0.2, 212.0, 0.3, start=Start(tilt=0.12))
     clock = time.process_time()
     response = simulate(engine, variant, given)
     spent = time.process_time() - clock
     assert (response.engine, response.variant, response.scene) == (engine, variant, "contract")
-    assert response.versions == module.versions()
-    assert response.settings == asdict(module.VARIANTS[variant])
+    assert response.versions == record.versions()
+    assert response.settings == asdict(record.variants[variant].settings)
     assert 0 < response.cpu_seconds <= spent
     assert response.steps > 1
     assert response.failure is None and response.to_json()["outcome"] == "rocks"
-    if variant == module.DEFAULT_VARIANT:
-        assert module.simulate(given).end == response.end
+    if variant == record.default_variant:
+        assert record.simulate(given).end == response.end
 
 
 @every_variant
 def test_every_setting_can_be_replaced_and_is_in_the_response(engine, variant):
-    settings = get_engine(engine).VARIANTS[variant]
+    settings = get_engine(engine).variants[variant].settings
     for field in fields(settings):
         change = {field.name: 0.8 * getattr(settings, field.name)}
         response = simulate(engine, variant, scene(0.2, duration=0.02, start=Start(tilt=0.12)), **change)
@@ -197,7 +200,7 @@ def test_start_in_flight(engine, variant):
     response, reference = simulate(engine, variant, given), exact(given)
     for name in History.COLUMNS:
         assert getattr(response.history, name)[0] == getattr(reference.history, name)[0], name
-    accurate = variant == get_engine(engine).DEFAULT_VARIANT or (engine, variant) in ALSO_ACCURATE
+    accurate = variant == get_engine(engine).default_variant or (engine, variant) in ALSO_ACCURATE
     bounds = IN_FLIGHT if accurate else IN_FLIGHT_ROUGHLY
     for name, bound in zip(("tilt", "tilt_rate", "base_displacement"), bounds, strict=True):
         assert abs(getattr(response.end, name) - getattr(reference.end, name)) < bound, name
@@ -220,7 +223,7 @@ def test_ground_motion_that_is_not_finite_fails_with_the_last_finite_state(engin
     assert 0.48 < state.time < 0.5 and response.end == state
     assert all(np.isfinite(getattr(response.history, name)).all() for name in History.COLUMNS[:-1])
     assert (response.engine, response.variant, response.scene) == (engine, variant, "contract")
-    assert response.settings == asdict(get_engine(engine).VARIANTS[variant])
+    assert response.settings == asdict(get_engine(engine).variants[variant].settings)
     assert response.versions == get_engine(engine).versions() and response.cpu_seconds > 0
 
 
@@ -236,7 +239,7 @@ def test_hang_ends_at_the_time_limit(engine, variant):
 
 def in_every_variant(engine, given, settings):
     """What the guarded process runs."""
-    return [simulate(engine, variant, given) for variant in get_engine(engine).VARIANTS]
+    return [simulate(engine, variant, given) for variant in get_engine(engine).variants]
 
 
 @default_variant
@@ -290,10 +293,10 @@ LIFT, LIFT_DEFAULT = {("exudyn", "native-contact"): 1.7e-3, ("mujoco", "first-sc
 
 @every_variant
 @pytest.mark.parametrize("base", [None, 212.0])
-def test_block_rests_under_shaking_below_uplift(recorded_trace, engine, variant, base):
+def test_block_rests_under_shaking_below_uplift(engine, variant, base):
     motion = shaking(0.5 if base else 0.9 * 9.81 * math.tan(0.2))
     given = scene(0.2, base, 6.0, bearings=BEARINGS if base else None, motion=motion)
-    response, trace = recorded_trace(engine, variant, given)
+    response, trace = get_engine(engine).traced(given, variant=variant)
     bound = LIFT.get((engine, variant), LIFT_DEFAULT)
     assert response.outcome == "stands", response.failure
     assert response.peak_tilt * 1.0884 < bound
@@ -312,7 +315,7 @@ def test_overturning_under_a_pulse_stops_cleanly(engine, variant):
     assert response.end.time == response.history.time[-1] == pytest.approx(response.overturning_time)
     assert abs(response.end.tilt) == response.peak_tilt == pytest.approx(math.pi / 2)
     assert response.unstable_time < response.overturning_time < 5.0
-    if variant == get_engine(engine).DEFAULT_VARIANT or (engine, variant) in ALSO_ACCURATE:
+    if variant == get_engine(engine).default_variant or (engine, variant) in ALSO_ACCURATE:
         assert response.overturning_time == pytest.approx(reference.overturning_time, abs=2e-3)
 
 
@@ -342,9 +345,9 @@ def test_overturning_by_a_shock_stops_cleanly(engine, variant):
 @every_variant
 @pytest.mark.parametrize("law, damping", [("algebraic", 0.0), ("bouc-wen", 0.0), ("algebraic", 500.0),
                                           ("linear", 500.0), ("bouc-wen", 500.0)])
-def test_bearing_force_is_the_law_on_the_engines_own_path(recorded_trace, engine, variant, law, damping):
+def test_bearing_force_is_the_law_on_the_engines_own_path(engine, variant, law, damping):
     given = scene(0.15, 212.0, 2.0, bearings=bearings(law, damping), motion=PULSE)
-    _, trace = recorded_trace(engine, variant, given)
+    _, trace = get_engine(engine).traced(given, variant=variant)
     rule = BearingLaw.of(given.bearings)
     z, x, worst = rule.start(trace.base_displacement[0]), trace.base_displacement[0], 0.0
     for moved, speed, force in zip(trace.base_displacement, trace.base_velocity, trace.bearing_force, strict=True):
@@ -438,7 +441,7 @@ def test_extreme_masses_and_slenderness(engine, variant, mass, slenderness):
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_all_else_works_where_an_engine_is_not_installed(engine):
-    _, package, remedy = ENGINES[engine]
+    package, remedy = ENGINES[engine].package, ENGINES[engine].install
     program = f"""
 import sys
 sys.modules[{package!r}] = None  # what Python does for a package that cannot be imported
@@ -457,9 +460,3 @@ main(["compare", "free-rocking-isolated"])
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     assert "analytic" in done.stdout and engine not in done.stdout
-
-
-def test_broken_adapter_does_not_pass_for_absent(monkeypatch):
-    monkeypatch.setitem(engines.ENGINES, "broken", ("engines.no_such_adapter", "math", "cannot be installed"))
-    with pytest.raises(ModuleNotFoundError, match="no_such_adapter"):
-        engines.installed_engines()

@@ -6,12 +6,17 @@ import pytest
 
 import engines
 from analytic.errors import EngineNotInstalled
+from engines.contract import Engine
+
+
+def record(name, adapter, package):
+    return Engine(name, package, "pip install it", "#000000", "o", adapter)
 
 
 @pytest.fixture
 def absent(monkeypatch):
     """An engine whose package cannot be imported here: its name."""
-    monkeypatch.setitem(engines.ENGINES, "absent", ("engines.no_such_adapter", "no_such_package", "pip install it"))
+    monkeypatch.setitem(engines.ENGINES, "absent", record("absent", "engines.no_such_adapter", "no_such_package"))
     return "absent"
 
 
@@ -20,7 +25,7 @@ def broken(monkeypatch, tmp_path):
     """An engine whose package is there, but whose adapter imports what is not: its name."""
     (tmp_path / "broken_adapter.py").write_text("import no_such_package")
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setitem(engines.ENGINES, "broken", ("broken_adapter", "math", "cannot be installed"))
+    monkeypatch.setitem(engines.ENGINES, "broken", record("broken", "broken_adapter", "math"))
     return "broken"
 
 
@@ -40,7 +45,7 @@ def test_absent_engine_says_how_to_install_it(absent):
 
 @pytest.mark.parametrize("name", [*engines.ENGINES])
 def test_engine_is_missing_once_its_package_is(monkeypatch, name):
-    package = engines.ENGINES[name][1]
+    package = engines.ENGINES[name].package
     monkeypatch.setitem(sys.modules, package, None)  # what Python does for a package that cannot be imported
     assert engines.available_engines([name])[0] == ()
     assert name not in engines.installed_engines()

@@ -7,6 +7,7 @@ import time
 import pytest
 
 from analytic import Block, Scene, SettingError, Start, simulate
+from engines import get_engine
 from engines.guard import guarded, guarded_simulate
 
 SCENE = Scene(block=Block(mass=1000.0, radius=1.0, slenderness=0.2), start=Start(tilt=0.1), duration=1.0, name="nod")
@@ -107,7 +108,8 @@ def test_an_unknown_engine_or_time_limit_is_refused_before_any_process():
 
 
 def test_a_real_engine_runs_guarded_as_it_does_here_and_is_killed_at_its_limit():
-    exudyn = pytest.importorskip("engines.exudyn_engine", reason="exudyn is not installed")
+    pytest.importorskip("exudyn", reason="exudyn is not installed")
+    exudyn = get_engine("exudyn")
     here, there = exudyn.simulate(SCENE), guarded_simulate("exudyn", SCENE, time_limit=120.0)
     assert here.impacts == there.impacts and here.end == there.end
     late = guarded_simulate("exudyn", SCENE, time_limit=0.01, stiffness=1e10)

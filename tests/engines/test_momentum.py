@@ -70,15 +70,15 @@ def test_a_bearing_too_soft_to_matter_is_not_asked_for():
 
 def force_in_exudyn(monkeypatch, change):
     """change(displacement, velocity, offset, step, force) in place of the symbolic force."""
-    from engines import exudyn_scene
+    from engines.exudyn import scene as model
 
-    force = exudyn_scene.Bearing.force
+    force = model.Bearing.force
 
     def changed(self, displacement, velocity, offset):
         return change(lambda shift, gain: [gain * part for part in force(
             self, [displacement[0] - shift * velocity[0]], velocity, offset)])
 
-    monkeypatch.setattr(exudyn_scene.Bearing, "force", changed)
+    monkeypatch.setattr(model.Bearing, "force", changed)
 
 
 def mutate_exudyn(monkeypatch, gain, delay, step):
@@ -87,49 +87,44 @@ def mutate_exudyn(monkeypatch, gain, delay, step):
 
 def mutate_pybullet(monkeypatch, gain, delay, step):
     """Bullet is told another force than the adapter believes: `gain` times as much, `delay` calls later."""
-    from engines import pybullet_stepping
+    from engines.pybullet import stepping
 
-    apply, told = pybullet_stepping.pybullet.applyExternalForce, []
+    apply, told = stepping.pybullet.applyExternalForce, []
 
     def changed(body, link, force, *rest):
         told.append(force)
         late = told[max(len(told) - 1 - delay, 0)]
         return apply(body, link, tuple(gain * part for part in late), *rest)
 
-    monkeypatch.setattr(pybullet_stepping.pybullet, "applyExternalForce", changed)
+    monkeypatch.setattr(stepping.pybullet, "applyExternalForce", changed)
 
 
 def mutate_mujoco(monkeypatch, gain, delay, step):
-    from engines import mujoco_engine
+    from engines.mujoco import stepping
 
-    advance, told = mujoco_engine.mujoco.mj_step, []
+    advance, told = stepping.mujoco.mj_step, []
 
     def changed(model, data):
         told.append(data.qfrc_applied[0])
         data.qfrc_applied[0] = gain * told[max(len(told) - 1 - delay, 0)]
         advance(model, data)
 
-    monkeypatch.setattr(mujoco_engine.mujoco, "mj_step", changed)
+    monkeypatch.setattr(stepping.mujoco, "mj_step", changed)
 
 
 MUTATE = {"exudyn": mutate_exudyn, "pybullet": mutate_pybullet, "mujoco": mutate_mujoco}
 LARGEST_STEP = 1e-3  # s, of the delay in exudyn, whose steps are its own
 
 
-def traced(monkeypatch, engine, scene):
+def traced(engine, scene):
     """(response, trace) of the engine's default."""
-    module, kept = get_engine(engine), []
-    observe = module.observe
-    monkeypatch.setattr(module, "observe", lambda scene, trace, **given: kept.append(trace) or observe(
-        scene, trace, **given))
-    response = module.simulate(scene, variant=ENGINES[engine])
-    return response, kept[-1]
+    return get_engine(engine).traced(scene, variant=ENGINES[engine])
 
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_clean_run_of_an_engine_keeps_its_momentum(monkeypatch, engine):
     pytest.importorskip(engine)
-    response, trace = traced(monkeypatch, engine, DRIVEN)
+    response, trace = traced(engine, DRIVEN)
     assert response.failure is None and len(response.impacts) >= 2
     assert impulse_error(DRIVEN, trace) < 4e-5
 
@@ -139,7 +134,7 @@ def test_a_clean_run_of_an_engine_keeps_its_momentum(monkeypatch, engine):
 def test_a_doubled_halved_or_lost_force_inside_an_engine_is_a_failure(monkeypatch, engine, gain):
     pytest.importorskip(engine)
     MUTATE[engine](monkeypatch, gain, 0, LARGEST_STEP)
-    response, trace = traced(monkeypatch, engine, DRIVEN)
+    response, trace = traced(engine, DRIVEN)
     assert response.outcome == "failed"  # by its energy, too, where the force is too small
     assert impulse_error(DRIVEN, trace) == pytest.approx(abs(gain - 1), rel=0.02)
     assert check_impulse(DRIVEN, trace) is not None
@@ -150,7 +145,7 @@ def test_a_doubled_halved_or_lost_force_inside_an_engine_is_a_failure(monkeypatc
 def test_a_force_late_by_a_step_or_off_by_a_hundredth_is_measured(monkeypatch, engine, gain, delay):
     pytest.importorskip(engine)
     MUTATE[engine](monkeypatch, gain, delay, LARGEST_STEP)
-    _, trace = traced(monkeypatch, engine, DRIVEN)
+    _, trace = traced(engine, DRIVEN)
     assert impulse_error(DRIVEN, trace) > 4e-4  # ten times what a clean run shows
 
 

@@ -32,20 +32,20 @@ class Mutation:
     words: str = "AssertionError"
 
 
-RANGE, CONTRACT = "tests/engines/test_exudyn_range.py", "tests/engines/test_contract.py"
+RANGE, CONTRACT = "tests/engines/exudyn/test_range.py", "tests/engines/test_contract.py"
 MUTATIONS = {
     "exudyn: a corner is drawn back to where it stood": Mutation(
-        "engines.exudyn_corners", "    return min(max(anchor, low), high)\n", "    return anchor\n",
+        "engines.exudyn.corners", "    return min(max(anchor, low), high)\n", "    return anchor\n",
         f"{RANGE}::test_a_block_that_slid_stays_where_it_came_to_rest"),
     "exudyn: the start forgets that the corners give way": Mutation(
-        "engines.exudyn_scene", "lower = sink if tilt == 0 and rate == 0 else 0.0", "lower = 0.0",
+        "engines.exudyn.scene", "lower = sink if tilt == 0 and rate == 0 else 0.0", "lower = 0.0",
         f"{RANGE}::test_a_block_left_alone_does_not_sink"),
     "exudyn: Bouc-Wen exponent off by 2 %": Mutation(
-        "engines.exudyn_scene", "(-0.5 * law.dk / law.f0)", "(-0.51 * law.dk / law.f0)",
+        "engines.exudyn.scene", "(-0.5 * law.dk / law.f0)", "(-0.51 * law.dk / law.f0)",
         f"{RANGE}::test_force_within_a_step_is_the_law_in_full"),
     # For ever, within one call of exudyn, which makes a failed run of the limit's exception.
     "exudyn: the motion's first segment is never left": Mutation(
-        "engines.exudyn_ground", "            self.at += 1\n            self._enter()\n", "            self._enter()\n",
+        "engines.exudyn.ground", "            self.at += 1\n            self._enter()\n", "            self._enter()\n",
         f"{CONTRACT}::test_isolated_caryatid[synthetic-exudyn-compliant-corners]", "'failed' == 'stands'"),
     "twin: nobody counts its impacts": Mutation(
         "analytic.twin", "if self.stalled > STALL_LIMIT or len(self.impacts) > IMPACT_LIMIT:", "if False:",

@@ -94,11 +94,11 @@ def test_switched_joints_with_another_restitution_fail(monkeypatch):
 @pytest.mark.parametrize("engine, variant", DEFAULTS)
 def test_another_alpha_in_the_engine_fails(monkeypatch, engine, variant):
     """The engine is given alpha 1 % larger than the law that its force is held against."""
-    def run(engine, variant, scene, history=True):
+    def traced(engine, variant, scene, history=True):
         scene = scene.with_(bearings={"alpha": 1.01 * scene.bearings.alpha})
-        return get_engine(engine).simulate(scene, variant=variant, history=history)
+        return get_engine(engine).traced(scene, variant=variant, history=history)
 
-    monkeypatch.setattr(agreement, "run", run)
+    monkeypatch.setattr(agreement, "traced", traced)
     isolated = "isolated Caryatid, synthetic motion"
     assert_caught([row("bearing force replayed", engine, variant, isolated),
                    row("peak displacement", engine, variant, isolated)])
@@ -137,20 +137,20 @@ def late(law):
 
 
 def lag_pybullet(monkeypatch):
-    from engines import pybullet_stepping
+    from engines.pybullet import stepping
 
-    monkeypatch.setattr(pybullet_stepping, "hysteretic_force", late(pybullet_stepping.hysteretic_force))
+    monkeypatch.setattr(stepping, "hysteretic_force", late(stepping.hysteretic_force))
 
 
 def lag_mujoco(monkeypatch):
-    from engines import mujoco_stepping
+    from engines.mujoco import stepping
 
     class Lagging(BearingLaw):
         @functools.cached_property
         def hysteretic(self):
             return late(super().hysteretic)
 
-    monkeypatch.setattr(mujoco_stepping, "BearingLaw", Lagging)
+    monkeypatch.setattr(stepping, "BearingLaw", Lagging)
 
 
 # exudyn is not among them: it commits inside a compiled call.
@@ -168,7 +168,7 @@ def test_a_bearing_force_that_lags_one_step_fails(monkeypatch, engine, lag):
 def test_the_share_of_a_penetration_that_bullet_takes_back_does_not_matter(monkeypatch, scenes):
     """contactERP at .08; where it shows one day, it must be set."""
     pytest.importorskip("pybullet")
-    from engines import pybullet_scene
+    from engines.pybullet import scene as bullet
 
     def measured():
         responses = [agreement.run("pybullet", "impact-aware", family[3]) for family in
@@ -176,13 +176,13 @@ def test_the_share_of_a_penetration_that_bullet_takes_back_does_not_matter(monke
         return np.array([(impact.rate_after / impact.rate_before, impact.base_velocity_jump)
                          for response in responses for impact in response.impacts[:agreement.IMPACTS]])
 
-    usual, set_parameters, asked = measured(), pybullet_scene.pybullet.setPhysicsEngineParameter, []
+    usual, set_parameters, asked = measured(), bullet.pybullet.setPhysicsEngineParameter, []
 
     def with_share(**given):
         asked.append(given)
         return set_parameters(**given, contactERP=0.08)
 
-    monkeypatch.setattr(pybullet_scene.pybullet, "setPhysicsEngineParameter", with_share)
+    monkeypatch.setattr(bullet.pybullet, "setPhysicsEngineParameter", with_share)
     np.testing.assert_allclose(measured(), usual, rtol=0, atol=1e-7)
     assert asked
 
@@ -216,7 +216,7 @@ def test_a_coarse_step_fails(monkeypatch, engine, variant, changes, quantity, sc
     one = row(quantity, engine, variant, scenes)
 
     def coarse(engine, variant, scene, history=True):
-        return get_engine(engine).simulate(scene, variant=variant, history=history, **changes)
+        return get_engine(engine).traced(scene, variant=variant, history=history, **changes)
 
-    monkeypatch.setattr(agreement, "run", coarse)
+    monkeypatch.setattr(agreement, "traced", coarse)
     assert_caught([one])

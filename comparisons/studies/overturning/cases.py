@@ -88,7 +88,7 @@ def compute(work, quick=False):
         "knob_tolerance": KNOB_TOLERANCE,
         "solvers": [name_of(*one) for one in ENGINES], "held": _label(HELD),
         "knobs": [[solver, variant, knob] for solver, variant, knob, _ in (*KNOBS, *FIRST_SCRIPTS)],
-        "default_knobs": {name_of(*one): getattr(get_engine(one[0]).VARIANTS[one[1]], knob)
+        "default_knobs": {name_of(*one): getattr(get_engine(one[0]).variants[one[1]].settings, knob)
                           for one, knob in zip(ENGINES, ("stiffness", "accuracy"), strict=True)},
         "first_scripts": [name_of(*one[:2]) for one in FIRST_SCRIPTS],
         "first_script_friction": FIRST_SCRIPT_FRICTION}

@@ -59,7 +59,7 @@ def run(folder, grid, *, workers=None, progress=True, engines=None):
         rows = run_sweep(cases, store=folder / "runs.jsonl", workers=workers, time_limit=60.0, reduce=kept,
                          progress=progress, label="restitution")
     settings, entries, arrays = result_of(grid, rows)
-    modules = ["comparisons.studies.restitution.summary", *(ENGINES[name][0] for name in engines)]
+    modules = ["comparisons.studies.restitution.summary", *(ENGINES[name].adapter for name in engines)]
     path = write_result(folder / "restitution.json", "restitution", settings, entries, arrays, modules=modules)
     drawn = []
     for name, figure in figures(read_result(path)).items():

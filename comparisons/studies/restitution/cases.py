@@ -72,7 +72,7 @@ def free_scene(slenderness, ratio, start, scale=1.0):
 
 def knob_of(engine, variant):
     """(name, default, values) of a variant's accuracy knob; its first setting, at its default, if not in `LADDERS`."""
-    settings = get_engine(engine).VARIANTS[variant]
+    settings = get_engine(engine).variants[variant].settings
     name, values = LADDERS.get((engine, variant), (dataclasses.fields(settings)[0].name, ()))
     default = getattr(settings, name)
     return name, default, tuple(sorted({*values, default}))
@@ -80,7 +80,7 @@ def knob_of(engine, variant):
 
 def variants_of(engines):
     """(engine, variant) pairs."""
-    return [(engine, variant) for engine in engines for variant in get_engine(engine).VARIANTS]
+    return [(engine, variant) for engine in engines for variant in get_engine(engine).variants]
 
 
 def grid_cases(grid, engines):
@@ -136,7 +136,7 @@ def experiment_cases(grid, engines):
                            {"part": "experiment", "experiment": "phase", "ratio": None, "slenderness": gamma,
                             "start": float(start), "value": step}) for step in PHASE_STEPS]
     for engine in engines:
-        variant = get_engine(engine).DEFAULT_VARIANT
+        variant = get_engine(engine).default_variant
         for scale in SCALES:
             scene = free_scene(gamma, CARYATID_BASE, 0.6, scale)
             cases.append(Case(scene, engine, variant, {},

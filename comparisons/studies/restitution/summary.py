@@ -53,7 +53,7 @@ def result_of(grid, rows):
         "slowest_impact": SLOWEST_IMPACT, "mass": MASS, "radius": RADIUS, "engines": engines,
         "knobs": [dict(zip(("engine", "variant", "knob", "default", "values"), (*one, *knob_of(*one)), strict=True))
                   for one in variants_of(engines)],
-        "default_variants": {engine: get_engine(engine).DEFAULT_VARIANT for engine in engines},
+        "default_variants": {engine: get_engine(engine).default_variant for engine in engines},
         "experiments": {name: {"engine": one[0], "variant": one[1], "setting": one[2],
                                "slenderness": EXPERIMENT_SLENDERNESS} for name, one in EXPERIMENTS.items()},
         "friction_needed": {ground: friction_needed(free_scene(EXPERIMENT_SLENDERNESS, ratio, 0.6))

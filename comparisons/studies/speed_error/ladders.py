@@ -1,6 +1,6 @@
 """Every solver and the ladder of its accuracy knob: what is run on which scene."""
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 
 from engines import get_engine, installed_engines
 
@@ -113,10 +113,10 @@ def _analytic(trial, pick):
 def _engines(trial, pick):
     found = []
     for name in installed_engines():
-        for variant, defaults in get_engine(name).VARIANTS.items():
-            knob = fields(defaults)[0].name
+        for variant, one in get_engine(name).variants.items():
+            knob = one.knob
             ladder = ENGINE_LADDERS.get((name, variant))
-            values = ladder[pick] if ladder else [getattr(defaults, knob) * factor for factor in FACTORS[pick]]
+            values = ladder[pick] if ladder else [one.default * factor for factor in FACTORS[pick]]
             found += [Entry(trial, f"{name}, {variant}", name, knob, value, variant=variant) for value in values]
     return found
 

@@ -42,12 +42,12 @@ def free_block_3d(scene, *, step, history=True):
     """
     import pybullet
 
-    from engines import pybullet_first_script as script
+    from engines import get_engine
     from engines.leapfrog_trace import trace_of
     from engines.observe import observe
-    from engines.pybullet_engine import versions
-    from engines.pybullet_scene import BREAKING_THRESHOLD, FRICTION, iterations
-    from engines.pybullet_stepping import FLAT
+    from engines.pybullet import first_script as script
+    from engines.pybullet.scene import BREAKING_THRESHOLD, FRICTION, iterations
+    from engines.pybullet.stepping import FLAT
 
     client = pybullet.connect(pybullet.DIRECT)
     try:
@@ -69,5 +69,5 @@ def free_block_3d(scene, *, step, history=True):
         pybullet.disconnect(client)
     trace = trace_of([tuple(map(float, row)) for row in np.array(rows)], scene, FLAT * scene.block.slenderness)
     return observe(scene, trace, engine="pybullet", variant="3-D free block", cpu_seconds=cpu, steps=len(rows) - 1,
-                   settings={"step": step}, versions=versions(), history=history,
+                   settings={"step": step}, versions=get_engine("pybullet").versions(), history=history,
                    ended=ended if ended == "overturned" else None)

@@ -118,4 +118,4 @@ def defaults(column):
 
     if column.name not in ENGINES:
         return column.settings
-    return {**dataclasses.asdict(get_engine(column.name).VARIANTS[column.variant]), **column.settings}
+    return {**dataclasses.asdict(get_engine(column.name).variants[column.variant].settings), **column.settings}

@@ -113,11 +113,11 @@ def solvers():
     """The columns: kernel, twin, time stepping, and every variant of every engine installed here."""
     found = [*(Solver(name, None, "event-driven", {}, None, (), True) for name in ("analytic", "twin")), TIME_STEPPING]
     for name in installed_engines():
-        for variant, settings in get_engine(name).VARIANTS.items():
-            fields = [field.name for field in dataclasses.fields(settings)]
+        for variant, one in get_engine(name).variants.items():
+            fields = [field.name for field in dataclasses.fields(one.settings)]
             step = next((field for field in STEP_NAMES if field in fields), None)
             found.append(Solver(name, variant, "stepping", {}, step, CURES.get((name, variant), ()),
-                                variant == get_engine(name).DEFAULT_VARIANT))
+                                variant == get_engine(name).default_variant))
     return found
 
 

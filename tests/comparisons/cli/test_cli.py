@@ -126,7 +126,7 @@ def test_usage(rocking, arguments):
 
 @pytest.mark.parametrize("engine", installed_engines())
 def test_bad_engine_option(rocking, engine):
-    knob = next(iter(vars(get_engine(engine).VARIANTS[get_engine(engine).DEFAULT_VARIANT])))
+    knob = next(iter(vars(get_engine(engine).variants[get_engine(engine).default_variant].settings)))
     for arguments in (["--variant", "fastest"], ["--set", "nonsense=1"], ["--set", f"{knob}=much"]):
         status, out, err = rocking("run", "free-rocking-rigid", "--engine", engine, *arguments)
         assert (status, out) == (2, ""), arguments
@@ -154,10 +154,13 @@ def test_engines_lists_what_is_there_and_what_is_not(rocking, monkeypatch):
     assert "mujoco: not installed. engine 'mujoco' needs the package mujoco: pip install 'rocking[mujoco]'" in out
     for name in installed_engines():
         engine = get_engine(name)
-        assert f"{name} (" in out and f"--variant {engine.DEFAULT_VARIANT} (default)" in out
-        for variant, settings in engine.VARIANTS.items():
-            assert variant in out
-            assert all(f"{setting}=" in out for setting in vars(settings))
+        assert f"{name} (" in out and f"--variant {engine.default_variant} (default, best)" in out
+        for variant, one in engine.variants.items():
+            assert f"--variant {variant} (" in out and one.rung in out and f"decides: {one.decides}" in out
+            assert all(f"{setting}=" in out for setting in vars(one.settings))
+            assert f"{one.knob}={one.default:g} (knob)" in out
+            assert f"fine: {', '.join(f'{value:.4g}' for value in one.ladder)}\n" in out
+            assert one.verified is None or f"slenderness [rad] {one.verified.slenderness[0]:g} to" in out
 
 
 def test_compare(rocking, tmp_path):
@@ -182,7 +185,7 @@ def test_comparison_table_fits_a_terminal(rocking):
 
 def test_failed_run_is_told_and_has_a_status_of_its_own(rocking, monkeypatch, tmp_path):
     class Broken:
-        VARIANTS, DEFAULT_VARIANT = {}, None
+        variants, default_variant = {}, None
 
         @staticmethod
         def simulate(scene, *, variant, history):

@@ -145,7 +145,7 @@ def test_absurd_settings(rocking, value):
         if solver != "analytic":
             if solver not in installed_engines():  # also loads them, once
                 continue
-            name = next(iter(vars(get_engine(solver).VARIANTS[get_engine(solver).DEFAULT_VARIANT])))
+            name = next(iter(vars(get_engine(solver).variants[get_engine(solver).default_variant].settings)))
         assert told(*rocking(*QUICK, "--engine", solver, "--set", f"{name}={value}")), (solver, name)
 
 
@@ -167,7 +167,7 @@ def crash(*_, **__):
 
 def test_an_engine_that_crashes_costs_its_own_row(rocking, monkeypatch):
     pytest.importorskip("pybullet")
-    monkeypatch.setattr("engines.pybullet_engine.simulate", crash)
+    monkeypatch.setattr("engines.pybullet.adapter.run", crash)
     status, out, err = rocking("compare", "free-rocking-rigid", "--engine", "pybullet", "--json", "-")
     first, second = json.loads(out)["responses"]
     assert status == 0 and first["outcome"] == "rocks" and second["outcome"] == "failed"

@@ -144,12 +144,12 @@ def test_columns_cover_every_variant_and_cures_are_settings_they_have():
     columns = solvers()
     assert len({column.label for column in columns}) == len(columns)
     for name in installed_engines():
-        variants = get_engine(name).VARIANTS
+        variants = get_engine(name).variants
         assert {column.variant for column in columns if column.name == name} == set(variants)
         for column in (column for column in columns if column.name == name):
-            fields = {field.name for field in dataclasses.fields(variants[column.variant])}
+            fields = {field.name for field in dataclasses.fields(variants[column.variant].settings)}
             assert all(set(cure) <= fields for cure in column.cures)
-            default = dataclasses.asdict(variants[column.variant])
+            default = dataclasses.asdict(variants[column.variant].settings)
             assert all(any(default[key] != value for key, value in cure.items()) for cure in column.cures)
 
 

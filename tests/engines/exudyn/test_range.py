@@ -16,12 +16,13 @@ from analytic.bearing import BearingLaw  # noqa: E402
 from analytic.motion import PulseMotion  # noqa: E402
 from analytic.rocking import restitution  # noqa: E402
 from analytic.scene import Base, Bearings, Block, Scene, Start  # noqa: E402
-from engines import exudyn_corners, exudyn_engine, exudyn_run, get_engine  # noqa: E402
-from engines.exudyn_scene import Bearing  # noqa: E402
+from engines import get_engine  # noqa: E402
+from engines.exudyn import corners, stepping  # noqa: E402
+from engines.exudyn.scene import Bearing  # noqa: E402
 
 simulate = get_engine("exudyn").simulate
 MASS, RADIUS = 3172.05, 1.0884
-VARIANTS = sorted(exudyn_engine.VARIANTS)
+VARIANTS = sorted(get_engine("exudyn").variants)
 
 
 def block(slenderness, inertia=4 / 3, mass=MASS, radius=RADIUS):
@@ -43,19 +44,11 @@ def restitution_error(scene):
     return max(abs(impact.rate_after / impact.rate_before - restitution(scene)) for impact in response.impacts)
 
 
-@pytest.fixture
-def trace_of(monkeypatch):
-    """A function (scene, ...) -> the trace of exudyn's run."""
-    def run(scene, **settings):
-        traces, observe = [], exudyn_engine.observe
-        with monkeypatch.context() as patch:
-            patch.setattr(exudyn_engine, "observe",
-                          lambda given, trace, **rest: traces.append(trace) or observe(given, trace, **rest))
-            response = simulate(scene, **settings)
-        assert response.failure is None, response.failure
-        return traces[0]
-
-    return run
+def trace_of(scene):
+    """The trace of exudyn's run."""
+    response, trace = get_engine("exudyn").traced(scene)
+    assert response.failure is None, response.failure
+    return trace
 
 
 # Impacts far from the studies' range.
@@ -100,7 +93,7 @@ def test_light_bases_and_stiff_or_viscous_bearings(base, ka, damping):
 
 @pytest.mark.parametrize("friction, slenderness, push, duration", [(0.2, 0.45, 0.3, 0.05), (0.1, 0.3, 0.25, 0.05),
                                                                    (0.3, 0.45, 0.4, 0.1)])
-def test_a_block_that_slid_stays_where_it_came_to_rest(trace_of, friction, slenderness, push, duration):
+def test_a_block_that_slid_stays_where_it_came_to_rest(friction, slenderness, push, duration):
     """It was drawn back to where it had stood; the slip of a push of acceleration a for T: v T/2 + v^2/(2 mu g)."""
     scene = Scene(block=block(slenderness), friction=friction, duration=1.0,
                   motion=PulseMotion("rectangular", push * 9.81, 2 * math.pi / duration))
@@ -111,7 +104,7 @@ def test_a_block_that_slid_stays_where_it_came_to_rest(trace_of, friction, slend
     assert abs(trace.centre[-1, 2]) < 1e-4 * speed
 
 
-def test_a_push_below_friction_moves_nothing(trace_of):
+def test_a_push_below_friction_moves_nothing():
     scene = Scene(block=block(0.45), friction=0.31, duration=0.3,
                   motion=PulseMotion("rectangular", 0.3 * 9.81, 2 * math.pi / 0.1))
     assert np.abs(trace_of(scene).centre[:, 0]).max() < 1e-5 * RADIUS
@@ -133,10 +126,10 @@ def test_joints_that_cannot_slide_say_where_the_block_would():
 # What is put in.
 
 @pytest.mark.parametrize("base", [None, 212.0])
-def test_a_block_left_alone_does_not_sink(trace_of, base):
+def test_a_block_left_alone_does_not_sink(base):
     """It starts on the corners as they carry it."""
     scene = Scene(block=block(0.2), base=Base(mass=base) if base else None, duration=0.2)
-    _, contact_tilt = exudyn_corners.assemble(scene, exudyn_corners.scaled(scene, exudyn_corners.CompliantCorners()))
+    _, contact_tilt = corners.assemble(scene, corners.scaled(scene, corners.CompliantCorners()))
     sink = contact_tilt * scene.block.half_width
     height = trace_of(scene).centre[:, 1]
     assert height[0] == pytest.approx(-sink, rel=1e-9)
@@ -173,7 +166,7 @@ def test_interrupt_ends_the_run_within_a_second_and_is_no_failure(variant):
 
 
 def test_run_of_too_many_steps_ends_with_its_evidence(monkeypatch):
-    monkeypatch.setattr(exudyn_run, "STEPS_PER_PERIOD", 200)
+    monkeypatch.setattr(stepping, "STEPS_PER_PERIOD", 200)
     response = simulate(Scene(block=block(0.2), start=Start(tilt=0.12), duration=1.0))
     assert response.outcome == "failed" and "too many steps" in response.failure.reason
     assert "of 1 s" in response.failure.message
@@ -181,7 +174,7 @@ def test_run_of_too_many_steps_ends_with_its_evidence(monkeypatch):
 
 
 def test_every_variant_has_a_verified_range():
-    assert sorted(exudyn_engine.VERIFIED) == VARIANTS
+    assert all(variant.verified for variant in get_engine("exudyn").variants.values())
 
 
 @pytest.mark.parametrize("slenderness, inertia, base", [(0.1, 1.2, None), (0.45, 2.0, 0.05 * MASS)])

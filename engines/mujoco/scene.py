@@ -5,6 +5,8 @@ import math
 import mujoco
 import numpy as np
 
+from ..contract import Mismatch
+
 FRICTION = 5.0  # stands for the model's "no sliding"; of two geoms MuJoCo takes the larger; e is the same with 1
 CORNER_RADIUS = 1e-6  # share of R: the block touches by a sphere at each bottom corner; e is the same with 1e-8
 # Of the contacts, at any depth. Largest error of e at steps up to 4e-4 s: 6.4e-5 at .99, 4.3e-5 at .999, 6.2e-5 at
@@ -21,10 +23,6 @@ UNIT_RADIUS = 1.0884  # m, of the Caryatid, for which the variants' times are gi
 # Most radians of the base's vibration on its bearings in a step (at .3 a displacement of the wide box was off by 4 %);
 # what it shortens the steps to at most, as a share.
 VIBRATION, MOST_REFINEMENT = 0.15, 20.0
-
-
-class Mismatch(RuntimeError):
-    """MuJoCo does not use what it was given."""
 
 
 def least_mass(scene):

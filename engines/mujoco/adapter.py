@@ -1,4 +1,4 @@
-"""The scene in MuJoCo: its soft constraint solver decides contact and impact.
+"""MuJoCo's variants: its soft constraint solver decides contact and impact.
 
 A MuJoCo contact is a spring and damper per unit of mass (solref: k, b), scaled by an impedance d < 1 (solimp): each
 step it gives a corner the acceleration (1 - d) a0 - d (b v + k r), at its sink r, speed v and free acceleration a0. It
@@ -13,7 +13,7 @@ free rocking on rigid ground, gamma .2 (e = .9408) and .45 (.7162), steps of 1 m
     MuJoCo's defaults                      4e-3, 3e-3      gamma .1: 2e-2, m_b = 212 kg: 3e-2 to 2e-1; whatever the step
 
 Without the flag diagexact a base of 1e-4 m moves 2 % too little (gamma .05). Small steps at impacts alone
-(impact-aware), and a block kept on the arc about its corner (mujoco_stepping), give over 2 starts and 3 impacts each:
+(impact-aware), and a block kept on the arc about its corner (`stepping`), give over 2 starts and 3 impacts each:
 
     gamma                        .05      .1       .2       .3       .45
     e, rigid ground              1.6e-5   4e-6     3e-6     5e-6     1.5e-5
@@ -27,7 +27,7 @@ All with mujoco 4.0.0; diagexact needs 3.9.
 
 import math
 import time
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import mujoco
@@ -35,22 +35,19 @@ import numpy as np
 
 from analytic.response import Failure
 
-from .deciding import until_decided
-from .leapfrog_trace import raw_trace_of, trace_of
-from .mujoco_scene import Mismatch, build, longest_step
-from .mujoco_stepping import run
-from .observe import failed_response, observe
-from .settings import choose, leave_restitution
-from .verified import Range, outside
+from ..contract import Mismatch, Run, Variant
+from ..leapfrog_trace import raw_trace_of, trace_of
+from ..verified import Range
+from . import stepping
+from .scene import build, longest_step
 
-NAME = "mujoco"
-
-DECIDES = (
+SOLVER_DECIDES = (
     "MuJoCo's contact solver decides when a corner lands, sticks or lifts and what an impact does to the tilt rate and "
     "the base velocity; no restitution is given to it. The adapter gives it the bearings' force and the ground's "
-    "acceleration, chooses the length of the steps, and (not in first-script) puts the centre of a pivoting block back "
-    "on its arc after each step, as MuJoCo moves it along the tangent."
+    "acceleration"
 )
+DECIDES = (f"{SOLVER_DECIDES}, chooses the length of the steps, and puts the centre of a pivoting block back on its "
+           "arc after each step, as MuJoCo moves it along the tangent.")
 
 
 @dataclass(frozen=True)
@@ -96,19 +93,21 @@ class FirstScript:
     largest_step = property(lambda self: self.step)
 
 
-VARIANTS = {"impact-aware": ImpactAware(), "fixed-step": FixedStep(), "first-script": FirstScript()}
-DEFAULT_VARIANT = "impact-aware"
-
-# What random scenes over a wide box showed (rocking bench engines), and blocks let go (fixed-step).
-VERIFIED = {
-    "impact-aware": Range(slenderness=(0.03, 1.2), inertia=(1.02, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0),
-                          stiffness=(0.0, 0.5), damping=(0.0, 50.0), tilt=(1e-4, math.inf)),
-    "fixed-step": Range(slenderness=(0.03, 0.45), inertia=(1.2, 3.0), base_mass=(0.05, 100.0), radius=(1e-3, 30.0),
-                        stiffness=(0.0, 0.15), damping=(0.0, 0.1), tilt=(0.05, math.inf)),
-    "first-script": None,
+# verified: what random scenes over a wide box showed (rocking bench engines), and blocks let go (fixed-step).
+VARIANTS = {
+    "impact-aware": Variant(
+        ImpactAware(), rung="best", ladder=(1e-3, 1e-4, 5e-6), decides=DECIDES,
+        verified=Range(slenderness=(0.03, 1.2), inertia=(1.02, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0),
+                       stiffness=(0.0, 0.5), damping=(0.0, 50.0), tilt=(1e-4, math.inf))),
+    "fixed-step": Variant(
+        FixedStep(), rung="expert", ladder=(4e-3, 1e-3, 1e-4), decides=DECIDES,
+        verified=Range(slenderness=(0.03, 0.45), inertia=(1.2, 3.0), base_mass=(0.05, 100.0), radius=(1e-3, 30.0),
+                       stiffness=(0.0, 0.15), damping=(0.0, 0.1), tilt=(0.05, math.inf))),
+    "first-script": Variant(
+        FirstScript(), rung="first script", ladder=(1 / 120, 2e-3, 5e-4), decides=f"{SOLVER_DECIDES}.", verified=None,
+        caveats=("mujoco first-script is verified in no range: MuJoCo's default contact loses too much or too little "
+                 "of the tilt rate, whatever the step",)),
 }
-NOT_VERIFIED = ("mujoco first-script is verified in no range: MuJoCo's default contact loses too much or too little of "
-                "the tilt rate, whatever the step")
 
 # Of the default contact, which sinks by .02 of gamma; see _contact_tilt.
 FIRST_CONTACT_TILT = 0.05
@@ -121,44 +120,28 @@ def versions():
     return {"mujoco": mujoco.__version__, "mujoco-library": mujoco.mj_versionString()}
 
 
-@until_decided
-def simulate(scene, *, variant=None, history=True, **settings):
-    """The `Response` of a scene in MuJoCo; a run that went wrong has the outcome "failed" with its evidence.
-
-    variant is one of `VARIANTS`, settings replace its fields, history keeps the history.
-
-    Raises
-    ------
-    SettingError
-        Unknown variant or setting, or a value that is no positive number.
-    SceneError
-        The scene overrides the restitution.
-    """
-    name, chosen = choose(NAME, VARIANTS, DEFAULT_VARIANT, variant, settings)
-    leave_restitution(scene)
-    given = dict(engine=NAME, variant=name, settings=asdict(chosen), versions=versions())
-    warnings, handler = [], mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(warnings.append)  # else MuJoCo writes a log file into the working directory
+def run(scene, variant, settings):
+    """The `Run` of a scene."""
+    said, handler = [], mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(said.append)  # else MuJoCo writes a log file into the working directory
     try:
-        model, data = build(scene, chosen)
+        model, data = build(scene, settings)
         clock = time.process_time()
-        rows, ended = run(model, data, scene, chosen)
+        rows, ended = stepping.run(model, data, scene, settings)
         cpu = time.process_time() - clock
     except (Mismatch, mujoco.FatalError) as error:
-        return failed_response(scene, Failure("MuJoCo does not run the scene", str(error)), **given)
+        return Run(None, 0, math.nan, Failure("MuJoCo does not run the scene", str(error)))
     finally:
         mujoco.set_mju_user_warning(handler)
-    peak, slenderness = float(np.nanmax(np.abs(rows[:, 2]))), scene.block.slenderness
-    if isinstance(chosen, FirstScript):
+    slenderness = scene.block.slenderness
+    if isinstance(settings, FirstScript):
         trace = replace(raw_trace_of(rows, scene, FIRST_CONTACT_TILT * slenderness), settle=FIRST_SETTLE)
-        doubts = [NOT_VERIFIED]
     else:
-        trace = trace_of(rows, scene, _contact_tilt(chosen, peak, slenderness))
-        doubts = outside(scene, VERIFIED[name], step=longest_step(scene, chosen),
-                         peak_tilt=peak if peak > trace.contact_tilt else None)
-    failure = _failure(scene, rows, ended, "; ".join(line.strip() for line in warnings))
-    return observe(scene, trace, cpu_seconds=cpu, steps=len(rows) - 1, failure=failure, history=history,
-                   warnings=doubts, ended=ended if ended == "overturned" else None, **given)
+        peak = float(np.nanmax(np.abs(rows[:, 2])))
+        trace = trace_of(rows, scene, _contact_tilt(settings, peak, slenderness))
+    failure = _failure(scene, rows, ended, "; ".join(line.strip() for line in said))
+    return Run(trace, len(rows) - 1, cpu, failure, ended if ended == "overturned" else None,
+               longest_step(scene, settings))
 
 
 def _contact_tilt(chosen, peak, slenderness):

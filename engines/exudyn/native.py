@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import exudyn as exu
 from exudyn.itemInterface import MarkerBodyRigid, NodeGenericData, ObjectContactSphereTriangle
 
-from .exudyn_run import solver_settings, step_through
-from .exudyn_scene import build
+from .scene import build
+from .stepping import solver_settings, step_through
 
 
 @dataclass(frozen=True)

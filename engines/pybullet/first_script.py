@@ -11,7 +11,7 @@ import pybullet
 
 from analytic.bearing import BearingLaw
 
-from .pybullet_scene import placement
+from .scene import placement
 
 THICKNESS = 1.0  # m, of the slab
 # Bullet's own default [m]. Process-global: without it a planar run earlier in the process would leave its own here.
@@ -53,7 +53,7 @@ def build(client, scene, step):
 
 
 def run(handles, client, scene, step):
-    """(rows, ended) as `pybullet_stepping.run`; rates are those Bullet reports at the step's end."""
+    """(rows, ended) as `stepping.run`; rates are those Bullet reports at the step's end."""
     body, slab = handles
     law = BearingLaw.of(scene.bearings)
     on_base, acceleration = scene.base is not None, scene.motion.acceleration if scene.motion else None

@@ -13,7 +13,9 @@ from analytic.errors import SceneError  # noqa: E402
 from analytic.motion import PulseMotion, SampledMotion  # noqa: E402
 from analytic.rocking import restitution  # noqa: E402
 from analytic.scene import Base, Bearings, Block, Scene, Start  # noqa: E402
-from engines import exudyn_corners, exudyn_engine, exudyn_run, get_engine  # noqa: E402
+from engines import get_engine  # noqa: E402
+from engines.contract import Mismatch  # noqa: E402
+from engines.exudyn import corners, stepping  # noqa: E402
 
 simulate = get_engine("exudyn").simulate
 CARYATID = {"mass": 3172.05, "radius": 1.0884}
@@ -99,8 +101,8 @@ def test_bearing_force_is_the_one_that_moves_the_base():
     """Momentum: the force in the trace integrates to the momentum of a block that stands on its base."""
     scene = Scene(block=Block(slenderness=0.45, **CARYATID), base=Base(mass=212.0), bearings=Bearings(**BEARINGS),
                   motion=PulseMotion("one-sine", 3.0, 5.0, 0.1), duration=3.0)
-    settings = exudyn_engine.VARIANTS["compliant-corners"]
-    trace = exudyn_corners.run(scene, settings).trace
+    settings = get_engine("exudyn").variants["compliant-corners"].settings
+    trace = corners.run(scene, settings).trace
     t = trace.time
     push = trace.bearing_force + scene.total_mass * scene.motion.acceleration(t)
     impulse = -np.sum(0.5 * (push[1:] + push[:-1]) * np.diff(t))
@@ -125,34 +127,34 @@ def test_newton_failure_surfaces_with_the_engines_message():
 
 
 def test_non_finite_force_surfaces(monkeypatch):
-    force = exudyn_corners.Corner.force
+    force = corners.Corner.force
 
     def poisoned(self, displacement, velocity, offset):
         x, y, z = force(self, displacement, velocity, offset)
-        return [x, y * exudyn_corners.Real(np.nan), z]
+        return [x, y * corners.Real(np.nan), z]
 
-    monkeypatch.setattr(exudyn_corners.Corner, "force", poisoned)
+    monkeypatch.setattr(corners.Corner, "force", poisoned)
     response = simulate(rocking(0.2))
     assert response.outcome == "failed"
     assert "finite" in response.failure.reason
 
 
 def test_a_block_that_sinks_surfaces(monkeypatch):
-    monkeypatch.setattr(exudyn_corners.Corner, "force",
-                        lambda self, displacement, velocity, offset: [exudyn_corners.Real(0.0)] * 3)
+    monkeypatch.setattr(corners.Corner, "force",
+                        lambda self, displacement, velocity, offset: [corners.Real(0.0)] * 3)
     response = simulate(rocking(0.2))
     assert response.outcome == "failed"
     assert "sank" in response.failure.reason
 
 
 def test_a_mismatch_with_the_engine_is_refused(monkeypatch):
-    read_back = exudyn_run.read_back
+    read_back = stepping.read_back
 
     def heavier(model):
         return read_back(model) | {"block.mass": (model.scene.block.mass * 2, model.scene.block.mass)}
 
-    monkeypatch.setattr(exudyn_run, "read_back", heavier)
-    with pytest.raises(exudyn_run.Mismatch, match="block.mass is 6344.1 in exudyn, 3172.05 in the scene"):
+    monkeypatch.setattr(stepping, "read_back", heavier)
+    with pytest.raises(Mismatch, match="block.mass is 6344.1 in exudyn, 3172.05 in the scene"):
         simulate(rocking(0.2))
 
 

@@ -18,8 +18,8 @@ import pybullet
 from analytic.bearing import LINEAR, hysteretic_force
 from analytic.rocking import RockingModel
 
-from .ground_velocity import ground_velocity
-from .pybullet_scene import iterations, placement
+from ..ground_velocity import ground_velocity
+from .scene import iterations, placement
 
 # The next four are no accuracy knobs: measured on free rocking (slenderness .1 and .45, rigid ground and m_b = 212 kg),
 # e moved by at most 4e-6 and the number of steps by at most 8 % over the ranges given.

@@ -19,9 +19,12 @@ from analytic import Scene as AnyScene  # noqa: E402
 from analytic import simulate as exact  # noqa: E402
 from analytic.bearing import BearingLaw  # noqa: E402
 from analytic.rocking import RockingModel, restitution  # noqa: E402
-from engines import mujoco_engine, mujoco_scene, mujoco_stepping  # noqa: E402
+from engines import get_engine  # noqa: E402
+from engines.contract import Mismatch  # noqa: E402
+from engines.mujoco import adapter, stepping  # noqa: E402
+from engines.mujoco import scene as built  # noqa: E402
 
-simulate = mujoco_engine.simulate
+simulate = get_engine("mujoco").simulate
 BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 
 
@@ -79,9 +82,9 @@ def test_rest_under_shaking_below_uplift(base):
     peak = 0.5 if base else 0.9 * 9.81 * math.tan(0.2)
     given = scene(0.2, base, 60.0, bearings=BEARINGS if base else None,
                   motion=SampledMotion(0.01, level / np.abs(level).max() * peak))
-    chosen = mujoco_engine.ImpactAware()
-    model, data = mujoco_scene.build(given, chosen)
-    rows, ended = mujoco_stepping.run(model, data, given, chosen)
+    chosen = adapter.ImpactAware()
+    model, data = built.build(given, chosen)
+    rows, ended = stepping.run(model, data, given, chosen)
     assert ended == "done"
     assert max(abs(row[2]) for row in rows) * 1.0884 < 1e-5  # measured: 1e-7
     across, up = data.qpos[-3:-1]
@@ -98,7 +101,7 @@ def test_state_that_is_not_finite_fails_with_mujocos_own_words(monkeypatch, tmp_
             calls.append(dx)
             return math.nan if len(calls) > 50 else super().hysteretic(z, dx)
 
-    monkeypatch.setattr(mujoco_stepping, "BearingLaw", Breaking)
+    monkeypatch.setattr(stepping, "BearingLaw", Breaking)
     given = scene(0.2, 212.0, bearings=BEARINGS, motion=PulseMotion("one-sine", 3.0, 4.0))
     response = simulate(given, variant=variant)
     assert response.outcome == "failed"
@@ -117,13 +120,13 @@ def test_warning_alone_fails(monkeypatch):
         if abs(data.time - 0.1) < 1e-3:
             mujoco.get_mju_user_warning()("Contact buffer is full")
 
-    monkeypatch.setattr(mujoco_stepping.mujoco, "mj_step", warns)
+    monkeypatch.setattr(stepping.mujoco, "mj_step", warns)
     response = simulate(scene(0.2, start=Start(tilt=0.1)))
     assert response.outcome == "failed" and "buffer is full" in response.failure.message
 
 
 def test_run_that_does_not_advance_is_given_up(monkeypatch):
-    monkeypatch.setattr(mujoco_stepping, "MOST_ROWS", 300)
+    monkeypatch.setattr(stepping, "MOST_ROWS", 300)
     response = simulate(scene(0.2, start=Start(tilt=0.1)))
     assert response.outcome == "failed"
     assert response.failure.reason == "too many steps"
@@ -150,22 +153,22 @@ def test_what_mujoco_does_not_hold_as_asked_is_refused(monkeypatch, asked, given
         def __getattr__(self, name):
             return getattr(mujoco, name)
 
-    monkeypatch.setattr(mujoco_scene, "mujoco", Engine())
+    monkeypatch.setattr(built, "mujoco", Engine())
     response = simulate(scene(0.2, start=Start(tilt=0.1)))
     assert response.outcome == "failed"
-    with pytest.raises(mujoco_scene.Mismatch, match=words):
-        mujoco_scene.build(scene(0.2), mujoco_engine.ImpactAware())
+    with pytest.raises(Mismatch, match=words):
+        built.build(scene(0.2), adapter.ImpactAware())
 
 
 def test_sliding_block_fails(monkeypatch):
-    monkeypatch.setattr(mujoco_scene, "FRICTION", 0.2)
+    monkeypatch.setattr(built, "FRICTION", 0.2)
     response = simulate(scene(0.4, motion=PulseMotion("rectangular", 3.0, 2.0)))
     assert response.outcome == "failed"
     assert "slid" in response.failure.reason
 
 
 def test_mujocos_contact_solver_is_named():
-    assert "contact solver" in mujoco_engine.DECIDES
+    assert all("contact solver" in variant.decides for variant in adapter.VARIANTS.values())
 
 
 # Classes of scenes far from the Caryatid.
@@ -234,7 +237,7 @@ def test_steps_go_with_the_size_of_the_block(radius, variant, error):
 @pytest.mark.parametrize("stiffness", [1e4, 1e5])
 def test_stiff_bearings_shorten_the_steps(stiffness):
     given = released(base=2000.0, stiffness=stiffness, duration=1.0)
-    assert mujoco_scene.longest_step(given, mujoco_engine.ImpactAware()) < 2e-4
+    assert built.longest_step(given, adapter.ImpactAware()) < 2e-4
     assert_like_the_model(given, peak=2e-2, error=5e-3)
 
 
@@ -254,8 +257,8 @@ def test_small_swings_are_seen(tilt):
 def test_friction_of_the_scene_is_coulombs():
     """A push of .3 g for .05 s on a block that slides at .2 g: (.1 g t^2/2)(1 + .1/.2), and it stays there."""
     given = scene(0.45, duration=0.5, friction=0.2, motion=PulseMotion("rectangular", -0.3 * 9.81, math.pi / 0.05))
-    rows, _ = mujoco_stepping.run(*mujoco_scene.build(given, mujoco_engine.ImpactAware()), given,
-                                  mujoco_engine.ImpactAware())
+    rows, _ = stepping.run(*built.build(given, adapter.ImpactAware()), given,
+                                  adapter.ImpactAware())
     assert abs(rows[-1][8]) == pytest.approx(0.5 * 0.1 * 9.81 * 0.05**2 * 1.5, rel=0.01)
 
 

@@ -1,8 +1,8 @@
-"""The scene in PyBullet (Bullet's multibody solver): Bullet decides contact and impact."""
+"""PyBullet's variants: Bullet decides contact and impact."""
 
 import math
 import time
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from importlib.metadata import version
 
 import numpy as np
@@ -10,16 +10,12 @@ import pybullet
 
 from analytic.response import Failure
 
-from . import pybullet_first_script, pybullet_stepping
-from .checks import GAIN_LIMIT, HEIGHT_TOLERANCE, energy_gain, pivoting_centre
-from .deciding import until_decided
-from .leapfrog_trace import raw_trace_of, trace_of
-from .observe import observe
-from .pybullet_scene import MOST_FRICTION, MOST_VELOCITY, Mismatch, Units, assemble
-from .settings import choose, leave_restitution
-from .verified import Range, outside
-
-NAME = "pybullet"
+from ..checks import GAIN_LIMIT, HEIGHT_TOLERANCE, energy_gain, pivoting_centre
+from ..contract import Mismatch, Run, Variant
+from ..leapfrog_trace import raw_trace_of, trace_of
+from ..verified import Range
+from . import first_script, stepping
+from .scene import MOST_FRICTION, MOST_VELOCITY, Units, assemble
 
 DECIDES = (
     "Bullet's contact solver decides when a corner lands, sticks or lifts and what an impact does to the tilt rate "
@@ -60,17 +56,19 @@ class FirstScript:
     step: float = 1 / 240  # Bullet's own default
 
 
-VARIANTS = {"impact-aware": ImpactAware(), "fixed-step": FixedStep(), "first-script": FirstScript()}
-DEFAULT_VARIANT = "impact-aware"
-
-# Random scenes against the analytic model, default settings.
-VERIFIED = {
-    # damping: beyond it the base's velocity after an impact is gone before the tilt can be told from flat contact.
-    "impact-aware": Range(slenderness=(0.03, 1.2), inertia=(1.01, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0),
-                          damping=(0.0, 500.0)),
-    "fixed-step": Range(slenderness=(0.1, 0.45), inertia=(1.2, 3.0), base_mass=(0.05, 100.0), radius=(1e-3, 30.0),
-                        damping=(0.0, 1.0), tilt=(0.3, math.inf)),
-    "first-script": None,  # damping that no one asked for: e off by .01 to .5 at every step
+# verified: random scenes against the analytic model, default settings.
+VARIANTS = {
+    "impact-aware": Variant(
+        ImpactAware(), rung="best", ladder=(1e-3, 1e-4, 1e-5, 1e-6), decides=DECIDES,
+        # damping: beyond it the base's velocity after an impact is gone before the tilt can be told from flat contact.
+        verified=Range(slenderness=(0.03, 1.2), inertia=(1.01, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0),
+                       damping=(0.0, 500.0))),
+    "fixed-step": Variant(
+        FixedStep(), rung="expert", ladder=(4e-3, 1e-3, 2.5e-4, 1e-4), decides=DECIDES,
+        verified=Range(slenderness=(0.1, 0.45), inertia=(1.2, 3.0), base_mass=(0.05, 100.0), radius=(1e-3, 30.0),
+                       damping=(0.0, 1.0), tilt=(0.3, math.inf))),
+    "first-script": Variant(  # damping that no one asked for: e off by .01 to .5 at every step
+        FirstScript(), rung="first script", ladder=(1 / 60, 1 / 240, 1 / 1000), decides=DECIDES, verified=None),
 }
 
 # Steps after which a run is given up: this many per largest step of the duration, and a reserve for the impacts.
@@ -86,50 +84,18 @@ class TooManySteps(RuntimeError):
     """A run would take more than `MOST_ROWS` steps."""
 
 
-@until_decided
-def simulate(scene, *, variant=None, history=True, **settings):
-    """Simulate a scene in PyBullet.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its block must leave the restitution to the engine.
-    variant : str, optional
-        One of `VARIANTS`.
-    history : bool
-        Keep the history.
-    **settings
-        Fields of the variant to replace.
-
-    Returns
-    -------
-    Response
-        A run that went wrong has the outcome "failed" with its evidence.
-
-    Raises
-    ------
-    SettingError
-        Unknown variant or setting, or a value out of range.
-    SceneError
-        The scene overrides the restitution.
-    """
-    name, chosen = choose(NAME, VARIANTS, DEFAULT_VARIANT, variant, settings)
-    leave_restitution(scene)
-    given = dict(engine=NAME, variant=name, settings=asdict(chosen), versions=versions(), history=history)
-    trace, steps, cpu, ended, place, failure = _attempt(scene, chosen)
-    lifted = np.abs(trace.tilt).max(initial=0.0, where=np.isfinite(trace.tilt))
-    warnings = (*outside(scene, VERIFIED[name], step=_largest(scene, chosen),
-                         peak_tilt=lifted if lifted > trace.contact_tilt else None),
-                *_beyond(scene, name, chosen))
+def run(scene, variant, settings):
+    """The `Run` of a scene."""
+    trace, steps, cpu, ended, place, failure = _attempt(scene, settings)
     if failure is None and place is not None and _may_have_left(scene, trace, ended, place):
         # The same run again, with all places of the block: to read them each time costs up to a tenth more.
-        trace = _attempt(scene, chosen, places=True)[0]
-    return observe(scene, trace, cpu_seconds=cpu, steps=steps, failure=failure, warnings=warnings,
-                   ended=ended if ended == "overturned" else None, **given)
+        trace = _attempt(scene, settings, places=True)[0]
+    return Run(trace, steps, cpu, failure, ended if ended == "overturned" else None, _largest(scene, settings),
+               tuple(_beyond(scene, variant, settings)))
 
 
 def _attempt(scene, chosen, places=False):
-    """(trace, steps, CPU seconds, how it ended, place of the block at the end or None, failure or None)."""
+    """(trace or None, steps, CPU seconds, how it ended, place of the block at the end or None, failure or None)."""
     failure, ended, rows, place, cpu = None, None, [], None, math.nan
     client = pybullet.connect(pybullet.DIRECT)
     try:
@@ -143,11 +109,11 @@ def _attempt(scene, chosen, places=False):
     finally:
         pybullet.disconnect(client)
     if len(rows) < 2:
-        rows = np.array([(float(k), 1.0, *[math.nan] * 6) for k in range(2)])
+        return None, 0, cpu, ended, place, failure
     if isinstance(chosen, FirstScript):
         trace = raw_trace_of(rows, scene, 1e-3 * scene.block.slenderness)
     else:
-        trace = trace_of(rows, scene, pybullet_stepping.FLAT * scene.block.slenderness, smeared=3)
+        trace = trace_of(rows, scene, stepping.FLAT * scene.block.slenderness, smeared=3)
     return trace, len(rows) - 1, cpu, ended, place, failure or _failure(scene, rows, ended, trace,
                                                                              isinstance(chosen, FirstScript))
 
@@ -155,9 +121,9 @@ def _attempt(scene, chosen, places=False):
 def _run(client, scene, chosen, places):
     """(rows, how it ended, place of the block at the end or None, CPU seconds of the stepping)."""
     if isinstance(chosen, FirstScript):
-        handles = pybullet_first_script.build(client, scene, chosen.step)
+        handles = first_script.build(client, scene, chosen.step)
         clock = time.process_time()
-        rows, ended = pybullet_first_script.run(handles, client, scene, chosen.step)
+        rows, ended = first_script.run(handles, client, scene, chosen.step)
         return rows, ended, None, time.process_time() - clock
     units = Units.of(scene)
     sized, largest = units.scale(scene), _largest(scene, chosen) / units.time
@@ -168,7 +134,7 @@ def _run(client, scene, chosen, places):
                            f"{sized.duration / largest:.3g} for {scene.duration:.6g} s; at most {MOST_ROWS}")
     assembly = assemble(client, sized, largest)
     clock = time.process_time()
-    rows, ended = pybullet_stepping.run(assembly, sized, units, largest, accuracy, row_limit, places)
+    rows, ended = stepping.run(assembly, sized, units, largest, accuracy, row_limit, places)
     cpu = time.process_time() - clock
     place = [units.length * state[0]
              for state in pybullet.getJointStates(assembly.body, (assembly.slide, assembly.lift), client)]
@@ -181,14 +147,14 @@ def _largest(scene, chosen):
         return chosen.step
     units = Units.of(scene)
     longest = chosen.largest_step if isinstance(chosen, ImpactAware) else chosen.step
-    return units.time * pybullet_stepping.longest_step(units.scale(scene), units, longest)
+    return units.time * stepping.longest_step(units.scale(scene), units, longest)
 
 
 def _beyond(scene, name, chosen):
     """Sentences on settings coarser than those verified, and on what Bullet cannot take as it is given."""
     for field in fields(chosen):
-        value, usual = getattr(chosen, field.name), getattr(VARIANTS[name], field.name)
-        if value > usual and VERIFIED[name] is not None:
+        value, usual = getattr(chosen, field.name), getattr(VARIANTS[name].settings, field.name)
+        if value > usual and VARIANTS[name].verified is not None:
             yield f"{field.name} = {value:.4g} is above {usual:.4g}, the largest verified"
     if scene.friction is not None and scene.friction > MOST_FRICTION and name != "first-script":
         yield f"friction = {scene.friction:.4g} is above {MOST_FRICTION:g}: Bullet takes it as {MOST_FRICTION:g}"
@@ -209,7 +175,7 @@ def _failure(scene, rows, ended, trace, first=False):
     if ended == "too many steps":
         return Failure("too many steps", f"{len(rows) - 1} by t = {rows[-1][0]:.9g} s of {scene.duration:.9g} s")
     fastest = max(np.abs(trace.tilt_rate).max(), np.abs(trace.base_velocity).max())
-    limit = pybullet_first_script.MOST_VELOCITY if first else MOST_VELOCITY
+    limit = first_script.MOST_VELOCITY if first else MOST_VELOCITY
     if fastest > 0.1 * limit:
         return Failure("Bullet cuts velocities", f"{fastest:.3g} m/s or rad/s; its limit: {limit:g}")
     return None

@@ -13,8 +13,8 @@ from numba import njit
 
 from analytic.bearing import BearingLaw
 
-from .exudyn_run import solver_settings, step_through
-from .exudyn_scene import build
+from .scene import build
+from .stepping import solver_settings, step_through
 
 Real = exu.symbolic.Real
 

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import pybullet
 
+from ..contract import Mismatch
+
 # Coefficient between the block and what it stands on where the scene gives none: the model's "no sliding". Bullet
 # multiplies the frictions of two bodies and cuts the product to 10, in silence.
 MOST_FRICTION = 10.0
@@ -34,10 +36,6 @@ CORNER_RADIUS = 1e-6
 ROCKING_REST, STANDING_REST, LEAST_ITERATIONS, MOST_ITERATIONS = 1e-6, 1e-4, (10, 20), 20_000
 
 MOST_VELOCITY = 1e9  # m/s and rad/s, above which Bullet would cut a joint's; its default is 100
-
-
-class Mismatch(RuntimeError):
-    """Bullet does not use what it was given."""
 
 
 @dataclass(frozen=True)

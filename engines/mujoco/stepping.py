@@ -9,8 +9,8 @@ import numpy as np
 from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel
 
-from .ground_velocity import ground_velocity
-from .mujoco_scene import contact_reference, least_mass, recovery_rate, size_scale
+from ..ground_velocity import ground_velocity
+from .scene import contact_reference, least_mass, recovery_rate, size_scale
 
 # No accuracy knobs: over the ranges given e moves by at most 2e-5 and the number of steps by 2 % (gamma .1 and .45 on
 # a base of 212 kg, steps up to 4e-4 s).
@@ -30,12 +30,12 @@ def run(model, data, scene, chosen):
     """Step until the duration is over, the block has overturned or a state is not finite.
 
     MuJoCo's Euler is leapfrog: displacements live at the steps' ends, velocities half a step earlier. A load that
-    acts for the mean of two steps is scaled by (h + h')/(2 h'), see pybullet_stepping. Not so for a first script.
+    acts for the mean of two steps is scaled by (h + h')/(2 h'), see stepping. Not so for a first script.
 
     Returns
     -------
     rows, ended
-        As pybullet_stepping.run.
+        As stepping.run.
     """
     largest, recovery, as_it_comes = model.opt.timestep, recovery_rate(scene, chosen), chosen.recovery is None
     law, g, start = BearingLaw.of(scene.bearings), scene.gravity, scene.start

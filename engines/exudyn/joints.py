@@ -18,9 +18,10 @@ from scipy.interpolate import CubicHermiteSpline
 from analytic.response import Failure
 from analytic.rocking import RockingModel
 
-from .exudyn_ground import Ground
-from .exudyn_run import OVERTURNED, Run, check, interruptible, make_trace, release, solver_settings
-from .exudyn_scene import build
+from ..contract import Run
+from .ground import Ground
+from .scene import build
+from .stepping import OVERTURNED, check, interruptible, make_trace, release, solver_settings
 
 REST = 0  # the side of a block in full contact
 STUCK = 10  # events at one instant after which a run is given up; uplift and rest together are two
@@ -218,4 +219,4 @@ def run(scene, settings):
     columns = map(np.array, zip(*stepper.rows, strict=True))
     trace = make_trace(scene, *columns, stepper.z, stepper.model.bearing, 1e-9, 0.0)
     ended = "overturned" if trace is not None and abs(trace.tilt[-1]) >= OVERTURNED else None
-    return Run(trace, cpu, len(stepper.rows) - 1, 0, ended, failure)
+    return Run(trace, len(stepper.rows) - 1, cpu, failure, ended)

@@ -6,16 +6,16 @@ import threading
 import time
 from array import array
 from contextlib import contextmanager
-from dataclasses import dataclass
 
 import exudyn as exu
 import numpy as np
 
 from analytic.response import Failure
 
-from .exudyn_ground import Ground
-from .exudyn_scene import read_back
-from .observe import Trace
+from ..contract import Mismatch, Run
+from ..swings import Trace
+from .ground import Ground
+from .scene import read_back
 
 OVERTURNED = math.pi / 2
 
@@ -23,22 +23,6 @@ OVERTURNED = math.pi / 2
 # defaults take up to 3e4 per period where impacts are frequent; bearings that are stiff or viscous for the mass of
 # their base take what the stability of explicit steps asks for.
 STEPS_PER_PERIOD = 300_000
-
-
-class Mismatch(RuntimeError):
-    """exudyn holds other values than the scene asks for."""
-
-
-@dataclass(frozen=True)
-class Run:
-    """Accepted steps, CPU seconds and how the stepping ended."""
-
-    trace: Trace
-    cpu_seconds: float
-    steps: int
-    rejected: int
-    ended: str | None
-    failure: Failure | None
 
 
 @contextmanager
@@ -156,8 +140,7 @@ def step_through(model, settings, solver, contact_tilt, longest, settle=0.0):
     q, v = np.split(np.array(states).reshape(-1, 8 if scene.base else 6), 2, axis=1)
     trace = make_trace(scene, np.array(times), q, v, forces, bearing, contact_tilt, settle)
     ended = "overturned" if trace is not None and abs(trace.tilt[-1]) >= OVERTURNED else None
-    steps = len(times) - 1
-    return Run(trace, cpu, steps, dynamic.it.rejectedAutomaticStepSizeSteps, ended, failure)
+    return Run(trace, len(times) - 1, cpu, failure, ended)
 
 
 def release(mbs):

@@ -26,7 +26,7 @@ from numba import njit
 
 from analytic.bearing import ALGEBRAIC, BOUC_WEN, LINEAR, BearingLaw, hysteretic_force, virtual_travel
 
-from .exudyn_ground import ground_load
+from .ground import ground_load
 
 Real = exu.symbolic.Real
 
@@ -42,7 +42,7 @@ class Model:
     block: object
     base: object
     bearing: "Bearing | None" = None
-    anchor: object | None = None  # of the friction, see exudyn_corners
+    anchor: object | None = None  # of the friction, see `corners`
     loads: list = field(default_factory=list)
     connectors: dict = field(default_factory=dict)
     keep: list = field(default_factory=list)

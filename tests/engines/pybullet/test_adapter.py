@@ -11,14 +11,12 @@ from analytic import Base, Bearings, Block, PulseMotion, Start  # noqa: E402
 from analytic import Scene as AnyScene  # noqa: E402
 from analytic import simulate as exact  # noqa: E402
 from analytic.rocking import RockingModel, restitution  # noqa: E402
-from engines import (  # noqa: E402
-    pybullet_engine,
-    pybullet_scene,
-    pybullet_stepping,
-)
+from engines import get_engine  # noqa: E402
 from engines.ground_velocity import ground_velocity  # noqa: E402
+from engines.pybullet import adapter, stepping  # noqa: E402
+from engines.pybullet import scene as bullet  # noqa: E402
 
-simulate = pybullet_engine.simulate
+simulate = get_engine("pybullet").simulate
 BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 
 
@@ -94,7 +92,7 @@ def test_state_that_is_not_finite_fails(monkeypatch):
         calls.append(z)
         return math.nan if len(calls) > 50 else z
 
-    monkeypatch.setattr(pybullet_stepping, "hysteretic_force", breaks)
+    monkeypatch.setattr(stepping, "hysteretic_force", breaks)
     response = simulate(scene(0.2, 212.0, bearings=BEARINGS, motion=PulseMotion("one-sine", 3.0, 4.0)))
     assert response.outcome == "failed"
     assert "finite" in response.failure.reason
@@ -103,30 +101,30 @@ def test_state_that_is_not_finite_fails(monkeypatch):
 
 
 def test_run_that_does_not_advance_is_given_up(monkeypatch):
-    monkeypatch.setattr(pybullet_engine, "ROWS_PER_STEP", 0)
-    monkeypatch.setattr(pybullet_engine, "MOST_ROWS", 300)
+    monkeypatch.setattr(adapter, "ROWS_PER_STEP", 0)
+    monkeypatch.setattr(adapter, "MOST_ROWS", 300)
     response = simulate(scene(0.2, start=Start(tilt=0.1)))
     assert response.outcome == "failed"
     assert response.failure.reason == "too many steps"
 
 
 def test_mass_that_bullet_does_not_take_is_refused(monkeypatch):
-    change = pybullet_scene.pybullet.changeDynamics
+    change = bullet.pybullet.changeDynamics
 
     def forgets(body, link, **values):
         values.pop("mass", None)
         values.pop("localInertiaDiagonal", None)
         change(body, link, **values)
 
-    monkeypatch.setattr(pybullet_scene.pybullet, "changeDynamics", forgets)
+    monkeypatch.setattr(bullet.pybullet, "changeDynamics", forgets)
     response = simulate(scene(0.2, start=Start(tilt=0.1)))
     assert response.outcome == "failed"
     assert "block: inertia is" in response.failure.message
 
 
 def test_joint_motor_or_friction_left_as_it_is_is_refused(monkeypatch):
-    change = pybullet_scene.pybullet.changeDynamics
-    monkeypatch.setattr(pybullet_scene.pybullet, "changeDynamics",
+    change = bullet.pybullet.changeDynamics
+    monkeypatch.setattr(bullet.pybullet, "changeDynamics",
                         lambda body, link, **values: change(body, -1, **values))  # trap: the link is missed
     response = simulate(scene(0.2, 212.0, start=Start(tilt=0.1)))
     assert response.outcome == "failed"
@@ -134,7 +132,7 @@ def test_joint_motor_or_friction_left_as_it_is_is_refused(monkeypatch):
 
 
 def test_sliding_block_fails(monkeypatch):
-    monkeypatch.setattr(pybullet_scene, "FRICTION", 0.2)
+    monkeypatch.setattr(bullet, "FRICTION", 0.2)
     response = simulate(scene(0.4, motion=PulseMotion("rectangular", 3.0, 2.0)))
     assert response.outcome == "failed"
     assert "slid" in response.failure.reason
@@ -142,18 +140,18 @@ def test_sliding_block_fails(monkeypatch):
 
 def test_clients_are_closed(monkeypatch):
     open_clients = []
-    connect, disconnect = pybullet_engine.pybullet.connect, pybullet_engine.pybullet.disconnect
-    monkeypatch.setattr(pybullet_engine.pybullet, "connect",
+    connect, disconnect = adapter.pybullet.connect, adapter.pybullet.disconnect
+    monkeypatch.setattr(adapter.pybullet, "connect",
                         lambda mode: open_clients.append(connect(mode)) or open_clients[-1])
-    monkeypatch.setattr(pybullet_engine.pybullet, "disconnect",
+    monkeypatch.setattr(adapter.pybullet, "disconnect",
                         lambda client: open_clients.remove(client) or disconnect(client))
-    monkeypatch.setattr(pybullet_scene, "FRICTION", math.nan)
+    monkeypatch.setattr(bullet, "FRICTION", math.nan)
     assert simulate(scene(0.2)).outcome == "failed"
     assert open_clients == []
 
 
 def test_bullets_contact_solver_is_named():
-    assert "contact solver" in pybullet_engine.DECIDES
+    assert all("contact solver" in variant.decides for variant in adapter.VARIANTS.values())
 
 
 # Far from the usual scenes: each was wrong in silence once.
@@ -172,12 +170,12 @@ def test_corner_inertia_near_its_least_value_takes_more_iterations(slenderness, 
 
 
 def test_slender_blocks_and_little_inertia_need_many_iterations():
-    usual = pybullet_scene.iterations(scene(0.45), 1), pybullet_scene.iterations(scene(0.45), 2)
-    slender = pybullet_scene.iterations(scene(0.05), 2)
+    usual = bullet.iterations(scene(0.45), 1), bullet.iterations(scene(0.45), 2)
+    slender = bullet.iterations(scene(0.05), 2)
     little = scene(0.45).with_(block={"corner_inertia": 1.05 * 3172.05 * 1.0884**2})
     assert usual[0] <= 12 and usual[1] < 40
     assert slender > 9.2 * 0.9 / (3 * math.tan(0.05) ** 2)  # 1e-4 at a rate of 1 - 3 tan^2
-    assert pybullet_scene.iterations(little, 1) > 4 * usual[0]
+    assert bullet.iterations(little, 1) > 4 * usual[0]
 
 
 @pytest.mark.parametrize("power", [-5, 2])
@@ -210,7 +208,7 @@ def test_stiff_damped_and_light_bases_move_as_the_exact_solution(base, ka, dampi
 def test_mass_added_for_damping_is_exact_and_bounded():
     """v' after an interval under c v alone: v exp(-c t/m)."""
     for damping in (1e-9, 1.0, 50.0, 1e9):
-        added = pybullet_stepping.added_mass(damping, 0.1, 2.0)
+        added = stepping.added_mass(damping, 0.1, 2.0)
         after = 1 - damping * 0.1 / (2.0 + added)
         assert after == pytest.approx(math.exp(-damping * 0.05), abs=1e-9)
 
@@ -239,7 +237,7 @@ def test_bearings_too_stiff_for_any_number_of_steps_fail_at_once():
 def test_a_given_friction_is_the_coefficient():
     """A push of .3 g for .05 s at a coefficient of .2: v = (.3 - .2) g t, then back to rest at .2 g: 1.839 mm."""
     given = scene(0.45, motion=PulseMotion("rectangular", 0.3 * 9.81, math.pi / 0.05), duration=0.3, friction=0.2)
-    trace = pybullet_engine._attempt(given, pybullet_engine.VARIANTS["impact-aware"], places=True)[0]
+    trace = adapter._attempt(given, adapter.VARIANTS["impact-aware"].settings, places=True)[0]
     slip = abs(trace.centre[-1, 0])
     assert slip == pytest.approx(0.5 * 0.1 * 9.81 * 0.05**2 * (1 + 0.1 / 0.2), rel=0.01)
     held = simulate(given.with_(friction=0.35))

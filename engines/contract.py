@@ -1,0 +1,235 @@
+"""What an engine is: a light record, found by its name, that loads its adapter when it is first asked.
+
+A package that offers an engine holds one `Engine`. The adapter, a module of its own, holds
+
+- ``VARIANTS``: {name: `Variant`}, the default first;
+- ``versions()``: {package: version} of what computes;
+- ``run(scene, variant, settings)``: a `Run` of a scene with a duration; `variant` is a name, `settings` an instance of
+  that variant's dataclass, both checked.
+
+All else is the same for every engine and is done here and in `engines.simulating`: settings are checked, a scene
+without a duration runs until its outcome is decided, warnings are said, events and peaks are found outside the engine.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from analytic.errors import EngineBroken, EngineNotInstalled
+from analytic.response import Failure
+
+from .verified import NOWHERE, Range
+
+if TYPE_CHECKING:
+    from analytic import Response, Scene
+
+    from .swings import Trace
+
+# How well a variant is set up: as well as is known; with care, but at a known cost in error or generality; as a first
+# script would.
+RUNGS = ("best", "expert", "first script")
+
+
+class Mismatch(RuntimeError):
+    """An engine holds other values than the scene asks for."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One way to set an engine up, and what is known of it.
+
+    Parameters
+    ----------
+    settings : object
+        Instance of a frozen dataclass of numbers above 0, the accuracy knob first. A field ``friction`` yields to the
+        scene's coefficient.
+    rung : str
+        One of `RUNGS`.
+    ladder : tuple of float
+        Values of the knob from coarse to fine, the default among them.
+    decides : str
+        Who decides what, engine or adapter, in words.
+    verified : Range or None
+        Where it was held against the analytic model; None: nowhere.
+    caveats : tuple of str
+        Warnings said of every run. Without any, a variant verified nowhere says that.
+    takes_restitution : bool
+        The adapter, not the engine, applies the impact: a scene may give the restitution.
+
+    Raises
+    ------
+    ValueError
+        An unknown rung, or a ladder without the default.
+    """
+
+    settings: object
+    rung: str
+    ladder: tuple[float, ...]
+    decides: str
+    verified: Range | None
+    caveats: tuple[str, ...] = ()
+    takes_restitution: bool = False
+
+    def __post_init__(self):
+        if self.rung not in RUNGS:
+            raise ValueError(f"rung = {self.rung!r}: choose one of {', '.join(RUNGS)}")
+        if self.default not in self.ladder:
+            raise ValueError(f"ladder = {self.ladder!r}: it lacks the default, {self.knob} = {self.default!r}")
+        if self.verified is None and not self.caveats:
+            object.__setattr__(self, "caveats", (NOWHERE,))
+
+    @property
+    def knob(self) -> str:
+        """Name of the accuracy knob."""
+        return dataclasses.fields(self.settings)[0].name
+
+    @property
+    def default(self) -> float:
+        """Value of the knob."""
+        return getattr(self.settings, self.knob)
+
+
+@dataclass(frozen=True)
+class Run:
+    """What an adapter hands back of one run.
+
+    trace: the accepted steps, None where there are fewer than two. steps: how many were made. cpu_seconds: of the
+    stepping alone. failure: what the engine or the adapter found wrong. ended: "overturned" where the run was stopped
+    at overturning. step: the longest [s], which the verified range asks for; None where it is not known. warnings:
+    sentences.
+    """
+
+    trace: Trace | None
+    steps: int
+    cpu_seconds: float
+    failure: Failure | None = None
+    ended: str | None = None
+    step: float | None = None
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Engine:
+    """An engine as others know it; its package is imported only when it is asked for more than its record.
+
+    Parameters
+    ----------
+    name : str
+        As users call it.
+    package : str
+        What must be importable.
+    install : str
+        How to install it.
+    colour, marker, dashes : str
+        In every figure.
+    adapter : str
+        Name of the module with ``VARIANTS``, ``versions`` and ``run``.
+    tolerances : str or None
+        Name of a module whose ``TOLERANCES`` are the rows of the tolerance table.
+    origin : str
+        What declared an engine from outside; "" for those of this project.
+    """
+
+    name: str
+    package: str
+    install: str
+    colour: str
+    marker: str
+    adapter: str
+    dashes: str = "-"
+    tolerances: str | None = None
+    origin: str = ""
+
+    def load(self) -> ModuleType:
+        """The adapter's module.
+
+        Raises
+        ------
+        EngineNotInstalled
+            The engine's package cannot be imported; the message says how to install it.
+        EngineBroken
+            An adapter from outside cannot be imported, or lacks what the contract asks for. One of this project raises
+            its own error: that must not pass for a package that is absent.
+        """
+        try:
+            import_module(self.package)
+        except ImportError as error:
+            raise EngineNotInstalled(
+                f"engine {self.name!r} needs the package {self.package}: {self.install}") from error
+        if not self.origin:
+            return import_module(self.adapter)
+        try:
+            module = import_module(self.adapter)
+        except Exception as error:
+            raise EngineBroken(self.origin, f"its adapter {self.adapter} cannot be imported "
+                                            f"({type(error).__name__}: {error})") from error
+        variants = getattr(module, "VARIANTS", None)
+        if not (isinstance(variants, dict) and variants and all(isinstance(v, Variant) for v in variants.values())):
+            raise EngineBroken(self.origin, f"{self.adapter}.VARIANTS is no dict of engines.contract.Variant")
+        missing = [name for name in ("versions", "run") if not callable(getattr(module, name, None))]
+        if missing:
+            raise EngineBroken(self.origin, f"{self.adapter} has no function {' and no '.join(missing)}")
+        return module
+
+    @property
+    def installed(self) -> bool:
+        """Whether it can be used here."""
+        try:
+            self.load()
+        except EngineNotInstalled:
+            return False
+        return True
+
+    @property
+    def variants(self) -> dict[str, Variant]:
+        """By name, the default first."""
+        return self.load().VARIANTS
+
+    @property
+    def default_variant(self) -> str:
+        """Name of the variant taken where none is named."""
+        return next(iter(self.variants))
+
+    def versions(self) -> dict[str, str]:
+        """Versions that determine the result: {package: version}."""
+        return self.load().versions()
+
+    def run(self, scene: Scene, variant: str, settings: object) -> Run:
+        """The bare run of a scene that has a duration; settings: of the variant's dataclass, taken as they are."""
+        return self.load().run(scene, variant, settings)
+
+    def simulate(self, scene: Scene, *, variant: str | None = None, history: bool = True, **settings) -> Response:
+        """The response of a scene; a run that went wrong has the outcome "failed" with its evidence.
+
+        Parameters
+        ----------
+        scene : Scene
+            Without a duration it runs until its outcome is decided.
+        variant : str or None
+            One of `variants`; None is the default one.
+        history : bool
+            Keep the history in the response.
+        **settings
+            Fields of the variant's settings, in place of their defaults.
+
+        Raises
+        ------
+        SettingError
+            Unknown variant or setting, or a setting that is not a positive number.
+        SceneError
+            The scene gives the restitution, and the variant decides it.
+        Mismatch
+            exudyn alone: it holds other values than the scene asks for; nothing was run.
+        """
+        return self.traced(scene, variant=variant, history=history, **settings)[0]
+
+    def traced(self, scene: Scene, *, variant: str | None = None, history: bool = True,
+               **settings) -> tuple[Response, Trace | None]:
+        """(response, the steps it was read from or None) of `simulate`."""
+        from .simulating import traced
+
+        return traced(self, scene, variant, history, settings)

@@ -1,0 +1,6 @@
+"""exudyn: ``get_engine("exudyn").simulate(scene, variant=...)``."""
+
+from ..contract import Engine
+
+ENGINE = Engine(name="exudyn", package="exudyn", install="pip install exudyn", adapter="engines.exudyn.adapter",
+                colour="#E69F00", marker="s", dashes="--")

@@ -1,0 +1,81 @@
+"""exudyn's variants, and what of a run its own solver does not see."""
+
+import math
+import platform
+from dataclasses import replace
+from importlib.metadata import version
+
+import numpy as np
+
+from analytic.bearing import BearingLaw
+from analytic.response import Failure, State
+
+from ..checks import replay_bearing
+from ..contract import Variant
+from ..verified import Range
+from . import corners, joints, native
+
+# Replayed bearing force, over f0: round-off stays below 1e-12.
+REPLAY_LIMIT = 1e-9
+
+_MODULES = {"compliant-corners": corners, "switched-joints": joints, "native-contact": native}
+# verified: held against the analytic model in random scenes. The constants of compliant-corners follow size and start,
+# and its steps bearings of any stiffness and damping, or the run ends as one of too many steps. At the fixed step of
+# switched-joints a base that vibrates faster is off by 3 to 20 %; smaller and flatter swings are too short for it.
+VARIANTS = {
+    "compliant-corners": Variant(
+        corners.CompliantCorners(), rung="best", ladder=(1e9, 1e10, 2e11, 1e12),
+        decides="the integration decides contact, impact, sliding and rest; the corners' law, Hunt-Crossley contact "
+                "with Coulomb's friction, is the adapter's: plastic, non-slipping (unless the scene gives a "
+                "coefficient) and planar, as Housner assumes, so that an impact which agrees with him verifies law and "
+                "integration",
+        verified=Range(slenderness=(0.03, 1.2), inertia=(1.01, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0))),
+    "switched-joints": Variant(
+        joints.SwitchedJoints(), rung="expert", ladder=(1.6e-2, 4e-3, 1e-3), takes_restitution=True,
+        decides="exudyn decides the motion; uplift, impact and rest are the adapter's",
+        verified=Range(slenderness=(0.03, 1.2), inertia=(1.01, 3.0), base_mass=(1e-4, 100.0), radius=(0.05, 30.0),
+                       stiffness=(0.0, 0.3), damping=(0.0, 10.0), tilt=(0.01, math.inf))),
+    "native-contact": Variant(
+        native.NativeContact(), rung="first script", ladder=(1e-3, 3e-4, 1e-4),
+        decides="exudyn decides contact, impact, sliding and rest through its sphere-triangle contact",
+        verified=Range(slenderness=(0.1, 0.3), inertia=(1.2, 2.0), base_mass=(0.05, 100.0), radius=(0.5, 2.0),
+                       tilt=(0.1, math.inf)),
+        caveats=("native-contact is set up as a first script would: its restitution is off by 1 to 10 %, whatever the "
+                 "step",)),
+}
+
+
+def versions():
+    """Versions that determine the result."""
+    return {"exudyn": version("exudyn"), "python": platform.python_version()}
+
+
+def run(scene, variant, settings):
+    """The `Run` of a scene.
+
+    Raises
+    ------
+    Mismatch
+        exudyn holds other values than the scene asks for; nothing was run.
+    """
+    found = _MODULES[variant].run(scene, settings)
+    if found.trace is None:
+        failure = replace(found.failure or Failure("the run ended before its first step"), last_state=_start(scene))
+        return replace(found, failure=failure, steps=max(found.steps, 0))
+    return replace(found, failure=found.failure or _fault(scene, found), step=float(np.diff(found.trace.time).max()))
+
+
+def _fault(scene, run):
+    """The failure of a run that exudyn took for a success, or None."""
+    if not all(np.isfinite(getattr(run.trace, name)).all() for name in run.trace.COLUMNS):
+        return None  # observe reports it, with the last finite state
+    difference = replay_bearing(scene, run.trace)
+    if difference > REPLAY_LIMIT:
+        return Failure("the bearing force is not the law's", f"it differs by {difference:.3g} f0 when replayed")
+    return None
+
+
+def _start(scene):
+    law, start = BearingLaw.of(scene.bearings), scene.start
+    x, v = start.base_displacement, start.base_velocity
+    return State(0.0, start.tilt, start.tilt_rate, x, v, float(law.force(x, law.start(x), v)))

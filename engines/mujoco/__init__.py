@@ -1,0 +1,6 @@
+"""MuJoCo: ``get_engine("mujoco").simulate(scene, variant=...)``."""
+
+from ..contract import Engine
+
+ENGINE = Engine(name="mujoco", package="mujoco", install="pip install 'rocking[mujoco]'",
+                adapter="engines.mujoco.adapter", colour="#CC79A7", marker="D", dashes="-.")

@@ -1,0 +1,52 @@
+"""Engines that other packages declare, by the entry point group `rocking.engines`; each entry is an `Engine`."""
+
+from dataclasses import replace
+from importlib.metadata import entry_points
+
+from analytic.errors import EngineBroken
+
+from .contract import Engine
+
+GROUP = "rocking.engines"
+RESERVED = ("analytic",)  # the model's own name where a solver is asked for
+
+
+def find_engines(taken):
+    """({name: `Engine`} of the engines declared here, {entry: `EngineBroken`} of those that cannot be used).
+
+    Parameters
+    ----------
+    taken : collection of str
+        Names that are given away.
+    """
+    found, broken = {}, {}
+    for entry in sorted(entry_points(group=GROUP), key=lambda entry: (entry.name, _distribution(entry))):
+        origin = f"engine {entry.name!r}, declared as {entry.value} by the distribution {_distribution(entry)}"
+        try:
+            engine = _resolve(entry, origin, (*RESERVED, *taken, *found))
+        except EngineBroken as error:
+            key = entry.name
+            if key in (*RESERVED, *taken, *found, *broken):
+                key = f"{entry.name} of {_distribution(entry)}"
+            broken[key] = error
+        else:
+            found[engine.name] = engine
+    return found, broken
+
+
+def _resolve(entry, origin, taken):
+    try:
+        engine = entry.load()
+    except Exception as error:  # whatever another package raises as it is imported
+        raise EngineBroken(origin, f"it cannot be imported ({type(error).__name__}: {error})") from error
+    if not isinstance(engine, Engine):
+        raise EngineBroken(origin, f"it is a {type(engine).__name__}, no engines.contract.Engine")
+    if engine.name != entry.name:
+        raise EngineBroken(origin, f"it calls itself {engine.name!r}: entry and engine need one name")
+    if engine.name in taken:
+        raise EngineBroken(origin, "that name is taken")
+    return replace(engine, origin=origin)
+
+
+def _distribution(entry):
+    return f"{entry.dist.name} {entry.dist.version}" if entry.dist else "of no name"

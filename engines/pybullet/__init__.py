@@ -1,0 +1,7 @@
+"""PyBullet (Bullet's multibody solver): ``get_engine("pybullet").simulate(scene, variant=...)``."""
+
+from ..contract import Engine
+
+ENGINE = Engine(name="pybullet", package="pybullet", adapter="engines.pybullet.adapter",
+                install="pip install pybullet (its wheels end at CPython 3.11: use Python 3.11)",
+                colour="#0072B2", marker="^", dashes=":")

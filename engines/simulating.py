@@ -1,0 +1,60 @@
+"""From a scene and an engine to a response: what is the same for all engines."""
+
+from dataclasses import asdict, replace
+
+import numpy as np
+
+import analytic
+from analytic import decision
+from analytic.response import Failure
+
+from .observe import failed_response, observe
+from .settings import choose, leave_restitution
+from .verified import outside
+
+
+def traced(engine, scene, variant, history, settings):
+    """(response, trace or None) of `Engine.traced`.
+
+    A scene without a duration is first run to where the analytic model's run ends, as engines end alike; an engine
+    whose own end state is not decided there goes on for longer (`analytic.decision.until_decided`).
+    """
+    name, chosen = choose(engine, variant, settings)
+    if not engine.variants[name].takes_restitution:
+        leave_restitution(engine, scene)
+    if scene.friction is not None and hasattr(chosen, "friction"):
+        chosen = replace(chosen, friction=scene.friction)
+    if scene.duration is not None:
+        return _once(engine, scene, name, chosen, history)
+    traces = []
+
+    def attempt(cut):
+        response, trace = _once(engine, cut, name, chosen, history)
+        traces[:] = [trace]  # of the last attempt
+        return response
+
+    end = analytic.simulate(scene, history=False).end.time
+    response = decision.until_decided(attempt, scene, at_least=end, finished=lambda _, response: response.decided)
+    return response, traces[0]
+
+
+def _once(engine, scene, name, chosen, history):
+    run = engine.run(scene, name, chosen)
+    given = dict(engine=engine.name, variant=name, settings=asdict(chosen), versions=engine.versions(),
+                 cpu_seconds=run.cpu_seconds, steps=run.steps, warnings=_warnings(engine.variants[name], scene, run))
+    if run.trace is None:
+        failure = run.failure or Failure("the run ended before its first step")
+        return failed_response(scene, failure, **given), None
+    return observe(scene, run.trace, history=history, failure=run.failure, ended=run.ended, **given), run.trace
+
+
+def _warnings(variant, scene, run):
+    """What is said of every run of a variant, what of this one is outside its verified range, what the adapter says."""
+    found, peak = (), None
+    if run.trace is not None:
+        tilt = np.abs(run.trace.tilt)
+        lifted = float(tilt.max(initial=0.0, where=np.isfinite(tilt)))
+        peak = lifted if lifted > run.trace.contact_tilt else None
+    if variant.verified is not None and run.step is not None:
+        found = outside(scene, variant.verified, step=run.step, peak_tilt=peak)
+    return (*variant.caveats, *found, *run.warnings)
