@@ -27,6 +27,7 @@ from .verified import NOWHERE, Range
 if TYPE_CHECKING:
     from analytic import Response, Scene
 
+    from .bounds import Bound
     from .swings import Trace
 
 # How well a variant is set up: as well as is known; with care, but at a known cost in error or generality; as a first
@@ -129,7 +130,8 @@ class Engine:
     adapter : str
         Name of the module with ``VARIANTS``, ``versions`` and ``run``.
     tolerances : str or None
-        Name of a module whose ``TOLERANCES`` are the rows of the tolerance table.
+        Name of a module whose ``TOLERANCES``, {variant: tuple of `engines.bounds.Bound`}, are its rows of the tolerance
+        table.
     origin : str
         What declared an engine from outside; "" for those of this project.
     """
@@ -162,11 +164,12 @@ class Engine:
                 f"engine {self.name!r} needs the package {self.package}: {self.install}") from error
         if not self.origin:
             return import_module(self.adapter)
-        try:
-            module = import_module(self.adapter)
-        except Exception as error:
-            raise EngineBroken(self.origin, f"its adapter {self.adapter} cannot be imported "
-                                            f"({type(error).__name__}: {error})") from error
+        for name in filter(None, (self.tolerances, self.adapter)):
+            try:
+                module = import_module(name)
+            except Exception as error:
+                raise EngineBroken(self.origin, f"its module {name} cannot be imported "
+                                                f"({type(error).__name__}: {error})") from error
         variants = getattr(module, "VARIANTS", None)
         if not (isinstance(variants, dict) and variants and all(isinstance(v, Variant) for v in variants.values())):
             raise EngineBroken(self.origin, f"{self.adapter}.VARIANTS is no dict of engines.contract.Variant")
@@ -174,6 +177,13 @@ class Engine:
         if missing:
             raise EngineBroken(self.origin, f"{self.adapter} has no function {' and no '.join(missing)}")
         return module
+
+    def bounds(self) -> dict[str, tuple[Bound, ...]]:
+        """Its rows of the tolerance table, by variant; the package need not be installed, but one from outside that is
+        broken has none."""
+        if not self.tolerances or (self.origin and not self.installed):
+            return {}
+        return import_module(self.tolerances).TOLERANCES
 
     @property
     def installed(self) -> bool:

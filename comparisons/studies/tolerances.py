@@ -26,7 +26,8 @@ def command(
             default = get_engine(engine).default_variant
             results += measure_all([row for row in TABLE if row.engine == engine
                                     and (row.variant == default or not quick)])
-    modules = ["comparisons.measuring.tolerances", *(ENGINES[name].adapter for name in engines)]
+    modules = ["comparisons.measuring.tolerances", *(ENGINES[name].adapter for name in engines),
+               *(ENGINES[name].tolerances for name in engines if ENGINES[name].tolerances)]
     path = write_result(Path(output) / "tolerances.json", "tolerances", {"engines": engines, "quick": quick}, results,
                         modules=modules)
     print(path)

@@ -3,4 +3,5 @@
 from ..contract import Engine
 
 ENGINE = Engine(name="mujoco", package="mujoco", install="pip install 'rocking[mujoco]'",
-                adapter="engines.mujoco.adapter", colour="#CC79A7", marker="D", dashes="-.")
+                adapter="engines.mujoco.adapter", tolerances="engines.mujoco.tolerances",
+                colour="#CC79A7", marker="D", dashes="-.")

@@ -2,6 +2,7 @@
 
 from ..contract import Engine
 
-ENGINE = Engine(name="pybullet", package="pybullet", adapter="engines.pybullet.adapter",
+ENGINE = Engine(name="pybullet", package="pybullet",
                 install="pip install pybullet (its wheels end at CPython 3.11: use Python 3.11)",
+                adapter="engines.pybullet.adapter", tolerances="engines.pybullet.tolerances",
                 colour="#0072B2", marker="^", dashes=":")

@@ -132,7 +132,7 @@ ENGINE = Engine("crude", {package!r}, "pip install it", "#D55E00", "v", "crude_a
 
 
 @pytest.mark.parametrize("adapter, words", [
-    ("import no_such_package", "its adapter crude_adapter cannot be imported (ModuleNotFoundError: "),
+    ("import no_such_package", "its module crude_adapter cannot be imported (ModuleNotFoundError: "),
     ("VARIANTS = {'euler': 1}", "crude_adapter.VARIANTS is no dict of engines.contract.Variant"),
     ("from crude_engine import VARIANTS", "crude_adapter has no function versions and no run"),
 ])

@@ -1,0 +1,28 @@
+"""Rows of the table of agreement tolerances, as an engine states them beside its adapter."""
+
+from dataclasses import dataclass
+
+# What errors come from, where engines share it.
+APPROACH = "share of its speed that the block gains in the step of the impact (accuracy)"
+STEP = "step; first order, by the phase of the impact in it"
+LARGE_STEP = "steps in flight and at rest"
+HELD = "what the contact gives at rest"
+READING = "steps, and their force and momentum as read between them"
+ROUNDING = "history committed once per accepted step; round-off"
+
+
+@dataclass(frozen=True)
+class Bound:
+    """`quantity` over `scenes` is at most `bound`; `measured` is the worst found when that was set, `source` says what
+    the error comes from.
+
+    least: of a first-script variant, whose error is known and must not vanish unnoticed, the lower end of the band; 0
+    else. Where the source is `ROUNDING` the bound is what is asked for, and the measured value far below.
+    """
+
+    quantity: str
+    scenes: str
+    bound: float
+    measured: float
+    source: str
+    least: float = 0.0

@@ -1,0 +1,46 @@
+"""What the variants of exudyn are held to; the scenes are those of the tolerance table."""
+
+from ..bounds import HELD, READING, ROUNDING, Bound
+
+STIFFNESS = "contact stiffness; goes as its inverse"
+SQUARE = "step squared; the impact is the model's own"
+
+TOLERANCES = {
+    "compliant-corners": (
+        Bound("restitution, rms", "rigid ground", 1.6e-5, 8.63e-6, STIFFNESS),
+        Bound("restitution, rms", "sliding base", 1.9e-5, 9.92e-6, STIFFNESS),
+        Bound("base velocity jump, rms", "sliding base", 1.4e-5, 7.26e-6, STIFFNESS),
+        Bound("impact times", "rigid ground", 1.8e-4, 9.53e-5, STIFFNESS),
+        Bound("impact times", "sliding base", 3.8e-5, 1.93e-5, STIFFNESS),
+        Bound("peak tilt", "rocking on bearings, one-sine", 8.5e-4, 4.49e-4, STIFFNESS),
+        Bound("tilt graph", "rocking on bearings, one-sine", 2.2e-3, 1.15e-3, STIFFNESS),
+        Bound("peak displacement", "rocking on bearings, one-sine", 3.8e-5, 1.91e-5, STIFFNESS),
+        Bound("peak displacement", "isolated Caryatid, synthetic motion", 1.4e-5, 7.15e-6, STIFFNESS),
+        Bound("overturning time", "one-sine of 3.8 g slenderness, rigid ground", 8.5e-5, 4.32e-5, STIFFNESS),
+        Bound("overturning boundary", "one-sine at 2 and 5 times omega_r, rigid ground", 1.75e-4, 8.75e-5, STIFFNESS),
+        Bound("overturning boundary", "one-sine at 7, one-cosine at 2 times omega_r, rigid ground", 2.2e-3, 1.18e-3,
+              STIFFNESS),
+        Bound("bearing force replayed", "rocking on bearings, one-sine", 1e-9, 2.2e-13, ROUNDING),
+        Bound("bearing force replayed", "isolated Caryatid, synthetic motion", 1e-9, 4.4e-13, ROUNDING),
+        Bound("bearing impulse in the motion", "rocking on bearings, one-sine", 9.5e-7, 4.97e-7, READING),
+        Bound("bearing impulse in the motion", "isolated Caryatid, synthetic motion", 1.4e-6, 7.19e-7, READING),
+        Bound("corner lift at rest", "60 s of shaking below uplift, rigid ground", 2.8e-7, 1.40e-7, HELD),
+        Bound("base drift at rest", "60 s of shaking below uplift, on bearings", 1.5e-6, 7.92e-7, HELD),
+    ),
+    "switched-joints": (
+        Bound("restitution, rms", "rigid ground, slenderness 0.2", 8e-10, 4.03e-10,
+              SQUARE),
+        Bound("restitution, rms", "sliding base, slenderness 0.2", 4.6e-9, 2.35e-9,
+              SQUARE),
+        Bound("base velocity jump, rms", "sliding base, slenderness 0.2", 4.3e-9, 2.19e-9,
+              SQUARE),
+        Bound("bearing force replayed", "rocking on bearings, one-sine", 1e-9, 9.4e-14, ROUNDING),
+        Bound("bearing impulse in the motion", "rocking on bearings, one-sine", 1.2e-5, 6.37e-6, READING),
+    ),
+    "native-contact": (
+        Bound("restitution from swings, |mean error|", "rigid ground, slenderness 0.2", 0.04, 0.0275,
+              "the damper pulls at the lifting corner, friction creeps", least=0.02),
+        Bound("restitution from swings, |mean error|", "sliding base, slenderness 0.2", 0.07, 0.0451,
+              "the damper pulls at the lifting corner, friction creeps", least=0.03),
+    ),
+}
