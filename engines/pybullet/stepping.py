@@ -122,7 +122,10 @@ def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
     rows = array("d", (t, h, tilt, rate, x, v, z, force, *(placement(scene) if places else ())))
     keep, step, side, width = rows.extend, largest, tilt > 0, len(rows)
     before, interval, gained, settling = 0.0, 1.0, 0.0, 0
-    twice_pull, almost = 2 * least_pull, 100 * weak  # below `almost` both corners count as loaded
+    # Below `almost` both corners count as loaded: the higher one is within what a step of free fall covers. With the
+    # few iterations for one corner the slow onset of a slender block (.036) gained 1.5 times its tilt.
+    twice_pull = 2 * least_pull
+    almost = max(100 * weak, twice_pull * g * largest * largest / (2 * scene.block.half_width))
     level_tilt = almost / twice_pull
     last_scale, used, few, many = -1.0, 0, iterations(scene, 1), iterations(scene, 2)
     some = min(many, max(few, LANDING_ITERATIONS))

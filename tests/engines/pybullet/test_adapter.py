@@ -234,6 +234,16 @@ def test_bearings_too_stiff_for_any_number_of_steps_fail_at_once():
     assert "that follow the bearings" in response.failure.message
 
 
+def test_a_slow_onset_is_that_of_the_model():
+    """Both corners carry until the block has lifted: the tilt was 2.5 times as large as the model's."""
+    block = Block(mass=0.106, radius=10.4, slenderness=0.036, corner_inertia=2.02 * 0.106 * 10.4**2)
+    given = AnyScene(block=block, motion=PulseMotion("ricker", -0.548, 0.786), duration=16.3)
+    wanted, found = exact(given).history, simulate(given).history
+    late = exact(given).uplifts[0] + np.linspace(0.3, 1.0, 8)
+    np.testing.assert_allclose(np.interp(late, found.time, found.tilt), np.interp(late, wanted.time, wanted.tilt),
+                               rtol=2e-2)
+
+
 def test_a_given_friction_is_the_coefficient():
     """A push of .3 g for .05 s at a coefficient of .2: v = (.3 - .2) g t, then back to rest at .2 g: 1.839 mm."""
     given = scene(0.45, motion=PulseMotion("rectangular", 0.3 * 9.81, math.pi / 0.05), duration=0.3, friction=0.2)
