@@ -4,12 +4,12 @@ from ._cache import kernel_cache
 from .errors import EngineNotInstalled, SceneError, SettingError
 from .motion import PulseMotion, SampledMotion
 from .response import Energy, Failure, History, Impact, Response, State
-from .scene import Base, Bearings, Block, Scene, Start
-from .scene_file import load_scene, shipped_scenes
 from .synthetic import synthetic_motion
 
 with kernel_cache():
     from .batch import Outcomes, overturning_map, rocking_spectrum, simulate_many
+    from .scene import Base, Bearings, Block, Scene, Start
+    from .scene_file import load_scene, shipped_scenes
     from .solver import simulate
 
 __all__ = ["Base", "Bearings", "Block", "Energy", "EngineNotInstalled", "Failure", "History", "Impact", "Outcomes",

@@ -15,10 +15,10 @@ import numba
 def _folder():
     source = Path(__file__).parent
     digest = hashlib.sha256()
-    for file in sorted(source.glob("*.py")):
+    for file in sorted(source.rglob("*.py")):
         text = file.read_bytes()
         if b"njit" in text:
-            digest.update(file.name.encode() + text)
+            digest.update(str(file.relative_to(source)).encode() + text)
     name = f"numba-{digest.hexdigest()[:16]}"
     for parent in (source / "__pycache__", Path.home() / ".cache" / "rocking", Path(tempfile.gettempdir())):
         try:

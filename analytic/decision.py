@@ -23,7 +23,8 @@ import math
 
 from numba import njit
 
-from .bearing import ALGEBRAIC, BOUC_WEN, BearingLaw
+from .bearing import BearingLaw
+from .laws import chosen
 
 # Share by which a reported peak could still grow when a run without a duration ends.
 PEAK_TOLERANCE = 1e-4
@@ -33,27 +34,16 @@ TAIL_PERIODS, CAP_PERIODS = 3.0, 100.0
 SLOWEST_BASE = 10.0
 
 
+_recoverable = chosen("recoverable")
+
+
 @njit(cache=True)
 def recoverable_energy(law, dk, alpha, d0, f0, z):
-    """S(z) [J] of one bearing: the integral of |z| dx on the way back to z = 0; at least z^2/(2 (ka - kb)).
-
-    bouc-wen: dz/dx = (ka - kb)/2 (1 + |z|/f0) on that way. algebraic: the path of eq. (11), (12) between the virtual
-    travels D of z and of 0, from D^-a = D0 + a (f0 + |z|)/(ka - kb) with a = alpha - 1.
-    """
+    """S(z) [J] of one bearing: the integral of |z| dx on the way back to z = 0; at least z^2/(2 (ka - kb))."""
     z = abs(z)
-    if law < ALGEBRAIC or z == 0:
+    if z == 0:
         return 0.0
-    least = 0.5 * z * z / dk
-    if law == BOUC_WEN:
-        return max(least, 2 / dk * f0 * (z - f0 * math.log1p(z / f0)))
-    a = alpha - 1
-    begin, end = -math.log(d0 + a * (f0 + z) / dk) / a, -math.log(d0 + a * f0 / dk) / a  # log D
-    length = end - begin
-    if end > 600:
-        return math.inf  # alpha near 1: a tail without end
-    power = length if abs((1 - a) * length) < 1e-8 else math.expm1((1 - a) * length) / (1 - a)
-    travel = math.exp(begin) * math.expm1(length)
-    return max(least, dk / a * math.exp((1 - a) * begin) * power - (f0 + dk * d0 / a) * travel)
+    return max(0.5 * z * z / dk, _recoverable(law, z, dk, alpha, d0, f0))
 
 
 @njit(cache=True)
@@ -87,8 +77,6 @@ def largest_force(par, energy):
     """
     n = float(par.count)
     viscous = n * n * par.damping * par.damping / par.M
-    if par.law < ALGEBRAIC:
-        return math.sqrt(2 * energy * (n * par.kb + viscous))
     return min(math.sqrt(2 * energy * (n * (par.kb + par.dk) + viscous)),
                n * par.f0 + math.sqrt(2 * energy * (n * par.kb + viscous)))
 

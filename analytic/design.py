@@ -44,26 +44,22 @@ class BearingProperties:
 def steady_cycle(law, amplitude):
     """(loss [J], force [N] at +amplitude) of one bearing in the steady cycle between +-amplitude [m].
 
-    The loss is the integral of the hysteretic force along both branches, exact for the algebraic law.
+    The loss is the integral of the hysteretic force along both branches, exact.
     """
     z = law.hysteretic(0.0, amplitude)
     for _ in range(SETTLING_CYCLES):
         low = law.hysteretic(z, -2 * amplitude)
         z = law.hysteretic(low, 2 * amplitude)
-    # the loading branch from z = low: D from D_c to D_c + 2 X on the limit curve, integrated in closed form
-    power = law.d0 + (1 - law.alpha) * (low - law.f0) / law.dk
-    start = max(law.d0, power) ** (1 / (1 - law.alpha))
-    curved = ((start + 2 * amplitude) ** (2 - law.alpha) - start ** (2 - law.alpha)) / (2 - law.alpha)
-    branch = law.dk * (curved - 2 * amplitude * law.d0) / (1 - law.alpha) + 2 * amplitude * law.f0
-    return 2 * branch, law.kb * amplitude + z
+    return 2 * law.work(low, 2 * amplitude), law.kb * amplitude + z
 
 
 def properties(bearings, mass, x_max):
-    """`BearingProperties` of algebraic bearings under `mass` (block and base) [kg] at x_max [m]."""
-    loss, force = steady_cycle(BearingLaw.of(bearings), x_max)
+    """`BearingProperties` of bearings under `mass` (block and base) [kg] at x_max [m]."""
+    law = BearingLaw.of(bearings)
+    loss, force = steady_cycle(law, x_max)
     secant = force / x_max
     energy = 0.5 * secant * x_max**2
-    kb_period = 2 * math.pi * math.sqrt(mass / (bearings.count * bearings.kb)) if bearings.kb else math.inf
+    kb_period = 2 * math.pi * math.sqrt(mass / (bearings.count * law.kb)) if law.kb else math.inf
     return BearingProperties(2 * math.pi * math.sqrt(mass / (bearings.count * secant)), kb_period,
                              loss / (2 * math.pi * energy), loss / (4 * math.pi * energy), secant, force, loss)
 

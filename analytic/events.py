@@ -83,6 +83,21 @@ def find_reversal(v, direction, order, h, event, work):
 
 
 @njit(cache=True)
+def find_corner(z, direction, corner, order, h, event, work):
+    """The hysteretic force reaches `corner` in `direction`, where the bearing's stiffness jumps."""
+    lowest, power = corner - direction * z[0], 1.0
+    for k in range(1, order + 1):
+        power *= h
+        lowest -= abs(z[k]) * power
+    if lowest > 0:
+        return -1.0
+    for k in range(order + 1):
+        event[k] = -direction * z[k]
+    event[0] += corner
+    return first_root(event, order, h, work)
+
+
+@njit(cache=True)
 def direction_from_rest(par, rocking, s, tilt, rate, highest, P, force):
     """Sign of the motion a base at standstill starts into: that of its first derivative that is not zero."""
     ground = P[GROUND, 0] if highest >= 0 else 0.0

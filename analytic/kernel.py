@@ -12,11 +12,11 @@ from numba import njit
 
 from . import layout as L
 from ._unowned import unowned
-from .bearing import ALGEBRAIC, BOUC_WEN, virtual_travel
 from .decision import peaks_are_final, will_not_overturn
 from .events import (
     NEARLY_ELASTIC,
     direction_from_rest,
+    find_corner,
     find_exceedance,
     find_impact,
     find_reversal,
@@ -26,6 +26,7 @@ from .events import (
     remaining_hops,
     settle,
 )
+from .laws import chosen
 from .polynomial import BISECTIONS, MAX_ORDER, bracketed_root, value
 from .readings import read_contact, read_energy, write_history
 from .taylor import (
@@ -40,6 +41,9 @@ from .taylor import (
     hop_order,
     rigid_series,
 )
+
+# The bearings' law, see `laws.Law`.
+mark, begin_step, reached, corner_ahead = chosen("mark"), chosen("begin"), chosen("reached"), chosen("corner")
 
 # Events without progress of time that count as stuck (none is known; a guard, not a rule).
 PATIENCE = 1000
@@ -147,7 +151,7 @@ def run(par, ground, options, totals):
                 if kind > LINEAR_GROUND:
                     h = min(h, 1.0 / frequency)
             used, found = order, L.NONE
-            y0 = 1.0
+            factors, corner = (0.0, 0.0, 0.0), math.inf
             if par.on_base:
                 x[0], v[0] = bx, bv
                 F[0] = par.count * (par.kb * bx + z + par.damping * bv)
@@ -156,16 +160,13 @@ def run(par, ground, options, totals):
                     moving = direction_from_rest(par, mode == L.ROCKING, s, tilt, rate, highest, P, F[0])
                 if moving != direction and moving != 0:
                     direction, anchor_x = moving, bx
-                    if par.law == ALGEBRAIC:
-                        anchor_travel = virtual_travel(direction, z, par.dk, par.alpha, par.d0, par.f0)
-                if par.law == ALGEBRAIC:
-                    y0 = anchor_travel + direction * (bx - anchor_x)
-                    q[0] = y0 ** (1 - par.alpha) if direction != 0 else 0.0
-                elif par.law == BOUC_WEN:
-                    q[0] = z
+                    anchor_travel = mark(par.law, direction, z, par.dk, par.alpha, par.d0, par.f0)
+                travel = anchor_travel + direction * (bx - anchor_x)
+                q[0], factors = begin_step(par.law, direction, z, travel, par.dk, par.alpha, par.d0, par.f0)
+                corner = corner_ahead(par.law, direction, z, par.dk, par.alpha, par.d0, par.f0)
             if mode == L.CONTACT:
                 if par.on_base:
-                    contact_series(order, par, direction, 1.0 / y0, highest, A, x, v, q, F, absolute)
+                    contact_series(order, par, factors, highest, A, x, v, q, F, absolute)
                     # the force too: where ka is close to kb it varies faster than the velocity shows
                     h = allowed_step(F, order, tolerance, allowed_step(v, order, tolerance, h))
                 else:
@@ -185,7 +186,7 @@ def run(par, ground, options, totals):
                 while True:
                     good = reach
                     if par.on_base:
-                        base_series(used, par, direction, 1.0 / y0, highest, A, phi, w, S, C, x, v, q, F, absolute)
+                        base_series(used, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute)
                         good = allowed_step(F, used, tolerance, allowed_step(v, used, tolerance, good))
                     else:
                         rigid_series(used, par.p2, par.g, highest, A, phi, w, S, C)
@@ -228,6 +229,10 @@ def run(par, ground, options, totals):
                 root = find_reversal(v, direction, used, h, event, work)
                 if root > 0:
                     found, h = L.REVERSAL, root
+                if corner < math.inf:
+                    root = find_corner(q, direction, corner, used, h, event, work)
+                    if root >= 0:
+                        found, h = L.CORNER, root
             idle = idle + 1 if h <= 0 else 0
             if idle > PATIENCE:
                 status = L.STUCK
@@ -255,11 +260,10 @@ def run(par, ground, options, totals):
                 bx, bv = value(x, used, h), value(v, used, h)
                 if found == L.REVERSAL:
                     bv = 0.0
-                if par.law == ALGEBRAIC and direction != 0:
-                    y = anchor_travel + direction * (bx - anchor_x)
-                    z = direction * (par.dk * (y ** (1 - par.alpha) - par.d0) / (1 - par.alpha) + par.f0)  # (9), (11)
-                elif par.law == BOUC_WEN:
-                    z = value(q, used, h)
+                travel = anchor_travel + direction * (bx - anchor_x)
+                z = reached(par.law, direction, z, q, used, h, travel, par.dk, par.alpha, par.d0, par.f0)
+                if found == L.CORNER:
+                    z = direction * corner
                 peak_x = max(peak_x, abs(bx))
             if h > 0:
                 fresh, refused = False, False

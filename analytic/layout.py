@@ -15,7 +15,7 @@ TOTALS = 20
 (PHI, W, S, C, X, V, Q, F, ABSOLUTE, GROUND, EVENT, PRODUCT_A, PRODUCT_B) = range(13)
 ROWS = 13
 # Kinds of event inside a step.
-NONE, UPLIFT, IMPACT, REVERSAL, OVERTURNING = range(5)
+NONE, UPLIFT, IMPACT, REVERSAL, CORNER, OVERTURNING = range(6)
 
 # Ground motion: sampled (dt, samples) or a pulse; `kind` is QUIET, LINEAR_GROUND (sampled), HARMONIC
 # (scale sin(phase + frequency (t - start))) or RICKER. A rectangular pulse is HARMONIC with frequency 0.

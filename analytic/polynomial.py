@@ -8,6 +8,7 @@ from numba import njit
 
 MAX_ORDER = 24
 BISECTIONS = 60
+INVERSE = np.array([0.0] + [1.0 / k for k in range(1, 64)])
 
 
 @njit(cache=True)

@@ -22,8 +22,7 @@ from .layout import (
     W,
     X,
 )
-from .polynomial import value
-from .taylor import INVERSE
+from .polynomial import INVERSE, value
 
 # Points inside a step at which friction demand, normal force and acceleration are read.
 PROBES = 4

@@ -88,6 +88,16 @@ class RockingModel:
         normal = self.m * (self.g + n * tilt_acceleration - c * rate * rate)
         return horizontal, normal
 
+    def kinetic_energy(self, s, tilt, rate, v):
+        """[J], in the ground's frame; s = 0 for full contact."""
+        c = self.lever(s, tilt)[0] if s else 0.0
+        return 0.5 * self.M * v * v + self.m * c * rate * v + 0.5 * self.J * rate * rate
+
+    def potential_energy(self, s, tilt, x):
+        """Of gravity and of the springs kb [J], 0 at rest."""
+        height = self.lever(s, tilt)[0] - self.R * math.cos(self.gamma) if s else 0.0
+        return self.m * self.g * height + 0.5 * self.bearing.count * self.bearing.kb * x**2
+
 
 def restitution(scene):
     """e_phi of eq. (7), momentum-exact: 1 - 2 m b^2/(J_O - m mt h^2). May be negative (stocky block, light base)."""

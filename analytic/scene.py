@@ -9,6 +9,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validat
 from pydantic_core import PydanticCustomError
 
 from .errors import SceneError
+from .laws import LAWS, NUMBERS
 from .motion import PulseMotion, SampledMotion
 
 # No quantity of a scene is beyond these in SI units, and their products neither overflow nor vanish.
@@ -84,30 +85,35 @@ class Bearings(_Part):
     """The bearings under the base; all stiffnesses and forces per bearing.
 
     algebraic: the hysteretic law of eqs (9)-(14). linear: f = ka x; kb, alpha and delta_k are not used.
-    bouc-wen: an ODE-state law matched to the f0, ka and kb of the algebraic one. damping [N s/m] adds a
-    viscous force to any of them.
+    bouc-wen: an ODE-state law matched to the f0, ka and kb of the algebraic one. bilinear: ka up to the yield force
+    F_y [N], kb after it; its characteristic strength is Q_d = F_y (1 - kb/ka). damping [N s/m] adds a viscous force to
+    any of them.
     """
 
-    law: Literal["algebraic", "linear", "bouc-wen"] = "algebraic"
+    law: Literal[*NUMBERS] = "algebraic"
     count: Annotated[int, Field(ge=1, le=10**6)] = 1
     ka: Positive
     kb: NotNegative | None = None
     alpha: Annotated[float, Field(gt=1, le=MOST)] | None = None
     delta_k: Annotated[float, Field(gt=0, le=MOST)] = 1e-20
+    yield_force: Positive | None = None
     damping: NotNegative = 0.0
 
     @model_validator(mode="after")
     def _law_is_complete(self):
-        if self.law != "linear":
-            for name in ("kb", "alpha"):
-                if getattr(self, name) is None:
-                    raise SceneError(f"bearings.{name}", None, "missing", f"add it: the {self.law} law needs it")
-            if self.ka <= self.kb:
-                raise SceneError("bearings.ka", self.ka, f"not above kb = {self.kb:.6g} N/m",
-                                 "give the initial stiffness as ka, the smaller one after yielding as kb [N/m]")
-            if self.delta_k >= self.ka - self.kb:
-                raise SceneError("bearings.delta_k", self.delta_k, "not below ka - kb",
-                                 "give a small stiffness difference [N/m] such as 1e-20, or leave it out")
+        law = LAWS[NUMBERS[self.law]]
+        for name in ("kb", "alpha", "yield_force"):
+            given = getattr(self, name)
+            if given is None and name in law.needs:
+                raise SceneError(f"bearings.{name}", None, "missing", f"add it: the {self.law} law needs it")
+            if given is not None and name not in law.needs + law.ignores:
+                raise SceneError(f"bearings.{name}", given, f"not used by the {self.law} law", "remove it")
+        if "kb" in law.needs and self.ka <= self.kb:
+            raise SceneError("bearings.ka", self.ka, f"not above kb = {self.kb:.6g} N/m",
+                             "give the initial stiffness as ka, the smaller one after yielding as kb [N/m]")
+        if "alpha" in law.needs and self.delta_k >= self.ka - self.kb:
+            raise SceneError("bearings.delta_k", self.delta_k, "not below ka - kb",
+                             "give a small stiffness difference [N/m] such as 1e-20, or leave it out")
         return self
 
 
@@ -183,4 +189,6 @@ class Scene(_Part):
         """Content of the scene as a hash: scenes that simulate alike have equal digests (the name is left out)."""
         content = self.model_dump(mode="python", exclude={"name", "motion"})
         content["motion"] = self.motion.digest() if self.motion else None
+        if self.bearings and self.bearings.yield_force is None:  # the digests that stored results carry
+            del content["bearings"]["yield_force"]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

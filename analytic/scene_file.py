@@ -20,7 +20,7 @@ SHIPPED = Path(__file__).parent / "scenes"
 KEY_UNITS = {
     "gravity": "m/s2", "block.mass": "kg", "block.radius": "m", "block.slenderness": "rad",
     "block.corner_inertia": "kg m2", "base.mass": "kg", "bearings.ka": "N/m", "bearings.kb": "N/m",
-    "bearings.delta_k": "N/m", "bearings.damping": "N s/m", "motion.amplitude": "m/s2",
+    "bearings.delta_k": "N/m", "bearings.yield_force": "N", "bearings.damping": "N s/m", "motion.amplitude": "m/s2",
     "motion.frequency": "rad/s", "motion.start": "s", "start.tilt": "rad", "start.tilt_rate": "rad/s",
     "start.base_displacement": "m", "start.base_velocity": "m/s", "run.duration": "s",
 }

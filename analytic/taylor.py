@@ -7,10 +7,10 @@ rest is filled up to `order`. S and C are sin and cos of s gamma - phi, so n = R
 import math
 from collections import namedtuple
 
-import numpy as np
 from numba import njit
 
-from .bearing import ALGEBRAIC, BOUC_WEN
+from .laws import NUMBERS, chosen_term
+from .polynomial import INVERSE
 
 # Order of the series between the samples of a record, where steps end anyway (`rocking bench analytic`).
 SHORT_ORDER = 8
@@ -18,11 +18,12 @@ SHORT_ORDER = 8
 # A damped motion decays until its numbers have no digits left; below this size [rad, m, ...] it sets no step.
 NEGLIGIBLE = 1e-200
 
-INVERSE = np.array([0.0] + [1.0 / k for k in range(1, 64)])
-
 # Parameters of a run, one scalar each; see RockingModel and BearingLaw for their meaning.
 Parameters = namedtuple("Parameters", "m M J R gamma g p2 e mt on_base law count kb dk alpha d0 f0 damping "
                                       "tilt rate x v z duration")
+
+_bearing_term = chosen_term()
+USUAL_LAW = NUMBERS["algebraic"]  # the one whose series is unrolled
 
 # Kinds of ground motion within a segment.
 QUIET, LINEAR_GROUND, HARMONIC, RICKER = range(4)
@@ -101,42 +102,11 @@ def rigid_series(order, p2, g, highest, A, phi, w, S, C):
 
 
 @njit(cache=True, inline="always")
-def _bearing_term(k, law, s, y_inverse, power, slope, rate, x, v, q):
-    """z_k per bearing, k >= 1; q holds (1 + s x - s x_j + 2 x0)^(1 - alpha) for ALGEBRAIC, z for BOUC_WEN.
-
-    power: 2 - alpha; slope: s (ka - kb)/(1 - alpha); rate: (ka - kb)/2 and s (ka - kb)/(2 f0).
-    """
-    z = 0.0
-    if law == ALGEBRAIC:  # y q' = (1 - alpha) y' q with y' = s v: k y0 q_k = s sum((2 - alpha) v q - k x q)
-        speed, travel = 0.0, 0.0
-        for j in range(k):
-            speed += v[j] * q[k - 1 - j]
-            travel += x[j + 1] * q[k - 1 - j]
-        q[k] = s * y_inverse * (power * speed * INVERSE[k] - travel)
-        z = slope * q[k]
-    elif law == BOUC_WEN:  # z' = (ka - kb)/2 v (1 - s z/f0)
-        total = 0.0
-        for j in range(k):
-            total += q[j] * v[k - 1 - j]
-        q[k] = (rate[0] * v[k - 1] - rate[1] * total) * INVERSE[k]
-        z = q[k]
-    return z
-
-
-@njit(cache=True, inline="always")
-def _bearing_constants(par, s):
-    """power, slope and rate of `_bearing_term`."""
-    rate = (0.5 * par.dk, 0.5 * par.dk * s / par.f0 if par.law == BOUC_WEN else 0.0)
-    return 2 - par.alpha, s * par.dk / (1 - par.alpha), rate
-
-
-@njit(cache=True, inline="always")
-def _contact_series(order, law, par, s, y_inverse, highest, A, x, v, q, F, absolute):
-    power, slope, rate = _bearing_constants(par, s)
+def _contact_series(order, law, par, factors, highest, A, x, v, q, F, absolute):
     count, kb, damping, inverse_mass = float(par.count), par.kb, par.damping, -1.0 / par.M
     for k in range(order + 1):
         if k > 0:
-            z = _bearing_term(k, law, s, y_inverse, power, slope, rate, x, v, q)
+            z = _bearing_term(law, k, factors, x, v, q)
             F[k] = count * (kb * x[k] + z + damping * v[k])
         absolute[k] = F[k] * inverse_mass
         if k < order:
@@ -146,17 +116,16 @@ def _contact_series(order, law, par, s, y_inverse, highest, A, x, v, q, F, absol
 
 
 @njit(cache=True)
-def contact_series(order, par, s, y_inverse, highest, A, x, v, q, F, absolute):
+def contact_series(order, par, factors, highest, A, x, v, q, F, absolute):
     """Full contact on the base, eq. (2): (m + m_b)(a_g + x'') + n_d f = 0. F[0] and q[0] are given."""
-    if order == SHORT_ORDER and par.law == ALGEBRAIC:  # constants are unrolled: twice as fast
-        _contact_series(SHORT_ORDER, ALGEBRAIC, par, s, y_inverse, highest, A, x, v, q, F, absolute)
+    if order == SHORT_ORDER and par.law == USUAL_LAW:  # constants are unrolled: twice as fast
+        _contact_series(SHORT_ORDER, USUAL_LAW, par, factors, highest, A, x, v, q, F, absolute)
     else:
-        _contact_series(order, par.law, par, s, y_inverse, highest, A, x, v, q, F, absolute)
+        _contact_series(order, par.law, par, factors, highest, A, x, v, q, F, absolute)
 
 
 @njit(cache=True, inline="always")
-def _base_series(order, law, par, s, y_inverse, highest, A, phi, w, S, C, x, v, q, F, absolute):
-    power, slope, rate = _bearing_constants(par, s)
+def _base_series(order, law, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute):
     count, kb, damping, M, J, g = float(par.count), par.kb, par.damping, par.M, par.J, par.g
     mR = par.m * par.R
     c0 = mR * C[0]
@@ -167,7 +136,7 @@ def _base_series(order, law, par, s, y_inverse, highest, A, phi, w, S, C, x, v, 
             for j in range(k):
                 sine += w[j] * C[k - 1 - j]
             S[k] = -sine * INVERSE[k]
-            z = _bearing_term(k, law, s, y_inverse, power, slope, rate, x, v, q)
+            z = _bearing_term(law, k, factors, x, v, q)
             F[k] = count * (kb * x[k] + z + damping * v[k])
         cosine = 0.0
         for j in range(k + 1):
@@ -190,12 +159,12 @@ def _base_series(order, law, par, s, y_inverse, highest, A, phi, w, S, C, x, v, 
 
 
 @njit(cache=True)
-def base_series(order, par, s, y_inverse, highest, A, phi, w, S, C, x, v, q, F, absolute):
+def base_series(order, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute):
     """Rocking on the base, eqs (3)-(6), with c phi'' + n phi'^2 written as (c phi')'.
 
     M X + m (c phi')' = -F;   m c X + J phi'' = -m g n;   X = a_g + x''.
     """
-    if order == SHORT_ORDER and par.law == ALGEBRAIC:
-        _base_series(SHORT_ORDER, ALGEBRAIC, par, s, y_inverse, highest, A, phi, w, S, C, x, v, q, F, absolute)
+    if order == SHORT_ORDER and par.law == USUAL_LAW:
+        _base_series(SHORT_ORDER, USUAL_LAW, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute)
     else:
-        _base_series(order, par.law, par, s, y_inverse, highest, A, phi, w, S, C, x, v, q, F, absolute)
+        _base_series(order, par.law, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute)

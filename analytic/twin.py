@@ -2,7 +2,8 @@
 
 An implementation of its own, kept apart from the compiled kernel to check it and to stand for what a careful user
 would write. One stretch of smooth motion is one call of `solve_ivp`: it ends at the next corner of the ground
-motion, at an impact, an uplift, a reversal of the base (where the bearing's history is fixed) or at overturning.
+motion, at an impact, an uplift, a reversal of the base (where the bearing's history is fixed), a corner of the
+bearing's law or at overturning.
 """
 
 import functools
@@ -16,11 +17,11 @@ import scipy
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from .bearing import ALGEBRAIC, BOUC_WEN
 from .decision import is_decided, model_warnings, until_decided
 from .errors import SettingError
+from .extremes import Extremes
 from .motion import SampledMotion
-from .response import Energy, Failure, History, Impact, Response, State
+from .response import Energy, Failure, Impact, Response, State
 from .rocking import RockingModel
 from .segments import segments
 
@@ -80,7 +81,7 @@ def simulate_twin(scene, *, method="DOP853", rtol=1e-10, atol=None, history=True
 
 
 class _Run:
-    """One run: the state y = [tilt, rate] and on a base [.., x, v, z if bouc-wen], then the ledger's quadratures."""
+    """One run: the state y = [tilt, rate], on a base x, v and z if integrated, then the ledger's quadratures."""
 
     def __init__(self, scene, settings, history, energy):
         self.scene, self.settings, self.energy = scene, settings, energy
@@ -88,16 +89,15 @@ class _Run:
         self.law, self.omega_r = model.bearing, scene.rocking_frequency
         start, length = scene.start, model.R * model.gamma
         y, scale = [start.tilt, start.tilt_rate], [model.gamma, model.gamma * self.omega_r]
-        self.z_c = self.law.start(start.base_displacement)
-        self.x_c = start.base_displacement
+        self.x_c, self.z_c = start.base_displacement, self.law.start(start.base_displacement)
         self.max_step = math.inf
         if model.on_base:
             y += [start.base_displacement, start.base_velocity]
             scale += [length, length * self.omega_r]
-            stiffness = self.law.count * (self.law.kb + (self.law.dk if self.law.law >= ALGEBRAIC else 0.0))
+            stiffness = self.law.count * (self.law.kb + self.law.dk)
             if stiffness > 0:
                 self.max_step = 0.5 * math.sqrt(model.M / stiffness)
-            if self.law.law == BOUC_WEN:
+            if self.law.unit.branch:
                 y.append(self.z_c)
                 scale.append(self.law.f0)
         if energy:
@@ -113,17 +113,15 @@ class _Run:
         self.side = math.copysign(1.0, start.tilt or start.tilt_rate) if start.tilt or start.tilt_rate else 0.0
         self.lifted = 0.0 if start.tilt == 0 else -1.0  # when tilt was last 0
         self.turned = -1.0  # when the base last stood still
+        self.corner = math.inf  # z at the bearing's next corner [N]
         self.flight = None  # a guess of the next step [s]
         self.rocked, self.overturning, self.unstable = self.side != 0, None, None
         if abs(start.tilt) >= model.gamma:
             self.unstable = 0.0
         self.impacts, self.uplifts, self.rests = [], [], []
         self.steps, self.stalled, self.impact_loss = 0, 0, 0.0
-        self.peak_tilt, self.peak_x = abs(start.tilt), abs(start.base_displacement)
-        self.peak_acceleration, self.friction, self.normal = 0.0, 0.0, 1.0
-        self.contact = []  # (friction demand, normal force over m g) since the block was last below its slenderness
-        self.rows = [] if history else None
-        self.stored = self.mechanical_energy()
+        self.extremes = Extremes(start.tilt, start.base_displacement, history)
+        self.stored = self.energies()
 
     # the state machine
 
@@ -203,9 +201,9 @@ class _Run:
         for (name, event), times, states in zip(events, solution.t_events, solution.y_events, strict=True):
             for t, y in zip(times, states, strict=True):
                 if name == "apex":
-                    self.peak_tilt = max(self.peak_tilt, float(abs(y[0])))
+                    self.extremes.tilt = max(self.extremes.tilt, float(abs(y[0])))
                 elif name == "reversal":
-                    self.peak_x = max(self.peak_x, float(abs(y[2])))
+                    self.extremes.x = max(self.extremes.x, float(abs(y[2])))
                 elif name == "unstable" and self.unstable is None:
                     self.unstable = float(t)
             if event.terminal and len(times):  # scipy reports the first terminal event of a stretch only
@@ -217,7 +215,8 @@ class _Run:
     def stepped_over(self, events, solution):
         """Time of the first extreme beyond a threshold that was crossed twice within one step, or None.
 
-        tilt below 0 where its rate is 0; |a_abs| above g tan(gamma) where the base stands still.
+        tilt below 0 where its rate is 0; |a_abs| above g tan(gamma), or the bearing beyond its corner, where the base
+        stands still.
         """
         found = []
         for (name, _), times, states in zip(events, solution.t_events, solution.y_events, strict=True):
@@ -227,6 +226,8 @@ class _Run:
                 elif name == "reversal" and self.side == 0:
                     if abs(self.contact_acceleration(y, 0.0)) > self.model.uplift_acceleration * (1 + 1e-13):
                         found.append(float(t))
+                if name == "reversal" and abs(self.corner) < math.inf and abs(y[4]) > abs(self.corner):
+                    found.append(math.nextafter(t, self.t))
         return min(found, default=None)
 
     def direction(self, end, ground):
@@ -257,8 +258,11 @@ class _Run:
             threshold = model.uplift_acceleration
             found.append(("uplift", lambda t, y: abs(self.contact_acceleration(y, 0.0)) - threshold, True, 1))
         if direction:
-            found.append(("reversal", lambda t, y: direction * y[3] if t > turned else 1.0,
-                          self.law.law >= ALGEBRAIC, -1))
+            found.append(("reversal", lambda t, y: direction * y[3] if t > turned else 1.0, self.law.unit.memory, -1))
+            ahead = self.law.unit.corner(direction, self.hysteretic_force(self.y), *self.law.constants)
+            self.corner = corner = direction * ahead
+            if ahead < math.inf:
+                found.append(("corner", lambda t, y: direction * (y[4] - corner), True, 1))
         for _, event, terminal, sense in found:
             event.terminal, event.direction = terminal, sense
         return [(name, event) for name, event, _, _ in found]
@@ -273,10 +277,13 @@ class _Run:
         self.fix_history()
         self.y[3], self.turned = 0.0, self.t
 
+    def at_corner(self, ground):
+        self.y[4] = self.corner
+
     def at_impact(self, ground):
         """Eqs (7), (8); then the other corner, or rest if impacts accumulate and the block is held down."""
         y, model = self.y, self.model
-        before, kinetic = y[1], self.kinetic_energy()
+        before, kinetic = y[1], self.energies()[0]
         y[0] = 0.0
         y[1], jump = model.impact(before)
         if model.on_base:
@@ -300,12 +307,13 @@ class _Run:
             y[1], self.side, self.flight = 0.0, 0.0, None
             if held:
                 self.rests.append(float(self.t + remaining))
-        self.impact_loss += kinetic - self.kinetic_energy()
+        self.impact_loss += kinetic - self.energies()[0]
 
     # the equations
 
     def derivative(self, ground, direction):
         model, law, side, energy = self.model, self.law, self.side, self.energy
+        branch = law.unit.branch and law.unit.branch(self.hysteretic_force(self.y), direction, law)
         if not model.on_base:
             def block_alone(t, y):
                 a, rate = ground(t), y[1]
@@ -322,8 +330,8 @@ class _Run:
             else:
                 spin, push = 0.0, model.contact_acceleration(force) - a
             slope = [rate, spin, v, push]
-            if law.law == BOUC_WEN:
-                slope.append(0.5 * law.dk * v * (1 - direction * z / law.f0))
+            if branch:
+                slope.append(branch(z, v))
             if energy:
                 momentum = model.M * v + (model.m * model.lever(side, tilt)[0] * rate if side else 0.0)
                 slope += [-a * momentum, law.count * z * v, law.count * law.damping * v * v]
@@ -331,8 +339,8 @@ class _Run:
         return block_on_base
 
     def hysteretic_force(self, y):
-        """z of one bearing [N]; algebraic: from the last reversal, exact."""
-        return float(y[4]) if self.law.law == BOUC_WEN else self.law.hysteretic(self.z_c, float(y[2]) - self.x_c)
+        """z of one bearing [N]: the state, or exact from the last reversal."""
+        return float(y[4]) if self.law.unit.branch else self.law.hysteretic(self.z_c, float(y[2]) - self.x_c)
 
     def bearing_force(self, y):
         return self.law.force(float(y[2]), self.hysteretic_force(y), float(y[3])) if self.model.on_base else 0.0
@@ -342,23 +350,16 @@ class _Run:
         if self.model.on_base:
             self.z_c, self.x_c = self.hysteretic_force(self.y), float(self.y[2])
 
-    def kinetic_energy(self):
-        rate, v, model = self.y[1], self.y[3] if self.model.on_base else 0.0, self.model
-        c = model.lever(self.side, self.y[0])[0] if self.side else 0.0
-        return 0.5 * model.M * v * v + model.m * c * rate * v + 0.5 * model.J * rate * rate
-
-    def mechanical_energy(self):
-        """(kinetic, potential) [J] in the ground's frame; potential of gravity and of the springs kb."""
-        model, height = self.model, 0.0
-        if self.side:
-            height = model.lever(self.side, self.y[0])[0] - model.R * math.cos(model.gamma)
-        spring = 0.5 * self.law.count * self.law.kb * self.y[2] ** 2 if model.on_base else 0.0
-        return float(self.kinetic_energy()), float(model.m * model.g * height + spring)
+    def energies(self):
+        """(kinetic, potential) [J], see `RockingModel`."""
+        model, (tilt, rate, *base) = self.model, self.y[:4].tolist()
+        x, v = base if model.on_base else (0.0, 0.0)
+        return model.kinetic_energy(self.side, tilt, rate, v), model.potential_energy(self.side, tilt, x)
 
     # what is kept
 
     def record(self, t, y, ground):
-        """Extremes at one step and, where a history is kept, its row."""
+        """Keep one step."""
         model, force = self.model, self.bearing_force(y)
         tilt, rate = float(y[0]), float(y[1])
         if self.side:
@@ -368,44 +369,33 @@ class _Run:
         else:
             absolute = self.contact_acceleration(y, ground)
             horizontal, normal = model.m * absolute, model.m * model.g
-        self.peak_acceleration = max(self.peak_acceleration, abs(absolute))
-        self.contact.append((abs(horizontal) / normal if normal > 0 else math.inf, normal / (model.m * model.g)))
-        if abs(tilt) <= model.gamma:  # what comes later is the last fall, or it comes back
-            self.friction = max(self.friction, *(demand for demand, _ in self.contact))
-            self.normal = min(self.normal, *(normal for _, normal in self.contact))
-            self.contact.clear()
-        self.peak_tilt = max(self.peak_tilt, abs(tilt))
         x, v = (float(y[2]), float(y[3])) if model.on_base else (0.0, 0.0)
-        self.peak_x = max(self.peak_x, abs(x))
-        if self.rows is not None:
-            self.rows.append((t, tilt, rate, x, v, force, ground))
+        weight = model.m * model.g
+        self.extremes.step((t, tilt, rate, x, v, force, ground), absolute, horizontal / weight, normal / weight,
+                           model.gamma)
 
     def state(self):
         x, v = (float(self.y[2]), float(self.y[3])) if self.model.on_base else (0.0, 0.0)
         return State(self.t, float(self.y[0]), float(self.y[1]), x, v, self.bearing_force(self.y))
 
     def ledger(self):
-        kinetic, potential = (now - then for now, then in zip(self.mechanical_energy(), self.stored, strict=True))
+        kinetic, potential = (now - then for now, then in zip(self.energies(), self.stored, strict=True))
         work = self.y[-3:].tolist() if self.model.on_base else [float(self.y[-1]), 0.0, 0.0]
         return Energy(kinetic, potential, *work, float(self.impact_loss))
 
     def response(self, cpu_seconds, failure):
         outcome = "rocks" if self.rocked else "stands"
         outcome = "failed" if failure else "overturns" if self.overturning is not None else outcome
-        if outcome != "overturns" and self.contact:
-            self.friction = max(self.friction, *(demand for demand, _ in self.contact))
-            self.normal = min(self.normal, *(normal for _, normal in self.contact))
-        history = None
-        if self.rows is not None:
-            history = History(*np.array(self.rows).reshape(-1, len(History.COLUMNS)).T)
+        extremes = self.extremes
+        if outcome != "overturns":
+            extremes.count_waiting()
         return Response(
             engine="twin", variant=self.settings["method"], outcome=outcome, overturning_time=self.overturning,
-            unstable_time=self.unstable, peak_tilt=self.peak_tilt,
-            peak_tilt_ratio=self.peak_tilt / self.model.gamma, peak_base_displacement=self.peak_x,
-            peak_base_acceleration=self.peak_acceleration, impacts=tuple(self.impacts),
-            uplifts=tuple(self.uplifts), rests=tuple(self.rests), friction_demand=self.friction,
-            min_normal_ratio=self.normal, end=self.state(), cpu_seconds=cpu_seconds, steps=self.steps,
-            settings=dict(self.settings), scene=self.scene.name, failure=failure,
+            unstable_time=self.unstable, peak_tilt=extremes.tilt, peak_tilt_ratio=extremes.tilt / self.model.gamma,
+            peak_base_displacement=extremes.x, peak_base_acceleration=extremes.acceleration,
+            impacts=tuple(self.impacts), uplifts=tuple(self.uplifts), rests=tuple(self.rests),
+            friction_demand=extremes.friction, min_normal_ratio=extremes.normal, end=self.state(),
+            cpu_seconds=cpu_seconds, steps=self.steps, settings=dict(self.settings), scene=self.scene.name,
+            failure=failure, energy=self.ledger() if self.energy else None, history=extremes.history(),
             versions={"python": platform.python_version(), "numpy": np.__version__, "scipy": scipy.__version__},
-            energy=self.ledger() if self.energy else None, history=history,
-            warnings=model_warnings(self.scene, self.friction, self.normal))
+            warnings=model_warnings(self.scene, extremes.friction, extremes.normal))

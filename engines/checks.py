@@ -3,10 +3,9 @@
 import math
 
 import numpy as np
-from numba import njit
 from scipy.interpolate import CubicHermiteSpline
 
-from analytic.bearing import LINEAR, BearingLaw, hysteretic_force
+from analytic.bearing import BearingLaw
 from analytic.motion import SampledMotion
 from analytic.response import Failure
 
@@ -21,25 +20,10 @@ GAIN_LIMIT = 0.5
 SLIDING_TOLERANCE, HEIGHT_TOLERANCE = 0.03, 2e-3
 
 
-@njit(cache=True)
-def _replay(z, x, law, dk, alpha, d0, f0):
-    forces = np.empty_like(x)
-    forces[0] = z
-    for i in range(1, len(x)):
-        z = hysteretic_force(z, x[i] - x[i - 1], law, dk, alpha, d0, f0)
-        forces[i] = z
-    return forces
-
-
 def replayed_force(scene, trace):
     """Force of all bearings together [N] at the steps, by the law on the trace's displacements, eqs (9)-(14)."""
     law = BearingLaw.of(scene.bearings)
-    return law.force(trace.base_displacement, replay(law, trace.base_displacement), trace.base_velocity)
-
-
-def replay(law, x):
-    """Hysteretic force of one bearing [N] along displacements x [m], monotonic in between, from x[0] on."""
-    return _replay(law.start(float(x[0])), x, law.law, law.dk, law.alpha, law.d0, law.f0)
+    return law.force(trace.base_displacement, law.path(trace.base_displacement), trace.base_velocity)
 
 
 def replay_bearing(scene, trace):
@@ -52,7 +36,7 @@ def replay_bearing(scene, trace):
         return 0.0
     law = BearingLaw.of(scene.bearings)
     force = replayed_force(scene, trace)
-    scale = np.abs(force).max() / law.count if law.law == LINEAR else law.f0
+    scale = np.abs(force).max() / law.count if law.f0 == 0 else law.f0
     return float(np.abs(trace.bearing_force - force).max() / law.count / scale) if scale > 0 else 0.0
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from analytic.bearing import BearingLaw
 from analytic.response import Failure
 
-from .checks import pivoting_centre, replay
+from .checks import pivoting_centre
 from .ground_velocity import ground_velocity
 
 # `impulse_error` above which a run counts as failed. A doubled or missing force gives 1. Exact motions read at random
@@ -30,7 +30,7 @@ def bearing_impulse(scene, trace):
     middle = 0.5 * (x[1:] + x[:-1]) + 0.125 * h * (v[:-1] - v[1:])
     path = np.empty(2 * len(x) - 1)
     path[::2], path[1::2] = x, middle
-    force = law.kb * path + replay(law, path)
+    force = law.kb * path + law.path(path)
     parts = h / 6 * (force[:-1:2] + 4 * force[1::2] + force[2::2]) + law.damping * np.diff(x)
     return law.count * np.concatenate(([0.0], np.cumsum(parts)))
 

@@ -22,9 +22,8 @@ from exudyn.itemInterface import (
     ObjectMass1D,
     ObjectRigidBody2D,
 )
-from numba import njit
 
-from analytic.bearing import ALGEBRAIC, BOUC_WEN, LINEAR, BearingLaw, hysteretic_force, virtual_travel
+from analytic.bearing import BearingLaw
 
 from .ground import ground_load
 
@@ -78,13 +77,20 @@ class Model:
                 self.mbs.AddMarker(MarkerBodyPosition(bodyNumber=self.block, localPosition=[side * b, -h, 0.0]))]
 
 
-@njit(cache=True)
-def _move(z, dx, law, dk, alpha, d0, f0):
-    """(z, two numbers of the force expression) after travel dx: D_c forth and back, or z."""
-    z = hysteretic_force(z, dx, law, dk, alpha, d0, f0)
-    if law == ALGEBRAIC:
-        return z, virtual_travel(1.0, z, dk, alpha, d0, f0), virtual_travel(-1.0, z, dk, alpha, d0, f0)
-    return z, z, 0.0
+class _Symbols:
+    """What a law's formula is made of, see `Law.expression`."""
+
+    @staticmethod
+    def where(condition, a, b):
+        return exu.symbolic.IfThenElse(condition, Real(a), Real(b))
+
+    @staticmethod
+    def power(a, b):
+        return exu.symbolic.pow(a, Real(b))
+
+    @staticmethod
+    def exp(a):
+        return exu.symbolic.exp(a)
 
 
 class Bearing:
@@ -95,20 +101,17 @@ class Bearing:
 
     def __init__(self, law, displacement):
         self.law, self.x, self.z, self.connector = law, displacement, law.start(displacement), None
-        self.shape = law.law, law.dk, law.alpha, law.d0, law.f0
 
     def memory(self):
         """The history as the three numbers the force expression reads."""
-        return [self.x, *_move(self.z, 0.0, *self.shape)[1:]]
+        return [self.x, *self.law.moved(self.z, 0.0)[1:]]
 
     def commit(self, mbs, x):
         """Move the history to an accepted displacement; the hysteretic force there."""
-        law, dk, alpha, d0, f0 = self.shape
-        if law == LINEAR:
-            return self.z
-        self.z, forth, back = _move(self.z, x - self.x, law, dk, alpha, d0, f0)
-        self.x = x
-        mbs.SetObjectParameter(self.connector, "offset", [x, forth, back])
+        if self.law.unit.memory:
+            self.z, first, second = self.law.moved(self.z, x - self.x)
+            self.x = x
+            mbs.SetObjectParameter(self.connector, "offset", [x, first, second])
         return self.z
 
     def restore(self, mbs, x, z):
@@ -117,21 +120,13 @@ class Bearing:
         mbs.SetObjectParameter(self.connector, "offset", self.memory())
 
     def force(self, displacement, velocity, offset):
-        """Symbolic force against the base [N], eqs (9) and (11) from the committed point.
+        """Symbolic force against the base [N], by the law's formula from the committed point.
 
         exudyn has already subtracted the offset, here the committed displacement, from the displacement.
         """
         law, dx = self.law, displacement[0]
-        total = law.kb * (dx + offset[0]) + law.damping * velocity[0]
-        if law.law == ALGEBRAIC:
-            forth = dx >= 0.0
-            s = exu.symbolic.IfThenElse(forth, Real(1.0), Real(-1.0))
-            travel = exu.symbolic.IfThenElse(forth, offset[1] + dx, offset[2] - dx)
-            power = exu.symbolic.pow(travel, Real(1 - law.alpha))
-            total = total + s * ((power - law.d0) * (law.dk / (1 - law.alpha)) + law.f0)
-        elif law.law == BOUC_WEN:
-            s = exu.symbolic.IfThenElse(dx >= 0.0, Real(1.0), Real(-1.0))
-            total = total + s * law.f0 - (s * law.f0 - offset[1]) * exu.symbolic.exp((-0.5 * law.dk / law.f0) * s * dx)
+        z = law.unit.expression(_Symbols, dx, offset[1], offset[2], *law.constants)
+        total = law.kb * (dx + offset[0]) + law.damping * velocity[0] + z
         return [law.count * total, Real(0.0), Real(0.0)]
 
 

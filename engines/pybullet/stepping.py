@@ -15,7 +15,7 @@ from array import array
 import numpy as np
 import pybullet
 
-from analytic.bearing import LINEAR, hysteretic_force
+from analytic.bearing import hysteretic_force
 from analytic.rocking import RockingModel
 
 from ..ground_velocity import ground_velocity
@@ -48,7 +48,7 @@ def longest_step(scene, units, largest):
         return largest
     model = RockingModel.of(scene)
     law = model.bearing
-    k = law.count * (law.kb + law.dk if law.law != LINEAR else law.kb) * units.length * VIBRATION**-2
+    k = law.count * (law.kb + law.dk) * units.length * VIBRATION**-2
     c = law.count * law.damping * units.length / units.time
     # h^2 k = mass + h c: with much damping the base creeps, with the time constant c/k
     return min(largest, (c + math.sqrt(c * c + 4 * k * driven_mass(model))) / (2 * k))
@@ -101,11 +101,11 @@ def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
     aware, fraction = accuracy is not None, accuracy or 0.0
     least_pull = abs(model.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0])  # |tilt''| toward contact, unforced
     weak = 2 * least_pull * FLAT * scene.block.slenderness  # square of the speed at the impact of such a swing
-    constants = (law.law, law.dk, law.alpha, law.d0, law.f0)
+    constants = (law.law, *law.constants)
     count, length, spring = law.count, units.length, law.count * law.kb * units.length
     damping, mass = law.count * law.damping * units.length / units.time, driven_mass(model)
     # Small vibrations of a hysteretic bearing are those of about half its initial excess of stiffness.
-    elastic = spring + (0.0 if law.law == LINEAR else 0.5 * count * law.dk * length)
+    elastic = spring + 0.5 * count * law.dk * length
     heavier = LEAPFROG * elastic if largest * math.sqrt(elastic / mass) > STIFF else 0.0
     sharpest = VISCOUS * fraction * model.M / damping if damping else math.inf
     start, end, limit = scene.start, scene.duration, 0.5 * math.pi

@@ -7,13 +7,16 @@ import numpy as np
 from numba import njit
 
 from analytic import PulseMotion, kernel, layout, simulate
-from analytic.bearing import ALGEBRAIC, BOUC_WEN, BearingLaw, hysteretic_force, virtual_travel
+from analytic.bearing import BearingLaw, hysteretic_force
+from analytic.laws import NUMBERS
+from analytic.laws.algebraic import virtual_travel
 from analytic.solver import ground, options, parameters
 from analytic.twin import simulate_twin
 
 from .runs import ISOLATED, caryatid
 
 LAWS = ("algebraic", "bouc-wen")
+ALGEBRAIC, BOUC_WEN = (NUMBERS[law] for law in LAWS)
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 DIVISIONS = (1, 2, 4, 8, 16)  # fixed steps per sample of the motion
 ERRORS = {"kernel": (1e-8, 1e-10, 1e-12), "fixed-step RK4": (1e-6, 3e-7, 1e-7, 3e-8)}

@@ -1,0 +1,68 @@
+"""The bearing laws, one file each; a new one is its file and a line of `LAWS`. See `Law` for what it offers.
+
+Compiled code knows a law by its number, its place in `LAWS`, and picks its functions by that number: functions as
+arguments would compile the whole kernel once for each law.
+"""
+
+from numba import njit
+
+from . import algebraic, bilinear, bouc_wen, linear
+from .law import Law
+
+__all__ = ["LAWS", "NUMBERS", "Law", "chosen", "chosen_term"]
+
+LAWS = (
+    algebraic.LAW,
+    bouc_wen.LAW,
+    bilinear.LAW,
+    linear.LAW,
+)
+NUMBERS = {law.name: number for number, law in enumerate(LAWS)}
+
+
+def chosen(name):
+    """Compiled function of (law's number, *arguments): the law's function `name`."""
+    *before, last = (getattr(law, name) for law in LAWS)
+
+    @njit(forceinline=True)
+    def choose(law, *arguments):
+        return last(*arguments)
+
+    for number, own in reversed(list(enumerate(before))):
+        choose = _either(number, own, choose)
+    return choose
+
+
+def _either(number, own, others):
+    @njit(forceinline=True)
+    def choose(law, *arguments):
+        if law == number:
+            return own(*arguments)
+        return others(law, *arguments)
+
+    return choose
+
+
+def chosen_term():
+    """`chosen` for the Taylor term, the innermost loop: inlined by numba, which needs the arguments by name."""
+    *before, last = (law.term for law in LAWS)
+
+    @njit(inline="always")
+    def choose(law, k, factors, x, v, q):
+        return last(k, factors, x, v, q)
+
+    for number, own in reversed(list(enumerate(before))):
+        choose = _either_term(number, own, choose)
+    return choose
+
+
+def _either_term(number, own, others):
+    @njit(inline="always")
+    def choose(law, k, factors, x, v, q):
+        if law == number:
+            z = own(k, factors, x, v, q)
+        else:
+            z = others(law, k, factors, x, v, q)
+        return z
+
+    return choose

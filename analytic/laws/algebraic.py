@@ -1,0 +1,108 @@
+"""The algebraic hysteretic law of the paper, eqs (9)-(14).
+
+From any point (x_c, z_c) of its path it gives z after monotonic travel in closed form, so the pair (x, z) is its whole
+memory: no list of reversal points is needed.
+"""
+
+import math
+
+from numba import njit
+
+from ..polynomial import INVERSE
+from .law import Law
+
+
+def constants(bearings):
+    dk, alpha = bearings.ka - bearings.kb, bearings.alpha
+    x0 = 0.5 * ((bearings.delta_k / dk) ** (-1 / alpha) - 1)  # (13)
+    d0 = (1 + 2 * x0) ** (1 - alpha)
+    f0 = 0.5 * dk * (d0 - 1) / (1 - alpha)  # (14)
+    return {"kb": bearings.kb, "dk": dk, "alpha": alpha, "x0": x0, "d0": d0, "f0": f0}
+
+
+@njit(cache=True)
+def virtual_travel(s, z, dk, alpha, d0, f0):
+    """D_c: where the point with hysteretic force z stands on the limit curve of direction s [m].
+
+    The literal x_j of eqs (10) and (12) raises a negative number to a power beyond 1.33 m of travel; this form
+    of the same history does not. (The bracket of eq. (12) is misprinted; it must read 1 - x + x_j + 2 x0.)
+    """
+    power = d0 + (1 - alpha) * (s * z - f0) / dk  # D_c^(1 - alpha)
+    return max(d0, power) ** (1 / (1 - alpha))
+
+
+@njit(cache=True)
+def after_travel(z, dx, dk, alpha, d0, f0):
+    """Eqs (9), (11) less their kb x, with the history in its stable form."""
+    s = math.copysign(1.0, dx)
+    travel = virtual_travel(s, z, dk, alpha, d0, f0) + abs(dx)
+    return s * (dk * (travel ** (1 - alpha) - d0) / (1 - alpha) + f0)
+
+
+def work(z, dx, dk, alpha, d0, f0):
+    length = abs(dx)
+    start = virtual_travel.py_func(math.copysign(1.0, dx), z, dk, alpha, d0, f0)
+    if alpha == 2:
+        curved = math.log1p(length / start)
+    else:
+        curved = ((start + length) ** (2 - alpha) - start ** (2 - alpha)) / (2 - alpha)
+    return dk * (curved - length * d0) / (1 - alpha) + length * f0
+
+
+@njit(cache=True)
+def recoverable(z, dk, alpha, d0, f0):
+    """Along the path of eqs (11), (12) between the virtual travels D of z and of 0.
+
+    These are D^-a = D0 + a (f0 + z)/(ka - kb) with a = alpha - 1.
+    """
+    a = alpha - 1
+    begin, end = -math.log(d0 + a * (f0 + z) / dk) / a, -math.log(d0 + a * f0 / dk) / a  # log D
+    length = end - begin
+    if end > 600:
+        return math.inf  # alpha near 1: a tail without end
+    power = length if abs((1 - a) * length) < 1e-8 else math.expm1((1 - a) * length) / (1 - a)
+    travel = math.exp(begin) * math.expm1(length)
+    return dk / a * math.exp((1 - a) * begin) * power - (f0 + dk * d0 / a) * travel
+
+
+@njit(cache=True)
+def begin(s, z, travel, dk, alpha, d0, f0):
+    """q is y^(1 - alpha) with y = D_c + s (x - x_c), the `travel`."""
+    power = travel ** (1 - alpha) if s != 0 else 0.0
+    return power, (s * (1.0 / travel), 2 - alpha, s * dk / (1 - alpha))
+
+
+@njit(cache=True, inline="always")
+def term(k, factors, x, v, q):
+    """y q' = (1 - alpha) y' q with y' = s v: k y_0 q_k = s sum((2 - alpha) v q - k x q)."""
+    speed, travel = 0.0, 0.0
+    for j in range(k):
+        speed += v[j] * q[k - 1 - j]
+        travel += x[j + 1] * q[k - 1 - j]
+    over, power, slope = factors
+    q[k] = over * (power * speed * INVERSE[k] - travel)
+    return slope * q[k]
+
+
+@njit(cache=True)
+def reached(s, z, q, order, h, travel, dk, alpha, d0, f0):
+    if s == 0:
+        return z
+    return s * (dk * (travel ** (1 - alpha) - d0) / (1 - alpha) + f0)  # (9), (11)
+
+
+@njit(cache=True)
+def sides(z, dk, alpha, d0, f0):
+    """D_c forth and back."""
+    return virtual_travel(1.0, z, dk, alpha, d0, f0), virtual_travel(-1.0, z, dk, alpha, d0, f0)
+
+
+def expression(ops, dx, first, second, dk, alpha, d0, f0):
+    s = ops.where(dx >= 0.0, 1.0, -1.0)
+    travel = ops.where(dx >= 0.0, first + dx, second - dx)
+    return s * ((ops.power(travel, 1 - alpha) - d0) * (dk / (1 - alpha)) + f0)
+
+
+LAW = Law("algebraic", needs=("kb", "alpha"), constants=constants, after_travel=after_travel, work=work,
+          recoverable=recoverable, begin=begin, term=term, mark=virtual_travel, reached=reached, sides=sides,
+          expression=expression)

@@ -1,0 +1,74 @@
+"""What a bearing law offers: the hysteretic part z of the force f = kb x + z + c v of one bearing.
+
+A law is one file of this folder with one `Law`. Its compiled functions end in the constants (dk, alpha, d0, f0): dk =
+ka - kb [N/m], f0 the limit of |z| [N]; alpha and d0 are the law's own. s is the sign of the travel, 0 at standstill.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from numba import njit
+
+from ..polynomial import value
+
+
+@njit(cache=True)
+def no_mark(s, z, dk, alpha, d0, f0):
+    return 1.0
+
+
+@njit(cache=True)
+def last_of_series(s, z, q, order, h, travel, dk, alpha, d0, f0):
+    return value(q, order, h)
+
+
+@njit(cache=True)
+def no_corner(s, z, dk, alpha, d0, f0):
+    return math.inf
+
+
+@njit(cache=True)
+def only_z(z, dk, alpha, d0, f0):
+    return z, 0.0
+
+
+@dataclass(frozen=True)
+class Law:
+    """One law of a bearing; what has a default a law without it does not need.
+
+    name : its name in scene files.
+    needs, ignores : keys of [bearings] beside ka that it asks for, and that may stand there unused; others are errors.
+    constants(bearings) : dict of kb, dk, f0 and, if it has them, alpha, x0, d0; see `BearingLaw`.
+    memory : whether z depends on the path; then every reversal matters.
+    after_travel(z, dx, ..) : z after monotonic travel dx [m].
+    work(z, dx, ..) : integral of z over that travel [J]; not compiled.
+    recoverable(z, ..) : what a bearing with z > 0 gives back on its way to z = 0 [J].
+    corner(s, z, ..) : the next s z at which the stiffness jumps, inf where there is none; an event of the kernel.
+    begin(s, z, travel, ..) : (q_0, factors) at the start of a Taylor step, with three numbers for its terms.
+    term(k, factors, x, v, q) : z_k for k >= 1, with q_k filled in; x up to k, v and q up to k - 1 are given.
+    mark(s, z, ..) : where z stands on the branch of direction s, remembered at a reversal [m]; travel counts from it.
+    reached(s, z, q, order, h, travel, ..) : z at the end of a step.
+    sides(z, ..) : two numbers of `expression`, committed after each step of an engine.
+    expression(ops, dx, first, second, ..) : `after_travel` for engines with formulas of their own, with
+        where(condition, a, b), power(a, b) and exp(a) of `ops`.
+    branch(z, direction, law) : function (z, v) -> z' [N/s] from z on, up to the next reversal or corner. Where there is
+        one the second implementation integrates z as a state, else it uses `after_travel`; not compiled.
+    """
+
+    name: str
+    needs: tuple[str, ...]
+    constants: Callable
+    after_travel: Callable
+    work: Callable
+    recoverable: Callable
+    begin: Callable
+    term: Callable
+    expression: Callable
+    ignores: tuple[str, ...] = ()
+    memory: bool = True
+    corner: Callable = no_corner
+    mark: Callable = no_mark
+    reached: Callable = last_of_series
+    sides: Callable = only_z
+    branch: Callable | None = None
