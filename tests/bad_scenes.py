@@ -63,7 +63,12 @@ BAD = {
                     "base.height = 2: unknown key; remove it, known are mass"),
     "unknown table": (replaced("[run]", "[runs]"), "runs = {'duration': 20.0}: unknown key; write run"),
     "unknown law": (replaced("algebraic", "cubic"),
-                    "bearings.law = 'cubic': not known; choose 'algebraic', 'linear' or 'bouc-wen'"),
+                    "bearings.law = 'cubic': not known; choose 'algebraic', 'bouc-wen', 'bilinear' or 'linear'"),
+    "unused key of another law": (replaced("kb = 6.22e3", "kb = 6.22e3\nyield_force = 700.0"),
+                                  "bearings.yield_force = 700.0: not used by the algebraic law; remove it"),
+    "law without its yield force": (replaced('"algebraic"\ncount = 4\nka = 6.22e4\nkb = 6.22e3\nalpha = 44.69',
+                                             '"bilinear"\nka = 6.22e4\nkb = 6.22e3'),
+                                    "bearings.yield_force: missing; add it: the bilinear law needs it"),
     "unknown pulse": (motion('pulse = "two-sine"\namplitude = 1\nfrequency = 1'),
                       "motion.pulse = 'two-sine': not known; choose 'one-sine', 'one-cosine', 'half-sine', "
                       "'rectangular' or 'ricker'"),

@@ -6,7 +6,8 @@ lines) is `Refused`, which is right for scenes: no key of theirs takes such a va
 
 import math
 
-LAWS, PULSES = ("algebraic", "linear", "bouc-wen"), ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
+LAWS = ("algebraic", "linear", "bouc-wen", "bilinear")
+PULSES = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
 MOST, LEAST = 1e20, 1e-20
 BARE = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-"
 ESCAPES = {"b": "\b", "t": "\t", "n": "\n", "f": "\f", "r": "\r", '"': '"', "\\": "\\"}
@@ -51,7 +52,7 @@ KEYS = {
     "base": {"mass": _positive},
     "bearings": {"law": _one_of(*LAWS), "count": _whole(1, 10**6), "ka": _positive, "kb": _not_negative,
                  "alpha": lambda value: _number(value) and 1 < value <= MOST, "delta_k": _positive,
-                 "damping": _not_negative},
+                 "yield_force": _positive, "damping": _not_negative},
     "motion": {"pulse": _one_of(*PULSES), "amplitude": _any, "frequency": _positive, "start": _not_negative,
                "synthetic": _one_of("duzce-like"), "seed": _whole(0, 2**64 - 1), "scale": _any},
     "start": {"tilt": _angle, "tilt_rate": _any, "base_displacement": _any, "base_velocity": _any},
@@ -188,10 +189,13 @@ def _check(tables):
     block, start, bearings = tables["block"], tables.get("start", {}), tables.get("bearings")
     if block.get("corner_inertia", math.inf) <= block["mass"] * block["radius"] ** 2:
         raise Refused("inertia")
-    if bearings and bearings.get("law", "algebraic") != "linear":
-        if "kb" not in bearings or "alpha" not in bearings or bearings["ka"] <= bearings["kb"]:
+    law = bearings and bearings.get("law", "algebraic")
+    if law and ("yield_force" in bearings) != (law == "bilinear"):
+        raise Refused("yield_force")
+    if law and law != "linear":
+        if "kb" not in bearings or ("alpha" in bearings) != (law != "bilinear") or bearings["ka"] <= bearings["kb"]:
             raise Refused("law")
-        if bearings.get("delta_k", 1e-20) >= bearings["ka"] - bearings["kb"]:
+        if law != "bilinear" and bearings.get("delta_k", 1e-20) >= bearings["ka"] - bearings["kb"]:
             raise Refused("delta_k")
     if "base" not in tables and (bearings is not None or start.get("base_displacement") or start.get("base_velocity")):
         raise Refused("no base")

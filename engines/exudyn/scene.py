@@ -82,7 +82,8 @@ class _Symbols:
 
     @staticmethod
     def where(condition, a, b):
-        return exu.symbolic.IfThenElse(condition, Real(a), Real(b))
+        a, b = (Real(one) if isinstance(one, float) else one for one in (a, b))
+        return exu.symbolic.IfThenElse(condition, a, b)
 
     @staticmethod
     def power(a, b):

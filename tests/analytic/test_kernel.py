@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from bearing_laws import to_law
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, SettingError, Start, simulate
 from analytic.bearing import BearingLaw
@@ -128,8 +129,9 @@ class TestOverturning:
 
 class TestConservation:
     @pytest.mark.parametrize("scene", [PROBLEM_A, PROBLEM_B, isolated(), isolated(bearings={"law": "bouc-wen"}),
-                                       isolated(bearings={"damping": 800.0}), isolated(bearings={"law": "linear"})],
-                             ids=["A", "B", "algebraic", "bouc-wen", "damped", "linear"])
+                                       isolated(bearings={"damping": 800.0}), isolated(bearings={"law": "linear"}),
+                                       isolated(bearings=to_law("bilinear"))],
+                             ids=["A", "B", "algebraic", "bouc-wen", "damped", "linear", "bilinear"])
     def test_energy_ledger_closes(self, scene):
         energy = simulate(scene).energy
         turnover = max(abs(energy.input), abs(energy.potential))
@@ -146,8 +148,9 @@ class TestConservation:
             base = model.M * impact.base_velocity_jump
             assert block + base == pytest.approx(0.0, abs=1e-12 * abs(base))
 
-    @pytest.mark.parametrize("scene", [PROBLEM_B, isolated(), isolated(0.28), isolated(bearings={"law": "bouc-wen"})],
-                             ids=["rigid", "rocking", "contact", "bouc-wen"])
+    @pytest.mark.parametrize("scene", [PROBLEM_B, isolated(), isolated(0.28), isolated(bearings={"law": "bouc-wen"}),
+                                       isolated(bearings=to_law("bilinear"))],
+                             ids=["rigid", "rocking", "contact", "bouc-wen", "bilinear"])
     def test_mirror_bit_for_bit(self, scene):
         one, other = simulate(scene), simulate(scene.with_(motion=scene.motion.scaled(-1.0)))
         for name in ("tilt", "tilt_rate", "base_displacement", "base_velocity", "bearing_force"):
@@ -200,8 +203,9 @@ class TestConvergence:
             phi[0], w[0], x[0], v[0], A[0], A[1] = 0.05, 0.3, 0.02, 0.4, 1.0, -3.0
             S[0], C[0] = math.sin(0.18 - 0.05), math.cos(0.18 - 0.05)
             z = law.hysteretic(0.0, 0.02)
-            F[0], q[0] = law.force(0.02, z), 1.3 ** (1 - law.alpha)
-            base_series(n, par, 1.0, 1 / 1.3, 1, A, phi, w, S, C, x, v, q, F, absolute)
+            F[0] = law.force(0.02, z)
+            q[0], factors = law.unit.begin(1.0, z, 1.3, *law.constants)
+            base_series(n, par, factors, 1, A, phi, w, S, C, x, v, q, F, absolute)
             errors.append([np.polyval(phi[n::-1], h) for h in steps])
         error = np.abs(np.subtract(*errors))
         observed = np.log2(error[:-1] / error[1:])

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from bearing_laws import NAMES, to_law
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -28,12 +29,13 @@ def motions(draw):
 
 @st.composite
 def bearings(draw):
-    law = draw(st.sampled_from(["none", "linear", "algebraic", "bouc-wen"]))
+    law = draw(st.sampled_from(["none", *NAMES]))
     if law == "none":
         return None
     kb = draw(log_uniform(1e2, 1e6))
-    return Bearings(law=law, count=draw(st.integers(1, 8)), kb=kb, ka=kb * (1 + draw(log_uniform(1e-4, 1e2))),
-                    alpha=draw(st.floats(1.05, 200)), damping=draw(st.sampled_from([0.0, 500.0])))
+    ka = kb * (1 + draw(log_uniform(1e-4, 1e2)))
+    keys = {"ka": ka, "kb": kb, "alpha": draw(st.floats(1.05, 200)), **to_law(law, ka, kb, draw(log_uniform(1, 1e5)))}
+    return Bearings(**keys, count=draw(st.integers(1, 8)), damping=draw(st.sampled_from([0.0, 500.0])))
 
 
 @st.composite

@@ -2,12 +2,13 @@ import math
 
 import numpy as np
 import pytest
+from bearing_laws import NAMES, bearings_of
 
 from analytic import closed_form
 from analytic.errors import SettingError
 from analytic.motion import PulseMotion
 from analytic.problems import problem_a, problem_b
-from analytic.scene import Base, Bearings, Block, Scene, Start
+from analytic.scene import Base, Block, Scene, Start
 from analytic.time_stepping import simulate_time_stepping
 from analytic.twin import simulate_twin
 
@@ -81,10 +82,10 @@ def test_rest_and_uplift_again():
     assert len(again.rests) == 2
 
 
-@pytest.mark.parametrize("law", ["algebraic", "bouc-wen", "linear"])
+@pytest.mark.parametrize("law", NAMES)
 def test_isolated_rocking_tends_to_the_twin(law):
     scene = Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=0.15), base=Base(mass=212.0),
-                  bearings=Bearings(law=law, count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, damping=300.0),
+                  bearings=bearings_of(law, count=4, damping=300.0),
                   motion=PulseMotion("one-sine", 3.0, 4.0), duration=1.4, start=Start(base_displacement=0.02))
     twin = simulate_twin(scene, rtol=1e-9)
     assert twin.outcome == "rocks"

@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from bearing_laws import NAMES, to_law
 from sampled_traces import SCENES, sampled, seen
 
 from analytic import PulseMotion, simulate
@@ -19,9 +20,9 @@ ENGINES = {"exudyn": "compliant-corners", "pybullet": "impact-aware", "mujoco": 
 
 @pytest.mark.parametrize("scene", [ROCKING, DRIVEN, ROCKING.with_(bearings={"damping": 2e3})],
                          ids=["free", "driven", "damped"])
-@pytest.mark.parametrize("law", ["algebraic", "linear", "bouc-wen"])
+@pytest.mark.parametrize("law", NAMES)
 def test_an_exact_motion_keeps_the_sum_over_its_impacts(scene, law):
-    scene = scene.with_(bearings={"law": law})
+    scene = scene.with_(bearings=to_law(law))
     trace, reference = sampled(scene, 5e-4)
     assert any(abs(impact.base_velocity_jump) > 0.01 for impact in reference.impacts)
     missing, impulse = missing_impulse(scene, trace)

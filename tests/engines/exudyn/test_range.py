@@ -8,6 +8,7 @@ import time
 
 import numpy as np
 import pytest
+from bearing_laws import NAMES, bearings_of
 
 exu = pytest.importorskip("exudyn")
 
@@ -162,11 +163,11 @@ def test_a_block_left_alone_does_not_sink(base):
     assert np.ptp(height) < 0.1 * sink  # what the tolerance of the steps leaves
 
 
-@pytest.mark.parametrize("law", ["algebraic", "bouc-wen", "linear"])
+@pytest.mark.parametrize("law", NAMES)
 @pytest.mark.parametrize("way", [-3e-2, -1e-4, 2e-5, 1e-3, 0.2])
 def test_force_within_a_step_is_the_law_in_full(law, way):
     """The expression that exudyn evaluates, over steps so long that a wrong exponent shows."""
-    rule = BearingLaw.of(Bearings(law=law, count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, damping=300.0))
+    rule = BearingLaw.of(bearings_of(law, count=4, damping=300.0))
     bearing, Real = Bearing(rule, 0.01), exu.symbolic.Real
     found = bearing.force([Real(way)], [Real(0.4)], [Real(value) for value in bearing.memory()])[0].Evaluate()
     assert found == pytest.approx(rule.force(0.01 + way, rule.hysteretic(bearing.z, way), 0.4), rel=1e-10)
