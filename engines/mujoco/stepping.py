@@ -10,14 +10,10 @@ from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel
 
 from ..ground_velocity import ground_velocity
+from ..pace import impact_aware
 from .scene import contact_reference, least_mass, recovery_rate, size_scale
 
-# No accuracy knobs: over the ranges given e moves by at most 2e-5 and the number of steps by 2 % (gamma .1 and .45 on
-# a base of 212 kg, steps up to 4e-4 s).
-GROWTH = 1.5  # most growth from step to step; 1.25 to 2
-APPROACH = 0.15  # share of the remaining time to the impact that a step may take; .1 to .3
-SETTLING = 4  # steps that stay as small after an impact as at it; 1 to 8
-FLAT = 1e-6  # swings below this share of gamma do not matter, their impacts are stepped over; 1e-7 to 1e-5
+APPROACH = 0.15  # share of the remaining time to the impact that a step may take; .1 to .3: no accuracy knob
 SMALLEST_STEP = 1e-7  # s, at `UNIT_RADIUS`; 1e-8 to 1e-6
 # Viscous impulse of a step over the base's momentum from which on it is solved with the contacts. (MuJoCo's least
 # impedance is 1e-4.) Below, it is taken at the velocity half a step earlier: an error of half of this.
@@ -39,7 +35,8 @@ def run(model, data, scene, chosen):
     """
     largest, recovery, as_it_comes = model.opt.timestep, recovery_rate(scene, chosen), chosen.recovery is None
     law, g, start = BearingLaw.of(scene.bearings), scene.gravity, scene.start
-    pace = Pace(scene, largest, chosen.accuracy) if chosen.accuracy else None
+    pace = impact_aware(RockingModel.of(scene), start.tilt_rate, largest, chosen.accuracy, approach=APPROACH,
+                        smallest=SMALLEST_STEP * size_scale(scene)) if chosen.accuracy else None
     ground, sampled = ground_velocity(scene.motion), scene.motion.acceleration if scene.motion else None
     corners, half_height, half_width = not as_it_comes, scene.block.half_height, scene.block.half_width
     viscous = None if as_it_comes else Viscous.of(scene, model, data)
@@ -55,7 +52,7 @@ def run(model, data, scene, chosen):
     rows = array("d", (t, h, tilt, rate, x, v, z, force, *state[-3:-1].tolist(), *speed[-3:-1].tolist()))
     ended, width = "done", len(rows)
     while t < end:
-        step = pace.next(tilt, rate, jumped, interval) if pace else largest
+        step = pace(tilt, rate, jumped, interval)[0] if pace else largest
         if t + step > end + 2e-9 * largest:
             step = scene.duration - t
         if step != used:
@@ -141,39 +138,3 @@ class Viscous:
     def most(self, step):
         """The damping [N s/m] to apply in a step [s], at most that which stops the base in it."""
         return min(self.damping, self.lightest / step)
-
-
-class Pace:
-    """Length of the next step: large in flight and at rest, small on the way to an impact and just after it."""
-
-    def __init__(self, scene, largest, fraction):
-        model = RockingModel.of(scene)
-        self.largest, self.fraction, self.smallest = largest, fraction, SMALLEST_STEP * size_scale(scene)
-        self.least_pull = abs(model.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0])  # |tilt''| toward contact, unforced
-        self.weak = 2 * self.least_pull * FLAT * scene.block.slenderness  # square of the speed at such an impact
-        # A first swing may be short: start small and let the step grow.
-        self.step = min(largest, max(self.smallest, fraction * abs(scene.start.tilt_rate) / self.least_pull,
-                                     1e-2 * largest))
-        self.before, self.settling = None, 0
-
-    def next(self, tilt, rate, jumped, interval):
-        """Step [s] from a state; jumped: it lies on the other side than the one before, interval [s] earlier."""
-        toward, size = (-rate, tilt) if tilt > 0 else (rate, -tilt)
-        least = self.least_pull
-        energy = toward * toward + 2 * least * size  # of the swing, as the square of its speed at the impact
-        gain = 0.0 if self.before is None or jumped else (self.before - rate if tilt > 0 else rate - self.before)
-        first, self.before = self.before is None, rate
-        if jumped:
-            self.settling = SETTLING if energy > self.weak else 0
-        if self.settling:
-            self.settling -= 1
-        elif not first:
-            wanted = min(self.step * GROWTH, self.largest)
-            if energy > self.weak:
-                pull = max(least, gain / interval)  # what the last step gained, where that is more: the ground may push
-                speed = math.sqrt(toward * toward + 2 * pull * size)
-                finest = max(self.smallest, self.fraction * speed / pull)
-                near = APPROACH * ((speed - toward) / pull - 3 * finest)
-                wanted = min(wanted, max(near, finest))
-            self.step = wanted
-        return self.step

@@ -13,6 +13,7 @@ from analytic.response import Failure
 from ..checks import GAIN_LIMIT, HEIGHT_TOLERANCE, energy_gain, pivoting_centre
 from ..contract import Mismatch, Run, Variant
 from ..leapfrog_trace import raw_trace_of, trace_of
+from ..pace import FLAT
 from ..verified import Range
 from . import first_script, stepping
 from .scene import MOST_FRICTION, MOST_VELOCITY, Units, assemble
@@ -113,7 +114,7 @@ def _attempt(scene, chosen, places=False):
     if isinstance(chosen, FirstScript):
         trace = raw_trace_of(rows, scene, 1e-3 * scene.block.slenderness)
     else:
-        trace = trace_of(rows, scene, stepping.FLAT * scene.block.slenderness, smeared=3)
+        trace = trace_of(rows, scene, FLAT * scene.block.slenderness, smeared=3)
     return trace, len(rows) - 1, cpu, ended, place, failure or _failure(scene, rows, ended, trace,
                                                                              isinstance(chosen, FirstScript))
 

@@ -18,15 +18,11 @@ import pybullet
 from analytic.bearing import hysteretic_force
 from analytic.rocking import RockingModel
 
+from .. import pace as paces
 from ..ground_velocity import ground_velocity
 from .scene import iterations, placement
 
-# The next four are no accuracy knobs: measured on free rocking (slenderness .1 and .45, rigid ground and m_b = 212 kg),
-# e moved by at most 4e-6 and the number of steps by at most 8 % over the ranges given.
-GROWTH = 1.5  # most growth from step to step; 1.25 to 2
-APPROACH = 0.3  # share of the remaining time to the impact that a step may take; .15 to .5
-SETTLING = 4  # steps that stay as small after an impact as at it: Bullet spreads it over two; 1 to 8
-FLAT = 1e-6  # swings below this share of gamma do not matter, their impacts are stepped over; 1e-7 to 1e-5
+APPROACH = 0.3  # share of the remaining time to the impact that a step may take; .15 to .5: no accuracy knob
 # [s]; 1e-6 doubles the error of e of the stockiest block on a base, 1e-8 changes nothing.
 SMALLEST_STEP = 1e-7
 
@@ -98,22 +94,18 @@ def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
     on_base, loaded = assembly.base is not None, scene.bearings is not None
     joints, centre = (assembly.tilt, assembly.base), (assembly.slide, assembly.lift)
     ground, clock = ground_velocity(scene.motion), units.time
-    aware, fraction = accuracy is not None, accuracy or 0.0
-    least_pull = abs(model.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0])  # |tilt''| toward contact, unforced
-    weak = 2 * least_pull * FLAT * scene.block.slenderness  # square of the speed at the impact of such a swing
     constants = (law.law, *law.constants)
     count, length, spring = law.count, units.length, law.count * law.kb * units.length
     damping, mass = law.count * law.damping * units.length / units.time, driven_mass(model)
     # Small vibrations of a hysteretic bearing are those of about half its initial excess of stiffness.
     elastic = spring + 0.5 * count * law.dk * length
     heavier = LEAPFROG * elastic if largest * math.sqrt(elastic / mass) > STIFF else 0.0
-    sharpest = VISCOUS * fraction * model.M / damping if damping else math.inf
     start, end, limit = scene.start, scene.duration, 0.5 * math.pi
     step_simulation, set_gravity = pybullet.stepSimulation, pybullet.setGravity
     read_both, read, turn = pybullet.getJointStates, pybullet.getJointState, assembly.tilt
     # A force on the base's link is the same as one on its joint, and the call costs half as much.
     drive, base, middle, frame = pybullet.applyExternalForce, assembly.base, (0.0, 0.0, 0.0), pybullet.LINK_FRAME
-    sqrt, engine_step, change = math.sqrt, pybullet.setPhysicsEngineParameter, pybullet.changeDynamics
+    engine_step, change = pybullet.setPhysicsEngineParameter, pybullet.changeDynamics
 
     t, h = 0.0, 0.0
     tilt, rate, x, v = start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity
@@ -121,68 +113,31 @@ def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
     force, committed = spring * x + count * z, x
     rows = array("d", (t, h, tilt, rate, x, v, z, force, *(placement(scene) if places else ())))
     keep, step, side, width = rows.extend, largest, tilt > 0, len(rows)
-    before, interval, gained, settling = 0.0, 1.0, 0.0, 0
-    # Below `almost` both corners count as loaded: the higher one is within what a step of free fall covers. With the
-    # few iterations for one corner the slow onset of a slender block (.036) gained 1.5 times its tilt.
-    twice_pull = 2 * least_pull
-    almost = max(100 * weak, twice_pull * g * largest * largest / (2 * scene.block.half_width))
-    level_tilt = almost / twice_pull
-    last_scale, used, few, many = -1.0, 0, iterations(scene, 1), iterations(scene, 2)
-    some = min(many, max(few, LANDING_ITERATIONS))
+    interval, gained, last_scale, used = 1.0, 0.0, -1.0, 0
+    few, many = iterations(scene, 1), iterations(scene, 2)
+    sweeps = few, min(many, max(few, LANDING_ITERATIONS)), many  # in FLIGHT, at an IMPACT, at REST
     pushed, held, added = 0.0, 0.0, 0.0
-    if aware:  # a first swing may be short: start small and let the step grow
-        step = min(largest, max(SMALLEST_STEP, fraction * abs(rate) / least_pull, 1e-2 * largest))
+    # Both corners count as loaded where the higher one is within what a step of free fall covers. With the few
+    # iterations for one corner the slow onset of a slender block (.036) gained 1.5 times its tilt.
+    standing = 2 * paces.least_pull(model) * g * largest * largest / (2 * scene.block.half_width)
+    if accuracy is None:
+        pace = paces.fixed(model, largest, standing)
+    else:
+        sharpest = VISCOUS * accuracy * model.M / damping if damping else math.inf
+        pace = paces.impact_aware(model, rate, largest, accuracy, approach=APPROACH, smallest=SMALLEST_STEP,
+                                  sharpest=sharpest, standing=standing, overlong=True, cruise=True)
     end -= 1e-9 * largest  # the steps' sum may miss the duration by rounding
-    # Farther than this time from its impact the block is left at the largest step, without a closer look.
-    reach = largest / APPROACH * 1.2
-    gate, cruising = end + 2e-9 * largest, False
+    gate = end + 2e-9 * largest
     ended, base_mass = "done", scene.base.mass if on_base else 0.0
     for _ in range(row_limit):
         if t >= end:
             break
         jumped = (tilt > 0) != side
         side = tilt > 0
-        wanted, landing = step, False  # landing: both corners may carry in this step
-        if aware:
-            toward, size = (-rate, tilt) if side else (rate, -tilt)
-            far = False
-            if cruising and not jumped and size > level_tilt:
-                # What the last step gained toward contact, where that is more: the ground may push.
-                pull = (before - rate if side else rate - before) / interval
-                if pull < least_pull:
-                    pull = least_pull
-                far = size > reach * (toward + 0.5 * reach * pull)
-            if not far:
-                energy = toward * toward + twice_pull * size  # of the swing, as the square of its speed at the impact
-                standing = energy < almost
-                if jumped:
-                    settling = SETTLING if energy > weak else 0
-                if settling:
-                    settling -= 1
-                    landing = True
-                elif h:
-                    wanted = step * GROWTH
-                    if wanted > largest:
-                        wanted = largest
-                    if energy > weak:
-                        pull = least_pull if jumped else (before - rate if side else rate - before) / interval
-                        if pull < least_pull:
-                            pull = least_pull
-                        speed = sqrt(toward * toward + 2 * pull * size)
-                        finest = max(SMALLEST_STEP, fraction * speed / pull)
-                        if finest > sharpest:
-                            finest = sharpest
-                        near = APPROACH * ((speed - toward) / pull - 3 * finest)
-                        if near < wanted:
-                            landing = near <= finest
-                            wanted = finest if landing else near
-                cruising = wanted == step == largest and not standing and not settling
-        else:
-            standing = -level_tilt < tilt < level_tilt and rate * rate < almost
-            landing = jumped or (tilt + 2 * step * rate > 0) != side
+        wanted, purpose = pace(tilt, rate, jumped, interval)
         if t + wanted > gate:
             wanted = scene.duration - t
-        needed = many if standing else some if landing else few
+        needed = sweeps[purpose]
         if wanted != step or needed != used:
             step, used = wanted, needed
             engine_step(fixedTimeStep=step, physicsClientId=client,
@@ -205,7 +160,6 @@ def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
         elif loaded:
             drive(body, base, (-force * scale, 0.0, 0.0), middle, frame, client)
         step_simulation(client)
-        before = rate
         if on_base:
             (tilt, rate, _, _), (x, v, _, _) = read_both(body, joints, client)
             if loaded:

@@ -45,9 +45,9 @@ def free_block_3d(scene, *, step, history=True):
     from engines import get_engine
     from engines.leapfrog_trace import trace_of
     from engines.observe import observe
+    from engines.pace import FLAT
     from engines.pybullet import first_script as script
     from engines.pybullet.scene import BREAKING_THRESHOLD, FRICTION, iterations
-    from engines.pybullet.stepping import FLAT
 
     client = pybullet.connect(pybullet.DIRECT)
     try:

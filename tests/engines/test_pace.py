@@ -1,0 +1,73 @@
+"""The length of steps: small at an impact, growing after it, and told what it is for."""
+
+import math
+
+import pytest
+
+from analytic import Block, Scene, Start
+from analytic.rocking import RockingModel
+from engines.pace import FLIGHT, GROWTH, IMPACT, REST, SETTLING, fixed, impact_aware
+
+SCENE = Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=0.2), start=Start(tilt=0.12), duration=2.0)
+MODEL = RockingModel.of(SCENE)
+LARGEST, SMALLEST = 1e-3, 1e-7
+
+
+def ridden(pace, seconds=2.0):
+    """(time, step, purpose, |rate|, jumped) of a block that is carried along by the model's equations, as stepped."""
+    tilt, rate, t, h, jumped, interval, rows = 0.12, 0.0, 0.0, 0.0, False, 1.0, []
+    while t < seconds:
+        step, purpose = pace(tilt, rate, jumped, interval)
+        rows.append((t, step, purpose, abs(rate), jumped))
+        interval, was = 0.5 * (h + step), tilt > 0
+        rate += interval * MODEL.accelerations(1.0 if was else -1.0, tilt, rate, 0.0, 0.0)[0]
+        tilt += step * rate
+        t, h, jumped = t + step, step, (tilt > 0) != was
+        if jumped:
+            rate = MODEL.impact(rate)[0]
+    return rows
+
+
+def aware(accuracy, **options):
+    return impact_aware(MODEL, 0.0, LARGEST, accuracy, approach=0.3, smallest=SMALLEST, **options)
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-5])
+@pytest.mark.parametrize("cruise", [False, True])
+def test_the_step_of_an_impact_gains_the_share_asked_for(accuracy, cruise):
+    rows = ridden(aware(accuracy, cruise=cruise))
+    impacts = [k for k, row in enumerate(rows) if row[4]]
+    assert len(impacts) >= 2
+    for k in impacts:
+        _, step, purpose, speed, _ = rows[k - 1]
+        pull = abs(MODEL.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0])
+        assert step * pull / speed == pytest.approx(accuracy, rel=0.02) and purpose == IMPACT
+        assert [row[2] for row in rows[k:k + SETTLING]] == [IMPACT] * SETTLING
+        assert {row[1] for row in rows[k:k + SETTLING]} == {step}
+    for (_, step, *_), (_, following, *_) in zip(rows, rows[1:], strict=False):
+        assert following <= GROWTH * step * (1 + 1e-12) and SMALLEST <= following <= LARGEST
+    assert max(row[1] for row in rows) == LARGEST and rows[0][1] == 1e-2 * LARGEST
+
+
+def test_cruising_spares_looks_and_changes_nothing():
+    assert ridden(aware(1e-5)) == ridden(aware(1e-5, cruise=True))
+
+
+def test_a_coarse_accuracy_stays_below_the_largest_step_unless_it_may_not():
+    assert max(row[1] for row in ridden(aware(1e-2))) == LARGEST
+    assert max(row[1] for row in ridden(aware(1e-2, overlong=True))) > LARGEST
+
+
+def test_no_step_at_an_impact_is_longer_than_the_sharpest():
+    rows = ridden(aware(1e-3, sharpest=1e-5))
+    steps = [rows[k - 1][1] for k, row in enumerate(rows) if row[4]]
+    assert steps and max(steps) == 1e-5
+
+
+def test_equal_steps_are_told_apart_by_what_they_are_for():
+    pace, g = fixed(MODEL, 1e-3), 0.2
+    assert pace(0.5 * g, -1e-3, False, 1e-3) == (1e-3, FLIGHT)
+    assert pace(1e-4 * g, -1.0, False, 1e-3) == (1e-3, IMPACT) and pace(0.5 * g, 0.0, True, 1e-3) == (1e-3, IMPACT)
+    assert pace(1e-5 * g, 0.0, False, 1e-3) == (1e-3, REST)
+    assert aware(1e-5)(1e-5 * g, 0.0, False, 1.0)[1] == REST
+    assert math.isfinite(aware(1e-5)(-0.1, 0.0, False, 1.0)[0])
