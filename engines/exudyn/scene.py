@@ -4,7 +4,6 @@ Coordinates: ground frame, x horizontal, y up; exudyn's rotation is counter-cloc
 motion enters as inertial load, x is relative to the ground.
 """
 
-import math
 from dataclasses import dataclass, field
 
 import exudyn as exu
@@ -25,6 +24,7 @@ from exudyn.itemInterface import (
 
 from analytic.bearing import BearingLaw
 
+from ..placement import placement
 from .ground import ground_load
 
 Real = exu.symbolic.Real
@@ -134,14 +134,11 @@ class Bearing:
 def start_coordinates(scene, sink):
     """(q, v) of the block's centre [m, m/s; rad, rad/s], relative to its place at rest; `sink` is the static
     penetration [m] of a block that stands."""
-    block, start = scene.block, scene.start
-    b, h, R, gamma = block.half_width, block.half_height, block.radius, block.slenderness
-    tilt, rate = start.tilt, start.tilt_rate
-    s = math.copysign(1.0, tilt if tilt != 0 else rate)
-    c, n = R * math.cos(s * gamma - tilt), R * math.sin(s * gamma - tilt)
+    x, z, across, up = placement(scene)
+    tilt, rate = scene.start.tilt, scene.start.tilt_rate
     lower = sink if tilt == 0 and rate == 0 else 0.0
-    q = [start.base_displacement + s * b - n, c - h - lower, -tilt]
-    v = [start.base_velocity + c * rate, n * rate, -rate]
+    q = [x, z - lower, -tilt]
+    v = [across, up, -rate]
     return q, v
 
 

@@ -36,7 +36,7 @@ import numpy as np
 from analytic.response import Failure
 
 from ..contract import Mismatch, Run, Variant
-from ..leapfrog_trace import raw_trace_of, trace_of
+from ..leapfrog import failure_of, raw_trace_of, trace_of
 from ..verified import Range
 from . import stepping
 from .scene import build, longest_step
@@ -155,11 +155,9 @@ def _contact_tilt(chosen, peak, slenderness):
 
 def _failure(scene, rows, ended, warned):
     """What went wrong in a finished run, or None."""
-    count, t = len(rows) - 1, rows[-1][0]
+    failure = failure_of(scene, rows, ended)
     if ended == "not finite":
-        return Failure("the state is no longer finite", f"at step {count}, t = {t:.9g} s. {warned}")
+        return replace(failure, message=f"{failure.message}. {warned}")
     if warned:  # of a bad state, which MuJoCo would reset to the start if it were not told to leave it
         return Failure("MuJoCo warned", warned)
-    if ended == "too many steps":
-        return Failure(ended, f"{count} by t = {t:.9g} s of {scene.duration:.9g} s")
-    return None
+    return failure

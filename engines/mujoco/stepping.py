@@ -10,6 +10,7 @@ from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel
 
 from ..ground_velocity import ground_velocity
+from ..leapfrog import row_limit
 from ..pace import impact_aware
 from .scene import contact_reference, least_mass, recovery_rate, size_scale
 
@@ -18,8 +19,6 @@ SMALLEST_STEP = 1e-7  # s, at `UNIT_RADIUS`; 1e-8 to 1e-6
 # Viscous impulse of a step over the base's momentum from which on it is solved with the contacts. (MuJoCo's least
 # impedance is 1e-4.) Below, it is taken at the velocity half a step earlier: an error of half of this.
 LEAST_RATIO = 2e-4
-# Steps after which a run is given up: this many per largest step of the duration, and a reserve for the impacts.
-ROWS_PER_STEP, MOST_ROWS = 50, 20_000_000
 
 
 def run(model, data, scene, chosen):
@@ -44,7 +43,7 @@ def run(model, data, scene, chosen):
     option, gravity, solref = model.opt, model.opt.gravity, model.geom_solref
     on_base, loaded, damping = scene.base is not None, scene.bearings is not None, law.count * law.damping
     end, limit = scene.duration - 1e-9 * largest, 0.5 * math.pi
-    row_limit = int(min(MOST_ROWS, ROWS_PER_STEP * scene.duration / largest + 100_000))
+    most = row_limit(scene.duration, largest)
     t, h, used = 0.0, 0.0, largest
     tilt, rate, x, v = start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity
     z = law.start(x)
@@ -96,7 +95,7 @@ def run(model, data, scene, chosen):
         if not -limit < tilt < limit:
             ended = "overturned" if math.isfinite(tilt) else "not finite"
             break
-        if len(rows) > row_limit * width:
+        if len(rows) > most * width:
             ended = "too many steps"
             break
     return np.frombuffer(rows).reshape(-1, width), ended

@@ -12,7 +12,7 @@ from analytic.response import Failure
 
 from ..checks import GAIN_LIMIT, HEIGHT_TOLERANCE, energy_gain, pivoting_centre
 from ..contract import Mismatch, Run, Variant
-from ..leapfrog_trace import raw_trace_of, trace_of
+from ..leapfrog import MOST_ROWS, failure_of, raw_trace_of, row_limit, trace_of
 from ..pace import FLAT
 from ..verified import Range
 from . import first_script, stepping
@@ -72,9 +72,6 @@ VARIANTS = {
         FirstScript(), rung="first script", ladder=(1 / 60, 1 / 240, 1 / 1000), decides=DECIDES, verified=None),
 }
 
-# Steps after which a run is given up: this many per largest step of the duration, and a reserve for the impacts.
-ROWS_PER_STEP, MOST_ROWS = 50, 20_000_000
-
 
 def versions():
     """Versions of what computes: {package: version}."""
@@ -129,13 +126,12 @@ def _run(client, scene, chosen, places):
     units = Units.of(scene)
     sized, largest = units.scale(scene), _largest(scene, chosen) / units.time
     accuracy = chosen.accuracy if isinstance(chosen, ImpactAware) else None
-    row_limit = int(min(MOST_ROWS, ROWS_PER_STEP * sized.duration / largest + 100_000))
     if sized.duration / largest > MOST_ROWS:
         raise TooManySteps(f"steps of {largest * units.time:.3g} s that follow the bearings: "
                            f"{sized.duration / largest:.3g} for {scene.duration:.6g} s; at most {MOST_ROWS}")
     assembly = assemble(client, sized, largest)
     clock = time.process_time()
-    rows, ended = stepping.run(assembly, sized, units, largest, accuracy, row_limit, places)
+    rows, ended = stepping.run(assembly, sized, units, largest, accuracy, row_limit(sized.duration, largest), places)
     cpu = time.process_time() - clock
     place = [units.length * state[0]
              for state in pybullet.getJointStates(assembly.body, (assembly.slide, assembly.lift), client)]
@@ -171,10 +167,9 @@ def _may_have_left(scene, trace, ended, place):
 
 def _failure(scene, rows, ended, trace, first=False):
     """What went wrong in a finished run, or None."""
-    if ended == "not finite":
-        return Failure("the state is no longer finite", f"at step {len(rows) - 1}, t = {rows[-1][0]:.9g} s")
-    if ended == "too many steps":
-        return Failure("too many steps", f"{len(rows) - 1} by t = {rows[-1][0]:.9g} s of {scene.duration:.9g} s")
+    failure = failure_of(scene, rows, ended)
+    if failure:
+        return failure
     fastest = max(np.abs(trace.tilt_rate).max(), np.abs(trace.base_velocity).max())
     limit = first_script.MOST_VELOCITY if first else MOST_VELOCITY
     if fastest > 0.1 * limit:

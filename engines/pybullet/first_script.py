@@ -11,7 +11,7 @@ import pybullet
 
 from analytic.bearing import BearingLaw
 
-from .scene import placement
+from ..placement import placement
 
 THICKNESS = 1.0  # m, of the slab
 # Bullet's own default [m]. Process-global: without it a planar run earlier in the process would leave its own here.

@@ -20,7 +20,8 @@ from analytic.rocking import RockingModel
 
 from .. import pace as paces
 from ..ground_velocity import ground_velocity
-from .scene import iterations, placement
+from ..placement import placement
+from .scene import iterations
 
 APPROACH = 0.3  # share of the remaining time to the impact that a step may take; .15 to .5: no accuracy knob
 # [s]; 1e-6 doubles the error of e of the stockiest block on a base, 1e-8 changes nothing.
@@ -81,10 +82,7 @@ def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
     Returns
     -------
     rows : array, shape (steps + 1, 8), with `places` 12
-        In SI, per step, the start first: time [s], length of the step that led there [s], tilt [rad], its rate [rad/s],
-        base displacement [m] and velocity [m/s], hysteretic force of one bearing [N], total force without viscous
-        part [N]; with `places` the centre of the block [m] and its velocity [m/s], as `Trace.centre`. Rates are
-        Bullet's own, half a step early.
+        As `engines.leapfrog` has them, in SI, the start first.
     ended : str
         "done", "overturned", "not finite" or "too many steps".
     """

@@ -43,7 +43,7 @@ def free_block_3d(scene, *, step, history=True):
     import pybullet
 
     from engines import get_engine
-    from engines.leapfrog_trace import trace_of
+    from engines.leapfrog import trace_of
     from engines.observe import observe
     from engines.pace import FLAT
     from engines.pybullet import first_script as script

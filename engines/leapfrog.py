@@ -1,16 +1,38 @@
-"""Rows of a leapfrog engine as a `Trace`: velocities brought to the time of the displacements."""
+"""Rows of a leapfrog engine: how many there may be, how they can end, and what they say as a `Trace`.
+
+A row is (time [s], length of the step that led there [s], tilt [rad], its rate [rad/s], base displacement [m] and
+velocity [m/s], hysteretic force of one bearing [N], total force without viscous part [N]), and where they were read the
+block's centre x, z [m] and x', z' [m/s], as `Trace.centre`. Rates are half a step early, but for the start's.
+"""
 
 import numpy as np
 
+from analytic.response import Failure
 from analytic.rocking import RockingModel
 
 from .swings import Trace
 
+# Steps after which a run is given up: this many per largest step of the duration, and a reserve for the impacts.
+ROWS_PER_STEP, RESERVE, MOST_ROWS = 50, 100_000, 20_000_000
+
+
+def row_limit(duration, largest):
+    """Most steps of a run of this duration at this largest step [same unit of time]."""
+    return int(min(MOST_ROWS, ROWS_PER_STEP * duration / largest + RESERVE))
+
+
+def failure_of(scene, rows, ended):
+    """The `Failure` of a run that "not finite" or "too many steps" ended, or None."""
+    count, t = len(rows) - 1, rows[-1][0]
+    if ended == "not finite":
+        return Failure("the state is no longer finite", f"at step {count}, t = {t:.9g} s")
+    if ended == "too many steps":
+        return Failure(ended, f"{count} by t = {t:.9g} s of {scene.duration:.9g} s")
+    return None
+
 
 def trace_of(rows, scene, contact_tilt, smeared=None):
-    """The `Trace` of rows (time, step, tilt, tilt rate, x, v, z, force, and the centre's x, z, x', z' where read).
-
-    Rates are half a step early.
+    """The `Trace` of rows, velocities brought to the time of the displacements.
 
     A velocity at t_n is the mean of its neighbours, weighted by their distance. Contact solvers spread an impact over
     the steps that reach contact and leave it: there only the neighbour in flight is used, and the gain beyond it.

@@ -1,0 +1,16 @@
+"""Where a scene puts the block at the start: the same for every engine."""
+
+import math
+
+
+def placement(scene):
+    """Centre of the block and its velocity at the start: (x, z [m], x', z' [m/s]), z from its standing height.
+
+    The block turns about its lower corner on a base at the start's displacement and velocity.
+    """
+    start, block = scene.start, scene.block
+    s = math.copysign(1.0, start.tilt or start.tilt_rate)
+    angle = s * block.slenderness - start.tilt
+    c, n = block.radius * math.cos(angle), block.radius * math.sin(angle)
+    return (start.base_displacement + s * block.half_width - n, c - block.half_height,
+            start.base_velocity + c * start.tilt_rate, n * start.tilt_rate)

@@ -1,0 +1,27 @@
+"""What an engine reports back of what it was given: nothing runs with other values."""
+
+import numpy as np
+
+from .contract import Mismatch
+
+RELATIVE, ABSOLUTE = 1e-12, 1e-14  # round-off
+
+
+def require(values):
+    """Raise `Mismatch` naming what an engine holds that differs from what it was given.
+
+    Parameters
+    ----------
+    values : iterable of (name, used, wanted)
+        Numbers or arrays of them; a single number may be wanted of all.
+    """
+    wrong = [f"{name} is {np.asarray(used).tolist()}, not {np.asarray(wanted).tolist()}"
+             for name, used, wanted in values if not _same(used, wanted)]
+    if wrong:
+        raise Mismatch("; ".join(wrong))
+
+
+def _same(used, wanted):
+    if isinstance(used, int | float) and isinstance(wanted, int | float):
+        return abs(used - wanted) <= ABSOLUTE + RELATIVE * abs(wanted)  # not for NaN
+    return np.size(wanted) in (1, np.size(used)) and np.allclose(used, wanted, RELATIVE, ABSOLUTE)
