@@ -25,12 +25,13 @@ def run(model, data, scene, chosen):
     """Step until the duration is over, the block has overturned or a state is not finite.
 
     MuJoCo's Euler is leapfrog: displacements live at the steps' ends, velocities half a step earlier. A load that
-    acts for the mean of two steps is scaled by (h + h')/(2 h'), see stepping. Not so for a first script.
+    acts for the mean of two steps is scaled by (h + h')/(2 h'), see engines.pybullet.stepping. Not so for a first
+    script.
 
     Returns
     -------
     rows, ended
-        As stepping.run.
+        Rows as `engines.leapfrog` has them, the start first; "done", "overturned", "not finite" or "too many steps".
     """
     largest, recovery, as_it_comes = model.opt.timestep, recovery_rate(scene, chosen), chosen.recovery is None
     law, g, start = BearingLaw.of(scene.bearings), scene.gravity, scene.start
