@@ -8,7 +8,7 @@ import math
 
 from numba import njit
 
-from .layout import GROUND
+from .layout import GROUND, IMPACT_LOSS, IMPACTS, RESTS
 from .polynomial import first_root
 
 # An impact slower than rest_rate omega_r ends in rest if the next hop is short too [1/omega_r]: while the ground
@@ -149,6 +149,37 @@ def impact_loss(par, v, before, after, jump):
     coupling = par.m * par.R * math.cos(par.gamma)
     return (0.5 * par.J * (before * before - after * after) + coupling * (v * (before - after) - jump * after)
             - 0.5 * par.M * jump * (2 * v + jump))
+
+
+@njit(inline="always")
+def land(par, rate, base, ground, rest_rate, t, impacts, rests, totals):
+    """Across an impact, eqs (7), (8): (rate, base velocity, whether the block now stays down). Keeps its row.
+
+    base : (x, v, z) before; ground : its acceleration [m/s2]; rest_rate [rad/s].
+    """
+    (x, v, z), before, lever = base, rate, par.mt * par.R * math.cos(par.gamma)
+    rate = par.e * before  # (7)
+    jump = lever * (before - rate)  # (8), from momentum
+    totals[IMPACT_LOSS] += impact_loss(par, v, before, rate, jump)
+    v += jump
+    number = int(totals[IMPACTS])
+    if number < impacts.shape[0]:
+        impacts[number, 0], impacts[number, 1], impacts[number, 2], impacts[number, 3] = t, before, rate, jump
+    totals[IMPACTS] += 1
+    force = par.count * (par.kb * x + z + par.damping * v)
+    landed, remaining = rate == 0, -1.0
+    if landed or abs(rate) < rest_rate:
+        remaining = remaining_hops(par, rate, ground, force)
+    if not (landed or remaining >= 0):
+        return rate, v, False
+    left = lever * rate  # the hops left out: their momentum stays with the base
+    totals[IMPACT_LOSS] += impact_loss(par, v, rate, 0.0, left)
+    if remaining >= 0:  # else it lands flat and lifts again at once
+        number = int(totals[RESTS])
+        if number < rests.shape[0]:
+            rests[number] = t + remaining
+        totals[RESTS] += 1
+    return 0.0, v + left, True
 
 
 @njit(cache=True)

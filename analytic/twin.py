@@ -259,7 +259,7 @@ class _Run:
             found.append(("uplift", lambda t, y: abs(self.contact_acceleration(y, 0.0)) - threshold, True, 1))
         if direction:
             found.append(("reversal", lambda t, y: direction * y[3] if t > turned else 1.0, self.law.unit.memory, -1))
-            ahead = self.law.unit.corner(direction, self.hysteretic_force(self.y), *self.law.constants)
+            ahead = self.law.unit.begin(direction, self.hysteretic_force(self.y), 1.0, *self.law.constants)[2]
             self.corner = corner = direction * ahead
             if ahead < math.inf:
                 found.append(("corner", lambda t, y: direction * (y[4] - corner), True, 1))

@@ -69,7 +69,7 @@ def recoverable(z, dk, alpha, d0, f0):
 def begin(s, z, travel, dk, alpha, d0, f0):
     """q is y^(1 - alpha) with y = D_c + s (x - x_c), the `travel`."""
     power = travel ** (1 - alpha) if s != 0 else 0.0
-    return power, (s * (1.0 / travel), 2 - alpha, s * dk / (1 - alpha))
+    return power, (s * (1.0 / travel), 2 - alpha, s * dk / (1 - alpha)), math.inf
 
 
 @njit(cache=True, inline="always")

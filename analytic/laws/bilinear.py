@@ -33,13 +33,10 @@ def recoverable(z, dk, alpha, d0, f0):
 
 
 @njit(cache=True)
-def corner(s, z, dk, alpha, d0, f0):
-    return f0 if s * z < f0 else math.inf
-
-
-@njit(cache=True)
 def begin(s, z, travel, dk, alpha, d0, f0):
-    return z, (dk if s * z < f0 else 0.0, 0.0, 0.0)
+    if s * z < f0:
+        return z, (dk, 0.0, 0.0), f0
+    return z, (0.0, 0.0, 0.0), math.inf
 
 
 @njit(cache=True, inline="always")
@@ -60,5 +57,5 @@ def expression(ops, dx, first, second, dk, alpha, d0, f0):
 
 
 LAW = Law("bilinear", needs=("kb", "yield_force"), constants=constants, after_travel=after_travel, work=work,
-          recoverable=recoverable, corner=corner, begin=begin, term=term,
+          recoverable=recoverable, begin=begin, term=term,
           branch=branch, expression=expression)

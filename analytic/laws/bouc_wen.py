@@ -28,7 +28,7 @@ def recoverable(z, dk, alpha, d0, f0):
 
 @njit(cache=True)
 def begin(s, z, travel, dk, alpha, d0, f0):
-    return z, (0.5 * dk, 0.5 * dk * s / f0, 0.0)
+    return z, (0.5 * dk, 0.5 * dk * s / f0, 0.0), math.inf
 
 
 @njit(cache=True, inline="always")

@@ -4,7 +4,6 @@ A law is one file of this folder with one `Law`. Its compiled functions end in t
 ka - kb [N/m], f0 the limit of |z| [N]; alpha and d0 are the law's own. s is the sign of the travel, 0 at standstill.
 """
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -24,11 +23,6 @@ def last_of_series(s, z, q, order, h, travel, dk, alpha, d0, f0):
 
 
 @njit(cache=True)
-def no_corner(s, z, dk, alpha, d0, f0):
-    return math.inf
-
-
-@njit(cache=True)
 def only_z(z, dk, alpha, d0, f0):
     return z, 0.0
 
@@ -44,8 +38,8 @@ class Law:
     after_travel(z, dx, ..) : z after monotonic travel dx [m].
     work(z, dx, ..) : integral of z over that travel [J]; not compiled.
     recoverable(z, ..) : what a bearing with z > 0 gives back on its way to z = 0 [J].
-    corner(s, z, ..) : the next s z at which the stiffness jumps, inf where there is none; an event of the kernel.
-    begin(s, z, travel, ..) : (q_0, factors) at the start of a Taylor step, with three numbers for its terms.
+    begin(s, z, travel, ..) : (q_0, factors, corner) at the start of a Taylor step: three numbers for its terms, and the
+        next s z at which the stiffness jumps, an event; inf where there is none.
     term(k, factors, x, v, q) : z_k for k >= 1, with q_k filled in; x up to k, v and q up to k - 1 are given.
     mark(s, z, ..) : where z stands on the branch of direction s, remembered at a reversal [m]; travel counts from it.
     reached(s, z, q, order, h, travel, ..) : z at the end of a step.
@@ -67,7 +61,6 @@ class Law:
     expression: Callable
     ignores: tuple[str, ...] = ()
     memory: bool = True
-    corner: Callable = no_corner
     mark: Callable = no_mark
     reached: Callable = last_of_series
     sides: Callable = only_z

@@ -1,5 +1,7 @@
 """A linear spring, f = ka x: no hysteretic part."""
 
+import math
+
 from numba import njit
 
 from .law import Law
@@ -25,7 +27,7 @@ def recoverable(z, dk, alpha, d0, f0):
 
 @njit(cache=True)
 def begin(s, z, travel, dk, alpha, d0, f0):
-    return z, (0.0, 0.0, 0.0)
+    return z, (0.0, 0.0, 0.0), math.inf
 
 
 @njit(cache=True, inline="always")

@@ -204,7 +204,7 @@ class TestConvergence:
             S[0], C[0] = math.sin(0.18 - 0.05), math.cos(0.18 - 0.05)
             z = law.hysteretic(0.0, 0.02)
             F[0] = law.force(0.02, z)
-            q[0], factors = law.unit.begin(1.0, z, 1.3, *law.constants)
+            q[0], factors, _ = law.unit.begin(1.0, z, 1.3, *law.constants)
             base_series(n, par, factors, 1, A, phi, w, S, C, x, v, q, F, absolute)
             errors.append([np.polyval(phi[n::-1], h) for h in steps])
         error = np.abs(np.subtract(*errors))

@@ -1,0 +1,211 @@
+"""One step of the kernel, part by part: stretch of ground motion, series, first event, end of step (compiled).
+
+All parts are inlined where the kernel calls them (by numba; by LLVM alone the kernel is slower by up to a third): the
+split costs nothing.
+"""
+
+import math
+
+from numba import njit
+
+from . import layout as L
+from .events import (
+    direction_from_rest,
+    find_corner,
+    find_exceedance,
+    find_impact,
+    find_reversal,
+    find_uplift,
+    hop_deceleration,
+)
+from .laws import chosen
+from .polynomial import bracketed_root, value
+from .readings import read_contact, read_energy, write_history
+from .taylor import (
+    HARMONIC,
+    LINEAR_GROUND,
+    QUIET,
+    SHORT_ORDER,
+    allowed_step,
+    base_series,
+    contact_series,
+    ground_series,
+    hop_order,
+    rigid_series,
+)
+
+# The bearings' law, see `laws.Law`.
+mark, begin_step, reached = chosen("mark"), chosen("begin"), chosen("reached")
+
+
+@njit(inline="always")
+def stretch_of_ground(ground, segment, begin, options, duration):
+    """The next stretch of ground motion without a corner: (kind, a0, slope, end [s], order of the series).
+
+    Between samples a_g is a0 + slope t; a pulse has the scale a0, with nothing before and after it.
+    """
+    kind, a0, slope, end, order = QUIET, 0.0, 0.0, duration, options.order
+    if ground.kind == LINEAR_GROUND:
+        if segment < ground.samples.shape[0] - 1:
+            a0 = ground.scale * ground.samples[segment]
+            slope = (ground.scale * ground.samples[segment + 1] - a0) / ground.dt
+            end = min((segment + 1) * ground.dt, duration)
+            order = SHORT_ORDER
+            if a0 != 0 or slope != 0:
+                kind = LINEAR_GROUND
+    elif ground.kind != QUIET:
+        if segment == 0:
+            end = min(ground.start, duration)
+        elif segment == 1:
+            kind, a0, end = ground.kind, ground.scale, min(ground.end, duration)
+    return kind, a0, slope, end, order
+
+
+@njit(inline="always")
+def ground_of_step(ground, kind, a0, slope, t, tau, order, h, A):
+    """Series of the ground acceleration at time t, `tau` into the stretch: (its highest order, step)."""
+    if kind == HARMONIC and ground.frequency == 0:
+        return ground_series(order, LINEAR_GROUND, a0, 0.0, 0.0, 0.0, A), h
+    phase = ground.phase + ground.frequency * (t - ground.start)
+    if kind > LINEAR_GROUND:
+        h = min(h, 1.0 / ground.frequency)
+    return ground_series(order, kind, a0 + slope * tau, slope, ground.frequency, phase, A), h
+
+
+@njit(inline="always")
+def bearing_of_step(par, rocking, s, tilt, rate, base, branch, highest, P):
+    """Base and bearing at the start of a step; fills x, v, q and F of order 0.
+
+    base : (x, v, z). branch : (direction of travel, x_c and D_c of the last reversal).
+    Returns (branch, factors of the bearing's series, the bearing's next corner).
+    """
+    (x, v, z), (direction, x_c, mark_c) = base, branch
+    P[L.X, 0], P[L.V, 0] = x, v
+    P[L.F, 0] = par.count * (par.kb * x + z + par.damping * v)
+    moving = math.copysign(1.0, v)
+    if v == 0:
+        moving = direction_from_rest(par, rocking, s, tilt, rate, highest, P, P[L.F, 0])
+    if moving != direction and moving != 0:
+        direction, x_c = moving, x
+        mark_c = mark(par.law, direction, z, par.dk, par.alpha, par.d0, par.f0)
+    travel = mark_c + direction * (x - x_c)
+    P[L.Q, 0], factors, corner = begin_step(par.law, direction, z, travel, par.dk, par.alpha, par.d0, par.f0)
+    return (direction, x_c, mark_c), factors, corner
+
+
+@njit(inline="always")
+def contact_of_step(par, factors, highest, order, tolerance, h, P):
+    """Series in full contact; returns the step they allow [s]."""
+    A, v, F = P[L.GROUND], P[L.V], P[L.F]
+    if not par.on_base:
+        for k in range(highest + 1, order + 1):
+            A[k] = 0.0
+        return h
+    contact_series(order, par, factors, highest, A, P[L.X], v, P[L.Q], F, P[L.ABSOLUTE])
+    # the force too: where ka is close to kb it varies faster than the velocity shows
+    return allowed_step(F, order, tolerance, allowed_step(v, order, tolerance, h))
+
+
+@njit(inline="always")
+def rocking_of_step(par, kind, s, tilt, rate, fresh, factors, highest, order, tolerance, h, P):
+    """Series while rocking; returns (order used, step [s])."""
+    phi, w, S, C, A, v, F = P[L.PHI], P[L.W], P[L.S], P[L.C], P[L.GROUND], P[L.V], P[L.F]
+    angle, used, reach = s * par.gamma - tilt, order, h
+    phi[0], w[0], S[0], C[0] = tilt, rate, math.sin(angle), math.cos(angle)
+    if tilt == 0 and rate != 0 and kind != LINEAR_GROUND:  # a hop: its length tells the order it needs
+        back = hop_deceleration(par, s, A[0] if highest >= 0 else 0.0, F[0])
+        if back > 0:
+            hop = 2 * abs(rate) / back
+            used = hop_order(math.sqrt(par.p2) * hop, order, tolerance)
+            if used < order:
+                reach = min(h, 1.2 * hop)
+    while True:
+        good = reach
+        if par.on_base:
+            base_series(used, par, factors, highest, A, phi, w, S, C, P[L.X], v, P[L.Q], F, P[L.ABSOLUTE])
+            good = allowed_step(F, used, tolerance, allowed_step(v, used, tolerance, good))
+        else:
+            rigid_series(used, par.p2, par.g, highest, A, phi, w, S, C)
+        if fresh:
+            phi[2], w[1] = 0.0, 0.0
+        good = allowed_step(w, used, tolerance, good)
+        if used == order or good == reach:
+            return used, good
+        used, reach = order, h  # the hop was longer than it looked
+
+
+@njit(inline="always")
+def first_event(par, rocking, s, threshold, refused, direction, corner, order, t, h, P, record, totals, work):
+    """(kind of the first event in the step, its time since the start; NONE and h without one)."""
+    found, event, phi = L.NONE, P[L.EVENT], P[L.PHI]
+    if not rocking:
+        row = L.ABSOLUTE if par.on_base else L.GROUND
+        if abs(P[row, 0]) > threshold and not refused:
+            found, h = L.UPLIFT, 0.0
+        else:
+            root = find_uplift(P, row, order, threshold, refused, h, event, work)
+            if root >= 0:
+                found, h = L.UPLIFT, root
+    else:
+        root = find_impact(phi, s, order, h, event, work)
+        if root >= 0:
+            found, h = L.IMPACT, root
+        if record and totals[L.UNSTABLE_TIME] < 0:
+            root = find_exceedance(phi, s, par.gamma, order, h, event, work)
+            if root >= 0:
+                totals[L.UNSTABLE_TIME] = t + root
+        root = find_exceedance(phi, s, 0.5 * math.pi, order, h, event, work)
+        if root >= 0:
+            found, h = L.OVERTURNING, root
+    if direction != 0:
+        root = find_reversal(P[L.V], direction, order, h, event, work)
+        if root > 0:
+            found, h = L.REVERSAL, root
+        if corner < math.inf:
+            root = find_corner(P[L.Q], direction, corner, order, h, event, work)
+            if root >= 0:
+                found, h = L.CORNER, root
+    return found, h
+
+
+@njit(inline="always")
+def read_step(par, rocking, s, tilt, order, highest, t, h, P, options, history, written, held, totals):
+    """History, diagnostics and ledger of the step.
+
+    Returns (rows of the history written, friction demand and normal force held since |tilt| was last below gamma).
+    """
+    if history.shape[0] > 0 and (h > 0 or t == 0):
+        written = write_history(history, written, options.output_step, t, h, P, order, par.on_base, rocking)
+    if options.record and h > 0:
+        read_contact(par, s, rocking, P, order, highest, h, totals)
+        if abs(tilt) <= par.gamma:  # what comes later is the last fall, or it comes back
+            held = totals[L.FRICTION], totals[L.NORMAL]
+        if rocking or par.on_base:
+            read_energy(par, rocking, P, order, highest, h, totals)
+    return written, held
+
+
+@njit(inline="always")
+def end_of_block(s, rate, order, h, P, peak_tilt):
+    """(tilt, rate, peak tilt) at the end of the step; the peak inside it is a root of the rate."""
+    phi, w, event = P[L.PHI], P[L.W], P[L.EVENT]
+    tilt_end, rate_end = value(phi, order, h), value(w, order, h)
+    if s * rate > 0 and s * rate_end < 0:
+        for k in range(order + 1):
+            event[k] = s * w[k]
+        peak_tilt = max(peak_tilt, abs(value(phi, order, bracketed_root(event, 0, order, 0.0, h))))
+    return tilt_end, rate_end, max(peak_tilt, abs(tilt_end))
+
+
+@njit(inline="always")
+def end_of_base(par, found, base, branch, corner, order, h, P):
+    """(x, v, z) at the end of the step."""
+    (_, _, z), (direction, x_c, mark_c) = base, branch
+    x, v = value(P[L.X], order, h), value(P[L.V], order, h)
+    if found == L.REVERSAL:
+        v = 0.0
+    travel = mark_c + direction * (x - x_c)
+    z = reached(par.law, direction, z, P[L.Q], order, h, travel, par.dk, par.alpha, par.d0, par.f0)
+    if found == L.CORNER:
+        z = direction * corner
+    return x, v, z
