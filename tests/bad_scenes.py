@@ -63,7 +63,7 @@ BAD = {
                     "base.height = 2: unknown key; remove it, known are mass"),
     "unknown table": (replaced("[run]", "[runs]"), "runs = {'duration': 20.0}: unknown key; write run"),
     "unknown law": (replaced("algebraic", "cubic"),
-                    "bearings.law = 'cubic': not known; choose 'algebraic', 'bouc-wen', 'bilinear' or 'linear'"),
+                    "bearings.law = 'cubic': not known; choose 'algebraic', 'bilinear', 'bouc-wen' or 'linear'"),
     "unused key of another law": (replaced("kb = 6.22e3", "kb = 6.22e3\nyield_force = 700.0"),
                                   "bearings.yield_force = 700.0: not used by the algebraic law; remove it"),
     "law without its yield force": (replaced('"algebraic"\ncount = 4\nka = 6.22e4\nkb = 6.22e3\nalpha = 44.69',
