@@ -7,6 +7,7 @@ from .response import Energy, Failure, History, Impact, Response, State
 from .synthetic import synthetic_motion
 
 with kernel_cache():
+    from . import time_stepping  # noqa: F401 compiled, too
     from .batch import Outcomes, overturning_map, rocking_spectrum, simulate_many
     from .scene import Base, Bearings, Block, Scene, Start
     from .scene_file import load_scene, shipped_scenes

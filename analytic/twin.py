@@ -112,8 +112,7 @@ class _Run:
         # side of the corner the block rocks about; 0 is full contact
         self.side = math.copysign(1.0, start.tilt or start.tilt_rate) if start.tilt or start.tilt_rate else 0.0
         self.lifted = 0.0 if start.tilt == 0 else -1.0  # when tilt was last 0
-        self.turned = -1.0  # when the base last stood still
-        self.corner = math.inf  # z at the bearing's next corner [N]
+        self.turned, self.corner = -1.0, math.inf  # when the base last stood still; the bearing's next corner, z [N]
         self.flight = None  # a guess of the next step [s]
         self.rocked, self.overturning, self.unstable = self.side != 0, None, None
         if abs(start.tilt) >= model.gamma:

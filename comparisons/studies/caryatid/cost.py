@@ -81,7 +81,7 @@ def _twin(scene, method):
     return response.cpu_seconds, response.end.base_displacement
 
 
-@njit(cache=True)
+@njit  # no cache: numba would not see that a law has changed
 def _algebraic(z, s, travel, dx, dk, alpha, d0, f0):
     """z after dx from z: on the branch of direction s, where `travel` = D_c + s (x - x_c) is known, with one power."""
     if dx * s < 0:
@@ -89,7 +89,7 @@ def _algebraic(z, s, travel, dx, dk, alpha, d0, f0):
     return s * (dk * ((travel + s * dx) ** (1 - alpha) - d0) / (1 - alpha) + f0)
 
 
-@njit(cache=True)
+@njit
 def _rk4(dt, samples, divisions, mass, law, count, kb, dk, alpha, d0, f0):
     """Final displacement in full contact, eq. (2), with RK4; the algebraic history is committed at each step's end."""
     x, v, z, s = 0.0, 0.0, 0.0, 1.0
