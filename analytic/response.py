@@ -148,6 +148,30 @@ class Response:
             values[part.name] = value
         return _finite(values)
 
+    @classmethod
+    def from_json(cls, values, history=None):
+        """The response that gave these values by `to_json`; a number that was not finite is NaN.
+
+        values may lack cpu_seconds; history: the `History` to give it.
+        """
+        values = {name: value for name, value in values.items() if name != "impact_count"}
+        failure, energy = values.get("failure"), values.get("energy")
+        if failure is not None:
+            failure = Failure(**{**failure, "last_state": failure["last_state"] and _of(State, failure["last_state"])})
+        numbers = {part.name: _number(values.get(part.name)) for part in dataclasses.fields(cls) if part.type is float}
+        series = {name: tuple(values[name]) for name in ("uplifts", "rests", "warnings")}
+        return cls(**{**values, **numbers, **series, "impacts": tuple(_of(Impact, one) for one in values["impacts"]),
+                      "end": _of(State, values["end"]), "failure": failure, "energy": energy and Energy(**energy),
+                      "history": history})
+
+
+def _of(kind, values):
+    return kind(**{name: _number(value) for name, value in values.items()})
+
+
+def _number(value):
+    return math.nan if value is None else value
+
 
 def _finite(value):
     if isinstance(value, dict):

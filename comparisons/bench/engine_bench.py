@@ -66,7 +66,7 @@ def bench_engines(engine, output, *, scenes=2000, seed=1, workers=None, time_lim
     ensemble = [wide_scene(seed, index) for index in range(scenes)]
     with (Store(output / "reference.jsonl") as reference, Store(output / f"{engine}.jsonl") as store,
           Processes(workers, ("analytic", engine)) as executor):
-        options = dict(executor=executor, reduce=keep, progress=progress)
+        options = dict(executor=executor, measure=keep, progress=progress)
 
         def model_runs(cases, label):
             return run_sweep(cases, store=reference, time_limit=KERNEL_SECONDS, label=label, **options)
@@ -145,7 +145,7 @@ def examine(engine, index, *, seed=1, time_limit=60.0):
     scene, seen = wide_scene(seed, index), {}
     with (TemporaryDirectory() as folder, Store(Path(folder) / "runs.jsonl") as store,
           Processes(1, ("analytic", engine)) as executor):
-        options = dict(store=store, executor=executor, reduce=keep, progress=False)
+        options = dict(store=store, executor=executor, measure=keep, progress=False)
 
         def model_runs(cases, label):
             rows = run_sweep(cases, time_limit=KERNEL_SECONDS, **options) if cases else []

@@ -6,8 +6,8 @@ RESOLVED = 0.1  # share of the run's largest rate from which on an impact counts
 GRID, MOST_IMPACTS = 50, 400  # points of the growing peaks, impacts kept
 
 
-def keep(response):
-    """Reducer: what the judgement needs of a response with its history, as JSON values."""
+def keep(case, response):
+    """Measure: what the judgement needs of a response with its history, as JSON values."""
     history = response.history
     steps = np.searchsorted(history.time, history.time[1] * (2000 / GRID) * np.arange(1, GRID + 1) * (1 + 1e-9),
                             side="right") - 1

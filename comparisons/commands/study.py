@@ -1,39 +1,100 @@
-"""``rocking study NAME``: the studies. Each is a module of ``comparisons.studies`` with a function ``command``."""
+"""``rocking study NAME``: every study as a command of its own, made of its `Study`."""
 
-import importlib
-import importlib.util
+import inspect
+from typing import Annotated
 
 import typer
 from typer.core import TyperGroup
 
-# name on the command line: module in comparisons.studies
-STUDIES = {
-    "restitution": "restitution",
-    "overturning": "overturning",
-    "fragility": "fragility",
-    "speed-error": "speed_error",
-    "stability": "stability",
-    "caryatid": "caryatid",
-    "tolerances": "tolerances",
-}
-PACKAGE = "comparisons.studies"
+from ..studies import StudyBroken, get_study, study_names
+
+Quick = Annotated[bool, typer.Option("--quick", help="A first look, in minutes.")]
+Output = Annotated[str | None, typer.Option(metavar="DIR", help="Folder for the result file, the figures and the runs "
+                                                                "from which an interrupted study resumes. Default: "
+                                                                "NAME-study.")]
+Engines = Annotated[list[str] | None, typer.Option("--engine", help="Engine to compare, more than one by repetition; "
+                                                                    "all installed without it.")]
+Workers = Annotated[int | None, typer.Option(min=1, help="Worker processes; one per core without it.")]
+Replot = Annotated[str | None, typer.Option(metavar="FILE", help="Run nothing, draw only, from this result file.")]
 
 
-class _LazyStudies(TyperGroup):
+def _options(function):
+    """The keyword-only parameters of a plan or of figures."""
+    return [parameter for parameter in inspect.signature(function).parameters.values()
+            if parameter.kind is inspect.Parameter.KEYWORD_ONLY]
+
+
+def command_of(study):
+    """A function that Typer makes the study's command of."""
+    drawing = {parameter.name for parameter in _options(study.figures)}
+
+    def command(quick=False, output=None, engine=None, workers=None, replot=None, **options):
+        from ..running.files import check_folder
+        from ..running.provenance import read_result
+        from ..running.study import asked, compute, draw
+
+        shown = {name: value for name, value in options.items() if name in drawing}
+        if output:
+            check_folder(output)
+        if replot:
+            return _tell(draw(study, replot, output, **shown))
+        output = output or f"{study.name}-study"
+        given = {name: value for name, value in options.items() if name not in drawing}
+        problems = []
+        for path in compute(study, output, asked(engine, quick), workers=workers, **given):
+            _tell([path, *draw(study, path, **shown)])
+            result = read_result(path)
+            for paragraph in study.section(result).text:
+                typer.echo(paragraph, err=True)
+            problems += study.problems(result)
+        if problems:
+            _tell(problems)
+            raise typer.Exit(1)
+
+    def option(name, kind, default):
+        return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
+
+    parameters = [option("quick", Quick, False), option("output", Output, None), option("engine", Engines, None),
+                  option("workers", Workers, None), option("replot", Replot, None), *_options(study.plan),
+                  *_options(study.figures)]
+    command.__signature__ = inspect.Signature(parameters)
+    command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    command.__doc__ = study.question
+    return command
+
+
+def _tell(lines):
+    for line in lines:
+        print(line)
+
+
+class _Studies(TyperGroup):
     def list_commands(self, ctx):
-        return [name for name, module in STUDIES.items() if importlib.util.find_spec(f"{PACKAGE}.{module}")]
+        return list(study_names())
 
     def get_command(self, ctx, name):
-        if name not in self.list_commands(ctx):
+        try:
+            function = command_of(get_study(name))
+        except KeyError:
             return None
-        study = typer.Typer(add_completion=False, rich_markup_mode=None)
-        study.command(name)(importlib.import_module(f"{PACKAGE}.{STUDIES[name]}").command)
-        command = typer.main.get_command(study)
+        except StudyBroken as error:
+            function = _broken(error)
+        app = typer.Typer(add_completion=False, rich_markup_mode=None)
+        app.command(name)(function)
+        command = typer.main.get_command(app)
         command.name = name
         return command
 
 
-app = typer.Typer(cls=_LazyStudies, add_completion=False, rich_markup_mode=None, no_args_is_help=True)
+def _broken(error):
+    def command():
+        raise error
+
+    command.__doc__ = f"Cannot be used. {error}"
+    return command
+
+
+app = typer.Typer(cls=_Studies, add_completion=False, rich_markup_mode=None, no_args_is_help=True)
 
 
 @app.callback()

@@ -11,11 +11,11 @@ import numpy as np
 from analytic import PulseMotion, SampledMotion, Scene, Start, load_scene, simulate
 from analytic.bearing import BearingLaw
 from analytic.caryatid import BASE, BEARINGS, caryatid_block
-from analytic.rocking import restitution
 from engines import get_engine
 from engines.momentum import impulse_error
 
-from .measures import base_jump_error, compare, state_restitution, swing_restitution
+from .measures import compare
+from .restitution import impact_errors, rms
 
 STARTS = (0.3, 0.37, 0.44, 0.51, 0.59, 0.66, 0.73, 0.8)  # released tilt over slenderness
 SLENDERNESSES = (0.1, 0.2, 0.3, 0.45)
@@ -78,25 +78,25 @@ def _free_responses(engine, variant, scenes, runs):
 
 
 def _worst_rms(groups):
-    return max(float(np.sqrt(np.mean(np.square(np.concatenate(values))))) for values in groups)
+    return max(rms(np.concatenate(values)) for values in groups)
 
 
 def restitution_rms(engine, variant, scenes, runs):
     """Error of e_phi against eq. (7) from the states at the first three impacts, rms over starts; worst slenderness."""
-    return _worst_rms([[state_restitution(response)[:IMPACTS] - restitution(scene) for scene, response in pairs]
+    return _worst_rms([[impact_errors(scene, response, IMPACTS)["state"] for scene, response in pairs]
                        for pairs in _free_responses(engine, variant, scenes, runs).values()])
 
 
 def swing_restitution_bias(engine, variant, scenes, runs):
     """|mean| error of e_phi against eq. (7) from the energies of the swings around the first three impacts."""
-    errors = [swing_restitution(scene, response)[:IMPACTS] - restitution(scene)
+    errors = [impact_errors(scene, response, IMPACTS)["swing"]
               for pairs in _free_responses(engine, variant, scenes, runs).values() for scene, response in pairs]
     return float(abs(np.nanmean(np.concatenate(errors))))
 
 
 def base_jump_rms(engine, variant, scenes, runs):
     """Relative error of the base velocity jump against momentum, rms over starts and impacts; worst slenderness."""
-    return _worst_rms([[base_jump_error(scene, response)[:IMPACTS] for scene, response in pairs]
+    return _worst_rms([[impact_errors(scene, response, IMPACTS)["jump"] for scene, response in pairs]
                        for pairs in _free_responses(engine, variant, scenes, runs).values()])
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from analytic.response import History, Impact, Response, State
+from analytic.response import History, Response
 
 from ..running.provenance import ResultError
 
@@ -19,25 +19,22 @@ MOST_SHOWN, PARTS = 20_000, 1_500
 
 @dataclass(frozen=True)
 class ToFile:
-    """Reducer: everything, the history as a file in `folder`, shape (columns of `History`, samples)."""
+    """Measure: everything, the history as a file in `folder`, shape (columns of `History`, samples)."""
 
     folder: str
 
-    def __call__(self, response):
+    def __call__(self, case, response):
         content = (response.scene, response.engine, response.variant)
         name = hashlib.sha256(repr(content).encode()).hexdigest()[:16] + ".npy"
         np.save(Path(self.folder) / name, [getattr(response.history, column) for column in History.COLUMNS])
         return {**response.to_json(), "history": name}
 
 
-def response_of(values, folder=None):
-    """The `Response` a reducer's values came from, its history from `folder`; None where a number was not finite."""
-    values = {key: value for key, value in values.items() if key != "impact_count"}
-    file = values.pop("history", None)
-    impacts = tuple(Impact(**impact) for impact in values.pop("impacts"))
-    tuples = {name: tuple(values.pop(name)) for name in ("uplifts", "rests", "warnings")}
-    values.update(end=State(**values["end"]), energy=None, cpu_seconds=values.get("cpu_seconds", 0.0))
-    return Response(impacts=impacts, history=file and folder and _history(Path(folder) / file), **tuples, **values)
+def response_of(values, folder):
+    """The `Response` of a row's values, its history from `folder`."""
+    file = values["history"]
+    return Response.from_json({key: value for key, value in values.items() if key != "history"},
+                              _history(Path(folder) / file))
 
 
 def _history(path):

@@ -9,12 +9,13 @@ from scipy.integrate import trapezoid
 
 from analytic import load_scene, simulate
 from analytic.closed_form import free_rocking
-from analytic.response import History
+from analytic.response import History, Response
 from analytic.rocking import base_jump_length, restitution
 from engines import ENGINES, available_engines, get_engine
 
 from ..measuring.horizon import solver_horizon
-from ..measuring.measures import base_jump_error, compare, state_restitution
+from ..measuring.measures import compare
+from ..measuring.restitution import SLOWEST_IMPACT, impact_errors, rms
 from ..running.cases import Case
 from ..running.provenance import write_result
 from ..running.sweep import Processes, Serial, Store, run_sweep
@@ -28,8 +29,6 @@ STARTS = (0.3, 0.45, 0.6, 0.75)  # released tilt over slenderness
 VARIANT_STARTS = (0.6,)  # of the variants that are not an engine's default
 BASES = {"rigid ground": None, "sliding base": {"mass": 212.0}}  # kg
 FREE_SECONDS = 3.0
-# Impacts slower than this share of the first are left out: engines come to rest in a chatter of their own.
-SLOWEST_IMPACT = 0.1
 # Outer limit of a run [s], and what a second and a sample of the motion add to it; the longest under a usual record
 # takes a few seconds. A hang becomes a failed row.
 TIME_LIMIT, LIMIT_PER_SECOND, LIMIT_PER_SAMPLE = 60.0, 1.0, 1e-3
@@ -62,23 +61,23 @@ def make_results(folder, motion, *, duration=None, slendernesses=SLENDERNESSES, 
     free = free_rocking_cases(engines, slendernesses)
     unfinished = folder / UNFINISHED
     unfinished.mkdir(exist_ok=True)
-    reducers = ToFile(str(unfinished.resolve())), impacts_only
+    measures = ToFile(str(unfinished.resolve())), impacts_only
     samples = len(motion.samples)
     limit = TIME_LIMIT + LIMIT_PER_SECOND * motion.end + LIMIT_PER_SAMPLE * samples
     say("analytic model (the first run on a machine compiles it)")
     simulate(next(iter(scenes.values())), history=False)  # before workers start, so that they find the compiled kernel
     rows = []
     with Store(unfinished / "runs.jsonl") as opened:
-        for cases, reduce in zip((caryatid, free), reducers, strict=True):
+        for cases, measure in zip((caryatid, free), measures, strict=True):
             ours = [case for case in cases if case.solver == "analytic"]
-            rows.append(run_sweep(ours, store=opened, reduce=reduce, executor=Serial(), progress=False))
+            rows.append(run_sweep(ours, store=opened, measure=measure, executor=Serial(), progress=False))
         # One pool for both: the long runs of the Caryatid first.
         with Processes(None if samples <= SHORT_RECORD else 1, solvers=engines) as pool:
             say(f"the Caryatid in {', '.join(engines)}" if engines else "no engine installed")
-            for place, (cases, reduce, label) in enumerate(zip((caryatid, free), reducers, ("Caryatid", "free rocking"),
-                                                               strict=True)):
+            for place, (cases, measure, label) in enumerate(
+                    zip((caryatid, free), measures, ("Caryatid", "free rocking"), strict=True)):
                 theirs = [case for case in cases if case.solver != "analytic"]
-                rows[place] += run_sweep(theirs, store=opened, reduce=reduce, executor=pool,
+                rows[place] += run_sweep(theirs, store=opened, measure=measure, executor=pool,
                                          time_limit=limit, label=label) if theirs else []
     modules = ["comparisons.report.runs", *(ENGINES[name].adapter for name in engines)]
     _write_caryatid(folder / CARYATID, rows[0], scenes, motion, missing, modules)
@@ -113,8 +112,8 @@ def free_rocking_cases(engines, slendernesses):
     return cases
 
 
-def impacts_only(response):
-    """Reducer: everything but the history."""
+def impacts_only(case, response):
+    """Measure: everything but the history."""
     return response.to_json()
 
 
@@ -192,19 +191,15 @@ def _restitution_entry(solver, variant, ground, slenderness, members):
     formula = restitution(scene)
     impacts, jumps, time_errors, sound = [], [], [], [row for row in members if not row.failed]
     for row in sound:
-        scene, response = row.case.scene, response_of(row.values)
-        measured = state_restitution(response)
-        rates = np.abs([impact.rate_before for impact in response.impacts])
-        used = rates >= SLOWEST_IMPACT * rates.max(initial=0.0)
-        jump = base_jump_error(scene, response) if scene.base else np.zeros(len(rates))
-        jumps += jump[used].tolist()
+        scene, response = row.case.scene, Response.from_json(row.values)
+        errors = impact_errors(scene, response)
+        jumps += errors.get("jump", np.empty(0)).tolist()
+        times = errors["time"]
         if scene.base is None:
-            count = int(used.sum())
-            exact = free_rocking(scene.rocking_frequency, slenderness, formula, scene.start.tilt, count)
-            times = np.array([impact.time for impact in response.impacts])[used]
+            exact = free_rocking(scene.rocking_frequency, slenderness, formula, scene.start.tilt, len(times))
             time_errors += (times / exact.times - 1).tolist()
-        impacts += [{"start": row.case.tag["start"], "time": impact.time, "restitution": float(e)}
-                    for impact, e, keep in zip(response.impacts, measured, used, strict=True) if keep]
+        impacts += [{"start": row.case.tag["start"], "time": float(time), "restitution": float(error) + formula}
+                    for time, error in zip(times, errors["state"], strict=True)]
     errors = np.array([impact["restitution"] for impact in impacts]) - formula
     simulated = sum(row.values["end"]["time"] for row in sound)
     return {"solver": solver, "variant": sound[0].values["variant"] if sound else variant, "default": len(members) > 1,
@@ -212,16 +207,12 @@ def _restitution_entry(solver, variant, ground, slenderness, members):
             "base_jump_length": base_jump_length(scene), "runs": len(members),
             "failures": [row.failure for row in members if row.failed], "impacts": impacts,
             "warnings": list(dict.fromkeys(warning for row in sound for warning in row.values["warnings"])),
-            "bias": _of(errors, np.mean), "rms": _of(errors, _rms), "worst": _of(np.abs(errors), np.max),
-            "jump_rms": _of(jumps, _rms) if scene.base else None, "time_rms": _of(time_errors, _rms),
+            "bias": _of(errors, np.mean), "rms": _of(errors, rms), "worst": _of(np.abs(errors), np.max),
+            "jump_rms": _of(jumps, rms) if scene.base else None, "time_rms": _of(time_errors, rms),
             "settings": sound[0].values["settings"] if sound else None,
             "cpu_per_second": sum(row.cost["cpu_seconds"] for row in sound) / simulated if sound else None,
             "simulated": simulated}
 
 
-def _rms(values):
-    return np.sqrt(np.mean(np.square(values)))
-
-
-def _of(values, measure):
-    return float(measure(values)) if len(values) else None
+def _of(values, number):
+    return float(number(values)) if len(values) else None

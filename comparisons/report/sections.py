@@ -4,20 +4,8 @@ import math
 
 from ..showing.drawing import draw_scenes
 from ..showing.parts import Section, Table, number
+from ..showing.wording import TRUSTED, USABLE, trust
 from . import figures
-
-# Root mean square error of restitution: measured restitution of stone scatters by some per cent.
-TRUSTED, USABLE = 1e-3, 1e-2
-
-
-def trust(rms, failed):
-    """May restitution be trusted at this root mean square error, None for none, and number of failed runs? In words."""
-    if rms is not None and not failed:
-        if rms <= TRUSTED:
-            return "may be trusted"
-        if rms <= USABLE:
-            return "is usable where a per cent does not matter"
-    return "is not to be trusted"
 
 
 def variant_groups(result):

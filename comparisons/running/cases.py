@@ -30,8 +30,8 @@ class Case:
 
     scene: what is simulated. solver: "analytic", "twin", "time-stepping", the name of an engine, or
     "module:function". variant: None takes the solver's default. settings: keyword arguments, JSON values
-    only; {"history": False} spares time where the reducer looks at no history. tag: whatever the study
-    wants to find again in the row (JSON values); no part of the key.
+    only; {"history": False} spares time where the measure looks at no history. tag: whatever the measure and the
+    study want to know of it (JSON values).
     """
 
     scene: Scene
@@ -44,10 +44,10 @@ class Case:
         object.__setattr__(self, "settings", dict(self.settings))
         object.__setattr__(self, "tag", dict(self.tag))
 
-    def key(self, reduce=None):
-        """Hash of all that the row depends on: scene, solver, variant, settings, reducer, versions, sources."""
-        content = (self.scene.digest(), self.solver, self.variant, self.settings, name_of(reduce),
-                   fingerprint(self.solver, reduce))
+    def key(self, measure=None):
+        """Hash of all that the row depends on: scene, solver, variant, settings, tag, measure, versions, sources."""
+        content = (self.scene.digest(), self.solver, self.variant, self.settings, self.tag, name_of(measure),
+                   fingerprint(self.solver, measure))
         return hashlib.sha256(json.dumps(content, sort_keys=True, allow_nan=False).encode()).hexdigest()[:32]
 
     def run(self):
@@ -106,18 +106,18 @@ def name_of(function):
         return None
     name = f"{function.__module__}:{getattr(function, '__qualname__', type(function).__qualname__)}"
     if "<" in name:
-        raise ValueError(f"reducer {name} cannot travel to a worker process; make it a module-level function")
+        raise ValueError(f"measure {name} cannot travel to a worker process; make it a module-level function")
     return name
 
 
-def fingerprint(name, reduce=None):
-    """Digest of the versions and of the project's source files behind a solver and a reducer."""
-    return _fingerprint(name, reduce.__module__ if reduce else None)
+def fingerprint(name, measure=None):
+    """Digest of the versions and of the project's source files behind a solver and a measure."""
+    return _fingerprint(name, measure.__module__ if measure else None)
 
 
 @functools.cache  # of the code this process has loaded: it cannot change under it
-def _fingerprint(name, reducer_module):
-    modules = [module_of(name)] + ([reducer_module] if reducer_module else [])
+def _fingerprint(name, measuring):
+    modules = [module_of(name)] + ([measuring] if measuring else [])
     return digest_of({"versions": json.dumps(versions(name)), **source_digests(modules)})
 
 

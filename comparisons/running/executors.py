@@ -46,7 +46,7 @@ class Task:
     ticket: str
     cases: tuple[Case, ...]
     keys: tuple[str, ...]
-    reduce: Callable | None
+    measure: Callable | None
     time_limit: float
     enough: float
 
@@ -199,11 +199,12 @@ def _lines(task):
             response = case.run()
             row["cost"] = {"cpu_seconds": response.cpu_seconds}
             if response.outcome == "failed":
-                # Reducers see sound responses only; of a failed one everything is kept as evidence.
+                # Measures see sound responses only; of a failed one everything is kept as evidence.
                 row["values"] = response.to_json()
                 row["failure"] = {"kind": "solver", **row["values"].pop("failure")}
             else:
-                row["values"] = response.to_json() if task.reduce is None else task.reduce(response)
+                row["values"] = response.to_json() if task.measure is None else task.measure(case, response)
+                row["cost"] |= row["values"].pop("cost", {})
             row["values"] = json_ready(row["values"])
             row["values"].pop("cpu_seconds", None)
             line = json.dumps(row, allow_nan=False)

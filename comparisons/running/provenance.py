@@ -11,6 +11,7 @@ import tempfile
 from dataclasses import asdict, dataclass, field, is_dataclass
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,7 @@ import psutil
 
 from engines import ENGINES
 
-from .sources import source_digests
+from .sources import PROJECT, digests_of_all, source_digests
 
 SCHEMA = 1  # of the result files; raise it when a reader of the old ones would go wrong
 PROJECT_FOLDER = Path(__file__).parents[2]
@@ -138,16 +139,12 @@ def read_result(path):
 def age(result):
     """In words: None if the code behind `result` is the code here, else what has changed since.
 
-    Comments and docstrings do not count, and neither do package versions.
+    Code counts, wherever it has moved; comments, docstrings and package versions do not.
     """
     then = result.provenance["sources"]
-    now = {}
-    for name in then:
-        try:
-            now[name] = source_digests([name])[name][:16]
-        except ModuleNotFoundError:
-            now[name] = None
-    changed = [name for name in then if now[name] != then[name]]
+    packages = {*PROJECT, *(name.partition(".")[0] for name in then)}
+    here = {digest[:16] for digest in digests_of_all(name for name in packages if find_spec(name))}
+    changed = [name for name, digest in then.items() if digest not in here]
     if not changed:
         return None
     commit = result.provenance["commit"]

@@ -1,9 +1,10 @@
 """Where outcomes change along a line, evaluated beside the changes and not everywhere.
 
-A search is a generator: it yields a list of points, is sent the list of their outcomes, and returns its
-result. `drive` runs many searches in rounds, so that every round is one batch (one sweep). Outcomes are any
-labels that compare equal or not. Labels that say more find more: between "overturns after one impact" and
-"overturns without" bisection must meet the safe gap, however thin; between two plain "overturns" it cannot.
+A search is a generator: it yields a list of points, is sent the list of their outcomes, and returns its result.
+`together` runs many searches in rounds, so that every round is one batch (one sweep); `drive` asks a function for the
+outcomes. Outcomes are any labels that compare equal or not. Labels that say more find more: between "overturns after
+one impact" and "overturns without" bisection must meet the safe gap, however thin; between two plain "overturns" it
+cannot.
 """
 
 from dataclasses import dataclass
@@ -33,26 +34,24 @@ class Column:
     evaluations: int
 
 
-def drive(searches, evaluate):
-    """Run several searches side by side.
+def together(searches):
+    """Many searches as one, in rounds.
 
     Parameters
     ----------
     searches : list of generators
         As `boundaries` makes them.
-    evaluate : callable
-        Called once a round with the list of (index of the search, point); returns the outcomes in that
-        order. Put a sweep here.
 
     Returns
     -------
-    list
-        What each search returned.
+    generator
+        Yields once a round a list of (index of the search, point), is sent the list of their outcomes, and returns a
+        list of what each search returned.
 
     Raises
     ------
     ValueError
-        `evaluate` returned another number of outcomes than it was given points.
+        It was sent another number of outcomes than it gave points.
     """
     results = [None] * len(searches)
     answers = dict.fromkeys(range(len(searches)))
@@ -64,12 +63,23 @@ def drive(searches, evaluate):
             except StopIteration as stop:
                 results[index] = stop.value
         batch = [(index, point) for index, points in asked.items() for point in points]
-        outcomes = list(evaluate(batch)) if batch else []
+        outcomes = list((yield batch)) if batch else []
         if len(outcomes) != len(batch):
-            raise ValueError(f"evaluate returned {len(outcomes)} outcomes for {len(batch)} points")
+            raise ValueError(f"{len(outcomes)} outcomes were sent for {len(batch)} points")
         arriving = iter(outcomes)
         answers = {index: [next(arriving) for _ in points] for index, points in asked.items()}
     return results
+
+
+def drive(searches, evaluate):
+    """What each of `searches` returned; evaluate(batch) gives the outcomes of a round, see `together`."""
+    rounds, outcomes = together(searches), None
+    while True:
+        try:
+            batch = rounds.send(outcomes)
+        except StopIteration as stop:
+            return stop.value
+        outcomes = evaluate(batch)
 
 
 def boundaries(low, high, scan, tolerance, near=4):
@@ -92,7 +102,7 @@ def boundaries(low, high, scan, tolerance, near=4):
     Returns
     -------
     generator
-        For `drive`; yields lists of float, returns a `Column`.
+        For `together`; yields lists of float, returns a `Column`.
     """
     if not (low < high and scan >= 2 and tolerance > 0 and near >= 1):
         raise ValueError(f"boundaries needs low < high, scan >= 2, tolerance > 0 and near >= 1, not low = {low!r}, "

@@ -1,4 +1,4 @@
-"""Which source files a number depends on, as digests that ignore comments and docstrings."""
+"""Which source files a number depends on, as digests that ignore comments, docstrings and where modules lie."""
 
 import ast
 import functools
@@ -21,8 +21,8 @@ def source_digests(modules):
     Returns
     -------
     dict
-        Dotted module name -> hexadecimal digest of its code, sorted by name. Comments, docstrings and
-        layout do not count: rewording them does not make a result stale.
+        Dotted module name -> hexadecimal digest of its code, sorted by name. Comments, docstrings and layout do not
+        count, and of an import only the names that it binds: neither rewording nor moving makes a result stale.
 
     Raises
     ------
@@ -48,8 +48,20 @@ def source_digests(modules):
 
 
 def digest_of(digests):
-    """One digest for a dict of digests."""
-    return hashlib.sha256(repr(sorted(digests.items())).encode()).hexdigest()
+    """One digest for a dict of digests, whatever their names."""
+    return hashlib.sha256(repr(sorted(digests.values())).encode()).hexdigest()
+
+
+def digests_of_all(packages):
+    """Digests of every source file of some packages or modules, as a set: what the code holds, wherever it lies."""
+    found = set()
+    for package in packages:
+        file = _file(package)
+        if file is None:
+            continue
+        inside = file.parent.rglob("*.py") if file.name == "__init__.py" else [file]
+        found.update(_read(package, str(one), one.stat().st_mtime_ns)[0] for one in inside)
+    return found
 
 
 def _file(name):
@@ -83,6 +95,8 @@ def _code(node):
     """The tree as text, without docstrings and empty fields (which differ between Python versions)."""
     if isinstance(node, list):
         return "[" + ",".join(map(_code, node)) + "]"
+    if isinstance(node, ast.Import | ast.ImportFrom):
+        return f"Import({','.join(sorted(alias.asname or alias.name for alias in node.names))})"
     if not isinstance(node, ast.AST):
         return repr(node)
     fields = []

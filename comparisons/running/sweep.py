@@ -1,8 +1,8 @@
 """Many runs: a list of cases in, a row for each out, in parallel, resumable, proof against crashes and hangs.
 
-    rows = run_sweep(cases, store="results/map.jsonl", reduce=measures.outcome)
+    rows = run_sweep(cases, store="results/map.jsonl", measure=outcome)
 
-The store can be reused: rows whose scene, solver, variant, settings, reducer, versions and source code are
+The store can be reused: rows whose scene, solver, variant, settings, tag, measure, versions and source code are
 unchanged are not run again.
 """
 
@@ -30,9 +30,10 @@ CHUNK_CASES = 512
 class Row:
     """Result of one case.
 
-    values: what the reducer returned, deterministic (or the whole `Response.to_json()` without a reducer).
+    values: what the measure returned, deterministic (or the whole `Response.to_json()` without a measure).
     failure: None, or kind ("solver", "exception", "time limit", "crash"), reason and message; the
-    outcome in values is then "failed". cost: cpu_seconds, which differs from run to run.
+    outcome in values is then "failed". cost: cpu_seconds and whatever else of the measure's "cost" differs from run to
+    run.
     """
 
     case: Case
@@ -46,7 +47,7 @@ class Row:
         return self.failure is not None
 
 
-def run_sweep(cases, *, store, workers=None, time_limit=300.0, reduce=None, executor=None, progress=True,
+def run_sweep(cases, *, store, workers=None, time_limit=300.0, measure=None, executor=None, progress=True,
               label="runs"):
     """Run every case and return its `Row`s in the order of the cases, whatever the order they ran in.
 
@@ -61,8 +62,8 @@ def run_sweep(cases, *, store, workers=None, time_limit=300.0, reduce=None, exec
     time_limit : float
         Seconds a run may take; beyond, its row is "failed". A row that failed so is run again when the
         limit is raised, and so is one whose worker was killed from outside.
-    reduce : callable or None
-        Module-level function, `Response` -> dict of JSON values; runs in the worker, and only on
+    measure : callable or None
+        Module-level function, (`Case`, `Response`) -> dict of JSON values; runs in the worker, and only on
         responses that have not failed.
     executor : Executor or None
         Where to run, to share workers between sweeps; it stays open.
@@ -77,11 +78,11 @@ def run_sweep(cases, *, store, workers=None, time_limit=300.0, reduce=None, exec
         The store is in use or damaged.
     """
     cases = list(cases)
-    name_of(reduce)  # a reducer that cannot travel is an error now, not a failed row each
+    name_of(measure)  # a measure that cannot travel is an error now, not a failed row each
     names = sorted({case.solver for case in cases})
     for name in names:
         solver(name)
-    keys = [case.key(reduce) for case in cases]
+    keys = [case.key(measure) for case in cases]
     with ExitStack() as stack:
         if not isinstance(store, Store):
             store = stack.enter_context(Store(store))
@@ -93,13 +94,13 @@ def run_sweep(cases, *, store, workers=None, time_limit=300.0, reduce=None, exec
             line = bar.add_task(label, total=len(waiting))
             if executor is None:
                 executor = stack.enter_context(Processes(workers, names))
-            _run(waiting, store, executor, reduce, time_limit, lambda count: bar.advance(line, count))
+            _run(waiting, store, executor, measure, time_limit, lambda count: bar.advance(line, count))
         rows = [store.get(key) for key in keys]
     return [Row(case, row["values"], row["failure"], row["cost"], key not in waiting)
             for case, key, row in zip(cases, keys, rows, strict=True)]
 
 
-def _run(waiting, store, executor, reduce, time_limit, advance):
+def _run(waiting, store, executor, measure, time_limit, advance):
     chunks = _Chunks(waiting, executor.slots)
     alone = deque()  # members of lost tasks: each runs by itself, to find the guilty one
     submitted = {}
@@ -109,7 +110,7 @@ def _run(waiting, store, executor, reduce, time_limit, advance):
             keys, cases = zip(*members, strict=True)
             ticket = f"{keys[0]}-{len(keys)}"
             submitted[ticket] = members
-            executor.submit(Task(ticket, cases, keys, reduce, time_limit, ENOUGH_SECONDS))
+            executor.submit(Task(ticket, cases, keys, measure, time_limit, ENOUGH_SECONDS))
         done = executor.next()
         members = submitted.pop(done.ticket, None)
         if members is None:  # of a sweep that was broken off, on a shared executor

@@ -18,6 +18,11 @@ TILT_RANGE = (0.05, 2.0)  # least and greatest limit of a tilt axis, over slende
 SPARE = ("#009E73", (0, (5, 1)), 1.3)
 
 
+def marker(solver):
+    """Marker of a solver: the same in every figure."""
+    return ENGINES[solver].marker if solver in ENGINES else "o"
+
+
 def style(solver):
     """Line keywords of a solver: the same in every figure."""
     colour, dashes, width = STYLES.get(solver, SPARE)

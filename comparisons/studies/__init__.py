@@ -1,1 +1,60 @@
-"""The studies: each asks one question of many runs and writes one result file with its figures."""
+"""The studies: each asks one question of many runs and holds one `comparisons.running.study.Study` called ``STUDY``.
+
+Other packages declare theirs in the entry point group `rocking.studies`; an entry resolves to a `Study` of its name.
+"""
+
+from importlib import import_module
+from importlib.metadata import entry_points
+
+from analytic.errors import SettingError
+
+GROUP = "rocking.studies"
+PACKAGE = "comparisons.studies"
+# in the order of the report
+BUILT_IN = ("restitution", "overturning", "fragility", "speed-error", "stability", "caryatid", "tolerances")
+
+
+class StudyBroken(SettingError):
+    """A study that another package declares cannot be used; the message names who declares it."""
+
+
+def study_names():
+    """Names of all studies, those of this project first, each once."""
+    return tuple(dict.fromkeys([*BUILT_IN, *sorted(entry.name for entry in entry_points(group=GROUP))]))
+
+
+def get_study(name):
+    """The `Study` called `name`.
+
+    Raises
+    ------
+    KeyError
+        The name is unknown; the message lists the known ones.
+    StudyBroken
+        Another package declares it, and it cannot be used.
+    """
+    if name in BUILT_IN:
+        return import_module(f"{PACKAGE}.{name.replace('-', '_')}").STUDY
+    entries = list(entry_points(group=GROUP, name=name))
+    if not entries:
+        raise KeyError(f"unknown study {name!r}: choose one of {', '.join(study_names())}")
+    who = f"study {name!r}, declared as {entries[0].value} by {', '.join(sorted(map(_distribution, entries)))}"
+    if len(entries) > 1:
+        raise StudyBroken(f"{who}: several declare that name; uninstall all but one")
+    return _resolve(entries[0], who)
+
+
+def _resolve(entry, who):
+    from ..running.study import Study
+
+    try:
+        study = entry.load()
+    except Exception as error:  # whatever another package raises as it is imported
+        raise StudyBroken(f"{who}: it cannot be imported ({type(error).__name__}: {error})") from error
+    if not isinstance(study, Study) or study.name != entry.name:
+        raise StudyBroken(f"{who}: it is no comparisons.running.study.Study called {entry.name!r}")
+    return study
+
+
+def _distribution(entry):
+    return f"{entry.dist.name} {entry.dist.version}" if entry.dist else "a distribution of no name"

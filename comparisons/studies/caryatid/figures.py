@@ -8,8 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import ScalarFormatter
 
-from ...running.provenance import read_result
-from ...showing.plots import style
+from ...showing.plots import marker, style
 from .paper import X_MAX
 from .runs import FREE, ISOLATED
 from .variations import CATEGORIES, FRICTION_LIMITS, ONLY_FREE, ONLY_ISOLATED
@@ -19,7 +18,6 @@ BLACK, ORANGE, SKY, GREEN, BLUE, RED, PURPLE = ("#000000", "#E69F00", "#56B4E9",
                                                 "#CC79A7")
 DAMPING_STYLES = ((BLACK, "-"), (ORANGE, "--"), (SKY, "-."), (GREEN, (0, (5, 1))), (RED, ":"))
 CATEGORY_COLOURS = ("#FFFFFF", SKY, RED, "#999999")
-MARKERS = {"exudyn": "s", "pybullet": "o"}
 
 
 @dataclass(frozen=True)
@@ -40,11 +38,9 @@ def drawings(result):
     return {name: maker(result) for name, maker in makers.items()}
 
 
-def draw(files):
-    """Write the figures of result files as PNG beside them."""
-    for file in files:
-        for name, drawing in drawings(read_result(file)).items():
-            drawing.figure.savefig(file.with_name(f"{file.stem}-{name}.png"), dpi=150)
+def figures(result):
+    """Name -> matplotlib figure of all figures of a result file."""
+    return {name: drawing.figure for name, drawing in drawings(result).items()}
 
 
 def _axes(rows=1, columns=1, height=3.2, **kind):
@@ -144,12 +140,12 @@ def rocking(result):
 
 
 def _points(axis, rows, value):
-    for solver, marker in MARKERS.items():
+    for solver in dict.fromkeys(row["solver"] for row in rows if row["solver"] != "analytic"):
         chosen = [row for row in rows if row["solver"] == solver and row["outcome"] != "failed"]
         if chosen:
-            axis.plot([row["period"] for row in chosen], [value(row) for row in chosen], linestyle="", marker=marker,
-                      color=style(solver)["color"], markerfacecolor="none", markersize=8 if marker == "s" else 6,
-                      markeredgewidth=1.5, label=solver)
+            axis.plot([row["period"] for row in chosen], [value(row) for row in chosen], linestyle="",
+                      marker=marker(solver), color=style(solver)["color"], markerfacecolor="none",
+                      markersize=8 if marker(solver) == "s" else 6, markeredgewidth=1.5, label=solver)
 
 
 def displacement(result):

@@ -1,17 +1,15 @@
-"""The paper's simulations in the analytic model, exudyn and PyBullet: Figs 4(b) and 6, points of Figs 5(a) and 5(b)."""
+"""The paper's simulations in every solver: Figs 4(b) and 6, points of Figs 5(a) and 5(b)."""
 
 import numpy as np
 
 from analytic import Base, Bearings, Scene, load_scene, rocking_spectrum
 from analytic.linear_oscillator import displacement_spectrum
-from engines import available_engines
 
 from ...running.cases import Case
-from ...running.sweep import run_sweep
+from ...running.study import Batch
 
 FREE, ISOLATED = "free-standing", "isolated"
 SHIPPED = {FREE: "caryatid-rigid", ISOLATED: "caryatid-isolated"}
-ENGINES = ("exudyn", "pybullet")
 DAMPING_RATIOS = (0.05, 0.10, 0.15, 0.20, 0.30)  # Fig. 5(b); the paper's own are not at hand
 OSCILLATOR_DAMPING = (0.05, 0.30)  # of those run in the engines
 # A block this stocky stays down on its oscillator: it lifts at 0.84 g.
@@ -42,32 +40,30 @@ def oscillator(motion, period, damping):
                  bearings=bearing, motion=motion, gravity=scene.gravity)
 
 
-def scalars(response):
-    """Reducer: what came out, without history and impacts."""
+def scalars(case, response):
+    """Measure: what came out, without history and impacts."""
     values = response.to_json()
     return {name: value for name, value in values.items() if name not in ("impacts", "uplifts", "rests", "energy")}
 
 
-def with_history(response):
-    """Reducer: the scalars, and tilt and base displacement at multiples of `HISTORY_STEP`."""
+def with_history(case, response):
+    """Measure: the scalars, and tilt and base displacement at multiples of `HISTORY_STEP`."""
     history = response.history
     time = np.arange(0.0, history.time[-1], HISTORY_STEP)
     kept = {name: np.interp(time, history.time, getattr(history, name)).tolist()
             for name in ("tilt", "base_displacement")}
-    return {**scalars(response), "history": {"time": time.tolist(), **kept}}
+    return {**scalars(case, response), "history": {"time": time.tolist(), **kept}}
 
 
-def simulations(motion, store, quick=False, progress=True):
-    """Rows of all runs, and the histories of Figs 4(b) and 6 as arrays."""
-    engines, missing = available_engines(ENGINES)
+def simulations(motion, engines, quick=False):
+    """Plan of all runs; returns their rows, and the histories of Figs 4(b) and 6 as arrays."""
     solvers = ("analytic", *engines)
     figures = [Case(caryatid(name, motion), solver, tag={"part": "run", "scene": name})
                for name in SHIPPED for solver in solvers]
     points = _points(motion, solvers, quick)
     rows, histories = [], {}
-    for cases, reduce, label in ((figures, with_history, "Figs 4(b), 6"), (points, scalars, "Figs 5(a), 5(b)")):
-        found = run_sweep(cases, store=store, reduce=reduce, time_limit=TIME_LIMIT, progress=progress, label=label)
-        for row in found:
+    for cases, measure, label in ((figures, with_history, "Figs 4(b), 6"), (points, scalars, "Figs 5(a), 5(b)")):
+        for row in (yield Batch(cases, measure, label, TIME_LIMIT)):
             values = dict(row.values)
             if row.case.scene.base is None:  # the ground's own peak: a value of the motion
                 values.pop("peak_base_acceleration", None)
@@ -75,7 +71,7 @@ def simulations(motion, store, quick=False, progress=True):
                 key = f"{row.case.tag['scene']}/{row.case.solver}/{column}"
                 histories[key] = np.array(numbers, dtype=np.float32)
             rows.append({**values, **row.case.tag, "solver": row.case.solver, "failure": row.failure, **row.cost})
-    return rows, histories, missing
+    return rows, histories
 
 
 def _points(motion, solvers, quick):

@@ -1,91 +1,85 @@
-"""The study as a whole: computes everything and writes the result files."""
+"""The study as a whole: its plan."""
 
 import re
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
+import typer
 
 from analytic.design import properties
 from analytic.linear_oscillator import displacement_spectrum
+from engines import available_engines
 
-from ...running.cases import module_of
-from ...running.provenance import write_result
-from ...running.sweep import Store
+from ...running.solving import ground_motion
+from ...running.study import Found, say
 from . import paper
 from .cost import cost_rows
 from .formulas import formulas
 from .paper import NOT_REPRODUCIBLE, OTHER_MOTION, REPRODUCED, Value, judged
-from .runs import ENGINES, FREE, ISOLATED, caryatid, equivalent_oscillators, simulations, spectra
+from .runs import FREE, ISOLATED, caryatid, equivalent_oscillators, simulations, spectra
 from .slenderness import claims, uplift_slenderness
 from .variations import contact, impact_friction, maps
 
-KIND = "caryatid"
 PART_PAPER, PART_MOTION, PART_HISTORIES = "paper", "motion", "histories"
-STORE = "runs.jsonl"
+
+Record = Annotated[str | None, typer.Option(metavar="FILE", help="The Duzce record, or another. Default: the shipped "
+                                                                 "synthetic motion.")]
+Units = Annotated[str | None, typer.Option(help="Of a record that does not say: m/s2, cm/s2 or g.")]
 
 
-def make_results(folder, motion, *, quick=False, progress=True, say=lambda text: None):
-    """Compute the study under `motion` and write its result files into `folder`.
+def plan(ask, motion=None, *, record: Record = None, units: Units = None):
+    """The plan of the study, an answer for each part.
 
     Parameters
     ----------
-    folder : path
-        Made if it does not exist. The engines' runs resume from what a broken-off study left there.
-    motion : SampledMotion
-    quick : bool
-        Fewer points everywhere: under a minute.
-    say : callable
-        Told in words what is being done.
-
-    Returns
-    -------
-    list of Path
-        The result files.
+    ask : Ask
+    motion : SampledMotion or None
+        None: the one in the file `record`.
+    record, units : str or None
+        A ground motion's file and its units; None: the shipped synthetic motion.
     """
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
+    motion = motion or ground_motion(record, units)
+    say(f"ground motion: {motion.label}")
     described = {"motion": {"label": motion.label, "peak_time": motion.peak_time,
-                            "dt": motion.dt, "end": motion.end}, "quick": quick}
+                            "dt": motion.dt, "end": motion.end}, "quick": ask.quick}
     say("bearing law, Table 1, misprints")
     rows, arrays = formulas()
-    files = [write_result(folder / "caryatid-paper.json", KIND, {"part": PART_PAPER}, rows, arrays,
-                          modules=["comparisons.studies.caryatid.formulas"])]
-    with Store(folder / STORE) as store:
-        rows, histories, missing = simulations(motion, store, quick, progress)
+    yield Found({"part": PART_PAPER}, rows, arrays, name="caryatid-paper")
+    rows, histories = yield from simulations(motion, ask.engines, ask.quick)
+    found, arrays, least, slenderness = _analytic(rows, motion, ask.quick)
+    rows += found
+    stem = f"caryatid-under-{_slug(motion)}"
+    yield Found({"part": PART_MOTION, **described, "missing": available_engines()[1], "uplift_slenderness": least,
+                 "slenderness": slenderness}, rows, arrays, name=stem)
+    histories |= {"motion/time": np.arange(len(motion.samples)) * np.float32(motion.dt),
+                  "motion/acceleration": motion.samples.astype(np.float32)}
+    return Found({"part": PART_HISTORIES, **described, "slenderness": slenderness, "x_max": paper.X_MAX},
+                 [row for row in rows if row["part"] == "run"], histories, name=f"{stem}-histories")
+
+
+def _analytic(rows, motion, quick):
+    """(rows, arrays, least slenderness that lifts, the Caryatid's) of what the analytic model alone answers."""
     say("spectra")
     arrays = spectra(motion, quick)
     isolated = caryatid(ISOLATED, motion).with_(duration=motion.end)
     analytic = {row["scene"]: row for row in rows if row["part"] == "run" and row["solver"] == "analytic"}
-    rows += equivalent_oscillators(motion, properties(isolated.bearings, isolated.total_mass, paper.X_MAX),
+    found = equivalent_oscillators(motion, properties(isolated.bearings, isolated.total_mass, paper.X_MAX),
                                    analytic[ISOLATED]["peak_base_displacement"])
-    say("slenderness: which values fit the claims")
-    found, more = claims(motion, quick)
-    rows, arrays = rows + found, arrays | more
-    say("friction and normal force")
-    found, more = contact(motion, quick)
-    rows, arrays = rows + found, arrays | more | _impact_friction(motion)
-    say("other slendernesses, intensities and motions")
-    found, more = maps(motion, quick, say)
-    rows, arrays = rows + found, arrays | more
+    for words, part in (("slenderness: which values fit the claims", lambda: claims(motion, quick)),
+                        ("friction and normal force", lambda: contact(motion, quick)),
+                        ("other slendernesses, intensities and motions", lambda: maps(motion, quick, say))):
+        say(words)
+        here, more = part()
+        found, arrays = found + here, arrays | more
+    arrays |= _impact_friction(motion)
     say("algebraic against Bouc-Wen")
-    rows += cost_rows(motion, quick)
+    found += cost_rows(motion, quick)
     arrays = {name: values.astype(np.float32) if values.dtype == np.float64 else values
               for name, values in arrays.items()}
     least = uplift_slenderness(motion)
-    rows += [value.row() for value in _values(rows, motion, least)]
-    modules = ["comparisons.studies.caryatid.study", *(module_of(name) for name in ENGINES if name not in missing)]
-    stem = f"caryatid-under-{_slug(motion)}"
-    files.append(write_result(folder / f"{stem}.json", KIND,
-                              {"part": PART_MOTION, **described, "missing": missing, "uplift_slenderness": least,
-                               "slenderness": isolated.block.slenderness}, rows, arrays, modules=modules))
-    histories |= {"motion/time": np.arange(len(motion.samples)) * np.float32(motion.dt),
-                  "motion/acceleration": motion.samples.astype(np.float32)}
-    files.append(write_result(folder / f"{stem}-histories.json", KIND,
-                              {"part": PART_HISTORIES, **described, "slenderness": isolated.block.slenderness,
-                               "x_max": paper.X_MAX}, [row for row in rows if row["part"] == "run"], histories,
-                              modules=modules))
-    (folder / STORE).unlink()  # complete: the next study measures afresh
-    return files
+    return found + [value.row() for value in _values(rows + found, motion, least)], arrays, least, \
+        isolated.block.slenderness
 
 
 def is_papers_motion(motion):

@@ -8,10 +8,12 @@ import numpy as np
 from analytic import load_scene, simulate_many, synthetic_motion
 from analytic.rocking import RockingModel
 from analytic.synthetic import PEAK, G
+from engines.pybullet import FIRST_SCRIPT_FRICTION
 
 from ...measuring.statistics import compare, fit_fragility, holm, wilson
 from ...running.cases import Case
-from ..workshop import DEFAULTS, FIRST_SCRIPT_FRICTION, name_of, say
+from ...running.study import Batch, Found, say
+from ...showing.wording import solver_name
 
 TWIN = 1e-4  # relative change of the restitution: the model's own sensitivity
 REFERENCE, SENSITIVITY = "analytic", "analytic, restitution + 1e-4"
@@ -27,28 +29,27 @@ MOTIONS, QUICK_MOTIONS = 200, 16
 FIRST_SCRIPT = ("pybullet", "first-script")  # cheap enough to take along
 
 
-def compute(work, quick=False, scenes=None, motions=None):
-    """Yields (settings, rows, arrays) of the study, one scene more each time.
+def measure(case, response):
+    """What is kept of a run."""
+    return {"outcome": response.outcome}
+
+
+def plan(ask, scenes=None, motions=None):
+    """The plan of the study; an answer with one scene more each time.
+
+    Rows by "part": "curve" (probability of overturning of one solver at one intensity), "fit" (lognormal curve), "pair"
+    (a solver against the analytic model at one intensity), "check" and "failure". Arrays ``<scene>/<solver>``: int8,
+    shape (intensities, motions): 1 overturns, 0 does not, -1 failed.
 
     Parameters
     ----------
-    work : Workshop
-    quick : bool
-        Fewer scenes, motions and intensities.
+    ask : Ask
     scenes, motions : dict and int, optional
         In place of `FULL` or `QUICK`, and of the number of motions.
-
-    Yields
-    ------
-    settings : dict
-    rows : list of dict
-        By "part": "curve" (probability of overturning of one solver at one intensity), "fit" (lognormal curve),
-        "pair" (a solver against the analytic model at one intensity), "check" and "failure".
-    arrays : dict
-        ``<scene>/<solver>``: int8, shape (intensities, motions): 1 overturns, 0 does not, -1 failed.
     """
-    scenes = scenes or (QUICK if quick else FULL)
-    count = motions or (QUICK_MOTIONS if quick else MOTIONS)
+    scenes = scenes or (QUICK if ask.quick else FULL)
+    count = motions or (QUICK_MOTIONS if ask.quick else MOTIONS)
+    solvers = [*((name, None) for name in ask.engines), *([FIRST_SCRIPT] if FIRST_SCRIPT[0] in ask.engines else ())]
     shakings = [synthetic_motion(seed=seed) for seed in range(count)]
     rows, arrays, described = [], {}, {}
     for name, (shipped, block, factors) in scenes.items():
@@ -59,27 +60,29 @@ def compute(work, quick=False, scenes=None, motions=None):
                            "bearings": scene.bearings.model_dump() if scene.bearings else None,
                            "tan_slenderness": math.tan(scene.block.slenderness), "factors": list(factors),
                            "intensities": intensities}
-        found, costs, checks = _analytic(scene, shakings, factors)
+        outcomes, costs, checks = _analytic(scene, shakings, factors)
         rows.append({"part": "check", "scene": name, **checks})
-        for solver, variant in (*DEFAULTS, FIRST_SCRIPT):
-            label = name_of(solver, variant)
+        for solver, variant in solvers:
+            label = solver_name(solver, variant)
             cases = [Case(scene.with_(motion=shaking.scaled(factor)), solver, variant, {"history": False},
                           {"factor": factor, "seed": seed})
                      for factor in factors for seed, shaking in enumerate(shakings)]
-            results = work.run(cases, f"{name}: {label}")
-            found[label] = np.array([FAILED if row.failed else row.values["outcome"] == "overturns"
+            results = yield Batch(cases, measure, f"{name}: {label}")
+            outcomes[label] = np.array([FAILED if row.failed else row.values["outcome"] == "overturns"
                                      for row in results], dtype=np.int8).reshape(len(factors), count)
             seconds = [row.cost["cpu_seconds"] for row in results if row.cost]
             costs[label] = float(np.sum(seconds)) / max(len(seconds), 1)
             rows += [{"part": "failure", "scene": name, "solver": label, **row.case.tag, **row.failure}
                      for row in results if row.failed]
-        rows += _curves(name, found, intensities, costs) + _pairs(name, found, intensities)
-        arrays |= {f"{name}/{label}": values for label, values in found.items()}
-        settings = {"quick": quick, "scenes": described, "motions": count, "seeds": [0, count - 1],
+        rows += _curves(name, outcomes, intensities, costs) + _pairs(name, outcomes, intensities)
+        arrays |= {f"{name}/{label}": values for label, values in outcomes.items()}
+        settings = {"quick": ask.quick, "scenes": described, "motions": count, "seeds": [0, count - 1],
                     "motion": "synthetic duzce-like, scaled", "twin": TWIN,
                     "first_script_friction": FIRST_SCRIPT_FRICTION,
-                    "solvers": [REFERENCE, *(name_of(*one) for one in (*DEFAULTS, FIRST_SCRIPT))]}
-        yield settings, rows, arrays
+                    "solvers": [REFERENCE, *(solver_name(*one) for one in solvers)]}
+        answer = Found(settings, list(rows), dict(arrays), seed=settings["seeds"])
+        yield answer
+    return answer
 
 
 def _analytic(scene, shakings, factors):

@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 from scipy.stats import norm
 
 from ...showing.parts import Section, Table, figure_of, number, percent
-from ...showing.plots import style
+from ...showing.plots import marker, style
 
 LEVEL = 0.05
 READING = ("May an engine be trusted for the probability of overturning? Each motion is given to the analytic model "
@@ -13,7 +13,6 @@ READING = ("May an engine be trusted for the probability of overturning? Each mo
            f"adjusted after Holm for the number of intensities, at a level of {LEVEL:g}. “No difference found” is not "
            "“equal”: each answer says how large a difference would have been found.")
 REFERENCE = "analytic"
-MARKERS = {"analytic": "o", "exudyn": "s", "pybullet": "^"}
 TWIN_STYLE = {"color": "#56B4E9", "linestyle": (0, (1, 1)), "linewidth": 1.2}
 FIRST_STYLE = {"color": "#D55E00", "linestyle": (0, (4, 1, 1, 1)), "linewidth": 1.2}
 
@@ -51,7 +50,7 @@ def draw(result):
             share = np.array([row["overturned"] / row["size"] if row["size"] else np.nan for row in rows])
             reach = np.array([[y - row["low"], row["high"] - y] if row["size"] else [np.nan] * 2
                               for y, row in zip(share, rows, strict=True)])
-            above.errorbar(x, share, np.maximum(reach, 0).T, fmt=MARKERS.get(label, "d"), markersize=4, capsize=2,
+            above.errorbar(x, share, np.maximum(reach, 0).T, fmt=_marker(label), markersize=4, capsize=2,
                            color=look["color"], linestyle="none", label=label)
             fit, = _part(result, "fit", scene=scene, solver=label)
             if fit["median"] is not None:
@@ -61,7 +60,7 @@ def draw(result):
                 pairs = _part(result, "pair", scene=scene, solver=label)
                 below.plot([row["intensity"] for row in pairs],
                            [100 * (row["only_a"] + row["only_b"]) / _size(row) for row in pairs],
-                           marker=MARKERS.get(label, "d"), markersize=4, **look)
+                           marker=_marker(label), markersize=4, **look)
         above.set(title=_scene_name(result, scene), ylim=(-0.03, 1.03), ylabel="share of motions that overturn [-]")
         above.legend(fontsize="small")
         below.set(xlabel="peak ground acceleration [g]", ylabel="disagreements [% of motions]")
@@ -199,8 +198,12 @@ def _size(row):
     return row["both_stand"] + row["both_overturn"] + row["only_a"] + row["only_b"]
 
 
+def _marker(label):
+    return marker(label) if "," not in label else "d"
+
+
 def _style(label):
-    if label in MARKERS:
+    if "," not in label:
         return style(label)
     return TWIN_STYLE if label.startswith("analytic") else FIRST_STYLE
 

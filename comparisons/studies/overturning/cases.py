@@ -6,11 +6,13 @@ import numpy as np
 
 from analytic import load_scene, overturning_map, simulate
 from engines import get_engine
+from engines.pybullet import FIRST_SCRIPT_FRICTION
 
 from ...measuring.statistics import cohen_kappa, confusion
 from ...running.cases import Case
-from ...running.refine import drive
-from ..workshop import FIRST_SCRIPT_FRICTION, name_of, say
+from ...running.refine import together
+from ...running.study import Batch, Found, say
+from ...showing.wording import solver_name
 from .edges import HIGHEST, LOWEST, edges, least_normal, locate, pulse
 
 SHAPES = ("one-sine", "one-cosine", "ricker")
@@ -25,40 +27,55 @@ KNOB_LADDER = ((2e-3, 2e-2), (0.1,), (0.3,))
 TOLERANCE, KNOB_TOLERANCE = 2e-5, 2e-4
 
 KNOB_FREQUENCIES = (2.0, 8.0)
-# (solver, variant, knob, values): the step, the accuracy or the stiffness, beside the default one
-KNOBS = (
-    ("time-stepping", None, "step", (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5)),
-    ("pybullet", "fixed-step", "step", (1 / 240, 1e-3, 3e-4, 1e-4)),
-    ("pybullet", "impact-aware", "accuracy", (1e-2, 1e-3, 1e-4)),
-    ("exudyn", "compliant-corners", "stiffness", (1e8, 1e9, 1e10)),
-)
-FIRST_SCRIPTS = (("pybullet", "first-script", "step", (1 / 240,)), ("exudyn", "native-contact", "step", (1e-4,)))
-ENGINES = (("exudyn", "compliant-corners"), ("pybullet", "impact-aware"))  # the defaults, by name
-# Asked where the analytic model holds the corner down: this one does so, too.
-HELD = ("exudyn", "switched-joints", {"step": 1e-4})
+TIME_STEPPING = ("time-stepping", None, "step", (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5))
 
 
-def compute(work, quick=False):
-    """Yields (settings, rows, arrays) of the study, first without other settings than the defaults, then growing.
+def defaults_of(engines):
+    """(engine, variant) of the engines at default settings."""
+    return [(name, get_engine(name).default_variant) for name in engines]
 
-    Yields
-    ------
-    settings : dict
-    rows : list of dict
-        By "part": "edge" (a boundary of the analytic model), "shift" (a solver's beside it, at default settings),
-        "held" (the same with the corner held, where the normal force is negative), "knob" (the same at other
-        settings), "confusion", "surprise" (a disagreement outside the band) and "failure".
-    arrays : dict
-        frequency, amplitude; ``<ground>/<shape>``: int16, shape (amplitudes, frequencies), impacts before
-        overturning in the analytic model, -1 where it does not overturn. ``points``: shape (n, 8): ground, shape,
-        solver (indices into the settings), frequency, amplitude, analytic outcome, solver's outcome (1 overturns,
-        0 not, -1 failed or undecided), whether of the scan.
+
+def ladders_of(engines):
+    """(engine, variant, knob, values) of all variants but first scripts: step, accuracy or stiffness."""
+    return [(name, variant, kind.knob, kind.ladder) for name in engines
+            for variant, kind in get_engine(name).variants.items() if kind.rung != "first script"
+            and not kind.takes_restitution]
+
+
+def first_scripts_of(engines):
+    """The same of the first scripts, at their default."""
+    return [(name, variant, kind.knob, (kind.default,)) for name in engines
+            for variant, kind in get_engine(name).variants.items() if kind.rung == "first script"]
+
+
+def held_of(engines):
+    """(engine, variant, settings) of the variants that hold the corner down, as the analytic model does."""
+    return [(name, variant, {kind.knob: kind.default / 10}) for name in engines
+            for variant, kind in get_engine(name).variants.items() if kind.takes_restitution]
+
+
+def measure(case, response):
+    """What is kept of a run."""
+    return {"outcome": response.outcome, "decided": response.decided, "end_tilt": response.end.tilt}
+
+
+def plan(ask):
+    """The plan of the study: an answer first without other settings than the defaults, then growing.
+
+    Rows by "part": "edge" (a boundary of the analytic model), "shift" (a solver's beside it, at default settings),
+    "held" (the same with the corner held, where the normal force is negative), "knob" (the same at other settings),
+    "confusion", "surprise" (a disagreement outside the band) and "failure".
+
+    Arrays: frequency, amplitude; ``<ground>/<shape>``: int16, shape (amplitudes, frequencies), impacts before
+    overturning in the analytic model, -1 where it does not overturn. ``points``: shape (n, 8): ground, shape, solver
+    (indices into the settings), frequency, amplitude, analytic outcome, solver's outcome (1 overturns, 0 not, -1
+    failed or undecided), whether of the scan.
     """
+    quick, engines = ask.quick, defaults_of(ask.engines)
     grounds = {name: load_scene(shipped).with_(block=block, motion=None, duration=None)
                for name, (shipped, block) in GROUNDS.items()}
     shapes = SHAPES[:1] if quick else SHAPES
     frequencies = (2.0, 4.0) if quick else FREQUENCIES
-    scan = SCAN[::4] if quick else SCAN
     arrays = _maps(grounds, shapes, quick)
     found = {}
     for ground, scene in grounds.items():
@@ -67,38 +84,47 @@ def compute(work, quick=False):
             found[ground, shape] = dict(zip(frequencies, edges(scene, shape, frequencies), strict=True))
     rows = [{"part": "edge", "ground": ground, **vars(edge)} for (ground, _), columns in found.items()
             for column in columns.values() for edge in column]
-    log = _Log(work, grounds)
-    for engine in ENGINES:
-        log.scan(engine, found, scan)
-    rows += _search(log, found, ENGINES, "shift", LADDER, TOLERANCE)
+    log = _Log(engines, grounds)
+    for engine in engines:
+        yield from log.scan(engine, found, SCAN[::4] if quick else SCAN)
+    rows += yield from _search(log, found, engines, "shift", LADDER, TOLERANCE)
     pulled = {key: {frequency: [edge for edge in column if edge.min_normal < 0]
                     for frequency, column in columns.items()} for key, columns in found.items()}
-    rows += _search(log, pulled, [HELD], "held", LADDER, TOLERANCE)
+    rows += yield from _search(log, pulled, held_of(ask.engines), "held", LADDER, TOLERANCE)
     arrays["points"], judged = _judge(log, grounds, shapes, found)
     rows += judged
-    settings = {"quick": quick, "grounds": {
+    settings = _settings(ask, grounds, shapes, frequencies)
+    yield Found(settings, rows + log.failures, arrays)
+    chosen = {(ground, "one-sine"): {f: column for f, column in found[ground, "one-sine"].items()
+                                     if f in KNOB_FREQUENCIES[:1 if quick else None]} for ground in grounds}
+    for solver, variant, knob, values in (*first_scripts_of(ask.engines), TIME_STEPPING, *ladders_of(ask.engines)):
+        for value in values[1:2] if quick and len(values) > 1 else values:
+            rows += yield from _search(log, chosen, [(solver, variant, {knob: value})], "knob", KNOB_LADDER,
+                                       KNOB_TOLERANCE)
+        yield Found(settings, rows + log.failures, arrays)
+    return Found(settings, rows + log.failures, arrays)
+
+
+def _settings(ask, grounds, shapes, frequencies):
+    """What the study was asked, for its result file."""
+    return {"quick": ask.quick, "grounds": {
         name: {"scene": GROUNDS[name][0], "block": scene.block.model_dump(), "omega_r": scene.rocking_frequency,
                "unit": scene.gravity * math.tan(scene.block.slenderness),
                "tan_slenderness": math.tan(scene.block.slenderness),
                "base": scene.base.model_dump() if scene.base else None,
                "bearings": scene.bearings.model_dump() if scene.bearings else None}
         for name, scene in grounds.items()},
-        "shapes": list(shapes), "frequencies": list(frequencies), "scan": list(scan),
+        "shapes": list(shapes), "frequencies": list(frequencies), "scan": list(SCAN[::4] if ask.quick else SCAN),
         "amplitudes": [LOWEST, HIGHEST], "band": BAND, "tolerance": TOLERANCE,
         "knob_tolerance": KNOB_TOLERANCE,
-        "solvers": [name_of(*one) for one in ENGINES], "held": _label(HELD),
-        "knobs": [[solver, variant, knob] for solver, variant, knob, _ in (*KNOBS, *FIRST_SCRIPTS)],
-        "default_knobs": {name_of(*one): getattr(get_engine(one[0]).variants[one[1]].settings, knob)
-                          for one, knob in zip(ENGINES, ("stiffness", "accuracy"), strict=True)},
-        "first_scripts": [name_of(*one[:2]) for one in FIRST_SCRIPTS],
+        "solvers": [solver_name(*one) for one in defaults_of(ask.engines)],
+        "held": ", ".join(_label(one) for one in held_of(ask.engines)),
+        "knobs": [[solver, variant, knob] for solver, variant, knob, _ in
+                  (TIME_STEPPING, *ladders_of(ask.engines), *first_scripts_of(ask.engines))],
+        "default_knobs": {solver_name(*one): get_engine(one[0]).variants[one[1]].default
+                          for one in defaults_of(ask.engines)},
+        "first_scripts": [solver_name(*one[:2]) for one in first_scripts_of(ask.engines)],
         "first_script_friction": FIRST_SCRIPT_FRICTION}
-    yield settings, rows + log.failures, arrays
-    chosen = {(ground, "one-sine"): {f: column for f, column in found[ground, "one-sine"].items()
-                                     if f in KNOB_FREQUENCIES[:1 if quick else None]} for ground in grounds}
-    for solver, variant, knob, values in (*FIRST_SCRIPTS[:1 if quick else None], *KNOBS):
-        for value in values[1:2] if quick and len(values) > 1 else values:
-            rows += _search(log, chosen, [(solver, variant, {knob: value})], "knob", KNOB_LADDER, KNOB_TOLERANCE)
-        yield settings, rows + log.failures, arrays
 
 
 def _maps(grounds, shapes, quick):
@@ -117,8 +143,8 @@ def _maps(grounds, shapes, quick):
 class _Log:
     """Runs points of the map through the solvers and remembers all outcomes and failures."""
 
-    def __init__(self, work, grounds):
-        self._work, self._grounds = work, grounds
+    def __init__(self, engines, grounds):
+        self.engines, self._grounds = engines, grounds
         self.points, self.failures = {}, []
 
     def run(self, points, label, scan=False):
@@ -130,7 +156,8 @@ class _Log:
             cases.append(Case(scene.with_(motion=motion), solver, variant,
                               {"history": False, **(settings[0] if settings else {})}))
         answers = []
-        for point, row in zip(points, self._work.run(cases, label), strict=True):
+        rows = yield Batch(cases, measure, label)
+        for point, row in zip(points, rows, strict=True):
             engine, ground, shape, frequency, amplitude, normal = point
             answer = None
             if not row.failed and row.values["decided"]:
@@ -141,7 +168,7 @@ class _Log:
                     "message": f"tilt {row.values['end_tilt']:.6g} rad"}
                 self.failures.append({"part": "failure", "solver": _label(engine), "ground": ground, "shape": shape,
                                       "frequency": frequency, "amplitude": amplitude, "min_normal": normal, **failure})
-            if engine in ENGINES:
+            if engine in self.engines:
                 self.points[engine, ground, shape, frequency, amplitude] = answer, scan
             answers.append(answer)
         return answers
@@ -155,7 +182,7 @@ class _Log:
                 for amplitude in map(float, amplitudes):
                     normal = least_normal(scene, pulse(scene, shape, frequency, amplitude))
                     points.append((engine, ground, shape, frequency, amplitude, normal))
-        self.run(points, f"scan: {_label(engine)}", scan=True)
+        yield from self.run(points, f"scan: {_label(engine)}", scan=True)
 
 
 def _search(log, found, engines, part, ladder, tolerance):
@@ -163,15 +190,20 @@ def _search(log, found, engines, part, ladder, tolerance):
     jobs = [(engine, ground, edge) for engine in engines for (ground, _), columns in found.items()
             for column in columns.values() for edge in column]
 
-    def evaluate(batch):
+    label = f"{part}: {', '.join(dict.fromkeys(_label(engine) for engine in engines))}"
+    searches, answers = together([locate(edge, ladder, tolerance) for _, _, edge in jobs]), None
+    while True:
+        try:
+            batch = searches.send(answers)
+        except StopIteration as stop:
+            located = stop.value
+            break
         points = []
         for index, amplitude in batch:
             engine, ground, edge = jobs[index]
             points.append((engine, ground, edge.shape, edge.frequency, float(amplitude), edge.min_normal))
-        return log.run(points, f"{part}: {', '.join(dict.fromkeys(_label(engine) for engine in engines))}")
-
-    located = drive([locate(edge, ladder, tolerance) for _, _, edge in jobs], evaluate)
-    return [{"part": part, "solver": name_of(*engine[:2]), "settings": engine[2] if engine[2:] else {},
+        answers = yield from log.run(points, label)
+    return [{"part": part, "solver": solver_name(*engine[:2]), "settings": engine[2] if engine[2:] else {},
              "ground": ground, "shape": edge.shape, "frequency": edge.frequency, "amplitude": edge.amplitude,
              "rises": edge.rises, "mode": edge.mode, "room": min(1 - edge.low / edge.amplitude,
                                                                  edge.high / edge.amplitude - 1), **vars(one)}
@@ -199,7 +231,7 @@ def _judge(log, grounds, shapes, found):
     decided = np.array([answer is not None for answer in answers])
     own = np.array([bool(answer) for answer in answers])
     rows = []
-    for engine in ENGINES:
+    for engine in log.engines:
         for ground in grounds:
             here = np.array([key[0] == engine and key[1] == ground for key in keys]) & decided
             outside = distance > BAND
@@ -218,12 +250,12 @@ def _judge(log, grounds, shapes, found):
                      "frequency": frequency, "amplitude": amplitude, "analytic_overturns": bool(reference[k]),
                      "distance": float(distance[k]), "min_normal": float(normal[k])})
     names = list(grounds)
-    points = np.array([(names.index(ground), shapes.index(shape), ENGINES.index(engine), frequency, amplitude,
+    points = np.array([(names.index(ground), shapes.index(shape), log.engines.index(engine), frequency, amplitude,
                         reference[k], own[k] if decided[k] else -1, scanned[k])
                        for k, (engine, ground, shape, frequency, amplitude) in enumerate(keys)], dtype=float)
     return points, rows
 
 
 def _label(engine):
-    name = name_of(*engine[:2])
+    name = solver_name(*engine[:2])
     return name if not engine[2:] else f"{name}, " + ", ".join(f"{k} {v:g}" for k, v in engine[2].items())

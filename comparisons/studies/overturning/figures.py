@@ -6,9 +6,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ...showing.plots import STYLES
+from ...showing.plots import marker, style
 
-MARKERS = {"exudyn": "s", "pybullet": "^", "time-stepping": "o"}
 MODES = ("white", "#9ecae1", "#6baed6", "#d9d9d9")  # stands; overturns without, after one, after more impacts
 SHADES = ("#000000", "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00")  # Okabe and Ito
 LIMIT = 0.5  # %, asked of the boundaries at default settings
@@ -27,12 +26,12 @@ def draw_maps(result):
             mode = np.where(impacts < 0, 0, np.minimum(impacts, 2) + 1)
             axis.pcolormesh(result.arrays["frequency"], result.arrays["amplitude"], mode, vmin=-0.5, vmax=3.5,
                             cmap=ListedColormap(MODES), shading="nearest", rasterized=True)
-            for solver, size in (("exudyn", 6.5), ("pybullet", 4.5)):
-                rows = [row for row in _rows(result, "shift", ground=ground, shape=shape)
-                        if row["solver"].startswith(solver) and row["shift"] is not None]
+            for place, engine in enumerate(_engines(result)):
+                rows = _found(result, engine, ground=ground, shape=shape)
                 axis.plot([row["frequency"] for row in rows],
-                          [row["amplitude"] * (1 + row["shift"]) for row in rows], MARKERS[solver],
-                          color=STYLES[solver][0], markersize=size, markerfacecolor="none", markeredgewidth=1.3)
+                          [row["amplitude"] * (1 + row["shift"]) for row in rows], marker(engine),
+                          color=style(engine)["color"], markersize=max(6.5 - 2 * place, 2.0), markerfacecolor="none",
+                          markeredgewidth=1.3)
             here = (points[:, 0] == i) & (points[:, 1] == j) & (points[:, 7] == 1)
             wrong = here & (points[:, 6] >= 0) & (points[:, 5] != points[:, 6])
             axis.plot(points[here, 3], points[here, 4], ".", color="0.35", markersize=2.5)
@@ -47,9 +46,9 @@ def draw_maps(result):
     names = ("stands", "overturns without impact", "overturns after one impact", "overturns after more impacts")
     handles = [Patch(facecolor=colour, edgecolor="0.5", label=f"analytic: {name}")
                for colour, name in zip(MODES, names, strict=True)]
-    handles += [Line2D([], [], marker=MARKERS[solver], color=STYLES[solver][0], markerfacecolor="none",
-                       linestyle="none", label=f"{solver}: boundary") for solver in ("exudyn", "pybullet")]
-    handles += [Line2D([], [], marker=".", color="0.35", linestyle="none", label="scanned with both engines"),
+    handles += [Line2D([], [], marker=marker(engine), color=style(engine)["color"], markerfacecolor="none",
+                       linestyle="none", label=f"{engine}: boundary") for engine in _engines(result)]
+    handles += [Line2D([], [], marker=".", color="0.35", linestyle="none", label="scanned with all engines"),
                 Line2D([], [], marker="x", color="#D55E00", linestyle="none", label="scanned, outcomes differ")]
     figure.legend(handles=handles, loc="outside lower center", ncols=4 if len(s["shapes"]) > 1 else 2,
                   fontsize="small")
@@ -65,15 +64,16 @@ def draw_shifts(result):
     for axis, ground in zip(axes, grounds, strict=True):
         axis.axhspan(-LIMIT, LIMIT, color="0.94", zorder=0)
         axis.axhline(0, color="0.6", linewidth=0.8)
-        for place, solver in enumerate(("exudyn", "pybullet")):
+        engines = _engines(result)
+        for place, engine in enumerate(engines):
             for rises in (True, False):
-                rows = [row for row in _rows(result, "shift", ground=ground, rises=rises)
-                        if row["solver"].startswith(solver) and row["shift"] is not None]
-                axis.errorbar([row["frequency"] - 0.12 + 0.24 * place for row in rows],
+                rows = _found(result, engine, ground=ground, rises=rises)
+                beside = 0.24 * (place - 0.5 * (len(engines) - 1))
+                axis.errorbar([row["frequency"] + beside for row in rows],
                               [100 * row["shift"] for row in rows], [100 * row["half_width"] for row in rows],
-                              fmt=MARKERS[solver], color=STYLES[solver][0], fillstyle=fills[rises], markersize=6,
+                              fmt=marker(engine), color=style(engine)["color"], fillstyle=fills[rises], markersize=6,
                               linestyle="none", elinewidth=1,
-                              label=f"{solver}: overturning {'begins' if rises else 'ends (safe gap)'}")
+                              label=f"{engine}: overturning {'begins' if rises else 'ends (safe gap)'}")
         axis.set_yscale("symlog", linthresh=0.01)
         axis.set_yticks([-5, -0.5, -0.1, -0.01, 0, 0.01, 0.1, 0.5],
                         ["−5", "−0.5", "−0.1", "−0.01", "0", "0.01", "0.1", "0.5"])
@@ -127,6 +127,17 @@ def knob_curves(result):
             curves[solver, knob][default] = [row for row in _rows(result, "shift", solver=solver)
                                              if (row["ground"], row["shape"], row["frequency"]) in keys]
     return curves
+
+
+def _engines(result):
+    """Names of the engines at default settings."""
+    return [solver.partition(",")[0] for solver in result.settings["solvers"]]
+
+
+def _found(result, engine, **wanted):
+    """The boundaries that an engine found."""
+    return [row for row in _rows(result, "shift", **wanted)
+            if row["solver"].partition(",")[0] == engine and row["shift"] is not None]
 
 
 def _rows(result, part, **wanted):

@@ -3,7 +3,7 @@
 import math
 
 from ...showing.parts import Section, Table, figure_of, number, percent
-from ..workshop import name_of
+from ...showing.wording import solver_name
 from .figures import LIMIT, draw_knobs, draw_maps, draw_shifts, knob_curves
 
 
@@ -187,8 +187,8 @@ def _failures(result):
 def _unfinished(result):
     """What a result lacks that was written before the study came to its end."""
     done = {(row["solver"], *row["settings"]) for row in _rows(result, "knob")}
-    missing = [f"{name_of(solver, variant)} ({knob})" for solver, variant, knob in result.settings["knobs"]
-               if (name_of(solver, variant), knob) not in done]
+    missing = [f"{solver_name(solver, variant)} ({knob})" for solver, variant, knob in result.settings["knobs"]
+               if (solver_name(solver, variant), knob) not in done]
     if missing and not result.settings["quick"]:
         yield f"The study was stopped before its end; other settings were not tried of: {', '.join(missing)}."
 

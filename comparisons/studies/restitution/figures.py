@@ -5,8 +5,9 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
+from engines.pybullet import FIRST_SCRIPT_FRICTION
+
 from ...showing.plots import style
-from ..workshop import FIRST_SCRIPT_FRICTION
 
 WIDTH = 6.4  # in
 # In the order of an engine's variants: marker, dashes, whether the marker is filled.

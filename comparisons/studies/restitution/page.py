@@ -1,7 +1,7 @@
 """The restitution study as a section of the report: words and tables from its result alone."""
 
-from ...report.sections import TRUSTED, USABLE, trust
 from ...showing.parts import Section, Table, figure_of, number, percent
+from ...showing.wording import TRUSTED, USABLE, trust
 from .figures import figures, select
 
 RULE = (f"An engine may be trusted for restitution if its error, root mean square, is at most {TRUSTED:g} on both "

@@ -10,17 +10,22 @@ from analytic.caryatid import MASS, RADIUS
 from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
 from engines import get_engine
 
+from ...measuring.restitution import SLOWEST_IMPACT, impact_errors, rms, strong_impacts, worst
+from ...running.study import Batch, Found
 from .cases import (
     CARYATID_BASE,
     EXPERIMENT_SLENDERNESS,
     EXPERIMENTS,
+    FULL,
     IMPACTS,
+    QUICK,
     SCALES,
+    experiment_cases,
     free_scene,
+    grid_cases,
     knob_of,
     variants_of,
 )
-from .measure import SLOWEST_IMPACT, measured, strong_impacts
 
 GROUNDS = ("rigid ground", "sliding base")
 # Bullet's default damping of a multibody: force and moment of d m v (1 + |v|) and d I w (1 + |w|), SI units.
@@ -28,8 +33,22 @@ BULLET_DAMPING = 0.04
 DIGITS = 4
 
 
-def result_of(grid, rows):
-    """(settings, rows, arrays) of the result file, from the rows of the sweep."""
+def measure(case, response):
+    """What is measured in one run: the errors of its first `IMPACTS` impacts."""
+    return {"outcome": response.outcome, "end": response.end.time, "steps": response.steps,
+            "errors": impact_errors(case.scene, response, IMPACTS)}
+
+
+def plan(ask, grid=None):
+    """The plan of the study; grid: what to cover, in place of FULL or QUICK."""
+    grid = grid or (QUICK if ask.quick else FULL)
+    cases = grid_cases(grid, ask.engines) + experiment_cases(grid, ask.engines)
+    rows = yield Batch(cases, measure, "restitution", time_limit=60.0)
+    return _found(grid, rows)
+
+
+def _found(grid, rows):
+    """The answer, from the rows of all runs."""
     engines = list(dict.fromkeys(row.case.solver for row in rows))
     cells, experiments = {}, {}
     for row in rows:
@@ -63,7 +82,7 @@ def result_of(grid, rows):
                      for (ratio, gamma), scene in scenes.items()],
         "printed_factors": {scale: free_scene(EXPERIMENT_SLENDERNESS, 1.0, 0.6, scale).block.half_height
                             for scale in SCALES}}
-    return settings, [_short(entry) for entry in entries], arrays
+    return Found(settings, [_short(entry) for entry in entries], arrays)
 
 
 class _Pool:
@@ -72,7 +91,7 @@ class _Pool:
     def __init__(self, members):
         self.runs, self.members = len(members), members
         self.sound = [row for row in members if not row.failed]
-        errors = [measured(row.case.scene, row.values, IMPACTS) for row in self.sound]
+        errors = [_errors(row) for row in self.sound]
         self.errors = {name: np.concatenate([one[name] for one in errors if name in one])
                        for name in {name for one in errors for name in one}}
         self.expected = sum(len(_model_times(row.case.scene)) for row in self.sound)
@@ -86,6 +105,10 @@ class _Pool:
     def get(self, name):
         values = self.errors.get(name, np.empty(0))
         return values[np.isfinite(values)]
+
+
+def _errors(row):
+    return {name: np.array(values, dtype=float) for name, values in row.values["errors"].items()}
 
 
 def _model_times(scene):
@@ -103,20 +126,12 @@ def _measures(pools):
     return {"runs": sum(pool.runs for pool in pools), "failed": sum(pool.runs - len(pool.sound) for pool in pools),
             "impacts": sum(len(pool.get("swing")) for pool in pools),
             "lost": sum(pool.expected - len(pool.late) for pool in pools),
-            "bias": of("swing", np.mean), "rms": of("swing", _rms), "worst": of("swing", _largest),
-            "rms_state": of("state", _rms), "jump_rms": of("jump", _rms), "jump_worst": of("jump", _largest),
-            "jump_8": of("jump_8", _rms), "jump_8_printed": of("jump_8_printed", _rms),
-            "time_rms": float(_rms(late)) if len(late) else None,
+            "bias": of("swing", np.mean), "rms": of("swing", rms), "worst": of("swing", worst),
+            "rms_state": of("state", rms), "jump_rms": of("jump", rms), "jump_worst": of("jump", worst),
+            "jump_8": of("jump_8", rms), "jump_8_printed": of("jump_8_printed", rms),
+            "time_rms": rms(late) if len(late) else None,
             "cpu_per_second": sum(pool.cpu for pool in pools) / simulated if simulated else None,
             "steps_per_second": sum(pool.steps for pool in pools) / simulated if simulated else None}
-
-
-def _rms(values):
-    return np.sqrt(np.mean(np.square(values)))
-
-
-def _largest(values):
-    return np.abs(values).max()
 
 
 def _cell(key, pool):
@@ -167,7 +182,7 @@ def _phases(members):
     for step, rows in members.items():
         sound = [row for row in rows if not row.failed]
         phase = np.array([_model_times(row.case.scene)[0] / step % 1.0 for row in sound])
-        error = np.array([measured(row.case.scene, row.values, 1)["swing"][0] for row in sound])
+        error = np.array([_errors(row)["swing"][0] for row in sound])
         fits = []
         for cut in np.sort(phase):
             basis = np.column_stack([np.ones(len(phase)), (phase - cut) % 1.0])
@@ -177,7 +192,7 @@ def _phases(members):
         arrays[f"phase/{step:g}/phase"], arrays[f"phase/{step:g}/error"] = phase, error
         ends = sorted((float(begin / step), float((begin + rise) / step)), key=abs)
         entries.append({"part": "phase", "step": step, "runs": len(rows), "bias": float(error.mean()),
-                        "rms": float(_rms(error)), "explained": 1 - left / float(np.sum((error - error.mean()) ** 2)),
+                        "rms": rms(error), "explained": 1 - left / float(np.sum((error - error.mean()) ** 2)),
                         "least": ends[0], "most": ends[1]})
     return entries, arrays
 

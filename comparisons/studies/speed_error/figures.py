@@ -1,5 +1,8 @@
 """Figures of the speed-error study; drawn from a result, axes at choice."""
 
+from typing import Annotated
+
+import typer
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogFormatterSciNotation, NullFormatter
@@ -34,6 +37,17 @@ def check_axes(*names):
     for name in names:
         if name not in axis_names():
             raise SettingError(f"axis {name!r}: choose one of {', '.join(axis_names())}")
+
+
+Horizontal = Annotated[str, typer.Option(help="Horizontal axis of the figure.")]
+Vertical = Annotated[str, typer.Option(help="Vertical axis; 'error' is each scene's principal measure.")]
+
+
+def figures(result, *, x: Horizontal = "cpu", y: Vertical = "error"):
+    """Figures of the study by the suffix of their files."""
+    if (x, y) != ("cpu", PRINCIPAL):
+        return {f"{x}-{y}": draw_pareto(result, x, y)}
+    return {"": draw_pareto(result), "step": draw_pareto(result, "step"), "growth": draw_growth(result)}
 
 
 def draw_pareto(result, x="cpu", y=PRINCIPAL):

@@ -14,19 +14,19 @@ from analytic import simulate
 from analytic.batch import simulate_many
 from analytic.motion import SampledMotion
 
-from ...running.cases import fingerprint
+from ...running.cases import Case, fingerprint
 from ...running.cases import solver as solver_function
 from .scenes import at_amplitude
-from .timing import TICK, WARM_SECONDS
+from .timing import TICK
 
 RUNNER = "comparisons.studies.speed_error.growth:grown"
 AGAINST = {"duration": "duration [s]", "samples": "record samples per second [1/s]", "runs": "runs in a batch [-]"}
+WARM_SECONDS = 0.02  # s simulated before the memory is measured: code and caches are loaded
 SPREAD_OF_BATCH = 0.2  # amplitudes of a batch lie within this share of the boundary
 SPAN = {"duration": {"analytic": ((100, 200, 400, 800, 1600, 3200), (50, 100, 200, 400)),
                      "engine": ((5, 10, 20, 40), (1, 2, 4))},
         "samples": ((100, 200, 400, 800, 1600, 3200), (200, 400, 800)),
         "runs": ((250, 500, 1000, 2000, 4000, 8000), (100, 200, 400))}
-ENGINES = ("exudyn", "pybullet")
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,23 +41,23 @@ class Point:
     settings: dict = field(default_factory=dict)
     count: int = 0
 
-    def arguments(self, turn):
-        """Settings of the sweep's case: what `grown` takes."""
-        return {"solver": self.solver, "settings": self.settings, "count": self.count, "round": turn,
-                "code": fingerprint(self.solver)}
+    def case(self, turn):
+        """The measurement of one round as a `Case`."""
+        settings = {"solver": self.solver, "settings": self.settings, "count": self.count,
+                    "code": fingerprint(self.solver)}
+        return Case(self.scene, RUNNER, None, settings, {"round": turn})
 
 
-def points(trials, quick, installed):
+def points(trials, engines, quick):
     """All measurements: the isolated Caryatid under a repeated motion, and batches near the overturning boundary."""
     pick = 1 if quick else 0
     by_name = {trial.name: trial.scene for trial in trials}
     stands, boundary = by_name["isolated-standing"], by_name["near-overturning"]
     found = [Point("duration", value, "kernel", lasting(stands, value), "analytic")
              for value in SPAN["duration"]["analytic"][pick]]
-    for engine in ENGINES:
-        if engine in installed:
-            found += [Point("duration", value, f"{engine}, default", lasting(stands, value), engine)
-                      for value in SPAN["duration"]["engine"][pick]]
+    for engine in engines:
+        found += [Point("duration", value, f"{engine}, default", lasting(stands, value), engine)
+                  for value in SPAN["duration"]["engine"][pick]]
     found += [Point("samples", value, "kernel", sampled(stands, value), "analytic")
               for value in SPAN["samples"][pick]]
     return found + [Point("runs", value, "kernel, batch", boundary, "analytic", count=value)

@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass, field
 
-from engines import get_engine, installed_engines
+from engines import get_engine
 
 from ...bench import peers
-from ...running.cases import fingerprint, module_of
+from ...running.cases import Case
 from . import models
 from .scenes import Trial
+from .timing import PEER
 
-RUNNER = "comparisons.studies.speed_error.timing:timed"
 THREE_D = "comparisons.studies.speed_error.models:free_block_3d"
 TRANSPARENT = ("free-rigid", "near-overturning")  # scenes without base or record: what the peers are written for
 SAMPLED = ("isolated-standing", "isolated-rocking")
@@ -41,22 +41,13 @@ class Entry:
     def scene(self):
         return self.trial.scene if self.scene_of is None else self.scene_of(self.trial.scene)
 
-    def arguments(self, turn):
-        """Settings of the sweep's case: what `speed_error_runs.timed` takes."""
-        boundary = self.trial.boundary
-        return {"solver": self.solver, "variant": self.variant, "settings": {**self.settings, self.knob: self.value},
-                "boundary": boundary and [boundary.amplitude, boundary.slope], "round": turn,
-                "code": fingerprint(code_module(self.solver))}
-
-
-def code_module(solver):
-    """A solver whose code and versions the result depends on, as `comparisons.running.cases.fingerprint` takes it."""
-    return "comparisons.bench.peers:RUNS" if solver.startswith("peer:") else solver
-
-
-def modules(entries):
-    """Modules behind all entries, for the result file's provenance."""
-    return sorted({module_of(code_module(entry.solver)) for entry in entries})
+    def case(self, turn):
+        """The measurement of one round as a `Case`."""
+        boundary, settings = self.trial.boundary, {**self.settings, self.knob: self.value}
+        if self.solver != PEER:
+            settings["history"] = False
+        return Case(self.scene, self.solver, self.variant, settings,
+                    {"boundary": boundary and [boundary.amplitude, boundary.slope], "round": turn})
 
 
 def powers(*exponents):
@@ -88,17 +79,17 @@ PEER_LADDERS = {"heyoka": (powers(-6, -9, -12, -15), powers(-9)), "CyRK DOP853":
 TWIN_SETTINGS = {"energy": False}
 
 
-def entries(trials, quick):
+def entries(trials, engines, quick):
     """All entries, ordered so that solvers alternate."""
     pick = 1 if quick else 0
     found = []
     for trial in trials:
-        here = _analytic(trial, pick) + _engines(trial, pick)
+        here = _analytic(trial, pick) + _engines(trial, engines, pick)
         if trial.name in TRANSPARENT:
             here += _peers(trial, pick)
         if trial.name in SAMPLED:
             here += _bouc_wen(trial, pick)
-        found.append(here + _extras(trial, pick))
+        found.append(here + _extras(trial, engines, pick))
     return [entry for group in found for entry in _alternating(group)]
 
 
@@ -110,9 +101,9 @@ def _analytic(trial, pick):
                     for method, ladder in ladders.items() for value in ladder[pick]]
 
 
-def _engines(trial, pick):
+def _engines(trial, engines, pick):
     found = []
-    for name in installed_engines():
+    for name in engines:
         for variant, one in get_engine(name).variants.items():
             knob = one.knob
             ladder = ENGINE_LADDERS.get((name, variant))
@@ -122,7 +113,7 @@ def _engines(trial, pick):
 
 
 def _peers(trial, pick):
-    return [Entry(trial, name, f"peer:{name}", "tolerance", value)
+    return [Entry(trial, name, PEER, "tolerance", value, settings={"name": name})
             for name in peers.installed() for value in PEER_LADDERS[name][pick]]
 
 
@@ -135,7 +126,7 @@ def _bouc_wen(trial, pick):
                           settings={**TWIN_SETTINGS, "method": "DOP853"}) for value in TWIN_SAMPLED["DOP853"][pick]]
 
 
-def _extras(trial, pick):
+def _extras(trial, engines, pick):
     """The same scene with more than it needs."""
     found = []
     if trial.name in TRANSPARENT:
@@ -144,7 +135,7 @@ def _extras(trial, pick):
             ways.append((HEAVY_BASE, models.on_heavy_base))
         found += [Entry(trial, "kernel", "analytic", "tolerance", value, model=model, scene_of=change)
                   for model, change in ways for value in powers(-8, -12)[pick:]]
-    if "pybullet" in installed_engines() and trial.scene.bearings is None:
+    if "pybullet" in engines and trial.scene.bearings is None:
         values = ENGINE_LADDERS["pybullet", "fixed-step"][pick][:FREE_3D_STEPS]
         found += [Entry(trial, "pybullet, fixed-step", THREE_D, "step", value, model=FREE_3D) for value in values]
     return found

@@ -1,6 +1,5 @@
 """Errors of one run against the reference, the same code for every solver; nothing here knows who made the run."""
 
-import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,6 +8,7 @@ from analytic.response import Impact
 from analytic.rocking import restitution
 
 from ...measuring.measures import impact_time_errors, state_restitution
+from ...measuring.restitution import SLOWEST_IMPACT, rate_restitution, rms, strong_impacts
 
 # measure: (label with unit, words)
 MEASURES = {
@@ -19,7 +19,6 @@ MEASURES = {
     "end_tilt": ("error of |tilt| / slenderness at the end [-]", "tilt at the end"),
     "boundary_shift": ("relative shift of the overturning boundary [-]", "overturning boundary"),
 }
-SLOWEST = 0.1  # of the fastest impact: those that are judged; below, engines may rest where the model still chatters
 
 # A boundary search that still moves this far has found none. Where steps are fixed, the boundary depends on where in a
 # step the impact falls, which differs from run to run: the root mean square of the last positions stands for it.
@@ -40,7 +39,7 @@ def errors(trial, values, shifts=None):
     """
     found = {}
     impacts = SimpleNamespace(impacts=[Impact(**impact) for impact in values["impacts"]])
-    if values["settings"].get("knows_impacts", True):
+    if values.get("knows_impacts", True):
         found["lost_impacts"] = _lost(impacts, trial.reference)
         if "restitution" in trial.measures:
             found["restitution"] = _restitution_error(trial.scene, impacts)
@@ -61,7 +60,7 @@ def errors(trial, values, shifts=None):
 
 def _strong(reference):
     rates = np.abs([impact.rate_before for impact in reference.impacts])
-    return rates >= SLOWEST * rates.max(initial=0.0)
+    return rates >= SLOWEST_IMPACT * rates.max(initial=0.0)
 
 
 def _lost(impacts, reference):
@@ -78,19 +77,9 @@ def _impact_time_error(impacts, reference):
 
 
 def _restitution_error(scene, impacts):
-    """Root mean square of e - eq. (7) over the impacts fast enough.
-
-    In free motion the swing between two impacts keeps its energy (and the base's momentum), so the rate before the
-    next impact is the rate after this one: e is read from successive rates, and a solver that applies eq. (7)
-    exactly is judged by what it does to the swing. Under a motion e is that of the states at the impact.
-    """
-    before = np.array([impact.rate_before for impact in impacts.impacts])
-    fast = np.abs(before) >= SLOWEST * np.abs(before).max(initial=0.0)
+    """Root mean square of e - eq. (7) over the impacts fast enough; under a motion e is that of the states."""
     if scene.motion is None and scene.bearings is None:
-        kept = fast[:-1] & fast[1:] & (before[:-1] * before[1:] < 0)
-        found = np.abs(before[1:] / before[:-1])[kept]
+        found = rate_restitution(impacts) - restitution(scene)
     else:
-        found = state_restitution(impacts)[fast]
-    if not len(found):
-        return None
-    return math.sqrt(np.mean((found - restitution(scene)) ** 2))
+        found = state_restitution(SimpleNamespace(impacts=strong_impacts(impacts))) - restitution(scene)
+    return rms(found) if len(found) else None

@@ -1,5 +1,7 @@
 """The speed-error study in the report: words, tables and figures, all from the result."""
 
+from engines import ENGINES
+
 from ...showing.parts import Section, Table, figure_of, number
 from .figures import draw_growth, draw_pareto
 from .ladders import NEEDED
@@ -17,7 +19,6 @@ from .tables import (
     unrepeatable,
 )
 
-ENGINES = ("exudyn", "pybullet", "mujoco")
 JOINTS = "exudyn, switched-joints"  # uplift, impact and rest are the adapter's
 SHOWN = (1e-2, 1e-3, 1e-4)  # levels of which the words speak
 
@@ -74,7 +75,8 @@ def _scene_words(result, scene, about):
     for level in SHOWN:
         best = cost_at_error(result, scene, level)
         kernel, joints = best.get("kernel"), best.get(JOINTS)
-        engine = next((row for family, row in best.items() if family.startswith(ENGINES) and family != JOINTS), None)
+        engine = next((row for family, row in best.items()
+                       if family.partition(",")[0] in ENGINES and family != JOINTS), None)
         if kernel is None:
             continue
         parts.append(f"{level:g} by no engine" if engine is None else (

@@ -9,40 +9,35 @@ import numpy as np
 
 from analytic.response import Response, State
 
-from ...running.cases import solver as solver_function
 from .scenes import BOUNDARY_RUNS, Boundary, at_amplitude, margin
 
+PEER = "comparisons.studies.speed_error.timing:peer_response"
 TICK = 4e-3  # s of CPU: shorter measurements are repeated until they took as long, and the mean counts
 MOST_REPEATS = 200
-WARM_SECONDS = 0.02  # s simulated before the clock counts: code and caches are loaded
+LONG = 0.5  # s of CPU: next to it what is loaded in a first run is nothing, and it is not run again
 STRIDE = 0.05  # longest move of a boundary search, relative; it ends within six of them or finds no boundary
 SMALL = 1e-3  # margin below which the reference's slope alone is as good as a chord
 
 
-def timed(scene, *, solver, variant=None, settings=None, boundary=None, **_):
-    """The `Response` of a measurement, as a solver of the sweep: cpu_seconds is the mean over its runs.
+def measure(case, response):
+    """What is kept of one measurement, and its CPU time: the mean over runs of at least `TICK` in all.
 
-    Parameters
-    ----------
-    scene : Scene
-    solver, variant, settings
-        Any solver of `comparisons.running.cases`, or "peer:NAME" for one of `comparisons.bench.peers`.
-    boundary : list or None
-        (amplitude, slope) of a `Boundary` to search; its shifts come back as settings["boundary_shifts"].
-    **_
-        What only makes measurements different (round, digest of the code).
+    The run that made `response` has loaded code and caches; where it was long enough it is the measurement itself. A
+    case whose tag holds a boundary, (amplitude, slope) of a `Boundary`, is a search for it.
     """
-    goal = Boundary(*boundary) if boundary else None
-    run = _run_of(solver, variant, settings or {})
-    _warm(solver, variant, scene.bearings and scene.bearings.law, run, scene)
-    response, shifts, cpu = _measure(run, scene, goal)
-    runs = BOUNDARY_RUNS if goal else 1
-    repeats = 1
-    if 0 < cpu < TICK and response.outcome != "failed":
-        repeats = min(MOST_REPEATS, math.ceil(TICK / cpu))
-        cpu = sum(_measure(run, scene, goal)[2] for _ in range(repeats)) / repeats
-    extra = {"boundary_shifts": shifts, "repeats": repeats, "knows_impacts": not solver.startswith("peer:")}
-    return dataclasses.replace(response, cpu_seconds=cpu / runs, settings={**response.settings, **extra})
+    goal = Boundary(*case.tag["boundary"]) if case.tag["boundary"] else None
+
+    def run(scene):
+        return dataclasses.replace(case, scene=scene).run()
+
+    shifts, cpu, repeats = None, response.cpu_seconds, 1
+    if goal or cpu < LONG:
+        response, shifts, cpu = _measure(run, case.scene, goal)
+        if 0 < cpu < TICK and response.outcome != "failed":
+            repeats = min(MOST_REPEATS, math.ceil(TICK / cpu))
+            cpu = sum(_measure(run, case.scene, goal)[2] for _ in range(repeats)) / repeats
+    return {**response.to_json(), "boundary_shifts": shifts, "knows_impacts": case.solver != PEER,
+            "cost": {"cpu_seconds": cpu / (BOUNDARY_RUNS if goal else 1), "repeats": repeats}}
 
 
 def searched(run, scene, boundary):
@@ -82,25 +77,6 @@ def _next(known, last):
     if below > above:  # not monotone here: stay
         return last
     return below + (above - below) * min(max(-known[below] / (known[above] - known[below]), 0.1), 0.9)
-
-
-def _run_of(name, variant, settings):
-    """A function scene -> Response."""
-    if name.startswith("peer:"):
-        return functools.partial(peer_response, name=name[5:], **settings)
-    chosen = {} if variant is None else {"variant": variant}
-    return functools.partial(solver_function(name), history=False, **chosen, **settings)
-
-
-_warmed = set()
-
-
-def _warm(name, variant, law, run, scene):
-    """A short run the first time a process meets a solver: its code, and the libraries' caches, are then loaded."""
-    met = name, variant, law, scene.base is None, scene.motion is None
-    if met not in _warmed and not name.startswith("peer:"):
-        run(scene.with_(duration=min(scene.duration, WARM_SECONDS)))
-        _warmed.add(met)
 
 
 @functools.lru_cache(maxsize=64)

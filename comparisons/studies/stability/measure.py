@@ -87,12 +87,12 @@ def oracle(name, of_kernel):
                   noise)
 
 
-def measure(response):
-    """Errors of one run, name -> number, and its outcome (a sweep's reducer); see `MEASURES` for the units.
+def measure(run, response):
+    """Errors of one run, name -> number, and its outcome; see `MEASURES` for the units.
 
-    The case is found by the scene's name. What does not apply is left out.
+    What does not apply is left out. run: a `Case` whose tag names the hard case.
     """
-    case = _case(response.scene)
+    case = _case(run.tag["case"])
     scene, of_kernel = case.scene, response.engine == "analytic"
     truth = oracle(case.name, of_kernel)
     errors = {}

@@ -3,12 +3,16 @@
 import dataclasses
 import math
 
-from engines import get_engine, installed_engines
+from engines import ENGINES, get_engine
 
 from ...running.cases import Case
 from ...running.provenance import scrub
-from .measure import twin_step
+from ...running.study import Batch, Found
+from .cases import hard_cases
+from .measure import measure, twin_step
 
+QUICK_LIMIT, TIME_LIMIT = 60.0, 900.0  # s, of one run; the longest takes 75 s of CPU time
+LONG = 60.0  # s; in longer scenes cures are tried on the engines' default variants only, to save time
 RIGHT, DEGRADED, FAILED = "right", "degraded", "failed"
 EVIDENCE_CHARACTERS = 600
 
@@ -109,10 +113,10 @@ TIME_STEPPING = Solver("time-stepping", None, "stepping", {"step": 1e-3}, "step"
 STEP_NAMES = ("step", "largest_step", "longest_step")
 
 
-def solvers():
-    """The columns: kernel, twin, time stepping, and every variant of every engine installed here."""
+def solvers(engines):
+    """The columns: kernel, twin, time stepping, and every variant of the engines."""
     found = [*(Solver(name, None, "event-driven", {}, None, (), True) for name in ("analytic", "twin")), TIME_STEPPING]
-    for name in installed_engines():
+    for name in engines:
         for variant, one in get_engine(name).variants.items():
             fields = [field.name for field in dataclasses.fields(one.settings)]
             step = next((field for field in STEP_NAMES if field in fields), None)
@@ -161,3 +165,50 @@ def worst(content):
         return value / limit if limit else (math.inf if value else 0.0)
     name = max(content["errors"], key=ratio)
     return (name, *content["errors"][name], ratio(name))
+
+
+def plan(ask, names=None, columns=None):
+    """The plan of the study: all cells, then the cures tried in turn where the verdict was not "right".
+
+    Parameters
+    ----------
+    ask : Ask
+        quick: the quick cases only, and cures of the engines' default variants only.
+    names : iterable of str or None
+        Only these cases.
+    columns : sequence of Solver or None
+        None: `solvers`.
+    """
+    cases = [case for case in hard_cases().values()
+             if (case.quick or not ask.quick) and (not names or case.name in names)]
+    columns = solvers(ask.engines) if columns is None else columns
+    limit = QUICK_LIMIT if ask.quick else TIME_LIMIT
+    ill, cure, rows = [(case, column) for case in cases for column in columns], None, []
+    while ill:
+        label = "hard cases" if cure is None else f"cures, round {cure + 1}"
+        done = yield Batch([column.case(case, cure) for case, column in ill], measure, label, limit)
+        entries = [entry(case, column, row) for (case, column), row in zip(ill, done, strict=True)]
+        rows += entries
+        cure = 0 if cure is None else cure + 1
+        ill = [(case, column) for (case, column), content in zip(ill, entries, strict=True)
+               if content["verdict"] != RIGHT and cure < len(column.cures)
+               and (column.default or not (ask.quick or case.scene.duration > LONG))]
+    return Found(_settings(cases, columns, ask.quick, limit), rows)
+
+
+def _settings(cases, columns, quick, limit):
+    """What the study was asked, as its result file keeps it: cases, oracles, tolerances and their reasons, solvers."""
+    return {
+        "quick": quick, "time_limit": limit,
+        "cases": {case.name: {"title": case.title, "oracle": case.oracle, "duration": case.scene.duration,
+                              "twin_until": case.twin_until, "tolerances": case.tolerances} for case in cases},
+        "measures": MEASURES, "tolerances": TOLERANCES,
+        "solvers": {column.label: {"kind": column.kind, "default_variant": column.default, "settings": _set(column),
+                                   "cures": column.cures} for column in columns}}
+
+
+def _set(column):
+    """Settings of a column where nothing is changed."""
+    if column.name not in ENGINES:
+        return column.settings
+    return {**dataclasses.asdict(get_engine(column.name).variants[column.variant].settings), **column.settings}

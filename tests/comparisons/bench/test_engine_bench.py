@@ -23,6 +23,7 @@ from comparisons.bench.engine_verdicts import (
     rule,
 )
 from comparisons.bench.kept import keep
+from comparisons.running.cases import Case
 from comparisons.running.provenance import json_ready
 from comparisons.running.sweep import Row
 
@@ -31,7 +32,7 @@ FREE = Scene(block=Block(mass=10.0, radius=1.0, slenderness=0.25), base=Base(mas
 
 
 def kept(scene, **options):
-    return json_ready(keep(simulate(scene, **options)))
+    return json_ready(keep(Case(scene), simulate(scene, **options)))
 
 
 def verdict(scene, run):

@@ -65,10 +65,10 @@ def fails(scene):
     return response(scene, outcome="failed", failure=Failure("energy gain", "12 J at 0.5 s", last))
 
 
-def tilt(response):
-    """Reducer."""
+def tilt(case, response):
+    """Measure."""
     return {"outcome": response.outcome, "peak": response.peak_tilt, "cpu_seconds": response.cpu_seconds}
 
 
-def broken(response):
+def broken(case, response):
     return {"peak": {1, 2}}

@@ -1,5 +1,6 @@
 """Result files: what went in comes out, says where it comes from, names no machine, and notices its age."""
 
+import importlib
 import json
 import platform
 import subprocess
@@ -76,6 +77,25 @@ def test_age_names_the_modules_that_changed(tmp_path, monkeypatch):
     assert words.endswith("since then changed: analytic.scene, analytic.gone")
     result.provenance["commit"] = None
     assert "outside a checkout" in age(result)
+
+
+def test_a_result_survives_a_rename_but_no_change(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(str(tmp_path))
+    folder = tmp_path / "renamed_package"
+    folder.mkdir()
+    (folder / "__init__.py").write_text("")
+    (folder / "one.py").write_text("from .two import f\n\ndef g():\n    return f() + 1\n")
+    (folder / "two.py").write_text("def f():\n    return 1\n")
+    importlib.invalidate_caches()
+    result = read_result(write_result(tmp_path / "r.json", "k", {}, [], modules=["renamed_package.one"]))
+    assert age(result) is None
+    (folder / "inner").mkdir()
+    (folder / "two.py").rename(folder / "inner" / "second.py")
+    (folder / "one.py").write_text('"""Moved."""\nfrom .inner.second import f\n\ndef g():\n    return f() + 1\n')
+    (folder / "one.py").rename(folder / "first.py")
+    assert age(result) is None
+    (folder / "inner" / "second.py").write_text("def f():\n    return 2\n")
+    assert age(result).endswith("since then changed: renamed_package.two")
 
 
 def test_content_that_names_a_folder_of_this_machine_is_refused(tmp_path):

@@ -97,7 +97,7 @@ def test_columns_of_a_sweep(tmp_path, monkeypatch):
         def evaluate(batch):
             cases = [Case(Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), duration=1.0,
                                 start=Start(tilt=point)), "fake_solvers:sound") for _, point in batch]
-            rows = run_sweep(cases, store=store, executor=Serial(), reduce=tilt, progress=False)
+            rows = run_sweep(cases, store=store, executor=Serial(), measure=tilt, progress=False)
             return [row.values["peak"] > 0.5 for row in rows]  # the fake's peak is the square of the tilt
         column, = drive([boundaries(0.0, 1.0, 5, 1e-4)], evaluate)
         assert len(store) == column.evaluations
@@ -108,7 +108,7 @@ def test_what_cannot_be_searched_is_an_error():
     for wrong in ((1, 0, 5, 0.1), (0, 1, 1, 0.1), (0, 1, 5, 0.0), (0, 1, 5, 0.1, 0)):
         with pytest.raises(ValueError, match="boundaries needs low < high"):
             boundaries(*wrong)
-    with pytest.raises(ValueError, match="0 outcomes for 2 points"):
+    with pytest.raises(ValueError, match="0 outcomes were sent for 2 points"):
         drive([boundaries(0.0, 1.0, 2, 0.1)], lambda batch: [])
 
 

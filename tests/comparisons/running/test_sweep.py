@@ -43,23 +43,23 @@ def results(rows):
 
 
 def test_rows_come_in_the_order_of_the_cases_with_costs_apart(tmp_path, fakes):
-    rows = sweep(cases(), tmp_path / "s.jsonl", reduce=fakes.tilt)
+    rows = sweep(cases(), tmp_path / "s.jsonl", measure=fakes.tilt)
     assert [row.case.tag["i"] for row in rows] == list(range(10))
     assert [row.values for row in rows] == [{"outcome": "stands", "peak": round(0.01 * i, 6) ** 2} for i in range(10)]
     assert all(row.cost["cpu_seconds"] > 0 and "cpu_seconds" not in row.values for row in rows)
     assert not any(row.reused or row.failed for row in rows)
 
 
-def test_without_a_reducer_the_row_holds_the_whole_response(tmp_path):
+def test_without_a_measure_the_row_holds_the_whole_response(tmp_path):
     row, = sweep(cases(count=1), tmp_path / "s.jsonl", executor=Serial())
     assert row.values["outcome"] == "stands" and row.values["end"]["time"] == 1.0
 
 
 def test_one_and_two_workers_and_this_process_agree_in_any_order(tmp_path, fakes):
     which = cases(count=60)
-    one = sweep(which, tmp_path / "1.jsonl", workers=1, reduce=fakes.tilt)
-    two = sweep(which[::-1], tmp_path / "2.jsonl", workers=2, reduce=fakes.tilt)
-    here = sweep(which, tmp_path / "0.jsonl", executor=Serial(), reduce=fakes.tilt)
+    one = sweep(which, tmp_path / "1.jsonl", workers=1, measure=fakes.tilt)
+    two = sweep(which[::-1], tmp_path / "2.jsonl", workers=2, measure=fakes.tilt)
+    here = sweep(which, tmp_path / "0.jsonl", executor=Serial(), measure=fakes.tilt)
     assert results(one) == results(two)[::-1] == results(here)
 
 
@@ -73,14 +73,15 @@ def test_rows_are_reused_and_equal_cases_run_once(tmp_path):
     assert all(row.reused for row in again) and not any(row.reused for row in first)
 
 
-def test_a_key_follows_scene_solver_variant_settings_and_reducer_but_not_the_tag(fakes):
+def test_a_key_follows_scene_solver_variant_settings_tag_and_measure(fakes):
     base = Case(scene(0.1), "fake_solvers:sound", settings={"work": 1})
     others = [Case(scene(0.2), "fake_solvers:sound", settings={"work": 1}),
               Case(scene(0.1), "fake_solvers:raises", settings={"work": 1}),
               Case(scene(0.1), "fake_solvers:sound", "fast", {"work": 1}),
-              Case(scene(0.1), "fake_solvers:sound", settings={"work": 2})]
-    assert len({base.key(), base.key(fakes.tilt), *(other.key() for other in others)}) == 6
-    assert Case(scene(0.1), base.solver, settings={"work": 1}, tag={"i": 1}).key() == base.key()
+              Case(scene(0.1), "fake_solvers:sound", settings={"work": 2}),
+              Case(scene(0.1), "fake_solvers:sound", settings={"work": 1}, tag={"i": 1})]
+    assert len({base.key(), base.key(fakes.tilt), *(other.key() for other in others)}) == 7
+    assert Case(scene(0.1), base.solver, settings={"work": 1}).key() == base.key()
 
 
 def test_a_key_follows_versions_and_source_code(tmp_path, monkeypatch):
@@ -131,13 +132,13 @@ def test_a_worker_killed_from_outside_is_a_failed_row_and_runs_again_next_time(t
 
 
 def test_exceptions_and_failed_responses_become_failed_rows(tmp_path, fakes):
-    raised = sweep(cases("raises"), tmp_path / "s.jsonl", executor=Serial(), reduce=fakes.tilt)
+    raised = sweep(cases("raises"), tmp_path / "s.jsonl", executor=Serial(), measure=fakes.tilt)
     assert [row.case.tag["i"] for row in raised if row.failed] == [5]
     assert raised[5].failure["reason"] == "ValueError: Newton did not converge"
-    failed, = sweep(cases("fails", 1), tmp_path / "s.jsonl", executor=Serial(), reduce=fakes.tilt)
+    failed, = sweep(cases("fails", 1), tmp_path / "s.jsonl", executor=Serial(), measure=fakes.tilt)
     assert failed.failure["kind"] == "solver" and failed.failure["reason"] == "energy gain"
     assert failed.failure["last_state"]["time"] == 0.5 and failed.values["outcome"] == "failed"
-    unfit, = sweep(cases(count=1), tmp_path / "s.jsonl", executor=Serial(), reduce=fakes.broken)
+    unfit, = sweep(cases(count=1), tmp_path / "s.jsonl", executor=Serial(), measure=fakes.broken)
     assert unfit.failure["reason"].startswith("TypeError") and "JSON" in unfit.failure["reason"]
 
 
@@ -149,13 +150,13 @@ def test_failures_name_no_path_of_this_machine(tmp_path):
         assert root not in text
 
 
-def test_unknown_solvers_and_reducers_that_cannot_travel_are_errors_before_anything_runs(tmp_path, monkeypatch):
+def test_unknown_solvers_and_measures_that_cannot_travel_are_errors_before_anything_runs(tmp_path, monkeypatch):
     log = tmp_path / "log"
     first = cases("counted", 1, log=str(log))
     with pytest.raises(KeyError, match="unknown solver 'exodyn': choose one of analytic"):
         sweep([*first, Case(scene(0.1), "exodyn")], tmp_path / "s.jsonl")
     with pytest.raises(ValueError, match="module-level function"):
-        sweep(first, tmp_path / "s.jsonl", reduce=lambda response: {})
+        sweep(first, tmp_path / "s.jsonl", measure=lambda case, response: {})
     monkeypatch.setitem(sys.modules, "pybullet", None)
     with pytest.raises(EngineNotInstalled, match="pip install"):
         sweep([*first, Case(scene(0.1), "pybullet")], tmp_path / "s.jsonl")
@@ -197,9 +198,9 @@ def test_workers_that_cannot_start_are_an_error_not_an_endless_loop(tmp_path, mo
 
 def test_the_analytic_model_gives_the_same_rows_here_and_in_workers_without_compiling_there(tmp_path, fakes):
     which = [Case(scene(0.05 * i), settings={"history": False}) for i in range(1, 6)]
-    here = sweep(which, tmp_path / "0.jsonl", executor=Serial(), reduce=fakes.tilt)
+    here = sweep(which, tmp_path / "0.jsonl", executor=Serial(), measure=fakes.tilt)
     # Compiling takes longer than this limit; compile_kernels has left the workers a cache.
-    there = sweep(which, tmp_path / "2.jsonl", workers=2, reduce=fakes.tilt, time_limit=8.0)
+    there = sweep(which, tmp_path / "2.jsonl", workers=2, measure=fakes.tilt, time_limit=8.0)
     assert results(here) == results(there) and not any(row.failed for row in there)
 
 

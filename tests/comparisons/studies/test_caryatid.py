@@ -12,14 +12,15 @@ from analytic.rocking import RockingModel
 from comparisons.cli import main
 from comparisons.running.provenance import PROJECT_FOLDER, read_result
 from comparisons.running.refine import Transition
-from comparisons.studies.caryatid import section
+from comparisons.running.study import asked, compute, draw
+from comparisons.studies.caryatid import STUDY
 from comparisons.studies.caryatid.cost import DIVISIONS, _cpu_at, _fixed_step
-from comparisons.studies.caryatid.figures import draw
 from comparisons.studies.caryatid.formulas import formulas
 from comparisons.studies.caryatid.paper import CORRECTED, NOT_REPRODUCIBLE, REPRODUCED, judged
 from comparisons.studies.caryatid.runs import FREE, ISOLATED, caryatid, oscillator, slender_block
+from comparisons.studies.caryatid.sections import section
 from comparisons.studies.caryatid.slenderness import _intervals, _overlap, claims, uplift_slenderness
-from comparisons.studies.caryatid.study import is_papers_motion, make_results
+from comparisons.studies.caryatid.study import is_papers_motion
 from comparisons.studies.caryatid.variations import (
     BOTH,
     NEITHER,
@@ -176,8 +177,9 @@ def test_cost_at_an_error_lies_between_the_rungs():
 
 
 def test_end_to_end(short, tmp_path):
-    files = make_results(tmp_path, short, quick=True, progress=False)
-    draw(files)
+    files = compute(STUDY, tmp_path, asked(quick=True), progress=False, motion=short)
+    for file in files:
+        draw(STUDY, file)
     assert len(files) == 3 and len(list(tmp_path.glob("*.png"))) == 12
     for file in files:
         assert file.with_suffix(".npz").stat().st_size < 500_000
@@ -221,8 +223,10 @@ def test_the_paper_with_its_record():
     (["--units", "g"], "--record"),
     (["--output", __file__], "is a file"),
 ])
-def test_mistakes_end_with_status_2_before_any_run(arguments, message, capsys):
+def test_mistakes_end_with_status_2_before_any_run(arguments, message, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     with pytest.raises(SystemExit) as ended:
         main(["study", "caryatid", *arguments])
     assert ended.value.code == 2
     assert message in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())

@@ -1,30 +1,34 @@
 """The fragility study on a solver of which it is known how far it differs: the analytic model at other intensities."""
 
+import dataclasses
+
 import numpy as np
 import pytest
+from answered import answered
 
-from analytic import SettingError, simulate
+from analytic import simulate
 from comparisons.measuring.statistics import wilson
 from comparisons.running.provenance import read_result, write_result
+from comparisons.running.study import Ask, compute
 from comparisons.running.sweep import Row
-from comparisons.studies.fragility import command, section
-from comparisons.studies.fragility.cases import FULL, MOTIONS, compute
-from comparisons.studies.fragility.page import draw
-from comparisons.studies.workshop import workshop
+from comparisons.studies.fragility import STUDY
+from comparisons.studies.fragility.cases import FULL, MOTIONS, plan
+from comparisons.studies.fragility.page import draw, section
 
 SCENES = {"free-standing": ("caryatid-rigid", {}, (0.9, 1.0, 1.3))}
 COUNT = 24
+ENGINES = Ask(("exudyn", "pybullet"))
 
 
 class Scaled:
-    """In place of a workshop: the analytic model under `factor` times the motion, failing for some seeds."""
+    """In place of the engines: the analytic model under `factor` times the motion, failing for some seeds."""
 
     def __init__(self, factor, failing=()):
         self.factor, self.failing = factor, failing
 
-    def run(self, cases, label):
+    def __call__(self, batch):
         rows = []
-        for case in cases:
+        for case in batch.cases:
             failure = None
             if case.tag["seed"] in self.failing:
                 failure = {"kind": "crash", "reason": "the worker process ended", "message": "raw evidence"}
@@ -35,9 +39,9 @@ class Scaled:
 
 
 def study(tmp_path, work):
-    (settings, rows, arrays), = compute(work, scenes=SCENES, motions=COUNT)
-    return read_result(write_result(tmp_path / "fragility.json", "fragility", settings, rows, arrays,
-                                    modules=["analytic"], seed=settings["seeds"]))
+    found, = answered(plan(ENGINES, scenes=SCENES, motions=COUNT), work)
+    return read_result(write_result(tmp_path / "fragility.json", "fragility", found.settings, found.rows, found.arrays,
+                                    modules=["analytic"], seed=found.seed))
 
 
 def rows_of(result, part, solver):
@@ -105,52 +109,33 @@ def test_the_figure_has_a_point_for_every_solver_and_intensity(tmp_path):
     assert np.all(np.diff(share) > 0)
 
 
-def test_the_command_refuses_what_it_cannot_use_before_any_run(tmp_path):
-    (tmp_path / "taken").write_text("")
-    with pytest.raises(SettingError, match="is a file; give a folder"):
-        command(quick=True, output=str(tmp_path / "taken"), workers=1)
-    with pytest.raises(SettingError, match="--workers 0: give at least 1"):
-        command(quick=True, output=str(tmp_path / "new"), workers=0)
-    assert not (tmp_path / "new").exists()
-
-
-def test_an_interrupted_study_takes_up_its_own_rows(tmp_path):
+def test_an_interrupted_study_takes_up_its_own_rows(tmp_path, monkeypatch):
     """Real runs in real worker processes; the first attempt ends in the middle."""
     scenes = {"free-standing": ("caryatid-rigid", {}, (1.0,))}
+    store = tmp_path / "runs.jsonl"
 
-    def attempt(folder, limit=None):
-        with workshop(tmp_path / folder, ["exudyn", "pybullet"], 1, progress=False) as work:
-            if limit:
-                with pytest.raises(KeyboardInterrupt):
-                    list(compute(Stopping(work, limit), scenes=scenes, motions=2))
-                return len(work.store)
-            found, = compute(work, scenes=scenes, motions=2)
-            return found
+    def attempt():
+        path, = compute(STUDY, tmp_path, ENGINES, workers=1, progress=False, scenes=scenes, motions=2)
+        return read_result(path)
 
-    kept = attempt("broken", limit=2)
-    assert kept == 4
-    store = tmp_path / "broken" / ".sweep" / "runs.jsonl"
+    def stopping(ask, **options):
+        steps, rows = plan(ask, **options), None
+        for _ in range(2):
+            rows = yield steps.send(rows)
+        raise KeyboardInterrupt
+
+    stopped = dataclasses.replace(STUDY, plan=stopping)
+    with pytest.raises(KeyboardInterrupt):
+        compute(stopped, tmp_path, ENGINES, workers=1, progress=False, scenes=scenes, motions=2)
     before = store.read_text()
-    _, rows, arrays = attempt("broken")
+    assert len(before.splitlines()) == 4
+    first = attempt()
     assert store.read_text().startswith(before)
     assert len(store.read_text().splitlines()) == 6
-    _, again, same = attempt("broken")  # nothing left to run
+    again = attempt()  # nothing left to run
     assert len(store.read_text().splitlines()) == 6
-    assert without_cost(again) == without_cost(rows)
-    assert all((arrays[name] == same[name]).all() for name in arrays)
-
-
-class Stopping:
-    """A workshop that is left after so many batches."""
-
-    def __init__(self, work, batches):
-        self.work, self.batches = work, batches
-
-    def run(self, cases, label):
-        if not self.batches:
-            raise KeyboardInterrupt
-        self.batches -= 1
-        return self.work.run(cases, label)
+    assert without_cost(again.rows) == without_cost(first.rows)
+    assert all((first.arrays[name] == again.arrays[name]).all() for name in first.arrays)
 
 
 def without_cost(rows):

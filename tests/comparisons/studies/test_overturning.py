@@ -4,15 +4,17 @@ import dataclasses
 
 import numpy as np
 import pytest
+from answered import answered
 
 from analytic import Block, PulseMotion, Scene, simulate
 from comparisons.running.provenance import read_result, write_result
 from comparisons.running.refine import drive
+from comparisons.running.study import Ask
 from comparisons.running.sweep import Row
 from comparisons.studies.overturning import cases as overturning_runs
-from comparisons.studies.overturning import section
 from comparisons.studies.overturning.edges import Edge, Located, edges, least_normal, locate, pulse
 from comparisons.studies.overturning.figures import draw_knobs, draw_maps, draw_shifts
+from comparisons.studies.overturning.page import section
 
 # the block of the published boundaries: one sine, p = 2.14, slenderness .25, restitution .9
 GRAVITY, FREQUENCY, SLENDERNESS = 9.81, 2.14, 0.25
@@ -88,14 +90,14 @@ def test_a_bracket_too_wide_to_tell_is_no_boundary():
 
 
 class Shifted:
-    """In place of a workshop: the analytic model under `shift` times larger pulses, failing at some of them."""
+    """In place of the engines: the analytic model under `shift` times larger pulses, failing at some of them."""
 
     def __init__(self, shift, fails=lambda case: False):
         self.shift, self.fails = shift, fails
 
-    def run(self, cases, label):
+    def __call__(self, batch):
         rows = []
-        for case in cases:
+        for case in batch.cases:
             motion = case.scene.motion
             response = simulate(case.scene.with_(motion=motion.scaled(1 / (1 + self.shift))), history=False)
             failed = {"kind": "solver", "reason": "it failed", "message": "raw evidence"} if self.fails(case) else None
@@ -106,11 +108,12 @@ class Shifted:
 
 def study(tmp_path, work, monkeypatch, knobs=True):
     monkeypatch.setattr(overturning_runs, "GROUNDS", {"rigid ground": ("caryatid-rigid", {})})
-    monkeypatch.setattr(overturning_runs, "KNOBS", overturning_runs.KNOBS[-1:])
-    parts = overturning_runs.compute(work, quick=True)
-    settings, rows, arrays = list(parts)[-1] if knobs else next(parts)
-    return read_result(write_result(tmp_path / "overturning.json", "overturning", settings, rows, arrays,
-                                    modules=["analytic"]))
+    one = overturning_runs.ladders_of(("exudyn",))
+    monkeypatch.setattr(overturning_runs, "ladders_of", lambda engines: one)
+    found = answered(overturning_runs.plan(Ask(("exudyn", "pybullet"), quick=True)), work,
+                     None if knobs else 1)[-1]
+    return read_result(write_result(tmp_path / "overturning.json", "overturning", found.settings, found.rows,
+                                    found.arrays, modules=["analytic"]))
 
 
 @pytest.mark.parametrize("shift", [0.0, 0.02])
@@ -166,12 +169,12 @@ def test_located_says_how_many_runs_it_took():
 class SlidesWhereItIsPulled(Shifted):
     """The analytic model, but a contact in place of its corner: shifted where that would have to be held down."""
 
-    def run(self, cases, label):
+    def __call__(self, batch):
         shift, rows = self.shift, []
-        for case in cases:
+        for case in batch.cases:
             pulled = simulate(case.scene, history=False).min_normal_ratio < 0
             self.shift = shift if pulled and case.variant != "switched-joints" else 0.0
-            rows += super().run([case], label)
+            rows += super().__call__(dataclasses.replace(batch, cases=[case]))
         self.shift = shift
         return rows
 

@@ -6,12 +6,12 @@ import math
 import numpy as np
 import pytest
 
-from analytic import SettingError, simulate
+from analytic import simulate
 from analytic.rocking import restitution
 from comparisons.running.provenance import read_result
-from comparisons.studies import restitution as study
+from comparisons.running.study import Ask, compute, draw
+from comparisons.studies.restitution import STUDY
 from comparisons.studies.restitution.cases import CARYATID_BASE, FULL, QUICK, Grid, free_scene, grid_cases
-from comparisons.studies.restitution.measure import kept, measured, strong_impacts
 from comparisons.studies.restitution.summary import BULLET_DAMPING, damped_error, friction_needed
 
 pytestmark = pytest.mark.xdist_group("restitution study")  # the small study is run once
@@ -22,35 +22,6 @@ def test_the_grids_cover_what_they_must(grid):
     assert {0.1, 0.2, 0.3, 0.45} <= set(grid.slendernesses)
     assert {None, CARYATID_BASE, 1.0, 10.0} <= set(grid.ratios)
     assert len(grid.starts) >= 8 and min(grid.starts) == 0.3 and max(grid.starts) == 0.8
-
-
-@pytest.mark.parametrize("ratio", [None, 10.0, CARYATID_BASE])
-@pytest.mark.parametrize("slenderness", [0.1, 0.45])
-def test_exact_responses_have_no_error_and_the_printed_jump_has(slenderness, ratio):
-    scene = free_scene(slenderness, ratio, 0.5)
-    errors = measured(scene, json.loads(json.dumps(kept(simulate(scene)))), 3)
-    assert len(errors["time"]) == 3
-    assert np.abs(errors["swing"]).max() < 1e-8
-    assert np.abs(errors["state"]).max() < 1e-9
-    if ratio:
-        assert np.abs(errors["jump"]).max() < 1e-9
-        assert np.abs(errors["jump_8"]).max() < 1e-9
-        np.testing.assert_allclose(errors["jump_8_printed"], 1 / scene.block.half_height - 1, atol=1e-9)
-
-
-def test_another_impact_law_is_measured_as_what_it_is():
-    scene = free_scene(0.2, None, 0.6)
-    wrong = simulate(scene.with_(block={"restitution": 0.9}))
-    errors = measured(scene, kept(wrong), 3)
-    np.testing.assert_allclose(errors["swing"], 0.9 - restitution(scene), atol=1e-8)
-
-
-def test_chatter_does_not_count_as_impacts():
-    scene = free_scene(0.2, None, 0.6).with_(duration=30.0)
-    response = simulate(scene)
-    rates = [abs(impact.rate_before) for impact in strong_impacts(response)]
-    assert len(rates) < len(response.impacts)
-    assert min(rates) >= 0.1 * max(rates)
 
 
 @pytest.mark.parametrize("start", [0.3, 0.8])
@@ -90,8 +61,8 @@ def small(tmp_path_factory):
     pytest.importorskip("pybullet")
     folder = tmp_path_factory.mktemp("study")
     grid = Grid((0.2,), (None, CARYATID_BASE), (0.5, 0.7), ((0.2, None),), 8)
-    path, figures = study.run(folder, grid, workers=2, progress=False, engines=("pybullet",))
-    return folder, grid, path, figures
+    path, = compute(STUDY, folder, Ask(("pybullet",)), workers=2, progress=False, grid=grid)
+    return folder, grid, path, draw(STUDY, path)
 
 
 def test_a_small_study_finds_what_is_known(small):
@@ -116,7 +87,7 @@ def test_a_small_study_finds_what_is_known(small):
 def test_figures_and_section_come_from_the_result_alone(small):
     folder, _, path, figures = small
     assert len(figures) == 5 and all(figure.stat().st_size > 10_000 for figure in figures)
-    section = study.section(read_result(path))
+    section = STUDY.section(read_result(path))
     words = " ".join(section.text)
     assert "pybullet, impact-aware (accuracy = 1.0·10⁻⁵) may be trusted for restitution" in words
     assert "not to be trusted" in words and "Step phase." in words and "Eq. (8)." in words
@@ -132,7 +103,7 @@ def test_a_broken_off_study_resumes_to_the_same_result(small):
     store = folder / "runs.jsonl"
     lines = store.read_text().splitlines(keepends=True)
     store.write_text("".join(lines[:len(lines) // 2]) + lines[-1][:40])  # the last line cut off, as kill -9 leaves it
-    study.run(folder, grid, workers=1, progress=False, engines=("pybullet",))
+    compute(STUDY, folder, Ask(("pybullet",)), workers=1, progress=False, grid=grid)
     after = read_result(path)
 
     def without_cost(rows):
@@ -140,12 +111,6 @@ def test_a_broken_off_study_resumes_to_the_same_result(small):
 
     assert without_cost(after.rows) == without_cost(before.rows)
     assert len(store.read_text().splitlines()) >= len(lines)
-
-
-def test_an_output_that_is_a_file_is_refused(tmp_path):
-    (tmp_path / "taken").write_text("")
-    with pytest.raises(SettingError, match="taken: is a file"):
-        study.command(output=str(tmp_path / "taken"))
 
 
 def test_results_hold_numbers_only(small):

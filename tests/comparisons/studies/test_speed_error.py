@@ -10,16 +10,18 @@ from analytic import simulate
 from analytic.errors import SettingError
 from analytic.time_stepping import simulate_time_stepping
 from comparisons.cli import main
+from comparisons.running.cases import Case
 from comparisons.running.provenance import Result, read_result
 from comparisons.running.store import Store
-from comparisons.studies.speed_error import growth, models, section, tables
-from comparisons.studies.speed_error.compute import KIND, run_study
+from comparisons.running.study import RUNS, asked, compute
+from comparisons.studies.speed_error import STUDY, growth, models, tables
 from comparisons.studies.speed_error.figures import check_axes, draw_growth, draw_pareto
 from comparisons.studies.speed_error.ladders import NEEDED
 from comparisons.studies.speed_error.measure import errors
+from comparisons.studies.speed_error.page import section
 from comparisons.studies.speed_error.scenes import margin, trials
 from comparisons.studies.speed_error.tables import cost_at_error, extras, orders, ranking_stability
-from comparisons.studies.speed_error.timing import searched, timed
+from comparisons.studies.speed_error.timing import PEER, measure, searched
 from engines import get_engine
 
 
@@ -109,17 +111,18 @@ def test_a_solver_without_boundary_nearby_gets_none(near):
 
 
 def test_error_and_cpu_time_are_of_the_same_runs(free):
-    response = timed(free.scene, solver="time-stepping", settings={"step": 1e-3})
+    case = Case(free.scene, "time-stepping", None, {"step": 1e-3, "history": False}, {"boundary": None})
     alone = simulate_time_stepping(free.scene, step=1e-3, history=False)
-    assert response.impacts == alone.impacts
-    assert response.cpu_seconds > 0
-    assert response.settings["repeats"] > 1  # a run this short is repeated
+    values = measure(case, alone)
+    assert values["impacts"] == alone.to_json()["impacts"]
+    assert values["cost"]["cpu_seconds"] > 0
+    assert values["cost"]["repeats"] > 1  # a run this short is repeated
 
 
 def test_peers_give_their_end_state(free):
     pytest.importorskip("CyRK")
-    response = timed(free.scene, solver="peer:CyRK DOP853", settings={"tolerance": 1e-10})
-    found = errors(free, response.to_json())
+    case = Case(free.scene, PEER, None, {"name": "CyRK DOP853", "tolerance": 1e-10}, {"boundary": None})
+    found = errors(free, measure(case, case.run()))
     assert set(found) == {"end_tilt"}
     assert found["end_tilt"] < 1e-7
 
@@ -156,7 +159,7 @@ def row(family, cpu, error, lost=0, step=1.0, failure=None, model=NEEDED):
 
 def result_of(rows):
     settings = {"scenes": {"s": {"title": "s", "measures": ["impact_time"]}}}
-    return Result(KIND, settings, rows, {}, {"cpu_seconds": np.array([[one["cpu_seconds"]] for one in rows])})
+    return Result(STUDY.name, settings, rows, {}, {"cpu_seconds": np.array([[one["cpu_seconds"]] for one in rows])})
 
 
 def test_cost_at_an_error_is_the_cheapest_sound_run_that_reaches_it():
@@ -235,7 +238,8 @@ def small(entry):
 
 
 def run_small(folder, near):
-    return read_result(run_study(folder, quick=True, repeats=2, progress=False, scenes=[near], keep=small, grow=False))
+    path, = compute(STUDY, folder, asked(quick=True), progress=False, repeats=2, scenes=[near], keep=small, grow=False)
+    return read_result(path)
 
 
 @pytest.fixture(scope="module")
@@ -253,7 +257,7 @@ def test_repeating_the_study_gives_the_same_errors_bit_for_bit(studied):
 
 def test_the_study_resumes(studied, near):
     folder, (first, _) = studied
-    store = folder / "first" / ".sweep" / f"{KIND}.jsonl"
+    store = folder / "first" / RUNS
     with Store(store) as kept:
         before = len(kept)
     again = run_small(folder / "first", near)

@@ -12,12 +12,13 @@ from analytic.response import Failure
 from comparisons.report.studies import RESULTS
 from comparisons.running.cases import Case
 from comparisons.running.provenance import read_result
+from comparisons.running.study import Ask, compute, draw
 from comparisons.running.sweep import Row
+from comparisons.studies.stability import STUDY
 from comparisons.studies.stability import measure as stability_measures
-from comparisons.studies.stability import run, section
 from comparisons.studies.stability.cases import BLOCK, GAP, OVERTURNS_FROM, THRESHOLD, hard_cases
 from comparisons.studies.stability.measure import measure, oracle
-from comparisons.studies.stability.page import matrix
+from comparisons.studies.stability.page import matrix, section
 from comparisons.studies.stability.verdicts import (
     DEGRADED,
     FAILED,
@@ -36,9 +37,13 @@ KERNEL = Solver("analytic", None, "event-driven", {}, None, ())
 QUICK = [name for name, case in CASES.items() if case.quick]
 
 
+def measured(response):
+    return measure(Case(CASES["zeno"].scene, tag={"case": "zeno"}), response)
+
+
 def verdict(name, response, solver=TIME_STEPPING):
     case = CASES[name]
-    row = Row(solver.case(case), measure(response), None, {}, False)
+    row = Row(solver.case(case), measure(solver.case(case), response), None, {}, False)
     return entry(case, solver, row)
 
 
@@ -86,11 +91,11 @@ def test_wrong_histories_and_lost_events_are_seen():
     assert verdict("zeno", response)["verdict"] == RIGHT
 
     moved = dataclasses.replace(response, history=dataclasses.replace(history, tilt=history.tilt + 0.05 * gamma))
-    assert measure(moved)["errors"]["tilt"] == pytest.approx(0.05, rel=1e-6)
-    assert measure(moved)["errors"]["tilt at rest"] == pytest.approx(0.05)
+    assert measured(moved)["errors"]["tilt"] == pytest.approx(0.05, rel=1e-6)
+    assert measured(moved)["errors"]["tilt at rest"] == pytest.approx(0.05)
 
     lost = dataclasses.replace(response, impacts=response.impacts[3:], rests=())
-    errors = measure(lost)["errors"]
+    errors = measured(lost)["errors"]
     assert errors["lost impacts"] in (2, 3)  # one just below the limit may stand in for one lost
     assert errors["lost rests"] == 1
     assert "rest time" not in errors
@@ -99,7 +104,7 @@ def test_wrong_histories_and_lost_events_are_seen():
     assert {"lost impacts", "lost rests"} <= set(content["outside"])
 
     late = dataclasses.replace(response, rests=(response.rests[0] * 1.03,))
-    assert measure(late)["errors"]["rest time"] == pytest.approx(0.03, rel=1e-4)
+    assert measured(late)["errors"]["rest time"] == pytest.approx(0.03, rel=1e-4)
 
 
 def test_energy_from_nowhere_is_seen():
@@ -109,10 +114,10 @@ def test_energy_from_nowhere_is_seen():
     # A swing that grows by 10 % within the first flight.
     growth = 1 + 0.1 * np.clip(history.time / response.impacts[0].time, 0, 1)
     grown = dataclasses.replace(history, tilt=history.tilt * growth, tilt_rate=history.tilt_rate * growth)
-    errors = measure(dataclasses.replace(response, energy=None, history=grown))["errors"]
+    errors = measured(dataclasses.replace(response, energy=None, history=grown))["errors"]
     assert errors["energy gain"] > 0.02
     assert errors["energy drift"] > 0.02
-    same = measure(dataclasses.replace(response, energy=None))["errors"]
+    same = measured(dataclasses.replace(response, energy=None))["errors"]
     assert same["energy gain"] < 1e-6
     assert same["energy drift"] < 1e-6
 
@@ -141,7 +146,7 @@ def test_a_failed_run_keeps_its_evidence():
 def test_columns_cover_every_variant_and_cures_are_settings_they_have():
     from engines import get_engine, installed_engines
 
-    columns = solvers()
+    columns = solvers(installed_engines())
     assert len({column.label for column in columns}) == len(columns)
     for name in installed_engines():
         variants = get_engine(name).variants
@@ -155,7 +160,8 @@ def test_columns_cover_every_variant_and_cures_are_settings_they_have():
 
 def test_the_study_writes_cells_cures_and_page_and_resumes(tmp_path):
     names, columns = ("uplift 0.99", "zeno", "critical pulse -0.01"), [KERNEL, TIME_STEPPING]
-    path, figure = run(tmp_path, names=names, columns=columns, workers=1, progress=False)
+    path, = compute(STUDY, tmp_path, Ask(), workers=1, progress=False, names=names, columns=columns)
+    figure, = draw(STUDY, path)
     rows = (tmp_path / "runs.jsonl").read_text()
     result = read_result(path)
     cells = matrix(result)
@@ -173,7 +179,7 @@ def test_the_study_writes_cells_cures_and_page_and_resumes(tmp_path):
     assert "right in 3 of 3 cells" in shown.text[1]
     assert any(line[0] == "zeno" and line[-1].startswith("step = ") for line in shown.tables[1].rows)
 
-    again, _ = run(tmp_path, names=names, columns=columns, workers=1, progress=False)
+    again, = compute(STUDY, tmp_path, Ask(), workers=1, progress=False, names=names, columns=columns)
     assert (tmp_path / "runs.jsonl").read_text() == rows  # nothing ran twice
     assert [{**row, "cpu_seconds": 0} for row in read_result(again).rows] == [
         {**row, "cpu_seconds": 0} for row in result.rows]

@@ -1,0 +1,204 @@
+"""A study: a question, the runs that answer it, what is measured in each, and how the answer is shown.
+
+    STUDY = Study("outcomes", "Who overturns?", plan, figures, section)
+
+    def plan(ask):
+        rows = yield Batch([Case(scene, solver) for solver in ("analytic", *ask.engines)], outcome, "outcomes")
+        return Found({"quick": ask.quick}, [row.values for row in rows])
+
+`plan` is a generator: it yields a `Batch` of cases and is sent their rows, as often as it needs (a search asks again
+where the answers point, a timing turn by turn). A `Found` that it yields is written at once: whole as far as it goes;
+the last one is returned. What runs, stores, resumes, draws and writes is `compute`, the same for every study.
+"""
+
+import contextlib
+import sys
+import time
+from collections.abc import Callable, Generator, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from engines import ENGINES, get_engine, installed_engines
+
+from .cases import Case, module_of
+from .executors import Processes
+from .files import check_folder
+from .provenance import Result, read_result, write_result
+from .solving import stdout_to_stderr
+from .sources import PROJECT, digests_of_all, source_digests
+from .store import Store
+from .sweep import run_sweep
+
+RUNS = "runs.jsonl"  # rows of single runs, beside the result
+TIME_LIMIT = 300.0  # s, of one run
+SHOWN = 30  # runs from which on a batch shows its progress; a bisection has many small ones
+
+
+@dataclass(frozen=True)
+class Ask:
+    """What a plan is asked. engines: names of those to compare; quick: a first look, in minutes."""
+
+    engines: tuple[str, ...] = ()
+    quick: bool = False
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Cases to run, in parallel. measure: module-level, (`Case`, `Response`) -> dict of JSON values.
+
+    alone: timed, so one after the other in one fresh process, with nothing else under way.
+    """
+
+    cases: Sequence[Case]
+    measure: Callable | None
+    label: str
+    time_limit: float = TIME_LIMIT
+    alone: bool = False
+
+
+@dataclass(frozen=True)
+class Found:
+    """An answer: what was asked (settings), rows and arrays.
+
+    solvers: on whose code it depends beside the batches'. name: of its file, where a study has several.
+    """
+
+    settings: dict
+    rows: list
+    arrays: dict = field(default_factory=dict)
+    seed: object = None
+    solvers: tuple[str, ...] = ()
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study, as commands, report and `compute` know it.
+
+    name: on the command line, of its files, and the kind of its result. question: one line, the command's help.
+    plan: ``(ask, **options)`` -> generator, see above. figures: ``(result, **options)`` -> {suffix: Figure}. section:
+    result -> `comparisons.showing.parts.Section`. problems: result -> sentences that end the command with status 1.
+    Keyword-only parameters of plan and figures, annotated as Typer
+    wants them, become options of the command.
+    """
+
+    name: str
+    question: str
+    plan: Callable[..., Generator]
+    figures: Callable[..., dict]
+    section: Callable[[Result], object]
+    problems: Callable[[Result], list] = lambda result: []
+
+
+def compute(study, folder, ask, *, workers=None, progress=True, **options):
+    """Run a study's plan; returns the paths of its result files in `folder`, mostly one.
+
+    Parameters
+    ----------
+    study : Study
+    folder : path
+        Made if it does not exist. Runs already found there are not repeated.
+    ask : Ask
+    workers : int or None
+        Worker processes; None: one per core.
+    progress : bool
+        Show it on standard error.
+    **options
+        Of the study's plan.
+
+    Raises
+    ------
+    SettingError
+        `folder` is a file, or the number of workers is out of range.
+    StoreError
+        Another study is writing there.
+    ResultError
+        The answer cannot be written as a result file.
+    """
+    check_folder(folder)
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    written, counts, code = {}, {True: 0, False: 0}, digests_of_all(_packages(study))
+    solvers = dict.fromkeys(("analytic", *ask.engines))
+    with ExitStack() as stack:
+        stack.callback(_leave_nothing_empty, folder)
+        stack.enter_context(stdout_to_stderr())  # engines greet on standard output
+        store = stack.enter_context(Store(folder / RUNS))
+        pool = stack.enter_context(Processes(workers, tuple(solvers)))
+        plan, answer, ended = study.plan(ask, **options), None, False
+        while not ended:
+            try:
+                step = plan.send(answer)
+            except StopIteration as stop:
+                step, ended = stop.value, True
+            if isinstance(step, Found):
+                answer = None
+                solvers.update(dict.fromkeys(step.solvers))
+                modules = [study.plan.__module__, *dict.fromkeys(module_of(name) for name in solvers)]
+                path = folder / f"{step.name or study.name}.json"
+                edited = [name for name, digest in source_digests(modules).items() if digest not in code]
+                settings = {**step.settings, "changed_while_running": edited}  # its numbers are of the code before
+                written[path] = write_result(path, study.name, settings, step.rows, step.arrays, modules=modules,
+                                             seed=step.seed)
+                continue
+            answer = _run(step, store, pool, progress)
+            solvers.update(dict.fromkeys(case.solver for case in step.cases))
+            for row in answer:
+                counts[row.reused] += 1
+    if progress:
+        say(f"{counts[False]} runs done, {counts[True]} found in {folder.name}/{RUNS}")
+    return list(written)
+
+
+def draw(study, path, folder=None, **options):
+    """Draw the figures of the result file at `path` into `folder`, by default beside it; returns their paths."""
+    from ..showing.plots import save
+
+    path, drawn = Path(path), []
+    into = path if folder is None else Path(folder) / path.name
+    into.parent.mkdir(parents=True, exist_ok=True)
+    for suffix, figure in study.figures(read_result(path), **options).items():
+        drawn.append(into.with_name(f"{path.stem}-{suffix}.png" if suffix else f"{path.stem}.png"))
+        save(figure, drawn[-1])
+    return drawn
+
+
+def asked(engines=None, quick=False):
+    """The `Ask` for engines by name; None: all that are installed.
+
+    Raises
+    ------
+    KeyError, EngineNotInstalled
+        As `engines.get_engine`.
+    """
+    for name in engines or ():
+        get_engine(name)
+    return Ask(tuple(dict.fromkeys(engines)) if engines else tuple(installed_engines()), quick)
+
+
+def say(text):
+    """A line of progress on standard error, with the time."""
+    print(f"{time.strftime('%H:%M:%S')} {text}", file=sys.stderr, flush=True)
+
+
+def _leave_nothing_empty(folder):
+    """Remove what a mistake left: an empty store, and the folder if nothing else is there."""
+    with contextlib.suppress(OSError):
+        if (folder / RUNS).stat().st_size == 0:
+            (folder / RUNS).unlink()
+            folder.rmdir()
+
+
+def _packages(study):
+    return dict.fromkeys((*PROJECT, study.plan.__module__.partition(".")[0],
+                          *(engine.adapter.partition(".")[0] for engine in ENGINES.values())))
+
+
+def _run(batch, store, pool, progress):
+    shown = progress and len(batch.cases) >= SHOWN
+    options = dict(store=store, measure=batch.measure, time_limit=batch.time_limit, progress=shown, label=batch.label)
+    if not batch.alone:
+        return run_sweep(batch.cases, executor=pool, **options)
+    with Processes(1, sorted({case.solver for case in batch.cases})) as executor:
+        return run_sweep(batch.cases, executor=executor, **options)

@@ -1,0 +1,127 @@
+"""The speed-error study's plan: fresh processes, warm, solvers in turn, repeated; rows with medians and spread."""
+
+import json
+import statistics
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from ...bench.analytic_bench import peer_versions
+from ...running.study import Batch, Found
+from . import growth, timing
+from .ladders import entries
+from .measure import errors
+from .scenes import description, trials
+
+REPEATS, QUICK_REPEATS = 5, 3
+SLOW = 0.5  # s of CPU: such measurements are repeated `FEW` times only
+FEW = 3
+EVIDENCE = 600  # characters of an engine's message that a row keeps
+
+Repeats = Annotated[int | None, typer.Option(min=1, help="Fresh processes in turn. Default 5, quick 3.")]
+
+
+def plan(ask, scenes=None, keep=lambda entry: True, grow=True, *, repeats: Repeats = None):
+    """The plan of the study: in each round, one fresh process, every solver has its turn.
+
+    Parameters
+    ----------
+    ask : Ask
+    scenes : list of Trial or None
+        None: all five.
+    keep : callable
+        Entry -> bool: which of them to run.
+    grow : bool
+        Whether to measure the growth of cost too.
+    repeats : int or None
+        Rounds.
+    """
+    rounds = repeats or (QUICK_REPEATS if ask.quick else REPEATS)
+    scenes = scenes or trials()
+    chosen = [entry for entry in entries(scenes, ask.engines, ask.quick) if keep(entry)]
+    measured = [[] for _ in chosen]
+    for turn in range(rounds):
+        taking_part = [index for index, rows in enumerate(measured) if turn < FEW or not _slow(rows[0])]
+        done = yield Batch([chosen[i].case(turn) for i in taking_part], timing.measure,
+                           f"round {turn + 1} of {rounds}", alone=True)
+        for index, row in zip(taking_part, done, strict=True):
+            measured[index].append(row)
+    rows = [_row(entry, found) for entry, found in zip(chosen, measured, strict=True)]
+    seconds = np.full((len(rows), rounds), np.nan)
+    for line, found in zip(seconds, measured, strict=True):
+        line[:len(found)] = [one.cost.get("cpu_seconds", np.nan) for one in found]
+    if grow:
+        rows += yield from _growth(scenes, ask, rounds)
+    settings = {"quick": ask.quick, "rounds": rounds, "scenes": {trial.name: description(trial) for trial in scenes},
+                "laws": _laws(scenes), "peers": peer_versions()}
+    return Found(settings, rows, {"cpu_seconds": seconds})
+
+
+def _slow(row):
+    return row.cost.get("cpu_seconds", 0.0) > SLOW
+
+
+def _row(entry, found):
+    """JSON-ready row of an entry from its rounds."""
+    first = found[0]
+    values, trial = first.values, entry.trial
+    row = {"table": "ladder", "scene": trial.name, "family": entry.family, "model": entry.model,
+           "law": entry.law or (trial.scene.bearings and trial.scene.bearings.law), "solver": entry.solver,
+           "variant": entry.variant, "knob": entry.knob, "value": entry.value, "outcome": values.get("outcome"),
+           "failure": _evidence(first.failure), "timings": len(found), "errors": {}, "lost_impacts": None,
+           "repeatable": len({_bits(one.values) for one in found}) == 1}
+    seconds = [one.cost["cpu_seconds"] for one in found if one.cost.get("cpu_seconds")]
+    if first.failure or not seconds:
+        return row
+    shifts = values["boundary_shifts"]
+    row["errors"] = errors(trial, values, shifts)
+    row["lost_impacts"] = row["errors"].pop("lost_impacts", None)
+    cpu, simulated, steps = statistics.median(seconds), values["end"]["time"], values["steps"]
+    row |= {"cpu_seconds": cpu, "cpu_low": min(seconds), "cpu_high": max(seconds), "simulated": simulated,
+            "steps": steps or None, "step": simulated / steps if steps else None,
+            "cpu_per_second": cpu / simulated, "cpu_per_step": cpu / steps if steps else None,
+            "boundary_shifts": shifts, "settings": values["settings"]}
+    return row
+
+
+def _bits(values):
+    """What must not differ from round to round, as text."""
+    return json.dumps(values, sort_keys=True)
+
+
+def _evidence(failure):
+    if failure is None:
+        return None
+    return {key: str(failure[key])[:EVIDENCE] for key in ("kind", "reason", "message") if failure.get(key)}
+
+
+def _growth(scenes, ask, rounds):
+    """Rows of growth: each measurement in a process of its own, so that none finds memory another has left."""
+    rows = []
+    for place in growth.points(scenes, ask.engines, ask.quick):
+        found = []
+        for turn in range(min(FEW, rounds)):
+            found += yield Batch([place.case(turn)], None, f"growth against {place.against}", alone=True)
+        sound = [one for one in found if not one.failed]
+        row = {"table": "growth", "family": place.family, "against": place.against, "value": place.value,
+               "failure": _evidence(found[0].failure)}
+        if sound:
+            row["cpu_seconds"] = statistics.median(one.cost["cpu_seconds"] for one in sound)
+            for name in ("traced_bytes", "resident_bytes"):
+                known = [one.values["settings"][name] for one in sound if one.values["settings"][name] is not None]
+                row[name] = statistics.median(known) if known else None
+        rows.append(row)
+    return rows
+
+
+def _laws(scenes):
+    """What another bearing law changes in the scenes themselves: peak displacement and tilt, relative."""
+    found = {}
+    for trial in scenes:
+        if trial.scene.bearings:
+            other = trial.with_law("bouc-wen").reference
+            found[trial.name] = {
+                "peak_displacement": other.peak_base_displacement / trial.reference.peak_base_displacement - 1,
+                "peak_tilt": other.peak_tilt / trial.reference.peak_tilt - 1 if trial.reference.peak_tilt else None}
+    return found
