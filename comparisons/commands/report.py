@@ -13,7 +13,7 @@ def command(
                                                             "result files.")] = "report",
 ):
     """All solvers on the Caryatid, free-standing and isolated: one HTML page and the result files it is made from."""
-    from ..report.runs import make_results
+    from ..report.study import make_results
     from ..report.write import write_page
     from ..running.files import check_folder
     from ..running.solving import ground_motion, say, stdout_to_stderr
@@ -22,6 +22,6 @@ def command(
     motion = ground_motion(record, units)
     say(f"ground motion: {motion.label}")
     with stdout_to_stderr():  # engines greet on standard output
-        make_results(output, motion, say=say)
+        make_results(output, motion)
     say("the page")
     print(write_page(output))

@@ -1,6 +1,6 @@
 """The report: one HTML page on how the solvers agree on the Caryatid, made from result files alone.
 
-`runs.make_results` simulates and writes the result files; `write.write_page` reads them and writes the page.
+`study.make_results` simulates and writes the result files; `write.write_page` reads them and writes the page.
 
 Studies appear in the page too: for every file in ``comparisons/results``, whose kind is a study's name, the section
 that the `Study` makes of it (`comparisons.showing.parts`). A study draws from the result it is handed and from nothing

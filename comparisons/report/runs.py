@@ -1,24 +1,22 @@
 """The runs behind the report: the Caryatid in every solver, and free rocking in every variant; as result files."""
 
-import shutil
 from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 from scipy.integrate import trapezoid
 
-from analytic import load_scene, simulate
+from analytic import load_scene
 from analytic.closed_form import free_rocking
 from analytic.response import History, Response
 from analytic.rocking import base_jump_length, restitution
-from engines import ENGINES, available_engines, get_engine
+from engines import available_engines, get_engine
 
 from ..measuring.horizon import solver_horizon
 from ..measuring.measures import compare
 from ..measuring.restitution import SLOWEST_IMPACT, impact_errors, rms
 from ..running.cases import Case
-from ..running.provenance import write_result
-from ..running.sweep import Processes, Serial, Store, run_sweep
+from ..running.study import Batch, Found, say
 from .histories import ToFile, differences, response_of, thinned
 
 CARYATID, FREE_ROCKING = "caryatid.json", "free-rocking.json"
@@ -32,57 +30,19 @@ FREE_SECONDS = 3.0
 # Outer limit of a run [s], and what a second and a sample of the motion add to it; the longest under a usual record
 # takes a few seconds. A hang becomes a failed row.
 TIME_LIMIT, LIMIT_PER_SECOND, LIMIT_PER_SAMPLE = 60.0, 1.0, 1e-3
-# Under a record of more samples one engine runs at a time: each needs some 100 bytes a step several times over.
-SHORT_RECORD = 200_000
-UNFINISHED = "unfinished"  # folder of what a report that is broken off goes on from
 
 
-def make_results(folder, motion, *, duration=None, slendernesses=SLENDERNESSES, say=lambda text: None):
-    """Simulate everything the report shows and write its result files into `folder`.
-
-    Parameters
-    ----------
-    folder : path
-        Made if it does not exist. A report that is broken off goes on from what it finds here.
-    motion : SampledMotion
-    duration : float or None
-        Of the Caryatid's runs [s]; None: until their outcome is decided.
-    slendernesses : sequence of float
-        Of the free rocking blocks [rad].
-    say : callable
-        Told in words what is being done.
-    """
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    engines, missing = available_engines()
+def plan(ask, motion, histories, duration=None, slendernesses=SLENDERNESSES):
+    """The plan of the report's own runs; histories: folder in which those of the Caryatid's are kept meanwhile."""
     scenes = caryatid_scenes(motion, duration)
     caryatid = [Case(scene, solver, tag={"scene": name})
-                for solver in ("analytic", *engines) for name, scene in scenes.items()]
-    free = free_rocking_cases(engines, slendernesses)
-    unfinished = folder / UNFINISHED
-    unfinished.mkdir(exist_ok=True)
-    measures = ToFile(str(unfinished.resolve())), impacts_only
-    samples = len(motion.samples)
-    limit = TIME_LIMIT + LIMIT_PER_SECOND * motion.end + LIMIT_PER_SAMPLE * samples
-    say("analytic model (the first run on a machine compiles it)")
-    simulate(next(iter(scenes.values())), history=False)  # before workers start, so that they find the compiled kernel
-    rows = []
-    with Store(unfinished / "runs.jsonl") as opened:
-        for cases, measure in zip((caryatid, free), measures, strict=True):
-            ours = [case for case in cases if case.solver == "analytic"]
-            rows.append(run_sweep(ours, store=opened, measure=measure, executor=Serial(), progress=False))
-        # One pool for both: the long runs of the Caryatid first.
-        with Processes(None if samples <= SHORT_RECORD else 1, solvers=engines) as pool:
-            say(f"the Caryatid in {', '.join(engines)}" if engines else "no engine installed")
-            for place, (cases, measure, label) in enumerate(
-                    zip((caryatid, free), measures, ("Caryatid", "free rocking"), strict=True)):
-                theirs = [case for case in cases if case.solver != "analytic"]
-                rows[place] += run_sweep(theirs, store=opened, measure=measure, executor=pool,
-                                         time_limit=limit, label=label) if theirs else []
-    modules = ["comparisons.report.runs", *(ENGINES[name].adapter for name in engines)]
-    _write_caryatid(folder / CARYATID, rows[0], scenes, motion, missing, modules)
-    _write_free_rocking(folder / FREE_ROCKING, rows[1], modules, engines)
-    shutil.rmtree(unfinished)  # complete: the next report measures its times afresh
+                for solver in ("analytic", *ask.engines) for name, scene in scenes.items()]
+    limit = TIME_LIMIT + LIMIT_PER_SECOND * motion.end + LIMIT_PER_SAMPLE * len(motion.samples)
+    say(f"the Caryatid in {', '.join(('the analytic model', *ask.engines))} (the first run on a machine compiles it)")
+    rows = yield Batch(caryatid, ToFile(str(Path(histories).resolve())), "Caryatid", limit)
+    yield _caryatid(Path(histories), rows, scenes, motion)
+    rows = yield Batch(free_rocking_cases(ask.engines, slendernesses), impacts_only, "free rocking", limit)
+    return _free_rocking(rows, ask.engines)
 
 
 def caryatid_scenes(motion, duration=None):
@@ -117,9 +77,8 @@ def impacts_only(case, response):
     return response.to_json()
 
 
-def _write_caryatid(path, rows, scenes, motion, missing, modules):
-    """The result file of the Caryatid's runs; memory holds two histories at a time, one the analytic model's."""
-    folder = path.parent / UNFINISHED
+def _caryatid(folder, rows, scenes, motion):
+    """The answer of the Caryatid's runs; memory holds two histories at a time, one the analytic model's."""
     shown = thinned(motion.samples)
     arrays = {"motion/time": motion.dt * shown, "motion/acceleration": motion.samples[shown]}
     described, entries = {}, []
@@ -141,8 +100,8 @@ def _write_caryatid(path, rows, scenes, motion, missing, modules):
             "restitution": restitution(scene), "horizon": min(horizons, default=None)}  # the earliest of a solver
     settings = {"motion": {"label": motion.label, "peak": motion.peak, "peak_time": motion.peak_time,
                            "dt": motion.dt, "end": motion.end},
-                "scenes": described, "missing": missing}
-    write_result(path, "report-caryatid", settings, entries, arrays, modules=modules)
+                "scenes": described, "missing": available_engines()[1]}
+    return Found(settings, entries, arrays, name=Path(CARYATID).stem)
 
 
 def _caryatid_entry(scene, row, reference, folder):
@@ -167,7 +126,8 @@ def _caryatid_entry(scene, row, reference, folder):
     return entry, drawn
 
 
-def _write_free_rocking(path, rows, modules, engines):
+def _free_rocking(rows, engines):
+    """The answer of the blocks let go."""
     groups = {}
     for row in rows:
         key = (row.case.solver, row.case.variant, row.case.tag["ground"], row.case.tag["slenderness"])
@@ -182,7 +142,7 @@ def _write_free_rocking(path, rows, modules, engines):
                 "slowest_impact": SLOWEST_IMPACT, "bases": BASES,
                 "decides": {name: {variant: one.decides for variant, one in get_engine(name).variants.items()}
                             for name in engines}}
-    write_result(path, "report-free-rocking", settings, entries, arrays, modules=modules)
+    return Found(settings, entries, arrays, name=Path(FREE_ROCKING).stem)
 
 
 def _restitution_entry(solver, variant, ground, slenderness, members):

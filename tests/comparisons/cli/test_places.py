@@ -294,7 +294,7 @@ DESIGN = ("--period", "--damping", "--xmax", "--mass", "--count", "--ratio", "--
 def test_no_combination_of_bad_words_and_places_ends_in_a_traceback(rocking, tmp_path, monkeypatch):
     """Seeded. What would start real work is cut short: the words are under test here."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("comparisons.report.runs.make_results", lambda *_, **__: None)
+    monkeypatch.setattr("comparisons.report.study.make_results", lambda *_, **__: None)
     monkeypatch.setattr("engines.ENGINES", {})  # runs of the analytic model alone
     draw, seen = random.Random(20261121), set()
     for _ in range(300):

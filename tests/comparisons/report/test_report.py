@@ -22,6 +22,7 @@ from analytic.records import read_record
 from analytic.response import History
 from comparisons.cli import main
 from comparisons.report import histories, runs, write
+from comparisons.report.study import make_results
 from comparisons.report.write import write_page
 from comparisons.running.provenance import ResultError, read_result, write_result
 from comparisons.showing.parts import Section, Table, number, percent
@@ -87,7 +88,7 @@ def value(cell):
 def folder(tmp_path_factory):
     """A report on the synthetic motion, with every engine installed here."""
     folder = tmp_path_factory.mktemp("report")
-    runs.make_results(folder, synthetic_motion(), slendernesses=(SLENDERNESS,))
+    make_results(folder, synthetic_motion(), slendernesses=(SLENDERNESS,))
     write_page(folder, studies=NO_STUDIES)
     return folder
 
@@ -239,7 +240,7 @@ def test_missing_engines_are_named_with_their_remedy(tmp_path, monkeypatch):
         raise EngineNotInstalled(f"engine {name!r} needs the package {name}: install it so")
 
     monkeypatch.setattr("engines.get_engine", nothing_installed)
-    runs.make_results(tmp_path, synthetic_motion(), duration=CUT, slendernesses=(SLENDERNESS,))
+    make_results(tmp_path, synthetic_motion(), duration=CUT, slendernesses=(SLENDERNESS,))
     page = Page(write_page(tmp_path, studies=NO_STUDIES))
     assert any("Not in this report: pybullet. engine 'pybullet' needs the package pybullet: install it so" in item
                for item in page.items)
@@ -398,7 +399,7 @@ def test_a_report_on_a_million_samples_stays_under_800_mb(tmp_path):
 
 @pytest.mark.skipif(not DUZCE.exists(), reason="the Duzce record does not lie beside the project")
 def test_duzce_record_overturns_the_free_caryatid_and_not_the_isolated_one(tmp_path):
-    runs.make_results(tmp_path, read_record(DUZCE), slendernesses=(SLENDERNESS,))
+    make_results(tmp_path, read_record(DUZCE), slendernesses=(SLENDERNESS,))
     page = Page(write_page(tmp_path, studies=NO_STUDIES))
     free, isolated = (page.table(f"Caryatid {name}, until decided") for name in ("on rigid ground", "isolated"))
     for solver in {"analytic", "exudyn", "pybullet"} - set(available_engines()[1]):
