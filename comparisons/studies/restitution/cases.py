@@ -4,7 +4,6 @@ Two parts: the grid (slenderness x base x accuracy knob), and experiments that c
 at a time.
 """
 
-import dataclasses
 import math
 from dataclasses import dataclass
 
@@ -19,20 +18,6 @@ from ...running.cases import Case
 
 CARYATID_BASE = BASE.mass / MASS  # its m_b/m
 IMPACTS = 3  # used of each run; on rigid ground the slowest is about as fast as the first from a third of the tilt
-
-# Accuracy knob of each variant and the values it runs through; the variant's default comes with them.
-LADDERS = {
-    ("exudyn", "compliant-corners"): ("stiffness", (1e9, 1e10, 1e12)),
-    ("exudyn", "switched-joints"): ("step", (1.6e-2, 4e-3)),
-    ("exudyn", "native-contact"): ("step", (1e-3, 3e-4)),
-    ("pybullet", "impact-aware"): ("accuracy", (1e-3, 1e-4, 1e-6)),
-    ("pybullet", "fixed-step"): ("step", (4e-3, 1e-3, 2.5e-4)),
-    ("pybullet", "first-script"): ("step", (1 / 60, 1 / 1000)),
-    ("mujoco", "impact-aware"): ("accuracy", (1e-3, 1e-4)),
-    ("mujoco", "fixed-step"): ("step", (4e-3, 1e-3)),
-    ("mujoco", "first-script"): ("step", (1 / 120, 5e-4)),
-}
-
 
 @dataclass(frozen=True)
 class Grid:
@@ -71,11 +56,9 @@ def free_scene(slenderness, ratio, start, scale=1.0):
 
 
 def knob_of(engine, variant):
-    """(name, default, values) of a variant's accuracy knob; its first setting, at its default, if not in `LADDERS`."""
-    settings = get_engine(engine).variants[variant].settings
-    name, values = LADDERS.get((engine, variant), (dataclasses.fields(settings)[0].name, ()))
-    default = getattr(settings, name)
-    return name, default, tuple(sorted({*values, default}))
+    """(name, default, values) of a variant's accuracy knob."""
+    kind = get_engine(engine).variants[variant]
+    return kind.knob, kind.default, tuple(sorted(kind.ladder))
 
 
 def variants_of(engines):

@@ -8,6 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogFormatterSciNotation, NullFormatter
 
 from analytic.errors import SettingError
+from engines import ENGINES
 
 from .growth import AGAINST
 from .ladders import NEEDED
@@ -15,8 +16,8 @@ from .measure import MEASURES
 from .tables import growths, ladder, principal
 
 # Okabe and Ito: kind of solver by colour, member of it by marker.
-COLOURS = {"kernel": "#000000", "scipy": "#56B4E9", "time-stepping": "#009E73", "exudyn": "#E69F00",
-           "pybullet": "#0072B2", "mujoco": "#CC79A7"}
+COLOURS = {"kernel": "#000000", "scipy": "#56B4E9", "time-stepping": "#009E73",
+           **{name: engine.colour for name, engine in ENGINES.items()}}
 PEER_COLOUR = "#D55E00"
 MARKERS = "osD^vPX*"
 COSTS = {"cpu": ("CPU time of one run [s]", "cpu_seconds"),

@@ -1,5 +1,6 @@
 """Every solver and the ladder of its accuracy knob: what is run on which scene."""
 
+import math
 from dataclasses import dataclass, field
 
 from engines import get_engine
@@ -54,18 +55,7 @@ def powers(*exponents):
     return tuple(10.0**exponent for exponent in exponents)
 
 
-# engine, variant: (full ladder, quick ladder) of its knob; a variant that is not listed here gets its default times
-# `FACTORS`
-ENGINE_LADDERS = {
-    ("exudyn", "compliant-corners"): (powers(8, 9, 10, 11, 12), powers(9, 11)),
-    ("exudyn", "switched-joints"): ((1e-2, 3e-3, 1e-3, 3e-4, 1e-4), (1e-2, 1e-3)),
-    ("exudyn", "native-contact"): ((1e-3, 3e-4, 1e-4), (1e-3,)),
-    ("pybullet", "impact-aware"): (powers(-2, -3, -4, -5, -6), powers(-3, -5)),
-    ("pybullet", "fixed-step"): ((1 / 240, 1e-3, 3e-4, 1e-4, 3e-5), (1 / 240, 1e-3)),
-    ("pybullet", "first-script"): ((1 / 60, 1 / 240, 1e-3, 2e-4), (1 / 240, 1e-3)),
-}
-FREE_3D_STEPS = 4
-FACTORS = ((8, 4, 2, 1), (1,))
+FREE_3D_STEPS = ((1 / 240, 1e-3, 3e-4, 1e-4), (1 / 240, 1e-3))  # s
 KERNEL = (powers(-3, -4, -6, -8, -10, -12, -14, -16), powers(-4, -8, -12))
 STEPPING = (powers(-2, -2.5, -3, -3.5, -4, -4.5, -5, -6), powers(-2, -3, -4))
 # a restart at every sample makes a scipy run under a record cost seconds
@@ -77,6 +67,12 @@ TWIN_SAMPLED = {"DOP853": (powers(-3, -6, -9), ()), "RK45": (powers(-3, -6, -9),
 PEER_LADDERS = {"heyoka": (powers(-6, -9, -12, -15), powers(-9)), "CyRK DOP853": (powers(-6, -9, -12, -14), powers(-9)),
                 "CVODE Adams": (powers(-6, -9, -12), powers(-9))}
 TWIN_SETTINGS = {"energy": False}
+
+
+def refined(ladder):
+    """A ladder with the geometric means of its neighbours."""
+    means = (math.sqrt(a * b) for a, b in zip(ladder, ladder[1:], strict=False))
+    return sorted({*ladder, *means}, reverse=ladder[0] > ladder[-1])
 
 
 def entries(trials, engines, quick):
@@ -106,8 +102,7 @@ def _engines(trial, engines, pick):
     for name in engines:
         for variant, one in get_engine(name).variants.items():
             knob = one.knob
-            ladder = ENGINE_LADDERS.get((name, variant))
-            values = ladder[pick] if ladder else [one.default * factor for factor in FACTORS[pick]]
+            values = dict.fromkeys((one.ladder[0], one.default)) if pick else refined(one.ladder)
             found += [Entry(trial, f"{name}, {variant}", name, knob, value, variant=variant) for value in values]
     return found
 
@@ -136,8 +131,8 @@ def _extras(trial, engines, pick):
         found += [Entry(trial, "kernel", "analytic", "tolerance", value, model=model, scene_of=change)
                   for model, change in ways for value in powers(-8, -12)[pick:]]
     if "pybullet" in engines and trial.scene.bearings is None:
-        values = ENGINE_LADDERS["pybullet", "fixed-step"][pick][:FREE_3D_STEPS]
-        found += [Entry(trial, "pybullet, fixed-step", THREE_D, "step", value, model=FREE_3D) for value in values]
+        found += [Entry(trial, "pybullet, fixed-step", THREE_D, "step", value, model=FREE_3D)
+                  for value in FREE_3D_STEPS[pick]]
     return found
 
 
