@@ -77,6 +77,11 @@ class SampledMotion:
         """Time of the peak [s]."""
         return float(np.abs(self.samples).argmax() * self.dt)
 
+    @property
+    def jumps(self):
+        """Times above 0 at which the acceleration jumps [s]."""
+        return (self.end,) if self.samples[-1] else ()
+
     def acceleration(self, t):
         """Acceleration [m/s2] at time(s) t [s]; zero before 0 and after the last sample."""
         times = np.arange(len(self.samples)) * self.dt
@@ -154,6 +159,11 @@ class PulseMotion:
         offset = {"one-sine": math.pi / 2, "half-sine": math.pi / 2, "one-cosine": 0.0, "rectangular": 0.0,
                   "ricker": RICKER_PERIODS * math.pi}[self.shape]
         return self.start + offset / self.frequency
+
+    @property
+    def jumps(self):
+        """Times above 0 at which the acceleration jumps [s]."""
+        return tuple(t for t in (self.start, self.end) if t > 0) if self.shape in ("one-cosine", "rectangular") else ()
 
     def acceleration(self, t):
         """Acceleration [m/s2] at time(s) t [s]; zero outside the pulse."""

@@ -12,6 +12,7 @@ GROWTH = 1.5  # most growth from step to step; 1.25 to 2
 SETTLING = 4  # steps that stay as small after an impact as at it: engines spread it over two; 1 to 8
 FLAT = 1e-6  # swings below this share of gamma do not matter, their impacts are stepped over; 1e-7 to 1e-5
 STANDING = 100  # energy below which the block counts as standing, over that of a swing which does not matter
+LEAST_AHEAD = 1e-3  # of a step: a jump that is nearer is not worth a step of its own
 FAR = 1.2  # longer than this times the largest step over the approach is far from an impact
 
 FLIGHT, IMPACT, REST = range(3)  # what a step is for: one corner carries, both may, both do
@@ -90,6 +91,15 @@ def impact_aware(model, start_rate, largest, accuracy, *, approach, smallest, sh
         return step, purpose
 
     return pace
+
+
+def aligned(step, ahead):
+    """The step [s], or a shorter one, of a leapfrog so that a jump of the ground's acceleration `ahead` [s] away falls
+    between two kicks, which act over half of the steps before and after. A kick that holds the jump lifts a block late.
+    """
+    if not LEAST_AHEAD * step < ahead <= step:
+        return step
+    return 2 * ahead if 2 * ahead <= step else 2 / 3 * ahead
 
 
 def fixed(model, step, standing=0.0):

@@ -13,7 +13,8 @@ class Range:
 
     slenderness [rad]; inertia: J_O/(m R^2); base_mass: m_b/m; radius R [m]; stiffness: step omega_b [-] with omega_b^2
     = n_d k_a/m_b, the fastest vibration of the base on its bearings; damping: step n_d c/m_b [-], c the viscous
-    constant of a bearing; tilt: peak tilt over slenderness.
+    constant of a bearing; decay: n_d c/m_b over omega_r [-], how fast a kicked base stops: beyond some 1e5 it has
+    stopped before the tilt rate after an impact can be read; tilt: peak tilt over slenderness.
     """
 
     slenderness: tuple[float, float] = ANY
@@ -22,12 +23,14 @@ class Range:
     radius: tuple[float, float] = ANY
     stiffness: tuple[float, float] = ANY
     damping: tuple[float, float] = ANY
+    decay: tuple[float, float] = ANY
     tilt: tuple[float, float] = ANY
 
 
 WORDS = {"slenderness": "slenderness [rad]", "inertia": "J_O/(m R^2)", "base_mass": "base mass over block mass",
          "radius": "radius R [m]", "stiffness": "step times the base's frequency on its bearings",
-         "damping": "step times viscous damping over base mass", "tilt": "peak tilt over slenderness"}
+         "damping": "step times viscous damping over base mass",
+         "decay": "viscous damping over base mass and rocking frequency", "tilt": "peak tilt over slenderness"}
 
 
 def in_words(verified):
@@ -54,7 +57,8 @@ def quantities(scene, step, peak_tilt=None):
     if scene.bearings is not None:
         bearings = scene.bearings
         found["stiffness"] = step * math.sqrt(bearings.count * bearings.ka / scene.base.mass)
-        found["damping"] = step * bearings.count * bearings.damping / scene.base.mass
+        rate = bearings.count * bearings.damping / scene.base.mass
+        found["damping"], found["decay"] = step * rate, rate / scene.rocking_frequency
     if peak_tilt:
         found["tilt"] = peak_tilt / block.slenderness
     return found

@@ -10,7 +10,8 @@ Off is a run with at least one finding, each further from the analytic model tha
   a block that stands on compliant corners tilts a little.
 - outcome: another one; "rocks" below LEAST_TILT is not told from "stands".
 - lost impact: an impact of the model that counts has none in the engine on its side within half the intervals to its
-  neighbours.
+  neighbours, up to the first that the model itself loses for a relative change of 1e-4 of start, amplitude or
+  restitution: beyond, the motion is not determined.
 
 A block that overturns is judged up to its first passage of the slenderness, and by its outcome: falling, every block
 loses the contact that the model assumes. A run cut short before its outcome is decided has none that could be another.
@@ -84,8 +85,11 @@ def span(scene, model):
     return min(scene.duration, model["unstable"]) if model["outcome"] == "overturns" else math.inf
 
 
-def findings(scene, model, run, until=math.inf):
-    """What is off in a run up to the time `until` [s]: list of {quantity, error, limit}; both as kept by `keep`."""
+def findings(scene, model, run, until=math.inf, determined=math.inf):
+    """What is off in a run up to the time `until` [s]: list of {quantity, error, limit}; both as kept by `keep`.
+
+    determined: time [s] up to which impacts are compared one by one.
+    """
     found = []
     if _other(scene, model, run):
         found.append({"quantity": "outcome", "error": f"{run['outcome']}, not {model['outcome']}", "limit": None})
@@ -95,7 +99,7 @@ def findings(scene, model, run, until=math.inf):
     error = restitution_error(scene, run, until)
     if not error <= RESTITUTION:
         found.append({"quantity": "restitution", "error": error, "limit": RESTITUTION})
-    if lost := lost_impacts(scene, model, run, until):
+    if lost := lost_impacts(scene, model, run, min(until, determined)):
         found.append({"quantity": "lost impact", "error": len(lost), "limit": 0})
     return found
 
@@ -198,9 +202,13 @@ def judge(scene, model, run, small, large, until=math.inf):
 
     notes: "ill-conditioned" or "near a boundary" where these took something from the comparison.
     """
-    found = findings(scene, model, run, until)
+    if not findings(scene, model, run, until):
+        return [], []
+    determined = min((time for twin in small.values() for time in lost_impacts(scene, model, twin, until)),
+                     default=math.inf)
+    found = findings(scene, model, run, until, determined)
     if not found:
-        return found, []
+        return found, ["ill-conditioned"]
     notes, apart = [], parting(scene, model, small.values(), PEAK)
     others = [twin for twin in [*small.values(), *large.values()] if _other(scene, twin, model)]
     if others and any(finding["quantity"] == "outcome" for finding in found):
@@ -209,6 +217,6 @@ def judge(scene, model, run, small, large, until=math.inf):
         notes = ["ill-conditioned"]
     until = min(until, apart)
     if notes:
-        found = [finding for finding in findings(scene, model, run, until)
+        found = [finding for finding in findings(scene, model, run, until, determined)
                  if finding["quantity"] != "outcome" or "near a boundary" not in notes]
     return found, notes

@@ -11,7 +11,7 @@ from analytic.rocking import RockingModel
 
 from ..ground_velocity import ground_velocity
 from ..leapfrog import row_limit
-from ..pace import impact_aware
+from ..pace import aligned, impact_aware
 from .scene import contact_reference, least_mass, recovery_rate, size_scale
 
 APPROACH = 0.15  # share of the remaining time to the impact that a step may take; .1 to .3: no accuracy knob
@@ -45,6 +45,8 @@ def run(model, data, scene, chosen):
     on_base, loaded, damping = scene.base is not None, scene.bearings is not None, law.count * law.damping
     end, limit = scene.duration - 1e-9 * largest, 0.5 * math.pi
     most = row_limit(scene.duration, largest)
+    jumps = iter(scene.motion.jumps if scene.motion and pace else ())
+    jump = next(jumps, math.inf)
     t, h, used = 0.0, 0.0, largest
     tilt, rate, x, v = start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity
     z = law.start(x)
@@ -53,6 +55,10 @@ def run(model, data, scene, chosen):
     ended, width = "done", len(rows)
     while t < end:
         step = pace(tilt, rate, jumped, interval)[0] if pace else largest
+        if t + step >= jump:
+            if t >= jump:
+                jump = next(jumps, math.inf)
+            step = aligned(step, jump - t)
         if t + step > end + 2e-9 * largest:
             step = scene.duration - t
         if step != used:

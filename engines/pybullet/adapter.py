@@ -61,9 +61,8 @@ class FirstScript:
 VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(), rung="best", ladder=(1e-3, 1e-4, 1e-5, 1e-6), decides=DECIDES,
-        # damping: beyond it the base's velocity after an impact is gone before the tilt can be told from flat contact.
         verified=Range(slenderness=(0.03, 1.2), inertia=(1.01, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0),
-                       damping=(0.0, 500.0))),
+                       decay=(0.0, 1e5))),
     "fixed-step": Variant(
         FixedStep(), rung="expert", ladder=(4e-3, 1e-3, 2.5e-4, 1e-4), decides=DECIDES,
         verified=Range(slenderness=(0.1, 0.45), inertia=(1.2, 3.0), base_mass=(0.05, 100.0), radius=(1e-3, 30.0),

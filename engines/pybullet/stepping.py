@@ -126,6 +126,8 @@ def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
                                   sharpest=sharpest, standing=standing, overlong=True, cruise=True)
     end -= 1e-9 * largest  # the steps' sum may miss the duration by rounding
     gate = end + 2e-9 * largest
+    jumps = iter([time / clock for time in scene.motion.jumps] if scene.motion and accuracy is not None else ())
+    jump = next(jumps, math.inf)
     ended, base_mass = "done", scene.base.mass if on_base else 0.0
     for _ in range(row_limit):
         if t >= end:
@@ -133,6 +135,10 @@ def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
         jumped = (tilt > 0) != side
         side = tilt > 0
         wanted, purpose = pace(tilt, rate, jumped, interval)
+        if t + wanted >= jump:
+            if t >= jump:
+                jump = next(jumps, math.inf)
+            wanted = paces.aligned(wanted, jump - t)
         if t + wanted > gate:
             wanted = scene.duration - t
         needed = sweeps[purpose]

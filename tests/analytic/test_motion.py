@@ -99,3 +99,13 @@ def test_bad_pulse(arguments, message):
     with pytest.raises(SceneError) as caught:
         PulseMotion(*arguments)
     assert message in str(caught.value)
+
+
+def test_jumps_are_where_the_acceleration_jumps():
+    for shape in PULSES:
+        pulse = PulseMotion(shape, 2.0, 5.0, 0.3)
+        for time in (pulse.start, pulse.end):
+            change = abs(pulse.acceleration(time + 1e-9) - pulse.acceleration(time - 1e-9))
+            assert (time in pulse.jumps) == (change > 0.1)
+    assert PulseMotion("rectangular", 1.0, 5.0).jumps == (PulseMotion("rectangular", 1.0, 5.0).end,)
+    assert SampledMotion(0.1, [0.0, 1.0, 0.5]).jumps == (0.2,) and SampledMotion(0.1, [1.0, 1.0, 0.0]).jumps == ()

@@ -2,11 +2,13 @@
 
 import math
 
+import numpy as np
 import pytest
 
-from analytic import Block, Scene, Start
+from analytic import Block, PulseMotion, Scene, Start, simulate
 from analytic.rocking import RockingModel
-from engines.pace import FLIGHT, GROWTH, IMPACT, REST, SETTLING, fixed, impact_aware
+from engines import get_engine
+from engines.pace import FLIGHT, GROWTH, IMPACT, REST, SETTLING, aligned, fixed, impact_aware
 
 SCENE = Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=0.2), start=Start(tilt=0.12), duration=2.0)
 MODEL = RockingModel.of(SCENE)
@@ -71,3 +73,32 @@ def test_equal_steps_are_told_apart_by_what_they_are_for():
     assert pace(1e-5 * g, 0.0, False, 1e-3) == (1e-3, REST)
     assert aware(1e-5)(1e-5 * g, 0.0, False, 1.0)[1] == REST
     assert math.isfinite(aware(1e-5)(-0.1, 0.0, False, 1.0)[0])
+
+
+@pytest.mark.parametrize("jump", [0.9, 1.2, 1.499, 1.501, 1.7, 2.0, 2.3])
+def test_a_jump_of_the_ground_falls_between_two_kicks(jump):
+    """A kick acts from half the step before to half the step after; none of them holds the jump."""
+    t, h, halves = 0.0, 1.0, []
+    while t < 4.0:
+        step = aligned(min(1.0, 1.5 * h), jump - t)
+        assert 0 < step <= 1.0
+        halves.append(t + 0.5 * step)
+        t, h = t + step, step
+    assert min(abs(half - jump) for half in halves) < 1e-12
+
+
+def test_a_jump_that_is_gone_or_far_changes_no_step():
+    assert aligned(1.0, -0.2) == aligned(1.0, 1.001) == aligned(1.0, math.inf) == aligned(1.0, 1e-4) == 1.0
+
+
+@pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
+@pytest.mark.parametrize("shape", ["one-cosine", "rectangular"])
+def test_a_pulse_that_begins_with_a_jump_lifts_the_block_at_once(engine, shape):
+    """Where a kick held the jump the block lifted a step late: .03 of the tilt five steps later."""
+    pytest.importorskip(engine)
+    pulse = PulseMotion(shape, 1.3 * 9.81 * math.tan(0.2), 6.0, 0.10037)
+    scene = SCENE.with_(start=Start(), motion=pulse, duration=0.3)
+    model, response = simulate(scene), get_engine(engine).simulate(scene)
+    late = [pulse.start + 0.02, pulse.start + 0.1]
+    wanted, found = (np.interp(late, one.history.time, one.history.tilt) for one in (model, response))
+    np.testing.assert_allclose(found, wanted, rtol=1e-3)
