@@ -56,7 +56,7 @@ def _status(arguments):
 
 
 def _mistake(message):
-    from ..showing.wording import readable
+    from ..running.readable import readable
 
     with contextlib.suppress(OSError):
         print(f"Error: {readable(message)}", file=sys.stderr, flush=True)
@@ -65,7 +65,7 @@ def _mistake(message):
 
 
 def _usage(error):
-    from ..showing.wording import readable
+    from ..running.readable import readable
 
     if error.message and "\n" not in error.message:  # a help page stays whole
         error.message = readable(error.message)

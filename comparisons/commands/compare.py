@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from ..running.readable import readable
 from ..running.solving import (
     ANALYTIC,
     TIME_LIMIT,
@@ -16,7 +17,6 @@ from ..running.solving import (
     spinner,
     tell_failures,
 )
-from ..showing.wording import readable
 
 
 def command(

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 from typer.core import TyperGroup
 
-from ..studies import StudyBroken, get_study, study_names
+from ..studies import StudyBroken, draw, get_study, study_names
 
 Quick = Annotated[bool, typer.Option("--quick", help="A first look, in minutes.")]
 Output = Annotated[str | None, typer.Option(metavar="DIR", help="Folder for the result file, the figures and the runs "
@@ -31,17 +31,16 @@ def command_of(study):
     def command(quick=False, output=None, engine=None, workers=None, replot=None, **options):
         from ..running.files import check_folder
         from ..running.provenance import read_result
-        from ..running.study import asked, compute, draw
+        from ..running.study import asked, compute
 
         shown = {name: value for name, value in options.items() if name in drawing}
-        if output:
-            check_folder(output)
-        if replot:
+        folder = f"{study.name}-study" if output is None else output
+        check_folder(folder)
+        if replot is not None:
             return _tell(draw(study, replot, output, **shown))
-        output = output or f"{study.name}-study"
         given = {name: value for name, value in options.items() if name not in drawing}
         problems = []
-        for path in compute(study, output, asked(engine, quick), workers=workers, **given):
+        for path in compute(study, folder, asked(engine, quick), workers=workers, **given):
             _tell([path, *draw(study, path, **shown)])
             result = read_result(path)
             for paragraph in study.section(result).text:

@@ -10,7 +10,7 @@ import sys
 
 from analytic.errors import SettingError
 
-from ..showing.wording import readable
+from .readable import readable
 
 ANALYTIC = "analytic"
 TIME_LIMIT = 300.0  # s, of one run

@@ -24,7 +24,7 @@ from engines import ENGINES, get_engine, installed_engines
 from .cases import Case, module_of
 from .executors import Processes
 from .files import check_folder
-from .provenance import Result, read_result, write_result
+from .provenance import Result, write_result
 from .solving import stdout_to_stderr
 from .sources import PROJECT, digests_of_all, source_digests
 from .store import Store
@@ -122,9 +122,9 @@ def compute(study, folder, ask, *, workers=None, progress=True, **options):
     written, counts, code = {}, {True: 0, False: 0}, digests_of_all(_packages(study))
     solvers = dict.fromkeys(("analytic", *ask.engines))
     with ExitStack() as stack:
-        stack.callback(_leave_nothing_empty, folder)
         stack.enter_context(stdout_to_stderr())  # engines greet on standard output
         store = stack.enter_context(Store(folder / RUNS))
+        stack.callback(_leave_nothing_empty, folder)
         pool = stack.enter_context(Processes(workers, tuple(solvers)))
         plan, answer, ended = study.plan(ask, **options), None, False
         while not ended:
@@ -149,19 +149,6 @@ def compute(study, folder, ask, *, workers=None, progress=True, **options):
     if progress:
         say(f"{counts[False]} runs done, {counts[True]} found in {folder.name}/{RUNS}")
     return list(written)
-
-
-def draw(study, path, folder=None, **options):
-    """Draw the figures of the result file at `path` into `folder`, by default beside it; returns their paths."""
-    from ..showing.plots import save
-
-    path, drawn = Path(path), []
-    into = path if folder is None else Path(folder) / path.name
-    into.parent.mkdir(parents=True, exist_ok=True)
-    for suffix, figure in study.figures(read_result(path), **options).items():
-        drawn.append(into.with_name(f"{path.stem}-{suffix}.png" if suffix else f"{path.stem}.png"))
-        save(figure, drawn[-1])
-    return drawn
 
 
 def asked(engines=None, quick=False):

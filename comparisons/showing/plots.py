@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from engines import ENGINES
 
-from .wording import readable
+from ..running.readable import readable
 
 # solver: (colour, dashes, width); the reference lies wide underneath, dots need width to be seen
 STYLES = {"analytic": ("#000000", "-", 2.4),

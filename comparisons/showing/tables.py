@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from .wording import readable
+from ..running.readable import readable
 
 TITLE_CHARACTERS = 100
 

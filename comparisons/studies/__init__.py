@@ -5,6 +5,7 @@ Other packages declare theirs in the entry point group `rocking.studies`; an ent
 
 from importlib import import_module
 from importlib.metadata import entry_points
+from pathlib import Path
 
 from analytic.errors import SettingError
 
@@ -42,6 +43,20 @@ def get_study(name):
     if len(entries) > 1:
         raise StudyBroken(f"{who}: several declare that name; uninstall all but one")
     return _resolve(entries[0], who)
+
+
+def draw(study, path, folder=None, **options):
+    """Draw the figures of the result file at `path` into `folder`, by default beside it; returns their paths."""
+    from ..running.provenance import read_result
+    from ..showing.plots import save
+
+    path, drawn = Path(path), []
+    into = path if folder is None else Path(folder) / path.name
+    into.parent.mkdir(parents=True, exist_ok=True)
+    for suffix, figure in study.figures(read_result(path), **options).items():
+        drawn.append(into.with_name(f"{path.stem}-{suffix}.png" if suffix else f"{path.stem}.png"))
+        save(figure, drawn[-1])
+    return drawn
 
 
 def _resolve(entry, who):

@@ -222,14 +222,14 @@ def _judge(log, grounds, shapes, found):
         motion = pulse(scene, shape, frequency, amplitude)
         scenes.append(scene.with_(motion=motion))
     responses = [simulate(scene, history=False) for scene in scenes]
-    reference = np.array([response.outcome == "overturns" for response in responses])
+    reference = np.array([response.outcome == "overturns" for response in responses], dtype=bool)
     normal = np.array([response.min_normal_ratio for response in responses])
     answers = [log.points[key][0] for key in keys]
-    scanned = np.array([log.points[key][1] for key in keys])
+    scanned = np.array([log.points[key][1] for key in keys], dtype=bool)
     distance = np.array([min((abs(amplitude / edge.amplitude - 1) for edge in found[ground, shape][frequency]),
                              default=math.inf) for _, ground, shape, frequency, amplitude in keys])
-    decided = np.array([answer is not None for answer in answers])
-    own = np.array([bool(answer) for answer in answers])
+    decided = np.array([answer is not None for answer in answers], dtype=bool)
+    own = np.array([bool(answer) for answer in answers], dtype=bool)
     rows = []
     for engine in log.engines:
         for ground in grounds:

@@ -12,8 +12,8 @@ from bad_scenes import BAD, SCENE, write_scene
 
 from analytic import EngineNotInstalled, Failure, load_scene, simulate
 from comparisons import cli
-from comparisons.commands.study import STUDIES
 from comparisons.running import solving
+from comparisons.studies import BUILT_IN
 from engines import ENGINES, get_engine, installed_engines
 
 PNG = b"\x89PNG\r\n"
@@ -236,7 +236,7 @@ def test_errors_told_without_traceback_are_those_a_user_can_mend():
     assert EngineNotInstalled in cli.mendable() and ValueError not in cli.mendable()
 
 
-@pytest.mark.parametrize("command", [["report"], *(["study", name] for name in STUDIES)], ids=" ".join)
+@pytest.mark.parametrize("command", [["report"], *(["study", name] for name in BUILT_IN)], ids=" ".join)
 def test_an_output_that_is_a_file_is_refused_before_the_work(rocking, command):
     status, out, err = rocking(*command, "--output", __file__)
     assert status == 2 and not out and f"--output {__file__}: is a file; give a folder" in err

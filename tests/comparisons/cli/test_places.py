@@ -19,9 +19,9 @@ from bad_scenes import SCENE
 
 from comparisons import cli
 from comparisons.running.files import check_writable
+from comparisons.running.readable import readable
 from comparisons.running.store import Store
 from comparisons.showing.plots import draw_histories, save
-from comparisons.showing.wording import readable
 from engines import get_engine, installed_engines
 
 QUICK = ("run", "free-rocking-rigid")
@@ -197,8 +197,7 @@ def test_a_store_that_is_damaged_in_use_or_no_file(rocking, tmp_path):
     def study():
         return rocking("study", "fragility", "--quick", "--output", tmp_path)
 
-    path = tmp_path / ".sweep" / "runs.jsonl"
-    path.parent.mkdir()
+    path = tmp_path / "runs.jsonl"
     for damage in (b"not json\n", b"[]\n", b"\xff\xfe\n", b"[" * 100000 + b"\n", b'{"key": []}\n'):
         path.write_bytes(damage)
         assert told(*study()), damage[:20]

@@ -12,7 +12,8 @@ from analytic.rocking import RockingModel
 from comparisons.cli import main
 from comparisons.running.provenance import PROJECT_FOLDER, read_result
 from comparisons.running.refine import Transition
-from comparisons.running.study import asked, compute, draw
+from comparisons.running.study import asked, compute
+from comparisons.studies import draw
 from comparisons.studies.caryatid import STUDY
 from comparisons.studies.caryatid.cost import DIVISIONS, _cpu_at, _fixed_step
 from comparisons.studies.caryatid.formulas import formulas

@@ -9,7 +9,8 @@ import pytest
 from analytic import simulate
 from analytic.rocking import restitution
 from comparisons.running.provenance import read_result
-from comparisons.running.study import Ask, compute, draw
+from comparisons.running.study import Ask, compute
+from comparisons.studies import draw
 from comparisons.studies.restitution import STUDY
 from comparisons.studies.restitution.cases import CARYATID_BASE, FULL, QUICK, Grid, free_scene, grid_cases
 from comparisons.studies.restitution.summary import BULLET_DAMPING, damped_error, friction_needed

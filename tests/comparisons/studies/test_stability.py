@@ -12,8 +12,9 @@ from analytic.response import Failure
 from comparisons.report.studies import RESULTS
 from comparisons.running.cases import Case
 from comparisons.running.provenance import read_result
-from comparisons.running.study import Ask, compute, draw
+from comparisons.running.study import Ask, compute
 from comparisons.running.sweep import Row
+from comparisons.studies import draw
 from comparisons.studies.stability import STUDY
 from comparisons.studies.stability import measure as stability_measures
 from comparisons.studies.stability.cases import BLOCK, GAP, OVERTURNS_FROM, THRESHOLD, hard_cases

@@ -1,0 +1,12 @@
+"""Text of others (names, paths, values, messages) as it may be shown: printable, on one line, of readable length."""
+
+MOST_CHARACTERS = 600
+
+
+def readable(text, most=MOST_CHARACTERS):
+    """`text` with its middle left out beyond `most` characters; what is not printable is shown as its code."""
+    text = str(text)
+    if len(text) > most:  # both ends matter: what it is about, and what to do
+        tail = most // 3
+        text = text[:most - tail] + " [...] " + text[-tail:]
+    return "".join(char if char.isprintable() else char.encode("unicode_escape").decode() for char in text)
