@@ -31,7 +31,7 @@ def command_of(study):
     def command(quick=False, output=None, engine=None, workers=None, replot=None, **options):
         from ..running.files import check_folder
         from ..running.provenance import read_result
-        from ..running.study import asked, compute
+        from ..running.study import compute
 
         shown = {name: value for name, value in options.items() if name in drawing}
         folder = f"{study.name}-study" if output is None else output
@@ -40,7 +40,7 @@ def command_of(study):
             return _tell(draw(study, replot, output, **shown))
         given = {name: value for name, value in options.items() if name not in drawing}
         problems = []
-        for path in compute(study, folder, asked(engine, quick), workers=workers, **given):
+        for path in compute(study, folder, engines=engine or None, quick=quick, workers=workers, **given):
             _tell([path, *draw(study, path, **shown)])
             result = read_result(path)
             for paragraph in study.section(result).text:

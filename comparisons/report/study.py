@@ -3,7 +3,7 @@
 import shutil
 from pathlib import Path
 
-from ..running.study import Study, asked, compute
+from ..running.study import Study, compute
 from .runs import SLENDERNESSES, plan
 from .sections import caryatid_sections
 
@@ -28,7 +28,7 @@ def make_results(folder, motion, *, duration=None, slendernesses=SLENDERNESSES):
         Of the free rocking blocks [rad].
     """
     unfinished = Path(folder) / UNFINISHED
-    for path in compute(STUDY, unfinished, asked(), workers=None if len(motion.samples) <= SHORT_RECORD else 1,
+    for path in compute(STUDY, unfinished, workers=None if len(motion.samples) <= SHORT_RECORD else 1,
                         motion=motion, histories=unfinished, duration=duration, slendernesses=slendernesses):
         for file in (path.with_suffix(".npz"), path):
             shutil.move(file, Path(folder) / file.name)

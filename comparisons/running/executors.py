@@ -103,6 +103,14 @@ class Serial(_Closing):
         self._tasks.clear()
 
 
+def number_of(workers):
+    """How many worker processes that is, one per core for None; raises `SettingError` if they are too many or few."""
+    most, number = max(MOST_WORKERS, os.cpu_count()), os.cpu_count() if workers is None else workers
+    if not 1 <= number <= most:
+        raise SettingError(f"{workers} worker processes: give 1 to {most}")
+    return number
+
+
 class Processes(_Closing):
     """Runs in `workers` processes (default: one per core), each with one numerical thread.
 
@@ -111,10 +119,7 @@ class Processes(_Closing):
     """
 
     def __init__(self, workers=None, solvers=()):
-        self._workers = workers or os.cpu_count()
-        most = max(MOST_WORKERS, os.cpu_count())
-        if not 1 <= self._workers <= most:
-            raise SettingError(f"{workers} worker processes: give 1 to {most}")
+        self._workers = number_of(workers)
         self.slots = 2 * self._workers
         self._ended = queue.SimpleQueue()
         self._evidence = tempfile.TemporaryDirectory(prefix="sweep-")

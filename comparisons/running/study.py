@@ -19,10 +19,11 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from analytic.errors import SettingError
 from engines import ENGINES, get_engine, installed_engines
 
 from .cases import Case, module_of
-from .executors import Processes
+from .executors import Processes, number_of
 from .files import check_folder
 from .provenance import Result, write_result
 from .solving import stdout_to_stderr
@@ -91,7 +92,7 @@ class Study:
     problems: Callable[[Result], list] = lambda result: []
 
 
-def compute(study, folder, ask, *, workers=None, progress=True, **options):
+def compute(study, folder, *, engines=None, quick=False, workers=None, progress=True, **options):
     """Run a study's plan; returns the paths of its result files in `folder`, mostly one.
 
     Parameters
@@ -99,7 +100,10 @@ def compute(study, folder, ask, *, workers=None, progress=True, **options):
     study : Study
     folder : path
         Made if it does not exist. Runs already found there are not repeated.
-    ask : Ask
+    engines : iterable of str or None
+        Those to compare; None: all that are installed.
+    quick : bool
+        A first look.
     workers : int or None
         Worker processes; None: one per core.
     progress : bool
@@ -110,58 +114,62 @@ def compute(study, folder, ask, *, workers=None, progress=True, **options):
     Raises
     ------
     SettingError
-        `folder` is a file, or the number of workers is out of range.
+        `folder` is a file, the number of workers is out of range, or an engine has no such name.
+    EngineNotInstalled
+        As `engines.get_engine`.
     StoreError
         Another study is writing there.
     ResultError
         The answer cannot be written as a result file.
     """
     check_folder(folder)
-    folder = Path(folder)
+    workers, folder = number_of(workers), Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    written, counts, code = {}, {True: 0, False: 0}, digests_of_all(_packages(study))
-    solvers = dict.fromkeys(("analytic", *ask.engines))
     with ExitStack() as stack:
         stack.enter_context(stdout_to_stderr())  # engines greet on standard output
         store = stack.enter_context(Store(folder / RUNS))
         stack.callback(_leave_nothing_empty, folder)
-        pool = stack.enter_context(Processes(workers, tuple(solvers)))
-        plan, answer, ended = study.plan(ask, **options), None, False
-        while not ended:
-            try:
-                step = plan.send(answer)
-            except StopIteration as stop:
-                step, ended = stop.value, True
-            if isinstance(step, Found):
-                answer = None
-                solvers.update(dict.fromkeys(step.solvers))
-                modules = [study.plan.__module__, *dict.fromkeys(module_of(name) for name in solvers)]
-                path = folder / f"{step.name or study.name}.json"
-                edited = [name for name, digest in source_digests(modules).items() if digest not in code]
-                settings = {**step.settings, "changed_while_running": edited}  # its numbers are of the code before
-                written[path] = write_result(path, study.name, settings, step.rows, step.arrays, modules=modules,
-                                             seed=step.seed)
-                continue
-            answer = _run(step, store, pool, progress)
-            solvers.update(dict.fromkeys(case.solver for case in step.cases))
-            for row in answer:
-                counts[row.reused] += 1
+        ask = _asked(engines, quick)  # loads engines: after what is wrong with the place was found
+        pool = stack.enter_context(Processes(workers, ("analytic", *ask.engines)))
+        return _carry_out(study, study.plan(ask, **options), folder, ask, store, pool, progress)
+
+
+def _carry_out(study, plan, folder, ask, store, pool, progress):
+    """Run what the plan asks for and write what it finds; returns the paths written."""
+    written, counts, answer, ended = {}, {True: 0, False: 0}, None, False
+    solvers, code = dict.fromkeys(("analytic", *ask.engines)), digests_of_all(_packages(study))
+    while not ended:
+        try:
+            step = plan.send(answer)
+        except StopIteration as stop:
+            step, ended = stop.value, True
+        if isinstance(step, Found):
+            answer = None
+            solvers.update(dict.fromkeys(step.solvers))
+            modules = [study.plan.__module__, *dict.fromkeys(module_of(name) for name in solvers)]
+            path = folder / f"{step.name or study.name}.json"
+            edited = [name for name, digest in source_digests(modules).items() if digest not in code]
+            settings = {**step.settings, "changed_while_running": edited}  # its numbers are of the code before
+            written[path] = write_result(path, study.name, settings, step.rows, step.arrays, modules=modules,
+                                         seed=step.seed)
+            continue
+        answer = _run(step, store, pool, progress)
+        solvers.update(dict.fromkeys(case.solver for case in step.cases))
+        for row in answer:
+            counts[row.reused] += 1
     if progress:
         say(f"{counts[False]} runs done, {counts[True]} found in {folder.name}/{RUNS}")
     return list(written)
 
 
-def asked(engines=None, quick=False):
-    """The `Ask` for engines by name; None: all that are installed.
-
-    Raises
-    ------
-    KeyError, EngineNotInstalled
-        As `engines.get_engine`.
-    """
+def _asked(engines, quick):
+    """The `Ask` for engines by name; None: all that are installed."""
     for name in engines or ():
-        get_engine(name)
-    return Ask(tuple(dict.fromkeys(engines)) if engines else tuple(installed_engines()), quick)
+        try:
+            get_engine(name)
+        except KeyError as error:
+            raise SettingError(error.args[0]) from None
+    return Ask(installed_engines() if engines is None else tuple(dict.fromkeys(engines)), quick)
 
 
 def say(text):

@@ -210,7 +210,9 @@ def test_a_store_that_is_damaged_in_use_or_no_file(rocking, tmp_path):
     path.rmdir()
     os.mkfifo(path)
     assert told(*study())
-    assert told(*rocking("study", "fragility", "--quick", "--output", tmp_path / "new", "--workers", "1000000"))
+    for wrong in (["--workers", "1000000"], ["--engine", "nope"], ["--engine", "analytic"]):
+        assert told(*rocking("study", "fragility", "--quick", "--output", tmp_path / "new", *wrong)), wrong
+    assert not (tmp_path / "new").exists()
 
 
 def hears(process, seconds=60):

@@ -12,7 +12,7 @@ from analytic.rocking import RockingModel
 from comparisons.cli import main
 from comparisons.running.provenance import PROJECT_FOLDER, read_result
 from comparisons.running.refine import Transition
-from comparisons.running.study import asked, compute
+from comparisons.running.study import compute
 from comparisons.studies import draw
 from comparisons.studies.caryatid import STUDY
 from comparisons.studies.caryatid.cost import DIVISIONS, _cpu_at, _fixed_step
@@ -178,7 +178,7 @@ def test_cost_at_an_error_lies_between_the_rungs():
 
 
 def test_end_to_end(short, tmp_path):
-    files = compute(STUDY, tmp_path, asked(quick=True), progress=False, motion=short)
+    files = compute(STUDY, tmp_path, quick=True, progress=False, motion=short)
     for file in files:
         draw(STUDY, file)
     assert len(files) == 3 and len(list(tmp_path.glob("*.png"))) == 12

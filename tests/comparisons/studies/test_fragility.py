@@ -115,7 +115,7 @@ def test_an_interrupted_study_takes_up_its_own_rows(tmp_path, monkeypatch):
     store = tmp_path / "runs.jsonl"
 
     def attempt():
-        path, = compute(STUDY, tmp_path, ENGINES, workers=1, progress=False, scenes=scenes, motions=2)
+        path, = compute(STUDY, tmp_path, engines=ENGINES.engines, workers=1, progress=False, scenes=scenes, motions=2)
         return read_result(path)
 
     def stopping(ask, **options):
@@ -126,7 +126,7 @@ def test_an_interrupted_study_takes_up_its_own_rows(tmp_path, monkeypatch):
 
     stopped = dataclasses.replace(STUDY, plan=stopping)
     with pytest.raises(KeyboardInterrupt):
-        compute(stopped, tmp_path, ENGINES, workers=1, progress=False, scenes=scenes, motions=2)
+        compute(stopped, tmp_path, engines=ENGINES.engines, workers=1, progress=False, scenes=scenes, motions=2)
     before = store.read_text()
     assert len(before.splitlines()) == 4
     first = attempt()

@@ -9,7 +9,7 @@ import pytest
 from analytic import simulate
 from analytic.rocking import restitution
 from comparisons.running.provenance import read_result
-from comparisons.running.study import Ask, compute
+from comparisons.running.study import compute
 from comparisons.studies import draw
 from comparisons.studies.restitution import STUDY
 from comparisons.studies.restitution.cases import CARYATID_BASE, FULL, QUICK, Grid, free_scene, grid_cases
@@ -62,7 +62,7 @@ def small(tmp_path_factory):
     pytest.importorskip("pybullet")
     folder = tmp_path_factory.mktemp("study")
     grid = Grid((0.2,), (None, CARYATID_BASE), (0.5, 0.7), ((0.2, None),), 8)
-    path, = compute(STUDY, folder, Ask(("pybullet",)), workers=2, progress=False, grid=grid)
+    path, = compute(STUDY, folder, engines=("pybullet",), workers=2, progress=False, grid=grid)
     return folder, grid, path, draw(STUDY, path)
 
 
@@ -104,7 +104,7 @@ def test_a_broken_off_study_resumes_to_the_same_result(small):
     store = folder / "runs.jsonl"
     lines = store.read_text().splitlines(keepends=True)
     store.write_text("".join(lines[:len(lines) // 2]) + lines[-1][:40])  # the last line cut off, as kill -9 leaves it
-    compute(STUDY, folder, Ask(("pybullet",)), workers=1, progress=False, grid=grid)
+    compute(STUDY, folder, engines=("pybullet",), workers=1, progress=False, grid=grid)
     after = read_result(path)
 
     def without_cost(rows):

@@ -13,7 +13,7 @@ from comparisons.cli import main
 from comparisons.running.cases import Case
 from comparisons.running.provenance import Result, read_result
 from comparisons.running.store import Store
-from comparisons.running.study import RUNS, asked, compute
+from comparisons.running.study import RUNS, compute
 from comparisons.studies.speed_error import STUDY, growth, models, tables
 from comparisons.studies.speed_error.figures import check_axes, draw_growth, draw_pareto
 from comparisons.studies.speed_error.ladders import NEEDED
@@ -238,7 +238,7 @@ def small(entry):
 
 
 def run_small(folder, near):
-    path, = compute(STUDY, folder, asked(quick=True), progress=False, repeats=2, scenes=[near], keep=small, grow=False)
+    path, = compute(STUDY, folder, quick=True, progress=False, repeats=2, scenes=[near], keep=small, grow=False)
     return read_result(path)
 
 
