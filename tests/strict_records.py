@@ -7,20 +7,22 @@ what is not surely a record is `Refused`.
 
 from fractions import Fraction
 
-G = Fraction("9.81")
-LENGTHS = {"mm": Fraction(1, 1000), "cm": Fraction(1, 100), "m": Fraction(1), "in": Fraction("0.0254"),
-           "ft": Fraction("0.3048")}
-TIME_WORDS = {"s": 1, "sec": 1, "secs": 1, "second": 1, "seconds": 1, "ms": 1000, "msec": 1000, "msecs": 1000,
-              "millisec": 1000, "millisecs": 1000, "millisecond": 1000, "milliseconds": 1000}
-GIVEN = {"g": G, "m/s2": Fraction(1), "cm/s2": Fraction(1, 100)}
-DIGITS, LETTERS = "0123456789", "abcdefghijklmnopqrstuvwxyz"
-QUANTITIES = {"acc": "acceleration", "accel": "acceleration", "acceleration": "acceleration",
-              "accelerations": "acceleration", "accelerogram": "acceleration", "velocity": "other", "vel": "other",
-              "displacement": "other", "disp": "other"}
-
-
-class Refused(Exception):
-    """Not surely a record."""
+from strict_words import (
+    DIGITS,
+    GIVEN,
+    KNOWN,
+    LETTERS,
+    TIME_WORDS,
+    G,
+    Refused,
+    ends_of,
+    fortran,
+    single,
+    step_of,
+    unit_of,
+    whole,
+    words_of,
+)
 
 
 def read(content, given=None):
@@ -73,186 +75,6 @@ def _lines(content):
     return [*lines, line]
 
 
-# Numbers
-
-def _scan(text, i):
-    """(value, digits after the point or None, digits of the exponent, next i) of the number at i; None without one."""
-    begin, sign = i, 1
-    if i < len(text) and text[i] in "+-":
-        sign = -1 if text[i] == "-" else 1
-        i += 1
-    whole = decimals = 0
-    mantissa, point = 0, False
-    while i < len(text) and (text[i] in DIGITS or (text[i] == "." and not point)):
-        if text[i] == ".":
-            point = True
-        else:
-            mantissa = 10 * mantissa + DIGITS.index(text[i])
-            whole, decimals = (whole, decimals + 1) if point else (whole + 1, decimals)
-        i += 1
-    if whole + decimals == 0:
-        return None
-    exponent = places = 0
-    if i < len(text) and text[i] in "EeDd":
-        j, minus = i + 1, False
-        if j < len(text) and text[j] in "+-":
-            minus = text[j] == "-"
-            j += 1
-        while j < len(text) and text[j] in DIGITS and places < 3:
-            exponent = 10 * exponent + DIGITS.index(text[j])
-            places += 1
-            j += 1
-        if places:
-            i = j
-            exponent = -exponent if minus else exponent
-    if i - begin > 100:
-        return None
-    value = sign * mantissa * Fraction(10) ** (exponent - decimals)
-    if abs(value) >= 2 * Fraction(10) ** 308:
-        return None
-    return value, decimals if point else None, places, i
-
-
-def _single(token):
-    """The value of a token that is one number and nothing else."""
-    found = _scan(token, 0)
-    if found is None or found[3] != len(token):
-        raise Refused(f"number {token[:40]}")
-    return found[0]
-
-
-def _fortran(lines):
-    """The values of all lines: parted by blanks, or stuck together by their signs in one format."""
-    values, exponents = [], []
-    for at, line in enumerate(lines):
-        for token in line.split():
-            i, forms = 0, []
-            while i < len(token):
-                if i and token[i] not in "+-":
-                    raise Refused(f"stuck {token[:40]}")
-                found = _scan(token, i)
-                if found is None:
-                    raise Refused(f"number {token[:40]}")
-                values.append(found[0])
-                forms.append(found[1:3])
-                if found[2]:
-                    digits = token[i:found[3]].lower().replace("d", "e").split("e")[1].lstrip("+-")
-                    exponents.append((at, digits))
-                i = found[3]
-            if len(forms) > 1 and (len(set(forms)) > 1 or forms[0][0] is None):
-                raise Refused(f"stuck {token[:40]}")
-    long = [(at, digits) for at, digits in exponents if len(digits) == 3]
-    if long and len(long) < len(exponents):
-        widths = [len(line.rstrip()) for line in lines if line.strip()]
-        for at, digits in long:
-            most = max(widths.count(width) for width in widths)
-            usual = next(width for width in widths if widths.count(width) == most)
-            if digits[0] == "0" or len(lines[at].rstrip()) != usual:
-                raise Refused("exponent of three digits")
-    return values
-
-
-def _count(token):
-    if not token or len(token) > 9 or any(sign not in DIGITS for sign in token):
-        raise Refused("count")
-    return int(token)
-
-
-def _step(token, behind=""):
-    """Seconds in a token as .02, 10ms or .02 SEC."""
-    found = _scan(token, 0)
-    if found is None:
-        raise Refused("step")
-    glued = token[found[3]:].lower()
-    word = glued or behind.lower()
-    if any(sign not in LETTERS for sign in glued) or (word and word not in TIME_WORDS) or found[0] <= 0:
-        raise Refused("step")
-    return found[0] / TIME_WORDS.get(word, 1)
-
-
-# Units
-
-def _known_units():
-    """Every spelling of an acceleration this parser knows, in lower case, with its factor to m/s2."""
-    known = {"g": G, "g's": G, "gravity": G, "mg": G / 1000, "%g": G / 100, "gal": Fraction(1, 100),
-             "gals": Fraction(1, 100), "mgal": Fraction(1, 100_000)}
-    for length, factor in LENGTHS.items():
-        for time in ("s", "sec"):
-            for power in (f"/{time}2", f"/{time}^2", f"/{time}**2", f"/{time}*2", f"/{time}²", f"/{time}/s",
-                          f"/{time}/sec", f"/{time}^", f"/{time}*"):
-                if power[-1] not in "^*":
-                    known[length + power] = factor
-    return known
-
-
-KNOWN = _known_units()
-RATES = {f"{length}{rate}" for length in LENGTHS for rate in ("/s", "/sec")}
-
-
-def _words(line):
-    """Words of a header line in lower case; brackets, colons, equals signs, commas and semicolons are words."""
-    words, word = [], ""
-    for sign in line.lower() + " ":
-        if sign.isspace() or sign in "()[]:=,;":
-            words += [word] if word else []
-            word = ""
-            words += [] if sign.isspace() else [sign]
-        else:
-            word += sign
-    return words
-
-
-def _ends(word):
-    while word and word[-1] in ".'\"":
-        word = word[:-1]
-    return word
-
-
-def _unit(lines, titles):
-    """Factor of the unit that header lines state, None without one; `titles` is the index of the titles' line."""
-    factors, quantities = set(), set()
-    for index, line in enumerate(lines):
-        words = _words(line[:400])
-        parts = "".join(sign if sign in LETTERS else " " for sign in line[:400].lower()).split()
-        named = {QUANTITIES[part] for part in parts if part in QUANTITIES}
-        quantities |= named
-        for i, word in enumerate(words):
-            before = words[max(i - 4, 0):i]
-            stated = False
-            while before and before[-1] in ("(", "[", ":", "="):
-                before = before[:-1]
-            if before and before[-1] in ("of", "in", "is", "are"):
-                stated = before[-1] == "in" and (named or index == titles)
-                before = before[:-1] if before[:-1] and before[-2] in ("unit", "units") else before
-            bare = _ends(word)
-            if before and before[-1] in ("unit", "units") and word not in "()[]:=,;" and word not in (
-                    "of", "in", "is", "are"):
-                if bare in TIME_WORDS:
-                    continue
-                if not bare or bare[0] not in LETTERS + "%":
-                    continue
-                if bare not in KNOWN:
-                    raise Refused(f"unit {word}")
-                factors.add(KNOWN[bare])
-            elif "/" in word and word[:word.index("/")] in LENGTHS and not word.endswith("/"):
-                if i and words[i - 1][-1] in DIGITS + ".":
-                    continue
-                if bare not in KNOWN:
-                    raise Refused(f"unit {word}")
-                factors.add(KNOWN[bare])
-            elif stated or ((named or index == titles) and i and words[i - 1] in ("(", "[")) or (
-                    i and _ends(words[i - 1]) in ("acc", "accel", "acceleration")):
-                if bare in LENGTHS or bare in RATES:
-                    raise Refused(f"unit {word}")
-                if bare in KNOWN:
-                    factors.add(KNOWN[bare])
-    if len(factors) > 1:
-        raise Refused("two units")
-    if quantities == {"other"}:
-        raise Refused("no acceleration")
-    return factors.pop() if factors else None
-
-
 # Formats
 
 def _named(line, name):
@@ -299,7 +121,7 @@ def _at2(lines):
                 sign in DIGITS for sign in old[0]):
             behind = "".join(old[3:])[2:]
             inside = "".join(sign for sign in behind.partition(")")[0] if sign in LETTERS and behind[0] in "([")
-            count, step = old[0], _step(old[1], inside)
+            count, step = old[0], step_of(old[1], inside)
         elif counts and steps:
             if len(counts) > 1 or len(steps) > 1:
                 raise Refused("twice")
@@ -317,12 +139,12 @@ def _at2(lines):
                 word += sign
             if word and word not in TIME_WORDS:
                 raise Refused("step")
-            step = _step(token, word or unit)
+            step = step_of(token, word or unit)
         else:
             continue
-        factor = _unit(lines[:index + 1], index - 1)
-        samples = _fortran(lines[index + 1:])
-        if _count(count) != len(samples):
+        factor = unit_of(lines[:index + 1], index - 1)
+        samples = fortran(lines[index + 1:])
+        if whole(count) != len(samples):
             raise Refused("count")
         return (step, step), samples, factor
     return None
@@ -348,10 +170,10 @@ def _dyna(lines):
         raise Refused("unit")
     if keys.get("DATA_TYPE") and keys["DATA_TYPE"][:3].lower() != "acc":
         raise Refused("type")
-    samples = _fortran(lines[i:])
-    if _count(keys.get("NDATA", "")) != len(samples):
+    samples = fortran(lines[i:])
+    if whole(keys.get("NDATA", "")) != len(samples):
         raise Refused("count")
-    step = _step(keys.get("SAMPLING_INTERVAL_S", ""))
+    step = step_of(keys.get("SAMPLING_INTERVAL_S", ""))
     return (step, step), samples, KNOWN[unit]
 
 
@@ -406,12 +228,12 @@ def _columns(lines):
         if any("npts" in "".join(sign if sign.isalnum() or sign == "_" else " " for sign in line.lower()).split()
                for line in header):
             raise Refused("NPTS")
-    factor = _unit(header, len(header) - 1)
+    factor = unit_of(header, len(header) - 1)
     per_second = {found for line in header for found in _times_in(line)}
     if len(per_second) > 1 or None in per_second:
         raise Refused("unit of time")
-    samples = [_single(second) for _, second in pairs]
-    times = [_single(first) for first, _ in pairs]
+    samples = [single(second) for _, second in pairs]
+    times = [single(first) for first, _ in pairs]
     if len(times) < 2:
         raise Refused("samples")
     low, high = _uniform(times, [first for first, _ in pairs])
@@ -429,13 +251,13 @@ def _times_in(line):
     """Units of time that stand behind the word time (or t) of a header line, in units a second; None: another unit."""
     found = []
     flat = " ".join(line[:400].lower().split())
-    words = _words(flat.replace("/", " , ").replace("_", " "))
+    words = words_of(flat.replace("/", " , ").replace("_", " "))
     for i, word in enumerate(words):
         if word in ("time", "t"):
             rest = words[i + 1:]
             while rest and rest[0] in ("(", "[", ",", ":", "=", "in", "unit", "units"):
                 rest = rest[1:]
-            unit = _ends(rest[0]) if rest else ""
+            unit = ends_of(rest[0]) if rest else ""
             if unit in ("us", "µs", "usec", "ns", "min", "minute", "minutes", "h", "hour", "hours", "samples"):
                 found.append(None)
             elif unit in TIME_WORDS:
