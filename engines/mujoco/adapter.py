@@ -96,7 +96,7 @@ VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(), rung="best", ladder=(1e-3, 1e-4, 5e-6), decides=DECIDES,
         verified=Range(slenderness=(0.03, 1.2), inertia=(1.02, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0),
-                       stiffness=(0.0, 0.5), decay=(0.0, 1e5))),
+                       stiffness=(0.0, 0.5), decay=(0.0, 1e4))),
     "fixed-step": Variant(
         FixedStep(), rung="expert", ladder=(4e-3, 1e-3, 1e-4), decides=DECIDES,
         verified=Range(slenderness=(0.03, 0.45), inertia=(1.2, 3.0), base_mass=(0.05, 100.0), radius=(1e-3, 30.0),

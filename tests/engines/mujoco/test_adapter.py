@@ -212,7 +212,8 @@ def test_restitution_is_read_before_a_strong_damper_stops_the_base(base):
     total = (1 + base) * mass
     given = scene(0.28, base * mass, 2.0, start=Start(tilt=0.2),
                   bearings=Bearings(law="linear", ka=4 * total, damping=1e4 * total))
-    assert assert_like_the_model(given, error=6e-3).warnings == ()
+    warnings = assert_like_the_model(given, error=6e-3).warnings
+    assert bool(warnings) == (base < 1.0)  # n_d c/m_b above 1e4 omega_r, where other scenes are off by .05
 
 
 def test_viscous_force_is_of_second_order():
