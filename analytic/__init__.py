@@ -13,7 +13,29 @@ with kernel_cache():
     from .scene_file import load_scene, shipped_scenes
     from .solver import simulate
 
-__all__ = ["Base", "Bearings", "Block", "Energy", "EngineNotInstalled", "Failure", "History", "Impact", "Outcomes",
-           "PulseMotion", "Response", "SampledMotion", "Scene", "SceneError", "SettingError", "Start", "State",
-           "load_scene",
-           "overturning_map", "rocking_spectrum", "shipped_scenes", "simulate", "simulate_many", "synthetic_motion"]
+__all__ = [
+    "Base",
+    "Bearings",
+    "Block",
+    "Energy",
+    "EngineNotInstalled",
+    "Failure",
+    "History",
+    "Impact",
+    "Outcomes",
+    "PulseMotion",
+    "Response",
+    "SampledMotion",
+    "Scene",
+    "SceneError",
+    "SettingError",
+    "Start",
+    "State",
+    "load_scene",
+    "overturning_map",
+    "rocking_spectrum",
+    "shipped_scenes",
+    "simulate",
+    "simulate_many",
+    "synthetic_motion",
+]

@@ -43,9 +43,15 @@ class Outcomes:
             return totals[:, slot].reshape(shape)
 
         status = column(layout.STATUS)
-        return cls(column(layout.WILL_OVERTURN) > 0, column(layout.LIFTED) > 0,
-                   (status == layout.STUCK) | (status == layout.NOT_FINITE), column(layout.PEAK_TILT),
-                   column(layout.PEAK_X), column(layout.IMPACTS).astype(int), column(layout.CERTAIN) > 0)
+        return cls(
+            column(layout.WILL_OVERTURN) > 0,
+            column(layout.LIFTED) > 0,
+            (status == layout.STUCK) | (status == layout.NOT_FINITE),
+            column(layout.PEAK_TILT),
+            column(layout.PEAK_X),
+            column(layout.IMPACTS).astype(int),
+            column(layout.CERTAIN) > 0,
+        )
 
 
 @njit(cache=True, nogil=True)
@@ -53,8 +59,32 @@ def _run_rows(rows, pulses, kind, dt, samples, chosen, totals):
     """Run each row of parameters under its own pulse (scale, frequency, phase, start, end); totals has a row each."""
     for i in range(rows.shape[0]):
         r = rows[i]
-        par = Parameters(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8], r[9] != 0, int(r[10]), int(r[11]), r[12],
-                         r[13], r[14], r[15], r[16], r[17], r[18], r[19], r[20], r[21], r[22], r[23])
+        par = Parameters(
+            r[0],
+            r[1],
+            r[2],
+            r[3],
+            r[4],
+            r[5],
+            r[6],
+            r[7],
+            r[8],
+            r[9] != 0,
+            int(r[10]),
+            int(r[11]),
+            r[12],
+            r[13],
+            r[14],
+            r[15],
+            r[16],
+            r[17],
+            r[18],
+            r[19],
+            r[20],
+            r[21],
+            r[22],
+            r[23],
+        )
         b = pulses[i]
         kernel.run(par, Ground(kind, dt, samples, b[0], b[1], b[2], b[3], b[4]), chosen, totals[i])
 
@@ -140,8 +170,17 @@ def overturning_map(scene, shape, frequency_ratios, amplitude_ratios, *, toleran
     return Outcomes.of(totals, (len(amplitudes), len(frequencies)))
 
 
-def rocking_spectrum(motion, periods, slenderness, *, restitution_value=None, gravity=9.81, duration=None,
-                     tolerance=TOLERANCE, workers=None):
+def rocking_spectrum(
+    motion,
+    periods,
+    slenderness,
+    *,
+    restitution_value=None,
+    gravity=9.81,
+    duration=None,
+    tolerance=TOLERANCE,
+    workers=None,
+):
     """Outcomes of rectangular blocks on rigid ground against their rocking period T_r = 2 pi/omega_r, shape (n,).
 
     Fig. 5(a) of the Caryatid paper is peak_tilt against `periods` [s]. The radius follows from T_r and eq. (1);

@@ -152,6 +152,7 @@ def no_impact_overturning_integral(omega_r, motion, uplift, gravity=9.81):
     A slender block that lifts at `uplift` and does not come back before the motion is over overturns exactly
     if this exceeds its slenderness. `motion` is a pulse or a record.
     """
+
     def growth(t):
         return omega_r * math.exp(-omega_r * (t - uplift)) * float(motion.acceleration(t)) / gravity
 
@@ -160,6 +161,8 @@ def no_impact_overturning_integral(omega_r, motion, uplift, gravity=9.81):
         corners = [uplift, *(motion.dt * np.arange(first, len(motion.samples)))]
     else:
         corners = np.linspace(uplift, motion.end, 9)
-    parts = [quad(growth, a, b, epsabs=1e-15, epsrel=1e-12)[0] if b > a else 0.0
-             for a, b in zip(corners[:-1], corners[1:], strict=True)]
+    parts = [
+        quad(growth, a, b, epsabs=1e-15, epsrel=1e-12)[0] if b > a else 0.0
+        for a, b in zip(corners[:-1], corners[1:], strict=True)
+    ]
     return abs(math.fsum(parts))

@@ -77,8 +77,10 @@ def largest_force(par, energy):
     """
     n = float(par.count)
     viscous = n * n * par.damping * par.damping / par.M
-    return min(math.sqrt(2 * energy * (n * (par.kb + par.dk) + viscous)),
-               n * par.f0 + math.sqrt(2 * energy * (n * par.kb + viscous)))
+    return min(
+        math.sqrt(2 * energy * (n * (par.kb + par.dk) + viscous)),
+        n * par.f0 + math.sqrt(2 * energy * (n * par.kb + viscous)),
+    )
 
 
 @njit(cache=True)
@@ -164,8 +166,11 @@ def is_finished(scene, response, *, contact_tilt=0.0):
     decided, par, state = _at_end(scene, response, contact_tilt)
     if not decided or state is None:
         return decided
-    return bool(peaks_are_final(par, *state, response.peak_tilt, response.peak_base_displacement,
-                                response.peak_base_acceleration))
+    return bool(
+        peaks_are_final(
+            par, *state, response.peak_tilt, response.peak_base_displacement, response.peak_base_acceleration
+        )
+    )
 
 
 def _at_end(scene, response, contact_tilt):
@@ -214,9 +219,13 @@ def model_warnings(scene, friction_demand, min_normal_ratio):
     """Sentences on what the model assumes and this run does not keep: contact that only presses, and no sliding."""
     found = []
     if min_normal_ratio <= 0:
-        found.append(f"the least normal force at the contact is {min_normal_ratio:.3g} m g: the block would jump, and "
-                     "the verdict is outside the model")
+        found.append(
+            f"the least normal force at the contact is {min_normal_ratio:.3g} m g: the block would jump, and "
+            "the verdict is outside the model"
+        )
     if scene.friction is not None and friction_demand > scene.friction:
-        found.append(f"the friction demand {friction_demand:.3g} is above the scene's friction {scene.friction:.3g}: "
-                     "the block would slide, and the verdict is outside the model")
+        found.append(
+            f"the friction demand {friction_demand:.3g} is above the scene's friction {scene.friction:.3g}: "
+            "the block would slide, and the verdict is outside the model"
+        )
     return tuple(found)

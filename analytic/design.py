@@ -60,8 +60,15 @@ def properties(bearings, mass, x_max):
     secant = force / x_max
     energy = 0.5 * secant * x_max**2
     kb_period = 2 * math.pi * math.sqrt(mass / (bearings.count * law.kb)) if law.kb else math.inf
-    return BearingProperties(2 * math.pi * math.sqrt(mass / (bearings.count * secant)), kb_period,
-                             loss / (2 * math.pi * energy), loss / (4 * math.pi * energy), secant, force, loss)
+    return BearingProperties(
+        2 * math.pi * math.sqrt(mass / (bearings.count * secant)),
+        kb_period,
+        loss / (2 * math.pi * energy),
+        loss / (4 * math.pi * energy),
+        secant,
+        force,
+        loss,
+    )
 
 
 def _mismatch(alpha, loss, secant, x_max, ratio):
@@ -82,8 +89,7 @@ def _feasible(damping, divisor, secant, x_max, ratio):
     return 2 + math.exp(best.x), best.fun
 
 
-def design_bearings(mass, period, damping, x_max, *, count=4, stiffness_ratio=10.0, definition="paper",
-                    delta_k=1e-20):
+def design_bearings(mass, period, damping, x_max, *, count=4, stiffness_ratio=10.0, definition="paper", delta_k=1e-20):
     """Bearings with a given secant period and damping at x_max.
 
     Parameters
@@ -127,13 +133,17 @@ def design_bearings(mass, period, damping, x_max, *, count=4, stiffness_ratio=10
     if least >= 0:
         # damping -> 0 can always be met: f0 -> 0 leaves the ratio term alone
         most = brentq(lambda d: _feasible(d, divisor, secant, x_max, stiffness_ratio)[1], 1e-9, damping)
-        raise SettingError(f"damping = {damping:.4g} ({definition} definition) cannot be met at x_max = {x_max:.4g} m "
-                           f"with ka/kb = {stiffness_ratio:.4g}: the most is {most:.4g}; lower it, "
-                           "or raise stiffness_ratio")
+        raise SettingError(
+            f"damping = {damping:.4g} ({definition} definition) cannot be met at x_max = {x_max:.4g} m "
+            f"with ka/kb = {stiffness_ratio:.4g}: the most is {most:.4g}; lower it, "
+            "or raise stiffness_ratio"
+        )
     loss = damping * divisor * 0.5 * secant * x_max**2
     if _mismatch(STEEPEST, loss, secant, x_max, stiffness_ratio)[0] < 0:
-        raise SettingError(f"damping = {damping:.4g} is so small that alpha would exceed {STEEPEST:g}; "
-                           "raise it, or lower stiffness_ratio")
+        raise SettingError(
+            f"damping = {damping:.4g} is so small that alpha would exceed {STEEPEST:g}; "
+            "raise it, or lower stiffness_ratio"
+        )
     alpha = brentq(lambda a: _mismatch(a, loss, secant, x_max, stiffness_ratio)[0], turn, STEEPEST, xtol=1e-12)
     f0 = _mismatch(alpha, loss, secant, x_max, stiffness_ratio)[1]
     kb = secant - f0 / x_max
@@ -141,7 +151,9 @@ def design_bearings(mass, period, damping, x_max, *, count=4, stiffness_ratio=10
     got = properties(bearings, mass, x_max)
     got_damping = got.damping_paper if definition == "paper" else got.damping_equivalent
     if abs(got.period / period - 1) > LOOP_AGREEMENT or abs(got_damping / damping - 1) > LOOP_AGREEMENT:
-        raise SettingError(f"x_max = {x_max:.4g} m is too small for bearings with alpha = {alpha:.4g} to reach their "
-                           f"limit curves (period {got.period:.4g} s, damping {got_damping:.4g} result); "
-                           "raise x_max or stiffness_ratio")
+        raise SettingError(
+            f"x_max = {x_max:.4g} m is too small for bearings with alpha = {alpha:.4g} to reach their "
+            f"limit curves (period {got.period:.4g} s, damping {got_damping:.4g} result); "
+            "raise x_max or stiffness_ratio"
+        )
     return bearings

@@ -7,7 +7,7 @@ def cut(text, length):
     """The text on one line, printable, its middle left out where it is longer than `length` characters."""
     text = str(text)
     if len(text) > length:
-        text = f"{text[:length * 2 // 3]} ... {text[-(length // 6):]} ({len(text)} characters)"
+        text = f"{text[: length * 2 // 3]} ... {text[-(length // 6) :]} ({len(text)} characters)"
     return "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in text)
 
 
@@ -16,7 +16,7 @@ def _shown(value):
     if isinstance(value, int) and value.bit_length() > 4 * VALUE_LENGTH:
         return f"an integer of {value.bit_length()} bits"
     if isinstance(value, str) and len(value) > VALUE_LENGTH:
-        return repr(value[:VALUE_LENGTH * 2 // 3]) + f" ... ({len(value)} characters)"
+        return repr(value[: VALUE_LENGTH * 2 // 3]) + f" ... ({len(value)} characters)"
     try:
         return cut(repr(value), VALUE_LENGTH)
     except (ValueError, RecursionError):  # huge integers and deep nesting inside of it

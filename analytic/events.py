@@ -147,8 +147,11 @@ def remaining_hops(par, rate, ground, force):
 def impact_loss(par, v, before, after, jump):
     """Kinetic energy lost [J]: the tilt rate falls from `before` to `after`, the base velocity v rises by `jump`."""
     coupling = par.m * par.R * math.cos(par.gamma)
-    return (0.5 * par.J * (before * before - after * after) + coupling * (v * (before - after) - jump * after)
-            - 0.5 * par.M * jump * (2 * v + jump))
+    return (
+        0.5 * par.J * (before * before - after * after)
+        + coupling * (v * (before - after) - jump * after)
+        - 0.5 * par.M * jump * (2 * v + jump)
+    )
 
 
 @njit(inline="always")

@@ -54,10 +54,28 @@ def run(par, ground, options, totals):
     history = np.empty((outputs, 6))
     totals[:] = 0.0
     totals[L.UNSTABLE_TIME], totals[L.NORMAL] = -1.0, 1.0
-    shaking = L.Ground(ground.kind, ground.dt, unowned(ground.samples), ground.scale, ground.frequency, ground.phase,
-                       ground.start, ground.end)
-    end, written = _march(par, shaking, options, unowned(workspace), unowned(scratch), unowned(impacts),
-                          unowned(uplifts), unowned(rests), unowned(history), unowned(totals))
+    shaking = L.Ground(
+        ground.kind,
+        ground.dt,
+        unowned(ground.samples),
+        ground.scale,
+        ground.frequency,
+        ground.phase,
+        ground.start,
+        ground.end,
+    )
+    end, written = _march(
+        par,
+        shaking,
+        options,
+        unowned(workspace),
+        unowned(scratch),
+        unowned(impacts),
+        unowned(uplifts),
+        unowned(rests),
+        unowned(history),
+        unowned(totals),
+    )
     workspace[0, 0], scratch[0, 0] = 0.0, ground.samples[0]  # used last, so alive until here
     kept_impacts, kept_uplifts, kept_rests = int(totals[L.IMPACTS]), int(totals[L.UPLIFTS]), int(totals[L.RESTS])
     return end, impacts[:kept_impacts], uplifts[:kept_uplifts], rests[:kept_rests], history[:written]
@@ -99,8 +117,9 @@ def _march(par, ground, options, P, work, impacts, uplifts, rests, history, tota
                 if (options.record or par.on_base) and t < options.shortest * (1 - ROUNDING):
                     h = min(h, options.shortest - t)
                 else:
-                    final, will_overturn, top, more = _is_final(par, options, rocking, s, tilt, rate, base, peak_tilt,
-                                                                peak_x, totals)
+                    final, will_overturn, top, more = _is_final(
+                        par, options, rocking, s, tilt, rate, base, peak_tilt, peak_x, totals
+                    )
                     if final:
                         peak_tilt, status = max(peak_tilt, top), L.DECIDED
                         totals[L.IMPACTS] += more
@@ -112,8 +131,9 @@ def _march(par, ground, options, P, work, impacts, uplifts, rests, history, tota
             if par.on_base:
                 branch, factors, corner = bearing_of_step(par, rocking, s, tilt, rate, base, branch, highest, P)
             if rocking:
-                used, h = rocking_of_step(par, kind, s, tilt, rate, fresh, factors, highest, order, options.tolerance,
-                                          h, P)
+                used, h = rocking_of_step(
+                    par, kind, s, tilt, rate, fresh, factors, highest, order, options.tolerance, h, P
+                )
                 if fresh and not s * P[L.PHI, 3] > 0:  # the threshold was only touched: the block stays down
                     mode, s, fresh, refused = L.CONTACT, 0.0, False, True
                     totals[L.UPLIFTS] -= 1
@@ -124,15 +144,17 @@ def _march(par, ground, options, P, work, impacts, uplifts, rests, history, tota
                 status = L.NOT_FINITE if not math.isfinite(h) else L.STUCK
                 break
 
-            found, h = first_event(par, rocking, s, threshold, refused, branch[0], corner, used, t, h, P,
-                                   options.record, totals, work)
+            found, h = first_event(
+                par, rocking, s, threshold, refused, branch[0], corner, used, t, h, P, options.record, totals, work
+            )
             idle = idle + 1 if h <= 0 else 0
             if idle > PATIENCE:
                 status = L.STUCK
                 break
 
-            written, held = read_step(par, rocking, s, tilt, used, highest, t, h, P, options, history, written, held,
-                                      totals)
+            written, held = read_step(
+                par, rocking, s, tilt, used, highest, t, h, P, options, history, written, held, totals
+            )
             if rocking:
                 tilt, rate, peak_tilt = end_of_block(s, rate, used, h, P, peak_tilt)
             if par.on_base:
@@ -185,8 +207,9 @@ def _is_final(par, options, rocking, s, tilt, rate, base, peak_tilt, peak_x, tot
         return settle(par, s, tilt, rate)
     x, v, z = base
     peak_acceleration = totals[L.PEAK_ACCELERATION] if options.record else -1.0
-    final = (will_not_overturn(par, rocking, _lifted(par, totals), tilt, rate, x, v, z)
-             and peaks_are_final(par, rocking, tilt, rate, x, v, z, peak_tilt, peak_x, peak_acceleration))
+    final = will_not_overturn(par, rocking, _lifted(par, totals), tilt, rate, x, v, z) and peaks_are_final(
+        par, rocking, tilt, rate, x, v, z, peak_tilt, peak_x, peak_acceleration
+    )
     return final, False, 0.0, 0
 
 

@@ -7,8 +7,28 @@ CONTACT, ROCKING, OVERTURNED = range(3)
 # How a run ended.
 COMPLETE, DECIDED, STUCK, NOT_FINITE = range(4)
 # Slots of the totals a run returns.
-(STATUS, MODE, TIME, PEAK_TILT, PEAK_X, PEAK_ACCELERATION, UNSTABLE_TIME, FRICTION, NORMAL, INPUT, HYSTERETIC,
- VISCOUS, IMPACT_LOSS, STEPS, IMPACTS, UPLIFTS, RESTS, WILL_OVERTURN, LIFTED, CERTAIN) = range(20)
+(
+    STATUS,
+    MODE,
+    TIME,
+    PEAK_TILT,
+    PEAK_X,
+    PEAK_ACCELERATION,
+    UNSTABLE_TIME,
+    FRICTION,
+    NORMAL,
+    INPUT,
+    HYSTERETIC,
+    VISCOUS,
+    IMPACT_LOSS,
+    STEPS,
+    IMPACTS,
+    UPLIFTS,
+    RESTS,
+    WILL_OVERTURN,
+    LIFTED,
+    CERTAIN,
+) = range(20)
 TOTALS = 20
 # Rows of the workspace: Taylor coefficients of tilt, rate, sin and cos, base displacement and velocity, bearing memory,
 # bearing force, absolute base acceleration, ground acceleration; then scratch.

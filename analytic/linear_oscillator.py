@@ -59,8 +59,10 @@ def _advance(x, v, a, slope, w, zeta, wd, decay, c, s, h):
     drift = -slope / (w * w)  # particular solution: offset + drift tau
     offset = -a / (w * w) + 2 * zeta * slope / (w * w * w)
     x, v = x - offset, v - drift
-    return (decay * (x * c + (v + zeta * w * x) / wd * s) + offset + drift * h,
-            decay * (v * c - (zeta * w * v + w * w * x) / wd * s) + drift)
+    return (
+        decay * (x * c + (v + zeta * w * x) / wd * s) + offset + drift * h,
+        decay * (v * c - (zeta * w * v + w * w * x) / wd * s) + drift,
+    )
 
 
 @njit(cache=True)
@@ -69,8 +71,19 @@ def _largest_inside(x, v, a, slope, w, zeta, wd, h):
     low, high, found = 0.0, h, x
     for _ in range(50):
         middle = 0.5 * (low + high)
-        found, speed = _advance(x, v, a, slope, w, zeta, wd, math.exp(-zeta * w * middle),
-                                math.cos(wd * middle), math.sin(wd * middle), middle)
+        found, speed = _advance(
+            x,
+            v,
+            a,
+            slope,
+            w,
+            zeta,
+            wd,
+            math.exp(-zeta * w * middle),
+            math.cos(wd * middle),
+            math.sin(wd * middle),
+            middle,
+        )
         if speed * v > 0:
             low = middle
         else:

@@ -44,12 +44,17 @@ class SampledMotion:
         _positive("motion.dt", self.dt, "s")
         samples = np.array(self.samples, dtype=np.float64)
         if samples.ndim != 1 or len(samples) < 2:
-            raise SceneError("motion.record", f"shape {samples.shape}", "holds fewer than two samples",
-                             "give at least two accelerations")
+            raise SceneError(
+                "motion.record",
+                f"shape {samples.shape}",
+                "holds fewer than two samples",
+                "give at least two accelerations",
+            )
         if not np.isfinite(samples).all():
             first = int(np.flatnonzero(~np.isfinite(samples))[0])
-            raise SceneError("motion.record", float(samples[first]), f"sample {first} is not finite",
-                             "mend or remove it")
+            raise SceneError(
+                "motion.record", float(samples[first]), f"sample {first} is not finite", "mend or remove it"
+            )
         samples.flags.writeable = False
         object.__setattr__(self, "samples", samples)
         object.__setattr__(self, "dt", float(self.dt))
@@ -139,8 +144,9 @@ class PulseMotion:
     @property
     def length(self):
         """Duration of the pulse [s]."""
-        turns = {"one-sine": 1.0, "one-cosine": 1.0, "half-sine": 0.5, "rectangular": 0.5,
-                 "ricker": RICKER_PERIODS}[self.shape]
+        turns = {"one-sine": 1.0, "one-cosine": 1.0, "half-sine": 0.5, "rectangular": 0.5, "ricker": RICKER_PERIODS}[
+            self.shape
+        ]
         return turns * 2 * math.pi / self.frequency
 
     @property
@@ -156,8 +162,13 @@ class PulseMotion:
     @property
     def peak_time(self):
         """First time of the peak [s]."""
-        offset = {"one-sine": math.pi / 2, "half-sine": math.pi / 2, "one-cosine": 0.0, "rectangular": 0.0,
-                  "ricker": RICKER_PERIODS * math.pi}[self.shape]
+        offset = {
+            "one-sine": math.pi / 2,
+            "half-sine": math.pi / 2,
+            "one-cosine": 0.0,
+            "rectangular": 0.0,
+            "ricker": RICKER_PERIODS * math.pi,
+        }[self.shape]
         return self.start + offset / self.frequency
 
     @property

@@ -46,8 +46,15 @@ class History:
     bearing_force: np.ndarray
     ground_acceleration: np.ndarray
 
-    COLUMNS = ("time", "tilt", "tilt_rate", "base_displacement", "base_velocity", "bearing_force",
-               "ground_acceleration")
+    COLUMNS = (
+        "time",
+        "tilt",
+        "tilt_rate",
+        "base_displacement",
+        "base_velocity",
+        "bearing_force",
+        "ground_acceleration",
+    )
 
     def to_csv(self, path):
         """Write the columns with a header line; `path` is a file name or an open text file."""
@@ -160,9 +167,18 @@ class Response:
             failure = Failure(**{**failure, "last_state": failure["last_state"] and _of(State, failure["last_state"])})
         numbers = {part.name: _number(values.get(part.name)) for part in dataclasses.fields(cls) if part.type is float}
         series = {name: tuple(values[name]) for name in ("uplifts", "rests", "warnings")}
-        return cls(**{**values, **numbers, **series, "impacts": tuple(_of(Impact, one) for one in values["impacts"]),
-                      "end": _of(State, values["end"]), "failure": failure, "energy": energy and Energy(**energy),
-                      "history": history})
+        return cls(
+            **{
+                **values,
+                **numbers,
+                **series,
+                "impacts": tuple(_of(Impact, one) for one in values["impacts"]),
+                "end": _of(State, values["end"]),
+                "failure": failure,
+                "energy": energy and Energy(**energy),
+                "history": history,
+            }
+        )
 
 
 def _of(kind, values):

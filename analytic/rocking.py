@@ -41,8 +41,18 @@ class RockingModel:
     def of(cls, scene):
         block = scene.block
         e = restitution(scene) if block.restitution is None else block.restitution
-        return cls(block.mass, scene.total_mass, block.inertia, block.radius, block.slenderness, scene.gravity,
-                   scene.base is not None, BearingLaw.of(scene.bearings), max(e, 0.0), scene.mass_share)
+        return cls(
+            block.mass,
+            scene.total_mass,
+            block.inertia,
+            block.radius,
+            block.slenderness,
+            scene.gravity,
+            scene.base is not None,
+            BearingLaw.of(scene.bearings),
+            max(e, 0.0),
+            scene.mass_share,
+        )
 
     def lever(self, s, tilt):
         """(c, n) [m]: height of the centre of mass above the corner, and its signed horizontal lever."""
@@ -110,13 +120,26 @@ def base_jump_length(scene):
     """e_x of eq. (8), corrected [m]: x'+ = x'- - e_x phi'-."""
     block, mt = scene.block, scene.mass_share
     R, gamma, m = block.radius, block.slenderness, block.mass
-    return (2 * R**3 * math.sin(gamma) ** 2 * math.cos(gamma) * m * mt
-            / (R**2 * math.cos(gamma) ** 2 * m * mt - block.inertia))  # (8)
+    return (
+        2
+        * R**3
+        * math.sin(gamma) ** 2
+        * math.cos(gamma)
+        * m
+        * mt
+        / (R**2 * math.cos(gamma) ** 2 * m * mt - block.inertia)
+    )  # (8)
 
 
 def base_jump_length_as_printed(scene):
     """e_x of eq. (8) as printed: a factor R cos(gamma) too many, so a length squared. Kept to show the misprint."""
     block, mt = scene.block, scene.mass_share
     R, gamma, m = block.radius, block.slenderness, block.mass
-    return (2 * R**4 * (math.sin(gamma) * math.cos(gamma)) ** 2 * m * mt
-            / (R**2 * math.cos(gamma) ** 2 * m * mt - block.inertia))
+    return (
+        2
+        * R**4
+        * (math.sin(gamma) * math.cos(gamma)) ** 2
+        * m
+        * mt
+        / (R**2 * math.cos(gamma) ** 2 * m * mt - block.inertia)
+    )

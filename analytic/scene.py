@@ -28,8 +28,9 @@ Number = Annotated[float, Field(ge=-MOST, le=MOST)]
 
 
 class _Part(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False,
-                              arbitrary_types_allowed=True)
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", strict=True, allow_inf_nan=False, arbitrary_types_allowed=True
+    )
 
 
 class Block(_Part):
@@ -50,8 +51,12 @@ class Block(_Part):
     def _inertia_is_possible(self):
         least = self.mass * self.radius**2
         if self.corner_inertia is not None and self.corner_inertia <= least:
-            raise SceneError("block.corner_inertia", self.corner_inertia, "less than a point mass would have",
-                             f"give more than mass radius^2 = {least:.6g} kg m2, or leave it out")
+            raise SceneError(
+                "block.corner_inertia",
+                self.corner_inertia,
+                "less than a point mass would have",
+                f"give more than mass radius^2 = {least:.6g} kg m2, or leave it out",
+            )
         return self
 
     @property
@@ -109,11 +114,19 @@ class Bearings(_Part):
             if given is not None and name not in law.needs + law.ignores:
                 raise SceneError(f"bearings.{name}", given, f"not used by the {self.law} law", "remove it")
         if "kb" in law.needs and self.ka <= self.kb:
-            raise SceneError("bearings.ka", self.ka, f"not above kb = {self.kb:.6g} N/m",
-                             "give the initial stiffness as ka, the smaller one after yielding as kb [N/m]")
+            raise SceneError(
+                "bearings.ka",
+                self.ka,
+                f"not above kb = {self.kb:.6g} N/m",
+                "give the initial stiffness as ka, the smaller one after yielding as kb [N/m]",
+            )
         if "alpha" in law.needs and self.delta_k >= self.ka - self.kb:
-            raise SceneError("bearings.delta_k", self.delta_k, "not below ka - kb",
-                             "give a small stiffness difference [N/m] such as 1e-20, or leave it out")
+            raise SceneError(
+                "bearings.delta_k",
+                self.delta_k,
+                "not below ka - kb",
+                "give a small stiffness difference [N/m] such as 1e-20, or leave it out",
+            )
         return self
 
 
@@ -155,8 +168,12 @@ class Scene(_Part):
                 raise SceneError("bearings", None, "need a base to carry", "add a table [base] with its mass")
             for name in ("base_displacement", "base_velocity"):
                 if getattr(self.start, name) != 0:
-                    raise SceneError(f"start.{name}", getattr(self.start, name), "needs a base",
-                                     "add a table [base] with its mass, or remove it")
+                    raise SceneError(
+                        f"start.{name}",
+                        getattr(self.start, name),
+                        "needs a base",
+                        "add a table [base] with its mass, or remove it",
+                    )
         return self
 
     @property

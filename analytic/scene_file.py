@@ -18,16 +18,34 @@ LARGEST, DEEPEST = 100_000, 100  # bytes of a scene file and dots in a line of i
 SHIPPED = Path(__file__).parent / "scenes"
 
 KEY_UNITS = {
-    "gravity": "m/s2", "block.mass": "kg", "block.radius": "m", "block.slenderness": "rad",
-    "block.corner_inertia": "kg m2", "base.mass": "kg", "bearings.ka": "N/m", "bearings.kb": "N/m",
-    "bearings.delta_k": "N/m", "bearings.yield_force": "N", "bearings.damping": "N s/m", "motion.amplitude": "m/s2",
-    "motion.frequency": "rad/s", "motion.start": "s", "start.tilt": "rad", "start.tilt_rate": "rad/s",
-    "start.base_displacement": "m", "start.base_velocity": "m/s", "run.duration": "s",
+    "gravity": "m/s2",
+    "block.mass": "kg",
+    "block.radius": "m",
+    "block.slenderness": "rad",
+    "block.corner_inertia": "kg m2",
+    "base.mass": "kg",
+    "bearings.ka": "N/m",
+    "bearings.kb": "N/m",
+    "bearings.delta_k": "N/m",
+    "bearings.yield_force": "N",
+    "bearings.damping": "N s/m",
+    "motion.amplitude": "m/s2",
+    "motion.frequency": "rad/s",
+    "motion.start": "s",
+    "start.tilt": "rad",
+    "start.tilt_rate": "rad/s",
+    "start.base_displacement": "m",
+    "start.base_velocity": "m/s",
+    "run.duration": "s",
 }
 MOTIONS = {"record": ("units",), "pulse": ("amplitude", "frequency", "start"), "synthetic": ("seed",)}
 
-LIMITS = {"greater_than": "above {:.6g}", "greater_than_equal": "from {:.6g} on", "less_than": "below {:.6g}",
-          "less_than_equal": "up to {:.6g}"}
+LIMITS = {
+    "greater_than": "above {:.6g}",
+    "greater_than_equal": "from {:.6g} on",
+    "less_than": "below {:.6g}",
+    "less_than_equal": "up to {:.6g}",
+}
 
 
 class _Motion(_Part):
@@ -48,13 +66,15 @@ class _Motion(_Part):
         kinds = [kind for kind in MOTIONS if getattr(self, kind) is not None]
         if len(kinds) != 1:
             problem = "names several motions at once" if kinds else "names no motion"
-            raise SceneError("motion", ", ".join(kinds) or None, problem,
-                             "give exactly one of record, pulse and synthetic")
+            raise SceneError(
+                "motion", ", ".join(kinds) or None, problem, "give exactly one of record, pulse and synthetic"
+            )
         for kind, keys in MOTIONS.items():
             for key in keys:
                 if kind != kinds[0] and getattr(self, key) is not None:
-                    raise SceneError(f"motion.{key}", getattr(self, key), f"belongs to a {kind}, not to a {kinds[0]}",
-                                     "remove it")
+                    raise SceneError(
+                        f"motion.{key}", getattr(self, key), f"belongs to a {kind}, not to a {kinds[0]}", "remove it"
+                    )
         if self.synthetic:
             return synthetic_motion(self.synthetic, DEFAULT_SEED if self.seed is None else self.seed).scaled(self.scale)
         if self.pulse:
@@ -120,12 +140,17 @@ def _parse(path):
         text = read_plain(path, LARGEST).decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
         for number, line in enumerate(text.split("\n"), 1):
             if line.split("#")[0].count(".") > DEEPEST:  # the parser's time grows with the square of a key's parts
-                raise SceneError("scene", None, f"line {number} is nested too deeply",
-                                 "write the tables of a scene file, one level")
+                raise SceneError(
+                    "scene", None, f"line {number} is nested too deeply", "write the tables of a scene file, one level"
+                )
         return tomllib.loads(text)
     except OSError as error:
-        raise SceneError("scene", None, f"cannot be read ({error.strerror})",
-                         "give a scene file or one of " + ", ".join(shipped_scenes())) from error
+        raise SceneError(
+            "scene",
+            None,
+            f"cannot be read ({error.strerror})",
+            "give a scene file or one of " + ", ".join(shipped_scenes()),
+        ) from error
     except RecursionError:
         raise SceneError("scene", None, "is nested too deeply", "write the tables of a scene file, one level") from None
     except SceneError:
@@ -138,9 +163,17 @@ def _scene(table, path):
     try:
         file = _SceneFile(**table)
         motion = file.motion.motion(path.parent) if file.motion else None
-        return Scene(block=file.block, base=file.base, bearings=file.bearings, motion=motion, start=file.start,
-                     duration=file.run.duration, gravity=file.gravity, friction=file.friction,
-                     name=file.name or path.stem)
+        return Scene(
+            block=file.block,
+            base=file.base,
+            bearings=file.bearings,
+            motion=motion,
+            start=file.start,
+            duration=file.run.duration,
+            gravity=file.gravity,
+            friction=file.friction,
+            name=file.name or path.stem,
+        )
     except ValidationError as error:
         raise _scene_error(error.errors()) from None
 
@@ -166,10 +199,13 @@ def _scene_error(problems):
     if kind in LIMITS:
         words = LIMITS[kind].format(*context.values())
         return SceneError(key, value, "out of range", f"give a number {words}{unit}")
-    wanted = {"model_type": f"a table: write [{key}]", "string_type": 'text in "quotes"',
-              "int_type": "a whole number", "int_from_float": "a whole number"}
-    return SceneError(key, value, f"wrong type ({type(value).__name__})",
-                      f"give {wanted.get(kind, 'a number')}{unit}")
+    wanted = {
+        "model_type": f"a table: write [{key}]",
+        "string_type": 'text in "quotes"',
+        "int_type": "a whole number",
+        "int_from_float": "a whole number",
+    }
+    return SceneError(key, value, f"wrong type ({type(value).__name__})", f"give {wanted.get(kind, 'a number')}{unit}")
 
 
 def _missing(key):

@@ -14,12 +14,14 @@ def segments(motion, duration):
     """
     if isinstance(motion, SampledMotion):
         dt, samples = motion.dt, motion.samples.tolist()
-        pieces = [(i * dt, (i + 1) * dt, _line(i * dt, a, (b - a) / dt))
-                  for i, (a, b) in enumerate(zip(samples[:-1], samples[1:], strict=True))]
+        pieces = [
+            (i * dt, (i + 1) * dt, _line(i * dt, a, (b - a) / dt))
+            for i, (a, b) in enumerate(zip(samples[:-1], samples[1:], strict=True))
+        ]
     elif motion is not None:
         if motion.shape == "ricker":
             centre = RICKER_PERIODS * math.pi
-            turns = [0.0, *(centre + u for u in (-6**0.5, -2**0.5, 0.0, 2**0.5, 6**0.5)), 2 * centre]
+            turns = [0.0, *(centre + u for u in (-(6**0.5), -(2**0.5), 0.0, 2**0.5, 6**0.5)), 2 * centre]
         else:
             turns = np.arange(0, motion.length * motion.frequency + 0.1, math.pi / 2)
         cuts = [motion.start + u / motion.frequency for u in turns[:-1]] + [motion.end]
@@ -42,8 +44,10 @@ def _pulse(motion):
     if motion.shape == "one-cosine":
         return lambda t: a * math.cos(w * (t - start))
     if motion.shape == "ricker":
+
         def ricker(t):
             b = 0.25 * (w * (t - start) - RICKER_PERIODS * math.pi) ** 2
             return a * (1 - 2 * b) * math.exp(-b)
+
         return ricker
     return lambda t: a * math.sin(w * (t - start))

@@ -36,11 +36,32 @@ _NO_SAMPLES.flags.writeable = False  # the same compiled type as the samples of 
 def parameters(scene):
     """The scene as the kernel's `Parameters`."""
     model, law, start = RockingModel.of(scene), BearingLaw.of(scene.bearings), scene.start
-    return Parameters(model.m, model.M, model.J, model.R, model.gamma, model.g, scene.rocking_frequency**2,
-                      model.restitution, model.mass_share, model.on_base, law.law, law.count, law.kb, law.dk, law.alpha,
-                      law.d0, law.f0, law.damping, start.tilt, start.tilt_rate, start.base_displacement,
-                      start.base_velocity, law.start(start.base_displacement),
-                      longest_duration(scene) if scene.duration is None else scene.duration)
+    return Parameters(
+        model.m,
+        model.M,
+        model.J,
+        model.R,
+        model.gamma,
+        model.g,
+        scene.rocking_frequency**2,
+        model.restitution,
+        model.mass_share,
+        model.on_base,
+        law.law,
+        law.count,
+        law.kb,
+        law.dk,
+        law.alpha,
+        law.d0,
+        law.f0,
+        law.damping,
+        start.tilt,
+        start.tilt_rate,
+        start.base_displacement,
+        start.base_velocity,
+        law.start(start.base_displacement),
+        longest_duration(scene) if scene.duration is None else scene.duration,
+    )
 
 
 def ground(motion, scale=1.0):
@@ -59,8 +80,16 @@ def ground(motion, scale=1.0):
     return Ground(kind, 1.0, _NO_SAMPLES, motion.amplitude * scale, frequency, phase, motion.start, motion.end)
 
 
-def options(tolerance=TOLERANCE, order=ORDER, rest_rate=REST_RATE, record=True,
-            decide=False, output_step=0.0, capacity=CAPACITY, shortest=0.0):
+def options(
+    tolerance=TOLERANCE,
+    order=ORDER,
+    rest_rate=REST_RATE,
+    record=True,
+    decide=False,
+    output_step=0.0,
+    capacity=CAPACITY,
+    shortest=0.0,
+):
     """The kernel's `Options`, checked.
 
     Raises
@@ -74,8 +103,9 @@ def options(tolerance=TOLERANCE, order=ORDER, rest_rate=REST_RATE, record=True,
         raise SettingError(f"order = {order!r}: give an integer from 4 to {MAX_ORDER}")
     if not 0 < rest_rate <= 1e-2:
         raise SettingError(f"rest_rate = {rest_rate!r}: give a value above 0, up to 1e-2")
-    return Options(float(tolerance), order, float(rest_rate), record, decide, float(output_step), capacity,
-                   float(shortest))
+    return Options(
+        float(tolerance), order, float(rest_rate), record, decide, float(output_step), capacity, float(shortest)
+    )
 
 
 def simulate(scene, *, history=True, tolerance=TOLERANCE, rest_rate=REST_RATE, output_step=None):
@@ -114,9 +144,13 @@ def simulate(scene, *, history=True, tolerance=TOLERANCE, rest_rate=REST_RATE, o
     if output_step <= 0 or not math.isfinite(output_step):
         raise SettingError(f"output_step = {output_step!r}: give a time above 0 [s]")
     settings = {"tolerance": tolerance, "rest_rate": rest_rate, "order": ORDER, "short_order": SHORT_ORDER}
-    chosen = options(tolerance, rest_rate=rest_rate, output_step=output_step if history else 0.0,
-                     decide=scene.duration is None,
-                     shortest=shortest_duration(scene) if scene.duration is None else 0.0)
+    chosen = options(
+        tolerance,
+        rest_rate=rest_rate,
+        output_step=output_step if history else 0.0,
+        decide=scene.duration is None,
+        shortest=shortest_duration(scene) if scene.duration is None else 0.0,
+    )
     par, shaking, totals = parameters(scene), ground(motion), np.zeros(layout.TOTALS)
     _warm()
     begin = time.process_time()
@@ -172,17 +206,30 @@ def _response(scene, par, totals, result, cpu, settings, history):
         peak_acceleration = float(totals[layout.PEAK_ACCELERATION])
     unstable = float(totals[layout.UNSTABLE_TIME])
     return Response(
-        engine="analytic", variant="kernel", scene=scene.name, outcome=outcome,
+        engine="analytic",
+        variant="kernel",
+        scene=scene.name,
+        outcome=outcome,
         overturning_time=end.time if overturned else None,
         unstable_time=unstable if unstable >= 0 else None,
-        peak_tilt=float(totals[layout.PEAK_TILT]), peak_tilt_ratio=float(totals[layout.PEAK_TILT]) / gamma,
-        peak_base_displacement=float(totals[layout.PEAK_X]), peak_base_acceleration=peak_acceleration,
+        peak_tilt=float(totals[layout.PEAK_TILT]),
+        peak_tilt_ratio=float(totals[layout.PEAK_TILT]) / gamma,
+        peak_base_displacement=float(totals[layout.PEAK_X]),
+        peak_base_acceleration=peak_acceleration,
         impacts=tuple(Impact(*map(float, row)) for row in impacts),
-        uplifts=tuple(uplifts.tolist()), rests=tuple(rests.tolist()),
-        friction_demand=float(totals[layout.FRICTION]), min_normal_ratio=float(totals[layout.NORMAL]),
-        end=end, cpu_seconds=cpu, steps=int(totals[layout.STEPS]), settings=settings, versions=dict(versions()),
-        failure=failure, decided=failure is None and bool(totals[layout.CERTAIN]),
-        warnings=_warnings(scene, totals, v), energy=_energy(scene, par, totals, end),
+        uplifts=tuple(uplifts.tolist()),
+        rests=tuple(rests.tolist()),
+        friction_demand=float(totals[layout.FRICTION]),
+        min_normal_ratio=float(totals[layout.NORMAL]),
+        end=end,
+        cpu_seconds=cpu,
+        steps=int(totals[layout.STEPS]),
+        settings=settings,
+        versions=dict(versions()),
+        failure=failure,
+        decided=failure is None and bool(totals[layout.CERTAIN]),
+        warnings=_warnings(scene, totals, v),
+        energy=_energy(scene, par, totals, end),
         history=_history(scene, table, end) if history else None,
     )
 
@@ -191,8 +238,10 @@ def _warnings(scene, totals, velocity):
     found = list(getattr(scene.motion, "warnings", ()))
     found += model_warnings(scene, float(totals[layout.FRICTION]), float(totals[layout.NORMAL]))
     if scene.base is not None and scene.bearings is None and velocity != 0:
-        found.append(f"the base slides on at {velocity:.3g} m/s with no bearing to stop it: its displacement has no "
-                     "peak, the one given is that at the end of the run")
+        found.append(
+            f"the base slides on at {velocity:.3g} m/s with no bearing to stop it: its displacement has no "
+            "peak, the one given is that at the end of the run"
+        )
     return tuple(found)
 
 
@@ -221,11 +270,14 @@ def _energy(scene, par, totals, end):
         return par.m * par.g * par.R * rise + 0.5 * bearing_kb * x * x
 
     return Energy(
-        kinetic=kinetic(end.tilt, end.tilt_rate, end.base_velocity) - kinetic(start.tilt, start.tilt_rate,
-                                                                             start.base_velocity),
+        kinetic=kinetic(end.tilt, end.tilt_rate, end.base_velocity)
+        - kinetic(start.tilt, start.tilt_rate, start.base_velocity),
         potential=potential(end.tilt, end.base_displacement) - potential(start.tilt, start.base_displacement),
-        input=float(totals[layout.INPUT]), hysteretic=float(totals[layout.HYSTERETIC]),
-        viscous=float(totals[layout.VISCOUS]), impact_loss=float(totals[layout.IMPACT_LOSS]))
+        input=float(totals[layout.INPUT]),
+        hysteretic=float(totals[layout.HYSTERETIC]),
+        viscous=float(totals[layout.VISCOUS]),
+        impact_loss=float(totals[layout.IMPACT_LOSS]),
+    )
 
 
 def _history(scene, table, end):

@@ -14,11 +14,13 @@ DEFAULT_SEED = 620
 
 PEAK = 0.515 * G  # m/s2
 DT, COUNT = 0.005, 5000
-PULSE = ((0.75, 0.92),  # acceleration amplitude of the pulse over PEAK
-         (0.70, 0.82),  # velocity amplitude, m/s
-         (2.0, 3.5),  # cycles in the pulse
-         (0.0, 2 * math.pi),  # phase, rad
-         (3.5, 4.5))  # time of its centre, s
+PULSE = (
+    (0.75, 0.92),  # acceleration amplitude of the pulse over PEAK
+    (0.70, 0.82),  # velocity amplitude, m/s
+    (2.0, 3.5),  # cycles in the pulse
+    (0.0, 2 * math.pi),  # phase, rad
+    (3.5, 4.5),
+)  # time of its centre, s
 BAND = (1.0, 10.0)  # Hz, where the noise has its energy
 DECIMALS = 9  # samples are rounded to 1e-9 m/s2, so that another FFT or libm gives the same motion
 
@@ -56,8 +58,9 @@ def synthetic_motion(style="duzce-like", seed=DEFAULT_SEED):
     frequencies = np.fft.rfftfreq(COUNT, DT)
     stream = np.random.PCG64(int(seed)).random_raw(5 + len(frequencies))
     uniform = (stream >> np.uint64(11)) * 2.0**-53
-    share, speed, cycles, phase, centre = (low + (high - low) * u for (low, high), u
-                                           in zip(PULSE, uniform, strict=False))
+    share, speed, cycles, phase, centre = (
+        low + (high - low) * u for (low, high), u in zip(PULSE, uniform, strict=False)
+    )
     frequency = share * PEAK / (2 * math.pi * speed)
 
     time = np.arange(COUNT) * DT

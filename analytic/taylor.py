@@ -19,8 +19,9 @@ SHORT_ORDER = 8
 NEGLIGIBLE = 1e-200
 
 # Parameters of a run, one scalar each; see RockingModel and BearingLaw for their meaning.
-Parameters = namedtuple("Parameters", "m M J R gamma g p2 e mt on_base law count kb dk alpha d0 f0 damping "
-                                      "tilt rate x v z duration")
+Parameters = namedtuple(
+    "Parameters", "m M J R gamma g p2 e mt on_base law count kb dk alpha d0 f0 damping tilt rate x v z duration"
+)
 
 _bearing_term = chosen_term()
 USUAL_LAW = NUMBERS["algebraic"]  # the one whose series is unrolled

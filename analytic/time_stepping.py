@@ -47,11 +47,19 @@ def simulate_time_stepping(scene, *, step, history=True):
         return until_decided(lambda cut: simulate_time_stepping(cut, step=step, history=history), scene)
     model, start, law = RockingModel.of(scene), scene.start, RockingModel.of(scene).bearing
     count = math.ceil(scene.duration / step * (1 - 1e-12))
-    block = (model.m, model.M, model.J, model.R, model.gamma, model.g, model.on_base, model.restitution,
-             model.mass_share)
+    block = (
+        model.m,
+        model.M,
+        model.J,
+        model.R,
+        model.gamma,
+        model.g,
+        model.on_base,
+        model.restitution,
+        model.mass_share,
+    )
     bearing = (law.law, law.count, law.kb, law.dk, law.alpha, law.d0, law.f0, law.damping)
-    y = (start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity,
-         law.start(start.base_displacement))
+    y = (start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity, law.start(start.base_displacement))
     _march(step, np.zeros(1), y, block, bearing, np.empty((0, 6)))  # compiled before the clock starts
     started = time.process_time()
     times = step * np.arange(count + 1)
@@ -62,16 +70,28 @@ def simulate_time_stepping(scene, *, step, history=True):
     peak_tilt, peak_x, peak_acceleration, friction, normal = extremes
     rocked = start.tilt != 0 or start.tilt_rate != 0 or len(uplifts) > 0
     response = Response(
-        engine="time-stepping", variant="semi-implicit Euler",
+        engine="time-stepping",
+        variant="semi-implicit Euler",
         outcome="overturns" if over else "rocks" if rocked else "stands",
-        overturning_time=taken * step if over else None, unstable_time=None if unstable < 0 else unstable,
-        peak_tilt=peak_tilt, peak_tilt_ratio=peak_tilt / model.gamma, peak_base_displacement=peak_x,
-        peak_base_acceleration=peak_acceleration, impacts=tuple(Impact(*impact) for impact in impacts),
-        uplifts=tuple(uplifts), rests=tuple(rests), friction_demand=friction, min_normal_ratio=normal,
-        end=State(taken * step, *end), cpu_seconds=seconds, steps=taken, settings={"step": step},
+        overturning_time=taken * step if over else None,
+        unstable_time=None if unstable < 0 else unstable,
+        peak_tilt=peak_tilt,
+        peak_tilt_ratio=peak_tilt / model.gamma,
+        peak_base_displacement=peak_x,
+        peak_base_acceleration=peak_acceleration,
+        impacts=tuple(Impact(*impact) for impact in impacts),
+        uplifts=tuple(uplifts),
+        rests=tuple(rests),
+        friction_demand=friction,
+        min_normal_ratio=normal,
+        end=State(taken * step, *end),
+        cpu_seconds=seconds,
+        steps=taken,
+        settings={"step": step},
         versions={"python": platform.python_version(), "numpy": np.__version__, "numba": numba.__version__},
         scene=scene.name,
-        history=History(*rows[:taken + 1].T, ground[:taken + 1]) if history else None)
+        history=History(*rows[: taken + 1].T, ground[: taken + 1]) if history else None,
+    )
     return replace(response, decided=is_decided(scene, response))
 
 
@@ -134,5 +154,13 @@ def _march(h, ground, y, block, bearing, rows):
                 v += arm * rate
                 tilt, rate, side = 0.0, 0.0, 0.0
                 rests.append(t + h)
-    return (taken, over, impacts, uplifts, rests, unstable, (peak_tilt, peak_x, peak_a, friction, normal),
-            (tilt, rate, x, v, force))
+    return (
+        taken,
+        over,
+        impacts,
+        uplifts,
+        rests,
+        unstable,
+        (peak_tilt, peak_x, peak_a, friction, normal),
+        (tilt, rate, x, v, force),
+    )

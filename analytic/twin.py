@@ -31,8 +31,9 @@ STALL_LIMIT = 50  # events in a row without progress in time
 REST_HORIZON = 0.1  # a block rests only if its impacts end within this share of 1/omega_r
 
 
-def simulate_twin(scene, *, method="DOP853", rtol=1e-10, atol=None, history=True, energy=True, max_step=None,
-                  rest_rate=1e-8):
+def simulate_twin(
+    scene, *, method="DOP853", rtol=1e-10, atol=None, history=True, energy=True, max_step=None, rest_rate=1e-8
+):
     """Simulate a scene with scipy.
 
     Parameters
@@ -69,10 +70,31 @@ def simulate_twin(scene, *, method="DOP853", rtol=1e-10, atol=None, history=True
         if value is not None and not (value > 0 and math.isfinite(value)):
             raise SettingError(f"{name} = {value!r} is not positive: give a finite value above 0")
     if scene.duration is None:
-        return until_decided(functools.partial(simulate_twin, method=method, rtol=rtol, atol=atol, history=history,
-                                               energy=energy, max_step=max_step, rest_rate=rest_rate), scene)
-    run = _Run(scene, {"method": method, "rtol": rtol, "atol": rtol if atol is None else atol,
-                       "max_step": max_step, "rest_rate": rest_rate}, history, energy)
+        return until_decided(
+            functools.partial(
+                simulate_twin,
+                method=method,
+                rtol=rtol,
+                atol=atol,
+                history=history,
+                energy=energy,
+                max_step=max_step,
+                rest_rate=rest_rate,
+            ),
+            scene,
+        )
+    run = _Run(
+        scene,
+        {
+            "method": method,
+            "rtol": rtol,
+            "atol": rtol if atol is None else atol,
+            "max_step": max_step,
+            "rest_rate": rest_rate,
+        },
+        history,
+        energy,
+    )
     run.model.bearing.hysteretic(0.0, 1e-6)  # compiled before the clock starts
     started = time.process_time()
     failure = run.go()
@@ -134,8 +156,9 @@ class _Run:
                 if failure:
                     return failure
                 if self.stalled > STALL_LIMIT or len(self.impacts) > IMPACT_LIMIT:
-                    return Failure("events pile up without progress", f"{len(self.impacts)} impacts, t = {self.t!r}",
-                                   self.state())
+                    return Failure(
+                        "events pile up without progress", f"{len(self.impacts)} impacts, t = {self.t!r}", self.state()
+                    )
         return None
 
     def advance(self, end, ground):
@@ -161,6 +184,7 @@ class _Run:
 
     def stand(self, end, ground):
         """Full contact on rigid ground: nothing moves until |a_g| exceeds g tan(gamma)."""
+
         def excess(t):
             return abs(ground(t)) - self.model.uplift_acceleration
 
@@ -181,9 +205,17 @@ class _Run:
         if self.flight is None and math.isinf(self.max_step) and self.scene.motion is None:
             step = {}
         try:
-            solution = solve_ivp(self.derivative(ground, direction), (self.t, end), self.y, self.settings["method"],
-                                 events=[event for _, event in events], rtol=self.settings["rtol"], atol=self.atol,
-                                 max_step=self.max_step, **step)
+            solution = solve_ivp(
+                self.derivative(ground, direction),
+                (self.t, end),
+                self.y,
+                self.settings["method"],
+                events=[event for _, event in events],
+                rtol=self.settings["rtol"],
+                atol=self.atol,
+                max_step=self.max_step,
+                **step,
+            )
         except ValueError as error:  # LSODA's dense output may miss its own sign change
             return Failure("scipy could not find an event", str(error), self.state())
         self.steps += len(solution.t) - 1
@@ -292,8 +324,9 @@ class _Run:
         self.side, self.lifted = math.copysign(1.0, y[1]), self.t
         force, e = self.bearing_force(y), model.restitution
         # how hard either corner is pressed down: sides alternate, and a force makes them unequal
-        here, there = (-side * model.accelerations(side, 0.0, y[1], ground, force)[0]
-                       for side in (self.side, -self.side))
+        here, there = (
+            -side * model.accelerations(side, 0.0, y[1], ground, force)[0] for side in (self.side, -self.side)
+        )
         held, remaining = min(here, there) > 0, math.inf
         if held and e < 1:  # two geometric sums
             remaining = 2 * abs(y[1]) / (1 - e * e) * (1 / here + e / there)
@@ -314,10 +347,12 @@ class _Run:
         model, law, side, energy = self.model, self.law, self.side, self.energy
         branch = law.unit.branch and law.unit.branch(self.hysteretic_force(self.y), direction, law)
         if not model.on_base:
+
             def block_alone(t, y):
                 a, rate = ground(t), y[1]
                 slope = (rate, model.accelerations(side, y[0], rate, a, 0.0)[0])
                 return (*slope, -a * model.m * model.lever(side, y[0])[0] * rate) if energy else slope
+
             return block_alone
 
         def block_on_base(t, y):
@@ -335,6 +370,7 @@ class _Run:
                 momentum = model.M * v + (model.m * model.lever(side, tilt)[0] * rate if side else 0.0)
                 slope += [-a * momentum, law.count * z * v, law.count * law.damping * v * v]
             return slope
+
         return block_on_base
 
     def hysteretic_force(self, y):
@@ -370,8 +406,9 @@ class _Run:
             horizontal, normal = model.m * absolute, model.m * model.g
         x, v = (float(y[2]), float(y[3])) if model.on_base else (0.0, 0.0)
         weight = model.m * model.g
-        self.extremes.step((t, tilt, rate, x, v, force, ground), absolute, horizontal / weight, normal / weight,
-                           model.gamma)
+        self.extremes.step(
+            (t, tilt, rate, x, v, force, ground), absolute, horizontal / weight, normal / weight, model.gamma
+        )
 
     def state(self):
         x, v = (float(self.y[2]), float(self.y[3])) if self.model.on_base else (0.0, 0.0)
@@ -389,12 +426,28 @@ class _Run:
         if outcome != "overturns":
             extremes.count_waiting()
         return Response(
-            engine="twin", variant=self.settings["method"], outcome=outcome, overturning_time=self.overturning,
-            unstable_time=self.unstable, peak_tilt=extremes.tilt, peak_tilt_ratio=extremes.tilt / self.model.gamma,
-            peak_base_displacement=extremes.x, peak_base_acceleration=extremes.acceleration,
-            impacts=tuple(self.impacts), uplifts=tuple(self.uplifts), rests=tuple(self.rests),
-            friction_demand=extremes.friction, min_normal_ratio=extremes.normal, end=self.state(),
-            cpu_seconds=cpu_seconds, steps=self.steps, settings=dict(self.settings), scene=self.scene.name,
-            failure=failure, energy=self.ledger() if self.energy else None, history=extremes.history(),
+            engine="twin",
+            variant=self.settings["method"],
+            outcome=outcome,
+            overturning_time=self.overturning,
+            unstable_time=self.unstable,
+            peak_tilt=extremes.tilt,
+            peak_tilt_ratio=extremes.tilt / self.model.gamma,
+            peak_base_displacement=extremes.x,
+            peak_base_acceleration=extremes.acceleration,
+            impacts=tuple(self.impacts),
+            uplifts=tuple(self.uplifts),
+            rests=tuple(self.rests),
+            friction_demand=extremes.friction,
+            min_normal_ratio=extremes.normal,
+            end=self.state(),
+            cpu_seconds=cpu_seconds,
+            steps=self.steps,
+            settings=dict(self.settings),
+            scene=self.scene.name,
+            failure=failure,
+            energy=self.ledger() if self.energy else None,
+            history=extremes.history(),
             versions={"python": platform.python_version(), "numpy": np.__version__, "scipy": scipy.__version__},
-            warnings=model_warnings(self.scene, extremes.friction, extremes.normal))
+            warnings=model_warnings(self.scene, extremes.friction, extremes.normal),
+        )

@@ -51,8 +51,9 @@ def energy_balance(scene, trace):
     law, m, base = model.bearing, model.m, model.M - model.m if model.on_base else 0.0
     centre = pivoting_centre(scene, trace) if trace.centre is None else trace.centre
     x, v, z = trace.base_displacement, trace.base_velocity, centre[:, 1]
-    kinetic = 0.5 * (base * v**2 + m * (centre[:, 2]**2 + centre[:, 3]**2)
-                     + scene.block.centre_inertia * trace.tilt_rate**2)
+    kinetic = 0.5 * (
+        base * v**2 + m * (centre[:, 2] ** 2 + centre[:, 3] ** 2) + scene.block.centre_inertia * trace.tilt_rate**2
+    )
     potential = m * model.g * z + 0.5 * law.count * law.kb * x**2
     lost = _trapezoid(trace.bearing_force - law.count * law.kb * x, x)
     moved = base * x + m * centre[:, 0], base * v + m * centre[:, 2]
@@ -64,8 +65,14 @@ def pivoting_centre(scene, trace):
     """Centre of a block that turns about its lower corner at the place of a standing one, as `Trace.centre`."""
     side = np.where(trace.tilt < 0, -1.0, 1.0)
     c, n = ArrayModel.of(scene).lever(side, trace.tilt)
-    return np.column_stack([trace.base_displacement + side * scene.block.half_width - n, c - scene.block.half_height,
-                            trace.base_velocity + c * trace.tilt_rate, n * trace.tilt_rate])
+    return np.column_stack(
+        [
+            trace.base_displacement + side * scene.block.half_width - n,
+            c - scene.block.half_height,
+            trace.base_velocity + c * trace.tilt_rate,
+            n * trace.tilt_rate,
+        ]
+    )
 
 
 def check_place(scene, trace, overturned):
@@ -80,12 +87,15 @@ def check_place(scene, trace, overturned):
     slid, height = (trace.centre - pivoting_centre(scene, trace))[:, :2].T
     flown = f"; its lower corner was at up to {height.max():.3g} m before"
     if abs(slid[-1]) > SLIDING_TOLERANCE * R:
-        return Failure("the block slid on its base",
-                       f"by {slid[-1]:.6g} m; tolerated: {SLIDING_TOLERANCE * R:.3g} m{flown}")
+        return Failure(
+            "the block slid on its base", f"by {slid[-1]:.6g} m; tolerated: {SLIDING_TOLERANCE * R:.3g} m{flown}"
+        )
     if abs(height[-1]) > HEIGHT_TOLERANCE * R:
         word = "sank into" if height[-1] < 0 else "left"
-        return Failure(f"the block {word} its base",
-                       f"lower corner at {height[-1]:.6g} m; tolerated: {HEIGHT_TOLERANCE * R:.3g} m{flown}")
+        return Failure(
+            f"the block {word} its base",
+            f"lower corner at {height[-1]:.6g} m; tolerated: {HEIGHT_TOLERANCE * R:.3g} m{flown}",
+        )
     return None
 
 
@@ -125,8 +135,10 @@ def check_energy(scene, trace):
     gain = energy_gain(scene, trace)
     if gain <= GAIN_LIMIT:
         return None
-    return Failure("the run gained energy from nowhere",
-                   f"{gain:.3g} of its energy scale, at most {GAIN_LIMIT} can be error of the steps")
+    return Failure(
+        "the run gained energy from nowhere",
+        f"{gain:.3g} of its energy scale, at most {GAIN_LIMIT} can be error of the steps",
+    )
 
 
 def _settled(trace):

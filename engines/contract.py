@@ -161,15 +161,17 @@ class Engine:
             import_module(self.package)
         except ImportError as error:
             raise EngineNotInstalled(
-                f"engine {self.name!r} needs the package {self.package}: {self.install}") from error
+                f"engine {self.name!r} needs the package {self.package}: {self.install}"
+            ) from error
         if not self.origin:
             return import_module(self.adapter)
         for name in filter(None, (self.tolerances, self.adapter)):
             try:
                 module = import_module(name)
             except Exception as error:
-                raise EngineBroken(self.origin, f"its module {name} cannot be imported "
-                                                f"({type(error).__name__}: {error})") from error
+                raise EngineBroken(
+                    self.origin, f"its module {name} cannot be imported ({type(error).__name__}: {error})"
+                ) from error
         variants = getattr(module, "VARIANTS", None)
         if not (isinstance(variants, dict) and variants and all(isinstance(v, Variant) for v in variants.values())):
             raise EngineBroken(self.origin, f"{self.adapter}.VARIANTS is no dict of engines.contract.Variant")
@@ -237,8 +239,9 @@ class Engine:
         """
         return self.traced(scene, variant=variant, history=history, **settings)[0]
 
-    def traced(self, scene: Scene, *, variant: str | None = None, history: bool = True,
-               **settings) -> tuple[Response, Trace | None]:
+    def traced(
+        self, scene: Scene, *, variant: str | None = None, history: bool = True, **settings
+    ) -> tuple[Response, Trace | None]:
         """(response, the steps it was read from or None) of `simulate`."""
         from .simulating import traced
 

@@ -47,10 +47,14 @@ def find_events(scene, trace, swings):
             # A compliant contact's hop after an impact shifts the lift carried back, not the time in contact.
             contact = min(lift[i + 1] - land[i], trace.time[following] - trace.time[last])
             crossed = swings.side[i + 1] == -swings.side[i] and contact <= slack  # False for NaN
-            if crossed or (swings.side[i + 1] == -swings.side[i] and following == last + 1
-                           and np.isfinite(before[i] + after[i + 1])):
-                impacts.append(Impact(float(land[i]), float(before[i]), float(after[i + 1]),
-                                      float(v_after[i + 1] - v_before[i])))
+            if crossed or (
+                swings.side[i + 1] == -swings.side[i]
+                and following == last + 1
+                and np.isfinite(before[i] + after[i + 1])
+            ):
+                impacts.append(
+                    Impact(float(land[i]), float(before[i]), float(after[i + 1]), float(v_after[i + 1] - v_before[i]))
+                )
                 continue
             if swings.side[i + 1] == swings.side[i] and not np.isfinite(land[i]):
                 continue  # it grazed contact without landing
@@ -125,18 +129,24 @@ def check_impacts(scene, trace, impacts, missed):
     for impact in impacts:
         before, after = abs(impact.rate_before), abs(impact.rate_after)
         if before >= least and not after <= MOST_RESTITUTION * before:  # not: NaN
-            return Failure("an impact gave energy",
-                           f"at {impact.time:.9g} s the tilt rate goes from {impact.rate_before:.6g} to "
-                           f"{impact.rate_after:.6g} rad/s; error of the steps: at most {MOST_RESTITUTION} times")
+            return Failure(
+                "an impact gave energy",
+                f"at {impact.time:.9g} s the tilt rate goes from {impact.rate_before:.6g} to "
+                f"{impact.rate_after:.6g} rad/s; error of the steps: at most {MOST_RESTITUTION} times",
+            )
     if missed:
-        return Failure("an impact could not be resolved",
-                       f"at {missed[0]:.9g} s the tilt changes side, and no tilt rate before and after can be told"
-                       f"{f'; {len(missed)} such times' if len(missed) > 1 else ''}")
+        return Failure(
+            "an impact could not be resolved",
+            f"at {missed[0]:.9g} s the tilt changes side, and no tilt rate before and after can be told"
+            f"{f'; {len(missed)} such times' if len(missed) > 1 else ''}",
+        )
     stepped = straddled(scene, trace)
     if len(stepped):
-        return Failure("the steps are longer than whole swings",
-                       f"the step after {stepped[0]:.9g} s leaps over an impact and the swing that follows"
-                       f"{f'; {len(stepped)} such steps' if len(stepped) > 1 else ''}")
+        return Failure(
+            "the steps are longer than whole swings",
+            f"the step after {stepped[0]:.9g} s leaps over an impact and the swing that follows"
+            f"{f'; {len(stepped)} such steps' if len(stepped) > 1 else ''}",
+        )
     return None
 
 

@@ -40,11 +40,16 @@ def _pulse(motion):
     frequency, start, length = motion.frequency, motion.start, motion.length
     size = motion.amplitude / frequency
     half = 0.5 * RICKER_PERIODS * math.pi
-    forms = {"one-sine": lambda u: 1 - math.cos(u), "half-sine": lambda u: 1 - math.cos(u),
-             "one-cosine": math.sin, "rectangular": lambda u: u,
-             # with y = u/2 - 2 pi: d(2 y exp(-y^2))/du = (1 - 2 y^2) exp(-y^2)
-             "ricker": lambda u: 2 * (0.5 * u - half) * math.exp(-((0.5 * u - half) ** 2))
-             + 2 * half * math.exp(-half * half)}
+    forms = {
+        "one-sine": lambda u: 1 - math.cos(u),
+        "half-sine": lambda u: 1 - math.cos(u),
+        "one-cosine": math.sin,
+        "rectangular": lambda u: u,
+        # with y = u/2 - 2 pi: d(2 y exp(-y^2))/du = (1 - 2 y^2) exp(-y^2)
+        "ricker": lambda u: (
+            2 * (0.5 * u - half) * math.exp(-((0.5 * u - half) ** 2)) + 2 * half * math.exp(-half * half)
+        ),
+    }
     form = forms[motion.shape]
 
     def velocity(t):

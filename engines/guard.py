@@ -69,8 +69,14 @@ def guarded(run, engine_name, scene, settings, time_limit, versions=None):
     response, failure = alone(run, engine_name, scene, settings, time_limit=time_limit)
     if failure is None:
         return response
-    return failed_response(scene, failure, engine=engine_name, variant=str(settings.get("variant") or ""),
-                           settings=dict(settings), versions=versions or {})
+    return failed_response(
+        scene,
+        failure,
+        engine=engine_name,
+        variant=str(settings.get("variant") or ""),
+        settings=dict(settings),
+        versions=versions or {},
+    )
 
 
 def check_time_limit(time_limit):

@@ -51,10 +51,19 @@ def trace_of(rows, scene, contact_tilt, smeared=None):
             for shift in range(1 - smeared, smeared + 1):
                 close[np.clip(crossed + shift, 0, len(t) - 1)] = True
             leaving, coming = leaving & close, coming & close
-        rate, v, *centre[2:] = (_synchronised(value, h, leaving & ~coming, coming & ~leaving)
-                                for value in (rate, v, *centre[2:]))
-    return Trace(t, tilt, rate, x, v, force + law.count * law.damping * v, contact_tilt,
-                 centre=np.column_stack(centre) if centre else None)
+        rate, v, *centre[2:] = (
+            _synchronised(value, h, leaving & ~coming, coming & ~leaving) for value in (rate, v, *centre[2:])
+        )
+    return Trace(
+        t,
+        tilt,
+        rate,
+        x,
+        v,
+        force + law.count * law.damping * v,
+        contact_tilt,
+        centre=np.column_stack(centre) if centre else None,
+    )
 
 
 def _synchronised(value, h, from_before, from_after):

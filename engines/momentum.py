@@ -74,8 +74,11 @@ def impulse_error(scene, trace):
     windows = [slice(a, b + 1) for a, b in zip(first, last, strict=True)]
     block = scene.block
     rocking = block.mass * block.radius * scene.rocking_frequency * block.slenderness  # momentum at such a tilt rate
-    scale = max(max(np.ptp(law[window]) for window in windows), LEAST_IMPULSE * np.ptp(momentum(scene, trace)),
-                LEAST_MOMENTUM * rocking)
+    scale = max(
+        max(np.ptp(law[window]) for window in windows),
+        LEAST_IMPULSE * np.ptp(momentum(scene, trace)),
+        LEAST_MOMENTUM * rocking,
+    )
     return float(max(np.ptp(missing[window]) for window in windows) / scale)
 
 
@@ -84,6 +87,8 @@ def check_impulse(scene, trace):
     error = impulse_error(scene, trace)
     if error <= IMPULSE_LIMIT:
         return None
-    return Failure("the motion is not that of the bearings' force",  # a NaN, too
-                   f"momentum and impulse of the law differ by {error:.3g} of the impulse; at most {IMPULSE_LIMIT} can "
-                   "be error of the steps")
+    return Failure(
+        "the motion is not that of the bearings' force",  # a NaN, too
+        f"momentum and impulse of the law differ by {error:.3g} of the impulse; at most {IMPULSE_LIMIT} can "
+        "be error of the steps",
+    )

@@ -25,8 +25,21 @@ HISTORY_POINTS = 2000
 
 
 @np.errstate(all="ignore")  # what overflows shows in the numbers, and these are looked at
-def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, versions, history=True, failure=None,
-            ended=None, warnings=()):
+def observe(
+    scene,
+    trace,
+    *,
+    engine,
+    variant,
+    cpu_seconds,
+    steps,
+    settings,
+    versions,
+    history=True,
+    failure=None,
+    ended=None,
+    warnings=(),
+):
     """The response of an engine's run.
 
     Parameters
@@ -66,11 +79,27 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
     overturning_time = None
     if trace is not None:
         trace, overturning_time = _upto_overturning(scene, trace, ended)
-    given = dict(engine=engine, variant=variant, cpu_seconds=cpu_seconds, steps=steps, settings=settings,
-                 versions=versions, scene=scene.name)
+    given = dict(
+        engine=engine,
+        variant=variant,
+        cpu_seconds=cpu_seconds,
+        steps=steps,
+        settings=settings,
+        versions=versions,
+        scene=scene.name,
+    )
     if trace is None:
-        return failed_response(scene, failure, engine=engine, variant=variant, settings=settings,
-                               versions=versions, cpu_seconds=cpu_seconds, steps=steps, warnings=warnings)
+        return failed_response(
+            scene,
+            failure,
+            engine=engine,
+            variant=variant,
+            settings=settings,
+            versions=versions,
+            cpu_seconds=cpu_seconds,
+            steps=steps,
+            warnings=warnings,
+        )
     end = State(*(float(getattr(trace, name)[-1]) for name in Trace.COLUMNS))
     short = scene.duration * (1 - 1e-9) - end.time  # the last of equal steps need not end at the duration
     if failure is None and overturning_time is None and short > np.diff(trace.time).max():
@@ -80,10 +109,20 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
     demand, normal, acceleration = contact_measures(scene, trace, falls=overturning_time is not None)
     peak = _peak(trace.time, trace.tilt, trace.tilt_rate)
     displacement = _peak(trace.time, trace.base_displacement, trace.base_velocity)
-    measured = {"a peak": [peak, displacement, acceleration], "the normal force": [normal], "an uplift": uplifts,
-                "a rest": rests, "an impact": np.array([astuple(impact) for impact in impacts]).ravel()}
-    failure = (failure or check_place(scene, trace, overturning_time is not None) or check_energy(scene, trace)
-               or check_impacts(scene, trace, impacts, missed) or _check_finite(measured))
+    measured = {
+        "a peak": [peak, displacement, acceleration],
+        "the normal force": [normal],
+        "an uplift": uplifts,
+        "a rest": rests,
+        "an impact": np.array([astuple(impact) for impact in impacts]).ravel(),
+    }
+    failure = (
+        failure
+        or check_place(scene, trace, overturning_time is not None)
+        or check_energy(scene, trace)
+        or check_impacts(scene, trace, impacts, missed)
+        or _check_finite(measured)
+    )
     pushed = check_impulse(scene, trace) if failure is None else None
     if pushed and trace.first_script:
         warnings = (*warnings, f"{pushed.reason}: {pushed.message}")
@@ -100,25 +139,55 @@ def observe(scene, trace, *, engine, variant, cpu_seconds, steps, settings, vers
     if failure is None:  # the forces of a failed run say nothing about the scene
         warnings = (*warnings, *model_warnings(scene, demand, normal))
     response = Response(
-        outcome=outcome, overturning_time=overturning_time, unstable_time=_unstable_time(scene, trace),
-        peak_tilt=peak, peak_tilt_ratio=peak / scene.block.slenderness,
-        peak_base_displacement=displacement, peak_base_acceleration=acceleration, impacts=impacts, uplifts=uplifts,
-        rests=rests, friction_demand=demand, min_normal_ratio=normal, end=end, failure=failure,
+        outcome=outcome,
+        overturning_time=overturning_time,
+        unstable_time=_unstable_time(scene, trace),
+        peak_tilt=peak,
+        peak_tilt_ratio=peak / scene.block.slenderness,
+        peak_base_displacement=displacement,
+        peak_base_acceleration=acceleration,
+        impacts=impacts,
+        uplifts=uplifts,
+        rests=rests,
+        friction_demand=demand,
+        min_normal_ratio=normal,
+        end=end,
+        failure=failure,
         warnings=_warnings(scene, warnings),
-        history=_history(scene, trace) if history else None, **given)
+        history=_history(scene, trace) if history else None,
+        **given,
+    )
     return replace(response, decided=is_decided(scene, response, contact_tilt=trace.contact_tilt))
 
 
-def failed_response(scene, failure, *, engine, variant, settings, versions, cpu_seconds=math.nan, steps=0,
-                    warnings=()):
+def failed_response(scene, failure, *, engine, variant, settings, versions, cpu_seconds=math.nan, steps=0, warnings=()):
     """A response of outcome "failed" for a run that left no states: every number is NaN, the evidence is kept."""
     nan = math.nan
     return Response(
-        engine=engine, variant=variant, outcome="failed", overturning_time=None, unstable_time=None, peak_tilt=nan,
-        peak_tilt_ratio=nan, peak_base_displacement=nan, peak_base_acceleration=nan, impacts=(), uplifts=(),
-        rests=(), decided=False, friction_demand=nan, min_normal_ratio=nan, end=State(nan, nan, nan, nan, nan, nan),
-        cpu_seconds=cpu_seconds, steps=steps, settings=settings, versions=versions, scene=scene.name,
-        failure=failure, warnings=_warnings(scene, warnings))
+        engine=engine,
+        variant=variant,
+        outcome="failed",
+        overturning_time=None,
+        unstable_time=None,
+        peak_tilt=nan,
+        peak_tilt_ratio=nan,
+        peak_base_displacement=nan,
+        peak_base_acceleration=nan,
+        impacts=(),
+        uplifts=(),
+        rests=(),
+        decided=False,
+        friction_demand=nan,
+        min_normal_ratio=nan,
+        end=State(nan, nan, nan, nan, nan, nan),
+        cpu_seconds=cpu_seconds,
+        steps=steps,
+        settings=settings,
+        versions=versions,
+        scene=scene.name,
+        failure=failure,
+        warnings=_warnings(scene, warnings),
+    )
 
 
 def _warnings(scene, warnings):
@@ -162,7 +231,7 @@ def _upto_overturning(scene, trace, ended):
             """The steps before it, and the state at it."""
             if end is None:
                 end = (1 - weight) * values[last - 1] + weight * values[last]
-            return np.append(values[:last if weight > 0 else last - 1], [end], axis=0)
+            return np.append(values[: last if weight > 0 else last - 1], [end], axis=0)
 
         columns = {name: closed(getattr(trace, name)) for name in Trace.COLUMNS[2:]}
         columns.update(time=closed(trace.time, t), tilt=closed(trace.tilt, math.copysign(limit, trace.tilt[last])))
@@ -171,8 +240,7 @@ def _upto_overturning(scene, trace, ended):
     if ended == "overturned" and side * trace.tilt_rate[-1] > 0:
         model = ArrayModel.of(scene)
         ground = scene.motion.acceleration(trace.time[-1]) if scene.motion else 0.0
-        pull = side * model.accelerations(side, trace.tilt[-1], trace.tilt_rate[-1], ground,
-                                          trace.bearing_force[-1])[0]
+        pull = side * model.accelerations(side, trace.tilt[-1], trace.tilt_rate[-1], ground, trace.bearing_force[-1])[0]
         q, p = side * trace.tilt_rate[-1], abs(trace.tilt[-1]) - limit
         return trace, float(trace.time[-1] - 2 * p / (q + math.sqrt(max(q * q - 2 * pull * p, 0.0))))
     return trace, None
@@ -196,8 +264,9 @@ def _unstable_time(scene, trace):
     if i == 0:
         return float(trace.time[0])
     pair = slice(i - 1, i + 1)
-    return _crossing(trace.time[pair], trace.tilt[pair], trace.tilt_rate[pair],
-                     math.copysign(scene.block.slenderness, trace.tilt[i]))
+    return _crossing(
+        trace.time[pair], trace.tilt[pair], trace.tilt_rate[pair], math.copysign(scene.block.slenderness, trace.tilt[i])
+    )
 
 
 def _peak(time, value, rate):
@@ -206,7 +275,7 @@ def _peak(time, value, rate):
     side, best = math.copysign(1.0, value[i]), abs(value[i])
     for k in (i - 1, i):
         if 0 <= k < len(time) - 1 and side * rate[k] > 0 > side * rate[k + 1]:
-            cubic = CubicHermiteSpline(time[k:k + 2], value[k:k + 2], rate[k:k + 2])
+            cubic = CubicHermiteSpline(time[k : k + 2], value[k : k + 2], rate[k : k + 2])
             roots = cubic.derivative().roots(extrapolate=False)
             best = max(best, *np.abs(cubic(roots)), 0.0)
     return float(best)

@@ -18,8 +18,19 @@ FAR = 1.2  # longer than this times the largest step over the approach is far fr
 FLIGHT, IMPACT, REST = range(3)  # what a step is for: one corner carries, both may, both do
 
 
-def impact_aware(model, start_rate, largest, accuracy, *, approach, smallest, sharpest=math.inf, standing=0.0,
-                 overlong=False, cruise=False):
+def impact_aware(
+    model,
+    start_rate,
+    largest,
+    accuracy,
+    *,
+    approach,
+    smallest,
+    sharpest=math.inf,
+    standing=0.0,
+    overlong=False,
+    cruise=False,
+):
     """A function (tilt, rate, jumped, interval) -> (length [s], FLIGHT, IMPACT or REST) of the step from a state.
 
     It is called before each step; jumped: the tilt lies on the other side than at the call before; interval: between

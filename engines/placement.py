@@ -12,5 +12,9 @@ def placement(scene):
     s = math.copysign(1.0, start.tilt or start.tilt_rate)
     angle = s * block.slenderness - start.tilt
     c, n = block.radius * math.cos(angle), block.radius * math.sin(angle)
-    return (start.base_displacement + s * block.half_width - n, c - block.half_height,
-            start.base_velocity + c * start.tilt_rate, n * start.tilt_rate)
+    return (
+        start.base_displacement + s * block.half_width - n,
+        c - block.half_height,
+        start.base_velocity + c * start.tilt_rate,
+        n * start.tilt_rate,
+    )

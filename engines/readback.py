@@ -15,8 +15,11 @@ def require(values):
     values : iterable of (name, used, wanted)
         Numbers or arrays of them; a single number may be wanted of all.
     """
-    wrong = [f"{name} is {np.asarray(used).tolist()}, not {np.asarray(wanted).tolist()}"
-             for name, used, wanted in values if not _same(used, wanted)]
+    wrong = [
+        f"{name} is {np.asarray(used).tolist()}, not {np.asarray(wanted).tolist()}"
+        for name, used, wanted in values
+        if not _same(used, wanted)
+    ]
     if wrong:
         raise Mismatch("; ".join(wrong))
 

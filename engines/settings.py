@@ -40,5 +40,9 @@ def leave_restitution(engine, scene):
     if scene.block.restitution is not None:
         able = [name for name, variant in engine.variants.items() if variant.takes_restitution]
         remedy = f"use the variant {able[0]}" if able else "use the analytic model"
-        raise SceneError("block.restitution", scene.block.restitution, "a contact engine decides the impact itself",
-                         f"leave it out, or {remedy}")
+        raise SceneError(
+            "block.restitution",
+            scene.block.restitution,
+            "a contact engine decides the impact itself",
+            f"leave it out, or {remedy}",
+        )

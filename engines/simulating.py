@@ -40,8 +40,15 @@ def traced(engine, scene, variant, history, settings):
 
 def _once(engine, scene, name, chosen, history):
     run = engine.run(scene, name, chosen)
-    given = dict(engine=engine.name, variant=name, settings=asdict(chosen), versions=engine.versions(),
-                 cpu_seconds=run.cpu_seconds, steps=run.steps, warnings=_warnings(engine.variants[name], scene, run))
+    given = dict(
+        engine=engine.name,
+        variant=name,
+        settings=asdict(chosen),
+        versions=engine.versions(),
+        cpu_seconds=run.cpu_seconds,
+        steps=run.steps,
+        warnings=_warnings(engine.variants[name], scene, run),
+    )
     if run.trace is None:
         failure = run.failure or Failure("the run ended before its first step")
         return failed_response(scene, failure, **given), None

@@ -92,8 +92,11 @@ class Trace:
 
     def at(self, steps):
         """The steps of a slice or of an array of indices."""
-        return replace(self, centre=None if self.centre is None else self.centre[steps],
-                       **{name: getattr(self, name)[steps] for name in self.COLUMNS})
+        return replace(
+            self,
+            centre=None if self.centre is None else self.centre[steps],
+            **{name: getattr(self, name)[steps] for name in self.COLUMNS},
+        )
 
     def upto(self, count):
         """The first `count` steps."""
@@ -240,8 +243,10 @@ def _branch(law, x, lasting, v):
     """
     z = np.clip(lasting / max(law.count, 1) - law.kb * x, -law.f0, law.f0)  # an engine's rounding may exceed f0
     step = np.where(v < 0, -1e-4, 1e-4)
-    near, far = (np.array([law.hysteretic(zi, dx) for zi, dx in zip(z.tolist(), (k * step).tolist(), strict=True)])
-                 for k in (1, 2))
+    near, far = (
+        np.array([law.hysteretic(zi, dx) for zi, dx in zip(z.tolist(), (k * step).tolist(), strict=True)])
+        for k in (1, 2)
+    )
     rise = near - z
     with np.errstate(invalid="ignore", divide="ignore"):
         decay = np.log((far - near) / rise)

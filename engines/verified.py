@@ -27,10 +27,16 @@ class Range:
     tilt: tuple[float, float] = ANY
 
 
-WORDS = {"slenderness": "slenderness [rad]", "inertia": "J_O/(m R^2)", "base_mass": "base mass over block mass",
-         "radius": "radius R [m]", "stiffness": "step times the base's frequency on its bearings",
-         "damping": "step times viscous damping over base mass",
-         "decay": "viscous damping over base mass and rocking frequency", "tilt": "peak tilt over slenderness"}
+WORDS = {
+    "slenderness": "slenderness [rad]",
+    "inertia": "J_O/(m R^2)",
+    "base_mass": "base mass over block mass",
+    "radius": "radius R [m]",
+    "stiffness": "step times the base's frequency on its bearings",
+    "damping": "step times viscous damping over base mass",
+    "decay": "viscous damping over base mass and rocking frequency",
+    "tilt": "peak tilt over slenderness",
+}
 
 
 def in_words(verified):
@@ -50,8 +56,11 @@ def _limits(low, high):
 def quantities(scene, step, peak_tilt=None):
     """{name: value} of the quantities of `Range` that a scene has, at a step [s]; peak_tilt [rad]."""
     block = scene.block
-    found = {"slenderness": block.slenderness, "inertia": block.inertia / (block.mass * block.radius**2),
-             "radius": block.radius}
+    found = {
+        "slenderness": block.slenderness,
+        "inertia": block.inertia / (block.mass * block.radius**2),
+        "radius": block.radius,
+    }
     if scene.base is not None:
         found["base_mass"] = scene.base.mass / block.mass
     if scene.bearings is not None:

@@ -14,8 +14,14 @@ from analytic.rocking import RockingModel
 from engines.contract import Engine, Run, Variant
 from engines.swings import Trace
 
-ENGINE = Engine(name="crude", package="crude_engine", install="pip install crude-engine", colour="#D55E00", marker="v",
-                adapter="crude_engine")
+ENGINE = Engine(
+    name="crude",
+    package="crude_engine",
+    install="pip install crude-engine",
+    colour="#D55E00",
+    marker="v",
+    adapter="crude_engine",
+)
 
 
 @dataclass(frozen=True)
@@ -25,9 +31,17 @@ class Euler:
     step: float = 5e-4
 
 
-VARIANTS = {"euler": Variant(Euler(), rung="best", ladder=(2e-3, 5e-4), verified=None, takes_restitution=True,
-                             decides="the fake decides motion and uplift, and applies the impact it is given",
-                             caveats=("crude is a fake",))}
+VARIANTS = {
+    "euler": Variant(
+        Euler(),
+        rung="best",
+        ladder=(2e-3, 5e-4),
+        verified=None,
+        takes_restitution=True,
+        decides="the fake decides motion and uplift, and applies the impact it is given",
+        caveats=("crude is a fake",),
+    )
+}
 
 
 def versions():

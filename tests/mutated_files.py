@@ -10,7 +10,7 @@ def _fortran(values, width=15, digits=7, exponent=2):
     for value in values:
         mantissa, power = f"{value:.{digits}E}".split("E")
         words.append(f"{mantissa}E{int(power):+0{exponent + 1}d}".rjust(width))
-    return "".join("".join(words[i:i + 5]) + "\n" for i in range(0, len(words), 5))
+    return "".join("".join(words[i : i + 5]) + "\n" for i in range(0, len(words), 5))
 
 
 def _at2(third, fourth, data):
@@ -18,11 +18,22 @@ def _at2(third, fourth, data):
 
 
 def _dyna(values):
-    keys = {"EVENT_NAME": "MADE UP", "EVENT_DATE_YYYYMMDD": "20000101", "STATION_ELEVATION_M": "746.0",
-            "VS30_M/S": "294", "SAMPLING_INTERVAL_S": "0.005000", "NDATA": len(values), "UNITS": "cm/s^2",
-            "PGA_CM/S^2": "-150.000000", "HEADER_FORMAT": "DYNA 1.2", "DATA_TYPE": "ACCELERATION", "USER5": ""}
+    keys = {
+        "EVENT_NAME": "MADE UP",
+        "EVENT_DATE_YYYYMMDD": "20000101",
+        "STATION_ELEVATION_M": "746.0",
+        "VS30_M/S": "294",
+        "SAMPLING_INTERVAL_S": "0.005000",
+        "NDATA": len(values),
+        "UNITS": "cm/s^2",
+        "PGA_CM/S^2": "-150.000000",
+        "HEADER_FORMAT": "DYNA 1.2",
+        "DATA_TYPE": "ACCELERATION",
+        "USER5": "",
+    }
     return "".join(f"{key}: {value}\n" for key, value in keys.items()) + "".join(
-        f"{100 * value:.6f}\n" for value in values)
+        f"{100 * value:.6f}\n" for value in values
+    )
 
 
 def _rows(row, step=0.005, origin=0.0, count=24):
@@ -35,11 +46,17 @@ def records():
     semicolons = _rows("{t:.3f};{a:.4f}").replace(".", ",")
     return [
         ("at2", _at2(history, counts, _fortran(VALUES)), None),
-        ("at2 old", _at2("ACCELERATION TIME SERIES IN UNITS OF CM/S/S", "    12    .00500  NPTS, DT", _fortran(VALUES)),
-         None),
+        (
+            "at2 old",
+            _at2("ACCELERATION TIME SERIES IN UNITS OF CM/S/S", "    12    .00500  NPTS, DT", _fortran(VALUES)),
+            None,
+        ),
         ("at2 ms", _at2("ACCELERATION (CM/SEC2)", "NPTS= 12, DT= 5.0 MSEC", _fortran(VALUES)), None),
-        ("at2 stuck", _at2(history, "NPTS=12,DT=5.0E-003", _fortran([-abs(value) - 0.01 for value in VALUES], 13)),
-         None),
+        (
+            "at2 stuck",
+            _at2(history, "NPTS=12,DT=5.0E-003", _fortran([-abs(value) - 0.01 for value in VALUES], 13)),
+            None,
+        ),
         ("at2 long exponents", _at2(history, counts, _fortran(VALUES, 16, 7, 3)), None),
         ("at2 of given units", _at2("TIME HISTORY", counts, _fortran(VALUES)), "g"),
         ("at2 of velocities", _at2("VELOCITY TIME HISTORY IN UNITS OF CM/S", counts, _fortran(VALUES)), None),
@@ -84,16 +101,62 @@ duration = 20.0
 
 def scenes():
     """(name, text) of undamaged scene files."""
-    return [("pulse", SCENE.format(motion='pulse = "one-cosine"\namplitude = -2.0\nfrequency = 3')),
-            ("synthetic", SCENE.format(motion='synthetic = "duzce-like"\nseed = 5')),
-            ("least", '[block]\nmass = 1\nradius = 1.0\nslenderness = 0.2\n')]
+    return [
+        ("pulse", SCENE.format(motion='pulse = "one-cosine"\namplitude = -2.0\nfrequency = 3')),
+        ("synthetic", SCENE.format(motion='synthetic = "duzce-like"\nseed = 5')),
+        ("least", "[block]\nmass = 1\nradius = 1.0\nslenderness = 0.2\n"),
+    ]
 
 
 SIGNS = 2 * "0123456789" + "+-..,,;:eEdD \t\n\r=()[]/^*_#%!\"'gGmMsScC²³٣\u00a0\ufeff\x00\x1a"
-WORDS = ["nan", "-inf", "1E400", "1e-400", "1_000", "0x1F", ".", "-", "E-05", "1.5.2", 40 * "9", "*******", "1,5",
-         "1;5", ".1025061E-1022243E-01", "-.10-100", "1e-105", "1e-012", "²", "G", "CM/S", "CM/S/S", "cm/s2",
-         "m/s**2", "gal", "UNITS OF M/S2", "units: g", "VELOCITY", "(ms)", "ms", "NPTS= 12", "DT= .01", "true", "[]",
-         "{}", "[block]", "1979-05-27", "'a'", "\"", "\"\"\"", "a.b = 1", "seed = -1", "1e41", "-1.0", "0", "# 1 2"]
+WORDS = [
+    "nan",
+    "-inf",
+    "1E400",
+    "1e-400",
+    "1_000",
+    "0x1F",
+    ".",
+    "-",
+    "E-05",
+    "1.5.2",
+    40 * "9",
+    "*******",
+    "1,5",
+    "1;5",
+    ".1025061E-1022243E-01",
+    "-.10-100",
+    "1e-105",
+    "1e-012",
+    "²",
+    "G",
+    "CM/S",
+    "CM/S/S",
+    "cm/s2",
+    "m/s**2",
+    "gal",
+    "UNITS OF M/S2",
+    "units: g",
+    "VELOCITY",
+    "(ms)",
+    "ms",
+    "NPTS= 12",
+    "DT= .01",
+    "true",
+    "[]",
+    "{}",
+    "[block]",
+    "1979-05-27",
+    "'a'",
+    '"',
+    '"""',
+    "a.b = 1",
+    "seed = -1",
+    "1e41",
+    "-1.0",
+    "0",
+    "# 1 2",
+]
 
 
 def damaged(text, chance):
@@ -103,23 +166,23 @@ def damaged(text, chance):
     content = text.encode("utf-8", errors="surrogatepass")
     if chance.random() < 0.05 and content:
         at = chance.randrange(len(content))
-        content = content[:at] + bytes([chance.randrange(256)]) + content[at + 1:]
+        content = content[:at] + bytes([chance.randrange(256)]) + content[at + 1 :]
     return content
 
 
 def _sign(text, chance):
     at = chance.randrange(len(text) + 1)
-    return text[:at] + chance.choice(SIGNS) + text[at + chance.randrange(2):]
+    return text[:at] + chance.choice(SIGNS) + text[at + chance.randrange(2) :]
 
 
 def _lost(text, chance):
     at = chance.randrange(len(text) + 1)
-    return text[:at] + text[at + chance.choice((1, 1, 1, 2, 5, 15, 40)):]
+    return text[:at] + text[at + chance.choice((1, 1, 1, 2, 5, 15, 40)) :]
 
 
 def _doubled(text, chance):
     at, length = chance.randrange(len(text) + 1), chance.choice((1, 2, 15, 40))
-    return text[:at + length] + text[at:]
+    return text[: at + length] + text[at:]
 
 
 def _cut(text, chance):
@@ -138,7 +201,7 @@ def _line(text, chance):
     elif kind == 2:
         lines[at], lines[other] = lines[other], lines[at]
     else:
-        lines[at:at + 2] = ["".join(lines[at:at + 2])]
+        lines[at : at + 2] = ["".join(lines[at : at + 2])]
     return "\n".join(lines)
 
 
@@ -163,8 +226,24 @@ def _field(text, chance):
 
 def _everywhere(text, chance):
     """A sign replaced throughout, as a conversion does, or in one line."""
-    old, new = chance.choice(((".", ","), (",", "."), (",", ";"), (";", ","), (" ", ""), (" ", ","), ("\n", "\r\n"),
-                              ("\n", "\r"), ("\n", " "), ("E", "D"), ("E-0", "E-00"), ("-", ""), ("-", "−"), ("e", "")))
+    old, new = chance.choice(
+        (
+            (".", ","),
+            (",", "."),
+            (",", ";"),
+            (";", ","),
+            (" ", ""),
+            (" ", ","),
+            ("\n", "\r\n"),
+            ("\n", "\r"),
+            ("\n", " "),
+            ("E", "D"),
+            ("E-0", "E-00"),
+            ("-", ""),
+            ("-", "−"),
+            ("e", ""),
+        )
+    )
     if chance.random() < 0.4:
         return text.replace(old, new)
     lines = text.split("\n")
@@ -177,8 +256,23 @@ def _case(text, chance):
     return text.upper() if chance.random() < 0.5 else text.lower()
 
 
-DAMAGE = (_sign, _sign, _sign, _sign, _lost, _lost, _doubled, _cut, _line, _line, _word, _field, _field, _everywhere,
-          _case)
+DAMAGE = (
+    _sign,
+    _sign,
+    _sign,
+    _sign,
+    _lost,
+    _lost,
+    _doubled,
+    _cut,
+    _line,
+    _line,
+    _word,
+    _field,
+    _field,
+    _everywhere,
+    _case,
+)
 
 
 def cases(number, seed=0):

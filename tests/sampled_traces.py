@@ -34,8 +34,9 @@ def sampled(scene, mean_step, *, contact_tilt=EDGE, seed=0, side=1, noise=0.0, s
     reference = simulate(scene, output_step=step)
     history, rng = reference.history, np.random.default_rng(seed)
     count = int(history.time[-1] / mean_step)
-    kept = np.unique(np.concatenate(([0], rng.choice(len(history.time), count, replace=False),
-                                     [len(history.time) - 1])))
+    kept = np.unique(
+        np.concatenate(([0], rng.choice(len(history.time), count, replace=False), [len(history.time) - 1]))
+    )
     columns = [getattr(history, name)[kept] * (side if name != "time" else 1) for name in Trace.COLUMNS]
     columns[1] = columns[1] + noise * rng.uniform(-1, 1, len(kept))
     return Trace(*columns, contact_tilt), reference

@@ -77,29 +77,30 @@ def _lines(content):
 
 # Formats
 
+
 def _named(line, name):
     """What stands behind every `name =` or `name (unit) =` of a line: list of (unit, rest of the line)."""
     found, low = [], line.lower()
     at = low.find(name)
     while at >= 0:
-        before, i = low[at - 1:at], at + len(name)
-        while line[i:i + 1].isspace():
+        before, i = low[at - 1 : at], at + len(name)
+        while line[i : i + 1].isspace():
             i += 1
         unit = ""
-        if name == "dt" and line[i:i + 1] and line[i] in "([":
+        if name == "dt" and line[i : i + 1] and line[i] in "([":
             i += 1
-            while line[i:i + 1].isspace():
+            while line[i : i + 1].isspace():
                 i += 1
-            while low[i:i + 1] and low[i] in LETTERS:
+            while low[i : i + 1] and low[i] in LETTERS:
                 unit += low[i]
                 i += 1
-            while line[i:i + 1].isspace():
+            while line[i : i + 1].isspace():
                 i += 1
-            i = i + 1 if line[i:i + 1] and line[i] in ")]" else len(line)
-            while line[i:i + 1].isspace():
+            i = i + 1 if line[i : i + 1] and line[i] in ")]" else len(line)
+            while line[i : i + 1].isspace():
                 i += 1
-        if line[i:i + 1] and line[i] in "=:" and not (before and (before.isalnum() or before == "_")):
-            found.append((unit, line[i + 1:].lstrip()))
+        if line[i : i + 1] and line[i] in "=:" and not (before and (before.isalnum() or before == "_")):
+            found.append((unit, line[i + 1 :].lstrip()))
         at = low.find(name, at + 1)
     return found
 
@@ -117,8 +118,12 @@ def _at2(lines):
         line = line[:400]
         old = line.lower().replace(",", " ").split()
         counts, steps = _named(line, "npts"), _named(line, "dt")
-        if len(old) >= 4 and old[2] == "npts" and (old[3] == "dt" or old[3][:3] in ("dt(", "dt[")) and all(
-                sign in DIGITS for sign in old[0]):
+        if (
+            len(old) >= 4
+            and old[2] == "npts"
+            and (old[3] == "dt" or old[3][:3] in ("dt(", "dt["))
+            and all(sign in DIGITS for sign in old[0])
+        ):
             behind = "".join(old[3:])[2:]
             inside = "".join(sign for sign in behind.partition(")")[0] if sign in LETTERS and behind[0] in "([")
             count, step = old[0], step_of(old[1], inside)
@@ -129,7 +134,7 @@ def _at2(lines):
             unit, rest = steps[0]
             token, behind = _until(rest, ";")
             for comma in range(len(token)):
-                if token[comma] == "," and token[comma + 1:comma + 2] not in tuple(DIGITS):
+                if token[comma] == "," and token[comma + 1 : comma + 2] not in tuple(DIGITS):
                     token, behind = token[:comma], token[comma:] + behind
                     break
             word = ""
@@ -142,8 +147,8 @@ def _at2(lines):
             step = step_of(token, word or unit)
         else:
             continue
-        factor = unit_of(lines[:index + 1], index - 1)
-        samples = fortran(lines[index + 1:])
+        factor = unit_of(lines[: index + 1], index - 1)
+        samples = fortran(lines[index + 1 :])
         if whole(count) != len(samples):
             raise Refused("count")
         return (step, step), samples, factor
@@ -156,8 +161,12 @@ def _dyna(lines):
     keys, i = {}, begin
     while i < len(lines):
         key, colon, value = lines[i][:400].partition(":")
-        if not colon or not key or key[0] not in LETTERS.upper() or any(
-                sign not in LETTERS.upper() + DIGITS + "_/^" for sign in key):
+        if (
+            not colon
+            or not key
+            or key[0] not in LETTERS.upper()
+            or any(sign not in LETTERS.upper() + DIGITS + "_/^" for sign in key)
+        ):
             break
         if keys.setdefault(key, value.strip()) != value.strip():
             raise Refused("two values")
@@ -199,14 +208,19 @@ def _columns(lines):
     if not rows or "corrected accel" in first[:60] or first.startswith("origin time"):
         raise Refused("format")
     semicolons, commas = ";" in everything, "," in everything
-    spaced = any(row[0] == "," or row[-1] == "," or any(
-        sign == "," and (row[i - 1] in " \t" or row[i + 1:i + 2] in (" ", "\t")) for i, sign in enumerate(row))
-        for row in rows if row)
+    spaced = any(
+        row[0] == ","
+        or row[-1] == ","
+        or any(sign == "," and (row[i - 1] in " \t" or row[i + 1 : i + 2] in (" ", "\t")) for i, sign in enumerate(row))
+        for row in rows
+        if row
+    )
     by, decimal = None, "."
     if semicolons:
         by, decimal = ";", "," if commas else "."
-    elif commas and (spaced or (any(len(row.split()) < 2 for row in rows)
-                                and 2 * sum("." in row for row in rows) >= len(rows))):
+    elif commas and (
+        spaced or (any(len(row.split()) < 2 for row in rows) and 2 * sum("." in row for row in rows) >= len(rows))
+    ):
         by = ","
     elif commas and all(len(row.split()) > 1 for row in rows):
         decimal = ","
@@ -225,8 +239,10 @@ def _columns(lines):
         fields = [field.strip() for field in (last.split(by) if by else last.split())][1:]
         if last[0] not in "#%!" and last[:2] != "//" and any(_numeric(field) for field in fields):
             raise Refused("header")
-        if any("npts" in "".join(sign if sign.isalnum() or sign == "_" else " " for sign in line.lower()).split()
-               for line in header):
+        if any(
+            "npts" in "".join(sign if sign.isalnum() or sign == "_" else " " for sign in line.lower()).split()
+            for line in header
+        ):
             raise Refused("NPTS")
     factor = unit_of(header, len(header) - 1)
     per_second = {found for line in header for found in _times_in(line)}
@@ -254,7 +270,7 @@ def _times_in(line):
     words = words_of(flat.replace("/", " , ").replace("_", " "))
     for i, word in enumerate(words):
         if word in ("time", "t"):
-            rest = words[i + 1:]
+            rest = words[i + 1 :]
             while rest and rest[0] in ("(", "[", ",", ":", "=", "in", "unit", "units"):
                 rest = rest[1:]
             unit = ends_of(rest[0]) if rest else ""
@@ -280,8 +296,10 @@ def _uniform(times, tokens):
         figures = mantissa.lstrip("+-").replace(".", "").lstrip("0")
         lasts.append((int(exponent) if exponent else 0) - len(mantissa.partition(".")[2]))
         digits.append(max(len(figures), 1))
-    units = [Fraction(10) ** max(min(lasts), last + figures - max(digits))
-             for last, figures in zip(lasts, digits, strict=True)]
+    units = [
+        Fraction(10) ** max(min(lasts), last + figures - max(digits))
+        for last, figures in zip(lasts, digits, strict=True)
+    ]
     for unit in (units, [mean / 100] * count):
         if max(unit) * 2 > mean:
             continue

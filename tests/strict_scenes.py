@@ -47,14 +47,33 @@ def _angle(value):
 
 KEYS = {
     "": {"name": lambda value: isinstance(value, str), "gravity": _positive, "friction": _positive},
-    "block": {"mass": _positive, "radius": _positive, "slenderness": lambda value: _angle(value) and value > 0,
-              "corner_inertia": _positive, "restitution": lambda value: _number(value) and 0 <= value <= 1},
+    "block": {
+        "mass": _positive,
+        "radius": _positive,
+        "slenderness": lambda value: _angle(value) and value > 0,
+        "corner_inertia": _positive,
+        "restitution": lambda value: _number(value) and 0 <= value <= 1,
+    },
     "base": {"mass": _positive},
-    "bearings": {"law": _one_of(*LAWS), "count": _whole(1, 10**6), "ka": _positive, "kb": _not_negative,
-                 "alpha": lambda value: _number(value) and 1 < value <= MOST, "delta_k": _positive,
-                 "yield_force": _positive, "damping": _not_negative},
-    "motion": {"pulse": _one_of(*PULSES), "amplitude": _any, "frequency": _positive, "start": _not_negative,
-               "synthetic": _one_of("duzce-like"), "seed": _whole(0, 2**64 - 1), "scale": _any},
+    "bearings": {
+        "law": _one_of(*LAWS),
+        "count": _whole(1, 10**6),
+        "ka": _positive,
+        "kb": _not_negative,
+        "alpha": lambda value: _number(value) and 1 < value <= MOST,
+        "delta_k": _positive,
+        "yield_force": _positive,
+        "damping": _not_negative,
+    },
+    "motion": {
+        "pulse": _one_of(*PULSES),
+        "amplitude": _any,
+        "frequency": _positive,
+        "start": _not_negative,
+        "synthetic": _one_of("duzce-like"),
+        "seed": _whole(0, 2**64 - 1),
+        "scale": _any,
+    },
     "start": {"tilt": _angle, "tilt_rate": _any, "base_displacement": _any, "base_velocity": _any},
     "run": {"duration": _positive},
 }
@@ -77,7 +96,7 @@ def read(content):
         if line[:1] == "[":
             name, i = _key(line, _blank(line, 1))
             i = _blank(line, i)
-            if line[i:i + 1] != "]" or name in tables or name not in KEYS or name == "":
+            if line[i : i + 1] != "]" or name in tables or name not in KEYS or name == "":
                 raise Refused("table")
             _end(line, i + 1)
             tables[name] = {}
@@ -85,7 +104,7 @@ def read(content):
         elif line[:1] not in ("", "#"):
             name, i = _key(line, 0)
             i = _blank(line, i)
-            if line[i:i + 1] != "=" or name in tables[table] or name not in KEYS[table]:
+            if line[i : i + 1] != "=" or name in tables[table] or name not in KEYS[table]:
                 raise Refused("key")
             value, i = _value(line, _blank(line, i + 1))
             _end(line, i)
@@ -97,19 +116,19 @@ def read(content):
 
 
 def _blank(line, i):
-    while line[i:i + 1] in (" ", "\t") and i < len(line):
+    while line[i : i + 1] in (" ", "\t") and i < len(line):
         i += 1
     return i
 
 
 def _end(line, i):
     i = _blank(line, i)
-    if line[i:i + 1] not in ("", "#"):
+    if line[i : i + 1] not in ("", "#"):
         raise Refused("behind the value")
 
 
 def _key(line, i):
-    if line[i:i + 1] in ('"', "'"):
+    if line[i : i + 1] in ('"', "'"):
         return _text(line, i)
     begin = i
     while i < len(line) and line[i] in BARE:
@@ -121,14 +140,14 @@ def _key(line, i):
 
 def _text(line, i):
     quote, text = line[i], ""
-    if line[i:i + 3] == 3 * quote:
+    if line[i : i + 3] == 3 * quote:
         raise Refused("text over lines")
     i += 1
-    while line[i:i + 1] != quote:
+    while line[i : i + 1] != quote:
         if i >= len(line):
             raise Refused("open text")
         if quote == '"' and line[i] == "\\":
-            if line[i + 1:i + 2] not in ESCAPES:
+            if line[i + 1 : i + 2] not in ESCAPES:
                 raise Refused("escape")
             text, i = text + ESCAPES[line[i + 1]], i + 2
         else:
@@ -137,7 +156,7 @@ def _text(line, i):
 
 
 def _value(line, i):
-    if line[i:i + 1] in ('"', "'"):
+    if line[i : i + 1] in ('"', "'"):
         return _text(line, i)
     begin = i
     while i < len(line) and line[i] in BARE + "+.":

@@ -3,15 +3,40 @@
 from fractions import Fraction
 
 G = Fraction("9.81")
-LENGTHS = {"mm": Fraction(1, 1000), "cm": Fraction(1, 100), "m": Fraction(1), "in": Fraction("0.0254"),
-           "ft": Fraction("0.3048")}
-TIME_WORDS = {"s": 1, "sec": 1, "secs": 1, "second": 1, "seconds": 1, "ms": 1000, "msec": 1000, "msecs": 1000,
-              "millisec": 1000, "millisecs": 1000, "millisecond": 1000, "milliseconds": 1000}
+LENGTHS = {
+    "mm": Fraction(1, 1000),
+    "cm": Fraction(1, 100),
+    "m": Fraction(1),
+    "in": Fraction("0.0254"),
+    "ft": Fraction("0.3048"),
+}
+TIME_WORDS = {
+    "s": 1,
+    "sec": 1,
+    "secs": 1,
+    "second": 1,
+    "seconds": 1,
+    "ms": 1000,
+    "msec": 1000,
+    "msecs": 1000,
+    "millisec": 1000,
+    "millisecs": 1000,
+    "millisecond": 1000,
+    "milliseconds": 1000,
+}
 GIVEN = {"g": G, "m/s2": Fraction(1), "cm/s2": Fraction(1, 100)}
 DIGITS, LETTERS = "0123456789", "abcdefghijklmnopqrstuvwxyz"
-QUANTITIES = {"acc": "acceleration", "accel": "acceleration", "acceleration": "acceleration",
-              "accelerations": "acceleration", "accelerogram": "acceleration", "velocity": "other", "vel": "other",
-              "displacement": "other", "disp": "other"}
+QUANTITIES = {
+    "acc": "acceleration",
+    "accel": "acceleration",
+    "acceleration": "acceleration",
+    "accelerations": "acceleration",
+    "accelerogram": "acceleration",
+    "velocity": "other",
+    "vel": "other",
+    "displacement": "other",
+    "disp": "other",
+}
 
 
 class Refused(Exception):
@@ -19,6 +44,7 @@ class Refused(Exception):
 
 
 # Numbers
+
 
 def scan(text, i):
     """(value, digits after the point or None, digits of the exponent, next i) of the number at i; None without one."""
@@ -81,7 +107,7 @@ def fortran(lines):
                 values.append(found[0])
                 forms.append(found[1:3])
                 if found[2]:
-                    digits = token[i:found[3]].lower().replace("d", "e").split("e")[1].lstrip("+-")
+                    digits = token[i : found[3]].lower().replace("d", "e").split("e")[1].lstrip("+-")
                     exponents.append((at, digits))
                 i = found[3]
             if len(forms) > 1 and (len(set(forms)) > 1 or forms[0][0] is None):
@@ -108,7 +134,7 @@ def step_of(token, behind=""):
     found = scan(token, 0)
     if found is None:
         raise Refused("step")
-    glued = token[found[3]:].lower()
+    glued = token[found[3] :].lower()
     word = glued or behind.lower()
     if any(sign not in LETTERS for sign in glued) or (word and word not in TIME_WORDS) or found[0] <= 0:
         raise Refused("step")
@@ -117,14 +143,32 @@ def step_of(token, behind=""):
 
 # Units
 
+
 def _known_units():
     """Every spelling of an acceleration this parser knows, in lower case, with its factor to m/s2."""
-    known = {"g": G, "g's": G, "gravity": G, "mg": G / 1000, "%g": G / 100, "gal": Fraction(1, 100),
-             "gals": Fraction(1, 100), "mgal": Fraction(1, 100_000)}
+    known = {
+        "g": G,
+        "g's": G,
+        "gravity": G,
+        "mg": G / 1000,
+        "%g": G / 100,
+        "gal": Fraction(1, 100),
+        "gals": Fraction(1, 100),
+        "mgal": Fraction(1, 100_000),
+    }
     for length, factor in LENGTHS.items():
         for time in ("s", "sec"):
-            for power in (f"/{time}2", f"/{time}^2", f"/{time}**2", f"/{time}*2", f"/{time}²", f"/{time}/s",
-                          f"/{time}/sec", f"/{time}^", f"/{time}*"):
+            for power in (
+                f"/{time}2",
+                f"/{time}^2",
+                f"/{time}**2",
+                f"/{time}*2",
+                f"/{time}²",
+                f"/{time}/s",
+                f"/{time}/sec",
+                f"/{time}^",
+                f"/{time}*",
+            ):
                 if power[-1] not in "^*":
                     known[length + power] = factor
     return known
@@ -162,7 +206,7 @@ def unit_of(lines, titles):
         named = {QUANTITIES[part] for part in parts if part in QUANTITIES}
         quantities |= named
         for i, word in enumerate(words):
-            before = words[max(i - 4, 0):i]
+            before = words[max(i - 4, 0) : i]
             stated = False
             while before and before[-1] in ("(", "[", ":", "="):
                 before = before[:-1]
@@ -170,8 +214,12 @@ def unit_of(lines, titles):
                 stated = before[-1] == "in" and (named or index == titles)
                 before = before[:-1] if before[:-1] and before[-2] in ("unit", "units") else before
             bare = ends_of(word)
-            if before and before[-1] in ("unit", "units") and word not in "()[]:=,;" and word not in (
-                    "of", "in", "is", "are"):
+            if (
+                before
+                and before[-1] in ("unit", "units")
+                and word not in "()[]:=,;"
+                and word not in ("of", "in", "is", "are")
+            ):
                 if bare in TIME_WORDS:
                     continue
                 if not bare or bare[0] not in LETTERS + "%":
@@ -179,14 +227,17 @@ def unit_of(lines, titles):
                 if bare not in KNOWN:
                     raise Refused(f"unit {word}")
                 factors.add(KNOWN[bare])
-            elif "/" in word and word[:word.index("/")] in LENGTHS and not word.endswith("/"):
+            elif "/" in word and word[: word.index("/")] in LENGTHS and not word.endswith("/"):
                 if i and words[i - 1][-1] in DIGITS + ".":
                     continue
                 if bare not in KNOWN:
                     raise Refused(f"unit {word}")
                 factors.add(KNOWN[bare])
-            elif stated or ((named or index == titles) and i and words[i - 1] in ("(", "[")) or (
-                    i and ends_of(words[i - 1]) in ("acc", "accel", "acceleration")):
+            elif (
+                stated
+                or ((named or index == titles) and i and words[i - 1] in ("(", "["))
+                or (i and ends_of(words[i - 1]) in ("acc", "accel", "acceleration"))
+            ):
                 if bare in LENGTHS or bare in RATES:
                     raise Refused(f"unit {word}")
                 if bare in KNOWN:

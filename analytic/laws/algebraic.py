@@ -103,6 +103,17 @@ def expression(ops, dx, first, second, dk, alpha, d0, f0):
     return s * ((ops.power(travel, 1 - alpha) - d0) * (dk / (1 - alpha)) + f0)
 
 
-LAW = Law("algebraic", needs=("kb", "alpha"), constants=constants, after_travel=after_travel, work=work,
-          recoverable=recoverable, begin=begin, term=term, mark=virtual_travel, reached=reached, sides=sides,
-          expression=expression)
+LAW = Law(
+    "algebraic",
+    needs=("kb", "alpha"),
+    constants=constants,
+    after_travel=after_travel,
+    work=work,
+    recoverable=recoverable,
+    begin=begin,
+    term=term,
+    mark=virtual_travel,
+    reached=reached,
+    sides=sides,
+    expression=expression,
+)

@@ -56,6 +56,15 @@ def expression(ops, dx, first, second, dk, alpha, d0, f0):
     return ops.where(elastic >= f0, f0, ops.where(elastic >= -f0, elastic, -f0))
 
 
-LAW = Law("bilinear", needs=("kb", "yield_force"), constants=constants, after_travel=after_travel, work=work,
-          recoverable=recoverable, begin=begin, term=term,
-          branch=branch, expression=expression)
+LAW = Law(
+    "bilinear",
+    needs=("kb", "yield_force"),
+    constants=constants,
+    after_travel=after_travel,
+    work=work,
+    recoverable=recoverable,
+    begin=begin,
+    term=term,
+    branch=branch,
+    expression=expression,
+)

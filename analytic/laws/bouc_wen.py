@@ -50,5 +50,15 @@ def expression(ops, dx, first, second, dk, alpha, d0, f0):
     return s * f0 - (s * f0 - first) * ops.exp((-0.5 * dk / f0) * s * dx)
 
 
-LAW = Law("bouc-wen", needs=("kb", "alpha"), constants=algebraic.constants, after_travel=after_travel, work=work,
-          recoverable=recoverable, begin=begin, term=term, branch=branch, expression=expression)
+LAW = Law(
+    "bouc-wen",
+    needs=("kb", "alpha"),
+    constants=algebraic.constants,
+    after_travel=after_travel,
+    work=work,
+    recoverable=recoverable,
+    begin=begin,
+    term=term,
+    branch=branch,
+    expression=expression,
+)

@@ -44,6 +44,17 @@ def expression(ops, dx, first, second, dk, alpha, d0, f0):
     return first
 
 
-LAW = Law("linear", needs=(), ignores=("kb", "alpha"), constants=constants, memory=False, after_travel=after_travel,
-          work=work, recoverable=recoverable, begin=begin, term=term, reached=reached,
-          expression=expression)
+LAW = Law(
+    "linear",
+    needs=(),
+    ignores=("kb", "alpha"),
+    constants=constants,
+    memory=False,
+    after_travel=after_travel,
+    work=work,
+    recoverable=recoverable,
+    begin=begin,
+    term=term,
+    reached=reached,
+    expression=expression,
+)

@@ -51,8 +51,12 @@ def read_record(path, units=None, scale=1.0):
 def _content(path):
     lines = read_lines(path)
     if path.suffix.lower() in NOT_ACCELERATIONS:
-        raise SceneError("record", None, f"holds {NOT_ACCELERATIONS[path.suffix.lower()]}, as {path.suffix} files do",
-                         "give the acceleration file (.AT2) of this record")
+        raise SceneError(
+            "record",
+            None,
+            f"holds {NOT_ACCELERATIONS[path.suffix.lower()]}, as {path.suffix} files do",
+            "give the acceleration file (.AT2) of this record",
+        )
     if not any(line.strip() for line in lines):
         raise SceneError("record", None, "is empty", "give a record with at least two accelerations")
     return next(form for form in FORMATS if form.recognises(lines)).read(lines)

@@ -90,11 +90,19 @@ def _dialect(rows):
     elif 2 * points >= len(texts):
         separator = ","
     else:
-        raise SceneError(f"line {first[0]}", first[1], "its comma may part columns or be a decimal sign",
-                         "write decimal points, or part the columns by semicolons")
+        raise SceneError(
+            f"line {first[0]}",
+            first[1],
+            "its comma may part columns or be a decimal sign",
+            "write decimal points, or part the columns by semicolons",
+        )
     if separator != "," and points:
-        raise SceneError(f"line {first[0]}", first[1], "a decimal comma in a file that has decimal points too",
-                         "write decimal points throughout")
+        raise SceneError(
+            f"line {first[0]}",
+            first[1],
+            "a decimal comma in a file that has decimal points too",
+            "write decimal points throughout",
+        )
     return separator, "." if separator == "," else ","
 
 
@@ -109,11 +117,16 @@ def _titles(header, separator):
     at, text = header[-1]
     for number_of_line, line in header:
         if re.search(r"\bNPTS\b", line, re.I):
-            raise SceneError(f"line {number_of_line}", line, "names NPTS, but not as PEER AT2 does",
-                             "mend the line: NPTS= ..., DT= ... SEC")
+            raise SceneError(
+                f"line {number_of_line}",
+                line,
+                "names NPTS, but not as PEER AT2 does",
+                "mend the line: NPTS= ..., DT= ... SEC",
+            )
     if not text.startswith(COMMENT) and any(NUMERIC.match(field) for field in _fields(text, separator)[1:]):
-        raise SceneError(f"line {at}", text, "neither a header nor two numbers",
-                         "mend the number, or begin a header line with #")
+        raise SceneError(
+            f"line {at}", text, "neither a header nor two numbers", "mend the number, or begin a header line with #"
+        )
     return at
 
 

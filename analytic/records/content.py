@@ -11,10 +11,16 @@ from .units import Unit
 
 LARGEST = 200_000_000  # bytes: some 1e7 samples
 HEADER_WIDTH = 400  # characters of a header line that are looked at
-UNKNOWN = ("not a known record format",
-           "give PEER AT2 (a line NPTS= ..., DT= ...), ESM/DYNA 1.2 ASCII or two columns of numbers")
-PACKED = {b"\x1f\x8b": ("gzip", "gunzip"), b"PK\x03\x04": ("zip", "unzip"), b"BZh": ("bzip2", "bunzip2"),
-          b"\xfd7zXZ": ("xz", "unxz")}
+UNKNOWN = (
+    "not a known record format",
+    "give PEER AT2 (a line NPTS= ..., DT= ...), ESM/DYNA 1.2 ASCII or two columns of numbers",
+)
+PACKED = {
+    b"\x1f\x8b": ("gzip", "gunzip"),
+    b"PK\x03\x04": ("zip", "unzip"),
+    b"BZh": ("bzip2", "bunzip2"),
+    b"\xfd7zXZ": ("xz", "unxz"),
+}
 CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
 
@@ -41,8 +47,12 @@ def read_lines(path):
     try:
         content = read_plain(path, LARGEST)
     except OSError as error:
-        raise SceneError("motion.record", str(path), f"cannot be read ({error.strerror})",
-                         "give the path of a record, relative to the scene file") from error
+        raise SceneError(
+            "motion.record",
+            str(path),
+            f"cannot be read ({error.strerror})",
+            "give the path of a record, relative to the scene file",
+        ) from error
     for magic, (name, command) in PACKED.items():
         if content.startswith(magic):
             raise SceneError("record", None, f"is packed by {name}", f"unpack it first ({command})")
@@ -50,8 +60,9 @@ def read_lines(path):
     lines = re.sub(r"\r++\n?+", "\n", _text(content).rstrip("\x1a")).split("\n")
     for number, line in enumerate(lines, 1):
         if not line.isprintable() and (odd := CONTROL.search(line)):
-            raise SceneError(f"line {number}", None, f"{UNKNOWN[0]}: it holds the control character {odd[0]!r}",
-                             UNKNOWN[1])
+            raise SceneError(
+                f"line {number}", None, f"{UNKNOWN[0]}: it holds the control character {odd[0]!r}", UNKNOWN[1]
+            )
     return lines
 
 

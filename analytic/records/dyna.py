@@ -40,8 +40,7 @@ def read(lines):
     factor = factor_of(stated)
     if factor is None or (kind and not kind.lower().startswith("acc")):
         key, value = ("UNITS", stated) if factor is None else ("DATA_TYPE", kind)
-        raise SceneError(key, value, "not an acceleration this reader knows",
-                         "give the acceleration file, in cm/s^2")
+        raise SceneError(key, value, "not an acceleration this reader knows", "give the acceleration file, in cm/s^2")
     values = fortran_values(lines, begin)
     check_count("NDATA", count("NDATA", header["NDATA"][0]), values)
     dt = interval("SAMPLING_INTERVAL_S", header["SAMPLING_INTERVAL_S"][0])
@@ -55,8 +54,9 @@ def _header(lines):
     while begin < len(lines) and (match := KEY.match(lines[begin][:HEADER_WIDTH])):
         key, value = match[1], match[2].strip()
         if key in header and header[key][0] != value:
-            raise SceneError(f"line {begin + 1}, {key}", value, f"but line {header[key][1]} says {header[key][0]}",
-                             REMEDY)
+            raise SceneError(
+                f"line {begin + 1}, {key}", value, f"but line {header[key][1]} says {header[key][0]}", REMEDY
+            )
         header[key] = (value, begin + 1)
         begin += 1
     return header, begin

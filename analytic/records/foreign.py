@@ -19,8 +19,12 @@ def recognises(lines):
 
 def read(lines):
     """Refuse the file, saying what to do instead."""
-    raise SceneError("record", None, f"is a {_name(lines)} file, which is not read",
-                     "write its accelerations as two columns, time [s] and acceleration, and give their units")
+    raise SceneError(
+        "record",
+        None,
+        f"is a {_name(lines)} file, which is not read",
+        "write its accelerations as two columns, time [s] and acceleration, and give their units",
+    )
 
 
 def _name(lines):

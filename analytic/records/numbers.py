@@ -103,5 +103,6 @@ def count(where, token):
 def check_count(where, stated, samples):
     """Refuse a file that holds another number of samples than its header states."""
     if stated != len(samples):
-        raise SceneError(where, stated, f"but {len(samples)} samples follow",
-                         "the file is cut or damaged: fetch it again")
+        raise SceneError(
+            where, stated, f"but {len(samples)} samples follow", "the file is cut or damaged: fetch it again"
+        )

@@ -32,7 +32,7 @@ def read(lines):
     head, npts, dt, unit_of_dt = _head(lines)
     where = f"line {head + 1}"
     dt = interval(f"{where}, DT", dt, unit_of_dt)
-    unit = stated_unit(((number, line[:HEADER_WIDTH]) for number, line in enumerate(lines[:head + 1], 1)), titles=head)
+    unit = stated_unit(((number, line[:HEADER_WIDTH]) for number, line in enumerate(lines[: head + 1], 1)), titles=head)
     values = fortran_values(lines, head + 1)
     check_count(f"{where}, NPTS", count(f"{where}, NPTS", npts), values)
     return Content(dt, values, unit)

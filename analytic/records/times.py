@@ -9,8 +9,21 @@ from scipy.optimize import minimize_scalar
 from ..errors import SceneError
 from .numbers import NUMBER, number
 
-PER_SECOND = {"": 1, "s": 1, "sec": 1, "secs": 1, "second": 1, "seconds": 1, "ms": 1000, "msec": 1000, "msecs": 1000,
-              "millisec": 1000, "millisecs": 1000, "millisecond": 1000, "milliseconds": 1000}
+PER_SECOND = {
+    "": 1,
+    "s": 1,
+    "sec": 1,
+    "secs": 1,
+    "second": 1,
+    "seconds": 1,
+    "ms": 1000,
+    "msec": 1000,
+    "msecs": 1000,
+    "millisec": 1000,
+    "millisecs": 1000,
+    "millisecond": 1000,
+    "milliseconds": 1000,
+}
 USABLE = (1e-7, 1e3)  # s: beyond it no step is one of a ground motion
 JITTER = 0.01  # of the step: clocks and single precision
 _STEP = re.compile(rf"({NUMBER})([A-Za-zµ]*)")
@@ -28,8 +41,12 @@ def interval(where, token, unit=""):
     value = number(where, match[1] if match else token)
     unit = match[2] or unit
     if unit.lower() not in PER_SECOND:
-        raise SceneError(where, f"{token} {unit}" if unit not in token else token, "not a time in s or ms",
-                         "write the step in SEC or MSEC")
+        raise SceneError(
+            where,
+            f"{token} {unit}" if unit not in token else token,
+            "not a time in s or ms",
+            "write the step in SEC or MSEC",
+        )
     return usable(where, value / PER_SECOND[unit.lower()])
 
 
@@ -71,9 +88,12 @@ def uniform_step(tokens):
                 return found
     usual = float(np.median(steps))
     worst = int(np.abs(steps - usual).argmax()) + 1
-    raise SceneError(f"sample {worst + 1}, time", float(_exact(tokens[worst])),
-                     f"the sampling is not uniform: this step is {steps[worst - 1]:.6g} s, most are {usual:.6g} s",
-                     "resample the record at equal intervals")
+    raise SceneError(
+        f"sample {worst + 1}, time",
+        float(_exact(tokens[worst])),
+        f"the sampling is not uniform: this step is {steps[worst - 1]:.6g} s, most are {usual:.6g} s",
+        "resample the record at equal intervals",
+    )
 
 
 def _exact(token):
@@ -82,8 +102,9 @@ def _exact(token):
 
 def _printed_unit(tokens):
     """Unit of the last printed digit of each time, shape (n,): all have as many decimals, or as many digits."""
-    parts = np.array([(len(number.digits), number.exponent) for token in tokens
-                      if (number := _exact(token).as_tuple())])
+    parts = np.array(
+        [(len(number.digits), number.exponent) for token in tokens if (number := _exact(token).as_tuple())]
+    )
     digits, exponents = parts.T
     return 10.0 ** np.maximum(exponents.min(), exponents + digits - digits.max())
 
@@ -98,12 +119,14 @@ def _fit(times, unit, step):
         return (off - unit / 2).max() - (off + unit / 2).min()
 
     reach = 2 * unit.max() / (len(times) - 1)
-    best = minimize_scalar(excess, bounds=(step - reach, step + reach), method="bounded",
-                           options={"xatol": 1e-4 * reach}).x
+    best = minimize_scalar(
+        excess, bounds=(step - reach, step + reach), method="bounded", options={"xatol": 1e-4 * reach}
+    ).x
     allowed = 1e-3 * unit.max()
     if excess(best) > allowed:
         return None
     whole = max(round(1 / best), 1)  # most instruments sample at a whole frequency
-    round_steps = (step for digits in range(1, 13)
-                   for step in (float(f"{best:.{digits}g}"), 1 / float(f"{1 / best:.{digits}g}")))
+    round_steps = (
+        step for digits in range(1, 13) for step in (float(f"{best:.{digits}g}"), 1 / float(f"{1 / best:.{digits}g}"))
+    )
     return next((step for step in (1 / whole, *round_steps) if excess(step) <= allowed), best)

@@ -9,12 +9,30 @@ G = 9.81  # m/s2: the g of a record in g is the g of the default scene
 UNITS = {"m/s2": 1.0, "cm/s2": 0.01, "g": G}  # -> m/s2
 
 LENGTHS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}  # -> m
-LONG_NAMES = (("milli[ -]?g", "mg"), ("millimet(?:er|re)s?", "mm"), ("centimet(?:er|re)s?", "cm"),
-              ("met(?:er|re)s?", "m"), ("inch(?:es)?", "in"), ("feet|foot", "ft"), ("seconds?|sec", "s"),
-              ("gals?", "gal"), ("gravity", "g"))
-WORDS = {"g": G, "g's": G, "mg": 1e-3 * G, "%g": 1e-2 * G, "gal": 1e-2, "mgal": 1e-5,
-         **{f"{length}{power}": factor for length, factor in LENGTHS.items()
-            for power in ("/s2", "/s/s", "/ss", "/s.s", ".s-2", "s-2", ".s-1.s-1")}}  # -> m/s2, as `_plain` writes them
+LONG_NAMES = (
+    ("milli[ -]?g", "mg"),
+    ("millimet(?:er|re)s?", "mm"),
+    ("centimet(?:er|re)s?", "cm"),
+    ("met(?:er|re)s?", "m"),
+    ("inch(?:es)?", "in"),
+    ("feet|foot", "ft"),
+    ("seconds?|sec", "s"),
+    ("gals?", "gal"),
+    ("gravity", "g"),
+)
+WORDS = {
+    "g": G,
+    "g's": G,
+    "mg": 1e-3 * G,
+    "%g": 1e-2 * G,
+    "gal": 1e-2,
+    "mgal": 1e-5,
+    **{
+        f"{length}{power}": factor
+        for length, factor in LENGTHS.items()
+        for power in ("/s2", "/s/s", "/ss", "/s.s", ".s-2", "s-2", ".s-1.s-1")
+    },
+}  # -> m/s2, as `_plain` writes them
 NOT_ACCELERATIONS = {f"{length}{rate}" for length in LENGTHS for rate in ("", "/s", ".s-1", "s-1")}
 
 _TIMES = {"s", "ms", "us", "min", "h"}
@@ -69,15 +87,24 @@ def stated_unit(header, titles=None):
         for key, word in _units_in(line, number == titles or any(names)):
             factor = factor_of(word)
             if factor is None:
-                raise SceneError(f"line {number}, {key}", word, "not an acceleration in g",
-                                 "give the acceleration file (.AT2) of this record, in g, cm/s2 or m/s2")
+                raise SceneError(
+                    f"line {number}, {key}",
+                    word,
+                    "not an acceleration in g",
+                    "give the acceleration file (.AT2) of this record, in g, cm/s2 or m/s2",
+                )
             if found and found.factor != factor:
-                raise SceneError(f"line {number}, {key}", word, f"but {found.where} says {found.word}",
-                                 "correct the wrong one")
+                raise SceneError(
+                    f"line {number}, {key}", word, f"but {found.where} says {found.word}", "correct the wrong one"
+                )
             found = found or Unit(word, factor, f"line {number}")
     if other and not acceleration:
-        raise SceneError(f"line {other[0]}", other[1], "not an acceleration",
-                         "give the acceleration file of this record; if it is one, let its header say so")
+        raise SceneError(
+            f"line {other[0]}",
+            other[1],
+            "not an acceleration",
+            "give the acceleration file of this record; if it is one, let its header say so",
+        )
     return found
 
 
@@ -96,15 +123,22 @@ def resolve(unit, given, no_unit):
     if unit is None:
         return Unit(given, UNITS[given], "units")
     if given is not None and UNITS[given] != unit.factor:
-        raise SceneError("motion.units", given, f"but the record carries its own unit, {unit.word} ({unit.where})",
-                         "remove units, or correct the record")
+        raise SceneError(
+            "motion.units",
+            given,
+            f"but the record carries its own unit, {unit.word} ({unit.where})",
+            "remove units, or correct the record",
+        )
     return unit
 
 
 def _units_in(line, suggest):
     """(key, word) of every unit stated in a line as `_spaced` writes it."""
-    quotients = {match.start(1): _word(match) for match in _QUOTIENT.finditer(line)
-                 if not _AFTER_NUMBER.search(line[:match.start()])}
+    quotients = {
+        match.start(1): _word(match)
+        for match in _QUOTIENT.finditer(line)
+        if not _AFTER_NUMBER.search(line[: match.start()])
+    }
     for match in _INTRODUCED.finditer(line):
         word = quotients.pop(match.start(1), _word(match))
         if _plain(word) not in _TIMES:
@@ -120,7 +154,7 @@ def _word(match):
     """The unit matched, without what a sentence or a bracket put behind it."""
     word = match[1]
     if word.count(")") > word.count("("):
-        word = word[:word.rindex(")")] if word.count("(") else word[:word.index(")")]
+        word = word[: word.rindex(")")] if word.count("(") else word[: word.index(")")]
     return word.rstrip(".'\"")
 
 

@@ -61,15 +61,34 @@ def bench_analytic(output, *, quick=False, random_scenes=0, record=None, advance
     if random_scenes:
         advance(f"{random_scenes} random scenes")
         faulty = check_random_scenes(random_scenes, SEED)
-        found.append(figures.Figure(f"{random_scenes} random valid scenes: with NaN, hang, failure or energy gain",
-                                    float(len(faulty)), "", "at most", 0, f"seed {SEED}"))
+        found.append(
+            figures.Figure(
+                f"{random_scenes} random valid scenes: with NaN, hang, failure or energy gain",
+                float(len(faulty)),
+                "",
+                "at most",
+                0,
+                f"seed {SEED}",
+            )
+        )
         if faulty:
             (output / "random-scenes.json").write_text(json.dumps(faulty, indent=1))
     rows = [entry.row() for entry in entries]
-    settings = {"quick": quick, "rounds": rounds, "motion": motion.label, "random_scenes": random_scenes,
-                "peers": peer_versions()}
-    write_result(output / "bench-analytic.json", "bench analytic", settings,
-                 [figure.row() for figure in found] + rows, modules=MODULES, seed=SEED if random_scenes else None)
+    settings = {
+        "quick": quick,
+        "rounds": rounds,
+        "motion": motion.label,
+        "random_scenes": random_scenes,
+        "peers": peer_versions(),
+    }
+    write_result(
+        output / "bench-analytic.json",
+        "bench analytic",
+        settings,
+        [figure.row() for figure in found] + rows,
+        modules=MODULES,
+        seed=SEED if random_scenes else None,
+    )
     from .plot import draw  # matplotlib takes its time
 
     draw(rows, machine(), output / "bench-analytic.png")

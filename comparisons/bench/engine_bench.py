@@ -64,8 +64,11 @@ def bench_engines(engine, output, *, scenes=2000, seed=1, workers=None, time_lim
     except OSError as error:
         raise SettingError(f"--output {output.name}: no folder can be made there ({error.strerror})") from error
     ensemble = [wide_scene(seed, index) for index in range(scenes)]
-    with (Store(output / "reference.jsonl") as reference, Store(output / f"{engine}.jsonl") as store,
-          Processes(workers, ("analytic", engine)) as executor):
+    with (
+        Store(output / "reference.jsonl") as reference,
+        Store(output / f"{engine}.jsonl") as store,
+        Processes(workers, ("analytic", engine)) as executor,
+    ):
         options = dict(executor=executor, measure=keep, progress=progress)
 
         def model_runs(cases, label):
@@ -79,10 +82,21 @@ def bench_engines(engine, output, *, scenes=2000, seed=1, workers=None, time_lim
         row["index"] = index
         if row["class"] == "off and silent":
             row["scene"] = describe(scene)
-    settings = {"engine": engine, "versions": get_engine(engine).versions(), "scenes": scenes, "time_limit": time_limit,
-                "variant": get_engine(engine).default_variant}
-    write_result(output / f"bench-engines-{engine}.json", "bench engines", settings, rows,
-                 modules=("comparisons.bench.engine_bench", "analytic.kernel", get_engine(engine).adapter), seed=seed)
+    settings = {
+        "engine": engine,
+        "versions": get_engine(engine).versions(),
+        "scenes": scenes,
+        "time_limit": time_limit,
+        "variant": get_engine(engine).default_variant,
+    }
+    write_result(
+        output / f"bench-engines-{engine}.json",
+        "bench engines",
+        settings,
+        rows,
+        modules=("comparisons.bench.engine_bench", "analytic.kernel", get_engine(engine).adapter),
+        seed=seed,
+    )
     return rows
 
 
@@ -90,15 +104,19 @@ def judged(ensemble, engine, model_runs, engine_runs):
     """Rows of all scenes; `model_runs(cases, label)` and `engine_runs(cases)` run them, the engine only what counts."""
     models = model_runs([Case(scene) for scene in ensemble], "analytic model")
     reasons = [_unusable(scene, model) for scene, model in zip(ensemble, models, strict=True)]
-    spans = [math.inf if reason else span(scene, model.values)
-             for scene, model, reason in zip(ensemble, models, reasons, strict=True)]
+    spans = [
+        math.inf if reason else span(scene, model.values)
+        for scene, model, reason in zip(ensemble, models, reasons, strict=True)
+    ]
     counted = [k for k, reason in enumerate(reasons) if reason is None]
     runs = dict(zip(counted, engine_runs([Case(ensemble[k], engine) for k in counted]), strict=True))
-    doubtful = [k for k, run in runs.items()
-                if not run.failed and findings(ensemble[k], models[k].values, run.values, spans[k])]
+    doubtful = [
+        k for k, run in runs.items() if not run.failed and findings(ensemble[k], models[k].values, run.values, spans[k])
+    ]
     families = [{**near_twins(ensemble[k]), **boundary_twins(ensemble[k])} for k in doubtful]
-    found = iter(model_runs([Case(twin) for family in families for twin in family.values()],
-                            "twins of doubtful scenes"))
+    found = iter(
+        model_runs([Case(twin) for family in families for twin in family.values()], "twins of doubtful scenes")
+    )
     twins = {k: {name: next(found) for name in family} for k, family in zip(doubtful, families, strict=True)}
     rows = []
     for k, (scene, model) in enumerate(zip(ensemble, models, strict=True)):
@@ -116,8 +134,12 @@ def judged(ensemble, engine, model_runs, engine_runs):
     return rows
 
 
-_WORDS = {(False, False): "right", (False, True): "right but warned",
-          (True, False): "off and silent", (True, True): "off and warned"}
+_WORDS = {
+    (False, False): "right",
+    (False, True): "right but warned",
+    (True, False): "off and silent",
+    (True, True): "off and warned",
+}
 
 
 def _unusable(scene, model):
@@ -129,22 +151,37 @@ def _row(scene, model, run, word, cause, off, notes, until):
     failure = (run.failure if run else None) or {}
     errors, warnings = {}, []
     if run and not run.failed:
-        errors = {**peak_errors(scene, model.values, values, until),
-                  "restitution": restitution_error(scene, values, until)}
+        errors = {
+            **peak_errors(scene, model.values, values, until),
+            "restitution": restitution_error(scene, values, until),
+        }
         warnings = range_warnings(model.values, values)
-    return {"class": word, "cause": cause, "findings": off, "notes": notes, "errors": errors,
-            "warnings": warnings, "message": failure.get("message", "")[:300],
-            "outcome": values.get("outcome"), "expected": model.values["outcome"],
-            "judged_until": None if math.isinf(until) else until,
-            "cpu_seconds": run.cost.get("cpu_seconds") if run else None,
-            "model_cpu_seconds": model.cost.get("cpu_seconds"), "simulated": scene.duration, "place": place(scene)}
+    return {
+        "class": word,
+        "cause": cause,
+        "findings": off,
+        "notes": notes,
+        "errors": errors,
+        "warnings": warnings,
+        "message": failure.get("message", "")[:300],
+        "outcome": values.get("outcome"),
+        "expected": model.values["outcome"],
+        "judged_until": None if math.isinf(until) else until,
+        "cpu_seconds": run.cost.get("cpu_seconds") if run else None,
+        "model_cpu_seconds": model.cost.get("cpu_seconds"),
+        "simulated": scene.duration,
+        "place": place(scene),
+    }
 
 
 def examine(engine, index, *, seed=1, time_limit=60.0):
     """(scene, kept analytic values, kept engine values, row of the bench) of one scene, run again; nothing stored."""
     scene, seen = wide_scene(seed, index), {}
-    with (TemporaryDirectory() as folder, Store(Path(folder) / "runs.jsonl") as store,
-          Processes(1, ("analytic", engine)) as executor):
+    with (
+        TemporaryDirectory() as folder,
+        Store(Path(folder) / "runs.jsonl") as store,
+        Processes(1, ("analytic", engine)) as executor,
+    ):
         options = dict(store=store, executor=executor, measure=keep, progress=False)
 
         def model_runs(cases, label):
@@ -155,7 +192,7 @@ def examine(engine, index, *, seed=1, time_limit=60.0):
         def engine_runs(cases):
             rows = run_sweep(cases or [Case(scene, engine)], time_limit=time_limit, **options)
             seen[engine] = rows[0].values
-            return rows[:len(cases)]
+            return rows[: len(cases)]
 
-        row, = judged([scene], engine, model_runs, engine_runs)
+        (row,) = judged([scene], engine, model_runs, engine_runs)
     return scene, seen["analytic"], seen[engine], {"index": index, **row}

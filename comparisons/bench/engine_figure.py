@@ -5,15 +5,34 @@ from matplotlib.figure import Figure
 from .engine_verdicts import CLASSES
 
 # Okabe and Ito: told apart in every colour vision; markers differ as well. The later ones lie on top.
-STYLES = {"right": ("#56B4E9", "o", 9), "left out": ("#BBBBBB", ".", 6), "right but warned": ("#009E73", "^", 16),
-          "off and warned": ("#E69F00", "v", 18), "failed and said": ("#000000", "s", 14),
-          "off and silent": ("#D55E00", "X", 44)}
-LABELS = {"slenderness": "slenderness [rad]", "excess": "J_O/(m R²) - 1", "base": "base over block mass",
-          "radius": "radius R [m]", "tilt": "released at tilt / slenderness", "mass": "block mass [kg]",
-          "amplitude": "pulse / uplift acceleration", "frequency": "base's frequency on bearings / omega_r",
-          "damping": "n_d c / (m_b omega_r)"}
-PANELS = (("slenderness", "excess"), ("base", "frequency"), ("slenderness", "base"),
-          ("radius", "mass"), ("frequency", "damping"), ("tilt", "slenderness"), ("amplitude", "slenderness"))
+STYLES = {
+    "right": ("#56B4E9", "o", 9),
+    "left out": ("#BBBBBB", ".", 6),
+    "right but warned": ("#009E73", "^", 16),
+    "off and warned": ("#E69F00", "v", 18),
+    "failed and said": ("#000000", "s", 14),
+    "off and silent": ("#D55E00", "X", 44),
+}
+LABELS = {
+    "slenderness": "slenderness [rad]",
+    "excess": "J_O/(m R²) - 1",
+    "base": "base over block mass",
+    "radius": "radius R [m]",
+    "tilt": "released at tilt / slenderness",
+    "mass": "block mass [kg]",
+    "amplitude": "pulse / uplift acceleration",
+    "frequency": "base's frequency on bearings / omega_r",
+    "damping": "n_d c / (m_b omega_r)",
+}
+PANELS = (
+    ("slenderness", "excess"),
+    ("base", "frequency"),
+    ("slenderness", "base"),
+    ("radius", "mass"),
+    ("frequency", "damping"),
+    ("tilt", "slenderness"),
+    ("amplitude", "slenderness"),
+)
 
 
 def draw(rows, title, path):
@@ -40,8 +59,7 @@ def _bars(axis, rows):
     axis.scatter([0] * len(CLASSES), places, c="white", s=1)
     for place, name, count in zip(places, CLASSES, counts, strict=True):
         axis.text(count, place, f" {count}", va="center", fontsize=9)
-        axis.scatter([-0.045 * max(counts)], [place], c=STYLES[name][0], marker=STYLES[name][1], s=40,
-                     clip_on=False)
+        axis.scatter([-0.045 * max(counts)], [place], c=STYLES[name][0], marker=STYLES[name][1], s=40, clip_on=False)
     axis.set_yticks(list(places), CLASSES)
     axis.tick_params(axis="y", pad=14, length=0)
     axis.set(xlabel="scenes", xlim=(0, 1.18 * max(counts)))

@@ -75,9 +75,16 @@ def off_table(rows):
     table = Table("index", "found", "outcome", "expected", "notes", "place", title="Off and silent")
     for row in rows:
         if row["class"] == "off and silent":
-            found = ", ".join(f"{one['quantity']} {one['error']:.3g}" if isinstance(one["error"], float)
-                              else f"{one['quantity']} {one['error']}" for one in row["findings"])
-            spot = ", ".join(f"{name} {value:.3g}" if _number(value) else f"{value}"
-                             for name, value in row["place"].items() if value is not None and name != "mass")
+            found = ", ".join(
+                f"{one['quantity']} {one['error']:.3g}"
+                if isinstance(one["error"], float)
+                else f"{one['quantity']} {one['error']}"
+                for one in row["findings"]
+            )
+            spot = ", ".join(
+                f"{name} {value:.3g}" if _number(value) else f"{value}"
+                for name, value in row["place"].items()
+                if value is not None and name != "mass"
+            )
             table.add_row(str(row["index"]), found, row["outcome"], row["expected"], ", ".join(row["notes"]), spot)
     return table

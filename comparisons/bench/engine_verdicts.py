@@ -122,8 +122,10 @@ def _other(scene, one, other):
 def least(scene):
     """{peak: value below which it is not told from nothing}: [rad], [m]."""
     block = scene.block
-    return {"tilt": LEAST_TILT * block.slenderness,
-            "displacement": LEAST_DISPLACEMENT * block.radius * block.slenderness}
+    return {
+        "tilt": LEAST_TILT * block.slenderness,
+        "displacement": LEAST_DISPLACEMENT * block.radius * block.slenderness,
+    }
 
 
 def peak_errors(scene, model, run, until=math.inf):
@@ -131,8 +133,10 @@ def peak_errors(scene, model, run, until=math.inf):
     last = _last(scene, until)
     errors = {}
     for name, floor in least(scene).items():
-        wanted, got = (kept[name] if last is None or kept[name] is None else
-                       kept[f"{name}s"][last] if last >= 0 else 0.0 for kept in (model, run))
+        wanted, got = (
+            kept[name] if last is None or kept[name] is None else kept[f"{name}s"][last] if last >= 0 else 0.0
+            for kept in (model, run)
+        )
         errors[name] = math.nan if got is None else abs(max(got, floor) / max(wanted, floor) - 1)
     return errors
 
@@ -204,8 +208,9 @@ def judge(scene, model, run, small, large, until=math.inf):
     """
     if not findings(scene, model, run, until):
         return [], []
-    determined = min((time for twin in small.values() for time in lost_impacts(scene, model, twin, until)),
-                     default=math.inf)
+    determined = min(
+        (time for twin in small.values() for time in lost_impacts(scene, model, twin, until)), default=math.inf
+    )
     found = findings(scene, model, run, until, determined)
     if not found:
         return found, ["ill-conditioned"]
@@ -217,6 +222,9 @@ def judge(scene, model, run, small, large, until=math.inf):
         notes = ["ill-conditioned"]
     until = min(until, apart)
     if notes:
-        found = [finding for finding in findings(scene, model, run, until, determined)
-                 if finding["quantity"] != "outcome" or "near a boundary" not in notes]
+        found = [
+            finding
+            for finding in findings(scene, model, run, until, determined)
+            if finding["quantity"] != "outcome" or "near a boundary" not in notes
+        ]
     return found, notes

@@ -34,8 +34,15 @@ class Figure:
 
     def row(self):
         """JSON-ready."""
-        return {"figure": self.name, "value": self.value, "unit": self.unit, "sense": self.sense,
-                "limit": self.limit, "met": self.met, "how": self.how}
+        return {
+            "figure": self.name,
+            "value": self.value,
+            "unit": self.unit,
+            "sense": self.sense,
+            "limit": self.limit,
+            "met": self.met,
+            "how": self.how,
+        }
 
 
 def ratios(entries, blocks, records):
@@ -46,8 +53,9 @@ def ratios(entries, blocks, records):
     for problem in blocks:
         found.append(_ratio(entries, problem, lambda name: name == "heyoka", "heyoka", 1e-12, "at least", 1))
     for problem in records:
-        found.append(_ratio(entries, problem, lambda name: name.startswith("DOP853"), "scipy DOP853", 1e-8,
-                            "at least", 300))
+        found.append(
+            _ratio(entries, problem, lambda name: name.startswith("DOP853"), "scipy DOP853", 1e-8, "at least", 300)
+        )
     return found
 
 
@@ -58,18 +66,20 @@ def _ratio(entries, problem, belongs, name, error, sense, limit):
     if fast is None or slow is None:
         lost = "the kernel" if fast is None else name
         return Figure(title, None, "", sense, limit, f"no setting of {lost} reaches it here")
-    how = (f"{slow.solver} at {slow.tolerance:g}: {slow.median * 1e3:.4g} ms, error {slow.error:.1e}; kernel at "
-           f"{fast.tolerance:g}: {fast.median * 1e6:.4g} us, error {fast.error:.1e}")
+    how = (
+        f"{slow.solver} at {slow.tolerance:g}: {slow.median * 1e3:.4g} ms, error {slow.error:.1e}; kernel at "
+        f"{fast.tolerance:g}: {fast.median * 1e6:.4g} us, error {fast.error:.1e}"
+    )
     return Figure(title, ratio(slow, fast), "", sense, limit, how)
 
 
 def independent_difference(problem):
     """Error, in the problem's own measure, of scipy's DOP853 at its tightest against the reference."""
-    response = simulate_twin(problem.scene, rtol=TWIN_TOLERANCE, history=False, energy=False,
-                             rest_rate=problem.rest_rate)
+    response = simulate_twin(
+        problem.scene, rtol=TWIN_TOLERANCE, history=False, energy=False, rest_rate=problem.rest_rate
+    )
     end = response.end
-    return (problem.error([end.tilt, end.tilt_rate, end.base_displacement, end.base_velocity]),
-            response.impact_count)
+    return (problem.error([end.tilt, end.tilt_rate, end.base_displacement, end.base_velocity]), response.impact_count)
 
 
 def agreement(problem):
@@ -78,10 +88,15 @@ def agreement(problem):
     kernel_error = problem.error([end.tilt, end.tilt_rate, end.base_displacement, end.base_velocity])
     difference, impacts = independent_difference(problem)
     counted = "all" if impacts == problem.impacts else f"{impacts} instead of"
-    return Figure(f"{problem.name} to {problem.horizon:g} s: error of the state at the default tolerance",
-                  kernel_error + difference, "", "at most", 1e-9,
-                  f"{kernel_error:.1e} from the kernel at 1e-17, which is {difference:.1e} from scipy DOP853 at "
-                  f"{TWIN_TOLERANCE:g}, {counted} {problem.impacts} impacts")
+    return Figure(
+        f"{problem.name} to {problem.horizon:g} s: error of the state at the default tolerance",
+        kernel_error + difference,
+        "",
+        "at most",
+        1e-9,
+        f"{kernel_error:.1e} from the kernel at 1e-17, which is {difference:.1e} from scipy DOP853 at "
+        f"{TWIN_TOLERANCE:g}, {counted} {problem.impacts} impacts",
+    )
 
 
 def costs(blocks, records, motion, rounds):
@@ -89,20 +104,59 @@ def costs(blocks, records, motion, rounds):
     found = []
     for problem in blocks:
         seconds = statistics.median(throughput.batch_cost(problem, rounds, 1e-14))
-        found.append(Figure(f"{problem.name}: CPU of the kernel per run in a compiled loop, tolerance 1e-14",
-                            seconds * 1e6, "us", None, None, "no Python between the runs"))
+        found.append(
+            Figure(
+                f"{problem.name}: CPU of the kernel per run in a compiled loop, tolerance 1e-14",
+                seconds * 1e6,
+                "us",
+                None,
+                None,
+                "no Python between the runs",
+            )
+        )
     standing = records[0]
-    found.append(Figure("isolated Caryatid without rocking: CPU per record sample, default tolerance",
-                        statistics.median(throughput.sample_cost(standing, rounds)) * 1e9, "ns", "at most", 250,
-                        standing.scene.motion.label))
+    found.append(
+        Figure(
+            "isolated Caryatid without rocking: CPU per record sample, default tolerance",
+            statistics.median(throughput.sample_cost(standing, rounds)) * 1e9,
+            "ns",
+            "at most",
+            250,
+            standing.scene.motion.label,
+        )
+    )
     seconds, share = throughput.map_cost(max(2, rounds // 3))
-    found.append(Figure("one-sine overturning map 100 x 100: CPU per run and core", statistics.median(seconds) * 1e6,
-                        "us", "at most", 10, f"{share:.0%} overturn"))
+    found.append(
+        Figure(
+            "one-sine overturning map 100 x 100: CPU per run and core",
+            statistics.median(seconds) * 1e6,
+            "us",
+            "at most",
+            10,
+            f"{share:.0%} overturn",
+        )
+    )
     seconds, share = throughput.spectrum_cost(motion, max(2, rounds // 3))
-    found.append(Figure("rocking spectrum of 500 periods on 2 cores: elapsed time", statistics.median(seconds), "s",
-                        "at most", 1, f"{motion.label}, slenderness 0.28, {share:.0%} overturn"))
+    found.append(
+        Figure(
+            "rocking spectrum of 500 periods on 2 cores: elapsed time",
+            statistics.median(seconds),
+            "s",
+            "at most",
+            1,
+            f"{motion.label}, slenderness 0.28, {share:.0%} overturn",
+        )
+    )
     seconds, parts, cpu = throughput.start_up(max(3, rounds // 3))
     shares = ", ".join(f"{name} {value:.2f}" for name, value in parts.items())
-    found.append(Figure("a process that runs one scene with the cached kernel: least elapsed time", min(seconds), "s",
-                        "at most", 1.5, f"CPU {cpu:.2f} s; medians: {shares}"))
+    found.append(
+        Figure(
+            "a process that runs one scene with the cached kernel: least elapsed time",
+            min(seconds),
+            "s",
+            "at most",
+            1.5,
+            f"CPU {cpu:.2f} s; medians: {shares}",
+        )
+    )
     return found

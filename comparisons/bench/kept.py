@@ -9,15 +9,27 @@ GRID, MOST_IMPACTS = 50, 400  # points of the growing peaks, impacts kept
 def keep(case, response):
     """Measure: what the judgement needs of a response with its history, as JSON values."""
     history = response.history
-    steps = np.searchsorted(history.time, history.time[1] * (2000 / GRID) * np.arange(1, GRID + 1) * (1 + 1e-9),
-                            side="right") - 1
+    steps = (
+        np.searchsorted(
+            history.time, history.time[1] * (2000 / GRID) * np.arange(1, GRID + 1) * (1 + 1e-9), side="right"
+        )
+        - 1
+    )
     rates = np.abs([impact.rate_before for impact in response.impacts])
-    counted = [impact for impact, rate in zip(response.impacts, rates, strict=True)
-               if not rate < 0.5 * RESOLVED * rates.max()][:MOST_IMPACTS]
-    return {"outcome": response.outcome, "decided": response.decided, "unstable": response.unstable_time,
-            "tilt": response.peak_tilt, "displacement": response.peak_base_displacement,
-            "tilts": np.maximum.accumulate(np.abs(history.tilt))[steps],
-            "displacements": np.maximum.accumulate(np.abs(history.base_displacement))[steps],
-            "impacts": [[impact.time, impact.rate_before, impact.rate_after] for impact in counted],
-            "normal": response.min_normal_ratio, "friction": response.friction_demand,
-            "warnings": response.warnings, "steps": response.steps}
+    counted = [
+        impact for impact, rate in zip(response.impacts, rates, strict=True) if not rate < 0.5 * RESOLVED * rates.max()
+    ][:MOST_IMPACTS]
+    return {
+        "outcome": response.outcome,
+        "decided": response.decided,
+        "unstable": response.unstable_time,
+        "tilt": response.peak_tilt,
+        "displacement": response.peak_base_displacement,
+        "tilts": np.maximum.accumulate(np.abs(history.tilt))[steps],
+        "displacements": np.maximum.accumulate(np.abs(history.base_displacement))[steps],
+        "impacts": [[impact.time, impact.rate_before, impact.rate_after] for impact in counted],
+        "normal": response.min_normal_ratio,
+        "friction": response.friction_demand,
+        "warnings": response.warnings,
+        "steps": response.steps,
+    }

@@ -31,5 +31,4 @@ def kernel_batch(problem, tolerance, count):
 
 
 def _options(problem, tolerance, inside):
-    return options(tolerance, rest_rate=problem.rest_rate, record=False,
-                   output_step=problem.horizon if inside else 0.0)
+    return options(tolerance, rest_rate=problem.rest_rate, record=False, output_step=problem.horizon if inside else 0.0)

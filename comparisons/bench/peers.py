@@ -39,10 +39,16 @@ def heyoka_run(problem, tolerance):
         return abs(rate) >= least
 
     def system(push):
-        event = heyoka.t_event(heyoka.par[0] * phi, callback=impact, direction=heyoka.event_direction.negative,
-                               cooldown=COOLDOWN)
-        return heyoka.taylor_adaptive([(phi, w), (w, -p2 * (heyoka.sin(angle) + push))], [tilt0, rate0],
-                                      pars=[side0], tol=tolerance, t_events=[event])
+        event = heyoka.t_event(
+            heyoka.par[0] * phi, callback=impact, direction=heyoka.event_direction.negative, cooldown=COOLDOWN
+        )
+        return heyoka.taylor_adaptive(
+            [(phi, w), (w, -p2 * (heyoka.sin(angle) + push))],
+            [tilt0, rate0],
+            pars=[side0],
+            tol=tolerance,
+            t_events=[event],
+        )
 
     free = system(0.0)
     stages = []
@@ -92,8 +98,15 @@ def cvode_run(problem, rtol):
     def run():
         t, y, impacts, state = start, np.array([tilt0, rate0]), 0, None
         now["s"] = side0
-        solver = CVODE(derivative, method="Adams", rtol=rtol, atol=rtol * np.array([gamma, gamma * omega]),
-                       eventsfn=impact, num_events=1, max_num_steps=100000)
+        solver = CVODE(
+            derivative,
+            method="Adams",
+            rtol=rtol,
+            atol=rtol * np.array([gamma, gamma * omega]),
+            eventsfn=impact,
+            num_events=1,
+            max_num_steps=100000,
+        )
         for stop in stops:
             now["push"] = a if corners and t < corners[0] else 0.0
             now["begin"] = t
@@ -149,8 +162,16 @@ def cyrk_run(problem, rtol):
             now["begin"] = t
             derivative = forced if corners and t < corners[0] else free
             while t < stop:
-                result = pysolve_ivp(derivative, (t, stop), y, method="DOP853", rtol=rtol, atol=atol,
-                                     events=(impact,), pass_dy_as_arg=True)
+                result = pysolve_ivp(
+                    derivative,
+                    (t, stop),
+                    y,
+                    method="DOP853",
+                    rtol=rtol,
+                    atol=atol,
+                    events=(impact,),
+                    pass_dy_as_arg=True,
+                )
                 if not result.success:
                     return np.array([math.nan]), impacts
                 t, y = float(result.t[-1]), result.y[:, -1].copy()

@@ -50,8 +50,14 @@ def block_problems():
 
 def caryatid(slenderness, motion, duration):
     """The Caryatid on the bearings of the paper's Table 1 under `motion`."""
-    return Scene(name=f"isolated Caryatid, slenderness {slenderness:g}", motion=motion, duration=duration,
-                 block=caryatid_block(slenderness), base=BASE, bearings=BEARINGS)
+    return Scene(
+        name=f"isolated Caryatid, slenderness {slenderness:g}",
+        motion=motion,
+        duration=duration,
+        block=caryatid_block(slenderness),
+        base=BASE,
+        bearings=BEARINGS,
+    )
 
 
 def caryatid_problem(slenderness, motion, duration):

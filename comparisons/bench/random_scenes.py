@@ -28,8 +28,15 @@ def random_scene(seed, index):
     bearings = _bearings(rng, block.mass + base.mass) if base and rng.random() < 0.85 else None
     motion = _motion(rng, omega, 9.81 * math.tan(block.slenderness))
     duration = min(rng.uniform(0.5, 15) * 2 * math.pi / omega, 40.0)
-    return Scene(block=block, base=base, bearings=bearings, motion=motion, duration=float(duration),
-                 start=_start(rng, block, omega, base), name=f"random scene {seed}/{index}")
+    return Scene(
+        block=block,
+        base=base,
+        bearings=bearings,
+        motion=motion,
+        duration=float(duration),
+        start=_start(rng, block, omega, base),
+        name=f"random scene {seed}/{index}",
+    )
 
 
 def _log(rng, low, high):
@@ -43,8 +50,13 @@ def _block(rng):
         inertia = float(mass * radius**2 * (1 + _log(rng, 1e-3, 3.0)))
     if rng.random() < 0.3:
         restitution = float(rng.choice([0.0, 1.0, rng.uniform(), 1 - _log(rng, 1e-8, 1e-1)]))
-    return Block(mass=mass, radius=radius, slenderness=float(rng.uniform(0.02, 1.5)), corner_inertia=inertia,
-                 restitution=restitution)
+    return Block(
+        mass=mass,
+        radius=radius,
+        slenderness=float(rng.uniform(0.02, 1.5)),
+        corner_inertia=inertia,
+        restitution=restitution,
+    )
 
 
 def _bearings(rng, carried):
@@ -57,8 +69,9 @@ def _bearings(rng, carried):
         return Bearings(law=law, count=count, ka=ka, damping=viscous)
     delta = 1e-20 if rng.random() < 0.5 else (ka - (ka - dk)) * _log(rng, 1e-20, 1e-2)
     kb = 0.0 if rng.random() < 0.05 else ka - dk
-    return Bearings(law=law, count=count, ka=ka, kb=kb, alpha=1 + _log(rng, 0.05, 199.0), delta_k=delta,
-                    damping=viscous)
+    return Bearings(
+        law=law, count=count, ka=ka, kb=kb, alpha=1 + _log(rng, 0.05, 199.0), delta_k=delta, damping=viscous
+    )
 
 
 def _motion(rng, omega, unit):
@@ -68,8 +81,12 @@ def _motion(rng, omega, unit):
     if rng.random() < 0.05:  # touches the uplift threshold to the last bit
         amplitude = math.copysign(unit, amplitude)
     if kind < 0.55:
-        return PulseMotion(str(rng.choice(PULSES)), amplitude, omega * _log(rng, 0.3, 10.0),
-                           float(rng.choice([0.0, rng.uniform(0, 2)])))
+        return PulseMotion(
+            str(rng.choice(PULSES)),
+            amplitude,
+            omega * _log(rng, 0.3, 10.0),
+            float(rng.choice([0.0, rng.uniform(0, 2)])),
+        )
     samples = rng.standard_normal(int(rng.integers(2, 400)))
     if rng.random() < 0.5:  # smoother: each sample near the last one
         samples = np.cumsum(samples)
@@ -103,9 +120,16 @@ def faults(scene):
     found = {}
     if response.failure:
         found["failure"] = response.failure.reason
-    numbers = [response.peak_tilt, response.peak_base_displacement, response.peak_base_acceleration,
-               response.end.tilt, response.end.tilt_rate, response.end.base_displacement,
-               response.end.base_velocity, response.end.bearing_force]
+    numbers = [
+        response.peak_tilt,
+        response.peak_base_displacement,
+        response.peak_base_acceleration,
+        response.end.tilt,
+        response.end.tilt_rate,
+        response.end.base_displacement,
+        response.end.base_velocity,
+        response.end.bearing_force,
+    ]
     ledger = response.energy
     terms = [ledger.kinetic, ledger.potential, ledger.input, ledger.hysteretic, ledger.viscous, ledger.impact_loss]
     if not np.isfinite(numbers + terms).all():
@@ -211,6 +235,10 @@ def describe(scene):
     if isinstance(motion, SampledMotion):
         content["motion"] = {"dt": motion.dt, "samples": motion.samples}
     elif motion is not None:
-        content["motion"] = {"pulse": motion.shape, "amplitude": motion.amplitude, "frequency": motion.frequency,
-                             "start": motion.start}
+        content["motion"] = {
+            "pulse": motion.shape,
+            "amplitude": motion.amplitude,
+            "frequency": motion.frequency,
+            "start": motion.start,
+        }
     return json_ready(content)

@@ -50,6 +50,7 @@ def block_run(problem, method, rtol):
         def derivative(t, y):
             phi, w = y.tolist()
             return w, -p2 * sin(s * gamma - phi)
+
         return derivative
 
     def forced(s):
@@ -57,6 +58,7 @@ def block_run(problem, method, rtol):
             phi, w = y.tolist()
             angle = s * gamma - phi
             return w, -p2 * (sin(angle) + a * sin(frequency * t) * cos(angle))
+
         return derivative
 
     def run():
@@ -71,8 +73,9 @@ def block_run(problem, method, rtol):
 
                 impact.terminal, impact.direction = True, -1
                 step = {"first_step": min(first, stop - t)} if first else {}
-                solution = solve_ivp((forced if pushed else free)(s), (t, stop), y, method, events=impact, rtol=rtol,
-                                     atol=atol, **step)
+                solution = solve_ivp(
+                    (forced if pushed else free)(s), (t, stop), y, method, events=impact, rtol=rtol, atol=atol, **step
+                )
                 if solution.status < 0:
                     return np.array([math.nan]), impacts
                 t, (phi, w) = float(solution.t[-1]), solution.y[:, -1].tolist()
@@ -97,11 +100,17 @@ def twin_run(problem, method, rtol):
     longest = problem.scene.motion.dt  # half the twin's own cost; whether a hop is missed the count of impacts tells
 
     def run():
-        response = simulate_twin(problem.scene, method=method, rtol=rtol, history=False, energy=False,
-                                 max_step=longest, rest_rate=problem.rest_rate)
+        response = simulate_twin(
+            problem.scene,
+            method=method,
+            rtol=rtol,
+            history=False,
+            energy=False,
+            max_step=longest,
+            rest_rate=problem.rest_rate,
+        )
         end = response.end
-        return (np.array([end.tilt, end.tilt_rate, end.base_displacement, end.base_velocity]),
-                len(response.impacts))
+        return (np.array([end.tilt, end.tilt_rate, end.base_displacement, end.base_velocity]), len(response.impacts))
 
     return run
 
@@ -151,8 +160,16 @@ def contact_run(problem, method, rtol):
 
             reversal.terminal, reversal.direction = True, -1
             uplift.terminal = True
-            solution = solve_ivp(derivative, (t, duration), y, method, events=(reversal, uplift), rtol=rtol,
-                                 atol=atol, first_step=min(dt, duration - t))
+            solution = solve_ivp(
+                derivative,
+                (t, duration),
+                y,
+                method,
+                events=(reversal, uplift),
+                rtol=rtol,
+                atol=atol,
+                first_step=min(dt, duration - t),
+            )
             if solution.status < 0 or len(solution.t_events[1]):
                 return np.full(4, math.nan), -1
             t, (x, v) = float(solution.t[-1]), solution.y[:, -1].tolist()

@@ -8,13 +8,29 @@ def solver_table(rows):
     table = Table("problem", "solver", "tolerance", "CPU [ms]", "10-90 %", "error", "impacts", title="One run")
     for row in rows:
         if row["failure"]:
-            table.add_row(row["problem"], row["solver"], f"{row['tolerance']:g}", "-", "-", "failed", row["failure"],
-                          style="yellow")
+            table.add_row(
+                row["problem"],
+                row["solver"],
+                f"{row['tolerance']:g}",
+                "-",
+                "-",
+                "failed",
+                row["failure"],
+                style="yellow",
+            )
             continue
         impacts = str(row["impacts"]) if row["counted"] else f"{row['impacts']}, not {row['impacts_expected']}"
         spread = f"{row['cpu_seconds_low'] * 1e3:.4g}-{row['cpu_seconds_high'] * 1e3:.4g}"
-        table.add_row(row["problem"], row["solver"], f"{row['tolerance']:g}", f"{row['cpu_seconds'] * 1e3:.4g}", spread,
-                      f"{row['error']:.1e}", impacts, style=None if row["counted"] else "yellow")
+        table.add_row(
+            row["problem"],
+            row["solver"],
+            f"{row['tolerance']:g}",
+            f"{row['cpu_seconds'] * 1e3:.4g}",
+            spread,
+            f"{row['error']:.1e}",
+            impacts,
+            style=None if row["counted"] else "yellow",
+        )
     return table
 
 

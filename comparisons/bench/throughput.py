@@ -75,8 +75,9 @@ def start_up(rounds):
     seconds, parts = [], []
     for _ in range(rounds + 1):
         begin = time.perf_counter()
-        done = subprocess.run([sys.executable, "-c", ONE_SCENE], capture_output=True, text=True, check=True,
-                              env=environment, timeout=300)
+        done = subprocess.run(
+            [sys.executable, "-c", ONE_SCENE], capture_output=True, text=True, check=True, env=environment, timeout=300
+        )
         seconds.append(time.perf_counter() - begin)
         parts.append([float(word) for word in done.stdout.split()])
     seconds, parts = seconds[1:], parts[1:]  # the first one may compile the kernel

@@ -42,20 +42,33 @@ def wide_scene(seed, index):
         duration = min(rng.uniform(1, 3) * period, rng.uniform(4, 12) * swing)
     else:
         amplitude = 9.81 * math.tan(block.slenderness) * _log(rng, 0.3, 10.0)
-        motion = PulseMotion(str(rng.choice(PULSES)), float(rng.choice([-1.0, 1.0])) * amplitude,
-                             omega * _log(rng, 0.5, 10.0), float(rng.choice([0.0, rng.uniform(0, 0.5) / omega])))
+        motion = PulseMotion(
+            str(rng.choice(PULSES)),
+            float(rng.choice([-1.0, 1.0])) * amplitude,
+            omega * _log(rng, 0.5, 10.0),
+            float(rng.choice([0.0, rng.uniform(0, 0.5) / omega])),
+        )
         duration = motion.end + rng.uniform(0.5, 2) * period
-    return Scene(block=block, base=base, bearings=bearings, motion=motion, start=start, duration=float(duration),
-                 name=f"wide scene {seed}/{index}")
+    return Scene(
+        block=block,
+        base=base,
+        bearings=bearings,
+        motion=motion,
+        start=start,
+        duration=float(duration),
+        name=f"wide scene {seed}/{index}",
+    )
 
 
 def is_core(scene):
     """Whether a scene lies in the core range, where nothing may be warned of."""
     block = scene.block
     inertia = block.inertia / (block.mass * block.radius**2)
-    return (CORE_SLENDERNESS[0] <= block.slenderness <= CORE_SLENDERNESS[1]
-            and CORE_INERTIA[0] <= inertia <= CORE_INERTIA[1]
-            and (scene.base is None or scene.base.mass >= CORE_BASE * block.mass))
+    return (
+        CORE_SLENDERNESS[0] <= block.slenderness <= CORE_SLENDERNESS[1]
+        and CORE_INERTIA[0] <= inertia <= CORE_INERTIA[1]
+        and (scene.base is None or scene.base.mass >= CORE_BASE * block.mass)
+    )
 
 
 def place(scene):
@@ -64,13 +77,20 @@ def place(scene):
     frequency: of the base on its bearings, sqrt(n_d k_a/m_b), and damping: n_d c/m_b, both over omega_r.
     """
     block, base, bearings, omega = scene.block, scene.base, scene.bearings, scene.rocking_frequency
-    found = {"slenderness": block.slenderness, "inertia": block.inertia / (block.mass * block.radius**2),
-             "radius": block.radius, "mass": block.mass, "base": base and base.mass / block.mass,
-             "law": bearings and bearings.law, "stiffness": bearings and bearings.ka,
-             "frequency": bearings and math.sqrt(bearings.count * bearings.ka / base.mass) / omega,
-             "damping": bearings and bearings.count * bearings.damping / base.mass / omega,
-             "tilt": abs(scene.start.tilt) / block.slenderness or None,
-             "pulse": scene.motion and scene.motion.shape, "core": is_core(scene)}
+    found = {
+        "slenderness": block.slenderness,
+        "inertia": block.inertia / (block.mass * block.radius**2),
+        "radius": block.radius,
+        "mass": block.mass,
+        "base": base and base.mass / block.mass,
+        "law": bearings and bearings.law,
+        "stiffness": bearings and bearings.ka,
+        "frequency": bearings and math.sqrt(bearings.count * bearings.ka / base.mass) / omega,
+        "damping": bearings and bearings.count * bearings.damping / base.mass / omega,
+        "tilt": abs(scene.start.tilt) / block.slenderness or None,
+        "pulse": scene.motion and scene.motion.shape,
+        "core": is_core(scene),
+    }
     if scene.motion is not None:
         found["amplitude"] = abs(scene.motion.amplitude) / (scene.gravity * math.tan(block.slenderness))
     return found

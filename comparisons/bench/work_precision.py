@@ -24,11 +24,23 @@ TOLERANCES = {
     "LSODA": (1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12),
     "Radau": (1e-6, 1e-8, 1e-9),
 }
-QUICK = {KERNEL: (1e-8, 1e-10, 1e-12, 1e-14, 1e-16), "heyoka": (1e-9, 1e-12, 2.3e-16), "CVODE Adams": (1e-9, 1e-12),
-         "CyRK DOP853": (1e-9, 1e-11, 1e-13), "RK45": (1e-8, 1e-10), "DOP853": (1e-10, 1e-11, 1e-12),
-         "LSODA": (1e-9, 1e-11), "Radau": (1e-6,)}
-ON_RECORD = {KERNEL: TOLERANCES[KERNEL], "RK45": (1e-6, 1e-8, 1e-10), "DOP853": (1e-6, 1e-8, 1e-10),
-             "LSODA": (1e-6, 1e-8, 1e-10), "Radau": (1e-6,)}
+QUICK = {
+    KERNEL: (1e-8, 1e-10, 1e-12, 1e-14, 1e-16),
+    "heyoka": (1e-9, 1e-12, 2.3e-16),
+    "CVODE Adams": (1e-9, 1e-12),
+    "CyRK DOP853": (1e-9, 1e-11, 1e-13),
+    "RK45": (1e-8, 1e-10),
+    "DOP853": (1e-10, 1e-11, 1e-12),
+    "LSODA": (1e-9, 1e-11),
+    "Radau": (1e-6,),
+}
+ON_RECORD = {
+    KERNEL: TOLERANCES[KERNEL],
+    "RK45": (1e-6, 1e-8, 1e-10),
+    "DOP853": (1e-6, 1e-8, 1e-10),
+    "LSODA": (1e-6, 1e-8, 1e-10),
+    "Radau": (1e-6,),
+}
 TWIN = {"RK45": (1e-4, 1e-9), "DOP853": (1e-4, 1e-9), "LSODA": (1e-9,), "Radau": (1e-6,)}
 TWIN_QUICK = {"DOP853": (1e-6,)}
 
@@ -59,11 +71,21 @@ class Entry:
     def row(self):
         """JSON-ready."""
         low, median, high = np.percentile(self.seconds, (10, 50, 90)).tolist() if self.seconds else 3 * [None]
-        return {"problem": self.problem.name, "solver": self.solver, "tolerance": self.tolerance, "error": self.error,
-                "impacts": self.impacts, "impacts_expected": self.problem.impacts, "counted": self.counted,
-                "cpu_seconds": median, "cpu_seconds_low": low, "cpu_seconds_high": high,
-                "runs_per_timing": self.batch, "timings": len(self.seconds),
-                "failure": self.failure}
+        return {
+            "problem": self.problem.name,
+            "solver": self.solver,
+            "tolerance": self.tolerance,
+            "error": self.error,
+            "impacts": self.impacts,
+            "impacts_expected": self.problem.impacts,
+            "counted": self.counted,
+            "cpu_seconds": median,
+            "cpu_seconds_low": low,
+            "cpu_seconds_high": high,
+            "runs_per_timing": self.batch,
+            "timings": len(self.seconds),
+            "failure": self.failure,
+        }
 
 
 def block_entries(problem, quick):
@@ -71,21 +93,30 @@ def block_entries(problem, quick):
     runs = {KERNEL: kernel_run, **{name: peers.RUNS[name] for name in peers.installed()}}
     runs |= {method: (lambda chosen, rtol, method=method: block_run(chosen, method, rtol)) for method in METHODS}
     ladder = QUICK if quick else TOLERANCES
-    return [Entry(problem, name, tolerance, make(problem, tolerance))
-            for name, make in runs.items() for tolerance in ladder[name]]
+    return [
+        Entry(problem, name, tolerance, make(problem, tolerance))
+        for name, make in runs.items()
+        for tolerance in ladder[name]
+    ]
 
 
 def record_entries(problem, quick):
     """Kernel and scipy on a problem under a record: the readable twin, and a lean set-up where nothing rocks."""
-    found = [Entry(problem, KERNEL, tolerance, kernel_run(problem, tolerance))
-             for tolerance in (QUICK if quick else ON_RECORD)[KERNEL]]
+    found = [
+        Entry(problem, KERNEL, tolerance, kernel_run(problem, tolerance))
+        for tolerance in (QUICK if quick else ON_RECORD)[KERNEL]
+    ]
     for method, tolerances in (TWIN_QUICK if quick else TWIN).items():
-        found += [Entry(problem, f"{method}, stop at samples", tolerance, twin_run(problem, method, tolerance))
-                  for tolerance in tolerances]
+        found += [
+            Entry(problem, f"{method}, stop at samples", tolerance, twin_run(problem, method, tolerance))
+            for tolerance in tolerances
+        ]
     if problem.impacts == 0:
         for method in METHODS[:2] if quick else METHODS:
-            found += [Entry(problem, method, tolerance, contact_run(problem, method, tolerance))
-                      for tolerance in ON_RECORD[method][: 1 if quick else None]]
+            found += [
+                Entry(problem, method, tolerance, contact_run(problem, method, tolerance))
+                for tolerance in ON_RECORD[method][: 1 if quick else None]
+            ]
     return found
 
 
@@ -123,8 +154,11 @@ def measure(entries, rounds, advance=lambda: None):
 
 def cheapest(entries, problem, belongs, error):
     """The cheapest sound entry on `problem` of a solver for which `belongs(name)` that reaches `error`, or None."""
-    able = [entry for entry in entries
-            if entry.problem is problem and belongs(entry.solver) and entry.counted and entry.error <= error]
+    able = [
+        entry
+        for entry in entries
+        if entry.problem is problem and belongs(entry.solver) and entry.counted and entry.error <= error
+    ]
     return min(able, key=lambda entry: entry.median, default=None)
 
 

@@ -4,8 +4,12 @@ from typing import Annotated
 
 import typer
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None, no_args_is_help=True,
-                  help="Measure what the solvers cost at what error.")
+app = typer.Typer(
+    add_completion=False,
+    rich_markup_mode=None,
+    no_args_is_help=True,
+    help="Measure what the solvers cost at what error.",
+)
 
 
 @app.callback()
@@ -17,8 +21,10 @@ def _about():
 def analytic(
     quick: Annotated[bool, typer.Option(help="Fewer settings and rounds: under a minute.")] = False,
     random: Annotated[int, typer.Option(min=0, help="Random valid scenes to run through the kernel.")] = 0,
-    record: Annotated[str | None, typer.Option(metavar="FILE", help="Record for the isolated Caryatid; without it "
-                                                                    "the shipped synthetic motion.")] = None,
+    record: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Record for the isolated Caryatid; without it the shipped synthetic motion."),
+    ] = None,
     output: Annotated[str, typer.Option(metavar="DIR", help="Where the results go.")] = "bench-analytic",
 ):
     """Kernel against scipy and other solvers, and the figures it promises. Status 1: a random scene failed."""
@@ -31,8 +37,9 @@ def analytic(
     check_folder(output)
     notes = Console(stderr=True)
     with notes.status("problems") as status:
-        found, rows, faulty = bench_analytic(output, quick=quick, random_scenes=random, record=record,
-                                             advance=status.update)
+        found, rows, faulty = bench_analytic(
+            output, quick=quick, random_scenes=random, record=record, advance=status.update
+        )
     console = Console()
     console.print(solver_table(rows))
     console.print(figure_table(found))

@@ -21,11 +21,13 @@ from ..running.solving import (
 
 def command(
     scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
-    engine: Annotated[list[str] | None, typer.Option(help="An engine to compare; may be repeated. "
-                                                          "Default: all that are installed.")] = None,
+    engine: Annotated[
+        list[str] | None, typer.Option(help="An engine to compare; may be repeated. Default: all that are installed.")
+    ] = None,
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Overlay the histories (.png, .svg, .pdf).")] = None,
-    json_file: Annotated[str | None, typer.Option("--json", metavar="FILE",
-                                                  help="Write the results; - prints them.")] = None,
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write the results; - prints them.")
+    ] = None,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", help=TIME_LIMIT_HELP)] = TIME_LIMIT,
 ):
     """Simulate one scene with the analytic model and the engines: outcomes, errors and CPU time side by side.
@@ -48,26 +50,38 @@ def command(
     responses = []
     for number, name in enumerate(names, 1):
         try:
-            responses.append(simulate(what, name, history=True, time_limit=time_limit,
-                                      words=f"{what.name}: {name} ({number} of {len(names)})"))
+            responses.append(
+                simulate(
+                    what,
+                    name,
+                    history=True,
+                    time_limit=time_limit,
+                    words=f"{what.name}: {name} ({number} of {len(names)})",
+                )
+            )
         except EngineNotInstalled:
             if engine:  # asked for by name
                 raise
     horizons = {}
     if not responses[0].failure:
-        horizons, failure = alone(_horizons, what, responses, time_limit=time_limit,
-                                  meanwhile=spinner(f"{what.name}: sensitivity horizons"))
+        horizons, failure = alone(
+            _horizons, what, responses, time_limit=time_limit, meanwhile=spinner(f"{what.name}: sensitivity horizons")
+        )
         if failure:
             horizons = {}
             say(f"no sensitivity horizons: {failure.reason}. {readable(failure.message.partition(chr(10))[0])}")
     horizon = min((found.horizon for found in horizons.values() if found.parts), default=None)
     results = {}
     if json_file:
-        content = {"scene": what.name, "sensitivity_horizon": horizon,
-                   "sensitivity": {name: {"perturbation": found.perturbation,
-                                          "horizon": found.horizon if found.parts else None}
-                                   for name, found in horizons.items()},
-                   "responses": [response.to_json() for response in responses]}
+        content = {
+            "scene": what.name,
+            "sensitivity_horizon": horizon,
+            "sensitivity": {
+                name: {"perturbation": found.perturbation, "horizon": found.horizon if found.parts else None}
+                for name, found in horizons.items()
+            },
+            "responses": [response.to_json() for response in responses],
+        }
         results[json_file] = json.dumps(content, indent=2, allow_nan=False) + "\n"
     drawn = [response for response in responses if response.history] if plot else []
     if drawn:
@@ -93,5 +107,8 @@ def _horizons(scene, responses):
     """{solver: its `Horizon`} of all that did not fail; the first is the reference."""
     from ..measuring.horizon import solver_horizon
 
-    return {response.engine: solver_horizon(scene, response, responses[0])
-            for response in responses[1:] if not response.failure}
+    return {
+        response.engine: solver_horizon(scene, response, responses[0])
+        for response in responses[1:]
+        if not response.failure
+    }

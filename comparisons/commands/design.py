@@ -15,8 +15,9 @@ def command(
     count: Annotated[int, typer.Option(help="Number of bearings.")] = 4,
     ratio: Annotated[float, typer.Option(help="ka/kb; Table 1(b) of the paper has 10.")] = 10.0,
     definition: Annotated[str, typer.Option(help="paper: W_D/(2 pi E_s); equivalent: W_D/(4 pi E_s).")] = "paper",
-    json_file: Annotated[str | None, typer.Option("--json", metavar="FILE",
-                                                  help="Write the design; - prints it.")] = None,
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write the design; - prints it.")
+    ] = None,
 ):
     """Bearing constants for a target period, damping and displacement: Table 1(a) to Table 1(b), and back."""
     from rich.console import Console
@@ -35,9 +36,13 @@ def command(
     if json_file == "-":
         return
     console = Console(highlight=False, soft_wrap=True)
-    console.print(f"[bold]ka[/bold] = {bearings.ka:.5g} N/m   [bold]kb[/bold] = {bearings.kb:.5g} N/m   "
-                  f"[bold]alpha[/bold] = {bearings.alpha:.4f}   for each of {count} bearings")
-    console.print(f"back: secant period {back.period:.5g} s at {xmax:g} m ({back.period_kb:.4g} s with kb alone); "
-                  f"damping {back.damping_paper:.2%} as W_D/(2 pi E_s), "
-                  f"{back.damping_equivalent:.2%} as W_D/(4 pi E_s); "
-                  f"loss {back.cycle_loss:.5g} J a cycle and bearing")
+    console.print(
+        f"[bold]ka[/bold] = {bearings.ka:.5g} N/m   [bold]kb[/bold] = {bearings.kb:.5g} N/m   "
+        f"[bold]alpha[/bold] = {bearings.alpha:.4f}   for each of {count} bearings"
+    )
+    console.print(
+        f"back: secant period {back.period:.5g} s at {xmax:g} m ({back.period_kb:.4g} s with kb alone); "
+        f"damping {back.damping_paper:.2%} as W_D/(2 pi E_s), "
+        f"{back.damping_equivalent:.2%} as W_D/(4 pi E_s); "
+        f"loss {back.cycle_loss:.5g} J a cycle and bearing"
+    )

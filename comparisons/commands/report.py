@@ -6,11 +6,16 @@ import typer
 
 
 def command(
-    record: Annotated[str | None, typer.Option(metavar="FILE", help="Recorded ground motion: PEER AT2, ESM/DYNA 1.2 "
-                                               "or two columns. Default: the shipped synthetic motion.")] = None,
+    record: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Recorded ground motion: PEER AT2, ESM/DYNA 1.2 "
+            "or two columns. Default: the shipped synthetic motion.",
+        ),
+    ] = None,
     units: Annotated[str | None, typer.Option(help="Of a record in two columns: m/s2, cm/s2 or g.")] = None,
-    output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the page and its "
-                                                            "result files.")] = "report",
+    output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the page and its result files.")] = "report",
 ):
     """All solvers on the Caryatid, free-standing and isolated: one HTML page and the result files it is made from."""
     from ..report.study import make_results

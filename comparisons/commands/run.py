@@ -21,10 +21,12 @@ def command(
     scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
     engine: Annotated[str, typer.Option(help="analytic, or an engine; see `rocking engines`.")] = "analytic",
     variant: Annotated[str | None, typer.Option(help="How the engine is set up; see `rocking engines`.")] = None,
-    settings: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE",
-                                                       help="A setting of the solver; may be repeated.")] = None,
-    json_file: Annotated[str | None, typer.Option("--json", metavar="FILE",
-                                                  help="Write the result; - prints it.")] = None,
+    settings: Annotated[
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A setting of the solver; may be repeated.")
+    ] = None,
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write the result; - prints it.")
+    ] = None,
     csv: Annotated[str | None, typer.Option(metavar="FILE", help="Write the history.")] = None,
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the history (.png, .svg or .pdf).")] = None,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", help=TIME_LIMIT_HELP)] = TIME_LIMIT,
@@ -38,8 +40,15 @@ def command(
     check_writable([json_file, csv], picture=plot, inputs=[scene])
     check_solver(engine)
     what = load_scene(scene)
-    response = simulate(what, engine, variant, parse_settings(settings or []), history=bool(csv or plot),
-                        time_limit=time_limit, words=f"{what.name}: {engine}")
+    response = simulate(
+        what,
+        engine,
+        variant,
+        parse_settings(settings or []),
+        history=bool(csv or plot),
+        time_limit=time_limit,
+        words=f"{what.name}: {engine}",
+    )
     results = {}
     if json_file:
         results[json_file] = json.dumps(response.to_json(), indent=2, allow_nan=False) + "\n"

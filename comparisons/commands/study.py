@@ -9,19 +9,30 @@ from typer.core import TyperGroup
 from ..studies import StudyBroken, draw, get_study, study_names
 
 Quick = Annotated[bool, typer.Option("--quick", help="A first look, in minutes.")]
-Output = Annotated[str | None, typer.Option(metavar="DIR", help="Folder for the result file, the figures and the runs "
-                                                                "from which an interrupted study resumes. Default: "
-                                                                "NAME-study.")]
-Engines = Annotated[list[str] | None, typer.Option("--engine", help="Engine to compare, more than one by repetition; "
-                                                                    "all installed without it.")]
+Output = Annotated[
+    str | None,
+    typer.Option(
+        metavar="DIR",
+        help="Folder for the result file, the figures and the runs "
+        "from which an interrupted study resumes. Default: "
+        "NAME-study.",
+    ),
+]
+Engines = Annotated[
+    list[str] | None,
+    typer.Option("--engine", help="Engine to compare, more than one by repetition; all installed without it."),
+]
 Workers = Annotated[int | None, typer.Option(min=1, help="Worker processes; one per core without it.")]
 Replot = Annotated[str | None, typer.Option(metavar="FILE", help="Run nothing, draw only, from this result file.")]
 
 
 def _options(function):
     """The keyword-only parameters of a plan or of figures."""
-    return [parameter for parameter in inspect.signature(function).parameters.values()
-            if parameter.kind is inspect.Parameter.KEYWORD_ONLY]
+    return [
+        parameter
+        for parameter in inspect.signature(function).parameters.values()
+        if parameter.kind is inspect.Parameter.KEYWORD_ONLY
+    ]
 
 
 def command_of(study):
@@ -53,9 +64,15 @@ def command_of(study):
     def option(name, kind, default):
         return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
 
-    parameters = [option("quick", Quick, False), option("output", Output, None), option("engine", Engines, None),
-                  option("workers", Workers, None), option("replot", Replot, None), *_options(study.plan),
-                  *_options(study.figures)]
+    parameters = [
+        option("quick", Quick, False),
+        option("output", Output, None),
+        option("engine", Engines, None),
+        option("workers", Workers, None),
+        option("replot", Replot, None),
+        *_options(study.plan),
+        *_options(study.figures),
+    ]
     command.__signature__ = inspect.Signature(parameters)
     command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
     command.__doc__ = study.question

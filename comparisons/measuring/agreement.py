@@ -28,14 +28,22 @@ DRIVEN, ISOLATED = "rocking on bearings, one-sine", "isolated Caryatid, syntheti
 FALLING = "one-sine of 3.8 g slenderness, rigid ground"
 PULSES = "one-sine at 2 and 5 times omega_r, rigid ground"
 HARD_PULSES = "one-sine at 7, one-cosine at 2 times omega_r, rigid ground"  # the overturning study's largest shifts
-STANDING, STANDING_ISOLATED = ("60 s of shaking below uplift, rigid ground",
-                               "60 s of shaking below uplift, on bearings")
+STANDING, STANDING_ISOLATED = (
+    "60 s of shaking below uplift, rigid ground",
+    "60 s of shaking below uplift, on bearings",
+)
 
-FREE_ROCKING = {RIGID: (None, SLENDERNESSES), SLIDING: (BASE, SLENDERNESSES),
-                RIGID_2: (None, (0.2,)), SLIDING_2: (BASE, (0.2,))}
+FREE_ROCKING = {
+    RIGID: (None, SLENDERNESSES),
+    SLIDING: (BASE, SLENDERNESSES),
+    RIGID_2: (None, (0.2,)),
+    SLIDING_2: (BASE, (0.2,)),
+}
 # (slenderness, ((pulse, its frequency over omega_r), ...)) by the name of the scenes
-BOUNDARIES = {PULSES: (0.25, (("one-sine", 2.0), ("one-sine", 5.0))),
-              HARD_PULSES: (0.28, (("one-sine", 7.0), ("one-cosine", 2.0)))}
+BOUNDARIES = {
+    PULSES: (0.25, (("one-sine", 2.0), ("one-sine", 5.0))),
+    HARD_PULSES: (0.28, (("one-sine", 7.0), ("one-cosine", 2.0))),
+}
 
 
 class Unmeasurable(RuntimeError):
@@ -63,17 +71,18 @@ def free_rocking(scenes):
         block = caryatid_block(slenderness)
         for start in STARTS:
             scene = Scene(block=block, base=base, start=Start(tilt=start * slenderness), duration=12.0)
-            times = [impact.time for impact in simulate(scene, history=False).impacts[:IMPACTS + 1]]
-            family.setdefault(slenderness, []).append(
-                scene.with_(duration=times[-2] + 0.75 * (times[-1] - times[-2])))
+            times = [impact.time for impact in simulate(scene, history=False).impacts[: IMPACTS + 1]]
+            family.setdefault(slenderness, []).append(scene.with_(duration=times[-2] + 0.75 * (times[-1] - times[-2])))
     return family
 
 
 def _free_responses(engine, variant, scenes, runs):
     key = engine, variant, scenes
     if key not in runs:
-        runs[key] = {slenderness: [(scene, run(engine, variant, scene)) for scene in family]
-                     for slenderness, family in free_rocking(scenes).items()}
+        runs[key] = {
+            slenderness: [(scene, run(engine, variant, scene)) for scene in family]
+            for slenderness, family in free_rocking(scenes).items()
+        }
     return runs[key]
 
 
@@ -83,21 +92,32 @@ def _worst_rms(groups):
 
 def restitution_rms(engine, variant, scenes, runs):
     """Error of e_phi against eq. (7) from the states at the first three impacts, rms over starts; worst slenderness."""
-    return _worst_rms([[impact_errors(scene, response, IMPACTS)["state"] for scene, response in pairs]
-                       for pairs in _free_responses(engine, variant, scenes, runs).values()])
+    return _worst_rms(
+        [
+            [impact_errors(scene, response, IMPACTS)["state"] for scene, response in pairs]
+            for pairs in _free_responses(engine, variant, scenes, runs).values()
+        ]
+    )
 
 
 def swing_restitution_bias(engine, variant, scenes, runs):
     """|mean| error of e_phi against eq. (7) from the energies of the swings around the first three impacts."""
-    errors = [impact_errors(scene, response, IMPACTS)["swing"]
-              for pairs in _free_responses(engine, variant, scenes, runs).values() for scene, response in pairs]
+    errors = [
+        impact_errors(scene, response, IMPACTS)["swing"]
+        for pairs in _free_responses(engine, variant, scenes, runs).values()
+        for scene, response in pairs
+    ]
     return float(abs(np.nanmean(np.concatenate(errors))))
 
 
 def base_jump_rms(engine, variant, scenes, runs):
     """Relative error of the base velocity jump against momentum, rms over starts and impacts; worst slenderness."""
-    return _worst_rms([[impact_errors(scene, response, IMPACTS)["jump"] for scene, response in pairs]
-                       for pairs in _free_responses(engine, variant, scenes, runs).values()])
+    return _worst_rms(
+        [
+            [impact_errors(scene, response, IMPACTS)["jump"] for scene, response in pairs]
+            for pairs in _free_responses(engine, variant, scenes, runs).values()
+        ]
+    )
 
 
 def impact_times(engine, variant, scenes, runs):
@@ -118,20 +138,30 @@ def named_scene(name):
     if name == ISOLATED:
         return load_scene("caryatid-isolated")
     if name == DRIVEN:
-        return Scene(block=caryatid_block(0.15), base=BASE, bearings=BEARINGS,
-                     motion=PulseMotion("one-sine", 3.0, 8.0), duration=3.0)
+        return Scene(
+            block=caryatid_block(0.15),
+            base=BASE,
+            bearings=BEARINGS,
+            motion=PulseMotion("one-sine", 3.0, 8.0),
+            duration=3.0,
+        )
     if name == FALLING:
-        return Scene(block=caryatid_block(0.2), motion=PulseMotion("one-sine", 3.8 * 9.81 * 0.2, 5.2),
-                     duration=5.0)
+        return Scene(block=caryatid_block(0.2), motion=PulseMotion("one-sine", 3.8 * 9.81 * 0.2, 5.2), duration=5.0)
     shaking = 0.01 * np.arange(6001)
     level = np.sin(8 * shaking) + 0.5 * np.sin(26 * shaking)
     if name == STANDING:
         peak = 0.9 * 9.81 * math.tan(0.2)
-        return Scene(block=caryatid_block(0.2), duration=60.0,
-                     motion=SampledMotion(0.01, level / np.abs(level).max() * peak))
+        return Scene(
+            block=caryatid_block(0.2), duration=60.0, motion=SampledMotion(0.01, level / np.abs(level).max() * peak)
+        )
     if name == STANDING_ISOLATED:
-        return Scene(block=caryatid_block(0.2), base=BASE, bearings=BEARINGS, duration=60.0,
-                     motion=SampledMotion(0.01, level / np.abs(level).max() * 0.5))
+        return Scene(
+            block=caryatid_block(0.2),
+            base=BASE,
+            bearings=BEARINGS,
+            duration=60.0,
+            motion=SampledMotion(0.01, level / np.abs(level).max() * 0.5),
+        )
     raise KeyError(f"no scene is called {name!r}")
 
 
@@ -183,6 +213,7 @@ def first_boundary(*pulse):
 
     pulse : slenderness, shape, frequency, as `boundary_scene`.
     """
+
     def falls(amplitude):
         return _overturns("analytic", None, boundary_scene(*pulse, amplitude))
 
@@ -267,5 +298,6 @@ def base_drift(engine, variant, scenes, runs):
     """Largest difference of the base displacement from the model's [m] while the block stands."""
     scene = named_scene(scenes)
     found, reference = run(engine, variant, scene).history, simulate(scene).history
-    return float(np.abs(np.interp(reference.time, found.time, found.base_displacement)
-                        - reference.base_displacement).max())
+    return float(
+        np.abs(np.interp(reference.time, found.time, found.base_displacement) - reference.base_displacement).max()
+    )

@@ -101,8 +101,9 @@ def sensitivity_horizon(scene, *, perturbation=PERTURBATION, spread=SPREAD):
         parted[name] = float(base.time[max(beyond[0] - 1, 0)]) if len(beyond) else None
         largest = np.maximum(largest, apart)
     times = [time for time in parted.values() if time is not None]
-    return Horizon(min(times, default=float(base.time[-1])), perturbation, base.time, np.maximum.accumulate(largest),
-                   parted)
+    return Horizon(
+        min(times, default=float(base.time[-1])), perturbation, base.time, np.maximum.accumulate(largest), parted
+    )
 
 
 def perturbation_of(scene, response, reference):
@@ -132,7 +133,7 @@ def perturbation_of(scene, response, reference):
         raise ValueError("perturbation_of needs histories: simulate with history=True")
     own, model = response.history, reference.history
     time = model.time[model.time <= own.time[-1]]
-    apart = np.abs(np.interp(time, own.time, own.tilt) - model.tilt[:len(time)]) / scene.block.slenderness
+    apart = np.abs(np.interp(time, own.time, own.tilt) - model.tilt[: len(time)]) / scene.block.slenderness
     off = np.flatnonzero(apart > EARLY * SPREAD)
     size = max(LEAST, restitution_error(scene, response, until=time[off[0]] if len(off) else np.inf))
     if len(off) and off[0] > 0:
@@ -148,7 +149,7 @@ def restitution_error(scene, response, *, until=np.inf):
     e = RockingModel.of(scene).restitution
     if not len(rates) or e == 0:
         return 0.0
-    errors = state_restitution(response)[:len(rates)] / e - 1
+    errors = state_restitution(response)[: len(rates)] / e - 1
     return float(np.sqrt(np.sum((rates * errors) ** 2) / np.sum(rates**2)))
 
 

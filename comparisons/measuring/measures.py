@@ -217,14 +217,23 @@ def compare(scene, response, reference, *, until=math.inf):
     found = errors[kept & np.isfinite(errors)]
     distance = None
     if response.history is not None and reference.history is not None:
-        distance = graph_distance(response, reference, tilt_scale=scene.block.slenderness,
-                                  time_scale=2 * math.pi / scene.rocking_frequency, until=until)
+        distance = graph_distance(
+            response,
+            reference,
+            tilt_scale=scene.block.slenderness,
+            time_scale=2 * math.pi / scene.rocking_frequency,
+            until=until,
+        )
     return Agreement(
-        same_outcome=response.outcome == reference.outcome, overturning_time_error=overturning,
+        same_outcome=response.outcome == reference.outcome,
+        overturning_time_error=overturning,
         peak_tilt_error=(response.peak_tilt - reference.peak_tilt) / scene.block.slenderness,
         peak_displacement_error=displacement,
         impact_time_error=float(np.sqrt(np.mean(found**2))) if len(found) else None,
-        lost_impacts=int(kept.sum() - len(found)), graph_distance=distance, until=until)
+        lost_impacts=int(kept.sum() - len(found)),
+        graph_distance=distance,
+        until=until,
+    )
 
 
 def _rates(response):

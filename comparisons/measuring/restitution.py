@@ -31,8 +31,10 @@ def impact_errors(scene, response, most=None):
     """
     response = dataclasses.replace(response, impacts=strong_impacts(response))
     expected = restitution(scene)
-    errors = {"state": state_restitution(response) - expected,
-              "time": np.array([impact.time for impact in response.impacts])}
+    errors = {
+        "state": state_restitution(response) - expected,
+        "time": np.array([impact.time for impact in response.impacts]),
+    }
     if scene.motion is None and scene.bearings is None and response.history is not None:
         errors["swing"] = swing_restitution(scene, response) - expected
     if scene.base is not None:

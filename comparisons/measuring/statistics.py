@@ -41,8 +41,10 @@ def confusion(a, b):
     """
     a, b = np.asarray(a), np.asarray(b)
     if a.dtype != bool or b.dtype != bool or a.shape != b.shape or a.ndim != 1 or len(a) == 0:
-        raise ValueError(f"paired outcomes must be two boolean arrays of one length above 0, not {a.dtype} "
-                         f"{a.shape} and {b.dtype} {b.shape}; leave failed runs out in pairs")
+        raise ValueError(
+            f"paired outcomes must be two boolean arrays of one length above 0, not {a.dtype} "
+            f"{a.shape} and {b.dtype} {b.shape}; leave failed runs out in pairs"
+        )
     return Confusion(int((~a & ~b).sum()), int((a & b).sum()), int((a & ~b).sum()), int((~a & b).sum()))
 
 
@@ -147,18 +149,29 @@ def compare(a, b, names=("A", "B"), level=0.05):
     kappa, low, high = cohen_kappa(table.table())
     difference = (table.only_b - table.only_a) / table.size
     least = detectable_difference(table.size, table.discordant / table.size, level)
-    counts = (f"{table.size} motions: {table.only_a} overturn in {names[0]} alone, {table.only_b} in {names[1]} "
-              f"alone; exact McNemar p = {p_value:.2g}")
+    counts = (
+        f"{table.size} motions: {table.only_a} overturn in {names[0]} alone, {table.only_b} in {names[1]} "
+        f"alone; exact McNemar p = {p_value:.2g}"
+    )
     if p_value <= level:
         statement = f"they differ ({counts})"
     else:
-        found = "no difference, however large, can be" if least is None else (
-            f"a difference of {100 * least:.1f} percentage points would have been")
-        statement = (f"no difference found at this sample size ({counts}; {found} found with 80 % "
-                     "probability)")
-    return {**asdict(table), "p_value": p_value, "difference": difference, "detectable_difference": least,
-            "kappa": kappa, "kappa_interval": None if kappa is None else [low, high], "differ": p_value <= level,
-            "statement": statement}
+        found = (
+            "no difference, however large, can be"
+            if least is None
+            else (f"a difference of {100 * least:.1f} percentage points would have been")
+        )
+        statement = f"no difference found at this sample size ({counts}; {found} found with 80 % probability)"
+    return {
+        **asdict(table),
+        "p_value": p_value,
+        "difference": difference,
+        "detectable_difference": least,
+        "kappa": kappa,
+        "kappa_interval": None if kappa is None else [low, high],
+        "differ": p_value <= level,
+        "statement": statement,
+    }
 
 
 @dataclass(frozen=True)
@@ -196,8 +209,10 @@ def fit_fragility(intensity, overturned, size):
         raise ValueError("fragility needs intensities above 0 and 0 <= overturned <= size at every level")
     falls, stands = intensity[overturned > 0], intensity[overturned < size]
     if len(falls) == 0 or len(stands) == 0 or falls.min() >= stands.max():
-        raise ValueError("outcomes do not overlap: no motion stands above the lowest intensity that overturns one; "
-                         "add intensities between, or motions")
+        raise ValueError(
+            "outcomes do not overlap: no motion stands above the lowest intensity that overturns one; "
+            "add intensities between, or motions"
+        )
     log_intensity = np.log(intensity)
     centre = log_intensity.mean()  # a and b then hardly depend on each other
     design = np.column_stack([np.ones_like(log_intensity), log_intensity - centre])
@@ -225,8 +240,7 @@ def fit_fragility(intensity, overturned, size):
     centres = np.array([centre - a / b, -math.log(b)])
     low, high = np.exp(centres - width), np.exp(centres + width)
     median, dispersion = np.exp(centres)
-    return Fragility(float(median), float(dispersion), (float(low[0]), float(high[0])),
-                     (float(low[1]), float(high[1])))
+    return Fragility(float(median), float(dispersion), (float(low[0]), float(high[0])), (float(low[1]), float(high[1])))
 
 
 def _hazard(z):

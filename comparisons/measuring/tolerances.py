@@ -84,11 +84,26 @@ def _table():
         for variant, bounds in engine.bounds().items():
             for one in bounds:
                 if one.quantity not in QUANTITIES:
-                    raise SettingError(f"{engine.origin or engine.name}: {one.quantity!r} is no quantity of the "
-                                       f"tolerance table; choose among {', '.join(QUANTITIES)}")
+                    raise SettingError(
+                        f"{engine.origin or engine.name}: {one.quantity!r} is no quantity of the "
+                        f"tolerance table; choose among {', '.join(QUANTITIES)}"
+                    )
                 measure, unit = QUANTITIES[one.quantity]
-                table.append(Tolerance(one.quantity, measure, engine.name, variant, one.scenes, one.bound, unit,
-                                       one.measured, one.source, one.least, round_off=one.source == ROUNDING))
+                table.append(
+                    Tolerance(
+                        one.quantity,
+                        measure,
+                        engine.name,
+                        variant,
+                        one.scenes,
+                        one.bound,
+                        unit,
+                        one.measured,
+                        one.source,
+                        one.least,
+                        round_off=one.source == ROUNDING,
+                    )
+                )
     return tuple(table)
 
 
@@ -107,8 +122,20 @@ def measure_all(rows=TABLE):
             found = row.found(runs)
         except agreement.Unmeasurable as error:
             failure = str(error)
-        results.append({"quantity": row.quantity, "engine": row.engine, "variant": row.variant, "scenes": row.scenes,
-                        "least": row.least, "bound": row.bound, "unit": row.unit, "measured": row.measured,
-                        "source": row.source, "found": found, "holds": found is not None and row.holds(found),
-                        "failure": failure})
+        results.append(
+            {
+                "quantity": row.quantity,
+                "engine": row.engine,
+                "variant": row.variant,
+                "scenes": row.scenes,
+                "least": row.least,
+                "bound": row.bound,
+                "unit": row.unit,
+                "measured": row.measured,
+                "source": row.source,
+                "found": found,
+                "holds": found is not None and row.holds(found),
+                "failure": failure,
+            }
+        )
     return results

@@ -21,16 +21,19 @@ def ground_motion(result):
     axis.plot(result.arrays["motion/time"], result.arrays["motion/acceleration"], color="0.25", linewidth=0.8)
     axis.axvline(motion["peak_time"], color="0.7", linewidth=0.8, linestyle=":", zorder=0)
     axis.set(xlabel="time [s]", ylabel="ground acceleration [m/s²]", title=motion["label"])
-    return figure_of(figure, f"Ground acceleration over time; its peak of {motion['peak']:.3f} m/s² is at "
-                             f"{motion['peak_time']:.2f} s.",
-                     f"Ground acceleration, {motion['label']}: peak {number(motion['peak'])} m/s² "
-                     f"({number(motion['peak'] / 9.81)} g) at {number(motion['peak_time'])} s, dotted.")
+    return figure_of(
+        figure,
+        f"Ground acceleration over time; its peak of {motion['peak']:.3f} m/s² is at {motion['peak_time']:.2f} s.",
+        f"Ground acceleration, {motion['label']}: peak {number(motion['peak'])} m/s² "
+        f"({number(motion['peak'] / 9.81)} g) at {number(motion['peak_time'])} s, dotted.",
+    )
 
 
 def histories(result, name, column, label, scale=1.0, limits=(None, None)):
     """One column of all solvers over each other, and below what the engines differ by from the analytic model."""
-    solvers = [row["solver"] for row in result.rows if row["scene"] == name and f"{name}/{row['solver']}/time"
-               in result.arrays]
+    solvers = [
+        row["solver"] for row in result.rows if row["scene"] == name and f"{name}/{row['solver']}/time" in result.arrays
+    ]
     figure = Figure(figsize=(WIDTH, 4.0), layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 2])
     worst = {}
@@ -55,11 +58,19 @@ def histories(result, name, column, label, scale=1.0, limits=(None, None)):
     below.set(xlabel="time [s]", ylabel="engine − analytic")
     below.ticklabel_format(axis="y", scilimits=(-2, 2))
     apart = "; ".join(f"{solver} {number(value, 2)}" for solver, value in worst.items()) or "no engine ran"
-    dotted = "" if not parts else (
-        f" Dotted: the earliest sensitivity horizon of a solver, {number(horizon)} s; after it "
-        "no two solutions can be compared point by point.")
-    return figure_of(figure, f"{title}: {label} over time, {', '.join(solvers)} over each other.",
-                     f"{title}: {label}. Below, the difference from the analytic model; largest: {apart}.{dotted}")
+    dotted = (
+        ""
+        if not parts
+        else (
+            f" Dotted: the earliest sensitivity horizon of a solver, {number(horizon)} s; after it "
+            "no two solutions can be compared point by point."
+        )
+    )
+    return figure_of(
+        figure,
+        f"{title}: {label} over time, {', '.join(solvers)} over each other.",
+        f"{title}: {label}. Below, the difference from the analytic model; largest: {apart}.{dotted}",
+    )
 
 
 def loops(result, name):
@@ -70,14 +81,21 @@ def loops(result, name):
     for row in result.rows:
         key = f"{name}/{row['solver']}/"
         if row["scene"] == name and key + "time" in result.arrays:
-            axis.plot(result.arrays[key + "base_displacement"], result.arrays[key + "bearing_force"] / 1e3,
-                      label=row["solver"], **style(row["solver"]))
+            axis.plot(
+                result.arrays[key + "base_displacement"],
+                result.arrays[key + "bearing_force"] / 1e3,
+                label=row["solver"],
+                **style(row["solver"]),
+            )
             solvers.append(row["solver"])
     title = result.settings["scenes"][name]["name"]
     axis.set(xlabel="base displacement x [m]", ylabel="force of all bearings [kN]", title=title)
     axis.legend(fontsize=9)
-    return figure_of(figure, f"{title}: hysteresis loops of {', '.join(solvers)} over each other.",
-                     f"{title}: hysteresis of the bearings, all of them together.")
+    return figure_of(
+        figure,
+        f"{title}: hysteresis loops of {', '.join(solvers)} over each other.",
+        f"{title}: hysteresis of the bearings, all of them together.",
+    )
 
 
 def restitution(result):
@@ -85,8 +103,13 @@ def restitution(result):
     figure = Figure(figsize=(WIDTH, 6.2), layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True)
     for ground, line in GROUND_LINES.items():
-        above.plot(result.arrays["curve/slenderness"], result.arrays[f"curve/{ground}"], line, color="0.6",
-                   label=f"eq. (7), {ground}")
+        above.plot(
+            result.arrays["curve/slenderness"],
+            result.arrays[f"curve/{ground}"],
+            line,
+            color="0.6",
+            label=f"eq. (7), {ground}",
+        )
     defaults = [row for row in result.rows if row["default"] and row["rms"] is not None]
     solvers = list(dict.fromkeys(row["solver"] for row in defaults))
     for index, solver in enumerate(solvers):
@@ -96,37 +119,60 @@ def restitution(result):
             filled = colour if ground == "rigid ground" else "white"
             points = {"color": colour, "marker": MARKERS[index], "markerfacecolor": filled, "markersize": 6 - index}
             gammas = [row["slenderness"] for row in rows]
-            above.plot(gammas, [row["restitution"] + row["bias"] for row in rows], linestyle="", **points,
-                       label=solver if filled == colour else None)
+            above.plot(
+                gammas,
+                [row["restitution"] + row["bias"] for row in rows],
+                linestyle="",
+                **points,
+                label=solver if filled == colour else None,
+            )
             if solver != "analytic":
-                below.plot(gammas, [row["rms"] for row in rows], linestyle=GROUND_LINES[ground], linewidth=1, **points,
-                           label=f"{solver}, {ground}")
+                below.plot(
+                    gammas,
+                    [row["rms"] for row in rows],
+                    linestyle=GROUND_LINES[ground],
+                    linewidth=1,
+                    **points,
+                    label=f"{solver}, {ground}",
+                )
     above.set(ylabel="restitution $e_φ$ [-]")
     above.legend(fontsize=8)
     below.set(xlabel="slenderness γ [rad]", ylabel="error of restitution, rms [-]", yscale="log")
     handles, labels = below.get_legend_handles_labels()
     if handles:
         figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize=8)
-    return figure_of(figure, "Above, restitution falling with slenderness: curves of eq. (7) for rigid ground and for "
-                             "a sliding base, with the measured values of each solver on them. Below, the root mean "
-                             "square error of each engine on a logarithmic scale.",
-                     "Restitution measured in free rocking against eq. (7). Filled: rigid ground; open: sliding base. "
-                     "Engines at their default variant and settings.")
+    return figure_of(
+        figure,
+        "Above, restitution falling with slenderness: curves of eq. (7) for rigid ground and for "
+        "a sliding base, with the measured values of each solver on them. Below, the root mean "
+        "square error of each engine on a logarithmic scale.",
+        "Restitution measured in free rocking against eq. (7). Filled: rigid ground; open: sliding base. "
+        "Engines at their default variant and settings.",
+    )
 
 
 def error_and_cost(groups):
     """Error of restitution and of impact times beside the CPU time of the same runs; `groups` as in sections.py."""
-    panels = (("rms", "error of restitution\nrms [-]"), ("jump_rms", "error of base velocity\njump, relative, rms [-]"),
-              ("time_rms", "error of impact times\nrelative, rms [-]"))
+    panels = (
+        ("rms", "error of restitution\nrms [-]"),
+        ("jump_rms", "error of base velocity\njump, relative, rms [-]"),
+        ("time_rms", "error of impact times\nrelative, rms [-]"),
+    )
     figure = Figure(figsize=(WIDTH, 7.6), layout="constrained")
     axes = figure.subplots(len(panels), 1, sharex=True)
     for axis, (measure, label) in zip(axes, panels, strict=True):
         for index, group in enumerate(groups):
             if group[measure] is not None and group["cpu_per_second"]:
-                axis.plot(group["cpu_per_second"], max(group[measure], ZERO), linestyle="", markersize=8,
-                          marker=MARKERS[index % len(MARKERS)], color=style(group["solver"])["color"],
-                          markerfacecolor=style(group["solver"])["color"] if group["default"] else "white",
-                          label=group["name"] if axis is axes[0] else None)
+                axis.plot(
+                    group["cpu_per_second"],
+                    max(group[measure], ZERO),
+                    linestyle="",
+                    markersize=8,
+                    marker=MARKERS[index % len(MARKERS)],
+                    color=style(group["solver"])["color"],
+                    markerfacecolor=style(group["solver"])["color"] if group["default"] else "white",
+                    label=group["name"] if axis is axes[0] else None,
+                )
         axis.set(xscale="log", yscale="log", ylabel=label)
         axis.grid(color="0.9")
         axis.set_axisbelow(True)
@@ -134,9 +180,14 @@ def error_and_cost(groups):
         axis.xaxis.set_minor_formatter(NullFormatter())
     axes[-1].set_xlabel("CPU time per simulated second [s/s]")
     figure.legend(loc="outside lower center", ncols=2, fontsize=9)
-    return figure_of(figure, "Three scatter plots of error over CPU time per simulated second, one point for each "
-                             "solver and variant: " + "; ".join(
-                                 f"{group['name']} {number(group['rms'], 2)} at "
-                                 f"{number(group['cpu_per_second'], 2)} s/s" for group in groups) + ".",
-                     "Error beside cost, both from the same free rocking runs; left and low is better. Filled: default "
-                     "variant. An error of zero in double precision is drawn at 10⁻¹⁶.")
+    return figure_of(
+        figure,
+        "Three scatter plots of error over CPU time per simulated second, one point for each "
+        "solver and variant: "
+        + "; ".join(
+            f"{group['name']} {number(group['rms'], 2)} at {number(group['cpu_per_second'], 2)} s/s" for group in groups
+        )
+        + ".",
+        "Error beside cost, both from the same free rocking runs; left and low is better. Filled: default "
+        "variant. An error of zero in double precision is drawn at 10⁻¹⁶.",
+    )

@@ -33,14 +33,16 @@ class ToFile:
 def response_of(values, folder):
     """The `Response` of a row's values, its history from `folder`."""
     file = values["history"]
-    return Response.from_json({key: value for key, value in values.items() if key != "history"},
-                              _history(Path(folder) / file))
+    return Response.from_json(
+        {key: value for key, value in values.items() if key != "history"}, _history(Path(folder) / file)
+    )
 
 
 def _history(path):
     if not path.exists():
-        raise ResultError(f"{path.parent.name}/{path.name}: missing; remove the folder {path.parent.name} and make the "
-                          "report again")
+        raise ResultError(
+            f"{path.parent.name}/{path.name}: missing; remove the folder {path.parent.name} and make the report again"
+        )
     return History(*np.load(path))
 
 
@@ -50,8 +52,10 @@ def differences(history, reference):
     At the reference's samples up to the end of the shorter one.
     """
     time = reference.time[reference.time <= history.time[-1]]
-    apart = {column: np.interp(time, history.time, getattr(history, column)) - getattr(reference, column)[:len(time)]
-             for column in ("tilt", "base_displacement")}
+    apart = {
+        column: np.interp(time, history.time, getattr(history, column)) - getattr(reference, column)[: len(time)]
+        for column in ("tilt", "base_displacement")
+    }
     shown = thinned(*apart.values())
     return {f"apart/{column}": values[shown] for column, values in {"time": time, **apart}.items()}
 

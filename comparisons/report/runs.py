@@ -35,8 +35,11 @@ TIME_LIMIT, LIMIT_PER_SECOND, LIMIT_PER_SAMPLE = 60.0, 1.0, 1e-3
 def plan(ask, motion, histories, duration=None, slendernesses=SLENDERNESSES):
     """The plan of the report's own runs; histories: folder in which those of the Caryatid's are kept meanwhile."""
     scenes = caryatid_scenes(motion, duration)
-    caryatid = [Case(scene, solver, tag={"scene": name})
-                for solver in ("analytic", *ask.engines) for name, scene in scenes.items()]
+    caryatid = [
+        Case(scene, solver, tag={"scene": name})
+        for solver in ("analytic", *ask.engines)
+        for name, scene in scenes.items()
+    ]
     limit = TIME_LIMIT + LIMIT_PER_SECOND * motion.end + LIMIT_PER_SAMPLE * len(motion.samples)
     say(f"the Caryatid in {', '.join(('the analytic model', *ask.engines))} (the first run on a machine compiles it)")
     rows = yield Batch(caryatid, ToFile(str(Path(histories).resolve())), "Caryatid", limit)
@@ -56,17 +59,22 @@ def free_rocking_cases(engines, slendernesses):
     solvers = [("analytic", None, STARTS)]
     for name in engines:
         engine = get_engine(name)
-        solvers += [(name, variant, STARTS if variant == engine.default_variant else VARIANT_STARTS)
-                    for variant in engine.variants]
+        solvers += [
+            (name, variant, STARTS if variant == engine.default_variant else VARIANT_STARTS)
+            for variant in engine.variants
+        ]
     cases = []
     for solver, variant, starts in solvers:
         for ground, base in BASES.items():
             for slenderness in slendernesses:
                 for start in starts:
                     scene = load_scene(SCENES[0]).with_(
-                        block={**block.model_dump(), "slenderness": slenderness}, motion=None,
+                        block={**block.model_dump(), "slenderness": slenderness},
+                        motion=None,
                         base=base and load_scene(SCENES[1]).base.model_copy(update=base),
-                        start={"tilt": start * slenderness}, duration=FREE_SECONDS)
+                        start={"tilt": start * slenderness},
+                        duration=FREE_SECONDS,
+                    )
                     tag = {"ground": ground, "slenderness": slenderness, "start": start}
                     cases.append(Case(scene, solver, variant, tag=tag))
     return cases
@@ -84,8 +92,9 @@ def _caryatid(folder, rows, scenes, motion):
     described, entries = {}, []
     for name, scene in scenes.items():
         ours = [row for row in rows if row.case.tag["scene"] == name]
-        reference = next((response_of(row.values, folder) for row in ours
-                          if row.case.solver == "analytic" and not row.failed), None)
+        reference = next(
+            (response_of(row.values, folder) for row in ours if row.case.solver == "analytic" and not row.failed), None
+        )
         horizons = []
         for row in ours:
             entry, drawn = _caryatid_entry(scene, row, reference, folder)
@@ -93,14 +102,29 @@ def _caryatid(folder, rows, scenes, motion):
             horizons += [entry["agreement"]["until"]] if "agreement" in entry else []
             arrays.update({f"{name}/{row.case.solver}/{column}": values for column, values in drawn.items()})
         described[name] = {
-            "name": scene.name, "duration": scene.duration, "gravity": scene.gravity,
-            "block": scene.block.model_dump(), "base": scene.base and scene.base.model_dump(),
-            "bearings": scene.bearings and scene.bearings.model_dump(), "half_width": scene.block.half_width,
-            "half_height": scene.block.half_height, "rocking_frequency": scene.rocking_frequency,
-            "restitution": restitution(scene), "horizon": min(horizons, default=None)}  # the earliest of a solver
-    settings = {"motion": {"label": motion.label, "peak": motion.peak, "peak_time": motion.peak_time,
-                           "dt": motion.dt, "end": motion.end},
-                "scenes": described, "missing": available_engines()[1]}
+            "name": scene.name,
+            "duration": scene.duration,
+            "gravity": scene.gravity,
+            "block": scene.block.model_dump(),
+            "base": scene.base and scene.base.model_dump(),
+            "bearings": scene.bearings and scene.bearings.model_dump(),
+            "half_width": scene.block.half_width,
+            "half_height": scene.block.half_height,
+            "rocking_frequency": scene.rocking_frequency,
+            "restitution": restitution(scene),
+            "horizon": min(horizons, default=None),
+        }  # the earliest of a solver
+    settings = {
+        "motion": {
+            "label": motion.label,
+            "peak": motion.peak,
+            "peak_time": motion.peak_time,
+            "dt": motion.dt,
+            "end": motion.end,
+        },
+        "scenes": described,
+        "missing": available_engines()[1],
+    }
     return Found(settings, entries, arrays, name=Path(CARYATID).stem)
 
 
@@ -112,8 +136,11 @@ def _caryatid_entry(scene, row, reference, folder):
         return {**entry, "verdict": "failed"}, {}
     response = response_of(row.values, folder)
     history = response.history
-    entry.update(verdict=response.verdict, cpu_per_second=row.cost["cpu_seconds"] / response.end.time,
-                 bearing_work=float(trapezoid(history.bearing_force, history.base_displacement)))
+    entry.update(
+        verdict=response.verdict,
+        cpu_per_second=row.cost["cpu_seconds"] / response.end.time,
+        bearing_work=float(trapezoid(history.bearing_force, history.base_displacement)),
+    )
     shown = thinned(history.tilt, history.base_displacement, history.bearing_force)
     drawn = {column: getattr(history, column)[shown] for column in History.COLUMNS}
     if reference is not None:
@@ -136,12 +163,22 @@ def _free_rocking(rows, engines):
     arrays = {"curve/slenderness": np.linspace(0.05, 0.5, 91)}
     for ground in BASES:
         scene = next(row.case.scene for row in rows if row.case.tag["ground"] == ground)
-        arrays[f"curve/{ground}"] = np.array([restitution(scene.with_(block={"slenderness": float(slenderness)}))
-                                              for slenderness in arrays["curve/slenderness"]])
-    settings = {"starts": STARTS, "variant_starts": VARIANT_STARTS, "seconds": FREE_SECONDS,
-                "slowest_impact": SLOWEST_IMPACT, "bases": BASES,
-                "decides": {name: {variant: one.decides for variant, one in get_engine(name).variants.items()}
-                            for name in engines}}
+        arrays[f"curve/{ground}"] = np.array(
+            [
+                restitution(scene.with_(block={"slenderness": float(slenderness)}))
+                for slenderness in arrays["curve/slenderness"]
+            ]
+        )
+    settings = {
+        "starts": STARTS,
+        "variant_starts": VARIANT_STARTS,
+        "seconds": FREE_SECONDS,
+        "slowest_impact": SLOWEST_IMPACT,
+        "bases": BASES,
+        "decides": {
+            name: {variant: one.decides for variant, one in get_engine(name).variants.items()} for name in engines
+        },
+    }
     return Found(settings, entries, arrays, name=Path(FREE_ROCKING).stem)
 
 
@@ -158,20 +195,33 @@ def _restitution_entry(solver, variant, ground, slenderness, members):
         if scene.base is None:
             exact = free_rocking(scene.rocking_frequency, slenderness, formula, scene.start.tilt, len(times))
             time_errors += (times / exact.times - 1).tolist()
-        impacts += [{"start": row.case.tag["start"], "time": float(time), "restitution": float(error) + formula}
-                    for time, error in zip(times, errors["state"], strict=True)]
+        impacts += [
+            {"start": row.case.tag["start"], "time": float(time), "restitution": float(error) + formula}
+            for time, error in zip(times, errors["state"], strict=True)
+        ]
     errors = np.array([impact["restitution"] for impact in impacts]) - formula
     simulated = sum(row.values["end"]["time"] for row in sound)
-    return {"solver": solver, "variant": sound[0].values["variant"] if sound else variant, "default": len(members) > 1,
-            "ground": ground, "slenderness": slenderness, "restitution": formula,
-            "base_jump_length": base_jump_length(scene), "runs": len(members),
-            "failures": [row.failure for row in members if row.failed], "impacts": impacts,
-            "warnings": list(dict.fromkeys(warning for row in sound for warning in row.values["warnings"])),
-            "bias": _of(errors, np.mean), "rms": _of(errors, rms), "worst": _of(np.abs(errors), np.max),
-            "jump_rms": _of(jumps, rms) if scene.base else None, "time_rms": _of(time_errors, rms),
-            "settings": sound[0].values["settings"] if sound else None,
-            "cpu_per_second": sum(row.cost["cpu_seconds"] for row in sound) / simulated if sound else None,
-            "simulated": simulated}
+    return {
+        "solver": solver,
+        "variant": sound[0].values["variant"] if sound else variant,
+        "default": len(members) > 1,
+        "ground": ground,
+        "slenderness": slenderness,
+        "restitution": formula,
+        "base_jump_length": base_jump_length(scene),
+        "runs": len(members),
+        "failures": [row.failure for row in members if row.failed],
+        "impacts": impacts,
+        "warnings": list(dict.fromkeys(warning for row in sound for warning in row.values["warnings"])),
+        "bias": _of(errors, np.mean),
+        "rms": _of(errors, rms),
+        "worst": _of(np.abs(errors), np.max),
+        "jump_rms": _of(jumps, rms) if scene.base else None,
+        "time_rms": _of(time_errors, rms),
+        "settings": sound[0].values["settings"] if sound else None,
+        "cpu_per_second": sum(row.cost["cpu_seconds"] for row in sound) / simulated if sound else None,
+        "simulated": simulated,
+    }
 
 
 def _of(values, number):

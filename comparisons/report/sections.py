@@ -24,13 +24,17 @@ def _group(solver, variant, rows):
     measured = [row for row in rows if row["rms"] is not None]
     simulated = sum(row["simulated"] for row in measured)
     cpu = sum(row["cpu_per_second"] * row["simulated"] for row in measured)
-    return {"solver": solver, "name": "analytic" if solver == "analytic" else f"{solver}, {variant}",
-            "default": rows[0]["default"], "impacts": sum(len(row["impacts"]) for row in measured),
-            "worst": max((row["worst"] for row in measured), default=None),
-            "cpu_per_second": cpu / simulated if measured else None,
-            "failures": [failure for row in rows for failure in row["failures"]],
-            "warnings": list(dict.fromkeys(warning for row in rows for warning in row["warnings"])),
-            **{measure: _pooled(measured, measure) for measure in ("rms", "jump_rms", "time_rms")}}
+    return {
+        "solver": solver,
+        "name": "analytic" if solver == "analytic" else f"{solver}, {variant}",
+        "default": rows[0]["default"],
+        "impacts": sum(len(row["impacts"]) for row in measured),
+        "worst": max((row["worst"] for row in measured), default=None),
+        "cpu_per_second": cpu / simulated if measured else None,
+        "failures": [failure for row in rows for failure in row["failures"]],
+        "warnings": list(dict.fromkeys(warning for row in rows for warning in row["warnings"])),
+        **{measure: _pooled(measured, measure) for measure in ("rms", "jump_rms", "time_rms")},
+    }
 
 
 def _pooled(rows, measure):
@@ -43,42 +47,71 @@ def caryatid_sections(result):
     """Scene, ground motion, free-standing and isolated Caryatid."""
     scenes = result.settings["scenes"]
     rigid, isolated = scenes
-    failed = tuple((f"{row['solver']} on {row['scene']}: {row['failure']['reason']}",
-                    row["failure"].get("message", "")) for row in result.rows if row["failure"])
+    failed = tuple(
+        (f"{row['solver']} on {row['scene']}: {row['failure']['reason']}", row["failure"].get("message", ""))
+        for row in result.rows
+        if row["failure"]
+    )
     motion = result.settings["motion"]["label"]
     gamma = scenes[isolated]["block"]["slenderness"]
     return [
-        Section("The scenes and the ground motion", (
-            "The Caryatid as a rigid block, once on rigid ground and once on a base carried by lead-rubber bearings "
-            "(Table 1 of the paper). The slenderness is not printed in the paper; 0.28 rad reproduces its claims under "
-            "the record it used (Duzce 1999). Under another motion they need not hold.",),
-            (_parameters(scenes),), (draw_scenes(list(scenes.values())), figures.ground_motion(result))),
-        Section("Outcomes", (
-            f"Each solver on the same scenes under {motion}. A block that never lifts “stands”, one that lifts and "
-            "stays upright “rocks”; it “overturns” at |φ| = 90°. |H|/N, horizontal over normal force under the block, "
-            "is the friction coefficient needed not to slide; where the normal force N falls to 0 the block would "
-            "jump. The model allows neither. Both are taken over the run, but for the fall of a block that overturns.",
-            "A run goes on until its outcome is decided: until nothing that may still come can make the block overturn "
-            "or keep it from it. One that ended earlier is “undecided”, with what it was so far. A warning names "
-            "what lies outside the range in which a solver was verified, outside what the model describes, or is odd "
-            "about the record; the outcome beside it is then to be doubted.",
-            "Impact times and tilt graphs are compared up to the end, or up to the solver's sensitivity horizon where "
-            "that comes first: beyond it a change of restitution, motion and start as small as the solver's own errors "
-            "makes another motion, so that a difference says no more about it. The distance of two tilt graphs "
-            "(Hausdorff) is how far a point of one can lie from the other, time in units of 2 π/ω_r and tilt in units "
-            "of γ.",),
-                tuple(table for name in scenes for table in (
-                    _outcomes(result, name), *_warnings(scenes[name]["name"], warned(result, name)),
-                    *_agreement(result, name))), evidence=failed),
-        Section("Histories and hysteresis", (
-            "Upper axes: all solvers over each other; lower axes: by how much they differ from the analytic model. The "
-            "bearings' damping of 30 % in Table 1(a) of the paper is W_D/(2 π E_s), with W_D the energy of a loop and "
-            "E_s the elastic energy at its peak; the usual equivalent viscous damping, W_D/(4 π E_s), is half of it.",
-            ), (), (
-            figures.histories(result, rigid, "tilt", "tilt φ/γ [-]", scenes[rigid]["block"]["slenderness"]),
-            figures.histories(result, isolated, "base_displacement", "base displacement x [m]"),
-            figures.histories(result, isolated, "tilt", "tilt φ/γ [-]", gamma, _tilt_limits(result, isolated, gamma)),
-            figures.loops(result, isolated))),
+        Section(
+            "The scenes and the ground motion",
+            (
+                "The Caryatid as a rigid block, once on rigid ground and once on a base carried by lead-rubber "
+                "bearings (Table 1 of the paper). The slenderness is not printed in the paper; 0.28 rad reproduces "
+                "its claims under the record it used (Duzce 1999). Under another motion they need not hold.",
+            ),
+            (_parameters(scenes),),
+            (draw_scenes(list(scenes.values())), figures.ground_motion(result)),
+        ),
+        Section(
+            "Outcomes",
+            (
+                f"Each solver on the same scenes under {motion}. A block that never lifts “stands”, one that lifts "
+                "and stays upright “rocks”; it “overturns” at |φ| = 90°. |H|/N, horizontal over normal force under "
+                "the block, is the friction coefficient needed not to slide; where the normal force N falls to 0 the "
+                "block would jump. The model allows neither. Both are taken over the run, but for the fall of a "
+                "block that overturns.",
+                "A run goes on until its outcome is decided: until nothing that may still come can make the block "
+                "overturn or keep it from it. One that ended earlier is “undecided”, with what it was so far. A "
+                "warning names what lies outside the range in which a solver was verified, outside what the model "
+                "describes, or is odd about the record; the outcome beside it is then to be doubted.",
+                "Impact times and tilt graphs are compared up to the end, or up to the solver's sensitivity horizon "
+                "where that comes first: beyond it a change of restitution, motion and start as small as the "
+                "solver's own errors makes another motion, so that a difference says no more about it. The distance "
+                "of two tilt graphs (Hausdorff) is how far a point of one can lie from the other, time in units of 2 "
+                "π/ω_r and tilt in units of γ.",
+            ),
+            tuple(
+                table
+                for name in scenes
+                for table in (
+                    _outcomes(result, name),
+                    *_warnings(scenes[name]["name"], warned(result, name)),
+                    *_agreement(result, name),
+                )
+            ),
+            evidence=failed,
+        ),
+        Section(
+            "Histories and hysteresis",
+            (
+                "Upper axes: all solvers over each other; lower axes: by how much they differ from the analytic "
+                "model. The bearings' damping of 30 % in Table 1(a) of the paper is W_D/(2 π E_s), with W_D the "
+                "energy of a loop and E_s the elastic energy at its peak; the usual equivalent viscous damping, "
+                "W_D/(4 π E_s), is half of it.",
+            ),
+            (),
+            (
+                figures.histories(result, rigid, "tilt", "tilt φ/γ [-]", scenes[rigid]["block"]["slenderness"]),
+                figures.histories(result, isolated, "base_displacement", "base displacement x [m]"),
+                figures.histories(
+                    result, isolated, "tilt", "tilt φ/γ [-]", gamma, _tilt_limits(result, isolated, gamma)
+                ),
+                figures.loops(result, isolated),
+            ),
+        ),
     ]
 
 
@@ -91,32 +124,46 @@ def _tilt_limits(result, name, gamma):
 def _parameters(scenes):
     def rows():
         for label, pick in (
-                ("mass of the block m [kg]", lambda scene: scene["block"]["mass"]),
-                ("corner to centre of mass R [m]", lambda scene: scene["block"]["radius"]),
-                ("slenderness γ [rad]", lambda scene: scene["block"]["slenderness"]),
-                ("rocking frequency ω_r [rad/s], eq. (1)", lambda scene: scene["rocking_frequency"]),
-                ("restitution e_φ [-], eq. (7)", lambda scene: scene["restitution"]),
-                ("mass of the base m_b [kg]", lambda scene: (scene["base"] or {}).get("mass")),
-                ("bearings [-]", lambda scene: (scene["bearings"] or {}).get("count")),
-                ("k_a of each [N/m]", lambda scene: (scene["bearings"] or {}).get("ka")),
-                ("k_b of each [N/m]", lambda scene: (scene["bearings"] or {}).get("kb")),
-                ("α [-]", lambda scene: (scene["bearings"] or {}).get("alpha")),
-                ("duration [s]", lambda scene: scene["duration"] or "until decided")):
+            ("mass of the block m [kg]", lambda scene: scene["block"]["mass"]),
+            ("corner to centre of mass R [m]", lambda scene: scene["block"]["radius"]),
+            ("slenderness γ [rad]", lambda scene: scene["block"]["slenderness"]),
+            ("rocking frequency ω_r [rad/s], eq. (1)", lambda scene: scene["rocking_frequency"]),
+            ("restitution e_φ [-], eq. (7)", lambda scene: scene["restitution"]),
+            ("mass of the base m_b [kg]", lambda scene: (scene["base"] or {}).get("mass")),
+            ("bearings [-]", lambda scene: (scene["bearings"] or {}).get("count")),
+            ("k_a of each [N/m]", lambda scene: (scene["bearings"] or {}).get("ka")),
+            ("k_b of each [N/m]", lambda scene: (scene["bearings"] or {}).get("kb")),
+            ("α [-]", lambda scene: (scene["bearings"] or {}).get("alpha")),
+            ("duration [s]", lambda scene: scene["duration"] or "until decided"),
+        ):
             values = [pick(scene) for scene in scenes.values()]
-            yield [label, *("–" if value is None else value if isinstance(value, str) else f"{value:.6g}"
-                            for value in values)]
+            yield [
+                label,
+                *("–" if value is None else value if isinstance(value, str) else f"{value:.6g}" for value in values),
+            ]
+
     return Table("Parameters", ("quantity", *(scene["name"] for scene in scenes.values())), list(rows()))
 
 
 # quantity with unit, key of the row, significant digits; a base's own last
-OUTCOMES = (("outcome", "verdict", None), ("overturns at [s]", "overturning_time", 5),
-            ("peak |φ|/γ [-]", "peak_tilt_ratio", 4), ("impacts [-]", "impact_count", None),
-            ("peak |H|/N [-]", "friction_demand", 3), ("least N/(m g) [-]", "min_normal_ratio", 3),
-            ("warnings [-]", "warnings", None), ("run until [s]", "end", 5), ("steps [-]", "steps", None),
-            ("CPU time [s]", "cpu_seconds", 2), ("CPU time per simulated second [s/s]", "cpu_per_second", 2))
-BASE_OUTCOMES = (("peak base displacement [m]", "peak_base_displacement", 5),
-                 ("peak absolute base acceleration [m/s²]", "peak_base_acceleration", 4),
-                 ("work of the bearings [J]", "bearing_work", 5))
+OUTCOMES = (
+    ("outcome", "verdict", None),
+    ("overturns at [s]", "overturning_time", 5),
+    ("peak |φ|/γ [-]", "peak_tilt_ratio", 4),
+    ("impacts [-]", "impact_count", None),
+    ("peak |H|/N [-]", "friction_demand", 3),
+    ("least N/(m g) [-]", "min_normal_ratio", 3),
+    ("warnings [-]", "warnings", None),
+    ("run until [s]", "end", 5),
+    ("steps [-]", "steps", None),
+    ("CPU time [s]", "cpu_seconds", 2),
+    ("CPU time per simulated second [s/s]", "cpu_per_second", 2),
+)
+BASE_OUTCOMES = (
+    ("peak base displacement [m]", "peak_base_displacement", 5),
+    ("peak absolute base acceleration [m/s²]", "peak_base_acceleration", 4),
+    ("work of the bearings [J]", "bearing_work", 5),
+)
 
 
 def _outcomes(result, name):
@@ -124,8 +171,11 @@ def _outcomes(result, name):
     rows = [row for row in result.rows if row["scene"] == name]
     scene = result.settings["scenes"][name]
     quantities = [*OUTCOMES, *(BASE_OUTCOMES if scene["base"] else ())]
-    return Table(f"{scene['name']}, {_span(scene)}", ("quantity", *(row["solver"] for row in rows)),
-                 [[label, *(_value(row, key, digits) for row in rows)] for label, key, digits in quantities])
+    return Table(
+        f"{scene['name']}, {_span(scene)}",
+        ("quantity", *(row["solver"] for row in rows)),
+        [[label, *(_value(row, key, digits) for row in rows)] for label, key, digits in quantities],
+    )
 
 
 def _span(scene):
@@ -168,24 +218,30 @@ def _agreement(result, name):
         return ()
     scene = result.settings["scenes"][name]
     found = [row["agreement"] for row in rows]
-    measures = [["same outcome", *("yes" if one["same_outcome"] else "no" for one in found)],
-                ["overturning time [s]", *(number(one["overturning_time_error"], 2) for one in found)],
-                ["peak |φ|/γ [-]", *(number(one["peak_tilt_error"], 2) for one in found)],
-                ["size of its errors: change of the model that does as much [-]",
-                 *(number(row["perturbation"], 2) for row in rows)],
-                ["up to its own sensitivity horizon [s]:", *(number(one["until"], 4) for one in found)],
-                ["impact times, rms [s]", *(number(one["impact_time_error"], 2) for one in found)],
-                ["lost impacts [-]", *(str(one["lost_impacts"]) for one in found)],
-                ["distance of the tilt graphs [-]", *(number(one["graph_distance"], 2) for one in found)]]
+    measures = [
+        ["same outcome", *("yes" if one["same_outcome"] else "no" for one in found)],
+        ["overturning time [s]", *(number(one["overturning_time_error"], 2) for one in found)],
+        ["peak |φ|/γ [-]", *(number(one["peak_tilt_error"], 2) for one in found)],
+        [
+            "size of its errors: change of the model that does as much [-]",
+            *(number(row["perturbation"], 2) for row in rows),
+        ],
+        ["up to its own sensitivity horizon [s]:", *(number(one["until"], 4) for one in found)],
+        ["impact times, rms [s]", *(number(one["impact_time_error"], 2) for one in found)],
+        ["lost impacts [-]", *(str(one["lost_impacts"]) for one in found)],
+        ["distance of the tilt graphs [-]", *(number(one["graph_distance"], 2) for one in found)],
+    ]
     if scene["base"]:
-        work = next(row["bearing_work"] for row in result.rows
-                    if row["scene"] == name and row["solver"] == "analytic")
-        measures += [["peak base displacement [%]", *(number(100 * one["peak_displacement_error"], 2)
-                                                      for one in found)],
-                     ["work of the bearings [%]", *(number(100 * (row["bearing_work"] / work - 1), 2)
-                                                    for row in rows)]]
-    return (Table(f"{scene['name']}: engine minus analytic model", ("difference", *(row["solver"] for row in rows)),
-                  measures),)
+        work = next(row["bearing_work"] for row in result.rows if row["scene"] == name and row["solver"] == "analytic")
+        measures += [
+            ["peak base displacement [%]", *(number(100 * one["peak_displacement_error"], 2) for one in found)],
+            ["work of the bearings [%]", *(number(100 * (row["bearing_work"] / work - 1), 2) for row in rows)],
+        ]
+    return (
+        Table(
+            f"{scene['name']}: engine minus analytic model", ("difference", *(row["solver"] for row in rows)), measures
+        ),
+    )
 
 
 def restitution_sections(result):
@@ -193,39 +249,75 @@ def restitution_sections(result):
     starts = ", ".join(f"{start:g}" for start in result.settings["starts"])
     few = ", ".join(f"{start:g}" for start in result.settings["variant_starts"])
     groups = variant_groups(result)
-    rows = [[group["name"], trust(group["rms"], len(group["failures"])), str(group["impacts"]),
-             number(group["rms"], 2), number(group["worst"], 2),
-             number(group["jump_rms"], 2), number(group["time_rms"], 2), number(group["cpu_per_second"], 2),
-             str(len(group["failures"]))] for group in groups]
+    rows = [
+        [
+            group["name"],
+            trust(group["rms"], len(group["failures"])),
+            str(group["impacts"]),
+            number(group["rms"], 2),
+            number(group["worst"], 2),
+            number(group["jump_rms"], 2),
+            number(group["time_rms"], 2),
+            number(group["cpu_per_second"], 2),
+            str(len(group["failures"])),
+        ]
+        for group in groups
+    ]
     return [
-        Section("Restitution per impact", (
-            f"Free rocking for {result.settings['seconds']:g} s, released from rest at φ/γ = {starts} (variants that "
-            f"are not the default: {few}), on rigid ground and on a base of "
-            f"{result.settings['bases']['sliding base']['mass']:g} kg that slides without friction. The engines are "
-            "given no restitution (but for exudyn, switched-joints, which applies the model's own impact): it follows "
-            "from their contact. It is measured as φ̇⁺/φ̇⁻, the tilt rate after over that before the impact, from the "
-            "states in clean flight, carried to the impact by the model's equations, for every impact at least "
-            f"{100 * result.settings['slowest_impact']:g} % as fast as the run's fastest.",
-            "The variants of an engine are ways to set it up. compliant-corners: stiff springs under the corners; "
-            "impact-aware: steps that are short where an impact falls; fixed-step: the same step all along; "
-            "switched-joints: hinges that the adapter switches; native-contact and first-script: as a first user would "
-            "set the engine up.",),
+        Section(
+            "Restitution per impact",
+            (
+                f"Free rocking for {result.settings['seconds']:g} s, released from rest at φ/γ = {starts} (variants "
+                f"that are not the default: {few}), on rigid ground and on a base of "
+                f"{result.settings['bases']['sliding base']['mass']:g} kg that slides without friction. The engines "
+                "are given no restitution (but for exudyn, switched-joints, which applies the model's own impact): "
+                "it follows from their contact. It is measured as φ̇⁺/φ̇⁻, the tilt rate after over that before the "
+                "impact, from the states in clean flight, carried to the impact by the model's equations, for every "
+                f"impact at least {100 * result.settings['slowest_impact']:g} % as fast as the run's fastest.",
+                "The variants of an engine are ways to set it up. compliant-corners: stiff springs under the "
+                "corners; impact-aware: steps that are short where an impact falls; fixed-step: the same step all "
+                "along; switched-joints: hinges that the adapter switches; native-contact and first-script: as a "
+                "first user would set the engine up.",
+            ),
             tuple(_restitution_table(result, ground) for ground in result.settings["bases"]),
-            (figures.restitution(result),)),
-        Section("Error beside cost", (
-            "Error and CPU time of the very same runs. Impact times are held against the closed form (elliptic "
-            "integrals) on rigid ground, so the analytic model is on trial there as well. CPU time is that of the "
-            "simulation alone: no import, no compilation, no building of the scene.",
-            f"Restitution may be trusted if its error, root mean square, is at most {TRUSTED:g} and no run failed; at "
-            f"most {USABLE:g} it is usable where a per cent does not matter.",),
-            (Table("Error beside cost, all grounds and slendernesses together",
-                   ("solver", "restitution", "impacts [-]", "restitution error, rms [-]",
-                    "restitution error, worst [-]",
-                    "base velocity jump, relative error, rms [-]", "impact times, relative error, rms [-]",
-                    "CPU time per simulated second [s/s]", "failed runs [-]"), rows),
-             *_warnings("Free rocking", {warning: [group["name"] for group in groups if warning in group["warnings"]]
-                                         for group in groups for warning in group["warnings"]})),
-            (figures.error_and_cost(groups),)),
+            (figures.restitution(result),),
+        ),
+        Section(
+            "Error beside cost",
+            (
+                "Error and CPU time of the very same runs. Impact times are held against the closed form (elliptic "
+                "integrals) on rigid ground, so the analytic model is on trial there as well. CPU time is that of the "
+                "simulation alone: no import, no compilation, no building of the scene.",
+                f"Restitution may be trusted if its error, root mean square, is at most {TRUSTED:g} and no run "
+                f"failed; at most {USABLE:g} it is usable where a per cent does not matter.",
+            ),
+            (
+                Table(
+                    "Error beside cost, all grounds and slendernesses together",
+                    (
+                        "solver",
+                        "restitution",
+                        "impacts [-]",
+                        "restitution error, rms [-]",
+                        "restitution error, worst [-]",
+                        "base velocity jump, relative error, rms [-]",
+                        "impact times, relative error, rms [-]",
+                        "CPU time per simulated second [s/s]",
+                        "failed runs [-]",
+                    ),
+                    rows,
+                ),
+                *_warnings(
+                    "Free rocking",
+                    {
+                        warning: [group["name"] for group in groups if warning in group["warnings"]]
+                        for group in groups
+                        for warning in group["warnings"]
+                    },
+                ),
+            ),
+            (figures.error_and_cost(groups),),
+        ),
     ]
 
 
@@ -238,5 +330,8 @@ def _restitution_table(result, ground):
     for solver, variant in dict.fromkeys((row["solver"], row["variant"]) for row in rows):
         found = {row["slenderness"]: row["rms"] for row in rows if (row["solver"], row["variant"]) == (solver, variant)}
         table.append([f"{solver}, {variant}", *(number(found.get(gamma), 2) for gamma in gammas)])
-    return Table(f"Error of restitution on {'a ' if ground == 'sliding base' else ''}{ground}, root mean square [-]",
-                 ("solver", *(f"γ = {gamma:g} rad" for gamma in gammas)), table)
+    return Table(
+        f"Error of restitution on {'a ' if ground == 'sliding base' else ''}{ground}, root mean square [-]",
+        ("solver", *(f"γ = {gamma:g} rad" for gamma in gammas)),
+        table,
+    )

@@ -28,8 +28,15 @@ def make_results(folder, motion, *, duration=None, slendernesses=SLENDERNESSES):
         Of the free rocking blocks [rad].
     """
     unfinished = Path(folder) / UNFINISHED
-    for path in compute(STUDY, unfinished, workers=None if len(motion.samples) <= SHORT_RECORD else 1,
-                        motion=motion, histories=unfinished, duration=duration, slendernesses=slendernesses):
+    for path in compute(
+        STUDY,
+        unfinished,
+        workers=None if len(motion.samples) <= SHORT_RECORD else 1,
+        motion=motion,
+        histories=unfinished,
+        duration=duration,
+        slendernesses=slendernesses,
+    ):
         for file in (path.with_suffix(".npz"), path):
             shutil.move(file, Path(folder) / file.name)
     shutil.rmtree(unfinished)  # complete: the next report measures its times afresh

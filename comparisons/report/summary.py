@@ -19,18 +19,29 @@ def summary(caryatid, groups):
                 f"Restitution in {group['name']}: off the momentum formula, eq. (7), by {number(group['rms'], 2)} "
                 f"(root mean square over {group['impacts']} impacts; worst {number(group['worst'], 2)}), at "
                 f"{number(group['cpu_per_second'], 2)} s of CPU time per simulated second, "
-                f"{_ratio(group, reference)}.")
-    others = [f"{group['name']} {number(group['rms'], 2)} at {number(group['cpu_per_second'], 2)} s/s"
-              for group in groups if not group["default"] and group["rms"] is not None]
+                f"{_ratio(group, reference)}."
+            )
+    others = [
+        f"{group['name']} {number(group['rms'], 2)} at {number(group['cpu_per_second'], 2)} s/s"
+        for group in groups
+        if not group["default"] and group["rms"] is not None
+    ]
     if others:
-        sentences.append("Set up otherwise, restitution error (root mean square) at CPU time per simulated second: "
-                         + "; ".join(others) + ".")
+        sentences.append(
+            "Set up otherwise, restitution error (root mean square) at CPU time per simulated second: "
+            + "; ".join(others)
+            + "."
+        )
     for name, reason in caryatid.settings["missing"].items():
         sentences.append(f"Not in this report: {name}. {reason}.")
-    failed = [f"{row['solver']} on {row['scene']} ({row['failure']['reason']})" for row in caryatid.rows
-              if row["failure"]]
-    failed += [f"{len(group['failures'])} of free rocking in {group['name']} ({group['failures'][0]['reason']})"
-               for group in groups if group["failures"]]
+    failed = [
+        f"{row['solver']} on {row['scene']} ({row['failure']['reason']})" for row in caryatid.rows if row["failure"]
+    ]
+    failed += [
+        f"{len(group['failures'])} of free rocking in {group['name']} ({group['failures'][0]['reason']})"
+        for group in groups
+        if group["failures"]
+    ]
     if failed:
         sentences.append("Failed runs: " + "; ".join(failed) + ".")
     return sentences
@@ -44,11 +55,12 @@ def outcomes(rows):
         words = f"is {row['verdict']}" if undecided else WORDS.get(row["outcome"], row["outcome"])
         by_outcome.setdefault(words, []).append(row["solver"])
     if len(by_outcome) == 1:
-        (outcome, solvers), = by_outcome.items()
+        ((outcome, solvers),) = by_outcome.items()
         many = {1: solvers[0], 2: "both solvers"}.get(len(solvers), f"all {len(solvers)} solvers")
         return f"in {many} it {outcome}"
     return "the solvers disagree: " + ", ".join(
-        f"in {' and '.join(solvers)} it {outcome}" for outcome, solvers in by_outcome.items())
+        f"in {' and '.join(solvers)} it {outcome}" for outcome, solvers in by_outcome.items()
+    )
 
 
 def _warnings(rows):

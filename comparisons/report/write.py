@@ -24,16 +24,25 @@ def write_page(folder, studies=RESULTS):
     """
     folder = Path(folder)
     caryatid, free = read_result(folder / CARYATID), read_result(folder / FREE_ROCKING)
-    environment = Environment(loader=PackageLoader(__package__, "."), autoescape=True, undefined=StrictUndefined,
-                              trim_blocks=True, lstrip_blocks=True)
+    environment = Environment(
+        loader=PackageLoader(__package__, "."),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
     sections = [*caryatid_sections(caryatid), *restitution_sections(free)]
     found = study_sections(studies)
     html = environment.get_template("page.html").render(
-        motion=caryatid.settings["motion"]["label"], summary=summary(caryatid, variant_groups(free)),
-        verdicts=[verdict for section in found for verdict in section.verdicts], sections=sections, studies=found,
+        motion=caryatid.settings["motion"]["label"],
+        summary=summary(caryatid, variant_groups(free)),
+        verdicts=[verdict for section in found for verdict in section.verdicts],
+        sections=sections,
+        studies=found,
         provenance=_provenance(caryatid, free),
         ages=[f"{name} is {text}" for name, text in ((CARYATID, age(caryatid)), (FREE_ROCKING, age(free))) if text],
-        files=[CARYATID, CARYATID.replace(".json", ".npz"), FREE_ROCKING, FREE_ROCKING.replace(".json", ".npz")])
+        files=[CARYATID, CARYATID.replace(".json", ".npz"), FREE_ROCKING, FREE_ROCKING.replace(".json", ".npz")],
+    )
     path = folder / PAGE
     path.write_text(html, encoding="utf-8")
     return path
@@ -43,23 +52,39 @@ def _provenance(caryatid, free):
     """Versions, machine and settings: how to obtain the same numbers."""
     found = caryatid.provenance
     machine = found["machine"]
-    commit = "outside a checkout" if found["commit"] is None else found["commit"][:12] + (
-        ", with uncommitted changes" if found["dirty"] else "")
-    rows = [["computed", found["time"]], ["commit", commit], ["processor", machine["processor"]],
-            ["cores (physical, logical)", f"{machine['cores']}, {machine['logical_cores']}"],
-            ["memory [GiB]", str(machine["memory_gib"])], ["system", machine["system"]], ["Python", found["python"]]]
+    commit = (
+        "outside a checkout"
+        if found["commit"] is None
+        else found["commit"][:12] + (", with uncommitted changes" if found["dirty"] else "")
+    )
+    rows = [
+        ["computed", found["time"]],
+        ["commit", commit],
+        ["processor", machine["processor"]],
+        ["cores (physical, logical)", f"{machine['cores']}, {machine['logical_cores']}"],
+        ["memory [GiB]", str(machine["memory_gib"])],
+        ["system", machine["system"]],
+        ["Python", found["python"]],
+    ]
     rows += [[name, found["packages"].get(name) or "not installed"] for name in PACKAGES]
     settings = {}
     for row in [*caryatid.rows, *free.rows]:
         if row.get("settings") is not None:
             settings[row["solver"], row["variant"]] = row["settings"]
-    listed = [[f"{solver}, {variant}", ", ".join(f"{key} = {value}" for key, value in chosen.items())]
-              for (solver, variant), chosen in settings.items()]
+    listed = [
+        [f"{solver}, {variant}", ", ".join(f"{key} = {value}" for key, value in chosen.items())]
+        for (solver, variant), chosen in settings.items()
+    ]
     decides = []
     for solver, text in free.settings["decides"].items():
         texts = text if isinstance(text, dict) else {"": text}
         decides += [[f"{solver}, {variant}" if variant else solver, words] for variant, words in texts.items()]
-    return Section("Versions, machine, settings", (), (
-        Table("What each engine decides by itself", ("engine", "what"), decides),
-        Table("Versions and machine", ("what", "value"), rows),
-        Table("Settings of each solver and variant (SI units)", ("solver", "settings"), listed)))
+    return Section(
+        "Versions, machine, settings",
+        (),
+        (
+            Table("What each engine decides by itself", ("engine", "what"), decides),
+            Table("Versions and machine", ("what", "value"), rows),
+            Table("Settings of each solver and variant (SI units)", ("solver", "settings"), listed),
+        ),
+    )

@@ -46,8 +46,15 @@ class Case:
 
     def key(self, measure=None):
         """Hash of all that the row depends on: scene, solver, variant, settings, tag, measure, versions, sources."""
-        content = (self.scene.digest(), self.solver, self.variant, self.settings, self.tag, name_of(measure),
-                   fingerprint(self.solver, measure))
+        content = (
+            self.scene.digest(),
+            self.solver,
+            self.variant,
+            self.settings,
+            self.tag,
+            name_of(measure),
+            fingerprint(self.solver, measure),
+        )
         return hashlib.sha256(json.dumps(content, sort_keys=True, allow_nan=False).encode()).hexdigest()[:32]
 
     def run(self):

@@ -164,8 +164,11 @@ class Processes(_Closing):
                 reason = f"no result within the time limit of {task.time_limit:g} s"
                 lost = {"kind": "time limit", "reason": reason, "time_limit": task.time_limit}
             except ProcessExpired as error:
-                lost = {"kind": "crash", "reason": f"the worker process ended: {_exit(error.exitcode)}",
-                        "exit_code": error.exitcode}
+                lost = {
+                    "kind": "crash",
+                    "reason": f"the worker process ended: {_exit(error.exitcode)}",
+                    "exit_code": error.exitcode,
+                }
             lost["message"] = _tail(log)
             return Done(task.ticket, lost=lost)
 
@@ -174,19 +177,23 @@ class Processes(_Closing):
         self._evidence.cleanup()
 
     def _new_pool(self):
-        return ProcessPool(self._workers, initializer=_start_worker, initargs=(tuple(sys.path),),
-                           context=self._context)
+        return ProcessPool(self._workers, initializer=_start_worker, initargs=(tuple(sys.path),), context=self._context)
 
     def _renew(self):
         """A new pool: a pool ends when a worker dies that has no task, as when it is killed while idle."""
         self._broken += 1
         if self._broken > MOST_BROKEN:
-            raise RuntimeError("worker processes end before they take up any run; try one case with the Serial "
-                               "executor to see why. Rows done so far are kept")
+            raise RuntimeError(
+                "worker processes end before they take up any run; try one case with the Serial "
+                "executor to see why. Rows done so far are kept"
+            )
         self._close_pool()
         self._pool = self._new_pool()
-        unfinished = {future: entry for future, entry in self._under_way.items()
-                      if not future.done() or future.exception() is not None}
+        unfinished = {
+            future: entry
+            for future, entry in self._under_way.items()
+            if not future.done() or future.exception() is not None
+        }
         for future, (task, _) in unfinished.items():
             del self._under_way[future]
             self.submit(task)
@@ -215,8 +222,11 @@ def _lines(task):
             line = json.dumps(row, allow_nan=False)
         except Exception as error:
             row["values"] = {"outcome": "failed"}
-            row["failure"] = {"kind": "exception", "reason": f"{type(error).__name__}: {scrub(str(error))}",
-                              "message": scrub(traceback.format_exc())[-EVIDENCE_CHARACTERS:]}
+            row["failure"] = {
+                "kind": "exception",
+                "reason": f"{type(error).__name__}: {scrub(str(error))}",
+                "message": scrub(traceback.format_exc())[-EVIDENCE_CHARACTERS:],
+            }
             line = json.dumps(row)
         lines.append(line)
         if time.monotonic() - start > task.enough:

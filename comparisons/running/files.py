@@ -80,6 +80,7 @@ def write(path, writer):
 
 def write_text(path, text):
     """Write `text` to the file `path` in UTF-8, or to standard output where that is "-"; see `write`."""
+
     def writer(place):
         Path(place).write_text(text, encoding="utf-8")
 
@@ -117,8 +118,7 @@ def _mode(path, named):
     except FileNotFoundError:
         return None
     except (OSError, ValueError) as error:  # ValueError: a NUL character
-        raise SettingError(f"{named}: no name for a file ({getattr(error, 'strerror', error)}); "
-                           "give another") from None
+        raise SettingError(f"{named}: no name for a file ({getattr(error, 'strerror', error)}); give another") from None
 
 
 def _check_file(path):

@@ -51,9 +51,15 @@ def provenance(modules=("analytic",), seed=None):
         Of the random numbers used; None where none are.
     """
     sources = source_digests(modules)
-    return {"time": datetime.now(UTC).isoformat(timespec="seconds"), "machine": machine(),
-            "python": platform.python_version(), "packages": {name: _version(name) for name in PACKAGES},
-            **_checkout(), "sources": {name: digest[:16] for name, digest in sources.items()}, "seed": seed}
+    return {
+        "time": datetime.now(UTC).isoformat(timespec="seconds"),
+        "machine": machine(),
+        "python": platform.python_version(),
+        "packages": {name: _version(name) for name in PACKAGES},
+        **_checkout(),
+        "sources": {name: digest[:16] for name, digest in sources.items()},
+        "seed": seed,
+    }
 
 
 def machine():
@@ -62,9 +68,13 @@ def machine():
     if Path("/proc/cpuinfo").exists():
         found = re.search(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
         model = found.group(1) if found else model
-    return {"processor": model or platform.machine(), "cores": psutil.cpu_count(logical=False),
-            "logical_cores": psutil.cpu_count(), "memory_gib": round(psutil.virtual_memory().total / 2**30, 1),
-            "system": f"{platform.system()} {platform.machine()}"}
+    return {
+        "processor": model or platform.machine(),
+        "cores": psutil.cpu_count(logical=False),
+        "logical_cores": psutil.cpu_count(),
+        "memory_gib": round(psutil.virtual_memory().total / 2**30, 1),
+        "system": f"{platform.system()} {platform.machine()}",
+    }
 
 
 def write_result(path, kind, settings, rows, arrays=None, *, modules, seed=None):
@@ -91,12 +101,22 @@ def write_result(path, kind, settings, rows, arrays=None, *, modules, seed=None)
     path = Path(path)
     if path.suffix != ".json":
         raise ResultError(f"{path.name}: a result file ends in .json; rename it")
-    content = json_ready({"schema": SCHEMA, "kind": kind, "provenance": provenance(modules, seed),
-                          "settings": settings, "arrays": None, "rows": rows})
+    content = json_ready(
+        {
+            "schema": SCHEMA,
+            "kind": kind,
+            "provenance": provenance(modules, seed),
+            "settings": settings,
+            "arrays": None,
+            "rows": rows,
+        }
+    )
     text = json.dumps(content, allow_nan=False)
     if any(root in text for root, _ in _roots()):
-        raise ResultError(f"{path.name}: the content names a folder of this machine; pass file names without "
-                          "folders, or messages through scrub()")
+        raise ResultError(
+            f"{path.name}: the content names a folder of this machine; pass file names without "
+            "folders, or messages through scrub()"
+        )
     path.parent.mkdir(parents=True, exist_ok=True)
     if arrays:
         beside = path.with_suffix(".npz")
@@ -128,8 +148,9 @@ def read_result(path):
     if content["arrays"]:
         beside = path.with_name(content["arrays"]["file"])
         if not beside.exists() or _digest(beside) != content["arrays"]["digest"]:
-            raise ResultError(f"{beside.name}: missing or not the one {path.name} was written with; run the study "
-                              "again")
+            raise ResultError(
+                f"{beside.name}: missing or not the one {path.name} was written with; run the study again"
+            )
         with np.load(beside) as stored:
             arrays = {name: stored[name] for name in stored.files}
     return Result(content["kind"], content["settings"], content["rows"], content["provenance"], arrays)
@@ -148,8 +169,10 @@ def age(result):
         return None
     commit = result.provenance["commit"]
     origin = f"at commit {commit[:7]}" if commit else "outside a checkout"
-    return (f"older than the code: computed on {result.provenance['time'][:10]} {origin}; since then changed: "
-            + ", ".join(changed))
+    return (
+        f"older than the code: computed on {result.provenance['time'][:10]} {origin}; since then changed: "
+        + ", ".join(changed)
+    )
 
 
 def scrub(text):
@@ -178,8 +201,12 @@ def json_ready(value):
 def _roots():
     """Folders of this machine and what to call them, the inner ones first."""
     roots = [(str(PROJECT_FOLDER), ".")] + [(path, "site-packages") for path in site.getsitepackages()]
-    roots += [(sys.prefix, "<environment>"), (sys.base_prefix, "<python>"),
-              (tempfile.gettempdir(), "<temporary>"), (str(Path.home()), "~")]
+    roots += [
+        (sys.prefix, "<environment>"),
+        (sys.base_prefix, "<python>"),
+        (tempfile.gettempdir(), "<temporary>"),
+        (str(Path.home()), "~"),
+    ]
     # "/usr" and "/" are everyone's and may be part of a word
     return [(root, name) for root, name in roots if root not in ("/", "/usr", "/usr/local")]
 
@@ -194,9 +221,12 @@ def _layout(content):
 
 def _checkout():
     """Commit of the project's checkout, and whether tracked files differ from it; None outside one."""
+
     def git(*words):
-        return subprocess.run(["git", "-C", str(PROJECT_FOLDER), *words], capture_output=True, text=True,
-                              check=True, timeout=20).stdout.strip()
+        return subprocess.run(
+            ["git", "-C", str(PROJECT_FOLDER), *words], capture_output=True, text=True, check=True, timeout=20
+        ).stdout.strip()
+
     try:
         if Path(git("rev-parse", "--show-toplevel")).resolve() != PROJECT_FOLDER.resolve():
             return {"commit": None, "dirty": None}  # installed inside some other checkout

@@ -8,5 +8,5 @@ def readable(text, most=MOST_CHARACTERS):
     text = str(text)
     if len(text) > most:  # both ends matter: what it is about, and what to do
         tail = most // 3
-        text = text[:most - tail] + " [...] " + text[-tail:]
+        text = text[: most - tail] + " [...] " + text[-tail:]
     return "".join(char if char.isprintable() else char.encode("unicode_escape").decode() for char in text)

@@ -105,8 +105,10 @@ def boundaries(low, high, scan, tolerance, near=4):
         For `together`; yields lists of float, returns a `Column`.
     """
     if not (low < high and scan >= 2 and tolerance > 0 and near >= 1):
-        raise ValueError(f"boundaries needs low < high, scan >= 2, tolerance > 0 and near >= 1, not low = {low!r}, "
-                         f"high = {high!r}, scan = {scan!r}, tolerance = {tolerance!r}, near = {near!r}")
+        raise ValueError(
+            f"boundaries needs low < high, scan >= 2, tolerance > 0 and near >= 1, not low = {low!r}, "
+            f"high = {high!r}, scan = {scan!r}, tolerance = {tolerance!r}, near = {near!r}"
+        )
     return _boundaries(low, high, scan, tolerance, near)
 
 

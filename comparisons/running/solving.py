@@ -59,8 +59,7 @@ def ground_motion(record=None, units=None):
     return read_record(record, units) if record else synthetic_motion()
 
 
-def simulate(scene, solver=ANALYTIC, variant=None, settings=None, history=True, time_limit=TIME_LIMIT,
-             words=None):
+def simulate(scene, solver=ANALYTIC, variant=None, settings=None, history=True, time_limit=TIME_LIMIT, words=None):
     """The `Response` of the solver called `solver`, run in a process of its own while `words` are shown.
 
     What is odd about the record stands among its warnings. A run that crashes, or takes more than `time_limit` [s], is
@@ -77,8 +76,9 @@ def simulate(scene, solver=ANALYTIC, variant=None, settings=None, history=True, 
 
     settings = settings or {}
     check_solver(solver)
-    response, failure = alone(_simulate, scene, solver, variant, settings, history, time_limit=time_limit,
-                              meanwhile=words and spinner(words))
+    response, failure = alone(
+        _simulate, scene, solver, variant, settings, history, time_limit=time_limit, meanwhile=words and spinner(words)
+    )
     if failure:
         from engines.observe import failed_response
 
@@ -87,8 +87,9 @@ def simulate(scene, solver=ANALYTIC, variant=None, settings=None, history=True, 
         if failure.reason == OUT_OF_TIME:
             first, end, rest = failure.message.partition("\n")
             failure = dataclasses.replace(failure, message=f"{first}; --time-limit allows more{end}{rest}")
-        response = failed_response(scene, failure, engine=solver, variant=variant or "", settings=dict(settings),
-                                   versions=versions(solver))
+        response = failed_response(
+            scene, failure, engine=solver, variant=variant or "", settings=dict(settings), versions=versions(solver)
+        )
     odd = [text for text in getattr(scene.motion, "warnings", ()) if text not in response.warnings]
     return dataclasses.replace(response, warnings=(*odd, *response.warnings))
 

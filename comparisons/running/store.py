@@ -74,7 +74,7 @@ class Store:
         data, end = memoryview("".join(line + "\n" for line in lines).encode()), self._file.seek(0, os.SEEK_END)
         try:
             while data:
-                data = data[self._file.write(data):]
+                data = data[self._file.write(data) :]
             if time.monotonic() - self._synced > SYNC_SECONDS:
                 self.sync()
         except OSError as error:
@@ -104,8 +104,9 @@ class Store:
         try:
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
-            raise StoreError(f"{self.path}: another sweep is writing to it; wait for it or give another "
-                             "place") from error
+            raise StoreError(
+                f"{self.path}: another sweep is writing to it; wait for it or give another place"
+            ) from error
         except OSError:  # a file system without locks
             pass
 
@@ -122,6 +123,8 @@ class Store:
                 row = json.loads(line)
                 rows[row["key"]] = row
             except (ValueError, KeyError, TypeError, RecursionError) as error:
-                raise StoreError(f"{self.path}, line {number}: not a row of results ({error}); remove the "
-                                 "line, or the file to start afresh") from error
+                raise StoreError(
+                    f"{self.path}, line {number}: not a row of results ({error}); remove the "
+                    "line, or the file to start afresh"
+                ) from error
         return rows

@@ -150,8 +150,9 @@ def _carry_out(study, plan, folder, ask, store, pool, progress):
             path = folder / f"{step.name or study.name}.json"
             edited = [name for name, digest in source_digests(modules).items() if digest not in code]
             settings = {**step.settings, "changed_while_running": edited}  # its numbers are of the code before
-            written[path] = write_result(path, study.name, settings, step.rows, step.arrays, modules=modules,
-                                         seed=step.seed)
+            written[path] = write_result(
+                path, study.name, settings, step.rows, step.arrays, modules=modules, seed=step.seed
+            )
             continue
         answer = _run(step, store, pool, progress)
         solvers.update(dict.fromkeys(case.solver for case in step.cases))
@@ -186,8 +187,13 @@ def _leave_nothing_empty(folder):
 
 
 def _packages(study):
-    return dict.fromkeys((*PROJECT, study.plan.__module__.partition(".")[0],
-                          *(engine.adapter.partition(".")[0] for engine in ENGINES.values())))
+    return dict.fromkeys(
+        (
+            *PROJECT,
+            study.plan.__module__.partition(".")[0],
+            *(engine.adapter.partition(".")[0] for engine in ENGINES.values()),
+        )
+    )
 
 
 def _run(batch, store, pool, progress):

@@ -47,8 +47,9 @@ class Row:
         return self.failure is not None
 
 
-def run_sweep(cases, *, store, workers=None, time_limit=300.0, measure=None, executor=None, progress=True,
-              label="runs"):
+def run_sweep(
+    cases, *, store, workers=None, time_limit=300.0, measure=None, executor=None, progress=True, label="runs"
+):
     """Run every case and return its `Row`s in the order of the cases, whatever the order they ran in.
 
     Parameters
@@ -86,8 +87,7 @@ def run_sweep(cases, *, store, workers=None, time_limit=300.0, measure=None, exe
     with ExitStack() as stack:
         if not isinstance(store, Store):
             store = stack.enter_context(Store(store))
-        waiting = {key: case for key, case in zip(keys, cases, strict=True)
-                   if not _settled(store.get(key), time_limit)}
+        waiting = {key: case for key, case in zip(keys, cases, strict=True) if not _settled(store.get(key), time_limit)}
         if waiting:
             compile_kernels({case.solver for case in waiting.values()})
             bar = stack.enter_context(_bar(progress))
@@ -96,8 +96,10 @@ def run_sweep(cases, *, store, workers=None, time_limit=300.0, measure=None, exe
                 executor = stack.enter_context(Processes(workers, names))
             _run(waiting, store, executor, measure, time_limit, lambda count: bar.advance(line, count))
         rows = [store.get(key) for key in keys]
-    return [Row(case, row["values"], row["failure"], row["cost"], key not in waiting)
-            for case, key, row in zip(cases, keys, rows, strict=True)]
+    return [
+        Row(case, row["values"], row["failure"], row["cost"], key not in waiting)
+        for case, key, row in zip(cases, keys, rows, strict=True)
+    ]
 
 
 def _run(waiting, store, executor, measure, time_limit, advance):
@@ -121,7 +123,7 @@ def _run(waiting, store, executor, measure, time_limit, advance):
         lines = [_lost_line(members[0][0], done.lost)] if done.lost else done.lines
         store.append(lines)
         advance(len(lines))
-        chunks.put_back(members[len(lines):])
+        chunks.put_back(members[len(lines) :])
         if not done.lost:
             chunks.learn(members[0][1], done.seconds / len(lines))
 
@@ -142,8 +144,7 @@ class _Chunks:
         size = int(CHUNK_SECONDS / max(self._seconds[kind], 1e-9)) if kind in self._seconds else 1
         fair = -(-len(self._waiting) // self._slots)  # near the end, leave something for every worker
         members = [self._waiting.popleft()]
-        while (len(members) < min(size, fair, CHUNK_CASES) and self._waiting
-               and _kind(self._waiting[0][1]) == kind):
+        while len(members) < min(size, fair, CHUNK_CASES) and self._waiting and _kind(self._waiting[0][1]) == kind:
             members.append(self._waiting.popleft())
         return members
 
@@ -174,6 +175,12 @@ def _lost_line(key, lost):
 
 
 def _bar(shown):
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
-               TextColumn("left"), TimeRemainingColumn())
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+    )
     return Progress(*columns, console=Console(stderr=True), disable=not shown, transient=False)

@@ -19,13 +19,21 @@ def draw_scenes(scenes):
         _draw(axis, scene)
     words = "; ".join(
         f"{scene['name']}: a slender block of mass {scene['block']['mass']:g} kg, {2 * scene['half_width']:.3f} m wide "
-        f"and {2 * scene['half_height']:.3f} m high, " + (
+        f"and {2 * scene['half_height']:.3f} m high, "
+        + (
             f"on a base of {scene['base']['mass']:g} kg carried by {scene['bearings']['count']} bearings"
-            if scene["bearings"] else "on rigid ground") for scene in scenes)
-    return figure_of(figure, f"Two scenes drawn to scale. {words}.",
-                     "The scenes, block to scale. φ: tilt, positive toward +x; γ: slenderness; R: base corner to "
-                     "centre of mass; x: base displacement relative to the ground; a_g: ground acceleration. The "
-                     "dashed outline is a tilted position.")
+            if scene["bearings"]
+            else "on rigid ground"
+        )
+        for scene in scenes
+    )
+    return figure_of(
+        figure,
+        f"Two scenes drawn to scale. {words}.",
+        "The scenes, block to scale. φ: tilt, positive toward +x; γ: slenderness; R: base corner to "
+        "centre of mass; x: base displacement relative to the ground; a_g: ground acceleration. The "
+        "dashed outline is a tilted position.",
+    )
 
 
 def _draw(axis, scene):
@@ -37,8 +45,14 @@ def _draw(axis, scene):
     axis.add_patch(Rectangle((-1.2, -0.12), 2.4, 0.12, facecolor="white", edgecolor=FAINT, hatch="////", linewidth=0))
     axis.plot([-1.2, 1.2], [0, 0], color=LINE, linewidth=1.4)
     axis.add_patch(Rectangle((-b, floor), 2 * b, 2 * h, facecolor=STONE, edgecolor=LINE, linewidth=1.4))
-    axis.add_patch(Polygon([_turned(x, y, b, TILT * gamma, floor) for x, y in
-                            ((-b, 0), (b, 0), (b, 2 * h), (-b, 2 * h))], fill=False, edgecolor=FAINT, linestyle="--"))
+    axis.add_patch(
+        Polygon(
+            [_turned(x, y, b, TILT * gamma, floor) for x, y in ((-b, 0), (b, 0), (b, 2 * h), (-b, 2 * h))],
+            fill=False,
+            edgecolor=FAINT,
+            linestyle="--",
+        )
+    )
     # R from the right corner to the centre of mass, gamma between R and the vertical
     axis.plot([b, 0], [floor, floor + h], color=LINE, linewidth=1)
     axis.plot(0, floor + h, "o", color=LINE, markersize=4)
@@ -48,8 +62,12 @@ def _draw(axis, scene):
     axis.text(b - 0.30 * h * math.sin(gamma), floor + 0.61 * h, "γ", ha="center", style="italic")
     axis.text(-0.05, floor + 1.08 * h, "m", ha="right", style="italic")
     top = _turned(b, 2 * h, b, TILT * gamma, floor)
-    axis.annotate("", top, (b, floor + 2 * h), arrowprops={
-        "arrowstyle": "->", "connectionstyle": "arc3,rad=-.2", "shrinkA": 0, "shrinkB": 0})
+    axis.annotate(
+        "",
+        top,
+        (b, floor + 2 * h),
+        arrowprops={"arrowstyle": "->", "connectionstyle": "arc3,rad=-.2", "shrinkA": 0, "shrinkB": 0},
+    )
     axis.text((b + top[0]) / 2, floor + 2 * h + 0.09, "φ", ha="center", style="italic")
     axis.annotate("", (-0.65, -0.28), (-1.15, -0.28), arrowprops={"arrowstyle": "->"})
     axis.text(-0.58, -0.28, "$a_g$, $+x$", va="center")
@@ -65,8 +83,16 @@ def _draw_base(axis, b, floor):
     for middle in (-0.65 * wide, 0.65 * wide):  # two of the bearings are behind the others
         for layer in range(5):
             shade = RUBBER if layer % 2 == 0 else STEEL
-            axis.add_patch(Rectangle((middle - 0.13, layer * RUBBER_HEIGHT / 5), 0.26, RUBBER_HEIGHT / 5,
-                                     facecolor=shade, edgecolor=LINE, linewidth=0.5))
+            axis.add_patch(
+                Rectangle(
+                    (middle - 0.13, layer * RUBBER_HEIGHT / 5),
+                    0.26,
+                    RUBBER_HEIGHT / 5,
+                    facecolor=shade,
+                    edgecolor=LINE,
+                    linewidth=0.5,
+                )
+            )
     axis.annotate("", (wide + 0.32, floor - SLAB / 2), (wide + 0.02, floor - SLAB / 2), arrowprops={"arrowstyle": "->"})
     axis.text(wide + 0.2, floor - SLAB / 2 + 0.06, "x", ha="center", style="italic")
 

@@ -10,9 +10,10 @@ from engines import ENGINES
 from ..running.readable import readable
 
 # solver: (colour, dashes, width); the reference lies wide underneath, dots need width to be seen
-STYLES = {"analytic": ("#000000", "-", 2.4),
-          **{name: (engine.colour, engine.dashes, 1.8 if engine.dashes == ":" else 1.4)
-             for name, engine in ENGINES.items()}}
+STYLES = {
+    "analytic": ("#000000", "-", 2.4),
+    **{name: (engine.colour, engine.dashes, 1.8 if engine.dashes == ":" else 1.4) for name, engine in ENGINES.items()},
+}
 TITLE_CHARACTERS = 100
 TILT_RANGE = (0.05, 2.0)  # least and greatest limit of a tilt axis, over slenderness
 SPARE = ("#009E73", (0, (5, 1)), 1.3)
@@ -60,8 +61,14 @@ def draw_histories(scene, responses, horizon=None):
     tilt.set_ylabel("tilt / slenderness [-]")
     if max(response.peak_tilt_ratio for response in responses) > 0.8:
         for level in (-1, 1):
-            tilt.axhline(level, color="0.6", linewidth=0.8, linestyle=(0, (4, 4)), zorder=0,
-                         label="unstable point" if level > 0 else None)
+            tilt.axhline(
+                level,
+                color="0.6",
+                linewidth=0.8,
+                linestyle=(0, (4, 4)),
+                zorder=0,
+                label="unstable point" if level > 0 else None,
+            )
     if horizon is not None:
         for row in set(rows) - {"ground"}:
             axes[row].axvspan(horizon, end, color="0.93", zorder=-1, label="beyond the sensitivity horizon")

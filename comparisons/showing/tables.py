@@ -49,14 +49,29 @@ def comparison(scene, responses, horizons):
     limit = "Not sensitive: the histories can be compared to the end." if horizons else "No sensitivity horizon known."
     if any(found.parts for found in horizons.values()):
         limit = "Sensitivity horizon, beyond which only outcomes can be compared,\nby each solver's own size of error:"
-        limit += "".join(f"\n{name} {f'{found.horizon:.3g} s' if found.parts else 'none, to the end'} "
-                         f"({found.perturbation:.0e})" for name, found in horizons.items())
-    table = Table(title=Text(_name(scene)), box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0),
-                  caption="over: time of overturning; tilt: peak tilt over slenderness;\n"
-                          "base: peak base displacement; d: difference from the first row.\n"
-                          + limit)
-    for name in ("solver", "outcome", "over\n[s]", "tilt\n[-]", "d\n[-]", "base\n[m]", "d\n[%]", "im-\npacts",
-                 "CPU\n[ms]"):
+        limit += "".join(
+            f"\n{name} {f'{found.horizon:.3g} s' if found.parts else 'none, to the end'} ({found.perturbation:.0e})"
+            for name, found in horizons.items()
+        )
+    table = Table(
+        title=Text(_name(scene)),
+        box=box.SIMPLE_HEAD,
+        show_edge=False,
+        padding=(0, 1, 0, 0),
+        caption="over: time of overturning; tilt: peak tilt over slenderness;\n"
+        "base: peak base displacement; d: difference from the first row.\n" + limit,
+    )
+    for name in (
+        "solver",
+        "outcome",
+        "over\n[s]",
+        "tilt\n[-]",
+        "d\n[-]",
+        "base\n[m]",
+        "d\n[%]",
+        "im-\npacts",
+        "CPU\n[ms]",
+    ):
         table.add_column(Text(name), justify="left" if name in ("solver", "outcome") else "right", no_wrap=True)
     reference = responses[0]
     for response in responses:
@@ -67,10 +82,17 @@ def comparison(scene, responses, horizons):
             if reference.peak_base_displacement > 0:
                 displacement = f"{100 * (response.peak_base_displacement / reference.peak_base_displacement - 1):+.0e}"
         outcome = response.verdict.replace(" ", "\n", 1)  # narrow: undecided, and so far what
-        table.add_row(f"{response.engine}\n{response.variant}".rstrip(), outcome,
-                      _number(response.overturning_time, ".4f"), _number(response.peak_tilt_ratio, ".4f"), tilt,
-                      _number(response.peak_base_displacement, ".4f"), displacement, str(response.impact_count),
-                      _number(1e3 * response.cpu_seconds, ".1f"))
+        table.add_row(
+            f"{response.engine}\n{response.variant}".rstrip(),
+            outcome,
+            _number(response.overturning_time, ".4f"),
+            _number(response.peak_tilt_ratio, ".4f"),
+            tilt,
+            _number(response.peak_base_displacement, ".4f"),
+            displacement,
+            str(response.impact_count),
+            _number(1e3 * response.cpu_seconds, ".1f"),
+        )
     return table
 
 
@@ -93,12 +115,16 @@ def engine_text(engine):
     for name, variant in engine.variants.items():
         default = "default, " if name == engine.default_variant else ""
         about = inspect.getdoc(type(variant.settings)).split("\n\n")[0].replace("\n", " ")
-        values = [f"{field}={value:.6g}" if isinstance(value, float) else f"{field}={value}"
-                  for field, value in dataclasses.asdict(variant.settings).items()]
+        values = [
+            f"{field}={value:.6g}" if isinstance(value, float) else f"{field}={value}"
+            for field, value in dataclasses.asdict(variant.settings).items()
+        ]
         values[:1] = [f"{value} (knob)" for value in values[:1]]
-        lines += [f"  --variant {name} ({default}{variant.rung}): {about}",
-                  f"      settings: {', '.join(values)}",
-                  f"      ladder, coarse to fine: {', '.join(f'{value:.4g}' for value in variant.ladder)}",
-                  f"      verified: {in_words(variant.verified)}",
-                  f"      decides: {variant.decides}"]
+        lines += [
+            f"  --variant {name} ({default}{variant.rung}): {about}",
+            f"      settings: {', '.join(values)}",
+            f"      ladder, coarse to fine: {', '.join(f'{value:.4g}' for value in variant.ladder)}",
+            f"      verified: {in_words(variant.verified)}",
+            f"      decides: {variant.decides}",
+        ]
     return "\n".join(lines) + "\n"

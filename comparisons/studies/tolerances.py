@@ -13,8 +13,9 @@ def plan(ask):
     for engine in ask.engines:
         say(f"tolerances: {engine}")
         default = get_engine(engine).default_variant
-        results += measure_all([row for row in TABLE if row.engine == engine
-                                and (row.variant == default or not ask.quick)])
+        results += measure_all(
+            [row for row in TABLE if row.engine == engine and (row.variant == default or not ask.quick)]
+        )
     bounds = tuple(f"{ENGINES[name].tolerances}:TOLERANCES" for name in ask.engines if ENGINES[name].tolerances)
     yield from ()
     return Found({"engines": ask.engines, "quick": ask.quick}, results, solvers=bounds)
@@ -22,26 +23,63 @@ def plan(ask):
 
 def problems(result):
     """Sentences on the rows that do not hold."""
-    return [f"does not hold: {row['quantity']}, {row['engine']}, {row['variant']}, {row['scenes']}: "
-            f"{row['failure'] or row['found']}, tolerated {row['least']:g} to {row['bound']:g} {row['unit']}"
-            for row in result.rows if not row["holds"]]
+    return [
+        f"does not hold: {row['quantity']}, {row['engine']}, {row['variant']}, {row['scenes']}: "
+        f"{row['failure'] or row['found']}, tolerated {row['least']:g} to {row['bound']:g} {row['unit']}"
+        for row in result.rows
+        if not row["holds"]
+    ]
 
 
 def section(result):
     """The table as a section of the report."""
     broken = [row for row in result.rows if not row["holds"]]
-    text = (f"{len(result.rows)} tolerances, each the assertion of a test; a bound is at most twice the worst measured "
-            "when it was set, but for round-off. First scripts are held to a band: their errors are known, and must "
-            "not vanish unnoticed.",
-            "All of them hold." if not broken else f"{len(broken)} of them do not hold.")
-    rows = [[f"{row['engine']}, {row['variant']}: {row['quantity']}", row["scenes"],
-             f"{number(row['least'], 2)} to {number(row['bound'], 2)}" if row["least"] else number(row["bound"], 2),
-             number(row["measured"], 3), row["failure"] or number(row["found"], 3), row["unit"],
-             "yes" if row["holds"] else "no", row["source"]] for row in result.rows]
-    return Section("Agreement tolerances", text, (Table("Tolerances and what is measured", (
-        "engine, variant: quantity", "scenes", "tolerance", "measured when set", "measured now", "unit", "holds",
-        "where the error comes from"), rows),))
+    text = (
+        f"{len(result.rows)} tolerances, each the assertion of a test; a bound is at most twice the worst measured "
+        "when it was set, but for round-off. First scripts are held to a band: their errors are known, and must "
+        "not vanish unnoticed.",
+        "All of them hold." if not broken else f"{len(broken)} of them do not hold.",
+    )
+    rows = [
+        [
+            f"{row['engine']}, {row['variant']}: {row['quantity']}",
+            row["scenes"],
+            f"{number(row['least'], 2)} to {number(row['bound'], 2)}" if row["least"] else number(row["bound"], 2),
+            number(row["measured"], 3),
+            row["failure"] or number(row["found"], 3),
+            row["unit"],
+            "yes" if row["holds"] else "no",
+            row["source"],
+        ]
+        for row in result.rows
+    ]
+    return Section(
+        "Agreement tolerances",
+        text,
+        (
+            Table(
+                "Tolerances and what is measured",
+                (
+                    "engine, variant: quantity",
+                    "scenes",
+                    "tolerance",
+                    "measured when set",
+                    "measured now",
+                    "unit",
+                    "holds",
+                    "where the error comes from",
+                ),
+                rows,
+            ),
+        ),
+    )
 
 
-STUDY = Study("tolerances", "How far each engine is from the analytic model, beside what it is held to. Status 1: a "
-                            "row does not hold.", plan, lambda result: {}, section, problems)
+STUDY = Study(
+    "tolerances",
+    "How far each engine is from the analytic model, beside what it is held to. Status 1: a row does not hold.",
+    plan,
+    lambda result: {},
+    section,
+    problems,
+)

@@ -2,6 +2,13 @@
 
 from ..contract import Engine
 
-ENGINE = Engine(name="exudyn", package="exudyn", install="pip install exudyn",
-                adapter="engines.exudyn.adapter", tolerances="engines.exudyn.tolerances",
-                colour="#E69F00", marker="s", dashes="--")
+ENGINE = Engine(
+    name="exudyn",
+    package="exudyn",
+    install="pip install exudyn",
+    adapter="engines.exudyn.adapter",
+    tolerances="engines.exudyn.tolerances",
+    colour="#E69F00",
+    marker="s",
+    dashes="--",
+)

@@ -24,24 +24,43 @@ _MODULES = {"compliant-corners": corners, "switched-joints": joints, "native-con
 # switched-joints a base that vibrates faster is off by 3 to 20 %; smaller and flatter swings are too short for it.
 VARIANTS = {
     "compliant-corners": Variant(
-        corners.CompliantCorners(), rung="best", ladder=(1e9, 1e10, 2e11, 1e12),
+        corners.CompliantCorners(),
+        rung="best",
+        ladder=(1e9, 1e10, 2e11, 1e12),
         decides="the integration decides contact, impact, sliding and rest; the corners' law, Hunt-Crossley contact "
-                "with Coulomb's friction, is the adapter's: plastic, non-slipping (unless the scene gives a "
-                "coefficient) and planar, as Housner assumes, so that an impact which agrees with him verifies law and "
-                "integration",
-        verified=Range(slenderness=(0.03, 1.2), inertia=(1.01, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0))),
+        "with Coulomb's friction, is the adapter's: plastic, non-slipping (unless the scene gives a "
+        "coefficient) and planar, as Housner assumes, so that an impact which agrees with him verifies law and "
+        "integration",
+        verified=Range(slenderness=(0.03, 1.2), inertia=(1.01, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0)),
+    ),
     "switched-joints": Variant(
-        joints.SwitchedJoints(), rung="expert", ladder=(1.6e-2, 4e-3, 1e-3), takes_restitution=True,
+        joints.SwitchedJoints(),
+        rung="expert",
+        ladder=(1.6e-2, 4e-3, 1e-3),
+        takes_restitution=True,
         decides="exudyn decides the motion; uplift, impact and rest are the adapter's",
-        verified=Range(slenderness=(0.03, 1.2), inertia=(1.01, 3.0), base_mass=(1e-4, 100.0), radius=(0.05, 30.0),
-                       stiffness=(0.0, 0.3), damping=(0.0, 10.0), tilt=(0.01, math.inf))),
+        verified=Range(
+            slenderness=(0.03, 1.2),
+            inertia=(1.01, 3.0),
+            base_mass=(1e-4, 100.0),
+            radius=(0.05, 30.0),
+            stiffness=(0.0, 0.3),
+            damping=(0.0, 10.0),
+            tilt=(0.01, math.inf),
+        ),
+    ),
     "native-contact": Variant(
-        native.NativeContact(), rung="first script", ladder=(1e-3, 3e-4, 1e-4),
+        native.NativeContact(),
+        rung="first script",
+        ladder=(1e-3, 3e-4, 1e-4),
         decides="exudyn decides contact, impact, sliding and rest through its sphere-triangle contact",
-        verified=Range(slenderness=(0.1, 0.3), inertia=(1.2, 2.0), base_mass=(0.05, 100.0), radius=(0.5, 2.0),
-                       tilt=(0.1, math.inf)),
-        caveats=("native-contact is set up as a first script would: its restitution is off by 1 to 10 %, whatever the "
-                 "step",)),
+        verified=Range(
+            slenderness=(0.1, 0.3), inertia=(1.2, 2.0), base_mass=(0.05, 100.0), radius=(0.5, 2.0), tilt=(0.1, math.inf)
+        ),
+        caveats=(
+            "native-contact is set up as a first script would: its restitution is off by 1 to 10 %, whatever the step",
+        ),
+    ),
 }
 
 

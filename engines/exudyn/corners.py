@@ -100,18 +100,25 @@ def scaled(scene, settings, share):
     """The settings for a scene's size, and for swings of `share` of `MEASURED_START` slendernesses."""
     block = scene.block
     mass, radius, gravity = MEASURED
-    speed, time = (math.sqrt(value) for value in (scene.gravity * block.radius / (gravity * radius),
-                                                  block.radius / scene.gravity / (radius / gravity)))
+    speed, time = (
+        math.sqrt(value)
+        for value in (
+            scene.gravity * block.radius / (gravity * radius),
+            block.radius / scene.gravity / (radius / gravity),
+        )
+    )
     weight = block.mass * scene.gravity / block.radius / (mass * gravity / radius)
     need = block.mass * block.half_width**2 / block.centre_inertia  # above 1: see `slip`
     # a corner of a block with a small moment of inertia gives way easily: the same damping would cost many more steps
     easy = (1 + need) / (1 + 3 * math.sin(block.slenderness) ** 2)
-    return replace(settings, stiffness=settings.stiffness * weight / share,
-                   rebound=settings.rebound * speed * math.sqrt(share * max(1.0, easy)),
-                   slip=settings.slip * speed * math.sqrt(share / max(1.0, need)) * min(
-                       max(1.0, math.sqrt(0.5 / need)), EASE),
-                   tolerance=settings.tolerance * min(speed, 1 / speed, 1.0) * share,
-                   longest_step=settings.longest_step * min(time, 1.0) * math.sqrt(share))
+    return replace(
+        settings,
+        stiffness=settings.stiffness * weight / share,
+        rebound=settings.rebound * speed * math.sqrt(share * max(1.0, easy)),
+        slip=settings.slip * speed * math.sqrt(share / max(1.0, need)) * min(max(1.0, math.sqrt(0.5 / need)), EASE),
+        tolerance=settings.tolerance * min(speed, 1 / speed, 1.0) * share,
+        longest_step=settings.longest_step * min(time, 1.0) * math.sqrt(share),
+    )
 
 
 @njit(cache=True)
@@ -157,13 +164,20 @@ class Corner:
         # on a light base the reduced mass is small: a sticking spring in proportion keeps the step
         reduced = block.mass * (1 - scene.mass_share if scene.base else 1.0)
         law = BearingLaw.of(scene.bearings)
-        sticking = max(settings.sticking * stiffness * reduced / block.mass,
-                       STICKS * scene.mass_share * law.count * (law.kb + law.dk) if scene.bearings else 0.0)
+        sticking = max(
+            settings.sticking * stiffness * reduced / block.mass,
+            STICKS * scene.mass_share * law.count * (law.kb + law.dk) if scene.bearings else 0.0,
+        )
         # the corner of a block of small inertia about its centre gives way easily
         turning = 4 / (1 / reduced + block.half_height**2 / block.centre_inertia)
-        return cls(stiffness, 1 / settings.rebound, sticking,
-                   2 * settings.damping * math.sqrt(sticking * min(reduced, turning)),
-                   reduced / block.mass / settings.slip, settings.friction)
+        return cls(
+            stiffness,
+            1 / settings.rebound,
+            sticking,
+            2 * settings.damping * math.sqrt(sticking * min(reduced, turning)),
+            reduced / block.mass / settings.slip,
+            settings.friction,
+        )
 
     def force(self, displacement, velocity, offset):
         """Symbolic force of a Cartesian connector [N]: Hunt-Crossley, clipped at zero, and friction.
@@ -176,10 +190,16 @@ class Corner:
         loading = (self.hardening * self.stiffness) * velocity[1] - self.stiffness
         touches, normal = up < 0.0, exu.symbolic.max(Real(0.0), up * loading)
         stick = self.sticking * across + (self.damping + self.grip * normal) * velocity[0]
-        limited = exu.symbolic.IfThenElse(stick > 0.0, exu.symbolic.min(self.friction * normal, stick),
-                                          exu.symbolic.max(-self.friction * normal, stick))
-        return [exu.symbolic.IfThenElse(touches, limited, Real(0.0)),
-                exu.symbolic.IfThenElse(touches, exu.symbolic.min(Real(0.0), -up * loading), Real(0.0)), Real(0.0)]
+        limited = exu.symbolic.IfThenElse(
+            stick > 0.0,
+            exu.symbolic.min(self.friction * normal, stick),
+            exu.symbolic.max(-self.friction * normal, stick),
+        )
+        return [
+            exu.symbolic.IfThenElse(touches, limited, Real(0.0)),
+            exu.symbolic.IfThenElse(touches, exu.symbolic.min(Real(0.0), -up * loading), Real(0.0)),
+            Real(0.0),
+        ]
 
 
 class Anchor:
@@ -189,8 +209,13 @@ class Anchor:
         block = model.scene.block
         self.at = 0.0
         self.connectors = model.connectors["left"], model.connectors["right"]
-        self.shape = (block.half_width, block.half_height, corner.stiffness, corner.hardening,
-                      corner.friction / corner.sticking)
+        self.shape = (
+            block.half_width,
+            block.half_height,
+            corner.stiffness,
+            corner.hardening,
+            corner.friction / corner.sticking,
+        )
         self.slop = SLOP * block.mass * model.scene.gravity / corner.sticking
 
     def commit(self, mbs, q, v):
@@ -231,10 +256,18 @@ def _run(scene, settings):
     model, contact_tilt = assemble(scene, settings)
     steps = max(1, math.ceil(scene.duration / settings.longest_step))
     solver = solver_settings(
-        scene, numberOfSteps=steps, automaticStepSize=True, initialStepSize=2e-3 * settings.longest_step,
-        minimumStepSize=1e-13, relativeTolerance=1e-14, absoluteTolerance=settings.tolerance)
-    settle = min(RELAX * math.sqrt(scene.block.mass / settings.stiffness),
-                 MOST_RELAX * math.sqrt(scene.block.radius / scene.gravity))
+        scene,
+        numberOfSteps=steps,
+        automaticStepSize=True,
+        initialStepSize=2e-3 * settings.longest_step,
+        minimumStepSize=1e-13,
+        relativeTolerance=1e-14,
+        absoluteTolerance=settings.tolerance,
+    )
+    settle = min(
+        RELAX * math.sqrt(scene.block.mass / settings.stiffness),
+        MOST_RELAX * math.sqrt(scene.block.radius / scene.gravity),
+    )
     found = step_through(model, solver, exu.DynamicSolverType.DOPRI5, 2 * contact_tilt, settings.longest_step, settle)
     return replace(found, warnings=(*found.warnings, *_unresolved(scene, settings)))
 
@@ -245,9 +278,13 @@ def _unresolved(scene, settings):
         return
     bearings, mass = scene.bearings, scene.base.mass
     slow = math.sqrt(scene.block.mass / settings.stiffness)
-    for name, rate in (("frequency on its bearings", math.sqrt(bearings.count * bearings.ka / mass)),
-                       ("decay by its dampers", bearings.count * bearings.damping / mass)):
+    for name, rate in (
+        ("frequency on its bearings", math.sqrt(bearings.count * bearings.ka / mass)),
+        ("decay by its dampers", bearings.count * bearings.damping / mass),
+    ):
         if rate * slow > MOST_RATIO:
-            yield (f"the base's {name} over the frequency of a corner on it = {rate * slow:.4g} is above "
-                   f"{MOST_RATIO:g}, the limit verified for bases below {LIGHT:g} block masses: what an impact moves "
-                   "it by is not resolved")
+            yield (
+                f"the base's {name} over the frequency of a corner on it = {rate * slow:.4g} is above "
+                f"{MOST_RATIO:g}, the limit verified for bases below {LIGHT:g} block masses: what an impact moves "
+                "it by is not resolved"
+            )

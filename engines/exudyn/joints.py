@@ -7,12 +7,7 @@ from dataclasses import dataclass
 
 import exudyn as exu
 import numpy as np
-from exudyn.itemInterface import (
-    MarkerNodeCoordinate,
-    NodePointGround,
-    ObjectConnectorCoordinate,
-    ObjectJointRevolute2D,
-)
+from exudyn.itemInterface import MarkerNodeCoordinate, NodePointGround, ObjectConnectorCoordinate, ObjectJointRevolute2D
 from scipy.interpolate import CubicHermiteSpline
 
 from analytic.response import Failure
@@ -45,8 +40,9 @@ class Stepper:
         self._add_joints()
         check(self.model)
         self.solver = exu.MainSolverImplicitSecondOrder()
-        self.settings = solver_settings(scene, automaticStepSize=False, adaptiveStep=False,
-                                        solverType=exu.DynamicSolverType.TrapezoidalIndex2)
+        self.settings = solver_settings(
+            scene, automaticStepSize=False, adaptiveStep=False, solverType=exu.DynamicSolverType.TrapezoidalIndex2
+        )
         alpha = self.settings.timeIntegration.generalizedAlpha
         alpha.useNewmark = alpha.useIndex2Constraints = True
         if scene.motion is not None:
@@ -60,8 +56,9 @@ class Stepper:
         node = mbs.GetObject(model.block)["nodeNumber"]
         fixed = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=mbs.AddNode(NodePointGround()), coordinate=0))
         turn = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=2))
-        self.joints = {side: mbs.AddObject(ObjectJointRevolute2D(markerNumbers=model.corner_markers(side)))
-                       for side in (-1, 1)}
+        self.joints = {
+            side: mbs.AddObject(ObjectJointRevolute2D(markerNumbers=model.corner_markers(side))) for side in (-1, 1)
+        }
         self.lock = mbs.AddObject(ObjectConnectorCoordinate(markerNumbers=[fixed, turn]))
         model.connectors.update(left=self.joints[-1], right=self.joints[1], lock=self.lock)
 
@@ -158,8 +155,8 @@ class Stepper:
         t, q, v = self.rows[-1]
         x = q.item(3) if self.scene.base else 0.0
         h, b = self.scene.block.half_height, self.scene.block.half_width
-        q = np.array([x, 0.0, 0.0, x])[:len(q)]
-        v = np.array([speed + h * rate, side * b * rate, -rate, speed])[:len(v)]
+        q = np.array([x, 0.0, 0.0, x])[: len(q)]
+        v = np.array([speed + h * rate, side * b * rate, -rate, speed])[: len(v)]
         self.rows[-1] = (t, q, v)
         self.side = side
 

@@ -38,11 +38,19 @@ def assemble(scene, settings):
     for side, name in ((-1, "left"), (1, "right")):
         centre = mbs.AddMarker(MarkerBodyRigid(bodyNumber=model.block, localPosition=[side * b, -h + r, 0.0]))
         memory = mbs.AddNode(NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
-        values = dict(sphereRadius=r, includeEdges=0, contactStiffness=settings.stiffness,
-                      contactDamping=2 * settings.damping * math.sqrt(settings.stiffness * block.mass),
-                      dynamicFriction=settings.friction, frictionProportionalZone=settings.slip_speed)
-        number = mbs.AddObject(ObjectContactSphereTriangle(
-            markerNumbers=[centre, plane], nodeNumber=memory, trianglePoints=exu.Vector3DList(triangle), **values))
+        values = dict(
+            sphereRadius=r,
+            includeEdges=0,
+            contactStiffness=settings.stiffness,
+            contactDamping=2 * settings.damping * math.sqrt(settings.stiffness * block.mass),
+            dynamicFriction=settings.friction,
+            frictionProportionalZone=settings.slip_speed,
+        )
+        number = mbs.AddObject(
+            ObjectContactSphereTriangle(
+                markerNumbers=[centre, plane], nodeNumber=memory, trianglePoints=exu.Vector3DList(triangle), **values
+            )
+        )
         model.connectors[name] = number
         model.expected.update({(number, key): value for key, value in values.items()})
     return model, sink
@@ -51,8 +59,15 @@ def assemble(scene, settings):
 def run(scene, settings):
     """Step a scene with exudyn's own contact."""
     model, sink = assemble(scene, settings)
-    solver = solver_settings(scene, numberOfSteps=math.ceil(scene.duration / settings.step - 1e-9),
-                             automaticStepSize=False)
+    solver = solver_settings(
+        scene, numberOfSteps=math.ceil(scene.duration / settings.step - 1e-9), automaticStepSize=False
+    )
     solver.timeIntegration.newton.useModifiedNewton = False
-    return step_through(model, solver, exu.DynamicSolverType.TrapezoidalIndex2, 4 * sink / scene.block.half_width,
-                        settings.step, settle=0.0)
+    return step_through(
+        model,
+        solver,
+        exu.DynamicSolverType.TrapezoidalIndex2,
+        4 * sink / scene.block.half_width,
+        settings.step,
+        settle=0.0,
+    )

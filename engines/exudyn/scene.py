@@ -49,6 +49,7 @@ class Model:
 
     def connect(self, name, markers, function, **parameters):
         """A Cartesian connector with a symbolic force, kept by name; function(displacement, velocity, offset)."""
+
         def spring(mbs, t, item, displacement, velocity, stiffness, damping, offset):
             return function(displacement, velocity, offset)
 
@@ -73,8 +74,10 @@ class Model:
     def corner_markers(self, side):
         """Markers of the base point and of the block's bottom corner of that side."""
         b, h = self.scene.block.half_width, self.scene.block.half_height
-        return [self.mbs.AddMarker(MarkerBodyPosition(bodyNumber=self.base, localPosition=[side * b, 0.0, 0.0])),
-                self.mbs.AddMarker(MarkerBodyPosition(bodyNumber=self.block, localPosition=[side * b, -h, 0.0]))]
+        return [
+            self.mbs.AddMarker(MarkerBodyPosition(bodyNumber=self.base, localPosition=[side * b, 0.0, 0.0])),
+            self.mbs.AddMarker(MarkerBodyPosition(bodyNumber=self.block, localPosition=[side * b, -h, 0.0])),
+        ]
 
 
 class _Symbols:
@@ -148,15 +151,22 @@ def build(scene, sink=0.0):
     mbs = container.AddSystem()
     ground = mbs.AddObject(ObjectGround())
     q, v = start_coordinates(scene, sink)
-    node = mbs.AddNode(NodeRigidBody2D(referenceCoordinates=[0.0, scene.block.half_height, 0.0],
-                                       initialCoordinates=q, initialVelocities=v))
-    block = mbs.AddObject(ObjectRigidBody2D(mass=scene.block.mass, inertia=scene.block.centre_inertia,
-                                            nodeNumber=node))
+    node = mbs.AddNode(
+        NodeRigidBody2D(
+            referenceCoordinates=[0.0, scene.block.half_height, 0.0], initialCoordinates=q, initialVelocities=v
+        )
+    )
+    block = mbs.AddObject(ObjectRigidBody2D(mass=scene.block.mass, inertia=scene.block.centre_inertia, nodeNumber=node))
     base = ground
     if scene.base:
         start = scene.start
-        node = mbs.AddNode(Node1D(referenceCoordinates=[0.0], initialCoordinates=[start.base_displacement],
-                                  initialVelocities=[start.base_velocity]))
+        node = mbs.AddNode(
+            Node1D(
+                referenceCoordinates=[0.0],
+                initialCoordinates=[start.base_displacement],
+                initialVelocities=[start.base_velocity],
+            )
+        )
         base = mbs.AddObject(ObjectMass1D(mass=scene.base.mass, nodeNumber=node))
     model = Model(scene, container, mbs, ground, block, base)
     if scene.bearings:
@@ -198,8 +208,10 @@ def read_back(model):
     """What exudyn really holds, as a dict name -> (in exudyn, in the scene)."""
     scene, mbs = model.scene, model.mbs
     block = mbs.GetObject(model.block)
-    values = {"block.mass": (block["mass"], scene.block.mass),
-              "block.centre_inertia": (block["inertia"], scene.block.centre_inertia)}
+    values = {
+        "block.mass": (block["mass"], scene.block.mass),
+        "block.centre_inertia": (block["inertia"], scene.block.centre_inertia),
+    }
     if scene.base:
         values["base.mass"] = (mbs.GetObject(model.base)["mass"], scene.base.mass)
     q = np.asarray(mbs.systemData.GetODE2Coordinates())

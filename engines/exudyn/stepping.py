@@ -135,8 +135,9 @@ def step_through(model, settings, solver, contact_tilt, longest, settle=0.0):
         release(mbs)
     cpu = time.process_time() - began
     if failure is None and len(times) > limit:
-        failure = Failure("the run took too many steps",
-                          f"{limit} steps reached t = {times[-1]:.9g} s of {scene.duration:.9g} s")
+        failure = Failure(
+            "the run took too many steps", f"{limit} steps reached t = {times[-1]:.9g} s of {scene.duration:.9g} s"
+        )
     q, v = np.split(np.array(states).reshape(-1, 8 if scene.base else 6), 2, axis=1)
     trace = make_trace(scene, np.array(times), q, v, forces, bearing, contact_tilt, settle)
     ended = "overturned" if trace is not None and abs(trace.tilt[-1]) >= OVERTURNED else None
@@ -162,8 +163,11 @@ def check(model):
         Names each quantity with both values.
     """
     model.mbs.Assemble()
-    wrong = [f"{name} is {found!r} in exudyn, {wanted!r} in the scene"
-             for name, (found, wanted) in read_back(model).items() if found != wanted]
+    wrong = [
+        f"{name} is {found!r} in exudyn, {wanted!r} in the scene"
+        for name, (found, wanted) in read_back(model).items()
+        if found != wanted
+    ]
     if wrong:
         raise Mismatch("; ".join(wrong))
 
@@ -171,7 +175,7 @@ def check(model):
 def make_trace(scene, t, q, v, z, bearing, contact_tilt, settle):
     """The `Trace` of the recorded steps, or None where there are fewer than two."""
     if bearing:
-        t, q, v = t[:len(z)], q[:len(z)], v[:len(z)]  # a step whose history could not be committed is not a step
+        t, q, v = t[: len(z)], q[: len(z)], v[: len(z)]  # a step whose history could not be committed is not a step
     if len(t) < 2:
         return None
     x, speed = (q[:, 3], v[:, 3]) if scene.base else (np.zeros_like(t), np.zeros_like(t))

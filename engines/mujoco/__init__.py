@@ -2,6 +2,13 @@
 
 from ..contract import Engine
 
-ENGINE = Engine(name="mujoco", package="mujoco", install="pip install 'rocking[mujoco]'",
-                adapter="engines.mujoco.adapter", tolerances="engines.mujoco.tolerances",
-                colour="#CC79A7", marker="D", dashes="-.")
+ENGINE = Engine(
+    name="mujoco",
+    package="mujoco",
+    install="pip install 'rocking[mujoco]'",
+    adapter="engines.mujoco.adapter",
+    tolerances="engines.mujoco.tolerances",
+    colour="#CC79A7",
+    marker="D",
+    dashes="-.",
+)

@@ -46,8 +46,10 @@ SOLVER_DECIDES = (
     "the base velocity; no restitution is given to it. The adapter gives it the bearings' force and the ground's "
     "acceleration"
 )
-DECIDES = (f"{SOLVER_DECIDES}, chooses the length of the steps, and puts the centre of a pivoting block back on its "
-           "arc after each step, as MuJoCo moves it along the tangent.")
+DECIDES = (
+    f"{SOLVER_DECIDES}, chooses the length of the steps, and puts the centre of a pivoting block back on its "
+    "arc after each step, as MuJoCo moves it along the tangent."
+)
 
 
 @dataclass(frozen=True)
@@ -94,17 +96,45 @@ class FirstScript:
 # verified: what random scenes over a wide box showed (rocking bench engines), and blocks let go (fixed-step).
 VARIANTS = {
     "impact-aware": Variant(
-        ImpactAware(), rung="best", ladder=(1e-3, 1e-4, 5e-6), decides=DECIDES,
-        verified=Range(slenderness=(0.03, 1.2), inertia=(1.02, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0),
-                       stiffness=(0.0, 0.5), decay=(0.0, 1e4))),
+        ImpactAware(),
+        rung="best",
+        ladder=(1e-3, 1e-4, 5e-6),
+        decides=DECIDES,
+        verified=Range(
+            slenderness=(0.03, 1.2),
+            inertia=(1.02, 3.0),
+            base_mass=(1e-5, 100.0),
+            radius=(1e-3, 30.0),
+            stiffness=(0.0, 0.5),
+            decay=(0.0, 1e4),
+        ),
+    ),
     "fixed-step": Variant(
-        FixedStep(), rung="expert", ladder=(4e-3, 1e-3, 1e-4), decides=DECIDES,
-        verified=Range(slenderness=(0.03, 0.45), inertia=(1.2, 3.0), base_mass=(0.05, 100.0), radius=(1e-3, 30.0),
-                       stiffness=(0.0, 0.15), damping=(0.0, 0.1), tilt=(0.05, math.inf))),
+        FixedStep(),
+        rung="expert",
+        ladder=(4e-3, 1e-3, 1e-4),
+        decides=DECIDES,
+        verified=Range(
+            slenderness=(0.03, 0.45),
+            inertia=(1.2, 3.0),
+            base_mass=(0.05, 100.0),
+            radius=(1e-3, 30.0),
+            stiffness=(0.0, 0.15),
+            damping=(0.0, 0.1),
+            tilt=(0.05, math.inf),
+        ),
+    ),
     "first-script": Variant(
-        FirstScript(), rung="first script", ladder=(1 / 120, 2e-3, 5e-4), decides=f"{SOLVER_DECIDES}.", verified=None,
-        caveats=("mujoco first-script is verified in no range: MuJoCo's default contact loses too much or too little "
-                 "of the tilt rate, whatever the step",)),
+        FirstScript(),
+        rung="first script",
+        ladder=(1 / 120, 2e-3, 5e-4),
+        decides=f"{SOLVER_DECIDES}.",
+        verified=None,
+        caveats=(
+            "mujoco first-script is verified in no range: MuJoCo's default contact loses too much or too little "
+            "of the tilt rate, whatever the step",
+        ),
+    ),
 }
 
 # Of the default contact, which sinks by .02 of gamma; see _contact_tilt.
@@ -137,8 +167,9 @@ def run(scene, variant, settings):
         peak = float(np.nanmax(np.abs(rows[:, 2])))
         trace = trace_of(rows, scene, _contact_tilt(settings, peak, slenderness))
     failure = _failure(scene, rows, ended, "; ".join(line.strip() for line in said))
-    return Run(trace, len(rows) - 1, cpu, failure, ended if ended == "overturned" else None,
-               longest_step(scene, settings))
+    return Run(
+        trace, len(rows) - 1, cpu, failure, ended if ended == "overturned" else None, longest_step(scene, settings)
+    )
 
 
 def _contact_tilt(chosen, peak, slenderness):

@@ -73,9 +73,11 @@ def _ground(scene, geom=""):
     if scene.base is None:
         return f'<geom type="plane" size="0 0 1" {geom}/>'
     reach, depth = 100 * scene.block.radius, scene.block.radius  # a plane cannot move in MuJoCo
-    return (f'<body><joint name="base" type="slide" axis="1 0 0"/><inertial pos="0 0 0" mass="{scene.base.mass!r}" '
-            f'diaginertia="{scene.base.mass!r} {scene.base.mass!r} {scene.base.mass!r}"/>'
-            f'<geom type="box" pos="0 0 {-depth!r}" size="{reach!r} {reach!r} {depth!r}" mass="0" {geom}/></body>')
+    return (
+        f'<body><joint name="base" type="slide" axis="1 0 0"/><inertial pos="0 0 0" mass="{scene.base.mass!r}" '
+        f'diaginertia="{scene.base.mass!r} {scene.base.mass!r} {scene.base.mass!r}"/>'
+        f'<geom type="box" pos="0 0 {-depth!r}" size="{reach!r} {reach!r} {depth!r}" mass="0" {geom}/></body>'
+    )
 
 
 def contact_reference(step, recovery):
@@ -104,8 +106,7 @@ def build(scene, chosen):
         stiffness, damping = solref = contact_reference(step, recovery_rate(scene, chosen))
         option = 'cone="elliptic"'
         d = impedance(scene)
-        geom = (f'friction="{friction!r} 0 0" solref="{stiffness!r} {damping!r}" '
-                f'solimp="{d!r} {d!r} 1 .5 2"')
+        geom = f'friction="{friction!r} 0 0" solref="{stiffness!r} {damping!r}" solimp="{d!r} {d!r} 1 .5 2"'
         shape = "".join(f'<geom type="sphere" size="{r!r}" pos="{x!r} 0 {r - h!r}" {geom}/>' for x in (-b, b))
     damped = chosen.recovery is not None and scene.bearings is not None and scene.bearings.damping > 0
     damper = '<equality><joint joint1="base" active="false"/></equality>' if damped else ""
@@ -134,26 +135,37 @@ def check_readback(model, data, scene, step, solref, friction):
     option, block, depth = model.opt, scene.block, -1e-3 * scene.block.radius
     masses = [block.mass] if scene.base is None else [scene.base.mass, block.mass]
     expected = [
-        ("time step", option.timestep, step), ("gravity", option.gravity, [0.0, 0.0, -scene.gravity]),
+        ("time step", option.timestep, step),
+        ("gravity", option.gravity, [0.0, 0.0, -scene.gravity]),
         ("integrator", option.integrator, int(mujoco.mjtIntegrator.mjINT_EULER)),
         ("disabled parts", option.disableflags, int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)),
         ("density and viscosity", [option.density, option.viscosity], 0.0),
-        ("masses", model.body_mass[1:], masses), ("inertia", model.body_inertia[-1], block.centre_inertia),
-        ("centre of mass", model.body_ipos, 0.0), ("coordinates", model.nq, 2 + len(masses)),
-        *((name, getattr(model, name), 0.0)
-          for name in ("dof_damping", "dof_frictionloss", "dof_armature", "jnt_stiffness")),
+        ("masses", model.body_mass[1:], masses),
+        ("inertia", model.body_inertia[-1], block.centre_inertia),
+        ("centre of mass", model.body_ipos, 0.0),
+        ("coordinates", model.nq, 2 + len(masses)),
+        *(
+            (name, getattr(model, name), 0.0)
+            for name in ("dof_damping", "dof_frictionloss", "dof_armature", "jnt_stiffness")
+        ),
     ]
     if solref:
         data.qpos[-2] = depth
         mujoco.mj_fwdPosition(model, data)
-        expected += [("cone", option.cone, int(mujoco.mjtCone.mjCONE_ELLIPTIC)),
-                     ("solver", option.solver, int(mujoco.mjtSolver.mjSOL_NEWTON)),
-                     ("enabled parts", option.enableflags, int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)),
-                     ("contacts of a standing block", data.ncon, 2)]
+        expected += [
+            ("cone", option.cone, int(mujoco.mjtCone.mjCONE_ELLIPTIC)),
+            ("solver", option.solver, int(mujoco.mjtSolver.mjSOL_NEWTON)),
+            ("enabled parts", option.enableflags, int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)),
+            ("contacts of a standing block", data.ncon, 2),
+        ]
         for contact in data.contact:
-            expected += [("contact: friction", contact.friction[:2], friction), ("contact: dimension", contact.dim, 3),
-                         ("contact: solref", contact.solref, solref), ("contact: margin", contact.includemargin, 0.0),
-                         ("contact: solimp", contact.solimp, [impedance(scene), impedance(scene), 1, 0.5, 2]),
-                         ("contact: depth", contact.dist, depth)]
+            expected += [
+                ("contact: friction", contact.friction[:2], friction),
+                ("contact: dimension", contact.dim, 3),
+                ("contact: solref", contact.solref, solref),
+                ("contact: margin", contact.includemargin, 0.0),
+                ("contact: solimp", contact.solimp, [impedance(scene), impedance(scene), 1, 0.5, 2]),
+                ("contact: depth", contact.dist, depth),
+            ]
         mujoco.mj_resetData(model, data)
     require(expected)

@@ -35,8 +35,18 @@ def run(model, data, scene, chosen):
     """
     largest, recovery, as_it_comes = model.opt.timestep, recovery_rate(scene, chosen), chosen.recovery is None
     law, g, start = BearingLaw.of(scene.bearings), scene.gravity, scene.start
-    pace = impact_aware(RockingModel.of(scene), start.tilt_rate, largest, chosen.accuracy, approach=APPROACH,
-                        smallest=SMALLEST_STEP * size_scale(scene)) if chosen.accuracy else None
+    pace = (
+        impact_aware(
+            RockingModel.of(scene),
+            start.tilt_rate,
+            largest,
+            chosen.accuracy,
+            approach=APPROACH,
+            smallest=SMALLEST_STEP * size_scale(scene),
+        )
+        if chosen.accuracy
+        else None
+    )
     ground, sampled = ground_velocity(scene.motion), scene.motion.acceleration if scene.motion else None
     corners, half_height, half_width = not as_it_comes, scene.block.half_height, scene.block.half_width
     viscous = None if as_it_comes else Viscous.of(scene, model, data)

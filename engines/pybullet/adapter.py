@@ -60,15 +60,31 @@ class FirstScript:
 # verified: random scenes against the analytic model, default settings.
 VARIANTS = {
     "impact-aware": Variant(
-        ImpactAware(), rung="best", ladder=(1e-3, 1e-4, 1e-5, 1e-6), decides=DECIDES,
-        verified=Range(slenderness=(0.03, 1.2), inertia=(1.01, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0),
-                       decay=(0.0, 1e5))),
+        ImpactAware(),
+        rung="best",
+        ladder=(1e-3, 1e-4, 1e-5, 1e-6),
+        decides=DECIDES,
+        verified=Range(
+            slenderness=(0.03, 1.2), inertia=(1.01, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0), decay=(0.0, 1e5)
+        ),
+    ),
     "fixed-step": Variant(
-        FixedStep(), rung="expert", ladder=(4e-3, 1e-3, 2.5e-4, 1e-4), decides=DECIDES,
-        verified=Range(slenderness=(0.1, 0.45), inertia=(1.2, 3.0), base_mass=(0.05, 100.0), radius=(1e-3, 30.0),
-                       damping=(0.0, 1.0), tilt=(0.3, math.inf))),
+        FixedStep(),
+        rung="expert",
+        ladder=(4e-3, 1e-3, 2.5e-4, 1e-4),
+        decides=DECIDES,
+        verified=Range(
+            slenderness=(0.1, 0.45),
+            inertia=(1.2, 3.0),
+            base_mass=(0.05, 100.0),
+            radius=(1e-3, 30.0),
+            damping=(0.0, 1.0),
+            tilt=(0.3, math.inf),
+        ),
+    ),
     "first-script": Variant(  # damping that no one asked for: e off by .01 to .5 at every step
-        FirstScript(), rung="first script", ladder=(1 / 60, 1 / 240, 1 / 1000), decides=DECIDES, verified=None),
+        FirstScript(), rung="first script", ladder=(1 / 60, 1 / 240, 1 / 1000), decides=DECIDES, verified=None
+    ),
 }
 
 
@@ -87,8 +103,15 @@ def run(scene, variant, settings):
     if failure is None and place is not None and _may_have_left(scene, trace, ended, place):
         # The same run again, with all places of the block: to read them each time costs up to a tenth more.
         trace = _attempt(scene, settings, places=True)[0]
-    return Run(trace, steps, cpu, failure, ended if ended == "overturned" else None, _largest(scene, settings),
-               tuple(_beyond(scene, variant, settings)))
+    return Run(
+        trace,
+        steps,
+        cpu,
+        failure,
+        ended if ended == "overturned" else None,
+        _largest(scene, settings),
+        tuple(_beyond(scene, variant, settings)),
+    )
 
 
 def _attempt(scene, chosen, places=False):
@@ -111,8 +134,14 @@ def _attempt(scene, chosen, places=False):
         trace = raw_trace_of(rows, scene, 1e-3 * scene.block.slenderness)
     else:
         trace = trace_of(rows, scene, FLAT * scene.block.slenderness, smeared=3)
-    return trace, len(rows) - 1, cpu, ended, place, failure or _failure(scene, rows, ended, trace,
-                                                                             isinstance(chosen, FirstScript))
+    return (
+        trace,
+        len(rows) - 1,
+        cpu,
+        ended,
+        place,
+        failure or _failure(scene, rows, ended, trace, isinstance(chosen, FirstScript)),
+    )
 
 
 def _run(client, scene, chosen, places):
@@ -126,14 +155,18 @@ def _run(client, scene, chosen, places):
     sized, largest = units.scale(scene), _largest(scene, chosen) / units.time
     accuracy = chosen.accuracy if isinstance(chosen, ImpactAware) else None
     if sized.duration / largest > MOST_ROWS:
-        raise TooManySteps(f"steps of {largest * units.time:.3g} s that follow the bearings: "
-                           f"{sized.duration / largest:.3g} for {scene.duration:.6g} s; at most {MOST_ROWS}")
+        raise TooManySteps(
+            f"steps of {largest * units.time:.3g} s that follow the bearings: "
+            f"{sized.duration / largest:.3g} for {scene.duration:.6g} s; at most {MOST_ROWS}"
+        )
     assembly = assemble(client, sized, largest)
     clock = time.process_time()
     rows, ended = stepping.run(assembly, sized, units, largest, accuracy, row_limit(sized.duration, largest), places)
     cpu = time.process_time() - clock
-    place = [units.length * state[0]
-             for state in pybullet.getJointStates(assembly.body, (assembly.slide, assembly.lift), client)]
+    place = [
+        units.length * state[0]
+        for state in pybullet.getJointStates(assembly.body, (assembly.slide, assembly.lift), client)
+    ]
     return rows, ended, place, cpu
 
 

@@ -33,21 +33,34 @@ def build(client, scene, step):
         slab = pybullet.createMultiBody(0, flat, -1, below, physicsClientId=client)
     else:
         slab = pybullet.createMultiBody(
-            0, -1, -1, [0, 0, 0], linkMasses=[scene.base.mass], linkCollisionShapeIndices=[flat],
-            linkVisualShapeIndices=[-1], linkPositions=[below], linkOrientations=[[0, 0, 0, 1]],
-            linkInertialFramePositions=[[0, 0, 0]], linkInertialFrameOrientations=[[0, 0, 0, 1]],
-            linkParentIndices=[0], linkJointTypes=[pybullet.JOINT_PRISMATIC], linkJointAxis=[[1, 0, 0]],
-            physicsClientId=client)
-        pybullet.resetJointState(slab, 0, scene.start.base_displacement, scene.start.base_velocity,
-                                 physicsClientId=client)
+            0,
+            -1,
+            -1,
+            [0, 0, 0],
+            linkMasses=[scene.base.mass],
+            linkCollisionShapeIndices=[flat],
+            linkVisualShapeIndices=[-1],
+            linkPositions=[below],
+            linkOrientations=[[0, 0, 0, 1]],
+            linkInertialFramePositions=[[0, 0, 0]],
+            linkInertialFrameOrientations=[[0, 0, 0, 1]],
+            linkParentIndices=[0],
+            linkJointTypes=[pybullet.JOINT_PRISMATIC],
+            linkJointAxis=[[1, 0, 0]],
+            physicsClientId=client,
+        )
+        pybullet.resetJointState(
+            slab, 0, scene.start.base_displacement, scene.start.base_velocity, physicsClientId=client
+        )
     box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[b, b, h], physicsClientId=client)
     x, z, vx, vz = placement(scene)
     turn = pybullet.getQuaternionFromEuler([0, scene.start.tilt, 0])
     body = pybullet.createMultiBody(block.mass, box, -1, [x, 0, z + h], turn, physicsClientId=client)
     if scene.friction is not None:  # Bullet multiplies the two
         pybullet.changeDynamics(body, -1, lateralFriction=math.sqrt(scene.friction), physicsClientId=client)
-        pybullet.changeDynamics(slab, -1 if scene.base is None else 0, lateralFriction=math.sqrt(scene.friction),
-                                physicsClientId=client)
+        pybullet.changeDynamics(
+            slab, -1 if scene.base is None else 0, lateralFriction=math.sqrt(scene.friction), physicsClientId=client
+        )
     pybullet.resetBaseVelocity(body, [vx, 0, vz], [0, scene.start.tilt_rate, 0], physicsClientId=client)
     return body, slab
 
@@ -66,8 +79,9 @@ def run(handles, client, scene, step):
         if acceleration:
             pybullet.setGravity(-float(acceleration(t)), 0, -scene.gravity, client)
         if scene.bearings:
-            pybullet.applyExternalForce(slab, 0, [-law.force(x, z, v), 0, 0], [0, 0, 0], pybullet.LINK_FRAME,
-                                        physicsClientId=client)
+            pybullet.applyExternalForce(
+                slab, 0, [-law.force(x, z, v), 0, 0], [0, 0, 0], pybullet.LINK_FRAME, physicsClientId=client
+            )
         pybullet.stepSimulation(client)
         t = k * step
         _, turn = pybullet.getBasePositionAndOrientation(body, client)

@@ -74,9 +74,14 @@ class Units:
         inertia = None if block.corner_inertia is None else block.corner_inertia / length**2
         duration = None if scene.duration is None else scene.duration / self.time
         return scene.with_(
-            block={"radius": block.radius / length, "corner_inertia": inertia}, duration=duration,
-            start={"tilt_rate": start.tilt_rate * self.time, "base_displacement": start.base_displacement / length,
-                   "base_velocity": start.base_velocity / speed})
+            block={"radius": block.radius / length, "corner_inertia": inertia},
+            duration=duration,
+            start={
+                "tilt_rate": start.tilt_rate * self.time,
+                "base_displacement": start.base_displacement / length,
+                "base_velocity": start.base_velocity / speed,
+            },
+        )
 
 
 def iterations(scene, corners):
@@ -117,19 +122,29 @@ def assemble(client, scene, step):
     rough = math.sqrt(FRICTION if scene.friction is None else min(scene.friction, MOST_FRICTION))  # of each body
     b, h, inertia = block.half_width, block.half_height, block.centre_inertia
     pybullet.setPhysicsEngineParameter(
-        fixedTimeStep=step, numSubSteps=0, contactSlop=0.0,
-        contactBreakingThreshold=BREAKING_THRESHOLD, numSolverIterations=many,
-        physicsClientId=client)
+        fixedTimeStep=step,
+        numSubSteps=0,
+        contactSlop=0.0,
+        contactBreakingThreshold=BREAKING_THRESHOLD,
+        numSolverIterations=many,
+        physicsClientId=client,
+    )
     pybullet.setGravity(0.0, 0.0, -scene.gravity, client)
     r = CORNER_RADIUS * block.radius
     corners = pybullet.createCollisionShapeArray(
-        shapeTypes=[pybullet.GEOM_SPHERE] * 2, radii=[r] * 2,
-        collisionFramePositions=[[-b, 0, r - h], [b, 0, r - h]], physicsClientId=client)
+        shapeTypes=[pybullet.GEOM_SPHERE] * 2,
+        radii=[r] * 2,
+        collisionFramePositions=[[-b, 0, r - h], [b, 0, r - h]],
+        physicsClientId=client,
+    )
     plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, planeNormal=[0, 0, 1], physicsClientId=client)
     sliding, turning = pybullet.JOINT_PRISMATIC, pybullet.JOINT_REVOLUTE
     # link: mass, shape, position, joint, axis, parent
-    links = [(0.0, -1, [0, 0, h], sliding, [1, 0, 0], 0), (0.0, -1, [0, 0, 0], sliding, [0, 0, 1], 1),
-             (block.mass, corners, [0, 0, 0], turning, [0, 1, 0], 2)]
+    links = [
+        (0.0, -1, [0, 0, h], sliding, [1, 0, 0], 0),
+        (0.0, -1, [0, 0, 0], sliding, [0, 0, 1], 1),
+        (block.mass, corners, [0, 0, 0], turning, [0, 1, 0], 2),
+    ]
     ground = base = None
     if scene.base is None:
         ground = pybullet.createMultiBody(0, plane, physicsClientId=client)
@@ -140,17 +155,38 @@ def assemble(client, scene, step):
     masses, shapes, positions, joints, axes, parents = (list(column) for column in zip(*links, strict=True))
     count = len(links)
     body = pybullet.createMultiBody(
-        0, -1, -1, [0, 0, 0], linkMasses=masses, linkCollisionShapeIndices=shapes,
-        linkVisualShapeIndices=[-1] * count, linkPositions=positions, linkOrientations=[[0, 0, 0, 1]] * count,
-        linkInertialFramePositions=[[0, 0, 0]] * count, linkInertialFrameOrientations=[[0, 0, 0, 1]] * count,
-        linkParentIndices=parents, linkJointTypes=joints, linkJointAxis=axes,
-        flags=pybullet.URDF_USE_SELF_COLLISION, physicsClientId=client)
+        0,
+        -1,
+        -1,
+        [0, 0, 0],
+        linkMasses=masses,
+        linkCollisionShapeIndices=shapes,
+        linkVisualShapeIndices=[-1] * count,
+        linkPositions=positions,
+        linkOrientations=[[0, 0, 0, 1]] * count,
+        linkInertialFramePositions=[[0, 0, 0]] * count,
+        linkInertialFrameOrientations=[[0, 0, 0, 1]] * count,
+        linkParentIndices=parents,
+        linkJointTypes=joints,
+        linkJointAxis=axes,
+        flags=pybullet.URDF_USE_SELF_COLLISION,
+        physicsClientId=client,
+    )
     for link in range(-1, count):
         # Damping and velocity limits in a call force its linkIndex to -1: friction goes in a call of its own.
-        pybullet.changeDynamics(body, link, linearDamping=0.0, angularDamping=0.0, maxJointVelocity=MOST_VELOCITY,
-                                physicsClientId=client)
-        pybullet.changeDynamics(body, link, lateralFriction=rough, rollingFriction=0.0, spinningFriction=0.0,
-                                restitution=0.0, jointDamping=0.0, physicsClientId=client)
+        pybullet.changeDynamics(
+            body, link, linearDamping=0.0, angularDamping=0.0, maxJointVelocity=MOST_VELOCITY, physicsClientId=client
+        )
+        pybullet.changeDynamics(
+            body,
+            link,
+            lateralFriction=rough,
+            rollingFriction=0.0,
+            spinningFriction=0.0,
+            restitution=0.0,
+            jointDamping=0.0,
+            physicsClientId=client,
+        )
         if link >= 0:  # joints come with a motor of 1 N s per step
             pybullet.setJointMotorControl2(body, link, pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client)
     # Inertia without mass in the same call can set the mass to 0 and give NaN in the first step.

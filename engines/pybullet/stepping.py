@@ -122,8 +122,18 @@ def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
         pace = paces.fixed(model, largest, standing)
     else:
         sharpest = VISCOUS * accuracy * model.M / damping if damping else math.inf
-        pace = paces.impact_aware(model, rate, largest, accuracy, approach=APPROACH, smallest=SMALLEST_STEP,
-                                  sharpest=sharpest, standing=standing, overlong=True, cruise=True)
+        pace = paces.impact_aware(
+            model,
+            rate,
+            largest,
+            accuracy,
+            approach=APPROACH,
+            smallest=SMALLEST_STEP,
+            sharpest=sharpest,
+            standing=standing,
+            overlong=True,
+            cruise=True,
+        )
     end -= 1e-9 * largest  # the steps' sum may miss the duration by rounding
     gate = end + 2e-9 * largest
     jumps = iter([time / clock for time in scene.motion.jumps] if scene.motion and accuracy is not None else ())
@@ -144,8 +154,7 @@ def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
         needed = sweeps[purpose]
         if wanted != step or needed != used:
             step, used = wanted, needed
-            engine_step(fixedTimeStep=step, physicsClientId=client,
-                        numSolverIterations=needed)
+            engine_step(fixedTimeStep=step, physicsClientId=client, numSolverIterations=needed)
         scale = 1.0 if step == h else 0.5 * (step + h) / step
         if ground is not None:
             reached = ground(clock * (t + 0.5 * step)) / clock
@@ -184,8 +193,20 @@ def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
     else:
         ended = "done" if t >= end else "too many steps"
     speed = units.length / units.time
-    sizes = (units.time, units.time, 1, 1 / units.time, units.length, speed, 1, 1,
-             units.length, units.length, speed, speed)
+    sizes = (
+        units.time,
+        units.time,
+        1,
+        1 / units.time,
+        units.length,
+        speed,
+        1,
+        1,
+        units.length,
+        units.length,
+        speed,
+        speed,
+    )
     table = np.frombuffer(rows).reshape(-1, width)
     table *= sizes[:width]
     return table, ended

@@ -37,12 +37,19 @@ def mixed_scenes():
     records = [rough(1, 4.0), rough(2, 6.0)]
     scenes = []
     for k in range(24):
-        motion = [records[0], None, PulseMotion("ricker", 4.0, 5.0), records[1], PulseMotion("one-cosine", 5.0, 7.0),
-                  PulseMotion("rectangular", 4.0, 3.0)][k % 6]
+        motion = [
+            records[0],
+            None,
+            PulseMotion("ricker", 4.0, 5.0),
+            records[1],
+            PulseMotion("one-cosine", 5.0, 7.0),
+            PulseMotion("rectangular", 4.0, 3.0),
+        ][k % 6]
         start = Start(tilt=0.02 * (k % 5)) if motion is None else Start()
         scenes.append(Scene(block=CARYATID, motion=motion, start=start, duration=12.0))
-        scenes.append(Scene(block=CARYATID, base=Base(mass=212.0), bearings=LRB, motion=motion, start=start,
-                            duration=12.0))
+        scenes.append(
+            Scene(block=CARYATID, base=Base(mass=212.0), bearings=LRB, motion=motion, start=start, duration=12.0)
+        )
     return scenes
 
 
@@ -89,8 +96,11 @@ def test_early_decision_is_right():
     scene = Scene(block=BLOCK, duration=60.0)
     frequencies, amplitudes = np.linspace(1.5, 7, 23), np.linspace(1.05, 9, 29)
     outcomes = overturning_map(scene, "one-sine", frequencies, amplitudes, tolerance=1e-16)
-    scenes = [scene.with_(motion=PulseMotion("one-sine", a * G * math.tan(0.25), f * scene.rocking_frequency))
-              for a in amplitudes for f in frequencies]
+    scenes = [
+        scene.with_(motion=PulseMotion("one-sine", a * G * math.tan(0.25), f * scene.rocking_frequency))
+        for a in amplitudes
+        for f in frequencies
+    ]
     full = [simulate(one, history=False, tolerance=1e-16) for one in scenes]
     assert outcomes.overturns.ravel().tolist() == [one.outcome == "overturns" for one in full]
     assert outcomes.peak_tilt.ravel() == pytest.approx([one.peak_tilt for one in full], rel=1e-9)

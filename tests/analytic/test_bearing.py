@@ -88,8 +88,9 @@ def test_closed_form_solves_the_rate_form(case):
     for share, s in ((0.0, 1), (0.7, -1), (-0.99, 1), (1.0, -1)):
         z0 = share * law.f0
         travel = np.array([1e-4, 0.01, 0.1, 1.0, 2.0])  # beyond 1.33 m
-        path = solve_ivp(lambda u, z, s=s: [s * rate(law, z[0], s)], (0, 2.0), [z0], "LSODA", travel,
-                         rtol=1e-11, atol=1e-11 * law.f0)
+        path = solve_ivp(
+            lambda u, z, s=s: [s * rate(law, z[0], s)], (0, 2.0), [z0], "LSODA", travel, rtol=1e-11, atol=1e-11 * law.f0
+        )
         closed = [law.hysteretic(z0, s * u) for u in travel]
         np.testing.assert_allclose(closed, path.y[0], rtol=0, atol=1e-8 * law.f0)
 
@@ -151,8 +152,10 @@ def test_closed_cycle_never_gives_energy_back(law, turns):
         energy = 0.0
         for x, turn in zip([turns[-1], *turns[:-1]], turns, strict=True):
             travel = turn - x
-            energy += sum(0.5 * travel * w * law.hysteretic(z, 0.5 * travel * (1 + u))
-                          for u, w in zip(NODES, WEIGHTS, strict=True))
+            energy += sum(
+                0.5 * travel * w * law.hysteretic(z, 0.5 * travel * (1 + u))
+                for u, w in zip(NODES, WEIGHTS, strict=True)
+            )
             z = law.hysteretic(z, travel)
         return z, energy
 

@@ -20,9 +20,17 @@ from analytic.records import read_record
 CORPUS = Path(__file__).parent / "corpus"
 LONGEST_MESSAGE = FILE_LENGTH + KEY_LENGTH + VALUE_LENGTH + 2 * TEXT_LENGTH + 200  # characters
 HANG = 2.0  # s of CPU time
-DEFAULTS = {"gravity": 9.81, "start.tilt": 0.0, "start.tilt_rate": 0.0, "start.base_displacement": 0.0,
-            "start.base_velocity": 0.0, "bearings.law": "algebraic", "bearings.count": 1, "bearings.delta_k": 1e-20,
-            "bearings.damping": 0.0}
+DEFAULTS = {
+    "gravity": 9.81,
+    "start.tilt": 0.0,
+    "start.tilt_rate": 0.0,
+    "start.base_displacement": 0.0,
+    "start.base_velocity": 0.0,
+    "bearings.law": "algebraic",
+    "bearings.count": 1,
+    "bearings.delta_k": 1e-20,
+    "bearings.damping": 0.0,
+}
 
 
 def judged(kind, path, content, units):
@@ -49,13 +57,20 @@ def judged(kind, path, content, units):
 
 def same_record(motion, expected):
     least, largest, samples = expected
-    return (len(samples) == len(motion.samples) and least * (1 - 1e-12) <= motion.dt <= largest * (1 + 1e-12)
-            and all(abs(one - other) <= 1e-15 * abs(other) for one, other in zip(motion.samples, samples, strict=True)))
+    return (
+        len(samples) == len(motion.samples)
+        and least * (1 - 1e-12) <= motion.dt <= largest * (1 + 1e-12)
+        and all(abs(one - other) <= 1e-15 * abs(other) for one, other in zip(motion.samples, samples, strict=True))
+    )
 
 
 def same_scene(scene, tables):
-    expected = DEFAULTS | {f"{table}.{key}" if table else key: value for table, part in tables.items()
-                           for key, value in part.items() if table != "motion"}
+    expected = DEFAULTS | {
+        f"{table}.{key}" if table else key: value
+        for table, part in tables.items()
+        for key, value in part.items()
+        if table != "motion"
+    }
     found = {"gravity": scene.gravity, "friction": scene.friction, "run.duration": scene.duration}
     for table in ("block", "base", "bearings", "start"):
         part = getattr(scene, table)
@@ -64,12 +79,17 @@ def same_scene(scene, tables):
         found |= {f"{table}.{key}": getattr(part, key) for key in type(part).model_fields} if part else {}
     motion = tables.get("motion")
     if motion and "pulse" in motion:
-        pulse = (motion["pulse"], motion["amplitude"] * motion.get("scale", 1.0), motion["frequency"],
-                 motion.get("start", 0.0))
+        pulse = (
+            motion["pulse"],
+            motion["amplitude"] * motion.get("scale", 1.0),
+            motion["frequency"],
+            motion.get("start", 0.0),
+        )
         if (scene.motion.shape, scene.motion.amplitude, scene.motion.frequency, scene.motion.start) != pulse:
             return False
     return (motion is None) == (scene.motion is None) and all(
-        value == expected.get(key) for key, value in found.items())
+        value == expected.get(key) for key, value in found.items()
+    )
 
 
 def count_judgements(folder, number, seed):
@@ -173,8 +193,14 @@ def test_no_text_takes_more_than_one_pass(tmp_path, top, text):
 @pytest.mark.parametrize("read", [read_record, load_scene])
 @pytest.mark.parametrize("kind", ["pipe", "device", "folder", "NUL", "long", "half a character", "nothing"])
 def test_what_is_no_file_is_refused_at_once(tmp_path, read, kind):
-    path = {"device": "/dev/zero", "folder": tmp_path, "NUL": "a\0b", "long": "a" * 300, "nothing": "",
-            "half a character": "\udcff"}.get(kind, tmp_path / "pipe")
+    path = {
+        "device": "/dev/zero",
+        "folder": tmp_path,
+        "NUL": "a\0b",
+        "long": "a" * 300,
+        "nothing": "",
+        "half a character": "\udcff",
+    }.get(kind, tmp_path / "pipe")
     if kind == "pipe":
         os.mkfifo(path)
     with pytest.raises(SceneError, match="cannot be read") as caught:

@@ -83,7 +83,7 @@ def test_a_bearing_never_gives_back_more_than_it_holds(constants):
 
 def test_the_energy_that_can_reach_the_block_never_rises_after_the_motion():
     motion = synthetic_motion()
-    motion = SampledMotion(motion.dt, 0.8 * motion.samples[:round(6.0 / motion.dt)])
+    motion = SampledMotion(motion.dt, 0.8 * motion.samples[: round(6.0 / motion.dt)])
     scene = load_scene("caryatid-isolated").with_(block={"slenderness": 0.15}, motion=motion)
     response = simulate(scene)
     assert response.outcome == "rocks" and any(impact.time > motion.end for impact in response.impacts)
@@ -98,8 +98,12 @@ def test_the_energy_that_can_reach_the_block_never_rises_after_the_motion():
 
 def test_an_undamped_base_with_energy_for_eight_overturnings_is_decided_by_its_acceleration():
     stiffness = (2 * math.pi / 4.0) ** 2 * 3000.0
-    scene = Scene(block=BLOCK, base=Base(mass=1500.0), bearings=Bearings(law="linear", ka=stiffness),
-                  start=Start(base_displacement=0.45))
+    scene = Scene(
+        block=BLOCK,
+        base=Base(mass=1500.0),
+        bearings=Bearings(law="linear", ka=stiffness),
+        start=Start(base_displacement=0.45),
+    )
     par = parameters(scene)
     barrier = BLOCK.mass * G * (1 - math.cos(0.12))
     assert remaining_energy(par, False, 0.0, 0.0, 0.45, 0.0, 0.0) > 2.5 * barrier
@@ -119,7 +123,8 @@ def test_a_free_base_is_decided_without_the_momentum_it_keeps():
     assert any("slides on" in sentence for sentence in response.warnings)
     still = simulate(scene.with_(start={"base_velocity": 0.0}))
     assert [impact.time for impact in still.impacts[:5]] == pytest.approx(
-        [impact.time for impact in response.impacts[:5]], rel=1e-9)
+        [impact.time for impact in response.impacts[:5]], rel=1e-9
+    )
 
 
 def test_free_rocking_is_decided_at_once_but_its_swings_are_shown():
@@ -168,15 +173,20 @@ def test_a_duration_that_cuts_the_motion_leaves_the_outcome_undecided():
 
 
 def test_a_duration_that_cuts_a_base_still_full_of_energy_leaves_the_outcome_undecided():
-    scene = Scene(block=BLOCK, base=Base(mass=1500.0), bearings=Bearings(law="linear", ka=2e4),
-                  start=Start(base_displacement=-0.6), duration=0.01)
+    scene = Scene(
+        block=BLOCK,
+        base=Base(mass=1500.0),
+        bearings=Bearings(law="linear", ka=2e4),
+        start=Start(base_displacement=-0.6),
+        duration=0.01,
+    )
     assert not simulate(scene).decided
     assert simulate(scene.with_(duration=None)).decided
 
 
 def test_the_spectrum_runs_until_decided():
     motion = synthetic_motion()
-    times = motion.samples[:round(6.0 / motion.dt)]  # in the strong shaking
+    times = motion.samples[: round(6.0 / motion.dt)]  # in the strong shaking
     cut = SampledMotion(motion.dt, times)
     periods = np.linspace(1.0, 8.0, 141)
     found = rocking_spectrum(cut, periods, 0.2)
@@ -198,8 +208,11 @@ def scenes_without_duration(draw):
     block = Block(mass=1.0, radius=draw(log_uniform(0.1, 5)), slenderness=draw(st.floats(0.05, 0.6)))
     scene = Scene(block=block)
     threshold = G * math.tan(block.slenderness)
-    motion = PulseMotion(draw(st.sampled_from(["one-sine", "ricker", "half-sine"])),
-                         threshold * draw(st.floats(0.5, 6.0)), scene.rocking_frequency * draw(st.floats(0.5, 6)))
+    motion = PulseMotion(
+        draw(st.sampled_from(["one-sine", "ricker", "half-sine"])),
+        threshold * draw(st.floats(0.5, 6.0)),
+        scene.rocking_frequency * draw(st.floats(0.5, 6)),
+    )
     base = bearings = None
     if draw(st.booleans()):
         base = Base(mass=draw(log_uniform(0.05, 20)))
@@ -207,8 +220,10 @@ def scenes_without_duration(draw):
         law = draw(st.sampled_from(NAMES))
         kb = total * (scene.rocking_frequency * draw(log_uniform(0.2, 5))) ** 2
         ka, f0 = kb * draw(st.floats(2, 20)), total * G * draw(log_uniform(0.01, 0.3))
-        bearings = Bearings(**{"ka": ka, "kb": kb, "alpha": draw(st.floats(1.5, 80)), **to_law(law, ka, kb, f0)},
-                            damping=draw(st.sampled_from([0.0, 0.1])) * total * scene.rocking_frequency)
+        bearings = Bearings(
+            **{"ka": ka, "kb": kb, "alpha": draw(st.floats(1.5, 80)), **to_law(law, ka, kb, f0)},
+            damping=draw(st.sampled_from([0.0, 0.1])) * total * scene.rocking_frequency,
+        )
     return Scene(block=block, base=base, bearings=bearings, motion=motion)
 
 
@@ -258,7 +273,9 @@ def test_the_model_warns_where_its_contact_would_have_to_pull_or_stick():
 @pytest.mark.parametrize("radius", [1e-18, 1e-6, 1e6, 1e18])
 @pytest.mark.parametrize("mass", [1e-20, 1e20])
 def test_free_rocking_scales_with_size_to_the_ends_of_what_a_scene_may_hold(radius, mass):
-    one, other = (simulate(Scene(block=Block(mass=m, radius=R, slenderness=0.2), start=Start(tilt=0.1)), history=False)
-                  for m, R in ((1.0, 1.0), (mass, radius)))
+    one, other = (
+        simulate(Scene(block=Block(mass=m, radius=R, slenderness=0.2), start=Start(tilt=0.1)), history=False)
+        for m, R in ((1.0, 1.0), (mass, radius))
+    )
     assert (other.outcome, other.decided, other.impact_count) == (one.outcome, one.decided, one.impact_count)
     assert other.impacts[0].time == pytest.approx(one.impacts[0].time * math.sqrt(radius), rel=1e-9)

@@ -62,8 +62,18 @@ def test_impossible_damping_says_the_most_there_is():
     assert bearings.ka > bearings.kb > 0
 
 
-@pytest.mark.parametrize("change", [{"period": 0.0}, {"period": math.nan}, {"damping": -0.1}, {"x_max": 0.0},
-                                    {"stiffness_ratio": 1.0}, {"definition": "mine"}, {"count": 0}])
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"period": 0.0},
+        {"period": math.nan},
+        {"damping": -0.1},
+        {"x_max": 0.0},
+        {"stiffness_ratio": 1.0},
+        {"definition": "mine"},
+        {"count": 0},
+    ],
+)
 def test_targets_out_of_range(change):
     targets = {"period": 2.0, "damping": 0.3, "x_max": 0.3, **change}
     with pytest.raises(SettingError, match=next(iter(change))):

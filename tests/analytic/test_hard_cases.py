@@ -62,8 +62,9 @@ def test_rest_inside_a_motion_lifts_again():
     quiet = np.zeros(1500)
     t = np.arange(200) * 0.01
     burst = 1.3 * THRESHOLD * np.sin(2 * np.pi * 2 * t)
-    response = sound(simulate(Scene(block=BLOCK, motion=sampled(np.concatenate([burst, quiet, burst, quiet])),
-                                    duration=40.0)))
+    response = sound(
+        simulate(Scene(block=BLOCK, motion=sampled(np.concatenate([burst, quiet, burst, quiet])), duration=40.0))
+    )
     assert len(response.uplifts) >= 2
     assert len(response.rests) >= 2
     assert response.uplifts[-1] > 17.0 > response.rests[0]
@@ -130,8 +131,13 @@ def test_grazing_the_threshold_exactly():
 
 def test_flat_drop_lands_and_stays():
     # stocky block on a light base: e_phi <= 0, the block lands flat and its momentum goes to the base
-    scene = Scene(block=Block(mass=1000.0, radius=1.0, slenderness=1.0), base=Base(mass=10.0), bearings=LRB,
-                  start=Start(tilt=0.1), duration=5.0)
+    scene = Scene(
+        block=Block(mass=1000.0, radius=1.0, slenderness=1.0),
+        base=Base(mass=10.0),
+        bearings=LRB,
+        start=Start(tilt=0.1),
+        duration=5.0,
+    )
     response = sound(simulate(scene))
     assert RockingModel.of(scene).restitution == 0.0
     assert response.impact_count == 1

@@ -21,8 +21,18 @@ CARYATID = Block(mass=3172.05, radius=1.0884, slenderness=0.28)
 LRB = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 PROBLEM_A = Scene(block=SLENDER, start=Start(tilt=0.9 * 0.25), duration=12.0)
 PROBLEM_B = Scene(block=SLENDER, motion=PulseMotion("one-sine", 1.2 * G * math.tan(0.25), 2 * P), duration=12.0)
-A_IMPACTS = [1.15178330918313354, 2.30267614352356326, 3.19766787312214604, 3.94143279745026066, 4.57814095444687863,
-             5.1324813494596925, 5.62035297828485788, 6.05292315538590213, 6.43851120325872555, 6.78358291790019776]
+A_IMPACTS = [
+    1.15178330918313354,
+    2.30267614352356326,
+    3.19766787312214604,
+    3.94143279745026066,
+    4.57814095444687863,
+    5.1324813494596925,
+    5.62035297828485788,
+    6.05292315538590213,
+    6.43851120325872555,
+    6.78358291790019776,
+]
 
 
 def shaken(seed=3, dt=0.01, duration=6.0, peak=4.0):
@@ -63,8 +73,10 @@ class TestProblems:
         end = simulate(PROBLEM_A.with_(duration=7.0), tolerance=1e-16).end
         assert abs(end.tilt) == pytest.approx(0.01588089793859602683756374, rel=1e-12)
 
-    @pytest.mark.parametrize(("rate", "count", "time"), [(1e-4, 82, 10.0465490762726), (1e-6, 129, 10.0496394097305),
-                                                         (1e-8, 177, 10.0496728814269)])
+    @pytest.mark.parametrize(
+        ("rate", "count", "time"),
+        [(1e-4, 82, 10.0465490762726), (1e-6, 129, 10.0496394097305), (1e-8, 177, 10.0496728814269)],
+    )
     def test_a_counts_every_impact_to_rest(self, rate, count, time):
         number, when = impacts_until(simulate(PROBLEM_A, tolerance=1e-16), rate * P)
         assert number == count
@@ -95,8 +107,14 @@ class TestOverturning:
     """One-sine pulse, p = 2.14, slenderness 0.25, e = 0.9: the boundaries are given to five decimals."""
 
     SCENE = Scene(block=Block(mass=1.0, radius=3 * G / (4 * 2.14**2), slenderness=0.25, restitution=0.9), duration=30.0)
-    BOUNDARIES = {2: (1.25090, 2.37418, 2.40806), 3: (1.43539, 3.60487, 3.74275), 4: (1.84430, 5.07937, 5.43676),
-                  5: (3.03234, 6.74302, 7.49300), 6: (4.91994, 8.50817, 9.91798), 8: (15.90490,)}
+    BOUNDARIES = {
+        2: (1.25090, 2.37418, 2.40806),
+        3: (1.43539, 3.60487, 3.74275),
+        4: (1.84430, 5.07937, 5.43676),
+        5: (3.03234, 6.74302, 7.49300),
+        6: (4.91994, 8.50817, 9.91798),
+        8: (15.90490,),
+    }
 
     def overturns(self, ratio, amplitude):
         pulse = PulseMotion("one-sine", amplitude * G * 0.25, ratio * 2.14)
@@ -110,15 +128,22 @@ class TestOverturning:
             assert self.overturns(ratio, boundary * (1 - 1e-5)) != above
             assert self.overturns(ratio, boundary * (1 + 1e-5)) == above
 
-    LINEAR = {2: (1.22518, 2.31440, 2.34990), 3: (1.40357, 3.48466, 3.63115), 4: (1.79544, 4.85011, 5.23896),
-              5: (3.01860, 6.31807, 7.16813), 6: (5.16416, 7.66988, 9.41697), 8: (14.87135,)}
+    LINEAR = {
+        2: (1.22518, 2.31440, 2.34990),
+        3: (1.40357, 3.48466, 3.63115),
+        4: (1.79544, 4.85011, 5.23896),
+        5: (3.01860, 6.31807, 7.16813),
+        6: (5.16416, 7.66988, 9.41697),
+        8: (14.87135,),
+    }
 
     @pytest.mark.parametrize("ratio", LINEAR)
     def test_linear_boundaries_are_the_slender_limit(self, ratio):
         # the linear table is what a very slender block of the same p and e tends to, in amplitude over g gamma
         gamma = 1e-4
-        scene = Scene(block=Block(mass=1.0, radius=3 * G / (4 * 2.14**2), slenderness=gamma, restitution=0.9),
-                      duration=30.0)
+        scene = Scene(
+            block=Block(mass=1.0, radius=3 * G / (4 * 2.14**2), slenderness=gamma, restitution=0.9), duration=30.0
+        )
         rising = [True, False, True] if len(self.LINEAR[ratio]) == 3 else [True]
         for boundary, above in zip(self.LINEAR[ratio], rising, strict=True):
             for factor, expected in ((1 - 1e-5, not above), (1 + 1e-5, above)):
@@ -128,10 +153,19 @@ class TestOverturning:
 
 
 class TestConservation:
-    @pytest.mark.parametrize("scene", [PROBLEM_A, PROBLEM_B, isolated(), isolated(bearings={"law": "bouc-wen"}),
-                                       isolated(bearings={"damping": 800.0}), isolated(bearings={"law": "linear"}),
-                                       isolated(bearings=to_law("bilinear"))],
-                             ids=["A", "B", "algebraic", "bouc-wen", "damped", "linear", "bilinear"])
+    @pytest.mark.parametrize(
+        "scene",
+        [
+            PROBLEM_A,
+            PROBLEM_B,
+            isolated(),
+            isolated(bearings={"law": "bouc-wen"}),
+            isolated(bearings={"damping": 800.0}),
+            isolated(bearings={"law": "linear"}),
+            isolated(bearings=to_law("bilinear")),
+        ],
+        ids=["A", "B", "algebraic", "bouc-wen", "damped", "linear", "bilinear"],
+    )
     def test_energy_ledger_closes(self, scene):
         energy = simulate(scene).energy
         turnover = max(abs(energy.input), abs(energy.potential))
@@ -148,9 +182,17 @@ class TestConservation:
             base = model.M * impact.base_velocity_jump
             assert block + base == pytest.approx(0.0, abs=1e-12 * abs(base))
 
-    @pytest.mark.parametrize("scene", [PROBLEM_B, isolated(), isolated(0.28), isolated(bearings={"law": "bouc-wen"}),
-                                       isolated(bearings=to_law("bilinear"))],
-                             ids=["rigid", "rocking", "contact", "bouc-wen", "bilinear"])
+    @pytest.mark.parametrize(
+        "scene",
+        [
+            PROBLEM_B,
+            isolated(),
+            isolated(0.28),
+            isolated(bearings={"law": "bouc-wen"}),
+            isolated(bearings=to_law("bilinear")),
+        ],
+        ids=["rigid", "rocking", "contact", "bouc-wen", "bilinear"],
+    )
     def test_mirror_bit_for_bit(self, scene):
         one, other = simulate(scene), simulate(scene.with_(motion=scene.motion.scaled(-1.0)))
         for name in ("tilt", "tilt_rate", "base_displacement", "base_velocity", "bearing_force"):
@@ -172,16 +214,20 @@ class TestConservation:
         scene = isolated()
         law, history = BearingLaw.of(LRB), simulate(scene, output_step=1e-4).history
         z = 0.0
-        for x, dx, force in zip(history.base_displacement[1:], np.diff(history.base_displacement),
-                                history.bearing_force[1:], strict=True):
+        for x, dx, force in zip(
+            history.base_displacement[1:], np.diff(history.base_displacement), history.bearing_force[1:], strict=True
+        ):
             z = law.hysteretic(z, dx)
             assert abs(law.force(x, z) - force) / 4 < 2e-3 * law.f0  # reversals fall between output points
         assert abs(z) <= law.f0
 
 
 class TestConvergence:
-    @pytest.mark.parametrize("scene", [PROBLEM_A.with_(duration=3.0), isolated(motion=None, start=Start(tilt=0.1),
-                                                                              duration=0.5)], ids=["rigid", "base"])
+    @pytest.mark.parametrize(
+        "scene",
+        [PROBLEM_A.with_(duration=3.0), isolated(motion=None, start=Start(tilt=0.1), duration=0.5)],
+        ids=["rigid", "base"],
+    )
     def test_error_falls_as_asked(self, scene):
         exact = end_state(scene, 1e-17)
         tolerances = np.array([1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
@@ -215,15 +261,19 @@ class TestConvergence:
         scene = Scene(block=CARYATID, start=Start(tilt=0.15), duration=3.0)
         rigid = simulate(scene, tolerance=1e-15).end.tilt
         ratios = np.array([1e3, 1e4, 1e5])
-        gaps = [abs(simulate(scene.with_(base=Base(mass=CARYATID.mass * ratio)), tolerance=1e-15).end.tilt - rigid)
-                for ratio in ratios]
+        gaps = [
+            abs(simulate(scene.with_(base=Base(mass=CARYATID.mass * ratio)), tolerance=1e-15).end.tilt - rigid)
+            for ratio in ratios
+        ]
         rate = -np.polyfit(np.log10(ratios), np.log10(gaps), 1)[0]
         assert rate == pytest.approx(1.0, abs=0.05)
 
 
 class TestSettings:
-    @pytest.mark.parametrize(("setting", "value"), [("tolerance", 0.0), ("tolerance", 1.0), ("rest_rate", 0.0),
-                                                    ("output_step", -1.0), ("tolerance", math.nan)])
+    @pytest.mark.parametrize(
+        ("setting", "value"),
+        [("tolerance", 0.0), ("tolerance", 1.0), ("rest_rate", 0.0), ("output_step", -1.0), ("tolerance", math.nan)],
+    )
     def test_out_of_range(self, setting, value):
         with pytest.raises(SettingError, match=setting):
             simulate(PROBLEM_A, **{setting: value})

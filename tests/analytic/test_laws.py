@@ -39,8 +39,9 @@ TRAVELS = st.floats(1e-6, 1.0).flatmap(lambda size: st.sampled_from([size, -size
 @given(ANY_LAW, st.floats(-1, 1), TRAVELS)
 def test_the_formula_for_engines_is_the_law(rule, share, dx):
     z, *sides = rule.moved(share * rule.f0, 0.0)
-    assert rule.unit.expression(PLAIN, dx, *sides, *rule.constants) == pytest.approx(rule.hysteretic(z, dx), rel=1e-9,
-                                                                                     abs=1e-12 * F0)
+    assert rule.unit.expression(PLAIN, dx, *sides, *rule.constants) == pytest.approx(
+        rule.hysteretic(z, dx), rel=1e-9, abs=1e-12 * F0
+    )
 
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
@@ -50,8 +51,11 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
 @given(ANY_LAW, st.floats(-1, 1), TRAVELS)
 def test_work_is_the_integral_of_the_force(rule, share, dx):
     z, cuts = share * rule.f0, [0.0, *np.geomspace(1e-4, 1, 40)]
-    found = sum(0.5 * (b - a) * dx * weight * rule.hysteretic(z, dx * (0.5 * (a + b) + 0.5 * (b - a) * node))
-                for a, b in zip(cuts[:-1], cuts[1:], strict=True) for node, weight in zip(NODES, WEIGHTS, strict=True))
+    found = sum(
+        0.5 * (b - a) * dx * weight * rule.hysteretic(z, dx * (0.5 * (a + b) + 0.5 * (b - a) * node))
+        for a, b in zip(cuts[:-1], cuts[1:], strict=True)
+        for node, weight in zip(NODES, WEIGHTS, strict=True)
+    )
     assert rule.work(z, dx) == pytest.approx(found, rel=2e-5, abs=1e-7 * F0 * abs(dx))
 
 
@@ -68,13 +72,24 @@ def test_a_start_in_mid_path_is_continued_as_the_law_says(name):
 # The bilinear law.
 
 HEAVY = Block(mass=3172.05, radius=1.0884, slenderness=1.2)  # never lifts here
-ROCKING = Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=0.2), base=Base(mass=212.0),
-                bearings=bearings_of("bilinear", count=4), motion=PulseMotion("one-sine", 3.0, 6.0), duration=4.0)
+ROCKING = Scene(
+    block=Block(mass=3172.05, radius=1.0884, slenderness=0.2),
+    base=Base(mass=212.0),
+    bearings=bearings_of("bilinear", count=4),
+    motion=PulseMotion("one-sine", 3.0, 6.0),
+    duration=4.0,
+)
 
 
 def contact(law="bilinear", start=None, duration=3.0, motion=None, **keys):
-    return Scene(block=HEAVY, base=Base(mass=212.0), bearings=bearings_of(law, count=4, **keys), duration=duration,
-                 motion=motion, start=start or Start())
+    return Scene(
+        block=HEAVY,
+        base=Base(mass=212.0),
+        bearings=bearings_of(law, count=4, **keys),
+        duration=duration,
+        motion=motion,
+        start=start or Start(),
+    )
 
 
 def phase(k, push, mass, x, v):
@@ -136,9 +151,15 @@ def test_free_vibration_after_yield_is_the_piecewise_exact_one():
     assert (twin.base_displacement, twin.base_velocity) == pytest.approx((x, v), abs=1e-11)
 
 
-@pytest.mark.parametrize("scene", [ROCKING, contact(motion=synthetic_motion(), duration=20.0),
-                                   load_scene("caryatid-isolated").with_(bearings=to_law("bilinear"), duration=20.0)],
-                         ids=["rocking", "contact", "Caryatid"])
+@pytest.mark.parametrize(
+    "scene",
+    [
+        ROCKING,
+        contact(motion=synthetic_motion(), duration=20.0),
+        load_scene("caryatid-isolated").with_(bearings=to_law("bilinear"), duration=20.0),
+    ],
+    ids=["rocking", "contact", "Caryatid"],
+)
 def test_ledger_closes(scene):
     energy = simulate(scene).energy
     assert abs(energy.imbalance) < 1e-11 * energy.input and energy.hysteretic > 0.1 * energy.input
@@ -199,8 +220,10 @@ def test_kernel_and_second_implementation_agree():
 def test_error_of_the_second_implementation_falls_with_its_tolerance():
     scene = contact(start=Start(base_velocity=0.9), duration=2.0)
     exact = exact_free_vibration(scene)[0]
-    errors = [abs(simulate_twin(scene, rtol=rtol, method="RK45", max_step=1.0).end.base_displacement - exact)
-              for rtol in (1e-4, 1e-6, 1e-8, 1e-10)]
+    errors = [
+        abs(simulate_twin(scene, rtol=rtol, method="RK45", max_step=1.0).end.base_displacement - exact)
+        for rtol in (1e-4, 1e-6, 1e-8, 1e-10)
+    ]
     assert np.diff(np.log10(errors)).mean() == pytest.approx(-2, abs=0.4)
 
 

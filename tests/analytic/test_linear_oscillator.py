@@ -41,10 +41,13 @@ def test_agrees_with_scipy_on_noise():
     w, zeta, corners = 2 * math.pi / 0.37, 0.07, 0.02 * np.arange(150)
     state, peak = np.zeros(2), 0.0
     for start in corners[:-1]:
+
         def slope(t, y):
             return [y[1], -2 * zeta * w * y[1] - w * w * y[0] - np.interp(t, corners, motion.samples)]
-        part = solve_ivp(slope, (start, start + 0.02), state, "DOP853", rtol=1e-12, atol=1e-14,
-                         events=lambda t, y: y[1])
+
+        part = solve_ivp(
+            slope, (start, start + 0.02), state, "DOP853", rtol=1e-12, atol=1e-14, events=lambda t, y: y[1]
+        )
         state = part.y[:, -1]
         peak = max(peak, np.abs(part.y[0]).max(), *(abs(turn[0]) for turn in part.y_events[0]))
     assert displacement_spectrum(motion, [0.37], [zeta])[0, 0] == pytest.approx(peak, rel=1e-9)

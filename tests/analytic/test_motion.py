@@ -43,17 +43,20 @@ def test_scaled_and_digest():
     assert motion.digest() != SampledMotion(0.2, [1.0, -2.0]).digest()
 
 
-@pytest.mark.parametrize("dt, samples, message", [
-    (0.0, [1, 2], "motion.dt = 0.0: not a positive number"),
-    (-1, [1, 2], "motion.dt = -1: not a positive number"),
-    (math.nan, [1, 2], "motion.dt = nan: not a positive number"),
-    (math.inf, [1, 2], "motion.dt = inf"),
-    (0.1, [], "holds fewer than two samples; give at least two accelerations"),
-    (0.1, [1], "holds fewer than two samples"),
-    (0.1, [[1, 2], [3, 4]], "shape (2, 2)"),
-    (0.1, [1, math.nan, 2], "motion.record = nan: sample 1 is not finite; mend or remove it"),
-    (0.1, [1, 2, -math.inf], "motion.record = -inf: sample 2 is not finite"),
-])
+@pytest.mark.parametrize(
+    "dt, samples, message",
+    [
+        (0.0, [1, 2], "motion.dt = 0.0: not a positive number"),
+        (-1, [1, 2], "motion.dt = -1: not a positive number"),
+        (math.nan, [1, 2], "motion.dt = nan: not a positive number"),
+        (math.inf, [1, 2], "motion.dt = inf"),
+        (0.1, [], "holds fewer than two samples; give at least two accelerations"),
+        (0.1, [1], "holds fewer than two samples"),
+        (0.1, [[1, 2], [3, 4]], "shape (2, 2)"),
+        (0.1, [1, math.nan, 2], "motion.record = nan: sample 1 is not finite; mend or remove it"),
+        (0.1, [1, 2, -math.inf], "motion.record = -inf: sample 2 is not finite"),
+    ],
+)
 def test_bad_samples(dt, samples, message):
     with pytest.raises(SceneError) as caught:
         SampledMotion(dt, samples)
@@ -72,8 +75,16 @@ def test_pulse_is_zero_outside_and_peaks_where_it_says(shape):
     assert twice.digest() != pulse.digest()
 
 
-@pytest.mark.parametrize("shape, gain", [  # integral of the acceleration, in amplitude/frequency
-    ("one-sine", 0.0), ("one-cosine", 0.0), ("half-sine", 2.0), ("rectangular", math.pi), ("ricker", 0.0)])
+@pytest.mark.parametrize(
+    "shape, gain",
+    [  # integral of the acceleration, in amplitude/frequency
+        ("one-sine", 0.0),
+        ("one-cosine", 0.0),
+        ("half-sine", 2.0),
+        ("rectangular", math.pi),
+        ("ricker", 0.0),
+    ],
+)
 def test_velocity_gained_in_a_pulse(shape, gain):
     pulse = PulseMotion(shape, 1.0, 2.0)
     times = np.linspace(0, pulse.end, 400001)
@@ -86,15 +97,18 @@ def test_ricker_ends_below_rounding():
     assert abs(pulse.acceleration(0.0)) < 1e-15
 
 
-@pytest.mark.parametrize("arguments, message", [
-    (("two-sine", 1, 1), "motion.pulse = 'two-sine': not a known pulse; choose one of one-sine, one-cosine"),
-    (("one-sine", math.nan, 1), "motion.amplitude = nan: not a finite number"),
-    (("one-sine", "1", 1), "motion.amplitude = '1'"),
-    (("one-sine", True, 1), "motion.amplitude = True"),
-    (("one-sine", 1, 0), "motion.frequency = 0.0: not a positive number; give a finite value above 0 [rad/s]"),
-    (("one-sine", 1, math.inf), "motion.frequency = inf"),
-    (("one-sine", 1, 1, -0.5), "motion.start = -0.5: negative; start the pulse at 0 or later [s]"),
-])
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (("two-sine", 1, 1), "motion.pulse = 'two-sine': not a known pulse; choose one of one-sine, one-cosine"),
+        (("one-sine", math.nan, 1), "motion.amplitude = nan: not a finite number"),
+        (("one-sine", "1", 1), "motion.amplitude = '1'"),
+        (("one-sine", True, 1), "motion.amplitude = True"),
+        (("one-sine", 1, 0), "motion.frequency = 0.0: not a positive number; give a finite value above 0 [rad/s]"),
+        (("one-sine", 1, math.inf), "motion.frequency = inf"),
+        (("one-sine", 1, 1, -0.5), "motion.start = -0.5: negative; start the pulse at 0 or later [s]"),
+    ],
+)
 def test_bad_pulse(arguments, message):
     with pytest.raises(SceneError) as caught:
         PulseMotion(*arguments)

@@ -21,8 +21,9 @@ def motions(draw):
     if kind == "none":
         return None
     if kind == "pulse":
-        return PulseMotion(draw(st.sampled_from(PULSES)), draw(st.floats(-30, 30)), draw(log_uniform(0.5, 60)),
-                           draw(st.floats(0, 1)))
+        return PulseMotion(
+            draw(st.sampled_from(PULSES)), draw(st.floats(-30, 30)), draw(log_uniform(0.5, 60)), draw(st.floats(0, 1))
+        )
     values = draw(st.lists(st.floats(-15, 15), min_size=2, max_size=60))
     return SampledMotion(draw(log_uniform(1e-3, 0.1)), np.array(values))
 
@@ -41,16 +42,29 @@ def bearings(draw):
 @st.composite
 def scenes(draw):
     slenderness = draw(st.floats(0.03, 1.4))
-    block = Block(mass=draw(log_uniform(1, 1e5)), radius=draw(log_uniform(0.1, 10)), slenderness=slenderness,
-                  restitution=draw(st.sampled_from([None, None, 0.0, 0.5, 0.95])))
+    block = Block(
+        mass=draw(log_uniform(1, 1e5)),
+        radius=draw(log_uniform(0.1, 10)),
+        slenderness=slenderness,
+        restitution=draw(st.sampled_from([None, None, 0.0, 0.5, 0.95])),
+    )
     tilt = draw(st.sampled_from([0.0, 0.3, -0.9, 1.05])) * slenderness
     on_base = draw(st.booleans())
     base = Base(mass=block.mass * draw(log_uniform(1e-4, 1e3))) if on_base else None
-    start = Start(tilt=tilt, tilt_rate=draw(st.sampled_from([0.0, 0.5, -1e-6])),
-                  base_displacement=draw(st.sampled_from([0.0, 0.1])) if on_base else 0.0,
-                  base_velocity=draw(st.sampled_from([0.0, -0.4])) if on_base else 0.0)
-    return Scene(block=block, base=base, bearings=draw(bearings()) if on_base else None, motion=draw(motions()),
-                 start=start, duration=draw(st.floats(0.1, 8)))
+    start = Start(
+        tilt=tilt,
+        tilt_rate=draw(st.sampled_from([0.0, 0.5, -1e-6])),
+        base_displacement=draw(st.sampled_from([0.0, 0.1])) if on_base else 0.0,
+        base_velocity=draw(st.sampled_from([0.0, -0.4])) if on_base else 0.0,
+    )
+    return Scene(
+        block=block,
+        base=base,
+        bearings=draw(bearings()) if on_base else None,
+        motion=draw(motions()),
+        start=start,
+        duration=draw(st.floats(0.1, 8)),
+    )
 
 
 def mirrored(scene):
@@ -66,12 +80,20 @@ def test_any_valid_scene_ends_sound_and_mirrors_bit_for_bit(scene):
     end = [response.end.tilt, response.end.tilt_rate, response.end.base_displacement, response.end.base_velocity]
     assert np.isfinite(end).all()
     energy = response.energy
-    turnover = max(abs(energy.input), abs(energy.kinetic), abs(energy.potential), abs(energy.hysteretic),
-                   energy.impact_loss, energy.viscous, 1e-9 * scene.block.mass,
-                   0.5 * scene.total_mass * float(np.square(response.history.base_velocity).max()))
+    turnover = max(
+        abs(energy.input),
+        abs(energy.kinetic),
+        abs(energy.potential),
+        abs(energy.hysteretic),
+        energy.impact_loss,
+        energy.viscous,
+        1e-9 * scene.block.mass,
+        0.5 * scene.total_mass * float(np.square(response.history.base_velocity).max()),
+    )
     assert abs(energy.imbalance) <= 1e-6 * turnover
     assert energy.impact_loss >= -1e-12 * turnover
     other = simulate(mirrored(scene), history=False)
     assert [other.end.tilt, other.end.tilt_rate, other.end.base_displacement, other.end.base_velocity] == [
-        -value for value in end]
+        -value for value in end
+    ]
     assert [impact.time for impact in other.impacts] == [impact.time for impact in response.impacts]

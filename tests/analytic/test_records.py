@@ -26,7 +26,7 @@ COUNTS = {
 def fortran(values, width=15):
     """Numbers as Fortran prints them: no leading zero, five a line."""
     printed = [f"{value:.7E}".replace("0.", ".") for value in values]
-    return "\n".join("".join(text.rjust(width) for text in printed[i:i + 5]) for i in range(0, len(printed), 5))
+    return "\n".join("".join(text.rjust(width) for text in printed[i : i + 5]) for i in range(0, len(printed), 5))
 
 
 def write(folder, text, name="record.txt"):
@@ -49,9 +49,14 @@ def test_line_ends(tmp_path, end):
     np.testing.assert_allclose(read_record(write(tmp_path, text)).samples, np.array(VALUES) * G, rtol=1e-15)
 
 
-@pytest.mark.parametrize("data", ["  .1000E-02-.1230E+00-.4560E+00  .2500D+00\n-.15D+01 0. .75\n",
-                                  "0.1000E-02-.1230E+00-.4560E+00+.2500E+00\n-.1500E+01+.0000E+00+.7500E+00\n",
-                                  "1.00E-003 -1.230E-001 -4.56e-001 2.5d-001 -15E-001 0E000 75.D-002\n"])
+@pytest.mark.parametrize(
+    "data",
+    [
+        "  .1000E-02-.1230E+00-.4560E+00  .2500D+00\n-.15D+01 0. .75\n",
+        "0.1000E-02-.1230E+00-.4560E+00+.2500E+00\n-.1500E+01+.0000E+00+.7500E+00\n",
+        "1.00E-003 -1.230E-001 -4.56e-001 2.5d-001 -15E-001 0E000 75.D-002\n",
+    ],
+)
 def test_stuck_numbers_and_fortran_exponents(tmp_path, data):
     motion = read_record(write(tmp_path, f"{AT2_TOP}{COUNTS['padded']}\n{data}"))
     np.testing.assert_allclose(motion.samples, np.array(VALUES) * G, rtol=1e-15)
@@ -59,9 +64,17 @@ def test_stuck_numbers_and_fortran_exponents(tmp_path, data):
 
 def dyna(values, **changes):
     """A DYNA 1.2 file: 64 header lines, one value a line; a key set to None is left out."""
-    keys = {"EVENT_NAME": "MADE UP", "EVENT_DATE_YYYYMMDD": "20000101", "VS30_M/S": "",
-            "SAMPLING_INTERVAL_S": "0.010000", "NDATA": len(values), "UNITS": "cm/s^2", "PGA_CM/S^2": "",
-            "HEADER_FORMAT": "DYNA 1.2", "ORIGINAL_DATA_MEDIATOR_CITATION": ": made up"}
+    keys = {
+        "EVENT_NAME": "MADE UP",
+        "EVENT_DATE_YYYYMMDD": "20000101",
+        "VS30_M/S": "",
+        "SAMPLING_INTERVAL_S": "0.010000",
+        "NDATA": len(values),
+        "UNITS": "cm/s^2",
+        "PGA_CM/S^2": "",
+        "HEADER_FORMAT": "DYNA 1.2",
+        "ORIGINAL_DATA_MEDIATOR_CITATION": ": made up",
+    }
     keys |= {f"USER{n}": "" for n in range(1, 65 - len(keys))} | changes
     assert len(keys) == 64
     lines = [f"{key}: {value}" for key, value in keys.items() if value is not None]
@@ -108,10 +121,16 @@ BAD = {
     "dt of zero": (AT2.replace(".02", ".00") + "1 2 3 4", None, "line 4, DT = 0.0: not a sampling interval"),
     "unreadable dt": (AT2.replace(".02", "?") + "1 2 3 4", None, "line 4, DT = '?': not a number"),
     "unreadable count": (AT2.replace("NPTS= 4", "NPTS= many") + "1 2 3 4", None, "NPTS = 'many': not a number of"),
-    "velocity": (AT2.replace("UNITS OF G", "UNITS OF CM/S") + "1 2 3 4", None,
-                 "line 3, UNITS OF = 'CM/S': not an acceleration in g; give the acceleration file"),
-    "AT2 with other units": (AT2 + "1 2 3 4", "cm/s2", "motion.units = 'cm/s2': but the record carries its own unit, "
-                                                       "G (line 3); remove units, or correct the record"),
+    "velocity": (
+        AT2.replace("UNITS OF G", "UNITS OF CM/S") + "1 2 3 4",
+        None,
+        "line 3, UNITS OF = 'CM/S': not an acceleration in g; give the acceleration file",
+    ),
+    "AT2 with other units": (
+        AT2 + "1 2 3 4",
+        "cm/s2",
+        "motion.units = 'cm/s2': but the record carries its own unit, G (line 3); remove units, or correct the record",
+    ),
     "DYNA with other units": (dyna(VALUES), "g", "motion.units = 'g': but the record carries its own unit, cm/s^2"),
     "DYNA without interval": (dyna(VALUES, SAMPLING_INTERVAL_S=None), None, "SAMPLING_INTERVAL_S: missing"),
     "DYNA without units": (dyna(VALUES, UNITS=""), None, "UNITS: missing from the header"),
@@ -124,8 +143,11 @@ BAD = {
     "NaN in columns": ("0 1\n.01 nan\n", "g", "line 2 = 'nan': not finite"),
     "infinite in columns": ("0 1\n.01 inf\n", "g", "line 2 = 'inf': not finite"),
     "words in columns": ("0 1\n.01 abc\n", "g", "line 2 = 'abc': not a number"),
-    "gap": ("0 1\n.01 2\n.02 3\n.04 4\n.05 1\n", "g",
-            "sample 4, time = 0.04: the sampling is not uniform: this step is 0.02 s, most are 0.01 s; resample"),
+    "gap": (
+        "0 1\n.01 2\n.02 3\n.04 4\n.05 1\n",
+        "g",
+        "sample 4, time = 0.04: the sampling is not uniform: this step is 0.02 s, most are 0.01 s; resample",
+    ),
     "slow drift": ("\n".join(f"{0.01 * i + 1e-5 * i * i:.6f} 1" for i in range(50)), "g", "sampling is not uniform"),
     "small jitter": ("0 1\n.0100 2\n.0200 3\n.0304 4\n.0400 5\n.0500 5\n", "g", "sampling is not uniform"),
     "time going back": ("0 1\n-0.01 2\n-0.02 3\n", "g", "sampling is not uniform"),
@@ -154,15 +176,18 @@ def test_binary_file(tmp_path):
 
 
 @pytest.mark.skipif(not RECORDS.is_dir(), reason="the recorded motions are not here (../shared/records)")
-@pytest.mark.parametrize("name, units, dt, count, peak, unit", [
-    ("RSN1605_DUZCE_DZC270.AT2", None, 0.005, 5177, None, G),
-    ("RSN1605_DUZCE_DZC180.AT2", None, 0.005, 5177, None, G),
-    ("ARL360.at2", None, 0.02, 2000, None, G),
-    ("IELC180.AT2", None, 0.01, 4000, None, G),
-    ("19991112165722_1401_mp_RawAcc_E.asc", None, 0.01, 5590, "PGA_CM/S^2", 0.01),
-    ("HL.DLFA..HNE.D.20190728.160908.C.ACC.ASC", None, 0.005, 13876, "PGA_CM/S^2", 0.01),
-    ("CHV1-20140203E.txt", "cm/s2", 0.005, 13549, None, 0.01),
-])
+@pytest.mark.parametrize(
+    "name, units, dt, count, peak, unit",
+    [
+        ("RSN1605_DUZCE_DZC270.AT2", None, 0.005, 5177, None, G),
+        ("RSN1605_DUZCE_DZC180.AT2", None, 0.005, 5177, None, G),
+        ("ARL360.at2", None, 0.02, 2000, None, G),
+        ("IELC180.AT2", None, 0.01, 4000, None, G),
+        ("19991112165722_1401_mp_RawAcc_E.asc", None, 0.01, 5590, "PGA_CM/S^2", 0.01),
+        ("HL.DLFA..HNE.D.20190728.160908.C.ACC.ASC", None, 0.005, 13876, "PGA_CM/S^2", 0.01),
+        ("CHV1-20140203E.txt", "cm/s2", 0.005, 13549, None, 0.01),
+    ],
+)
 def test_real_records(name, units, dt, count, peak, unit):
     path = RECORDS / name
     motion = read_record(path, units)
@@ -185,13 +210,20 @@ def test_real_near_fault_record():
 
 
 @pytest.mark.skipif(not (RECORDS / "formats").is_dir(), reason="the recorded motions are not here (../shared/records)")
-@pytest.mark.parametrize("name, problem", [
-    ("RSN1063_NORTHR_RRS228.AT2.gz", "is packed by gzip; unpack it first"),
-    ("ferndale.v2", "is a CSMIP volume 1, 2 or 3 file, which is not read; write its accelerations as two columns"),
-    ("ce36456p_CE36456.V2", "is a CSMIP"), ("CE89146.V2", "is a CSMIP"), ("CE58667.V2", "is a CSMIP"),
-    ("AOM001.EW", "is a K-NET file"), ("0111a.smc", "is a USGS SMC file"), ("cosmos.V2c", "is a COSMOS file"),
-    ("README.md", "not a known record format"),
-])
+@pytest.mark.parametrize(
+    "name, problem",
+    [
+        ("RSN1063_NORTHR_RRS228.AT2.gz", "is packed by gzip; unpack it first"),
+        ("ferndale.v2", "is a CSMIP volume 1, 2 or 3 file, which is not read; write its accelerations as two columns"),
+        ("ce36456p_CE36456.V2", "is a CSMIP"),
+        ("CE89146.V2", "is a CSMIP"),
+        ("CE58667.V2", "is a CSMIP"),
+        ("AOM001.EW", "is a K-NET file"),
+        ("0111a.smc", "is a USGS SMC file"),
+        ("cosmos.V2c", "is a COSMOS file"),
+        ("README.md", "not a known record format"),
+    ],
+)
 def test_real_files_of_formats_that_are_not_read(name, problem):
     with pytest.raises(SceneError, match=problem):
         read_record(RECORDS / "formats" / name, "g")

@@ -10,13 +10,20 @@ from analytic.scene import Base, Bearings, Block, Scene
 
 RADIUS, MASS, BASE = 1.088388, 3172.05, 212.0
 # slenderness: e on rigid ground, e_phi and e_x [m] with the base of 212 kg, e_x as printed
-TABLE = {0.20: (0.940796, 0.817683, -0.182293, -0.194450), 0.25: (0.908187, 0.729974, -0.266917, -0.281478),
-         0.28: (0.885441, 0.673321, -0.320300, -0.335034), 0.35: (0.823632, 0.535439, -0.445213, -0.455187)}
+TABLE = {
+    0.20: (0.940796, 0.817683, -0.182293, -0.194450),
+    0.25: (0.908187, 0.729974, -0.266917, -0.281478),
+    0.28: (0.885441, 0.673321, -0.320300, -0.335034),
+    0.35: (0.823632, 0.535439, -0.445213, -0.455187),
+}
 
 
 def scene(slenderness, base=BASE, **block):
-    return Scene(block=Block(mass=MASS, radius=RADIUS, slenderness=slenderness, **block), duration=1.0,
-                 base=Base(mass=base) if base else None)
+    return Scene(
+        block=Block(mass=MASS, radius=RADIUS, slenderness=slenderness, **block),
+        duration=1.0,
+        base=Base(mass=base) if base else None,
+    )
 
 
 @pytest.mark.parametrize("slenderness", TABLE)
@@ -123,8 +130,7 @@ def test_free_motion_conserves_energy(side, size, rate, force):
     spin, push = model.accelerations(side, tilt, rate, 0.0, force)
     c, n = model.lever(side, tilt)
     # d/dt [M v^2/2 + m c w v + J w^2/2], c' = n w
-    kinetic = (model.M * v * push + MASS * (n * rate**2 * v + c * spin * v + c * rate * push)
-               + model.J * rate * spin)
+    kinetic = model.M * v * push + MASS * (n * rate**2 * v + c * spin * v + c * rate * push) + model.J * rate * spin
     assert kinetic == pytest.approx(-MASS * 9.81 * n * rate - force * v, rel=1e-9, abs=1e-6)
 
 

@@ -8,8 +8,9 @@ from pydantic import ValidationError
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start
 
 BLOCK = Block(mass=3172.05, radius=1.0884, slenderness=0.28)
-SCENE = Scene(block=BLOCK, base=Base(mass=212.0), duration=1.0,
-              bearings=Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69))
+SCENE = Scene(
+    block=BLOCK, base=Base(mass=212.0), duration=1.0, bearings=Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
+)
 
 
 def test_block_is_a_rectangle_unless_told_otherwise():
@@ -40,28 +41,38 @@ def test_with_changes_one_part_and_validates_again():
 
 def test_digest_is_of_the_content():
     assert SCENE.digest() == SCENE.with_(name="another name").digest()
-    others = [SCENE.with_(duration=2.0), SCENE.with_(block={"slenderness": math.nextafter(0.28, 1)}),
-              SCENE.with_(motion=PulseMotion("one-sine", 1.0, 2.0)), SCENE.with_(start=Start(tilt=0.1)),
-              SCENE.with_(bearings=None), SCENE.with_(motion=SampledMotion(0.1, [0.0, 1.0]))]
+    others = [
+        SCENE.with_(duration=2.0),
+        SCENE.with_(block={"slenderness": math.nextafter(0.28, 1)}),
+        SCENE.with_(motion=PulseMotion("one-sine", 1.0, 2.0)),
+        SCENE.with_(start=Start(tilt=0.1)),
+        SCENE.with_(bearings=None),
+        SCENE.with_(motion=SampledMotion(0.1, [0.0, 1.0])),
+    ]
     assert len({scene.digest() for scene in [SCENE, *others]}) == 7
 
 
-@pytest.mark.parametrize("make, message", [
-    (lambda: Block(mass=-1, radius=1, slenderness=0.2), "greater than 0"),
-    (lambda: Block(mass=1, radius=1, slenderness=math.pi / 2), "less than"),
-    (lambda: Block(mass=1, radius=1, slenderness=0.2, corner_inertia=1.0), "less than a point mass would have"),
-    (lambda: Block(mass=1, radius=1, slenderness=0.2, restitution=1.1), "less than or equal to 1"),
-    (lambda: Bearings(ka=1.0, kb=1.0, alpha=2.0), "not above kb = 1 N/m"),
-    (lambda: Bearings(ka=2.0, kb=1.0, alpha=1.0), "greater than 1"),
-    (lambda: Bearings(ka=2.0, kb=1.0), "bearings.alpha: missing"),
-    (lambda: Bearings(ka=2.0, alpha=3.0), "bearings.kb: missing"),
-    (lambda: Bearings(ka=2.0, kb=1.0, alpha=2.0, delta_k=1.0), "bearings.delta_k = 1.0: not below ka - kb"),
-    (lambda: Scene(block=BLOCK, duration=1.0, bearings=SCENE.bearings), "bearings: need a base to carry"),
-    (lambda: Scene(block=BLOCK, duration=1.0, start=Start(base_velocity=1.0)),
-     "start.base_velocity = 1.0: needs a base"),
-    (lambda: Scene(block=BLOCK, duration=math.nan), "finite number"),
-    (lambda: Scene(block=BLOCK, duration=1.0, motion="quake"), "motion"),
-])
+@pytest.mark.parametrize(
+    "make, message",
+    [
+        (lambda: Block(mass=-1, radius=1, slenderness=0.2), "greater than 0"),
+        (lambda: Block(mass=1, radius=1, slenderness=math.pi / 2), "less than"),
+        (lambda: Block(mass=1, radius=1, slenderness=0.2, corner_inertia=1.0), "less than a point mass would have"),
+        (lambda: Block(mass=1, radius=1, slenderness=0.2, restitution=1.1), "less than or equal to 1"),
+        (lambda: Bearings(ka=1.0, kb=1.0, alpha=2.0), "not above kb = 1 N/m"),
+        (lambda: Bearings(ka=2.0, kb=1.0, alpha=1.0), "greater than 1"),
+        (lambda: Bearings(ka=2.0, kb=1.0), "bearings.alpha: missing"),
+        (lambda: Bearings(ka=2.0, alpha=3.0), "bearings.kb: missing"),
+        (lambda: Bearings(ka=2.0, kb=1.0, alpha=2.0, delta_k=1.0), "bearings.delta_k = 1.0: not below ka - kb"),
+        (lambda: Scene(block=BLOCK, duration=1.0, bearings=SCENE.bearings), "bearings: need a base to carry"),
+        (
+            lambda: Scene(block=BLOCK, duration=1.0, start=Start(base_velocity=1.0)),
+            "start.base_velocity = 1.0: needs a base",
+        ),
+        (lambda: Scene(block=BLOCK, duration=math.nan), "finite number"),
+        (lambda: Scene(block=BLOCK, duration=1.0, motion="quake"), "motion"),
+    ],
+)
 def test_refusals(make, message):
     with pytest.raises(ValidationError) as caught:
         make()

@@ -48,8 +48,9 @@ def test_full_file(tmp_path):
     assert (scene.name, scene.gravity, scene.duration) == ("everything", 10.0, 20.0)
     assert scene.block == Block(mass=3172.05, radius=1.0884, slenderness=0.28, corner_inertia=5010.2, restitution=0.9)
     assert scene.base == Base(mass=212.0)
-    assert scene.bearings == Bearings(law="bouc-wen", count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, delta_k=1e-18,
-                                      damping=5.0)
+    assert scene.bearings == Bearings(
+        law="bouc-wen", count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, delta_k=1e-18, damping=5.0
+    )
     assert scene.motion == PulseMotion("one-cosine", -4.0, 3.0, 0.5)
     assert scene.start == Start(tilt=0.1, tilt_rate=0.2, base_displacement=0.3, base_velocity=0.4)
 
@@ -63,8 +64,9 @@ def test_least_file(tmp_path):
 def test_record_is_looked_up_beside_the_scene_file(tmp_path, monkeypatch):
     (tmp_path / "records").mkdir()
     (tmp_path / "records" / "r.txt").write_text("0 1\n0.5 2\n")
-    path = write_scene(tmp_path, SCENE.replace('synthetic = "duzce-like"',
-                                               'record = "records/r.txt"\nunits = "cm/s2"\nscale = 3'))
+    path = write_scene(
+        tmp_path, SCENE.replace('synthetic = "duzce-like"', 'record = "records/r.txt"\nunits = "cm/s2"\nscale = 3')
+    )
     monkeypatch.chdir("/")
     assert load_scene(path).motion.samples.tolist() == pytest.approx([0.03, 0.06])
 
@@ -112,9 +114,11 @@ def test_the_file_before_any_change_is_good(tmp_path):
 def test_no_such_scene():
     with pytest.raises(SceneError) as caught:
         load_scene("no-such-scene")
-    assert str(caught.value) == ("no-such-scene: scene: cannot be read (No such file or directory); give a scene file "
-                                 "or one of caryatid-isolated, caryatid-rigid, free-rocking-isolated, "
-                                 "free-rocking-rigid")
+    assert str(caught.value) == (
+        "no-such-scene: scene: cannot be read (No such file or directory); give a scene file "
+        "or one of caryatid-isolated, caryatid-rigid, free-rocking-isolated, "
+        "free-rocking-rigid"
+    )
 
 
 def test_folder(tmp_path):

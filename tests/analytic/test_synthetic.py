@@ -69,13 +69,15 @@ def test_pulse_acceleration_is_the_derivative_of_the_velocity_pulse(phase):
 
     def pulse(t):
         bell = 0.5 * speed * (1 + np.cos(2 * math.pi * frequency * t / cycles))
-        return np.where(np.abs(t) <= cycles / (2 * frequency),
-                        bell * np.cos(2 * math.pi * frequency * t + phase), 0.0)
+        return np.where(np.abs(t) <= cycles / (2 * frequency), bell * np.cos(2 * math.pi * frequency * t + phase), 0.0)
 
     t = np.linspace(-2, 2, 41)
     step = 1e-5
-    np.testing.assert_allclose(pulse_acceleration(t, speed, frequency, cycles, phase),
-                               (pulse(t + step) - pulse(t - step)) / (2 * step), atol=1e-8)
+    np.testing.assert_allclose(
+        pulse_acceleration(t, speed, frequency, cycles, phase),
+        (pulse(t + step) - pulse(t - step)) / (2 * step),
+        atol=1e-8,
+    )
 
 
 def test_the_papers_three_outcomes():
@@ -86,19 +88,23 @@ def test_the_papers_three_outcomes():
     assert 0.15 < isolated.peak_base_displacement < 0.30
 
 
-@pytest.mark.parametrize("changes", [{"slenderness": 0.26}, {"slenderness": 0.29}, {"restitution": 0.87},
-                                     {"restitution": 0.90}])
+@pytest.mark.parametrize(
+    "changes", [{"slenderness": 0.26}, {"slenderness": 0.29}, {"restitution": 0.87}, {"restitution": 0.90}]
+)
 def test_overturning_is_no_accident_of_the_last_digit(changes):
     scene = load_scene("caryatid-rigid").with_(block=changes)
     assert simulate(scene, history=False).outcome == "overturns"
 
 
-@pytest.mark.parametrize("arguments, message", [
-    ({"style": "kobe-like"}, "motion.synthetic = 'kobe-like': not a known synthetic motion; choose duzce-like"),
-    ({"seed": -1}, "motion.seed = -1: not a whole number from 0 on; give an integer seed"),
-    ({"seed": 1.5}, "motion.seed = 1.5"),
-    ({"seed": True}, "motion.seed = True"),
-])
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        ({"style": "kobe-like"}, "motion.synthetic = 'kobe-like': not a known synthetic motion; choose duzce-like"),
+        ({"seed": -1}, "motion.seed = -1: not a whole number from 0 on; give an integer seed"),
+        ({"seed": 1.5}, "motion.seed = 1.5"),
+        ({"seed": True}, "motion.seed = True"),
+    ],
+)
 def test_bad_arguments(arguments, message):
     with pytest.raises(SceneError) as caught:
         synthetic_motion(**arguments)

@@ -23,8 +23,10 @@ def order(steps, errors):
 def test_flight_is_first_order():
     # up to the first impact of problem A: semi-implicit Euler alone
     exact = closed_form.free_rocking_tilt(2.60, 0.25, 1 - 1.5 * math.sin(0.25) ** 2, 0.225, 1.0)
-    errors = [abs(simulate_time_stepping(problem_a(1.0), step=h, history=False).end.tilt - exact)
-              for h in 1.0 / np.array([100, 200, 400, 800])]
+    errors = [
+        abs(simulate_time_stepping(problem_a(1.0), step=h, history=False).end.tilt - exact)
+        for h in 1.0 / np.array([100, 200, 400, 800])
+    ]
     assert order(1.0 / np.array([100, 200, 400, 800]), errors) == pytest.approx(1.0, abs=0.05)
 
 
@@ -43,8 +45,7 @@ def test_impacts_are_late_by_less_than_a_step_and_first_order_on_average():
 def test_error_does_not_fall_monotonically_with_the_step():
     exact = 0.01588089793859602683756374  # problem A at 7 s
     steps = 0.004 / 1.25 ** np.arange(16)
-    errors = [abs(abs(simulate_time_stepping(problem_a(7.0), step=h, history=False).end.tilt) - exact)
-              for h in steps]
+    errors = [abs(abs(simulate_time_stepping(problem_a(7.0), step=h, history=False).end.tilt) - exact) for h in steps]
     assert order(steps, errors) > 0.5
     assert (np.diff(errors) > 0).any()
 
@@ -84,9 +85,14 @@ def test_rest_and_uplift_again():
 
 @pytest.mark.parametrize("law", NAMES)
 def test_isolated_rocking_tends_to_the_twin(law):
-    scene = Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=0.15), base=Base(mass=212.0),
-                  bearings=bearings_of(law, count=4, damping=300.0),
-                  motion=PulseMotion("one-sine", 3.0, 4.0), duration=1.4, start=Start(base_displacement=0.02))
+    scene = Scene(
+        block=Block(mass=3172.05, radius=1.0884, slenderness=0.15),
+        base=Base(mass=212.0),
+        bearings=bearings_of(law, count=4, damping=300.0),
+        motion=PulseMotion("one-sine", 3.0, 4.0),
+        duration=1.4,
+        start=Start(base_displacement=0.02),
+    )
     twin = simulate_twin(scene, rtol=1e-9)
     assert twin.outcome == "rocks"
     steps = np.array([1e-3, 5e-4, 2.5e-4, 1.25e-4]) / 2

@@ -27,9 +27,10 @@ def count_to(run, rate):
     return next(n for n, impact in enumerate(run.impacts, 1) if abs(impact.rate_after) < rate)
 
 
-@pytest.mark.parametrize(("method", "rtol", "tolerance"),
-                         [("DOP853", 1e-12, 2e-11), ("RK45", 1e-10, 5e-9), ("LSODA", 1e-11, 2e-8),
-                          ("Radau", 1e-8, 5e-8)])
+@pytest.mark.parametrize(
+    ("method", "rtol", "tolerance"),
+    [("DOP853", 1e-12, 2e-11), ("RK45", 1e-10, 5e-9), ("LSODA", 1e-11, 2e-8), ("Radau", 1e-8, 5e-8)],
+)
 def test_problem_a(method, rtol, tolerance):
     run = simulate_twin(problem_a(), method=method, rtol=rtol, history=False, energy=False)
     exact = closed_form.free_rocking(P, GAMMA, HOUSNER, 0.9 * GAMMA, 10)
@@ -79,22 +80,35 @@ def overturning_by_one_sine(ratio, frequency, slenderness):
     return run.outcome == "overturns", run.impact_count
 
 
-@pytest.mark.parametrize(("table", "slenderness", "frequency"), [(NONLINEAR, GAMMA, 2), (NONLINEAR, GAMMA, 4),
-                                                                 (LINEAR, 1e-4, 3)])
+@pytest.mark.parametrize(
+    ("table", "slenderness", "frequency"), [(NONLINEAR, GAMMA, 2), (NONLINEAR, GAMMA, 4), (LINEAR, 1e-4, 3)]
+)
 def test_overturning_boundaries(table, slenderness, frequency):
     # the linear table is the limit of a slender block; overturned after at most one impact, or safe, at +-2e-5
     into, out, again = table[frequency]
     margin = 2e-5
-    for ratio, expected in ((into - margin, False), (into + margin, True), (out - margin, True), (out + margin, False),
-                            (again - margin, False), (again + margin, True)):
+    for ratio, expected in (
+        (into - margin, False),
+        (into + margin, True),
+        (out - margin, True),
+        (out + margin, False),
+        (again - margin, False),
+        (again + margin, True),
+    ):
         assert overturning_by_one_sine(ratio, frequency, slenderness)[0] is expected, ratio
     assert overturning_by_one_sine(into + margin, frequency, slenderness)[1] == 1
     assert overturning_by_one_sine(again + margin, frequency, slenderness)[1] == 0
 
 
 def test_mirror():
-    scene = Scene(block=SLENDER, base=Base(mass=212.0), bearings=LRB, motion=PulseMotion("ricker", 2.5, 6.0),
-                  duration=9.0, start=Start(base_displacement=0.01, base_velocity=-0.1))
+    scene = Scene(
+        block=SLENDER,
+        base=Base(mass=212.0),
+        bearings=LRB,
+        motion=PulseMotion("ricker", 2.5, 6.0),
+        duration=9.0,
+        start=Start(base_displacement=0.01, base_velocity=-0.1),
+    )
     mirrored = scene.with_(motion=scene.motion.scaled(-1.0), start=Start(base_displacement=-0.01, base_velocity=0.1))
     one, other = simulate_twin(scene), simulate_twin(mirrored)
     assert one.outcome == "rocks" and one.impact_count > 3
@@ -113,8 +127,9 @@ def momentum_before_and_after(scene, impact):
 @pytest.mark.parametrize("law", NAMES)
 def test_momentum_and_energy_of_isolated_rocking(law):
     bearings = bearings_of(law, count=4, damping=200.0)
-    scene = Scene(block=SLENDER, base=Base(mass=212.0), bearings=bearings, motion=PulseMotion("one-sine", 1.2, 4.0),
-                  duration=6.0)
+    scene = Scene(
+        block=SLENDER, base=Base(mass=212.0), bearings=bearings, motion=PulseMotion("one-sine", 1.2, 4.0), duration=6.0
+    )
     run = simulate_twin(scene, rtol=1e-11)
     assert run.outcome == "rocks" and run.impact_count > 10
     for impact in run.impacts:
@@ -137,16 +152,18 @@ def test_ledger_of_problem_a_is_the_energy_released():
 def test_heavy_base_tends_to_rigid_ground():
     scene = Scene(block=CARYATID, start=Start(tilt=0.2), duration=3.0)
     rigid = simulate_twin(scene, rtol=1e-12).end.tilt
-    errors = [abs(simulate_twin(scene.with_(base=Base(mass=mass)), rtol=1e-12).end.tilt - rigid)
-              for mass in (1e7, 1e8, 1e9)]
+    errors = [
+        abs(simulate_twin(scene.with_(base=Base(mass=mass)), rtol=1e-12).end.tilt - rigid) for mass in (1e7, 1e8, 1e9)
+    ]
     assert np.log10(errors[0] / errors[1]) == pytest.approx(1, abs=0.05)
     assert np.log10(errors[1] / errors[2]) == pytest.approx(1, abs=0.05)
 
 
 def test_stocky_block_on_a_light_base_lands_flat():
     # e_phi < 0 is clipped: the block stays, the momentum goes to the base
-    scene = Scene(block=Block(mass=1000.0, radius=1.0, slenderness=0.7), base=Base(mass=1.0), start=Start(tilt=0.3),
-                  duration=5.0)
+    scene = Scene(
+        block=Block(mass=1000.0, radius=1.0, slenderness=0.7), base=Base(mass=1.0), start=Start(tilt=0.3), duration=5.0
+    )
     run = simulate_twin(scene)
     assert run.impact_count == 1 and run.impacts[0].rate_after == 0
     assert run.rests == (run.impacts[0].time,)
@@ -189,8 +206,9 @@ def test_uplift_is_third_order():
 
 def test_rest_limit_is_the_same_whenever_impacts_are_declared_accumulated():
     # under a bearing force the two corners are pressed down unequally
-    scene = Scene(block=SLENDER, base=Base(mass=212.0), bearings=LRB, duration=4.0,
-                  start=Start(tilt=0.02, base_displacement=0.1))
+    scene = Scene(
+        block=SLENDER, base=Base(mass=212.0), bearings=LRB, duration=4.0, start=Start(tilt=0.02, base_displacement=0.1)
+    )
     limits = [simulate_twin(scene, rtol=1e-12, rest_rate=rate).rests[0] for rate in (1e-5, 1e-7, 1e-9)]
     assert abs(limits[1] - limits[2]) < 1e-9
     assert abs(limits[0] - limits[2]) < 1e-6
@@ -253,8 +271,9 @@ def test_settings_are_checked():
 
 
 def test_segments_cover_the_run_and_equal_the_motion():
-    pulses = [PulseMotion(shape, 2.0, 3.0, 0.5) for shape in
-              ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")]
+    pulses = [
+        PulseMotion(shape, 2.0, 3.0, 0.5) for shape in ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
+    ]
     record = SampledMotion(0.1, np.random.default_rng(1).normal(size=30))
     for motion in (*pulses, record, None):
         pieces = segments(motion, 20.0)

@@ -61,15 +61,23 @@ def cases(keep):
 
 
 every_variant = pytest.mark.parametrize("engine, variant", list(cases(lambda *case: True)))
-default_variant = pytest.mark.parametrize("engine, variant", list(cases(
-    lambda name, variant, default: variant == default)))
-accurate_variant = pytest.mark.parametrize("engine, variant", list(cases(
-    lambda name, variant, default: variant == default or (name, variant) in ALSO_ACCURATE)))
+default_variant = pytest.mark.parametrize(
+    "engine, variant", list(cases(lambda name, variant, default: variant == default))
+)
+accurate_variant = pytest.mark.parametrize(
+    "engine, variant",
+    list(cases(lambda name, variant, default: variant == default or (name, variant) in ALSO_ACCURATE)),
+)
 
 
 def scene(slenderness, base=None, duration=2.0, **parts):
-    return Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=slenderness), name="contract",
-                 base=Base(mass=base) if base else None, duration=duration, **parts)
+    return Scene(
+        block=Block(mass=3172.05, radius=1.0884, slenderness=slenderness),
+        name="contract",
+        base=Base(mass=base) if base else None,
+        duration=duration,
+        **parts,
+    )
 
 
 def simulate(engine, variant, given, **settings):
@@ -87,6 +95,7 @@ def shaking(peak, duration=6.0):
 
 
 # What an engine's record holds, and what it refuses.
+
 
 @default_variant
 def test_record_holds_what_the_contract_names(engine, variant):
@@ -154,6 +163,7 @@ def test_given_restitution_is_refused_or_kept_but_never_ignored(engine, variant)
 
 
 # What the response holds.
+
 
 @every_variant
 def test_response_says_what_ran_and_what_it_cost(engine, variant):
@@ -238,6 +248,7 @@ def test_hang_ends_at_the_time_limit(engine, variant):
 
 # Repeatable and symmetric.
 
+
 def in_every_variant(engine, given, settings):
     """What the guarded process runs."""
     return [simulate(engine, variant, given) for variant in get_engine(engine).variants]
@@ -252,8 +263,9 @@ def test_runs_repeat_bit_for_bit_also_in_other_processes(engine, variant):
     for repeated in (second, *elsewhere):
         for here, there in zip(first, repeated, strict=True):
             assert (here.variant, here.end, here.impacts) == (there.variant, there.end, there.impacts)
-            assert all(np.array_equal(getattr(here.history, name), getattr(there.history, name))
-                       for name in History.COLUMNS)
+            assert all(
+                np.array_equal(getattr(here.history, name), getattr(there.history, name)) for name in History.COLUMNS
+            )
 
 
 # [rad] and [m]. Adaptive steps follow round-off: a hundred times their local tolerance.
@@ -263,8 +275,10 @@ MIRROR, MIRROR_DEFAULT = {("exudyn", "compliant-corners"): 1e-5}, 1e-6
 @every_variant
 @pytest.mark.parametrize("slenderness, tilt, duration", [(0.3, 0.15, 1.5), (0.2, 0.12, 1.3)])
 def test_mirrored_start_gives_the_mirrored_response(engine, variant, slenderness, tilt, duration):
-    left, right = (simulate(engine, variant, scene(slenderness, 212.0, duration, start=Start(tilt=side * tilt)))
-                   for side in (1, -1))
+    left, right = (
+        simulate(engine, variant, scene(slenderness, 212.0, duration, start=Start(tilt=side * tilt)))
+        for side in (1, -1)
+    )
     bound = MIRROR.get((engine, variant), MIRROR_DEFAULT)
     assert left.outcome == right.outcome
     assert np.abs(left.history.tilt + right.history.tilt).max() < bound
@@ -274,6 +288,7 @@ def test_mirrored_start_gives_the_mirrored_response(engine, variant, slenderness
 
 
 # A block that stands; overturning.
+
 
 @every_variant
 @pytest.mark.parametrize("base", [None, 212.0])
@@ -343,9 +358,11 @@ def test_overturning_by_a_shock_stops_cleanly(engine, variant):
 
 # The bearings' law, and agreement with the analytic model.
 
+
 @every_variant
-@pytest.mark.parametrize("law, damping", [("algebraic", 0.0), ("bouc-wen", 0.0), ("bilinear", 0.0),
-                                          *((law, 500.0) for law in NAMES)])
+@pytest.mark.parametrize(
+    "law, damping", [("algebraic", 0.0), ("bouc-wen", 0.0), ("bilinear", 0.0), *((law, 500.0) for law in NAMES)]
+)
 def test_bearing_force_is_the_law_on_the_engines_own_path(engine, variant, law, damping):
     given = scene(0.15, 212.0, 2.0, bearings=bearings(law, damping), motion=PULSE)
     _, trace = get_engine(engine).traced(given, variant=variant)
@@ -400,21 +417,43 @@ def test_rocking_on_bearings_follows_the_exact_solution(engine, variant):
 @pytest.mark.parametrize("law", NAMES)
 @pytest.mark.parametrize("damping", [0.0, 500.0])
 def test_isolated_block_moves_as_the_exact_solution(engine, variant, law, damping):
-    given = scene(0.5, 212.0, 4.0, bearings=bearings(law, damping), motion=PulseMotion("one-sine", 2.0, 5.0),
-                  start=Start(base_displacement=0.02, base_velocity=-0.1))
+    given = scene(
+        0.5,
+        212.0,
+        4.0,
+        bearings=bearings(law, damping),
+        motion=PulseMotion("one-sine", 2.0, 5.0),
+        start=Start(base_displacement=0.02, base_velocity=-0.1),
+    )
     response, reference = simulate(engine, variant, given), exact(given)
     assert response.outcome == reference.outcome == "stands"
     assert response.peak_base_displacement == pytest.approx(reference.peak_base_displacement, rel=1e-4)
 
 
 # Error of the peak base displacement, relative; exudyn's is 1e-5 m.
-PEAK, PEAK_DEFAULT = {("exudyn", "compliant-corners"): 1e-5 / 0.212190, ("exudyn", "switched-joints"): 1e-5 / 0.212190,
-                      ("mujoco", "impact-aware"): 1e-5}, 1e-4
+PEAK, PEAK_DEFAULT = (
+    {
+        ("exudyn", "compliant-corners"): 1e-5 / 0.212190,
+        ("exudyn", "switched-joints"): 1e-5 / 0.212190,
+        ("mujoco", "impact-aware"): 1e-5,
+    },
+    1e-4,
+)
 
 
 @accurate_variant
-@pytest.mark.parametrize("motion", ["synthetic", pytest.param("Duzce", marks=pytest.mark.skipif(
-    not RECORD.exists(), reason="the Duzce record is not here: its terms do not allow shipping it"))])
+@pytest.mark.parametrize(
+    "motion",
+    [
+        "synthetic",
+        pytest.param(
+            "Duzce",
+            marks=pytest.mark.skipif(
+                not RECORD.exists(), reason="the Duzce record is not here: its terms do not allow shipping it"
+            ),
+        ),
+    ],
+)
 def test_isolated_caryatid(engine, variant, motion):
     given = load_scene("caryatid-isolated").with_(duration=12.0)
     bound = PEAK.get((engine, variant), PEAK_DEFAULT)
@@ -439,6 +478,7 @@ def test_extreme_masses_and_slenderness(engine, variant, mass, slenderness):
 
 
 # Engines that are absent or broken.
+
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_all_else_works_where_an_engine_is_not_installed(engine):

@@ -20,9 +20,11 @@ def damped(damping, base=0.067, **changes):
 
 
 @pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("scene", [damped(1e6), damped(1e5), damped(1e4), damped(0.0, ka=1e9, kb=1e8),
-                                   damped(1e6, base=212.0, ka=1e9, kb=1e8)],
-                         ids=["1e6 N s/m", "1e5 N s/m", "1e4 N s/m", "1e9 N/m", "both"])
+@pytest.mark.parametrize(
+    "scene",
+    [damped(1e6), damped(1e5), damped(1e4), damped(0.0, ka=1e9, kb=1e8), damped(1e6, base=212.0, ka=1e9, kb=1e8)],
+    ids=["1e6 N s/m", "1e5 N s/m", "1e4 N s/m", "1e9 N/m", "both"],
+)
 @pytest.mark.parametrize("settle", [0.0, 6e-3])
 def test_impacts_on_stiff_and_damped_bearings_are_carried_stably(scene, settle):
     """A base of 67 g: its velocity settles within 1e-4 s at 1e6 N s/m, and grows as fast backward in time."""
@@ -42,7 +44,7 @@ def test_a_carry_takes_substeps_as_the_bearing_needs_them():
     scene = damped(1e6, base=212.0)
     reference = simulate(scene, output_step=1e-5)
     last = np.searchsorted(reference.history.time, reference.impacts[0].time) - 1
-    trace = Trace(*(getattr(reference.history, name)[:last + 1] for name in Trace.COLUMNS), EDGE)
+    trace = Trace(*(getattr(reference.history, name)[: last + 1] for name in Trace.COLUMNS), EDGE)
     near = trace.upto(len(trace.time) - 200)  # 2 ms before the impact
     time, rate, _ = to_contact(scene, near, find_swings(near), 1)
     assert time[0] == pytest.approx(reference.impacts[0].time, abs=1e-6)
@@ -135,8 +137,13 @@ def test_a_stocky_block_that_lands_flat_misses_no_impact():
 
 
 def test_a_bearing_without_a_base_velocity_limit_is_linear_too():
-    scene = Scene(block=block(0.25), base=BASE, duration=2.0, start=Start(tilt=0.12),
-                  bearings=Bearings(law="linear", count=4, ka=1e8, damping=1e5))
+    scene = Scene(
+        block=block(0.25),
+        base=BASE,
+        duration=2.0,
+        start=Start(tilt=0.12),
+        bearings=Bearings(law="linear", count=4, ka=1e8, damping=1e5),
+    )
     trace, reference = sampled(scene, 2e-4, step=1e-4)
     found = seen(scene, trace)
     assert found.outcome == reference.outcome

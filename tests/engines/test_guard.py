@@ -25,6 +25,7 @@ def kill(engine, scene, settings):
 
 def segfault(engine, scene, settings):
     import faulthandler
+
     faulthandler._sigsegv()
 
 
@@ -63,17 +64,20 @@ def work(engine, scene, settings):
     return simulate(scene)
 
 
-@pytest.mark.parametrize("run, limit, reason, evidence", [
-    (hang, 4.0, "did not end in time", "time limit of 4 s"),
-    (hang, 1.0, "did not end in time", "in hang"),  # where it hung
-    (kill, 30.0, "process died", "SIGKILL"),
-    (speak, 30.0, "process died", "assertion failed in contact"),
-    (unsendable, 30.0, "raised an error", "pickle"),
-    (interrupted, 30.0, "raised an error", "KeyboardInterrupt"),
-    (segfault, 30.0, "process died", "SIGSEGV"),
-    (leave, 30.0, "process died", "exit code 3"),
-    (err, 30.0, "raised an error", "RuntimeError: Newton did not converge at 0.25 s"),
-])
+@pytest.mark.parametrize(
+    "run, limit, reason, evidence",
+    [
+        (hang, 4.0, "did not end in time", "time limit of 4 s"),
+        (hang, 1.0, "did not end in time", "in hang"),  # where it hung
+        (kill, 30.0, "process died", "SIGKILL"),
+        (speak, 30.0, "process died", "assertion failed in contact"),
+        (unsendable, 30.0, "raised an error", "pickle"),
+        (interrupted, 30.0, "raised an error", "KeyboardInterrupt"),
+        (segfault, 30.0, "process died", "SIGSEGV"),
+        (leave, 30.0, "process died", "exit code 3"),
+        (err, 30.0, "raised an error", "RuntimeError: Newton did not converge at 0.25 s"),
+    ],
+)
 def test_a_run_that_ends_badly_is_a_failed_response_with_evidence(run, limit, reason, evidence):
     began = time.monotonic()
     response = guarded(run, "fake", SCENE, SETTINGS, limit)

@@ -13,13 +13,15 @@ from engines import get_engine
 from engines.momentum import IMPULSE_LIMIT, bearing_impulse, check_impulse, impulse_error, missing_impulse
 
 ROCKING = SCENES["isolated"].with_(duration=1.5)
-DRIVEN = ROCKING.with_(block={"slenderness": 0.15}, start={"tilt": 0.0}, motion=PulseMotion("one-sine", 3.0, 8.0),
-                       duration=2.5)
+DRIVEN = ROCKING.with_(
+    block={"slenderness": 0.15}, start={"tilt": 0.0}, motion=PulseMotion("one-sine", 3.0, 8.0), duration=2.5
+)
 ENGINES = {"exudyn": "compliant-corners", "pybullet": "impact-aware", "mujoco": "impact-aware"}
 
 
-@pytest.mark.parametrize("scene", [ROCKING, DRIVEN, ROCKING.with_(bearings={"damping": 2e3})],
-                         ids=["free", "driven", "damped"])
+@pytest.mark.parametrize(
+    "scene", [ROCKING, DRIVEN, ROCKING.with_(bearings={"damping": 2e3})], ids=["free", "driven", "damped"]
+)
 @pytest.mark.parametrize("law", NAMES)
 def test_an_exact_motion_keeps_the_sum_over_its_impacts(scene, law):
     scene = scene.with_(bearings=to_law(law))
@@ -51,8 +53,9 @@ def test_coarse_steps_stay_well_below_the_limit(name, seed):
 def test_the_motion_of_another_force_fails(factor):
     """The scene asks for one law; the motion is the exact one of `factor` times its force."""
     bearings = ROCKING.bearings
-    other = ROCKING.with_(bearings={"ka": factor * bearings.ka, "kb": factor * bearings.kb} if factor
-                          else {"law": "linear", "ka": 1e-6})
+    other = ROCKING.with_(
+        bearings={"ka": factor * bearings.ka, "kb": factor * bearings.kb} if factor else {"law": "linear", "ka": 1e-6}
+    )
     trace, _ = sampled(other, 5e-4)
     response = seen(ROCKING, trace)
     assert response.outcome == "failed" and "bearings' force" in response.failure.reason
@@ -69,6 +72,7 @@ def test_a_bearing_too_soft_to_matter_is_not_asked_for():
 
 # In the engines.
 
+
 def force_in_exudyn(monkeypatch, change):
     """change(displacement, velocity, offset, step, force) in place of the symbolic force."""
     from engines.exudyn import scene as model
@@ -76,8 +80,11 @@ def force_in_exudyn(monkeypatch, change):
     force = model.Bearing.force
 
     def changed(self, displacement, velocity, offset):
-        return change(lambda shift, gain: [gain * part for part in force(
-            self, [displacement[0] - shift * velocity[0]], velocity, offset)])
+        return change(
+            lambda shift, gain: [
+                gain * part for part in force(self, [displacement[0] - shift * velocity[0]], velocity, offset)
+            ]
+        )
 
     monkeypatch.setattr(model.Bearing, "force", changed)
 
@@ -154,8 +161,9 @@ def test_the_impulse_of_the_paper_bearing_is_that_of_its_history():
     reference = simulate(DRIVEN, output_step=1e-4)
     trace, _ = sampled(DRIVEN, 2e-3)
     history = reference.history
-    exact = np.concatenate(([0.0], np.cumsum(0.5 * (history.bearing_force[1:] + history.bearing_force[:-1])
-                                             * np.diff(history.time))))
+    exact = np.concatenate(
+        ([0.0], np.cumsum(0.5 * (history.bearing_force[1:] + history.bearing_force[:-1]) * np.diff(history.time)))
+    )
     impulse = np.interp(trace.time, history.time, exact)
     assert BearingLaw.of(DRIVEN.bearings).count == 4
     np.testing.assert_allclose(bearing_impulse(DRIVEN, trace), impulse, atol=2e-4 * np.ptp(impulse))

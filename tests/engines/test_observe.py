@@ -29,13 +29,19 @@ def strong(response, share=0.05):
 
 # Errors of (time, rate before, rate after, jump). With bearings the worst is a step in which the base turns round
 # before the impact: that turn is not followed (3e-4 rad/s where it falls into a step of 25 ms; 1e-8 elsewhere).
-@pytest.mark.parametrize("name, mean_step, tolerance", [
-    ("rigid ground", 1e-3, 1e-9), ("rigid ground", 8e-3, 1e-9),
-    ("sliding base", 1e-3, 1e-9), ("sliding base", 4e-3, 1e-9),
-    ("isolated", 5e-4, 1e-9), ("isolated", 4e-3, 4e-4),
-    ("isolated, shaken", 5e-4, 1e-6),
-    ("rigid ground, shaken", 5e-4, 1e-6),
-])
+@pytest.mark.parametrize(
+    "name, mean_step, tolerance",
+    [
+        ("rigid ground", 1e-3, 1e-9),
+        ("rigid ground", 8e-3, 1e-9),
+        ("sliding base", 1e-3, 1e-9),
+        ("sliding base", 4e-3, 1e-9),
+        ("isolated", 5e-4, 1e-9),
+        ("isolated", 4e-3, 4e-4),
+        ("isolated, shaken", 5e-4, 1e-6),
+        ("rigid ground, shaken", 5e-4, 1e-6),
+    ],
+)
 def test_impacts_do_not_depend_on_the_steps(name, mean_step, tolerance):
     scene = SCENES[name]
     trace, reference = sampled(scene, mean_step)
@@ -60,28 +66,44 @@ def test_rates_smeared_around_the_impact_do_not_change_what_is_found():
 def test_ringing_after_an_impact_is_waited_out():
     scene = SCENES["isolated"]
     trace, reference = sampled(scene, 5e-4)
-    after = trace.time - np.max(np.where([[i.time] < trace.time for i in reference.impacts],
-                                         [[i.time] for i in reference.impacts], -1.0), axis=0)
+    after = trace.time - np.max(
+        np.where([[i.time] < trace.time for i in reference.impacts], [[i.time] for i in reference.impacts], -1.0),
+        axis=0,
+    )
     ringing = np.where(after < 4e-3, 1e-2 * np.sin(4000 * trace.time), 0.0)
     rung = dataclasses.replace(trace, tilt_rate=trace.tilt_rate + ringing)
     settled = dataclasses.replace(rung, settle=5e-3)
     wanted = np.array([i.rate_after for i in reference.impacts[:3]])
-    errors = [np.abs(np.array([i.rate_after for i in seen(scene, one).impacts[:3]]) - wanted).max()
-              for one in (rung, settled)]
+    errors = [
+        np.abs(np.array([i.rate_after for i in seen(scene, one).impacts[:3]]) - wanted).max() for one in (rung, settled)
+    ]
     assert errors[0] > 1e-4 and errors[1] < 1e-5
 
 
 @pytest.mark.parametrize("name", ["rigid ground", "isolated, shaken"])
 def test_mirror(name):
     scene = SCENES[name]
-    mirrored = scene.with_(motion=scene.motion.scaled(-1.0) if scene.motion else None,
-                           start={"tilt": -scene.start.tilt})
+    mirrored = scene.with_(
+        motion=scene.motion.scaled(-1.0) if scene.motion else None, start={"tilt": -scene.start.tilt}
+    )
     here, there = seen(scene, sampled(scene, 1e-3)[0]), seen(mirrored, sampled(scene, 1e-3, side=-1)[0])
     assert there.impacts == tuple(
-        dataclasses.replace(i, rate_before=-i.rate_before, rate_after=-i.rate_after,
-                            base_velocity_jump=-i.base_velocity_jump) for i in here.impacts)
-    for field in ("outcome", "uplifts", "rests", "peak_tilt", "peak_base_displacement", "friction_demand",
-                  "min_normal_ratio", "peak_base_acceleration", "unstable_time"):
+        dataclasses.replace(
+            i, rate_before=-i.rate_before, rate_after=-i.rate_after, base_velocity_jump=-i.base_velocity_jump
+        )
+        for i in here.impacts
+    )
+    for field in (
+        "outcome",
+        "uplifts",
+        "rests",
+        "peak_tilt",
+        "peak_base_displacement",
+        "friction_demand",
+        "min_normal_ratio",
+        "peak_base_acceleration",
+        "unstable_time",
+    ):
         assert getattr(here, field) == getattr(there, field), field
 
 
@@ -123,15 +145,17 @@ def test_a_stocky_block_lands_flat():
     trace, reference = sampled(scene, 2e-3)
     response = seen(scene, trace)
     assert len(response.impacts) == len(reference.impacts) == 1
-    np.testing.assert_allclose(dataclasses.astuple(response.impacts[0]),
-                               dataclasses.astuple(reference.impacts[0]), rtol=0, atol=1e-9)
+    np.testing.assert_allclose(
+        dataclasses.astuple(response.impacts[0]), dataclasses.astuple(reference.impacts[0]), rtol=0, atol=1e-9
+    )
     assert response.impacts[0].rate_after == 0.0
     assert response.rests == pytest.approx(reference.rests, abs=1e-9)
 
 
 def test_uplift_is_where_the_acceleration_crosses_its_threshold():
-    scene = Scene(block=block(0.25), duration=3.0,
-                  motion=PulseMotion("one-sine", 1.2 * 9.81 * math.tan(0.25), 5.2, start=0.5))
+    scene = Scene(
+        block=block(0.25), duration=3.0, motion=PulseMotion("one-sine", 1.2 * 9.81 * math.tan(0.25), 5.2, start=0.5)
+    )
     trace, reference = sampled(scene, 1e-3)
     assert seen(scene, trace).uplifts == pytest.approx(reference.uplifts, abs=1e-5)
     assert reference.uplifts == pytest.approx([0.5 + math.asin(1 / 1.2) / 5.2], abs=1e-9)
@@ -157,7 +181,7 @@ def test_overturning_time_of_a_run_stopped_at_1_5_rad(step):
     scene = overturning()
     reference = simulate(scene, output_step=step)
     last = np.searchsorted(reference.history.tilt, 1.5)
-    trace = Trace(*(getattr(reference.history, name)[:last + 1] for name in Trace.COLUMNS), EDGE)
+    trace = Trace(*(getattr(reference.history, name)[: last + 1] for name in Trace.COLUMNS), EDGE)
     response = seen(scene, trace, ended="overturned")
     assert response.outcome == "overturns"
     # At constant acceleration over the last 0.07 rad: omega_r^2 (0.025 s)^3/6 = 2e-5 s.
@@ -270,8 +294,9 @@ def thrown(spin=6.0):
     trace = Trace(time, 0.1 + spin * time, zero + spin, zero, zero, zero, EDGE)
     x, z, across, up = pivoting_centre(scene, trace)[0]
     fall = scene.gravity * time
-    return scene, dataclasses.replace(trace, centre=np.column_stack(
-        [x + across * time, z + up * time - fall * time / 2, zero + across, up - fall]))
+    return scene, dataclasses.replace(
+        trace, centre=np.column_stack([x + across * time, z + up * time - fall * time / 2, zero + across, up - fall])
+    )
 
 
 def test_free_flight_keeps_its_energy_where_the_centre_is_read():
@@ -293,8 +318,9 @@ def test_pivoting_centre_is_that_of_the_model(name):
     middle = np.diff(centre[:, :2], axis=0) / np.diff(trace.time)[:, None]
     flight = np.sign(trace.tilt[1:]) == np.sign(trace.tilt[:-1])  # an impact changes the velocity at once
     np.testing.assert_allclose(middle[flight], 0.5 * (centre[1:, 2:] + centre[:-1, 2:])[flight], atol=5e-3)
-    np.testing.assert_allclose(energy_balance(scene, dataclasses.replace(trace, centre=centre)),
-                               energy_balance(scene, trace))
+    np.testing.assert_allclose(
+        energy_balance(scene, dataclasses.replace(trace, centre=centre)), energy_balance(scene, trace)
+    )
 
 
 def test_a_block_off_its_place_fails():
@@ -344,10 +370,15 @@ def test_bearing_replay_is_exact_and_sees_a_lag():
     assert replay_bearing(SCENES["sliding base"], trace) == 0.0
 
 
-@pytest.mark.parametrize("changes, message", [
-    ({"tilt": np.zeros(3)}, "trace.tilt has shape"), ({"time": np.array([0.0, 1.0, 1.0, 2.0])}, "does not increase"),
-    ({"contact_tilt": 0.0}, "contact_tilt"), ({"centre": np.zeros((4, 3))}, "trace.centre"),
-])
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        ({"tilt": np.zeros(3)}, "trace.tilt has shape"),
+        ({"time": np.array([0.0, 1.0, 1.0, 2.0])}, "does not increase"),
+        ({"contact_tilt": 0.0}, "contact_tilt"),
+        ({"centre": np.zeros((4, 3))}, "trace.centre"),
+    ],
+)
 def test_a_trace_that_makes_no_sense_is_refused(changes, message):
     zero = np.zeros(4)
     good = Trace(np.arange(4.0), zero, zero, zero, zero, zero, EDGE)

@@ -44,8 +44,8 @@ def test_the_step_of_an_impact_gains_the_share_asked_for(accuracy, cruise):
         _, step, purpose, speed, _ = rows[k - 1]
         pull = abs(MODEL.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0])
         assert step * pull / speed == pytest.approx(accuracy, rel=0.02) and purpose == IMPACT
-        assert [row[2] for row in rows[k:k + SETTLING]] == [IMPACT] * SETTLING
-        assert {row[1] for row in rows[k:k + SETTLING]} == {step}
+        assert [row[2] for row in rows[k : k + SETTLING]] == [IMPACT] * SETTLING
+        assert {row[1] for row in rows[k : k + SETTLING]} == {step}
     for (_, step, *_), (_, following, *_) in zip(rows, rows[1:], strict=False):
         assert following <= GROWTH * step * (1 + 1e-12) and SMALLEST <= following <= LARGEST
     assert max(row[1] for row in rows) == LARGEST and rows[0][1] == 1e-2 * LARGEST

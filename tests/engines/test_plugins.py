@@ -18,8 +18,13 @@ BY = "declared as {} by the distribution {} 0.1: "
 def python(folder, *arguments):
     """The process that ran Python with `folder` among the places of packages."""
     path = os.pathsep.join([str(folder), *filter(None, [os.environ.get("PYTHONPATH")])])
-    return subprocess.run([sys.executable, *map(str, arguments)], capture_output=True, text=True, timeout=300,
-                          env={**os.environ, "PYTHONPATH": path})
+    return subprocess.run(
+        [sys.executable, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env={**os.environ, "PYTHONPATH": path},
+    )
 
 
 @pytest.fixture(scope="module")
@@ -74,8 +79,19 @@ if __name__ == "__main__":
 def test_the_commands_know_it(folder):
     listed = python(folder, "-m", "comparisons", "engines")
     assert listed.returncode == 0 and "crude (crude-engine 0.1)\n  --variant euler (default, best)" in listed.stdout
-    ran = python(folder, "-m", "comparisons", "run", "free-rocking-rigid", "--engine", "crude", "--set", "step=1e-3",
-                 "--json", "-")
+    ran = python(
+        folder,
+        "-m",
+        "comparisons",
+        "run",
+        "free-rocking-rigid",
+        "--engine",
+        "crude",
+        "--set",
+        "step=1e-3",
+        "--json",
+        "-",
+    )
     assert ran.returncode == 0, ran.stderr
     found = json.loads(ran.stdout)
     assert (found["engine"], found["outcome"], found["settings"]) == ("crude", "rocks", {"step": 1e-3})
@@ -101,10 +117,20 @@ BAD_ENTRIES = {
     "no engine": ("crude", "crude_engine", FAKE_ENGINE, "it is a module, no engines.contract.Engine", "crude"),
     "another name": ("rude", "crude_engine:ENGINE", FAKE_ENGINE, "it calls itself 'crude'", "rude"),
     "a name of ours": ("exudyn", "crude_engine:ENGINE", RENAMED, "that name is taken", "exudyn of crude-engine 0.1"),
-    "the model's": ("analytic", "crude_engine:ENGINE", changed('name="crude"', 'name="analytic"'), "that name is taken",
-                    "analytic of crude-engine 0.1"),
-    "a ladder without the default": ("crude", "crude_engine:ENGINE", changed("(2e-3, 5e-4)", "(2e-3,)"),
-                                     "it cannot be imported (ValueError: ladder = (0.002,): it lacks", "crude"),
+    "the model's": (
+        "analytic",
+        "crude_engine:ENGINE",
+        changed('name="crude"', 'name="analytic"'),
+        "that name is taken",
+        "analytic of crude-engine 0.1",
+    ),
+    "a ladder without the default": (
+        "crude",
+        "crude_engine:ENGINE",
+        changed("(2e-3, 5e-4)", "(2e-3,)"),
+        "it cannot be imported (ValueError: ladder = (0.002,): it lacks",
+        "crude",
+    ),
 }
 
 
@@ -131,15 +157,25 @@ ENGINE = Engine("crude", {package!r}, "pip install it", "#D55E00", "v", "crude_a
 """
 
 
-@pytest.mark.parametrize("adapter, words", [
-    ("import no_such_package", "its module crude_adapter cannot be imported (ModuleNotFoundError: "),
-    ("VARIANTS = {'euler': 1}", "crude_adapter.VARIANTS is no dict of engines.contract.Variant"),
-    ("from crude_engine import VARIANTS", "crude_adapter has no function versions and no run"),
-])
+@pytest.mark.parametrize(
+    "adapter, words",
+    [
+        ("import no_such_package", "its module crude_adapter cannot be imported (ModuleNotFoundError: "),
+        ("VARIANTS = {'euler': 1}", "crude_adapter.VARIANTS is no dict of engines.contract.Variant"),
+        ("from crude_engine import VARIANTS", "crude_adapter has no function versions and no run"),
+    ],
+)
 def test_a_broken_adapter_from_outside_costs_no_other_engine(monkeypatch, tmp_path, adapter, words):
-    monkeypatch.syspath_prepend(install(
-        tmp_path, "crude-engine", {"crude": "crude_record:ENGINE"}, crude_engine=FAKE_ENGINE,
-        crude_record=RECORD.format(package="math"), crude_adapter=adapter))
+    monkeypatch.syspath_prepend(
+        install(
+            tmp_path,
+            "crude-engine",
+            {"crude": "crude_record:ENGINE"},
+            crude_engine=FAKE_ENGINE,
+            crude_record=RECORD.format(package="math"),
+            crude_adapter=adapter,
+        )
+    )
     found, broken = find_engines(engines.BUILT_IN)
     assert broken == {}
     monkeypatch.setitem(engines.ENGINES, "crude", found["crude"])
@@ -150,8 +186,14 @@ def test_a_broken_adapter_from_outside_costs_no_other_engine(monkeypatch, tmp_pa
 
 
 def test_an_engine_from_outside_may_be_absent_like_any_other(monkeypatch, tmp_path):
-    monkeypatch.syspath_prepend(install(tmp_path, "crude-engine", {"crude": "crude_record:ENGINE"},
-                                        crude_record=RECORD.format(package="no_such_package")))
+    monkeypatch.syspath_prepend(
+        install(
+            tmp_path,
+            "crude-engine",
+            {"crude": "crude_record:ENGINE"},
+            crude_record=RECORD.format(package="no_such_package"),
+        )
+    )
     found, _ = find_engines(engines.BUILT_IN)
     monkeypatch.setitem(engines.ENGINES, "crude", found["crude"])
     with pytest.raises(EngineNotInstalled, match="'crude' needs the package no_such_package: pip install it"):

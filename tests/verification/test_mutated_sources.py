@@ -35,21 +35,38 @@ class Mutation:
 RANGE, CONTRACT = "tests/engines/exudyn/test_range.py", "tests/engines/test_contract.py"
 MUTATIONS = {
     "exudyn: a corner is drawn back to where it stood": Mutation(
-        "engines.exudyn.corners", "    return min(max(anchor, low), high)\n", "    return anchor\n",
-        f"{RANGE}::test_a_block_that_slid_stays_where_it_came_to_rest"),
+        "engines.exudyn.corners",
+        "    return min(max(anchor, low), high)\n",
+        "    return anchor\n",
+        f"{RANGE}::test_a_block_that_slid_stays_where_it_came_to_rest",
+    ),
     "exudyn: the start forgets that the corners give way": Mutation(
-        "engines.exudyn.scene", "lower = sink if tilt == 0 and rate == 0 else 0.0", "lower = 0.0",
-        f"{RANGE}::test_a_block_left_alone_does_not_sink"),
+        "engines.exudyn.scene",
+        "lower = sink if tilt == 0 and rate == 0 else 0.0",
+        "lower = 0.0",
+        f"{RANGE}::test_a_block_left_alone_does_not_sink",
+    ),
     "exudyn: exponents off by 2 %": Mutation(
-        "engines.exudyn.scene", "exu.symbolic.exp(a)", "exu.symbolic.exp(1.02 * a)",
-        f"{RANGE}::test_force_within_a_step_is_the_law_in_full"),
+        "engines.exudyn.scene",
+        "exu.symbolic.exp(a)",
+        "exu.symbolic.exp(1.02 * a)",
+        f"{RANGE}::test_force_within_a_step_is_the_law_in_full",
+    ),
     # For ever, within one call of exudyn, which makes a failed run of the limit's exception.
     "exudyn: the motion's first segment is never left": Mutation(
-        "engines.exudyn.ground", "            self.at += 1\n            self._enter()\n", "            self._enter()\n",
-        f"{CONTRACT}::test_isolated_caryatid[synthetic-exudyn-compliant-corners]", "'failed' == 'stands'"),
+        "engines.exudyn.ground",
+        "            self.at += 1\n            self._enter()\n",
+        "            self._enter()\n",
+        f"{CONTRACT}::test_isolated_caryatid[synthetic-exudyn-compliant-corners]",
+        "'failed' == 'stands'",
+    ),
     "twin: nobody counts its impacts": Mutation(
-        "analytic.twin", "if self.stalled > STALL_LIMIT or len(self.impacts) > IMPACT_LIMIT:", "if False:",
-        "tests/analytic/test_twin.py::test_restitution_of_one_fails_instead_of_bouncing_for_ever", "Timeout"),
+        "analytic.twin",
+        "if self.stalled > STALL_LIMIT or len(self.impacts) > IMPACT_LIMIT:",
+        "if False:",
+        "tests/analytic/test_twin.py::test_restitution_of_one_fails_instead_of_bouncing_for_ever",
+        "Timeout",
+    ),
 }
 
 PLUGIN = """
@@ -74,9 +91,29 @@ def run_mutated(folder, mutation):
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
     environment["PYTHONPATH"] = os.pathsep.join([str(folder), str(PROJECT)])
     done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-x", "-p", "mutation", "-p", "no:cacheprovider", "-o",
-         f"timeout={LIMIT}", "-o", f"faulthandler_timeout={2 * LIMIT}", mutation.test],
-        cwd=PROJECT, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=15 * LIMIT)
+        [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-q",
+            "-x",
+            "-p",
+            "mutation",
+            "-p",
+            "no:cacheprovider",
+            "-o",
+            f"timeout={LIMIT}",
+            "-o",
+            f"faulthandler_timeout={2 * LIMIT}",
+            mutation.test,
+        ],
+        cwd=PROJECT,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=15 * LIMIT,
+    )
     return done.returncode, done.stdout
 
 

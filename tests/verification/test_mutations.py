@@ -16,8 +16,11 @@ from engines import get_engine
 
 
 def row(quantity, engine, variant, scenes):
-    (found,) = [one for one in TABLE
-                if (one.quantity, one.engine, one.variant, one.scenes) == (quantity, engine, variant, scenes)]
+    (found,) = [
+        one
+        for one in TABLE
+        if (one.quantity, one.engine, one.variant, one.scenes) == (quantity, engine, variant, scenes)
+    ]
     pytest.importorskip(engine)
     return found
 
@@ -39,8 +42,9 @@ DEFAULTS = [("exudyn", "compliant-corners"), ("pybullet", "impact-aware"), ("muj
 @pytest.mark.parametrize("engine, variant", DEFAULTS)
 @pytest.mark.parametrize("factor", [1.01, 1.0001])
 def test_another_restitution_fails(monkeypatch, engine, variant, factor):
-    monkeypatch.setattr(agreement, "FREE_ROCKING", {"rigid ground": (None, (0.2,)),
-                                                    "sliding base": (agreement.BASE, (0.2,))})
+    monkeypatch.setattr(
+        agreement, "FREE_ROCKING", {"rigid ground": (None, (0.2,)), "sliding base": (agreement.BASE, (0.2,))}
+    )
     monkeypatch.setattr(errors_of, "restitution", lambda scene: factor * restitution(scene))
     assert_caught([row("restitution, rms", engine, variant, scenes) for scenes in ("rigid ground", "sliding base")])
 
@@ -55,16 +59,23 @@ def test_another_restitution_in_the_model_shifts_times_peaks_and_boundary(monkey
     monkeypatch.setitem(agreement.BOUNDARIES, agreement.PULSES, (0.25, (("one-sine", 5.0),)))
     monkeypatch.setattr(agreement, "FREE_ROCKING", {"rigid ground": (None, (0.2,))})
     driven = "rocking on bearings, one-sine"
-    assert_caught([row("impact times", engine, variant, "rigid ground"), row("peak tilt", engine, variant, driven),
-                   row("tilt graph", engine, variant, driven),
-                   row("overturning boundary", engine, variant, "one-sine at 2 and 5 times omega_r, rigid ground")])
+    assert_caught(
+        [
+            row("impact times", engine, variant, "rigid ground"),
+            row("peak tilt", engine, variant, driven),
+            row("tilt graph", engine, variant, driven),
+            row("overturning boundary", engine, variant, "one-sine at 2 and 5 times omega_r, rigid ground"),
+        ]
+    )
 
 
 @pytest.mark.parametrize("engine, variant", DEFAULTS)
 def test_eq_8_as_printed_fails(monkeypatch, engine, variant):
     def against_printed(scene, response):
-        return [impact.base_velocity_jump / (-base_jump_length_as_printed(scene) * impact.rate_before) - 1
-                for impact in response.impacts]
+        return [
+            impact.base_velocity_jump / (-base_jump_length_as_printed(scene) * impact.rate_before) - 1
+            for impact in response.impacts
+        ]
 
     monkeypatch.setattr(agreement, "FREE_ROCKING", {"sliding base": (agreement.BASE, (0.2,))})
     monkeypatch.setattr(errors_of, "base_jump_error", against_printed)
@@ -92,22 +103,26 @@ def test_switched_joints_with_another_restitution_fail(monkeypatch):
 
 # Bearing law.
 
+
 @pytest.mark.parametrize("engine, variant", DEFAULTS)
 def test_another_alpha_in_the_engine_fails(monkeypatch, engine, variant):
     """The engine is given alpha 1 % larger than the law that its force is held against."""
+
     def traced(engine, variant, scene, history=True):
         scene = scene.with_(bearings={"alpha": 1.01 * scene.bearings.alpha})
         return get_engine(engine).traced(scene, variant=variant, history=history)
 
     monkeypatch.setattr(agreement, "traced", traced)
     isolated = "isolated Caryatid, synthetic motion"
-    assert_caught([row("bearing force replayed", engine, variant, isolated),
-                   row("peak displacement", engine, variant, isolated)])
+    assert_caught(
+        [row("bearing force replayed", engine, variant, isolated), row("peak displacement", engine, variant, isolated)]
+    )
 
 
 @pytest.mark.parametrize("engine, variant", DEFAULTS)
 def test_eq_12_as_printed_fails(monkeypatch, engine, variant):
     """Unloading with the printed sign of x: the force jumps at a reversal."""
+
     def printed_force(law, x):
         a, double = 1 - law.alpha, 2 * law.x0
         force, s, shift = np.zeros(len(x)), 0.0, 0.0
@@ -165,6 +180,7 @@ def test_a_bearing_force_that_lags_one_step_fails(monkeypatch, engine, lag):
 
 # A mutation that changes nothing: no test can see it, and none has to as long as this holds.
 
+
 @pytest.mark.parametrize("scenes", [agreement.RIGID, agreement.SLIDING])
 def test_the_share_of_a_penetration_that_bullet_takes_back_does_not_matter(monkeypatch, scenes):
     """contactERP at .08; where it shows one day, it must be set."""
@@ -172,10 +188,16 @@ def test_the_share_of_a_penetration_that_bullet_takes_back_does_not_matter(monke
     from engines.pybullet import scene as bullet
 
     def measured():
-        responses = [agreement.run("pybullet", "impact-aware", family[3]) for family in
-                     agreement.free_rocking(scenes).values()]
-        return np.array([(impact.rate_after / impact.rate_before, impact.base_velocity_jump)
-                         for response in responses for impact in response.impacts[:agreement.IMPACTS]])
+        responses = [
+            agreement.run("pybullet", "impact-aware", family[3]) for family in agreement.free_rocking(scenes).values()
+        ]
+        return np.array(
+            [
+                (impact.rate_after / impact.rate_before, impact.base_velocity_jump)
+                for response in responses
+                for impact in response.impacts[: agreement.IMPACTS]
+            ]
+        )
 
     usual, set_parameters, asked = measured(), bullet.pybullet.setPhysicsEngineParameter, []
 
@@ -190,29 +212,64 @@ def test_the_share_of_a_penetration_that_bullet_takes_back_does_not_matter(monke
 
 # Step size, and what stands for it in an adaptive engine.
 
-@pytest.mark.parametrize("engine, variant, changes, quantity, scenes", [
-    ("exudyn", "compliant-corners", {"stiffness": 2e10}, "restitution, rms", "rigid ground"),
-    ("exudyn", "compliant-corners", {"stiffness": 2e10}, "corner lift at rest",
-     "60 s of shaking below uplift, rigid ground"),
-    ("exudyn", "switched-joints", {"step": 4e-3}, "restitution, rms", "rigid ground, slenderness 0.2"),
-    ("pybullet", "impact-aware", {"accuracy": 1e-4}, "restitution, rms", "sliding base"),
-    ("pybullet", "impact-aware", {"accuracy": 1e-4}, "base velocity jump, rms", "sliding base"),
-    ("pybullet", "impact-aware", {"largest_step": 5e-3}, "overturning time",
-     "one-sine of 3.8 g slenderness, rigid ground"),
-    ("pybullet", "impact-aware", {"largest_step": 5e-3}, "peak displacement", "isolated Caryatid, synthetic motion"),
-    ("pybullet", "impact-aware", {"largest_step": 5e-3}, "base drift at rest",
-     "60 s of shaking below uplift, on bearings"),
-    ("pybullet", "fixed-step", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
-    ("mujoco", "impact-aware", {"accuracy": 1e-4}, "restitution, rms", "sliding base"),
-    ("mujoco", "impact-aware", {"accuracy": 1e-4}, "base velocity jump, rms", "sliding base"),
-    ("mujoco", "impact-aware", {"largest_step": 2e-3}, "impact times", "rigid ground"),
-    ("mujoco", "impact-aware", {"largest_step": 2e-3}, "overturning time",
-     "one-sine of 3.8 g slenderness, rigid ground"),
-    ("mujoco", "impact-aware", {"largest_step": 2e-3}, "peak displacement", "isolated Caryatid, synthetic motion"),
-    ("mujoco", "impact-aware", {"largest_step": 2e-3}, "base drift at rest",
-     "60 s of shaking below uplift, on bearings"),
-    ("mujoco", "fixed-step", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
-])
+
+@pytest.mark.parametrize(
+    "engine, variant, changes, quantity, scenes",
+    [
+        ("exudyn", "compliant-corners", {"stiffness": 2e10}, "restitution, rms", "rigid ground"),
+        (
+            "exudyn",
+            "compliant-corners",
+            {"stiffness": 2e10},
+            "corner lift at rest",
+            "60 s of shaking below uplift, rigid ground",
+        ),
+        ("exudyn", "switched-joints", {"step": 4e-3}, "restitution, rms", "rigid ground, slenderness 0.2"),
+        ("pybullet", "impact-aware", {"accuracy": 1e-4}, "restitution, rms", "sliding base"),
+        ("pybullet", "impact-aware", {"accuracy": 1e-4}, "base velocity jump, rms", "sliding base"),
+        (
+            "pybullet",
+            "impact-aware",
+            {"largest_step": 5e-3},
+            "overturning time",
+            "one-sine of 3.8 g slenderness, rigid ground",
+        ),
+        (
+            "pybullet",
+            "impact-aware",
+            {"largest_step": 5e-3},
+            "peak displacement",
+            "isolated Caryatid, synthetic motion",
+        ),
+        (
+            "pybullet",
+            "impact-aware",
+            {"largest_step": 5e-3},
+            "base drift at rest",
+            "60 s of shaking below uplift, on bearings",
+        ),
+        ("pybullet", "fixed-step", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
+        ("mujoco", "impact-aware", {"accuracy": 1e-4}, "restitution, rms", "sliding base"),
+        ("mujoco", "impact-aware", {"accuracy": 1e-4}, "base velocity jump, rms", "sliding base"),
+        ("mujoco", "impact-aware", {"largest_step": 2e-3}, "impact times", "rigid ground"),
+        (
+            "mujoco",
+            "impact-aware",
+            {"largest_step": 2e-3},
+            "overturning time",
+            "one-sine of 3.8 g slenderness, rigid ground",
+        ),
+        ("mujoco", "impact-aware", {"largest_step": 2e-3}, "peak displacement", "isolated Caryatid, synthetic motion"),
+        (
+            "mujoco",
+            "impact-aware",
+            {"largest_step": 2e-3},
+            "base drift at rest",
+            "60 s of shaking below uplift, on bearings",
+        ),
+        ("mujoco", "fixed-step", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
+    ],
+)
 def test_a_coarse_step_fails(monkeypatch, engine, variant, changes, quantity, scenes):
     one = row(quantity, engine, variant, scenes)
 

@@ -21,10 +21,17 @@ sys.exit(pytest.main())
 
 def plain_pytest(folder, *arguments):
     """The process of pytest, started in a folder."""
-    environment = {name: value for name, value in os.environ.items()
-                   if name != "PYTHONPATH" and not name.startswith("PYTEST_")}
-    return subprocess.Popen([sys.executable, "-P", "-c", PLAIN, "-p", "no:cacheprovider", "-q", *arguments],
-                            cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    environment = {
+        name: value for name, value in os.environ.items() if name != "PYTHONPATH" and not name.startswith("PYTEST_")
+    }
+    return subprocess.Popen(
+        [sys.executable, "-P", "-c", PLAIN, "-p", "no:cacheprovider", "-q", *arguments],
+        cwd=folder,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
 
 
 def said(process):
@@ -43,9 +50,10 @@ def test_plain_pytest_finds_the_same_tests_from_every_folder():
     assert len(found) == 1 and found.pop() > 1000
 
 
-@pytest.mark.parametrize("folder, files", [
-    (TESTS / "analytic", ["test_design.py"]),
-    (Path("/"), ["-n", "2", str(TESTS / "analytic" / "test_design.py")])])
+@pytest.mark.parametrize(
+    "folder, files",
+    [(TESTS / "analytic", ["test_design.py"]), (Path("/"), ["-n", "2", str(TESTS / "analytic" / "test_design.py")])],
+)
 def test_plain_pytest_runs_from_another_folder_and_on_workers(folder, files):
     status, words = said(plain_pytest(folder, *files))
     assert status == 0, words
@@ -60,14 +68,28 @@ def test_every_test_has_a_time_limit(request):
 HANGS = {
     "Python": "import time\ndef test_hangs():\n    while True:\n        time.sleep(.01)\n",
     # signals wait for the end of compiled code
-    "compiled": ("import numba\n@numba.njit('i8(i8)')\ndef count(n):\n    while n > 0:\n        n = n % 7 + 1\n"
-                 "    return n\ndef test_hangs():\n    count(3)\n"),
+    "compiled": (
+        "import numba\n@numba.njit('i8(i8)')\ndef count(n):\n    while n > 0:\n        n = n % 7 + 1\n"
+        "    return n\ndef test_hangs():\n    count(3)\n"
+    ),
 }
 
 
 @pytest.mark.parametrize("where", HANGS)
 def test_a_test_that_hangs_fails(tmp_path, where):
     (tmp_path / "test_hanging.py").write_text(HANGS[where])
-    status, words = said(plain_pytest(tmp_path, "-c", str(PROJECT / "pyproject.toml"), "--rootdir", str(tmp_path),
-                                      "-o", "timeout=1", "-o", "faulthandler_timeout=4", str(tmp_path)))
+    status, words = said(
+        plain_pytest(
+            tmp_path,
+            "-c",
+            str(PROJECT / "pyproject.toml"),
+            "--rootdir",
+            str(tmp_path),
+            "-o",
+            "timeout=1",
+            "-o",
+            "faulthandler_timeout=4",
+            str(tmp_path),
+        )
+    )
     assert status == 1 and "Timeout" in words

@@ -11,8 +11,10 @@ def runs():
     return {}
 
 
-@pytest.mark.parametrize("row", [
-    pytest.param(row, id=row.name, marks=pytest.mark.xdist_group(f"{row.engine} {row.variant}")) for row in TABLE])
+@pytest.mark.parametrize(
+    "row",
+    [pytest.param(row, id=row.name, marks=pytest.mark.xdist_group(f"{row.engine} {row.variant}")) for row in TABLE],
+)
 def test_row_of_the_tolerance_table(row, runs):
     pytest.importorskip(row.engine)
     value = row.found(runs)

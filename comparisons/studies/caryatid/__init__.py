@@ -10,5 +10,10 @@ from .figures import figures
 from .sections import section
 from .study import plan
 
-STUDY = Study("caryatid", "The Caryatid paper: every equation, figure and table reproduced or corrected, and what it "
-                          "leaves out.", plan, figures, section)
+STUDY = Study(
+    "caryatid",
+    "The Caryatid paper: every equation, figure and table reproduced or corrected, and what it leaves out.",
+    plan,
+    figures,
+    section,
+)

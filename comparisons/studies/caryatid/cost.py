@@ -32,18 +32,43 @@ def cost_rows(motion, quick=False):
     """
     rounds = 3 if quick else 7
     record = {law: caryatid(ISOLATED, motion).with_(bearings={"law": law}, duration=motion.end) for law in LAWS}
-    pulse = {law: scene.with_(motion=PulseMotion("one-sine", 3.0, math.pi), duration=10.0)
-             for law, scene in record.items()}
+    pulse = {
+        law: scene.with_(motion=PulseMotion("one-sine", 3.0, math.pi), duration=10.0) for law, scene in record.items()
+    }
     return [
-        _ladder("kernel", "one-sine pulse: Taylor steps, code alike for both laws", pulse, TOLERANCES,
-                lambda scene, tolerance: _kernel(scene, tolerance, 20), rounds),
-        _floor("kernel", "record: steps end at samples, algebraic path unrolled", record, rounds,
-               lambda scene: _kernel(scene, 1e-8, 3)),
-        _ladder("fixed-step RK4", "record: the same loop; x_j fixed at each reversal", record, DIVISIONS,
-                _fixed_step, rounds),
-        *(_floor(f"scipy {method}", f"record, first {TWIN_SECONDS:g} s", {
-            law: scene.with_(duration=TWIN_SECONDS) for law, scene in record.items()}, 2 if quick else 5,
-            lambda scene, method=method: _twin(scene, method)) for method in ("RK45", "DOP853")),
+        _ladder(
+            "kernel",
+            "one-sine pulse: Taylor steps, code alike for both laws",
+            pulse,
+            TOLERANCES,
+            lambda scene, tolerance: _kernel(scene, tolerance, 20),
+            rounds,
+        ),
+        _floor(
+            "kernel",
+            "record: steps end at samples, algebraic path unrolled",
+            record,
+            rounds,
+            lambda scene: _kernel(scene, 1e-8, 3),
+        ),
+        _ladder(
+            "fixed-step RK4",
+            "record: the same loop; x_j fixed at each reversal",
+            record,
+            DIVISIONS,
+            _fixed_step,
+            rounds,
+        ),
+        *(
+            _floor(
+                f"scipy {method}",
+                f"record, first {TWIN_SECONDS:g} s",
+                {law: scene.with_(duration=TWIN_SECONDS) for law, scene in record.items()},
+                2 if quick else 5,
+                lambda scene, method=method: _twin(scene, method),
+            )
+            for method in ("RK45", "DOP853")
+        ),
         _evaluation(record, rounds),
     ]
 
@@ -56,7 +81,7 @@ def _least(runs):
     spent = np.full((REPEATS, len(runs)), np.inf)
     values = [None] * len(runs)
     for repeat in range(REPEATS):
-        for i in (range(len(runs)) if repeat % 2 else reversed(range(len(runs)))):
+        for i in range(len(runs)) if repeat % 2 else reversed(range(len(runs))):
             spent[repeat, i], values[i] = runs[i]()
     return spent.min(axis=0), values
 
@@ -127,8 +152,20 @@ def _rk4(dt, samples, divisions, mass, law, count, kb, dk, alpha, d0, f0):
 
 def _fixed_step(scene, divisions):
     law, motion = BearingLaw.of(scene.bearings), scene.motion
-    return _timed(_rk4, motion.dt, motion.samples, divisions, scene.total_mass, law.law, law.count, law.kb, law.dk,
-                  law.alpha, law.d0, law.f0)
+    return _timed(
+        _rk4,
+        motion.dt,
+        motion.samples,
+        divisions,
+        scene.total_mass,
+        law.law,
+        law.count,
+        law.kb,
+        law.dk,
+        law.alpha,
+        law.d0,
+        law.f0,
+    )
 
 
 def _references(scenes):
@@ -200,15 +237,33 @@ def _rates(n, dk, f0):
 def _evaluation(scenes, rounds):
     """One evaluation of the force (algebraic, x_j fixed) over one of the rate z' (Bouc-Wen)."""
     law = BearingLaw.of(scenes["algebraic"].bearings)
-    runs = [lambda: _timed(_branch_forces, EVALUATIONS, law.dk, law.alpha, law.d0, law.f0),
-            lambda: _timed(_rates, EVALUATIONS, law.dk, law.f0)]
+    runs = [
+        lambda: _timed(_branch_forces, EVALUATIONS, law.dk, law.alpha, law.d0, law.f0),
+        lambda: _timed(_rates, EVALUATIONS, law.dk, law.f0),
+    ]
     _least(runs)  # compiled
     cpu = np.array([_least(runs)[0] for _ in range(rounds)]) / EVALUATIONS
-    return _row("one evaluation, compiled", "force with x_j fixed, against rate of z", (cpu[:, 0] / cpu[:, 1]).tolist(),
-                None, np.median(cpu, axis=0)[:, None].tolist(), None)
+    return _row(
+        "one evaluation, compiled",
+        "force with x_j fixed, against rate of z",
+        (cpu[:, 0] / cpu[:, 1]).tolist(),
+        None,
+        np.median(cpu, axis=0)[:, None].tolist(),
+        None,
+    )
 
 
 def _row(solver, what, ratios, errors, cpu, targets):
     low, middle, high = np.percentile(ratios, (10, 50, 90)) if ratios else (None, None, None)
-    return {"part": "cost", "solver": solver, "what": what, "ratio": middle, "ratio_low": low, "ratio_high": high,
-            "ratios": len(ratios), "errors": errors, "cpu_seconds": cpu, "at_errors": targets}
+    return {
+        "part": "cost",
+        "solver": solver,
+        "what": what,
+        "ratio": middle,
+        "ratio_low": low,
+        "ratio_high": high,
+        "ratios": len(ratios),
+        "errors": errors,
+        "cpu_seconds": cpu,
+        "at_errors": targets,
+    }

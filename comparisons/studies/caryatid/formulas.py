@@ -43,8 +43,12 @@ def _loops(law):
         f.append(law.kb * (start + travel) + forces)
         z = forces[-1]
         points.append((end, f[-1][-1]))
-    return {"loops/x": np.concatenate(x), "loops/force": np.concatenate(f), "loops/reversals": np.array(points[:-1]),
-            "loops/limits": np.array([[s, law.kb * s * 0.34, law.f0] for s in (-1.0, 1.0)])}
+    return {
+        "loops/x": np.concatenate(x),
+        "loops/force": np.concatenate(f),
+        "loops/reversals": np.array(points[:-1]),
+        "loops/limits": np.array([[s, law.kb * s * 0.34, law.f0] for s in (-1.0, 1.0)]),
+    }
 
 
 def _misprint_12(law):
@@ -54,10 +58,13 @@ def _misprint_12(law):
     unloading = np.linspace(REVERSAL, -REVERSAL, POINTS)
     z = law.start(REVERSAL)
     x_j = history_point(law, REVERSAL, force[-1], -1)
-    return {"reversal/loading": np.array([loading, force]), "reversal/x": unloading,
-            "reversal/right": np.array([law.kb * x + law.hysteretic(z, x - REVERSAL) for x in unloading]),
-            "reversal/literal": np.array([branch(law, x, -1, x_j) for x in unloading]),
-            "reversal/printed": np.array([branch(law, x, -1, x_j, misprinted=True) for x in unloading])}
+    return {
+        "reversal/loading": np.array([loading, force]),
+        "reversal/x": unloading,
+        "reversal/right": np.array([law.kb * x + law.hysteretic(z, x - REVERSAL) for x in unloading]),
+        "reversal/literal": np.array([branch(law, x, -1, x_j) for x in unloading]),
+        "reversal/printed": np.array([branch(law, x, -1, x_j, misprinted=True) for x in unloading]),
+    }
 
 
 def _misprint_8(scene):
@@ -74,9 +81,12 @@ def _misprint_8(scene):
 def _amplitudes(scene):
     """Secant period and damping in both definitions over the amplitude."""
     found = [properties(scene.bearings, scene.total_mass, float(amplitude)) for amplitude in AMPLITUDES]
-    return {"amplitude/x": AMPLITUDES, "amplitude/period": np.array([one.period for one in found]),
-            "amplitude/damping 2 pi": np.array([one.damping_paper for one in found]),
-            "amplitude/damping 4 pi": np.array([one.damping_equivalent for one in found])}
+    return {
+        "amplitude/x": AMPLITUDES,
+        "amplitude/period": np.array([one.period for one in found]),
+        "amplitude/damping 2 pi": np.array([one.damping_paper for one in found]),
+        "amplitude/damping 4 pi": np.array([one.damping_equivalent for one in found]),
+    }
 
 
 def _table(scene):
@@ -87,19 +97,55 @@ def _table(scene):
     return [
         Value("text", "mass of the Caryatid m [kg]", paper.MASS, scene.block.mass, GIVEN),
         Value("text", "mass of the base m_b [kg]", paper.BASE_MASS, scene.base.mass, GIVEN),
-        judged("eq. (1)", "rocking frequency ω_r [rad/s]", paper.OMEGA_R, scene.rocking_frequency, 0.005,
-               "with R = 1.0884 m, itself derived from ω_r"),
-        Value("eq. (1)", "radius R [m]", "not at hand", radius, DERIVED,
-              "follows from ω_r and J_O = 4/3 m R² of a rectangle"),
-        Value("text", "slenderness γ [rad]", "not printed", scene.block.slenderness, DERIVED,
-              "chosen; the interval that fits the paper's claims is with each motion"),
-        judged("Table 1(a)", "period T_bi [s]", paper.PERIOD, got.period, 0.005,
-               f"as secant period at x_max; with k_b alone it would be {got.period_kb:.3f} s"),
+        judged(
+            "eq. (1)",
+            "rocking frequency ω_r [rad/s]",
+            paper.OMEGA_R,
+            scene.rocking_frequency,
+            0.005,
+            "with R = 1.0884 m, itself derived from ω_r",
+        ),
+        Value(
+            "eq. (1)",
+            "radius R [m]",
+            "not at hand",
+            radius,
+            DERIVED,
+            "follows from ω_r and J_O = 4/3 m R² of a rectangle",
+        ),
+        Value(
+            "text",
+            "slenderness γ [rad]",
+            "not printed",
+            scene.block.slenderness,
+            DERIVED,
+            "chosen; the interval that fits the paper's claims is with each motion",
+        ),
+        judged(
+            "Table 1(a)",
+            "period T_bi [s]",
+            paper.PERIOD,
+            got.period,
+            0.005,
+            f"as secant period at x_max; with k_b alone it would be {got.period_kb:.3f} s",
+        ),
         Value("Table 1(a)", "displacement x_max [m]", paper.X_MAX, paper.X_MAX, GIVEN),
-        judged("Table 1(a)", "damping ξ as W_D/(2π E_s) [%]", 100 * paper.DAMPING, 100 * got.damping_paper, 0.5,
-               "the only definition that gives the printed value"),
-        Value("Table 1(a)", "damping ξ as W_D/(4π E_s) [%]", 100 * paper.DAMPING, 100 * got.damping_equivalent,
-              CORRECTED, "the usual equivalent viscous damping: half of what is printed"),
+        judged(
+            "Table 1(a)",
+            "damping ξ as W_D/(2π E_s) [%]",
+            100 * paper.DAMPING,
+            100 * got.damping_paper,
+            0.5,
+            "the only definition that gives the printed value",
+        ),
+        Value(
+            "Table 1(a)",
+            "damping ξ as W_D/(4π E_s) [%]",
+            100 * paper.DAMPING,
+            100 * got.damping_equivalent,
+            CORRECTED,
+            "the usual equivalent viscous damping: half of what is printed",
+        ),
         Value("Table 1(b)", "number of bearings n_d [-]", float(paper.COUNT), float(scene.bearings.count), GIVEN),
         judged("Table 1(b)", "k_a [N/m]", paper.KA, designed.ka, 50.0, "designed from Table 1(a) with k_a/k_b = 10"),
         judged("Table 1(b)", "k_b [N/m]", paper.KB, designed.kb, 5.0, "designed from Table 1(a) with k_a/k_b = 10"),
@@ -116,18 +162,49 @@ def _misprints(scene, law, jump):
     printed = momentum_after(scene, base_jump_length_as_printed(scene))
 
     def misprint(where, says, should, measure, right, wrong):
-        return {"part": "misprint", "where": where, "printed": says, "corrected": should, "measure": measure,
-                "value_corrected": right, "value_printed": wrong}
+        return {
+            "part": "misprint",
+            "where": where,
+            "printed": says,
+            "corrected": should,
+            "measure": measure,
+            "value_corrected": right,
+            "value_printed": wrong,
+        }
 
     return [
-        misprint("eq. (8)", "e_x with a factor R cos γ too many: a length squared", "e_x = 2R³ sin²γ cosγ m m̃/(…)",
-                 "momentum after an impact over that before, γ = 0.28 rad [-]", after, printed),
-        misprint("eq. (12)", "bracket 1 + x − x_j + 2x₀", "bracket 1 − x + x_j + 2x₀",
-                 "force jump at a reversal over 2 f₀ [-]", _continuity(law), jump / (2 * law.f0)),
-        misprint("Table 1(a), ξ", "30 %, which is W_D/(2π E_s)", "equivalent viscous damping W_D/(4π E_s)",
-                 "damping at x_max [%]", 100 * got.damping_equivalent, 100 * loss / (math.pi * force * paper.X_MAX)),
-        misprint("Table 1(a), T_bi", "2 s, said of the isolated system", "secant period at x_max = 0.30 m only",
-                 "period: secant at x_max, and with k_b alone [s]", got.period, got.period_kb),
+        misprint(
+            "eq. (8)",
+            "e_x with a factor R cos γ too many: a length squared",
+            "e_x = 2R³ sin²γ cosγ m m̃/(…)",
+            "momentum after an impact over that before, γ = 0.28 rad [-]",
+            after,
+            printed,
+        ),
+        misprint(
+            "eq. (12)",
+            "bracket 1 + x − x_j + 2x₀",
+            "bracket 1 − x + x_j + 2x₀",
+            "force jump at a reversal over 2 f₀ [-]",
+            _continuity(law),
+            jump / (2 * law.f0),
+        ),
+        misprint(
+            "Table 1(a), ξ",
+            "30 %, which is W_D/(2π E_s)",
+            "equivalent viscous damping W_D/(4π E_s)",
+            "damping at x_max [%]",
+            100 * got.damping_equivalent,
+            100 * loss / (math.pi * force * paper.X_MAX),
+        ),
+        misprint(
+            "Table 1(a), T_bi",
+            "2 s, said of the isolated system",
+            "secant period at x_max = 0.30 m only",
+            "period: secant at x_max, and with k_b alone [s]",
+            got.period,
+            got.period_kb,
+        ),
     ]
 
 
@@ -175,28 +252,70 @@ def _equations(scene, law, arrays, jump):
 
     return [
         equation("(1)", "rocking frequency", REPRODUCED, "ω_r [rad/s], 2.60 printed", scene.rocking_frequency),
-        equation("(2)", "full contact on the bearings", REPRODUCED,
-                 "momentum balance over a run in full contact, over its largest impulse [-]", _momentum_residual()),
-        equation("(3)–(6)", "rocking on the base, re-derived", REPRODUCED,
-                 f"imbalance of the energy over the input, {run.impact_count} impacts [-]", ledger),
-        equation("(7)", "restitution e_φ", REPRODUCED, "difference from the momentum balances [-]",
-                 abs(restitution(scene) - spin / rate)),
-        equation("(8)", "jump of the base velocity", CORRECTED,
-                 "corrected form, relative difference from the momentum balances [-]; printed form: "
-                 f"{base_jump_length_as_printed(scene) / base_jump_length(scene) - 1:.3%} off",
-                 abs(corrected / base - 1)),
-        equation("(9)–(11)", "bearing force and its history x_j", REPRODUCED,
-                 "literal x_j form against the stable form, over f₀ [-] (literal is NaN beyond 1.33 m of travel)",
-                 float(literal)),
-        equation("(12)", "unloading branch", CORRECTED,
-                 f"force jump at a reversal over 2 f₀, corrected [-]; printed form: {jump / (2 * law.f0):.4f}",
-                 _continuity(law)),
+        equation(
+            "(2)",
+            "full contact on the bearings",
+            REPRODUCED,
+            "momentum balance over a run in full contact, over its largest impulse [-]",
+            _momentum_residual(),
+        ),
+        equation(
+            "(3)–(6)",
+            "rocking on the base, re-derived",
+            REPRODUCED,
+            f"imbalance of the energy over the input, {run.impact_count} impacts [-]",
+            ledger,
+        ),
+        equation(
+            "(7)",
+            "restitution e_φ",
+            REPRODUCED,
+            "difference from the momentum balances [-]",
+            abs(restitution(scene) - spin / rate),
+        ),
+        equation(
+            "(8)",
+            "jump of the base velocity",
+            CORRECTED,
+            "corrected form, relative difference from the momentum balances [-]; printed form: "
+            f"{base_jump_length_as_printed(scene) / base_jump_length(scene) - 1:.3%} off",
+            abs(corrected / base - 1),
+        ),
+        equation(
+            "(9)–(11)",
+            "bearing force and its history x_j",
+            REPRODUCED,
+            "literal x_j form against the stable form, over f₀ [-] (literal is NaN beyond 1.33 m of travel)",
+            float(literal),
+        ),
+        equation(
+            "(12)",
+            "unloading branch",
+            CORRECTED,
+            f"force jump at a reversal over 2 f₀, corrected [-]; printed form: {jump / (2 * law.f0):.4f}",
+            _continuity(law),
+        ),
         equation("(13)", "x₀ from k_a, k_b, α, δ_k", REPRODUCED, "2 x₀ [m]", 2 * law.x0),
         equation("(14)", "f₀ from k_a, k_b, α, x₀", REPRODUCED, "f₀ of one bearing [N]", law.f0),
-        equation("Fig. 3", "bearing law with its curves and reversal points", REPRODUCED,
-                 "W_D of one bearing at 0.30 m [J]", steady_cycle(law, paper.X_MAX)[0]),
-        equation("Table 1(a)", "design targets", REPRODUCED, "T_bi as secant period at x_max [s]",
-                 properties(scene.bearings, scene.total_mass, paper.X_MAX).period),
-        equation("Table 1(b)", "bearings", REPRODUCED, "α designed from Table 1(a) [-]",
-                 design_bearings(scene.total_mass, paper.PERIOD, paper.DAMPING, paper.X_MAX).alpha),
+        equation(
+            "Fig. 3",
+            "bearing law with its curves and reversal points",
+            REPRODUCED,
+            "W_D of one bearing at 0.30 m [J]",
+            steady_cycle(law, paper.X_MAX)[0],
+        ),
+        equation(
+            "Table 1(a)",
+            "design targets",
+            REPRODUCED,
+            "T_bi as secant period at x_max [s]",
+            properties(scene.bearings, scene.total_mass, paper.X_MAX).period,
+        ),
+        equation(
+            "Table 1(b)",
+            "bearings",
+            REPRODUCED,
+            "α designed from Table 1(a) [-]",
+            design_bearings(scene.total_mass, paper.PERIOD, paper.DAMPING, paper.X_MAX).alpha,
+        ),
     ]

@@ -18,8 +18,10 @@ OVERTURNING_AFTER_PEAK = 35.0 - 28.0 - 3.415  # s
 OVERTURNING_ABOUT, VULNERABLE_ABOUT = 1.0, 0.5  # s
 
 # Known to exist, but neither text nor numbers of it are at hand.
-UNKNOWN = ("Figs 1 and 2; the damping ratios of Fig. 5(b); the values on the axes of Figs 3 to 6; the dimensions of "
-           "the Caryatid and of its bearings beyond Table 1; the slenderness.")
+UNKNOWN = (
+    "Figs 1 and 2; the damping ratios of Fig. 5(b); the values on the axes of Figs 3 to 6; the dimensions of "
+    "the Caryatid and of its bearings beyond Table 1; the slenderness."
+)
 
 
 @dataclass(frozen=True)
@@ -41,8 +43,16 @@ class Value:
         """As a row of the result file, with the difference where both are numbers."""
         numbers = isinstance(self.paper, float) and isinstance(self.study, float)
         difference = self.study - self.paper if numbers and self.status != GIVEN else None
-        return {"part": "value", "where": self.where, "quantity": self.quantity, "paper": self.paper,
-                "study": self.study, "difference": difference, "status": self.status, "note": self.note}
+        return {
+            "part": "value",
+            "where": self.where,
+            "quantity": self.quantity,
+            "paper": self.paper,
+            "study": self.study,
+            "difference": difference,
+            "status": self.status,
+            "note": self.note,
+        }
 
 
 def judged(where, quantity, paper, study, within, note=""):

@@ -34,10 +34,19 @@ def oscillator(motion, period, damping):
     """A linear oscillator as a scene: a block that cannot lift, on one linear bearing with a damper."""
     scene = caryatid(ISOLATED, motion)
     omega = 2 * np.pi / period
-    bearing = Bearings(law="linear", count=1, ka=float(scene.total_mass * omega**2),
-                       damping=float(2 * damping * omega * scene.total_mass))
-    return Scene(block=scene.block.model_copy(update={"slenderness": STOCKY}), base=Base(mass=scene.base.mass),
-                 bearings=bearing, motion=motion, gravity=scene.gravity)
+    bearing = Bearings(
+        law="linear",
+        count=1,
+        ka=float(scene.total_mass * omega**2),
+        damping=float(2 * damping * omega * scene.total_mass),
+    )
+    return Scene(
+        block=scene.block.model_copy(update={"slenderness": STOCKY}),
+        base=Base(mass=scene.base.mass),
+        bearings=bearing,
+        motion=motion,
+        gravity=scene.gravity,
+    )
 
 
 def scalars(case, response):
@@ -50,16 +59,20 @@ def with_history(case, response):
     """Measure: the scalars, and tilt and base displacement at multiples of `HISTORY_STEP`."""
     history = response.history
     time = np.arange(0.0, history.time[-1], HISTORY_STEP)
-    kept = {name: np.interp(time, history.time, getattr(history, name)).tolist()
-            for name in ("tilt", "base_displacement")}
+    kept = {
+        name: np.interp(time, history.time, getattr(history, name)).tolist() for name in ("tilt", "base_displacement")
+    }
     return {**scalars(case, response), "history": {"time": time.tolist(), **kept}}
 
 
 def simulations(motion, engines, quick=False):
     """Plan of all runs; returns their rows, and the histories of Figs 4(b) and 6 as arrays."""
     solvers = ("analytic", *engines)
-    figures = [Case(caryatid(name, motion), solver, tag={"part": "run", "scene": name})
-               for name in SHIPPED for solver in solvers]
+    figures = [
+        Case(caryatid(name, motion), solver, tag={"part": "run", "scene": name})
+        for name in SHIPPED
+        for solver in solvers
+    ]
     points = _points(motion, solvers, quick)
     rows, histories = [], {}
     for cases, measure, label in ((figures, with_history, "Figs 4(b), 6"), (points, scalars, "Figs 5(a), 5(b)")):
@@ -80,12 +93,27 @@ def _points(motion, solvers, quick):
     own = 2 * np.pi / caryatid(FREE, motion).rocking_frequency
     blocks = (own, 5.0) if quick else (1.5, own, 3.0, 3.5, 4.5, 5.0, 6.0, 7.0)
     oscillators = (2.0,) if quick else (1.0, 2.0, 3.0)
-    cases = [Case(slender_block(motion, period, slenderness), solver, settings={"history": False},
-                  tag={"part": "rocking spectrum", "period": float(period)})
-             for solver in solvers for period in blocks]
-    return cases + [Case(oscillator(motion, period, damping), solver, settings={"history": False},
-                         tag={"part": "displacement spectrum", "period": period, "damping": damping})
-                    for solver in solvers for period in oscillators for damping in OSCILLATOR_DAMPING]
+    cases = [
+        Case(
+            slender_block(motion, period, slenderness),
+            solver,
+            settings={"history": False},
+            tag={"part": "rocking spectrum", "period": float(period)},
+        )
+        for solver in solvers
+        for period in blocks
+    ]
+    return cases + [
+        Case(
+            oscillator(motion, period, damping),
+            solver,
+            settings={"history": False},
+            tag={"part": "displacement spectrum", "period": period, "damping": damping},
+        )
+        for solver in solvers
+        for period in oscillators
+        for damping in OSCILLATOR_DAMPING
+    ]
 
 
 def spectra(motion, quick=False):
@@ -94,18 +122,29 @@ def spectra(motion, quick=False):
     periods = np.linspace(0.5, 8.0, 151 if quick else 751)
     tilts = rocking_spectrum(motion, periods, slenderness)
     isolation = np.linspace(0.1, 5.0, 99 if quick else 246)
-    return {"rocking/period": periods, "rocking/tilt": np.where(tilts.overturns, np.nan, tilts.peak_tilt / slenderness),
-            "rocking/overturns": tilts.overturns, "displacement/period": isolation,
-            "displacement/damping": np.array(DAMPING_RATIOS),
-            "displacement/peak": displacement_spectrum(motion, isolation, DAMPING_RATIOS)}
+    return {
+        "rocking/period": periods,
+        "rocking/tilt": np.where(tilts.overturns, np.nan, tilts.peak_tilt / slenderness),
+        "rocking/overturns": tilts.overturns,
+        "displacement/period": isolation,
+        "displacement/damping": np.array(DAMPING_RATIOS),
+        "displacement/peak": displacement_spectrum(motion, isolation, DAMPING_RATIOS),
+    }
 
 
 def equivalent_oscillators(motion, properties, nonlinear):
     """What a linear oscillator at T_bi predicts, with the damping in either definition, beside the bearings' own."""
-    return [{"part": "equivalent", "definition": name, "damping": damping, "period": properties.period,
-             "displacement": float(displacement_spectrum(motion, [properties.period], [damping])[0, 0]),
-             "nonlinear": nonlinear}
-            for name, damping in (("W_D/(2π E_s)", properties.damping_paper),
-                                  ("W_D/(4π E_s)", properties.damping_equivalent))]
-
-
+    return [
+        {
+            "part": "equivalent",
+            "definition": name,
+            "damping": damping,
+            "period": properties.period,
+            "displacement": float(displacement_spectrum(motion, [properties.period], [damping])[0, 0]),
+            "nonlinear": nonlinear,
+        }
+        for name, damping in (
+            ("W_D/(2π E_s)", properties.damping_paper),
+            ("W_D/(4π E_s)", properties.damping_equivalent),
+        )
+    ]

@@ -33,18 +33,23 @@ def claims(motion, quick=False):
         return simulate_many([scene.with_(block={"slenderness": point}) for point in points])
 
     def vulnerable(points):
-        return [abs(vulnerable_period(motion, point, step) - paper.VULNERABLE_PERIOD) <= paper.VULNERABLE_ABOUT
-                for point in points]
+        return [
+            abs(vulnerable_period(motion, point, step) - paper.VULNERABLE_PERIOD) <= paper.VULNERABLE_ABOUT
+            for point in points
+        ]
 
     scan, step, near = (29, 0.1, 1e-2) if quick else (71, 0.02, 1e-3)
-    tests = {"free-standing overturns": (lambda points: run(free, points).overturns, 141, TOLERANCE),
-             f"vulnerable below T_r = {paper.VULNERABLE_PERIOD:g} ± {paper.VULNERABLE_ABOUT:g} s":
-                 (vulnerable, scan, near),
-             "isolated does not rock": (lambda points: ~run(isolated, points).lifted, 141, TOLERANCE)}
+    tests = {
+        "free-standing overturns": (lambda points: run(free, points).overturns, 141, TOLERANCE),
+        f"vulnerable below T_r = {paper.VULNERABLE_PERIOD:g} ± {paper.VULNERABLE_ABOUT:g} s": (vulnerable, scan, near),
+        "isolated does not rock": (lambda points: ~run(isolated, points).lifted, 141, TOLERANCE),
+    }
     rows, found = [], []
     for claim, (holds, points, tolerance) in tests.items():
-        column, = drive([boundaries(LOW, HIGH, points, tolerance)],
-                        lambda batch, holds=holds: list(map(bool, holds([point for _, point in batch]))))
+        (column,) = drive(
+            [boundaries(LOW, HIGH, points, tolerance)],
+            lambda batch, holds=holds: list(map(bool, holds([point for _, point in batch]))),
+        )
         intervals = _intervals(column.transitions, bool(holds([LOW])[0]))
         found.append(intervals)
         rows.append({"part": "claim", "claim": claim, "intervals": intervals, "evaluations": column.evaluations})
@@ -53,12 +58,14 @@ def claims(motion, quick=False):
         together = _overlap(together, intervals)
     rows.append({"part": "claim", "claim": "all three", "intervals": together, "evaluations": None})
     own = free.block.slenderness
-    rows.append({"part": "vulnerable", "slenderness": own, "step": step,
-                 "period": vulnerable_period(motion, own, step)})
+    rows.append(
+        {"part": "vulnerable", "slenderness": own, "step": step, "period": vulnerable_period(motion, own, step)}
+    )
     grid = np.linspace(LOW, HIGH, scan)
-    return rows, {"claims/slenderness": grid,
-                  "claims/vulnerable period": np.array([vulnerable_period(motion, float(gamma), step)
-                                                    for gamma in grid])}
+    return rows, {
+        "claims/slenderness": grid,
+        "claims/vulnerable period": np.array([vulnerable_period(motion, float(gamma), step) for gamma in grid]),
+    }
 
 
 def uplift_slenderness(motion):
@@ -75,7 +82,7 @@ def _intervals(transitions, holds_at_low):
     for transition in transitions:
         edges.append(transition.high if transition.after else transition.low)
     edges += [HIGH] if len(edges) % 2 else []
-    return [edges[k:k + 2] for k in range(0, len(edges), 2)]
+    return [edges[k : k + 2] for k in range(0, len(edges), 2)]
 
 
 def _overlap(ones, others):

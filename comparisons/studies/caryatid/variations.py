@@ -23,8 +23,11 @@ def grid(quick, fine=True):
     """(slendernesses [rad], intensities [-])."""
     if quick:
         return np.linspace(0.10, 0.45, 15), np.linspace(0.25, 3.0, 12)
-    return (np.linspace(0.10, 0.45, 71), np.linspace(0.25, 3.0, 56)) if fine else (
-        np.linspace(0.10, 0.45, 36), np.linspace(0.25, 3.0, 34))
+    return (
+        (np.linspace(0.10, 0.45, 71), np.linspace(0.25, 3.0, 56))
+        if fine
+        else (np.linspace(0.10, 0.45, 36), np.linspace(0.25, 3.0, 34))
+    )
 
 
 def benefit(motion, slendernesses, intensities):
@@ -37,14 +40,24 @@ def benefit(motion, slendernesses, intensities):
     shape = len(slendernesses), len(intensities)
     for name in (FREE, ISOLATED):
         base = caryatid(name, motion)
-        scenes = [base.with_(block={"slenderness": float(gamma)}, motion=shaking)
-                  for gamma in slendernesses for shaking in scaled]
+        scenes = [
+            base.with_(block={"slenderness": float(gamma)}, motion=shaking)
+            for gamma in slendernesses
+            for shaking in scaled
+        ]
         found[name] = simulate_many(scenes)
     if any(outcomes.failed.any() for outcomes in found.values()):
         raise RuntimeError("the analytic model failed on a scene of the map; report it with its slenderness")
     overturns = {name: outcomes.overturns.reshape(shape) for name, outcomes in found.items()}
-    category = np.select([~overturns[FREE] & ~overturns[ISOLATED], overturns[FREE] & ~overturns[ISOLATED],
-                          ~overturns[FREE] & overturns[ISOLATED]], [BOTH, ONLY_ISOLATED, ONLY_FREE], NEITHER)
+    category = np.select(
+        [
+            ~overturns[FREE] & ~overturns[ISOLATED],
+            overturns[FREE] & ~overturns[ISOLATED],
+            ~overturns[FREE] & overturns[ISOLATED],
+        ],
+        [BOTH, ONLY_ISOLATED, ONLY_FREE],
+        NEITHER,
+    )
     isolated = found[ISOLATED]
     displacement = np.where(overturns[ISOLATED], np.nan, isolated.peak_base_displacement.reshape(shape))
     return category.astype(np.uint8), isolated.lifted.reshape(shape), displacement.astype(np.float32)
@@ -55,8 +68,13 @@ def maps(motion, quick=False, advance=lambda text: None):
     intensities of the Caryatid itself."""
     slendernesses, intensities = grid(quick)
     category, lifted, displacement = benefit(motion, slendernesses, intensities)
-    arrays = {"benefit/slenderness": slendernesses, "benefit/intensity": intensities, "benefit/category": category,
-              "benefit/isolated lifts": lifted, "benefit/isolated displacement": displacement}
+    arrays = {
+        "benefit/slenderness": slendernesses,
+        "benefit/intensity": intensities,
+        "benefit/category": category,
+        "benefit/isolated lifts": lifted,
+        "benefit/isolated displacement": displacement,
+    }
     rows = [_shares("this motion", category, lifted, displacement)]
     coarse = grid(quick, fine=False)
     counts = np.zeros((len(CATEGORIES), len(coarse[0]), len(coarse[1])), dtype=np.uint8)
@@ -74,18 +92,30 @@ def maps(motion, quick=False, advance=lambda text: None):
 def _shares(name, category, lifted, displacement):
     shares = {text: float((category == kind).mean()) for kind, text in enumerate(CATEGORIES)}
     within = (category == ONLY_ISOLATED) & (displacement <= paper.X_MAX)
-    return {"part": "benefit", "motion": name, "cells": int(category.size), **shares, WITHIN: float(within.mean()),
-            "isolated lifts": float(lifted.mean()), "beyond x_max": float((displacement > paper.X_MAX).mean())}
+    return {
+        "part": "benefit",
+        "motion": name,
+        "cells": int(category.size),
+        **shares,
+        WITHIN: float(within.mean()),
+        "isolated lifts": float(lifted.mean()),
+        "beyond x_max": float((displacement > paper.X_MAX).mean()),
+    }
 
 
 def _critical(motion):
     """Intensities at which the Caryatid's state changes, free-standing and isolated: the first, and all."""
     rows = []
-    questions = ((FREE, "overturns", lambda outcomes: outcomes.overturns),
-                 (ISOLATED, "overturns", lambda outcomes: outcomes.overturns),
-                 (ISOLATED, "lifts", lambda outcomes: outcomes.lifted),
-                 (ISOLATED, "exceeds x_max",
-                  lambda outcomes: outcomes.overturns | (outcomes.peak_base_displacement > paper.X_MAX)))
+    questions = (
+        (FREE, "overturns", lambda outcomes: outcomes.overturns),
+        (ISOLATED, "overturns", lambda outcomes: outcomes.overturns),
+        (ISOLATED, "lifts", lambda outcomes: outcomes.lifted),
+        (
+            ISOLATED,
+            "exceeds x_max",
+            lambda outcomes: outcomes.overturns | (outcomes.peak_base_displacement > paper.X_MAX),
+        ),
+    )
     for name, what, read in questions:
         scene = caryatid(name, motion)
 
@@ -93,10 +123,17 @@ def _critical(motion):
             scenes = [scene.with_(motion=scene.motion.scaled(point)) for _, point in batch]
             return list(map(bool, read(simulate_many(scenes))))
 
-        column, = drive([boundaries(0.25, 4.0, 151, 1e-4)], evaluate)
+        (column,) = drive([boundaries(0.25, 4.0, 151, 1e-4)], evaluate)
         changes = [round(transition.position, 4) for transition in column.transitions]
-        rows.append({"part": "critical intensity", "scene": name, "what": what,
-                     "first": changes[0] if changes else None, "changes": changes})
+        rows.append(
+            {
+                "part": "critical intensity",
+                "scene": name,
+                "what": what,
+                "first": changes[0] if changes else None,
+                "changes": changes,
+            }
+        )
     return rows
 
 
@@ -117,13 +154,26 @@ def contact(motion, quick=False):
             for k, factor in enumerate(intensities):
                 one = scene.with_(block={"slenderness": float(gamma)}, motion=motion.scaled(float(factor)))
                 friction[i, k], normal[i, k], upright[i, k] = _demand(one)
-        arrays |= {f"contact/{name} friction": friction.astype(np.float32),
-                   f"contact/{name} normal": normal.astype(np.float32), f"contact/{name} upright": upright}
+        arrays |= {
+            f"contact/{name} friction": friction.astype(np.float32),
+            f"contact/{name} normal": normal.astype(np.float32),
+            f"contact/{name} upright": upright,
+        }
         over = {f"friction above {limit:g}": float((friction > limit).mean()) for limit in FRICTION_LIMITS}
         at = _demand(scene)
-        rows.append({"part": "contact", "scene": name, "friction_demand": at[0], "min_normal_ratio": at[1], **over,
-                     "worst_friction": float(friction.max()), "least_normal": float(normal.min()),
-                     "jumps": float((normal <= 0).mean()), "impact_friction": impact_friction(scene)})
+        rows.append(
+            {
+                "part": "contact",
+                "scene": name,
+                "friction_demand": at[0],
+                "min_normal_ratio": at[1],
+                **over,
+                "worst_friction": float(friction.max()),
+                "least_normal": float(normal.min()),
+                "jumps": float((normal <= 0).mean()),
+                "impact_friction": impact_friction(scene),
+            }
+        )
     return rows, arrays
 
 

@@ -4,5 +4,10 @@ from ...running.study import Study
 from .cases import plan
 from .page import draw, section
 
-STUDY = Study("fragility", "Probability of overturning over the intensity of synthetic motions, solver by solver.",
-              plan, lambda result: {"": draw(result)}, section)
+STUDY = Study(
+    "fragility",
+    "Probability of overturning over the intensity of synthetic motions, solver by solver.",
+    plan,
+    lambda result: {"": draw(result)},
+    section,
+)

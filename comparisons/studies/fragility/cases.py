@@ -55,31 +55,53 @@ def plan(ask, scenes=None, motions=None):
     for name, (shipped, block, factors) in scenes.items():
         scene = load_scene(shipped).with_(block=block, motion=None, duration=None)
         intensities = [factor * PEAK / G for factor in factors]
-        described[name] = {"scene": shipped, "block": scene.block.model_dump(),
-                           "base": scene.base.model_dump() if scene.base else None,
-                           "bearings": scene.bearings.model_dump() if scene.bearings else None,
-                           "tan_slenderness": math.tan(scene.block.slenderness), "factors": list(factors),
-                           "intensities": intensities}
+        described[name] = {
+            "scene": shipped,
+            "block": scene.block.model_dump(),
+            "base": scene.base.model_dump() if scene.base else None,
+            "bearings": scene.bearings.model_dump() if scene.bearings else None,
+            "tan_slenderness": math.tan(scene.block.slenderness),
+            "factors": list(factors),
+            "intensities": intensities,
+        }
         outcomes, costs, checks = _analytic(scene, shakings, factors)
         rows.append({"part": "check", "scene": name, **checks})
         for solver, variant in solvers:
             label = solver_name(solver, variant)
-            cases = [Case(scene.with_(motion=shaking.scaled(factor)), solver, variant, {"history": False},
-                          {"factor": factor, "seed": seed})
-                     for factor in factors for seed, shaking in enumerate(shakings)]
+            cases = [
+                Case(
+                    scene.with_(motion=shaking.scaled(factor)),
+                    solver,
+                    variant,
+                    {"history": False},
+                    {"factor": factor, "seed": seed},
+                )
+                for factor in factors
+                for seed, shaking in enumerate(shakings)
+            ]
             results = yield Batch(cases, measure, f"{name}: {label}")
-            outcomes[label] = np.array([FAILED if row.failed else row.values["outcome"] == "overturns"
-                                     for row in results], dtype=np.int8).reshape(len(factors), count)
+            outcomes[label] = np.array(
+                [FAILED if row.failed else row.values["outcome"] == "overturns" for row in results], dtype=np.int8
+            ).reshape(len(factors), count)
             seconds = [row.cost["cpu_seconds"] for row in results if row.cost]
             costs[label] = float(np.sum(seconds)) / max(len(seconds), 1)
-            rows += [{"part": "failure", "scene": name, "solver": label, **row.case.tag, **row.failure}
-                     for row in results if row.failed]
+            rows += [
+                {"part": "failure", "scene": name, "solver": label, **row.case.tag, **row.failure}
+                for row in results
+                if row.failed
+            ]
         rows += _curves(name, outcomes, intensities, costs) + _pairs(name, outcomes, intensities)
         arrays |= {f"{name}/{label}": values for label, values in outcomes.items()}
-        settings = {"quick": ask.quick, "scenes": described, "motions": count, "seeds": [0, count - 1],
-                    "motion": "synthetic duzce-like, scaled", "twin": TWIN,
-                    "first_script_friction": FIRST_SCRIPT_FRICTION,
-                    "solvers": [REFERENCE, *(solver_name(*one) for one in solvers)]}
+        settings = {
+            "quick": ask.quick,
+            "scenes": described,
+            "motions": count,
+            "seeds": [0, count - 1],
+            "motion": "synthetic duzce-like, scaled",
+            "twin": TWIN,
+            "first_script_friction": FIRST_SCRIPT_FRICTION,
+            "solvers": [REFERENCE, *(solver_name(*one) for one in solvers)],
+        }
         answer = Found(settings, list(rows), dict(arrays), seed=settings["seeds"])
         yield answer
     return answer
@@ -111,17 +133,32 @@ def _curves(name, found, intensities, costs):
         fallen = (outcomes == 1).sum(axis=1)
         for intensity, k, n in zip(intensities, fallen.tolist(), size.tolist(), strict=True):
             low, high = wilson(k, n) if n else (None, None)
-            rows.append({"part": "curve", "scene": name, "solver": label, "intensity": intensity, "overturned": k,
-                         "size": n, "failed": outcomes.shape[1] - n, "low": low, "high": high})
+            rows.append(
+                {
+                    "part": "curve",
+                    "scene": name,
+                    "solver": label,
+                    "intensity": intensity,
+                    "overturned": k,
+                    "size": n,
+                    "failed": outcomes.shape[1] - n,
+                    "low": low,
+                    "high": high,
+                }
+            )
         fit = {"part": "fit", "scene": name, "solver": label, "cpu_per_run": costs.get(label)}
         try:
             curve = fit_fragility(intensities, fallen, size)
         except ValueError as error:
             fit |= {"median": None, "reason": str(error)}
         else:
-            fit |= {"median": curve.median, "dispersion": curve.dispersion,
-                    "median_interval": list(curve.median_interval),
-                    "dispersion_interval": list(curve.dispersion_interval), "reason": None}
+            fit |= {
+                "median": curve.median,
+                "dispersion": curve.dispersion,
+                "median_interval": list(curve.median_interval),
+                "dispersion_interval": list(curve.dispersion_interval),
+                "reason": None,
+            }
         rows.append(fit)
     return rows
 
@@ -136,8 +173,13 @@ def _pairs(name, found, intensities):
         group = []
         for k, intensity in enumerate(intensities):
             sound = (outcomes[k] != FAILED) & (reference[k] != FAILED)
-            row = {"part": "pair", "scene": name, "solver": label, "intensity": intensity,
-                   "left_out": int((~sound).sum())}
+            row = {
+                "part": "pair",
+                "scene": name,
+                "solver": label,
+                "intensity": intensity,
+                "left_out": int((~sound).sum()),
+            }
             if sound.any():
                 group.append(row | compare(reference[k][sound] == 1, outcomes[k][sound] == 1, (REFERENCE, label)))
         adjusted = holm([row["p_value"] for row in group]) if group else []

@@ -8,10 +8,12 @@ from ...showing.parts import Section, Table, figure_of, number, percent
 from ...showing.plots import marker, style
 
 LEVEL = 0.05
-READING = ("May an engine be trusted for the probability of overturning? Each motion is given to the analytic model "
-           "and to the engine; an exact McNemar test on the motions where the two disagree tells one from the other, "
-           f"adjusted after Holm for the number of intensities, at a level of {LEVEL:g}. “No difference found” is not "
-           "“equal”: each answer says how large a difference would have been found.")
+READING = (
+    "May an engine be trusted for the probability of overturning? Each motion is given to the analytic model "
+    "and to the engine; an exact McNemar test on the motions where the two disagree tells one from the other, "
+    f"adjusted after Holm for the number of intensities, at a level of {LEVEL:g}. “No difference found” is not "
+    "“equal”: each answer says how large a difference would have been found."
+)
 REFERENCE = "analytic"
 TWIN_STYLE = {"color": "#56B4E9", "linestyle": (0, (1, 1)), "linewidth": 1.2}
 FIRST_STYLE = {"color": "#D55E00", "linestyle": (0, (4, 1, 1, 1)), "linewidth": 1.2}
@@ -25,14 +27,28 @@ def section(result):
         text += _answers(result, scene)
         tables += [_curve_table(result, scene), _pair_table(result, scene)]
     text.append(_checks(result))
-    figure = figure_of(draw(result), _alt(result),
-                       "Above: share of motions that overturn the block, with 95 % Wilson intervals (markers moved "
-                       "apart sideways), and the lognormal curves fitted to them. Below: share of motions on which a "
-                       "solver and the analytic model disagree.")
-    evidence = tuple((f"{row['solver']}, {row['scene']}, seed {row['seed']}, factor {row['factor']:g}",
-                      f"{row['reason']}\n{row.get('message') or ''}") for row in _part(result, "failure"))
-    return Section("Fragility: probability of overturning", tuple(text), tuple(tables), (figure,), evidence=evidence,
-                   verdicts=tuple(_verdict(result, label) for label in _compared(result)))
+    figure = figure_of(
+        draw(result),
+        _alt(result),
+        "Above: share of motions that overturn the block, with 95 % Wilson intervals (markers moved "
+        "apart sideways), and the lognormal curves fitted to them. Below: share of motions on which a "
+        "solver and the analytic model disagree.",
+    )
+    evidence = tuple(
+        (
+            f"{row['solver']}, {row['scene']}, seed {row['seed']}, factor {row['factor']:g}",
+            f"{row['reason']}\n{row.get('message') or ''}",
+        )
+        for row in _part(result, "failure")
+    )
+    return Section(
+        "Fragility: probability of overturning",
+        tuple(text),
+        tuple(tables),
+        (figure,),
+        evidence=evidence,
+        verdicts=tuple(_verdict(result, label) for label in _compared(result)),
+    )
 
 
 def draw(result):
@@ -48,19 +64,36 @@ def draw(result):
             shift = 1 + 0.006 * (place - (len(labels) - 1) / 2)
             x = shift * np.array([row["intensity"] for row in rows])
             share = np.array([row["overturned"] / row["size"] if row["size"] else np.nan for row in rows])
-            reach = np.array([[y - row["low"], row["high"] - y] if row["size"] else [np.nan] * 2
-                              for y, row in zip(share, rows, strict=True)])
-            above.errorbar(x, share, np.maximum(reach, 0).T, fmt=_marker(label), markersize=4, capsize=2,
-                           color=look["color"], linestyle="none", label=label)
-            fit, = _part(result, "fit", scene=scene, solver=label)
+            reach = np.array(
+                [
+                    [y - row["low"], row["high"] - y] if row["size"] else [np.nan] * 2
+                    for y, row in zip(share, rows, strict=True)
+                ]
+            )
+            above.errorbar(
+                x,
+                share,
+                np.maximum(reach, 0).T,
+                fmt=_marker(label),
+                markersize=4,
+                capsize=2,
+                color=look["color"],
+                linestyle="none",
+                label=label,
+            )
+            (fit,) = _part(result, "fit", scene=scene, solver=label)
             if fit["median"] is not None:
                 fine = np.geomspace(x.min() * 0.9, x.max() * 1.1, 200)
                 above.plot(fine, norm.cdf(np.log(fine / fit["median"]) / fit["dispersion"]), **look)
             if label != REFERENCE:
                 pairs = _part(result, "pair", scene=scene, solver=label)
-                below.plot([row["intensity"] for row in pairs],
-                           [100 * (row["only_a"] + row["only_b"]) / _size(row) for row in pairs],
-                           marker=_marker(label), markersize=4, **look)
+                below.plot(
+                    [row["intensity"] for row in pairs],
+                    [100 * (row["only_a"] + row["only_b"]) / _size(row) for row in pairs],
+                    marker=_marker(label),
+                    markersize=4,
+                    **look,
+                )
         above.set(title=_scene_name(result, scene), ylim=(-0.03, 1.03), ylabel="share of motions that overturn [-]")
         above.legend(fontsize="small")
         below.set(xlabel="peak ground acceleration [g]", ylabel="disagreements [% of motions]")
@@ -76,11 +109,14 @@ def _asked(result):
     s = result.settings
     scenes = "; ".join(
         f"{_scene_name(result, name)}, peak ground acceleration {', '.join(f'{x:.3g}' for x in scene['intensities'])} g"
-        for name, scene in s["scenes"].items())
-    return (f"Over a whole motion the rocking of a block cannot be predicted point by point; its odds can. "
-            f"{s['motions']} synthetic motions (near-fault pulse and noise, seeds {s['seeds'][0]} to "
-            f"{s['seeds'][1]}), each scaled to several intensities, were given to {len(s['solvers'])} solvers at "
-            f"their default settings: {'; '.join(s['solvers'])}. Scenes: {scenes}.")
+        for name, scene in s["scenes"].items()
+    )
+    return (
+        f"Over a whole motion the rocking of a block cannot be predicted point by point; its odds can. "
+        f"{s['motions']} synthetic motions (near-fault pulse and noise, seeds {s['seeds'][0]} to "
+        f"{s['seeds'][1]}), each scaled to several intensities, were given to {len(s['solvers'])} solvers at "
+        f"their default settings: {'; '.join(s['solvers'])}. Scenes: {scenes}."
+    )
 
 
 def _compared(result):
@@ -93,10 +129,16 @@ def _verdict(result, label):
     """May I trust it for the probability of overturning?"""
     pairs = _part(result, "pair", solver=label)
     differ, size = sum(row["only_a"] + row["only_b"] for row in pairs), sum(_size(row) for row in pairs)
-    apart = [_scene_name(result, scene) for scene in result.settings["scenes"]
-             if any(row["p_holm"] <= LEVEL for row in pairs if row["scene"] == scene)]
-    words = f"is not to be trusted for the probability of overturning ({', '.join(apart)})" if apart else (
-        "may be trusted for the probability of overturning, as no difference was found")
+    apart = [
+        _scene_name(result, scene)
+        for scene in result.settings["scenes"]
+        if any(row["p_holm"] <= LEVEL for row in pairs if row["scene"] == scene)
+    ]
+    words = (
+        f"is not to be trusted for the probability of overturning ({', '.join(apart)})"
+        if apart
+        else ("may be trusted for the probability of overturning, as no difference was found")
+    )
     return f"{label} {words}: {differ} of {size} outcomes differ from the analytic model's."
 
 
@@ -108,18 +150,25 @@ def _answers(result, scene):
         size = sum(_size(row) for row in pairs)
         smallest = min(row["p_holm"] for row in pairs)
         worst = max(pairs, key=lambda row: abs(row["difference"]))
-        counts = (f"{only_a + only_b} of {size} outcomes differ ({only_a} overturn in the analytic model alone, "
-                  f"{only_b} in {label} alone); smallest exact McNemar p over the intensities, adjusted after Holm, "
-                  f"{number(smallest, 2)}; largest difference of the probability {_points(worst['difference'])} "
-                  f"percentage points, at {worst['intensity']:.3g} g")
+        counts = (
+            f"{only_a + only_b} of {size} outcomes differ ({only_a} overturn in the analytic model alone, "
+            f"{only_b} in {label} alone); smallest exact McNemar p over the intensities, adjusted after Holm, "
+            f"{number(smallest, 2)}; largest difference of the probability {_points(worst['difference'])} "
+            f"percentage points, at {worst['intensity']:.3g} g"
+        )
         if smallest <= LEVEL:
-            yield (f"{_scene_name(result, scene)}, {label}: they differ; do not trust it. {counts}."
-                   f"{_cause(result, scene, label)}")
+            yield (
+                f"{_scene_name(result, scene)}, {label}: they differ; do not trust it. {counts}."
+                f"{_cause(result, scene, label)}"
+            )
             continue
         least = [row["detectable_difference"] for row in pairs]
-        bound = ("no difference, however large, could have been found so" if None in least else
-                 f"at each intensity by itself, a difference of {number(100 * max(least), 2)} percentage points or "
-                 "more would have been found with at least 80 % probability, before the adjustment")
+        bound = (
+            "no difference, however large, could have been found so"
+            if None in least
+            else f"at each intensity by itself, a difference of {number(100 * max(least), 2)} percentage points or "
+            "more would have been found with at least 80 % probability, before the adjustment"
+        )
         yield f"{_scene_name(result, scene)}, {label}: no difference found at this sample size. {counts}; {bound}."
 
 
@@ -128,20 +177,27 @@ def _cause(result, scene, label):
     friction, steepness = result.settings["first_script_friction"], result.settings["scenes"][scene]["tan_slenderness"]
     if not label.endswith("first-script") or friction >= steepness:
         return ""
-    return (f" Its friction, {friction:g} by PyBullet's defaults, is below tan(slenderness) = {number(steepness)}: the "
-            "block slides where it should lift.")
+    return (
+        f" Its friction, {friction:g} by PyBullet's defaults, is below tan(slenderness) = {number(steepness)}: the "
+        "block slides where it should lift."
+    )
 
 
 def _checks(result):
     undecided = sum(row.get("undecided", row.get("decided_later")) for row in _part(result, "check"))
     runs = sum(row["runs"] for row in _part(result, "check"))
     failed = len(_part(result, "failure"))
-    unfitted = "".join(f" No curve fits {row['solver']} ({row['scene']}): {row['reason']}."
-                       for row in _part(result, "fit") if row["median"] is None)
-    return (f"Runs of the analytic model whose outcome was not decided at their end: {undecided} of {runs}. "
-            f"Runs that failed: {failed}. “{_twin(result)}” is the analytic "
-            f"model with its restitution changed by 1 part in {1 / result.settings['twin']:.0f}: disagreements as many "
-            "as it has with itself are nothing to blame an engine for." + unfitted)
+    unfitted = "".join(
+        f" No curve fits {row['solver']} ({row['scene']}): {row['reason']}."
+        for row in _part(result, "fit")
+        if row["median"] is None
+    )
+    return (
+        f"Runs of the analytic model whose outcome was not decided at their end: {undecided} of {runs}. "
+        f"Runs that failed: {failed}. “{_twin(result)}” is the analytic "
+        f"model with its restitution changed by 1 part in {1 / result.settings['twin']:.0f}: disagreements as many "
+        "as it has with itself are nothing to blame an engine for." + unfitted
+    )
 
 
 def _twin(result):
@@ -152,30 +208,65 @@ def _curve_table(result, scene):
     labels = list(dict.fromkeys(row["solver"] for row in _part(result, "curve", scene=scene)))
     rows = []
     for label in labels:
-        cells = [f"{row['overturned']}/{row['size']} ({percent(row['low'])} to {percent(row['high'])})" if row["size"]
-                 else "–" for row in _part(result, "curve", scene=scene, solver=label)]
-        fit, = _part(result, "fit", scene=scene, solver=label)
+        cells = [
+            f"{row['overturned']}/{row['size']} ({percent(row['low'])} to {percent(row['high'])})"
+            if row["size"]
+            else "–"
+            for row in _part(result, "curve", scene=scene, solver=label)
+        ]
+        (fit,) = _part(result, "fit", scene=scene, solver=label)
         median, dispersion = "no fit", "–"
         if fit["median"] is not None:
-            median, dispersion = (f"{number(fit[key])} ({number(fit[key + '_interval'][0])} to "
-                                  f"{number(fit[key + '_interval'][1])})" for key in ("median", "dispersion"))
+            median, dispersion = (
+                f"{number(fit[key])} ({number(fit[key + '_interval'][0])} to {number(fit[key + '_interval'][1])})"
+                for key in ("median", "dispersion")
+            )
         rows.append([label, *cells, median, dispersion, number(fit["cpu_per_run"], 2)])
-    return Table(f"{_scene_name(result, scene)}: motions that overturn (95 % Wilson interval), lognormal fit (its "
-                 "intervals take the intensities as independent and are indicative), and CPU time",
-                 ("solver", *(f"{x:.3g} g" for x in result.settings["scenes"][scene]["intensities"]),
-                  "median [g]", "dispersion [-]", "CPU time per run [s]"), rows)
+    return Table(
+        f"{_scene_name(result, scene)}: motions that overturn (95 % Wilson interval), lognormal fit (its "
+        "intervals take the intensities as independent and are indicative), and CPU time",
+        (
+            "solver",
+            *(f"{x:.3g} g" for x in result.settings["scenes"][scene]["intensities"]),
+            "median [g]",
+            "dispersion [-]",
+            "CPU time per run [s]",
+        ),
+        rows,
+    )
 
 
 def _pair_table(result, scene):
     rows = []
     for row in _part(result, "pair", scene=scene):
-        rows.append([f"{row['solver']}, {row['intensity']:.3g} g", str(row["both_stand"]), str(row["both_overturn"]),
-                     str(row["only_a"]), str(row["only_b"]), number(row["kappa"], 3), number(row["p_value"], 2),
-                     number(row["p_holm"], 2), "yes" if row["p_holm"] <= LEVEL else "not found"])
-    return Table(f"{_scene_name(result, scene)}: the same motion in the analytic model and in another solver",
-                 ("solver, intensity", "both stand [-]", "both overturn [-]", "only the analytic model overturns [-]",
-                  "only this solver overturns [-]", "Cohen's kappa [-]", "exact McNemar p [-]", "p after Holm [-]",
-                  "they differ"), rows)
+        rows.append(
+            [
+                f"{row['solver']}, {row['intensity']:.3g} g",
+                str(row["both_stand"]),
+                str(row["both_overturn"]),
+                str(row["only_a"]),
+                str(row["only_b"]),
+                number(row["kappa"], 3),
+                number(row["p_value"], 2),
+                number(row["p_holm"], 2),
+                "yes" if row["p_holm"] <= LEVEL else "not found",
+            ]
+        )
+    return Table(
+        f"{_scene_name(result, scene)}: the same motion in the analytic model and in another solver",
+        (
+            "solver, intensity",
+            "both stand [-]",
+            "both overturn [-]",
+            "only the analytic model overturns [-]",
+            "only this solver overturns [-]",
+            "Cohen's kappa [-]",
+            "exact McNemar p [-]",
+            "p after Holm [-]",
+            "they differ",
+        ),
+        rows,
+    )
 
 
 def _scene_name(result, scene):
@@ -185,8 +276,11 @@ def _scene_name(result, scene):
 
 
 def _alt(result):
-    medians = [f"{row['solver']} {number(row['median'])} g ({row['scene']})" for row in _part(result, "fit")
-               if row["median"] is not None]
+    medians = [
+        f"{row['solver']} {number(row['median'])} g ({row['scene']})"
+        for row in _part(result, "fit")
+        if row["median"] is not None
+    ]
     return "Rising curves of the share of motions that overturn against intensity. Medians: " + "; ".join(medians) + "."
 
 
@@ -209,5 +303,6 @@ def _style(label):
 
 
 def _part(result, part, **wanted):
-    return [row for row in result.rows if row["part"] == part
-            and all(row[key] == value for key, value in wanted.items())]
+    return [
+        row for row in result.rows if row["part"] == part and all(row[key] == value for key, value in wanted.items())
+    ]

@@ -10,5 +10,10 @@ def _figures(result):
     return {"maps": draw_maps(result), "shifts": draw_shifts(result), "knobs": draw_knobs(result)}
 
 
-STUDY = Study("overturning", "Overturning boundaries under pulses, on rigid ground and isolated, solver by solver.",
-              plan, _figures, section)
+STUDY = Study(
+    "overturning",
+    "Overturning boundaries under pulses, on rigid ground and isolated, solver by solver.",
+    plan,
+    _figures,
+    section,
+)

@@ -37,21 +37,32 @@ def defaults_of(engines):
 
 def ladders_of(engines):
     """(engine, variant, knob, values) of all variants but first scripts: step, accuracy or stiffness."""
-    return [(name, variant, kind.knob, kind.ladder) for name in engines
-            for variant, kind in get_engine(name).variants.items() if kind.rung != "first script"
-            and not kind.takes_restitution]
+    return [
+        (name, variant, kind.knob, kind.ladder)
+        for name in engines
+        for variant, kind in get_engine(name).variants.items()
+        if kind.rung != "first script" and not kind.takes_restitution
+    ]
 
 
 def first_scripts_of(engines):
     """The same of the first scripts, at their default."""
-    return [(name, variant, kind.knob, (kind.default,)) for name in engines
-            for variant, kind in get_engine(name).variants.items() if kind.rung == "first script"]
+    return [
+        (name, variant, kind.knob, (kind.default,))
+        for name in engines
+        for variant, kind in get_engine(name).variants.items()
+        if kind.rung == "first script"
+    ]
 
 
 def held_of(engines):
     """(engine, variant, settings) of the variants that hold the corner down, as the analytic model does."""
-    return [(name, variant, {kind.knob: kind.default / 10}) for name in engines
-            for variant, kind in get_engine(name).variants.items() if kind.takes_restitution]
+    return [
+        (name, variant, {kind.knob: kind.default / 10})
+        for name in engines
+        for variant, kind in get_engine(name).variants.items()
+        if kind.takes_restitution
+    ]
 
 
 def measure(case, response):
@@ -72,8 +83,10 @@ def plan(ask):
     failed or undecided), whether of the scan.
     """
     quick, engines = ask.quick, defaults_of(ask.engines)
-    grounds = {name: load_scene(shipped).with_(block=block, motion=None, duration=None)
-               for name, (shipped, block) in GROUNDS.items()}
+    grounds = {
+        name: load_scene(shipped).with_(block=block, motion=None, duration=None)
+        for name, (shipped, block) in GROUNDS.items()
+    }
     shapes = SHAPES[:1] if quick else SHAPES
     frequencies = (2.0, 4.0) if quick else FREQUENCIES
     arrays = _maps(grounds, shapes, quick)
@@ -82,49 +95,77 @@ def plan(ask):
         for shape in shapes:
             say(f"analytic boundaries: {ground}, {shape}")
             found[ground, shape] = dict(zip(frequencies, edges(scene, shape, frequencies), strict=True))
-    rows = [{"part": "edge", "ground": ground, **vars(edge)} for (ground, _), columns in found.items()
-            for column in columns.values() for edge in column]
+    rows = [
+        {"part": "edge", "ground": ground, **vars(edge)}
+        for (ground, _), columns in found.items()
+        for column in columns.values()
+        for edge in column
+    ]
     log = _Log(engines, grounds)
     for engine in engines:
         yield from log.scan(engine, found, SCAN[::4] if quick else SCAN)
     rows += yield from _search(log, found, engines, "shift", LADDER, TOLERANCE)
-    pulled = {key: {frequency: [edge for edge in column if edge.min_normal < 0]
-                    for frequency, column in columns.items()} for key, columns in found.items()}
+    pulled = {
+        key: {frequency: [edge for edge in column if edge.min_normal < 0] for frequency, column in columns.items()}
+        for key, columns in found.items()
+    }
     rows += yield from _search(log, pulled, held_of(ask.engines), "held", LADDER, TOLERANCE)
     arrays["points"], judged = _judge(log, grounds, shapes, found)
     rows += judged
     settings = _settings(ask, grounds, shapes, frequencies)
     yield Found(settings, rows + log.failures, arrays)
-    chosen = {(ground, "one-sine"): {f: column for f, column in found[ground, "one-sine"].items()
-                                     if f in KNOB_FREQUENCIES[:1 if quick else None]} for ground in grounds}
+    chosen = {
+        (ground, "one-sine"): {
+            f: column
+            for f, column in found[ground, "one-sine"].items()
+            if f in KNOB_FREQUENCIES[: 1 if quick else None]
+        }
+        for ground in grounds
+    }
     for solver, variant, knob, values in (*first_scripts_of(ask.engines), TIME_STEPPING, *ladders_of(ask.engines)):
         for value in values[1:2] if quick and len(values) > 1 else values:
-            rows += yield from _search(log, chosen, [(solver, variant, {knob: value})], "knob", KNOB_LADDER,
-                                       KNOB_TOLERANCE)
+            rows += yield from _search(
+                log, chosen, [(solver, variant, {knob: value})], "knob", KNOB_LADDER, KNOB_TOLERANCE
+            )
         yield Found(settings, rows + log.failures, arrays)
     return Found(settings, rows + log.failures, arrays)
 
 
 def _settings(ask, grounds, shapes, frequencies):
     """What the study was asked, for its result file."""
-    return {"quick": ask.quick, "grounds": {
-        name: {"scene": GROUNDS[name][0], "block": scene.block.model_dump(), "omega_r": scene.rocking_frequency,
-               "unit": scene.gravity * math.tan(scene.block.slenderness),
-               "tan_slenderness": math.tan(scene.block.slenderness),
-               "base": scene.base.model_dump() if scene.base else None,
-               "bearings": scene.bearings.model_dump() if scene.bearings else None}
-        for name, scene in grounds.items()},
-        "shapes": list(shapes), "frequencies": list(frequencies), "scan": list(SCAN[::4] if ask.quick else SCAN),
-        "amplitudes": [LOWEST, HIGHEST], "band": BAND, "tolerance": TOLERANCE,
+    return {
+        "quick": ask.quick,
+        "grounds": {
+            name: {
+                "scene": GROUNDS[name][0],
+                "block": scene.block.model_dump(),
+                "omega_r": scene.rocking_frequency,
+                "unit": scene.gravity * math.tan(scene.block.slenderness),
+                "tan_slenderness": math.tan(scene.block.slenderness),
+                "base": scene.base.model_dump() if scene.base else None,
+                "bearings": scene.bearings.model_dump() if scene.bearings else None,
+            }
+            for name, scene in grounds.items()
+        },
+        "shapes": list(shapes),
+        "frequencies": list(frequencies),
+        "scan": list(SCAN[::4] if ask.quick else SCAN),
+        "amplitudes": [LOWEST, HIGHEST],
+        "band": BAND,
+        "tolerance": TOLERANCE,
         "knob_tolerance": KNOB_TOLERANCE,
         "solvers": [solver_name(*one) for one in defaults_of(ask.engines)],
         "held": ", ".join(_label(one) for one in held_of(ask.engines)),
-        "knobs": [[solver, variant, knob] for solver, variant, knob, _ in
-                  (TIME_STEPPING, *ladders_of(ask.engines), *first_scripts_of(ask.engines))],
-        "default_knobs": {solver_name(*one): get_engine(one[0]).variants[one[1]].default
-                          for one in defaults_of(ask.engines)},
+        "knobs": [
+            [solver, variant, knob]
+            for solver, variant, knob, _ in (TIME_STEPPING, *ladders_of(ask.engines), *first_scripts_of(ask.engines))
+        ],
+        "default_knobs": {
+            solver_name(*one): get_engine(one[0]).variants[one[1]].default for one in defaults_of(ask.engines)
+        },
         "first_scripts": [solver_name(*one[:2]) for one in first_scripts_of(ask.engines)],
-        "first_script_friction": FIRST_SCRIPT_FRICTION}
+        "first_script_friction": FIRST_SCRIPT_FRICTION,
+    }
 
 
 def _maps(grounds, shapes, quick):
@@ -153,8 +194,11 @@ class _Log:
         for (solver, variant, *settings), ground, shape, frequency, amplitude, _ in points:
             scene = self._grounds[ground]
             motion = pulse(scene, shape, frequency, amplitude)
-            cases.append(Case(scene.with_(motion=motion), solver, variant,
-                              {"history": False, **(settings[0] if settings else {})}))
+            cases.append(
+                Case(
+                    scene.with_(motion=motion), solver, variant, {"history": False, **(settings[0] if settings else {})}
+                )
+            )
         answers = []
         rows = yield Batch(cases, measure, label)
         for point, row in zip(points, rows, strict=True):
@@ -164,10 +208,22 @@ class _Log:
                 answer = row.values["outcome"] == "overturns"
             if answer is None:
                 failure = row.failure or {
-                    "kind": "undecided", "reason": "the longest run ends without a certain outcome",
-                    "message": f"tilt {row.values['end_tilt']:.6g} rad"}
-                self.failures.append({"part": "failure", "solver": _label(engine), "ground": ground, "shape": shape,
-                                      "frequency": frequency, "amplitude": amplitude, "min_normal": normal, **failure})
+                    "kind": "undecided",
+                    "reason": "the longest run ends without a certain outcome",
+                    "message": f"tilt {row.values['end_tilt']:.6g} rad",
+                }
+                self.failures.append(
+                    {
+                        "part": "failure",
+                        "solver": _label(engine),
+                        "ground": ground,
+                        "shape": shape,
+                        "frequency": frequency,
+                        "amplitude": amplitude,
+                        "min_normal": normal,
+                        **failure,
+                    }
+                )
             if engine in self.engines:
                 self.points[engine, ground, shape, frequency, amplitude] = answer, scan
             answers.append(answer)
@@ -187,8 +243,13 @@ class _Log:
 
 def _search(log, found, engines, part, ladder, tolerance):
     """Rows of the solvers' boundaries beside the analytic ones in `found`."""
-    jobs = [(engine, ground, edge) for engine in engines for (ground, _), columns in found.items()
-            for column in columns.values() for edge in column]
+    jobs = [
+        (engine, ground, edge)
+        for engine in engines
+        for (ground, _), columns in found.items()
+        for column in columns.values()
+        for edge in column
+    ]
 
     label = f"{part}: {', '.join(dict.fromkeys(_label(engine) for engine in engines))}"
     searches, answers = together([locate(edge, ladder, tolerance) for _, _, edge in jobs]), None
@@ -203,11 +264,22 @@ def _search(log, found, engines, part, ladder, tolerance):
             engine, ground, edge = jobs[index]
             points.append((engine, ground, edge.shape, edge.frequency, float(amplitude), edge.min_normal))
         answers = yield from log.run(points, label)
-    return [{"part": part, "solver": solver_name(*engine[:2]), "settings": engine[2] if engine[2:] else {},
-             "ground": ground, "shape": edge.shape, "frequency": edge.frequency, "amplitude": edge.amplitude,
-             "rises": edge.rises, "mode": edge.mode, "room": min(1 - edge.low / edge.amplitude,
-                                                                 edge.high / edge.amplitude - 1), **vars(one)}
-            for (engine, ground, edge), one in zip(jobs, located, strict=True)]
+    return [
+        {
+            "part": part,
+            "solver": solver_name(*engine[:2]),
+            "settings": engine[2] if engine[2:] else {},
+            "ground": ground,
+            "shape": edge.shape,
+            "frequency": edge.frequency,
+            "amplitude": edge.amplitude,
+            "rises": edge.rises,
+            "mode": edge.mode,
+            "room": min(1 - edge.low / edge.amplitude, edge.high / edge.amplitude - 1),
+            **vars(one),
+        }
+        for (engine, ground, edge), one in zip(jobs, located, strict=True)
+    ]
 
 
 def _judge(log, grounds, shapes, found):
@@ -226,8 +298,12 @@ def _judge(log, grounds, shapes, found):
     normal = np.array([response.min_normal_ratio for response in responses])
     answers = [log.points[key][0] for key in keys]
     scanned = np.array([log.points[key][1] for key in keys], dtype=bool)
-    distance = np.array([min((abs(amplitude / edge.amplitude - 1) for edge in found[ground, shape][frequency]),
-                             default=math.inf) for _, ground, shape, frequency, amplitude in keys])
+    distance = np.array(
+        [
+            min((abs(amplitude / edge.amplitude - 1) for edge in found[ground, shape][frequency]), default=math.inf)
+            for _, ground, shape, frequency, amplitude in keys
+        ]
+    )
     decided = np.array([answer is not None for answer in answers], dtype=bool)
     own = np.array([bool(answer) for answer in answers], dtype=bool)
     rows = []
@@ -235,24 +311,61 @@ def _judge(log, grounds, shapes, found):
         for ground in grounds:
             here = np.array([key[0] == engine and key[1] == ground for key in keys]) & decided
             outside = distance > BAND
-            for region, mask in (("scan", scanned), ("outside", outside & (normal >= 0)),
-                                 ("pulled", outside & (normal < 0)), ("inside", ~outside)):
+            for region, mask in (
+                ("scan", scanned),
+                ("outside", outside & (normal >= 0)),
+                ("pulled", outside & (normal < 0)),
+                ("inside", ~outside),
+            ):
                 chosen = here & mask
                 if not chosen.any():
                     continue
                 table = confusion(reference[chosen], own[chosen])
                 kappa, low, high = cohen_kappa(table.table())
-                rows.append({"part": "confusion", "solver": _label(engine), "ground": ground, "region": region,
-                             **vars(table), "kappa": kappa, "kappa_low": low, "kappa_high": high})
+                rows.append(
+                    {
+                        "part": "confusion",
+                        "solver": _label(engine),
+                        "ground": ground,
+                        "region": region,
+                        **vars(table),
+                        "kappa": kappa,
+                        "kappa_low": low,
+                        "kappa_high": high,
+                    }
+                )
     for k in np.flatnonzero(decided & (distance > BAND) & (reference != own)):
         engine, ground, shape, frequency, amplitude = keys[k]
-        rows.append({"part": "surprise", "solver": _label(engine), "ground": ground, "shape": shape,
-                     "frequency": frequency, "amplitude": amplitude, "analytic_overturns": bool(reference[k]),
-                     "distance": float(distance[k]), "min_normal": float(normal[k])})
+        rows.append(
+            {
+                "part": "surprise",
+                "solver": _label(engine),
+                "ground": ground,
+                "shape": shape,
+                "frequency": frequency,
+                "amplitude": amplitude,
+                "analytic_overturns": bool(reference[k]),
+                "distance": float(distance[k]),
+                "min_normal": float(normal[k]),
+            }
+        )
     names = list(grounds)
-    points = np.array([(names.index(ground), shapes.index(shape), log.engines.index(engine), frequency, amplitude,
-                        reference[k], own[k] if decided[k] else -1, scanned[k])
-                       for k, (engine, ground, shape, frequency, amplitude) in enumerate(keys)], dtype=float)
+    points = np.array(
+        [
+            (
+                names.index(ground),
+                shapes.index(shape),
+                log.engines.index(engine),
+                frequency,
+                amplitude,
+                reference[k],
+                own[k] if decided[k] else -1,
+                scanned[k],
+            )
+            for k, (engine, ground, shape, frequency, amplitude) in enumerate(keys)
+        ],
+        dtype=float,
+    )
     return points, rows
 
 

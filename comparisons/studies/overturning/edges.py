@@ -58,17 +58,22 @@ def pulse(scene, shape, frequency, amplitude):
 
 def edges(scene, shape, frequencies):
     """All `Edge`s of the analytic model, a list for each frequency."""
+
     def evaluate(batch):
-        scenes = [scene.with_(motion=pulse(scene, shape, frequencies[index], math.exp(point)), duration=None)
-                  for index, point in batch]
+        scenes = [
+            scene.with_(motion=pulse(scene, shape, frequencies[index], math.exp(point)), duration=None)
+            for index, point in batch
+        ]
         outcomes = simulate_many(scenes)
         if outcomes.failed.any():
             raise RuntimeError(f"the analytic model failed on {scenes[int(outcomes.failed.argmax())].motion.label}")
         return np.where(outcomes.overturns, outcomes.impacts, -1).tolist()
 
     columns = drive([boundaries(math.log(LOWEST), math.log(HIGHEST), SCAN, TOLERANCE) for _ in frequencies], evaluate)
-    return [_edges(scene, shape, frequency, [one for one in column.transitions if -1 in (one.before, one.after)])
-            for frequency, column in zip(frequencies, columns, strict=True)]
+    return [
+        _edges(scene, shape, frequency, [one for one in column.transitions if -1 in (one.before, one.after)])
+        for frequency, column in zip(frequencies, columns, strict=True)
+    ]
 
 
 def _edges(scene, shape, frequency, transitions):
@@ -79,9 +84,18 @@ def _edges(scene, shape, frequency, transitions):
     for k, (one, amplitude) in enumerate(zip(transitions, amplitudes, strict=True)):
         rises = one.before == -1
         beside = amplitude * (1 + BESIDE if rises else 1 - BESIDE)
-        found.append(Edge(shape, frequency, amplitude, rises, int(one.after if rises else one.before),
-                          limits[k], limits[k + 1],
-                          least_normal(scene, pulse(scene, shape, frequency, beside))))
+        found.append(
+            Edge(
+                shape,
+                frequency,
+                amplitude,
+                rises,
+                int(one.after if rises else one.before),
+                limits[k],
+                limits[k + 1],
+                least_normal(scene, pulse(scene, shape, frequency, beside)),
+            )
+        )
     return found
 
 
@@ -126,14 +140,21 @@ def locate(edge, ladder, tolerance):
     failed = sum(answer is None for answer in known.values())
     if bracket is None:
         seen = {answer for answer in known.values() if answer is not None}
-        reason = ("no run was decided" if not seen else "overturns on both sides" if seen == {True} else
-                  "stands on both sides" if seen == {False} else "outcomes the other way round")
+        reason = (
+            "no run was decided"
+            if not seen
+            else "overturns on both sides"
+            if seen == {True}
+            else "stands on both sides"
+            if seen == {False}
+            else "outcomes the other way round"
+        )
         reach = f"from {100 * min(known):+.3g} to {100 * max(known):+.3g} %"
         return Located(None, None, f"{reason}, {reach}" + (f"; {failed} undecided" if failed else ""), len(known))
     low, high = bracket
     while high - low > tolerance:
         middle = low + CUT * (high - low)
-        answer, = yield [edge.amplitude * (1 + middle)]
+        (answer,) = yield [edge.amplitude * (1 + middle)]
         known[middle] = answer
         if answer is None:
             break

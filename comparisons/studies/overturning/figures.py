@@ -24,14 +24,27 @@ def draw_maps(result):
             axis = axes[i, j]
             impacts = result.arrays[f"{ground}/{shape}"]
             mode = np.where(impacts < 0, 0, np.minimum(impacts, 2) + 1)
-            axis.pcolormesh(result.arrays["frequency"], result.arrays["amplitude"], mode, vmin=-0.5, vmax=3.5,
-                            cmap=ListedColormap(MODES), shading="nearest", rasterized=True)
+            axis.pcolormesh(
+                result.arrays["frequency"],
+                result.arrays["amplitude"],
+                mode,
+                vmin=-0.5,
+                vmax=3.5,
+                cmap=ListedColormap(MODES),
+                shading="nearest",
+                rasterized=True,
+            )
             for place, engine in enumerate(_engines(result)):
                 rows = _found(result, engine, ground=ground, shape=shape)
-                axis.plot([row["frequency"] for row in rows],
-                          [row["amplitude"] * (1 + row["shift"]) for row in rows], marker(engine),
-                          color=style(engine)["color"], markersize=max(6.5 - 2 * place, 2.0), markerfacecolor="none",
-                          markeredgewidth=1.3)
+                axis.plot(
+                    [row["frequency"] for row in rows],
+                    [row["amplitude"] * (1 + row["shift"]) for row in rows],
+                    marker(engine),
+                    color=style(engine)["color"],
+                    markersize=max(6.5 - 2 * place, 2.0),
+                    markerfacecolor="none",
+                    markeredgewidth=1.3,
+                )
             here = (points[:, 0] == i) & (points[:, 1] == j) & (points[:, 7] == 1)
             wrong = here & (points[:, 6] >= 0) & (points[:, 5] != points[:, 6])
             axis.plot(points[here, 3], points[here, 4], ".", color="0.35", markersize=2.5)
@@ -44,14 +57,27 @@ def draw_maps(result):
     for axis in axes[-1]:
         axis.set_xlabel("pulse frequency / $ω_r$ [-]")
     names = ("stands", "overturns without impact", "overturns after one impact", "overturns after more impacts")
-    handles = [Patch(facecolor=colour, edgecolor="0.5", label=f"analytic: {name}")
-               for colour, name in zip(MODES, names, strict=True)]
-    handles += [Line2D([], [], marker=marker(engine), color=style(engine)["color"], markerfacecolor="none",
-                       linestyle="none", label=f"{engine}: boundary") for engine in _engines(result)]
-    handles += [Line2D([], [], marker=".", color="0.35", linestyle="none", label="scanned with all engines"),
-                Line2D([], [], marker="x", color="#D55E00", linestyle="none", label="scanned, outcomes differ")]
-    figure.legend(handles=handles, loc="outside lower center", ncols=4 if len(s["shapes"]) > 1 else 2,
-                  fontsize="small")
+    handles = [
+        Patch(facecolor=colour, edgecolor="0.5", label=f"analytic: {name}")
+        for colour, name in zip(MODES, names, strict=True)
+    ]
+    handles += [
+        Line2D(
+            [],
+            [],
+            marker=marker(engine),
+            color=style(engine)["color"],
+            markerfacecolor="none",
+            linestyle="none",
+            label=f"{engine}: boundary",
+        )
+        for engine in _engines(result)
+    ]
+    handles += [
+        Line2D([], [], marker=".", color="0.35", linestyle="none", label="scanned with all engines"),
+        Line2D([], [], marker="x", color="#D55E00", linestyle="none", label="scanned, outcomes differ"),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=4 if len(s["shapes"]) > 1 else 2, fontsize="small")
     return figure
 
 
@@ -69,14 +95,22 @@ def draw_shifts(result):
             for rises in (True, False):
                 rows = _found(result, engine, ground=ground, rises=rises)
                 beside = 0.24 * (place - 0.5 * (len(engines) - 1))
-                axis.errorbar([row["frequency"] + beside for row in rows],
-                              [100 * row["shift"] for row in rows], [100 * row["half_width"] for row in rows],
-                              fmt=marker(engine), color=style(engine)["color"], fillstyle=fills[rises], markersize=6,
-                              linestyle="none", elinewidth=1,
-                              label=f"{engine}: overturning {'begins' if rises else 'ends (safe gap)'}")
+                axis.errorbar(
+                    [row["frequency"] + beside for row in rows],
+                    [100 * row["shift"] for row in rows],
+                    [100 * row["half_width"] for row in rows],
+                    fmt=marker(engine),
+                    color=style(engine)["color"],
+                    fillstyle=fills[rises],
+                    markersize=6,
+                    linestyle="none",
+                    elinewidth=1,
+                    label=f"{engine}: overturning {'begins' if rises else 'ends (safe gap)'}",
+                )
         axis.set_yscale("symlog", linthresh=0.01)
-        axis.set_yticks([-5, -0.5, -0.1, -0.01, 0, 0.01, 0.1, 0.5],
-                        ["−5", "−0.5", "−0.1", "−0.01", "0", "0.01", "0.1", "0.5"])
+        axis.set_yticks(
+            [-5, -0.5, -0.1, -0.01, 0, 0.01, 0.1, 0.5], ["−5", "−0.5", "−0.1", "−0.01", "0", "0.01", "0.1", "0.5"]
+        )
         axis.minorticks_off()
         axis.set(title=ground, xlabel="pulse frequency / $ω_r$ [-]")
         axis.grid(color="0.88", axis="y")
@@ -95,15 +129,30 @@ def draw_knobs(result):
     for axis, ((solver, knob), values) in zip(axes, curves.items(), strict=True):
         x = sorted(values)
         for shade, (name, measure) in zip(SHADES[1:], (("largest", np.max), ("median", np.median)), strict=False):
-            y = [100 * measure(np.abs(found)) if len(found) else np.nan for found in
-                 (np.array([row["shift"] for row in values[value] if row["shift"] is not None]) for value in x)]
-            axis.plot(x, y, marker="o" if name == "largest" else "^", color=shade, label=name,
-                      linestyle="-" if name == "largest" else "--")
+            y = [
+                100 * measure(np.abs(found)) if len(found) else np.nan
+                for found in (
+                    np.array([row["shift"] for row in values[value] if row["shift"] is not None]) for value in x
+                )
+            ]
+            axis.plot(
+                x,
+                y,
+                marker="o" if name == "largest" else "^",
+                color=shade,
+                label=name,
+                linestyle="-" if name == "largest" else "--",
+            )
         for value in x:
             lost = sum(row["shift"] is None for row in values[value])
             if lost:
-                axis.annotate(f"{lost} of {len(values[value])}\nnot found", (value, LIMIT), fontsize="x-small",
-                              ha="center", va="bottom")
+                axis.annotate(
+                    f"{lost} of {len(values[value])}\nnot found",
+                    (value, LIMIT),
+                    fontsize="x-small",
+                    ha="center",
+                    va="bottom",
+                )
         axis.axhline(LIMIT, color="0.6", linewidth=0.8, linestyle=":")
         unit = {"step": "step [s]", "stiffness": "stiffness [N/m]"}.get(knob, f"{knob} [-]")
         axis.set(xscale="log", yscale="log", xlabel=unit, title=solver.replace(", ", "\n"))
@@ -118,14 +167,17 @@ def knob_curves(result):
     curves = {}
     keys = {(row["ground"], row["shape"], row["frequency"]) for row in _rows(result, "knob")}
     for row in _rows(result, "knob"):
-        (knob, value), = row["settings"].items()
+        ((knob, value),) = row["settings"].items()
         if row["solver"] not in result.settings["first_scripts"]:
             curves.setdefault((row["solver"], knob), {}).setdefault(value, []).append(row)
     for solver, knob in curves:
         default = result.settings["default_knobs"].get(solver)
         if default is not None:
-            curves[solver, knob][default] = [row for row in _rows(result, "shift", solver=solver)
-                                             if (row["ground"], row["shape"], row["frequency"]) in keys]
+            curves[solver, knob][default] = [
+                row
+                for row in _rows(result, "shift", solver=solver)
+                if (row["ground"], row["shape"], row["frequency"]) in keys
+            ]
     return curves
 
 
@@ -136,10 +188,14 @@ def _engines(result):
 
 def _found(result, engine, **wanted):
     """The boundaries that an engine found."""
-    return [row for row in _rows(result, "shift", **wanted)
-            if row["solver"].partition(",")[0] == engine and row["shift"] is not None]
+    return [
+        row
+        for row in _rows(result, "shift", **wanted)
+        if row["solver"].partition(",")[0] == engine and row["shift"] is not None
+    ]
 
 
 def _rows(result, part, **wanted):
-    return [row for row in result.rows if row["part"] == part
-            and all(row[key] == value for key, value in wanted.items())]
+    return [
+        row for row in result.rows if row["part"] == part and all(row[key] == value for key, value in wanted.items())
+    ]

@@ -5,5 +5,10 @@ from .figures import figures
 from .page import section_of
 from .summary import plan
 
-STUDY = Study("restitution", "Error of restitution and base velocity jump over slenderness, base mass and accuracy "
-                             "setting, with its cost.", plan, figures, section_of)
+STUDY = Study(
+    "restitution",
+    "Error of restitution and base velocity jump over slenderness, base mass and accuracy setting, with its cost.",
+    plan,
+    figures,
+    section_of,
+)

@@ -19,6 +19,7 @@ from ...running.cases import Case
 CARYATID_BASE = BASE.mass / MASS  # its m_b/m
 IMPACTS = 3  # used of each run; on rigid ground the slowest is about as fast as the first from a third of the tilt
 
+
 @dataclass(frozen=True)
 class Grid:
     """What the study covers: slendernesses [rad], m_b/m (None: rigid ground), starts (tilt over slenderness).
@@ -34,10 +35,14 @@ class Grid:
 
 
 STARTS = tuple(round(float(start), 4) for start in np.linspace(0.3, 0.8, 8))
-FULL = Grid((0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45), (None, 10.0, 1.0, 0.3, CARYATID_BASE, 0.01), STARTS,
-            tuple((gamma, ratio) for gamma in (0.1, 0.2, 0.3, 0.45) for ratio in (None, 1.0, CARYATID_BASE)), 48)
-QUICK = Grid((0.1, 0.2, 0.3, 0.45), (None, 10.0, 1.0, CARYATID_BASE), STARTS,
-             ((0.2, None), (0.2, CARYATID_BASE)), 16)
+FULL = Grid(
+    (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45),
+    (None, 10.0, 1.0, 0.3, CARYATID_BASE, 0.01),
+    STARTS,
+    tuple((gamma, ratio) for gamma in (0.1, 0.2, 0.3, 0.45) for ratio in (None, 1.0, CARYATID_BASE)),
+    48,
+)
+QUICK = Grid((0.1, 0.2, 0.3, 0.45), (None, 10.0, 1.0, CARYATID_BASE), STARTS, ((0.2, None), (0.2, CARYATID_BASE)), 16)
 
 
 def free_scene(slenderness, ratio, start, scale=1.0):
@@ -46,10 +51,13 @@ def free_scene(slenderness, ratio, start, scale=1.0):
     It ends past the peak of the swing after the third impact of the model, or a little after coming to rest.
     scale: size of the block over the Caryatid's.
     """
-    scene = Scene(block=Block(mass=MASS, radius=RADIUS * scale, slenderness=slenderness),
-                  base=Base(mass=ratio * MASS) if ratio else None, start=Start(tilt=start * slenderness),
-                  duration=12.0 * math.sqrt(scale))
-    times = [impact.time for impact in simulate(scene, history=False).impacts[:IMPACTS + 1]]
+    scene = Scene(
+        block=Block(mass=MASS, radius=RADIUS * scale, slenderness=slenderness),
+        base=Base(mass=ratio * MASS) if ratio else None,
+        start=Start(tilt=start * slenderness),
+        duration=12.0 * math.sqrt(scale),
+    )
+    times = [impact.time for impact in simulate(scene, history=False).impacts[: IMPACTS + 1]]
     if len(times) > IMPACTS:
         return scene.with_(duration=times[-2] + 0.75 * (times[-1] - times[-2]))
     return scene.with_(duration=times[-1] + 0.2 * math.sqrt(scale))
@@ -77,9 +85,16 @@ def grid_cases(grid, engines):
                 name, default, values = knob_of(engine, variant)
                 for value in values if climbs else (default,):
                     settings = {} if value == default else {name: value}
-                    cases += [Case(scene, engine, variant, settings,
-                                   {"part": "grid", "ratio": ratio, "slenderness": slenderness, "start": start,
-                                    "knob": value}) for start, scene in scenes]
+                    cases += [
+                        Case(
+                            scene,
+                            engine,
+                            variant,
+                            settings,
+                            {"part": "grid", "ratio": ratio, "slenderness": slenderness, "start": start, "knob": value},
+                        )
+                        for start, scene in scenes
+                    ]
     return cases
 
 
@@ -108,21 +123,62 @@ def experiment_cases(grid, engines):
         for ratio in EXPERIMENT_RATIOS:
             for start in grid.starts[::2]:
                 scene = free_scene(gamma, ratio, start)
-                cases += [Case(scene, engine, variant, {setting: value},
-                               {"part": "experiment", "experiment": name, "ratio": ratio, "slenderness": gamma,
-                                "start": start, "value": value}) for value in values]
+                cases += [
+                    Case(
+                        scene,
+                        engine,
+                        variant,
+                        {setting: value},
+                        {
+                            "part": "experiment",
+                            "experiment": name,
+                            "ratio": ratio,
+                            "slenderness": gamma,
+                            "start": start,
+                            "value": value,
+                        },
+                    )
+                    for value in values
+                ]
     if "pybullet" in engines:
         # Starts so close together that the first impacts lie within one of the longest steps.
         for start in np.linspace(0.600, 0.604, grid.phase_starts):
             scene = free_scene(gamma, None, float(start))
-            cases += [Case(scene, "pybullet", "fixed-step", {"step": step},
-                           {"part": "experiment", "experiment": "phase", "ratio": None, "slenderness": gamma,
-                            "start": float(start), "value": step}) for step in PHASE_STEPS]
+            cases += [
+                Case(
+                    scene,
+                    "pybullet",
+                    "fixed-step",
+                    {"step": step},
+                    {
+                        "part": "experiment",
+                        "experiment": "phase",
+                        "ratio": None,
+                        "slenderness": gamma,
+                        "start": float(start),
+                        "value": step,
+                    },
+                )
+                for step in PHASE_STEPS
+            ]
     for engine in engines:
         variant = get_engine(engine).default_variant
         for scale in SCALES:
             scene = free_scene(gamma, CARYATID_BASE, 0.6, scale)
-            cases.append(Case(scene, engine, variant, {},
-                              {"part": "experiment", "experiment": "size", "ratio": CARYATID_BASE,
-                               "slenderness": gamma, "start": 0.6, "value": scale}))
+            cases.append(
+                Case(
+                    scene,
+                    engine,
+                    variant,
+                    {},
+                    {
+                        "part": "experiment",
+                        "experiment": "size",
+                        "ratio": CARYATID_BASE,
+                        "slenderness": gamma,
+                        "start": 0.6,
+                        "value": scale,
+                    },
+                )
+            )
     return cases

@@ -18,16 +18,21 @@ GROUNDS = ("rigid ground", "sliding base")
 
 def figures(result):
     """{name: matplotlib figure}."""
-    drawn = {"maps": maps(result, "rms", "error of restitution, rms [-]"),
-             "jump-maps": maps(result, "jump_rms", "relative error of the base velocity jump, rms [-]"),
-             "cost": accuracy(result), "causes": causes(result), "eq8": equation_8(result)}
+    drawn = {
+        "maps": maps(result, "rms", "error of restitution, rms [-]"),
+        "jump-maps": maps(result, "jump_rms", "relative error of the base velocity jump, rms [-]"),
+        "cost": accuracy(result),
+        "causes": causes(result),
+        "eq8": equation_8(result),
+    }
     return {name: figure for name, figure in drawn.items() if figure is not None}
 
 
 def select(result, part, **wanted):
     """Rows of a part whose columns have these values."""
-    return [row for row in result.rows if row["part"] == part
-            and all(row[key] == value for key, value in wanted.items())]
+    return [
+        row for row in result.rows if row["part"] == part and all(row[key] == value for key, value in wanted.items())
+    ]
 
 
 def base_name(ratio):
@@ -54,14 +59,23 @@ def maps(result, measure, label):
             if row[measure] is not None:
                 table[i, j] = row[measure]
             if row["failed"]:
-                axis.text(j, i, f"{row['failed']}/{row['runs']}", ha="center", va="center", fontsize=6.5,
-                          color="black", bbox={"facecolor": "white", "alpha": 0.7, "pad": 0.5, "linewidth": 0})
-        image = axis.imshow(np.clip(table, norm.vmin, norm.vmax), norm=norm, cmap="cividis", origin="lower",
-                            aspect="auto")
+                axis.text(
+                    j,
+                    i,
+                    f"{row['failed']}/{row['runs']}",
+                    ha="center",
+                    va="center",
+                    fontsize=6.5,
+                    color="black",
+                    bbox={"facecolor": "white", "alpha": 0.7, "pad": 0.5, "linewidth": 0},
+                )
+        image = axis.imshow(
+            np.clip(table, norm.vmin, norm.vmax), norm=norm, cmap="cividis", origin="lower", aspect="auto"
+        )
         axis.set_title(f"{knob['engine']},\n{knob['variant']}", fontsize=8)
         axis.set_xticks(range(len(ratios)), [base_name(ratio) for ratio in ratios], fontsize=7, rotation=40)
         axis.set_yticks(range(len(gammas)), [f"{gamma:g}" for gamma in gammas], fontsize=7)
-    for axis in axes.flat[len(knobs):]:
+    for axis in axes.flat[len(knobs) :]:
         axis.axis("off")
     figure.supxlabel("base over block mass $m_b/m$ [-]", fontsize=9)
     figure.supylabel("slenderness γ [rad]", fontsize=9)
@@ -74,8 +88,13 @@ def look(result, engine, variant):
     names = [knob["variant"] for knob in result.settings["knobs"] if knob["engine"] == engine]
     marker, dashes, filled = LOOKS[names.index(variant) % len(LOOKS)]
     colour = style(engine)["color"]
-    return {"color": colour, "marker": marker, "linestyle": dashes, "markersize": 5,
-            "markerfacecolor": colour if filled else "white"}
+    return {
+        "color": colour,
+        "marker": marker,
+        "linestyle": dashes,
+        "markersize": 5,
+        "markerfacecolor": colour if filled else "white",
+    }
 
 
 def accuracy(result):
@@ -84,14 +103,23 @@ def accuracy(result):
     axes = figure.subplots(2, 2, sharey=True)
     for column, ground in enumerate(GROUNDS):
         for knob in result.settings["knobs"]:
-            rows = [row for row in select(result, "summary", scope="ladder", engine=knob["engine"],
-                                          variant=knob["variant"], ground=ground) if row["rms"] is not None]
+            rows = [
+                row
+                for row in select(
+                    result, "summary", scope="ladder", engine=knob["engine"], variant=knob["variant"], ground=ground
+                )
+                if row["rms"] is not None
+            ]
             if not rows:
                 continue
             line = look(result, knob["engine"], knob["variant"])
             errors = [max(row["rms"], FLOOR) for row in rows]
-            axes[0, column].plot([row["value"] / knob["default"] for row in rows], errors, **line,
-                                 label=f"{knob['engine']}, {knob['variant']} ({knob['knob']})")
+            axes[0, column].plot(
+                [row["value"] / knob["default"] for row in rows],
+                errors,
+                **line,
+                label=f"{knob['engine']}, {knob['variant']} ({knob['knob']})",
+            )
             axes[1, column].plot([row["cpu_per_second"] for row in rows], errors, **line)
         axes[0, column].set_title(ground, fontsize=10)
         axes[0, column].set_xlabel("accuracy knob over its default [-]")
@@ -110,10 +138,16 @@ def accuracy(result):
 
 def causes(result):
     """Four experiments, each changing one suspected cause; None where no engine ran them."""
-    panels = [(draw, rows) for draw, rows in (
-        (_phase, select(result, "phase")), (_stiffness, select(result, "experiment", experiment="stiffness")),
-        (_friction, select(result, "experiment", experiment="friction")),
-        (_flight_damping, select(result, "flight damping"))) if rows]
+    panels = [
+        (draw, rows)
+        for draw, rows in (
+            (_phase, select(result, "phase")),
+            (_stiffness, select(result, "experiment", experiment="stiffness")),
+            (_friction, select(result, "experiment", experiment="friction")),
+            (_flight_damping, select(result, "flight damping")),
+        )
+        if rows
+    ]
     if not panels:
         return None
     figure = Figure(figsize=(WIDTH, 6.0), layout="constrained")
@@ -133,19 +167,34 @@ def _phase(axis, rows, result):
     for row, marker, shade in zip(rows, "os^", ("#0072B2", "#56B4E9", "#000000"), strict=False):
         key = f"phase/{row['step']:g}"
         error = result.arrays[f"{key}/error"] / row["step"]
-        axis.plot(result.arrays[f"{key}/phase"], error, marker, color=shade, markersize=3,
-                  label=f"step {1e3 * row['step']:g} ms")
-    axis.set(xlabel="place of the impact within the step [-]", ylabel="error of restitution / step [1/s]",
-             title="Phase of the step (pybullet, fixed-step)")
+        axis.plot(
+            result.arrays[f"{key}/phase"],
+            error,
+            marker,
+            color=shade,
+            markersize=3,
+            label=f"step {1e3 * row['step']:g} ms",
+        )
+    axis.set(
+        xlabel="place of the impact within the step [-]",
+        ylabel="error of restitution / step [1/s]",
+        title="Phase of the step (pybullet, fixed-step)",
+    )
 
 
 def _ladder(axis, rows, floor=FLOOR):
     for ratio, marker, dashes, filled in ((None, "o", "-", True), ("base", "s", "--", False)):
         own = [row for row in rows if (row["ratio"] is None) == (ratio is None) and row["rms"] is not None]
         colour = style("exudyn")["color"]
-        axis.plot([row["value"] for row in own], [max(row["rms"], floor) for row in own], marker=marker,
-                  linestyle=dashes, color=colour, markerfacecolor=colour if filled else "white",
-                  label="rigid ground" if ratio is None else "sliding base, $m_b$ = 212 kg")
+        axis.plot(
+            [row["value"] for row in own],
+            [max(row["rms"], floor) for row in own],
+            marker=marker,
+            linestyle=dashes,
+            color=colour,
+            markerfacecolor=colour if filled else "white",
+            label="rigid ground" if ratio is None else "sliding base, $m_b$ = 212 kg",
+        )
     axis.set(xscale="log", yscale="log", ylabel="error of restitution, rms [-]")
 
 
@@ -157,8 +206,13 @@ def _stiffness(axis, rows, result):
 def _friction(axis, rows, result):
     _ladder(axis, rows)
     for ground, dashes in zip(GROUNDS, ("-", "--"), strict=True):
-        axis.axvline(result.settings["friction_needed"][ground], color="0.5", linewidth=1, linestyle=dashes,
-                     label=f"model's need, {ground}")
+        axis.axvline(
+            result.settings["friction_needed"][ground],
+            color="0.5",
+            linewidth=1,
+            linestyle=dashes,
+            label=f"model's need, {ground}",
+        )
     axis.set(xlabel="friction coefficient [-]", ylim=(1e-7, 1e3), title="Friction (exudyn, compliant-corners)")
 
 
@@ -170,14 +224,29 @@ def _flight_damping(axis, rows, result):
     axis.plot(*zip(*predicted, strict=True), "-", color="black", label="default damping in flight, predicted")
     for step, marker in zip(steps, "o^sv", strict=False):
         own = sorted((row["slenderness"], row["measured"]) for row in stick if row["step"] == step)
-        axis.plot(*zip(*own, strict=True), linestyle="", marker=marker, markersize=5, markerfacecolor="white",
-                  color=style("pybullet")["color"], label=f"measured, step {1e3 * step:.3g} ms")
+        axis.plot(
+            *zip(*own, strict=True),
+            linestyle="",
+            marker=marker,
+            markersize=5,
+            markerfacecolor="white",
+            color=style("pybullet")["color"],
+            label=f"measured, step {1e3 * step:.3g} ms",
+        )
     if len(stick) < len(rows):
         sliding = min(row["slenderness"] for row in rows if row not in stick)
-        axis.axvspan(sliding, max(row["slenderness"] for row in rows), color="0.9",
-                     label=f"slides: needs friction above {FIRST_SCRIPT_FRICTION}")
-    axis.set(xlabel="slenderness γ [rad]", ylabel="mean error of restitution [-]", ylim=(-0.05, 0.0),
-             title="Damping in flight (pybullet, first-script)")
+        axis.axvspan(
+            sliding,
+            max(row["slenderness"] for row in rows),
+            color="0.9",
+            label=f"slides: needs friction above {FIRST_SCRIPT_FRICTION}",
+        )
+    axis.set(
+        xlabel="slenderness γ [rad]",
+        ylabel="mean error of restitution [-]",
+        ylim=(-0.05, 0.0),
+        title="Damping in flight (pybullet, first-script)",
+    )
 
 
 def equation_8(result):
@@ -186,23 +255,32 @@ def equation_8(result):
     left, right = figure.subplots(1, 2, sharey=True)
     for engine, variant in result.settings["default_variants"].items():
         knob = next(one for one in result.settings["knobs"] if (one["engine"], one["variant"]) == (engine, variant))
-        cells = [row for row in select(result, "cell", engine=engine, variant=variant, value=knob["default"])
-                 if row["ratio"] is not None and row["jump_8"] is not None]
+        cells = [
+            row
+            for row in select(result, "cell", engine=engine, variant=variant, value=knob["default"])
+            if row["ratio"] is not None and row["jump_8"] is not None
+        ]
         if not cells:
             continue
         gammas = sorted({row["slenderness"] for row in cells})
         sizes = select(result, "experiment", experiment="size", engine=engine)
-        for key, dashes, filled, name in (("jump_8", "-", True, "corrected"),
-                                          ("jump_8_printed", "--", False, "as printed")):
+        for key, dashes, filled, name in (
+            ("jump_8", "-", True, "corrected"),
+            ("jump_8_printed", "--", False, "as printed"),
+        ):
             line = {**look(result, engine, variant), "linestyle": dashes, "label": f"{engine}, (8) {name}"}
             line["markerfacecolor"] = line["color"] if filled else "white"
-            left.plot(gammas, [np.sqrt(np.mean([row[key] ** 2 for row in cells if row["slenderness"] == gamma]))
-                               for gamma in gammas], **line)
+            left.plot(
+                gammas,
+                [np.sqrt(np.mean([row[key] ** 2 for row in cells if row["slenderness"] == gamma])) for gamma in gammas],
+                **line,
+            )
             right.plot([row["value"] * result.settings["radius"] for row in sizes], [row[key] for row in sizes], **line)
     left.set(xlabel="slenderness γ [rad]", yscale="log", ylabel="jump over eq. (8), less 1, rms [-]")
     right.set(xlabel="size of the block R [m]", xscale="log")
-    sizes = sorted({row["value"] * result.settings["radius"] for row in select(result, "experiment",
-                                                                              experiment="size")})
+    sizes = sorted(
+        {row["value"] * result.settings["radius"] for row in select(result, "experiment", experiment="size")}
+    )
     right.set_xticks(sizes, [f"{size:.2g}" for size in sizes])
     right.xaxis.set_minor_formatter(NullFormatter())
     for axis in (left, right):

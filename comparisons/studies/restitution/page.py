@@ -4,53 +4,83 @@ from ...showing.parts import Section, Table, figure_of, number, percent
 from ...showing.wording import TRUSTED, USABLE, trust
 from .figures import figures, select
 
-RULE = (f"An engine may be trusted for restitution if its error, root mean square, is at most {TRUSTED:g} on both "
-        f"grounds and no run failed; at most {USABLE:g} it is usable where a per cent does not matter. The answer for "
-        "each engine and variant at its default setting, with error and cost:")
+RULE = (
+    f"An engine may be trusted for restitution if its error, root mean square, is at most {TRUSTED:g} on both "
+    f"grounds and no run failed; at most {USABLE:g} it is usable where a per cent does not matter. The answer for "
+    "each engine and variant at its default setting, with error and cost:"
+)
 UNITS = {"stiffness": " N/m", "step": " s", "accuracy": ""}  # of the accuracy knobs
 CAPTIONS = {
-    "maps": ("Error of restitution of every engine and variant over slenderness and base mass.",
-             "Error of restitution at default settings, root mean square over all starts and impacts. Numbers in "
-             "cells: runs that failed, of those made; they are not part of the error. White: no impact to measure."),
-    "jump-maps": ("Error of the base velocity jump of every engine and variant over slenderness and base mass.",
-                  "Error of the base velocity jump against conservation of momentum, at default settings, relative, "
-                  "root mean square. White: no impact to measure."),
-    "cost": ("Error of restitution against the accuracy knob and against CPU time, on rigid ground and on a sliding "
-             "base.", "Error of restitution along each variant's accuracy knob (named in the legend), and the CPU time "
-                      "of the same runs. Low and left is better."),
-    "causes": ("Four experiments on the cause of the error: phase of the step, contact stiffness, friction, damping in "
-               "flight.", "What causes the error, one suspect at a time."),
-    "eq8": ("Base velocity jump against eq. (8), corrected and as printed.",
-            "The engines' base velocity jump against eq. (8): corrected (filled) and as printed (open). The printed "
-            "form has a factor R cos γ [m] too many; only for blocks of about 1 m does that hide.")}
+    "maps": (
+        "Error of restitution of every engine and variant over slenderness and base mass.",
+        "Error of restitution at default settings, root mean square over all starts and impacts. Numbers in "
+        "cells: runs that failed, of those made; they are not part of the error. White: no impact to measure.",
+    ),
+    "jump-maps": (
+        "Error of the base velocity jump of every engine and variant over slenderness and base mass.",
+        "Error of the base velocity jump against conservation of momentum, at default settings, relative, "
+        "root mean square. White: no impact to measure.",
+    ),
+    "cost": (
+        "Error of restitution against the accuracy knob and against CPU time, on rigid ground and on a sliding base.",
+        "Error of restitution along each variant's accuracy knob (named in the legend), and the CPU time "
+        "of the same runs. Low and left is better.",
+    ),
+    "causes": (
+        "Four experiments on the cause of the error: phase of the step, contact stiffness, friction, damping in "
+        "flight.",
+        "What causes the error, one suspect at a time.",
+    ),
+    "eq8": (
+        "Base velocity jump against eq. (8), corrected and as printed.",
+        "The engines' base velocity jump against eq. (8): corrected (filled) and as printed (open). The printed "
+        "form has a factor R cos γ [m] too many; only for blocks of about 1 m does that hide.",
+    ),
+}
 
 
 def section_of(result):
     """The `Section` of a `Result` of the restitution study."""
     settings = result.settings
     defaults = [row for row in select(result, "summary", scope="all")]
-    text = [_setting_words(settings), RULE,
-            *[words for knob in settings["knobs"] if (words := _verdict(result, knob))],
-            *_cause_words(result), *_equation_words(result)]
+    text = [
+        _setting_words(settings),
+        RULE,
+        *[words for knob in settings["knobs"] if (words := _verdict(result, knob))],
+        *_cause_words(result),
+        *_equation_words(result),
+    ]
     tables = [_default_table(defaults), _ladder_table(result), _experiment_table(result)]
     drawn = [figure_of(figure, *CAPTIONS[name]) for name, figure in figures(result).items()]
-    evidence = [(f"{row['engine']}, {row['variant']}: {row['reason']} ({row['count']} runs)",
-                 f"{row['message']}\n\nfirst seen: {row['tag']}\nlast finite state: {row['last_state']}")
-                for row in select(result, "failure")]
+    evidence = [
+        (
+            f"{row['engine']}, {row['variant']}: {row['reason']} ({row['count']} runs)",
+            f"{row['message']}\n\nfirst seen: {row['tag']}\nlast finite state: {row['last_state']}",
+        )
+        for row in select(result, "failure")
+    ]
     first = {knob["engine"]: knob for knob in reversed(settings["knobs"])}  # an engine's default variant comes first
     verdicts = [words + "." for engine in reversed(first) if (words := _trust(result, first[engine]))]
-    return Section("Restitution: error, cause and cost", tuple(text), tuple(tables), tuple(drawn),
-                   evidence=tuple(evidence), verdicts=tuple(verdicts))
+    return Section(
+        "Restitution: error, cause and cost",
+        tuple(text),
+        tuple(tables),
+        tuple(drawn),
+        evidence=tuple(evidence),
+        verdicts=tuple(verdicts),
+    )
 
 
 def _setting_words(settings):
     gammas, starts = settings["slendernesses"], settings["starts"]
     bases = ", ".join(f"{ratio:.2g}" for ratio in settings["ratios"] if ratio is not None)
-    return (f"Blocks of slenderness {min(gammas):g} to {max(gammas):g} rad are tilted to {min(starts):g} to "
-            f"{max(starts):g} of it ({len(starts)} starts) and let go, on rigid ground and on bases of {bases} times "
-            f"their mass that slide without friction. The first {settings['impacts']} impacts of each run are "
-            "measured. Restitution follows from the energies of the swings before and after an impact, so that "
-            "whatever takes energy counts; the base velocity jump is held against momentum with the run's own rates.")
+    return (
+        f"Blocks of slenderness {min(gammas):g} to {max(gammas):g} rad are tilted to {min(starts):g} to "
+        f"{max(starts):g} of it ({len(starts)} starts) and let go, on rigid ground and on bases of {bases} times "
+        f"their mass that slide without friction. The first {settings['impacts']} impacts of each run are "
+        "measured. Restitution follows from the energies of the swings before and after an impact, so that "
+        "whatever takes energy counts; the base velocity jump is held against momentum with the run's own rates."
+    )
 
 
 def _setting(knob):
@@ -70,10 +100,15 @@ def _trust(result, knob):
         return f"{name}: no run succeeded" if runs else ""
     worst = max(row["rms"] for row in found)
     cost = max(row["cpu_per_second"] for row in found)
-    errors = ", ".join(f"{number(row['rms'], 2)} on {'a ' if row['ground'] == 'sliding base' else ''}{row['ground']} "
-                       f"(worst impact {number(row['worst'], 2)})" for row in found)
-    return (f"{name} {trust(worst, failed)} for restitution: error {errors}, at {number(cost, 2)} s of CPU time per "
-            "simulated second")
+    errors = ", ".join(
+        f"{number(row['rms'], 2)} on {'a ' if row['ground'] == 'sliding base' else ''}{row['ground']} "
+        f"(worst impact {number(row['worst'], 2)})"
+        for row in found
+    )
+    return (
+        f"{name} {trust(worst, failed)} for restitution: error {errors}, at {number(cost, 2)} s of CPU time per "
+        "simulated second"
+    )
 
 
 def _verdict(result, knob):
@@ -88,8 +123,11 @@ def _verdict(result, knob):
     words += f"; base velocity jump off by {percent(max(jumps))}." if jumps else "."
     orders = [row for row in select(result, "order", engine=knob["engine"], variant=knob["variant"]) if row["order"]]
     if orders:
-        words += f" The error goes as the {knob['knob']} to the power of " + " and ".join(
-            f"{number(row['order'], 2)} ({row['ground']})" for row in orders) + "."
+        words += (
+            f" The error goes as the {knob['knob']} to the power of "
+            + " and ".join(f"{number(row['order'], 2)} ({row['ground']})" for row in orders)
+            + "."
+        )
     if failed:
         words += f" {failed} of {runs} runs failed."
     lost = sum(row["lost"] for row in rows)
@@ -104,80 +142,153 @@ def _cause_words(result):
     if phases:
         finest = min(phases, key=lambda row: row["step"])
         explained = percent(min(row["explained"] for row in phases), 3)
-        yield ("Step phase. With a fixed step PyBullet's error depends on where in the step the impact falls: a "
-               f"sawtooth of that phase explains {explained} or more of its variance at every step length. At a "
-               f"step of {number(1e3 * finest['step'], 2)} ms the error runs from "
-               f"{number(finest['least'] * finest['step'], 2)} to {number(finest['most'] * finest['step'], 2)}. "
-               "It shrinks with the step; the impact-aware variant makes the step small only where that counts.")
+        yield (
+            "Step phase. With a fixed step PyBullet's error depends on where in the step the impact falls: a "
+            f"sawtooth of that phase explains {explained} or more of its variance at every step length. At a "
+            f"step of {number(1e3 * finest['step'], 2)} ms the error runs from "
+            f"{number(finest['least'] * finest['step'], 2)} to {number(finest['most'] * finest['step'], 2)}. "
+            "It shrinks with the step; the impact-aware variant makes the step small only where that counts."
+        )
     ladder = select(result, "experiment", experiment="stiffness", ratio=None)
     if len(ladder) > 1:
         soft, stiff = ladder[0], ladder[-1]
-        yield (f"Stiffness. From {number(soft['value'], 1)} to {number(stiff['value'], 1)} N/m per corner the error of "
-               f"exudyn's compliant corners falls from {number(soft['rms'], 2)} to {number(stiff['rms'], 2)} on rigid "
-               f"ground, at {number(stiff['cpu_per_second'] / soft['cpu_per_second'], 2)} times the cost.")
+        yield (
+            f"Stiffness. From {number(soft['value'], 1)} to {number(stiff['value'], 1)} N/m per corner the error of "
+            f"exudyn's compliant corners falls from {number(soft['rms'], 2)} to {number(stiff['rms'], 2)} on rigid "
+            f"ground, at {number(stiff['cpu_per_second'] / soft['cpu_per_second'], 2)} times the cost."
+        )
     rebound = [row for row in select(result, "experiment", experiment="rebound") if row["failed"]]
     if rebound:
-        yield (f"Contact damping. With a rebound of {number(rebound[0]['value'], 1)} m/s (too little damping) "
-               f"{rebound[0]['failed']} of {rebound[0]['runs']} runs fail: the corners bounce.")
+        yield (
+            f"Contact damping. With a rebound of {number(rebound[0]['value'], 1)} m/s (too little damping) "
+            f"{rebound[0]['failed']} of {rebound[0]['runs']} runs fail: the corners bounce."
+        )
     friction = select(result, "experiment", experiment="friction", ratio=None)
     if friction:
         needed = result.settings["friction_needed"]["rigid ground"]
         enough = [row["value"] for row in friction if row["rms"] is not None and row["rms"] <= TRUSTED]
         fails = [row["value"] for row in friction if row["failed"]]
-        yield (f"Friction. At slenderness {number(result.settings['experiments']['friction']['slenderness'], 1)} the "
-               f"model's impact needs a friction coefficient of {number(needed, 2)} on rigid ground (horizontal over "
-               "vertical impulse); in exudyn "
-               + (f"runs fail at {number(max(fails), 2)} and below, and " if fails else "")
-               + (f"{number(min(enough), 2)} keeps the error below {number(TRUSTED, 1)}." if enough else
-                  "no value tried keeps the error small."))
+        yield (
+            f"Friction. At slenderness {number(result.settings['experiments']['friction']['slenderness'], 1)} the "
+            f"model's impact needs a friction coefficient of {number(needed, 2)} on rigid ground (horizontal over "
+            "vertical impulse); in exudyn "
+            + (f"runs fail at {number(max(fails), 2)} and below, and " if fails else "")
+            + (
+                f"{number(min(enough), 2)} keeps the error below {number(TRUSTED, 1)}."
+                if enough
+                else "no value tried keeps the error small."
+            )
+        )
     gamma = result.settings["experiments"]["friction"]["slenderness"]
     damping = select(result, "flight damping", slenderness=gamma)
     if damping:
         fine = min(damping, key=lambda row: row["step"])
-        yield (f"Damping in flight. PyBullet's default damping alone, put into the model, gives an error of "
-               f"{number(fine['predicted'], 3)} at slenderness {fine['slenderness']:g} on rigid ground; measured "
-               f"with a first script at {number(1e3 * fine['step'], 2)} ms: {number(fine['measured'], 3)}. "
-               "No step cures it. Other slendernesses, which lose more by other causes, are in the figure.")
+        yield (
+            f"Damping in flight. PyBullet's default damping alone, put into the model, gives an error of "
+            f"{number(fine['predicted'], 3)} at slenderness {fine['slenderness']:g} on rigid ground; measured "
+            f"with a first script at {number(1e3 * fine['step'], 2)} ms: {number(fine['measured'], 3)}. "
+            "No step cures it. Other slendernesses, which lose more by other causes, are in the figure."
+        )
 
 
 def _equation_words(result):
     sizes = [row for row in select(result, "experiment", experiment="size") if row["jump_8"] is not None]
     if sizes:
         right, wrong = (max(row[key] for row in sizes) for key in ("jump_8", "jump_8_printed"))
-        yield (f"Eq. (8). Blocks of {number(min(row['value'] for row in sizes), 2)} to "
-               f"{number(max(row['value'] for row in sizes), 2)} times the Caryatid's size: the engines' base velocity "
-               f"jump agrees with the corrected equation within {percent(right)}, and differs from the printed one by "
-               f"up to {percent(wrong)}. The engines, which know nothing of the equation, side with momentum.")
+        yield (
+            f"Eq. (8). Blocks of {number(min(row['value'] for row in sizes), 2)} to "
+            f"{number(max(row['value'] for row in sizes), 2)} times the Caryatid's size: the engines' base velocity "
+            f"jump agrees with the corrected equation within {percent(right)}, and differs from the printed one by "
+            f"up to {percent(wrong)}. The engines, which know nothing of the equation, side with momentum."
+        )
 
 
 def _default_table(rows):
-    return Table("Default settings, all slendernesses and bases together", (
-        "engine, variant, ground", "runs, failed [-]", "restitution error: mean [-]", "rms [-]", "worst [-]",
-        "rms from tilt rates at the impact [-]", "base velocity jump, rms [-]", "against (8) as printed [-]",
-        "impact times, relative, rms [-]", "CPU time per simulated second [s/s]"),
-        [[f"{row['engine']}, {row['variant']}, {row['ground']}", f"{row['runs']}, {row['failed']}",
-          *(number(row[key], 2) for key in ("bias", "rms", "worst", "rms_state", "jump_rms", "jump_8_printed",
-                                            "time_rms", "cpu_per_second"))] for row in rows])
+    return Table(
+        "Default settings, all slendernesses and bases together",
+        (
+            "engine, variant, ground",
+            "runs, failed [-]",
+            "restitution error: mean [-]",
+            "rms [-]",
+            "worst [-]",
+            "rms from tilt rates at the impact [-]",
+            "base velocity jump, rms [-]",
+            "against (8) as printed [-]",
+            "impact times, relative, rms [-]",
+            "CPU time per simulated second [s/s]",
+        ),
+        [
+            [
+                f"{row['engine']}, {row['variant']}, {row['ground']}",
+                f"{row['runs']}, {row['failed']}",
+                *(
+                    number(row[key], 2)
+                    for key in (
+                        "bias",
+                        "rms",
+                        "worst",
+                        "rms_state",
+                        "jump_rms",
+                        "jump_8_printed",
+                        "time_rms",
+                        "cpu_per_second",
+                    )
+                ),
+            ]
+            for row in rows
+        ],
+    )
 
 
 def _ladder_table(result):
     knobs = {(knob["engine"], knob["variant"]): knob["knob"] for knob in result.settings["knobs"]}
-    return Table("Along the accuracy knobs", (
-        "engine, variant, ground", "setting (SI)", "restitution error, rms [-]", "base velocity jump, rms [-]",
-        "CPU time per simulated second [s/s]", "steps per simulated second [1/s]", "failed [-]"),
-        [[f"{row['engine']}, {row['variant']}, {row['ground']}",
-          f"{knobs[row['engine'], row['variant']]} = {number(row['value'], 3)}",
-          *(number(row[key], 2) for key in ("rms", "jump_rms", "cpu_per_second")), number(row["steps_per_second"], 3),
-          str(row["failed"])] for row in select(result, "summary", scope="ladder")])
+    return Table(
+        "Along the accuracy knobs",
+        (
+            "engine, variant, ground",
+            "setting (SI)",
+            "restitution error, rms [-]",
+            "base velocity jump, rms [-]",
+            "CPU time per simulated second [s/s]",
+            "steps per simulated second [1/s]",
+            "failed [-]",
+        ),
+        [
+            [
+                f"{row['engine']}, {row['variant']}, {row['ground']}",
+                f"{knobs[row['engine'], row['variant']]} = {number(row['value'], 3)}",
+                *(number(row[key], 2) for key in ("rms", "jump_rms", "cpu_per_second")),
+                number(row["steps_per_second"], 3),
+                str(row["failed"]),
+            ]
+            for row in select(result, "summary", scope="ladder")
+        ],
+    )
 
 
 def _experiment_table(result):
-    return Table("One setting changed at a time", (
-        "experiment: engine, variant", "ground", "value (SI)", "restitution error, rms [-]", "mean [-]",
-        "base velocity jump, rms [-]", "against (8) corrected, as printed [-]", "failed [-]"),
-        [[f"{row['experiment']}: {row['engine']}, {row['variant']}",
-          "rigid ground" if row["ratio"] is None else f"base of {row['ratio']:.2g} block masses",
-          number(row["value"], 3),
-          *(number(row[key], 2) for key in ("rms", "bias", "jump_rms")),
-          f"{number(row['jump_8'], 2)}, {number(row['jump_8_printed'], 2)}", str(row["failed"])]
-         for row in select(result, "experiment")])
+    return Table(
+        "One setting changed at a time",
+        (
+            "experiment: engine, variant",
+            "ground",
+            "value (SI)",
+            "restitution error, rms [-]",
+            "mean [-]",
+            "base velocity jump, rms [-]",
+            "against (8) corrected, as printed [-]",
+            "failed [-]",
+        ),
+        [
+            [
+                f"{row['experiment']}: {row['engine']}, {row['variant']}",
+                "rigid ground" if row["ratio"] is None else f"base of {row['ratio']:.2g} block masses",
+                number(row["value"], 3),
+                *(number(row[key], 2) for key in ("rms", "bias", "jump_rms")),
+                f"{number(row['jump_8'], 2)}, {number(row['jump_8_printed'], 2)}",
+                str(row["failed"]),
+            ]
+            for row in select(result, "experiment")
+        ],
+    )

@@ -35,8 +35,12 @@ DIGITS = 4
 
 def measure(case, response):
     """What is measured in one run: the errors of its first `IMPACTS` impacts."""
-    return {"outcome": response.outcome, "end": response.end.time, "steps": response.steps,
-            "errors": impact_errors(case.scene, response, IMPACTS)}
+    return {
+        "outcome": response.outcome,
+        "end": response.end.time,
+        "steps": response.steps,
+        "errors": impact_errors(case.scene, response, IMPACTS),
+    }
 
 
 def plan(ask, grid=None):
@@ -68,20 +72,41 @@ def _found(grid, rows):
     entries += found + _flight_damping(pooled) + _failures(rows)
     scenes = {(ratio, gamma): free_scene(gamma, ratio, 0.6) for ratio in grid.ratios for gamma in grid.slendernesses}
     settings = {
-        "slendernesses": grid.slendernesses, "ratios": grid.ratios, "starts": grid.starts, "impacts": IMPACTS,
-        "slowest_impact": SLOWEST_IMPACT, "mass": MASS, "radius": RADIUS, "engines": engines,
-        "knobs": [dict(zip(("engine", "variant", "knob", "default", "values"), (*one, *knob_of(*one)), strict=True))
-                  for one in variants_of(engines)],
+        "slendernesses": grid.slendernesses,
+        "ratios": grid.ratios,
+        "starts": grid.starts,
+        "impacts": IMPACTS,
+        "slowest_impact": SLOWEST_IMPACT,
+        "mass": MASS,
+        "radius": RADIUS,
+        "engines": engines,
+        "knobs": [
+            dict(zip(("engine", "variant", "knob", "default", "values"), (*one, *knob_of(*one)), strict=True))
+            for one in variants_of(engines)
+        ],
         "default_variants": {engine: get_engine(engine).default_variant for engine in engines},
-        "experiments": {name: {"engine": one[0], "variant": one[1], "setting": one[2],
-                               "slenderness": EXPERIMENT_SLENDERNESS} for name, one in EXPERIMENTS.items()},
-        "friction_needed": {ground: friction_needed(free_scene(EXPERIMENT_SLENDERNESS, ratio, 0.6))
-                            for ground, ratio in zip(GROUNDS, (None, CARYATID_BASE), strict=True)},
-        "formulas": [{"ratio": ratio, "slenderness": gamma, "restitution": restitution(scene),
-                      "jump_length": base_jump_length(scene), "jump_length_printed": base_jump_length_as_printed(scene)}
-                     for (ratio, gamma), scene in scenes.items()],
-        "printed_factors": {scale: free_scene(EXPERIMENT_SLENDERNESS, 1.0, 0.6, scale).block.half_height
-                            for scale in SCALES}}
+        "experiments": {
+            name: {"engine": one[0], "variant": one[1], "setting": one[2], "slenderness": EXPERIMENT_SLENDERNESS}
+            for name, one in EXPERIMENTS.items()
+        },
+        "friction_needed": {
+            ground: friction_needed(free_scene(EXPERIMENT_SLENDERNESS, ratio, 0.6))
+            for ground, ratio in zip(GROUNDS, (None, CARYATID_BASE), strict=True)
+        },
+        "formulas": [
+            {
+                "ratio": ratio,
+                "slenderness": gamma,
+                "restitution": restitution(scene),
+                "jump_length": base_jump_length(scene),
+                "jump_length_printed": base_jump_length_as_printed(scene),
+            }
+            for (ratio, gamma), scene in scenes.items()
+        ],
+        "printed_factors": {
+            scale: free_scene(EXPERIMENT_SLENDERNESS, 1.0, 0.6, scale).block.half_height for scale in SCALES
+        },
+    }
     return Found(settings, [_short(entry) for entry in entries], arrays)
 
 
@@ -92,11 +117,15 @@ class _Pool:
         self.runs, self.members = len(members), members
         self.sound = [row for row in members if not row.failed]
         errors = [_errors(row) for row in self.sound]
-        self.errors = {name: np.concatenate([one[name] for one in errors if name in one])
-                       for name in {name for one in errors for name in one}}
+        self.errors = {
+            name: np.concatenate([one[name] for one in errors if name in one])
+            for name in {name for one in errors for name in one}
+        }
         self.expected = sum(len(_model_times(row.case.scene)) for row in self.sound)
-        late = [one["time"][:len(times)] / times[:len(one["time"])] - 1 for one, times in
-                ((one, _model_times(row.case.scene)) for one, row in zip(errors, self.sound, strict=True))]
+        late = [
+            one["time"][: len(times)] / times[: len(one["time"])] - 1
+            for one, times in ((one, _model_times(row.case.scene)) for one, row in zip(errors, self.sound, strict=True))
+        ]
         self.late = np.concatenate(late) if late else np.empty(0)
         self.cpu = sum(row.cost["cpu_seconds"] for row in self.sound)
         self.simulated = sum(row.values["end"] for row in self.sound)
@@ -117,27 +146,43 @@ def _model_times(scene):
 
 def _measures(pools):
     """Errors and cost of one or more pools together."""
+
     def of(name, measure):
         values = np.concatenate([pool.get(name) for pool in pools])
         return float(measure(values)) if len(values) else None
 
     late = np.concatenate([pool.late for pool in pools])
     simulated = sum(pool.simulated for pool in pools)
-    return {"runs": sum(pool.runs for pool in pools), "failed": sum(pool.runs - len(pool.sound) for pool in pools),
-            "impacts": sum(len(pool.get("swing")) for pool in pools),
-            "lost": sum(pool.expected - len(pool.late) for pool in pools),
-            "bias": of("swing", np.mean), "rms": of("swing", rms), "worst": of("swing", worst),
-            "rms_state": of("state", rms), "jump_rms": of("jump", rms), "jump_worst": of("jump", worst),
-            "jump_8": of("jump_8", rms), "jump_8_printed": of("jump_8_printed", rms),
-            "time_rms": rms(late) if len(late) else None,
-            "cpu_per_second": sum(pool.cpu for pool in pools) / simulated if simulated else None,
-            "steps_per_second": sum(pool.steps for pool in pools) / simulated if simulated else None}
+    return {
+        "runs": sum(pool.runs for pool in pools),
+        "failed": sum(pool.runs - len(pool.sound) for pool in pools),
+        "impacts": sum(len(pool.get("swing")) for pool in pools),
+        "lost": sum(pool.expected - len(pool.late) for pool in pools),
+        "bias": of("swing", np.mean),
+        "rms": of("swing", rms),
+        "worst": of("swing", worst),
+        "rms_state": of("state", rms),
+        "jump_rms": of("jump", rms),
+        "jump_worst": of("jump", worst),
+        "jump_8": of("jump_8", rms),
+        "jump_8_printed": of("jump_8_printed", rms),
+        "time_rms": rms(late) if len(late) else None,
+        "cpu_per_second": sum(pool.cpu for pool in pools) / simulated if simulated else None,
+        "steps_per_second": sum(pool.steps for pool in pools) / simulated if simulated else None,
+    }
 
 
 def _cell(key, pool):
     engine, variant, value, ratio, slenderness = key
-    return {"part": "cell", "engine": engine, "variant": variant, "value": value, "ratio": ratio,
-            "slenderness": slenderness, **_measures([pool])}
+    return {
+        "part": "cell",
+        "engine": engine,
+        "variant": variant,
+        "value": value,
+        "ratio": ratio,
+        "slenderness": slenderness,
+        **_measures([pool]),
+    }
 
 
 def _summaries(pooled, engines, grid):
@@ -149,17 +194,25 @@ def _summaries(pooled, engines, grid):
     for engine, variant in variants_of(engines):
         _, default, values = knob_of(engine, variant)
         for ground in GROUNDS:
+
             def pools(value, where, one=(engine, variant), ground=ground):
-                return [pool for key, pool in pooled.items() if key[:3] == (*one, value)
-                        and (key[3] is None) == (ground == GROUNDS[0])
-                        and (where is None or (key[4], key[3]) in where)]
+                return [
+                    pool
+                    for key, pool in pooled.items()
+                    if key[:3] == (*one, value)
+                    and (key[3] is None) == (ground == GROUNDS[0])
+                    and (where is None or (key[4], key[3]) in where)
+                ]
 
             given = {"engine": engine, "variant": variant, "ground": ground}
             everywhere = pools(default, None)
             if everywhere:
                 entries.append({"part": "summary", "scope": "all", **given, "value": default, **_measures(everywhere)})
-            ladder = [{"part": "summary", "scope": "ladder", **given, "value": value, **_measures(found)}
-                      for value in values if (found := pools(value, grid.ladder))]
+            ladder = [
+                {"part": "summary", "scope": "ladder", **given, "value": value, **_measures(found)}
+                for value in values
+                if (found := pools(value, grid.ladder))
+            ]
             found = [(row["value"], row["rms"]) for row in ladder if row["rms"]]
             order = np.polyfit(*np.log(np.transpose(found)), 1)[0] if len(found) > 1 else None
             entries += [*ladder, {"part": "order", **given, "order": order and float(order)}]
@@ -168,8 +221,15 @@ def _summaries(pooled, engines, grid):
 
 def _experiment(key, pool):
     name, engine, variant, ratio, value = key
-    return {"part": "experiment", "experiment": name, "engine": engine, "variant": variant, "ratio": ratio,
-            "value": value, **_measures([pool])}
+    return {
+        "part": "experiment",
+        "experiment": name,
+        "engine": engine,
+        "variant": variant,
+        "ratio": ratio,
+        "value": value,
+        **_measures([pool]),
+    }
 
 
 def _phases(members):
@@ -191,9 +251,18 @@ def _phases(members):
         left, (begin, rise) = min(fits, key=lambda fit: fit[0])
         arrays[f"phase/{step:g}/phase"], arrays[f"phase/{step:g}/error"] = phase, error
         ends = sorted((float(begin / step), float((begin + rise) / step)), key=abs)
-        entries.append({"part": "phase", "step": step, "runs": len(rows), "bias": float(error.mean()),
-                        "rms": rms(error), "explained": 1 - left / float(np.sum((error - error.mean()) ** 2)),
-                        "least": ends[0], "most": ends[1]})
+        entries.append(
+            {
+                "part": "phase",
+                "step": step,
+                "runs": len(rows),
+                "bias": float(error.mean()),
+                "rms": rms(error),
+                "explained": 1 - left / float(np.sum((error - error.mean()) ** 2)),
+                "least": ends[0],
+                "most": ends[1],
+            }
+        )
     return entries, arrays
 
 
@@ -205,10 +274,16 @@ def _flight_damping(pooled):
             continue
         predicted = [damped_error(row.case.scene, BULLET_DAMPING) for row in pool.sound]
         if predicted and len(pool.get("swing")):
-            entries.append({"part": "flight damping", "step": key[2], "slenderness": key[4],
-                            "friction_needed": friction_needed(pool.members[0].case.scene),
-                            "predicted": float(np.mean(np.concatenate(predicted))),
-                            "measured": float(pool.get("swing").mean())})
+            entries.append(
+                {
+                    "part": "flight damping",
+                    "step": key[2],
+                    "slenderness": key[4],
+                    "friction_needed": friction_needed(pool.members[0].case.scene),
+                    "predicted": float(np.mean(np.concatenate(predicted))),
+                    "measured": float(pool.get("swing").mean()),
+                }
+            )
     return entries
 
 
@@ -260,13 +335,27 @@ def _failures(rows):
         if row.failed:
             key = (row.case.solver, row.case.variant, row.failure["reason"])
             found.setdefault(key, []).append(row)
-    return [{"part": "failure", "engine": key[0], "variant": key[1], "reason": key[2], "count": len(members),
-             "message": members[0].failure["message"], "tag": members[0].case.tag,
-             "last_state": members[0].failure.get("last_state")} for key, members in found.items()]
+    return [
+        {
+            "part": "failure",
+            "engine": key[0],
+            "variant": key[1],
+            "reason": key[2],
+            "count": len(members),
+            "message": members[0].failure["message"],
+            "tag": members[0].case.tag,
+            "last_state": members[0].failure.get("last_state"),
+        }
+        for key, members in found.items()
+    ]
 
 
 def _short(entry):
     """Numbers to `DIGITS` significant digits, but for the coordinates of the grid."""
     exact = ("value", "ratio", "slenderness", "step", "tag", "last_state")
-    return {key: float(f"{value:.{DIGITS}g}") if isinstance(value, float) and key not in exact and math.isfinite(value)
-            else value for key, value in entry.items()}
+    return {
+        key: float(f"{value:.{DIGITS}g}")
+        if isinstance(value, float) and key not in exact and math.isfinite(value)
+        else value
+        for key, value in entry.items()
+    }

@@ -5,5 +5,10 @@ from .figures import figures
 from .page import section
 from .summary import plan
 
-STUDY = Study("speed-error", "Error and CPU time of the same runs: kernel, scipy, time stepping, Bouc-Wen, engines and "
-                             "variants, peers.", plan, figures, section)
+STUDY = Study(
+    "speed-error",
+    "Error and CPU time of the same runs: kernel, scipy, time stepping, Bouc-Wen, engines and variants, peers.",
+    plan,
+    figures,
+    section,
+)

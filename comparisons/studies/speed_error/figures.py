@@ -16,14 +16,21 @@ from .measure import MEASURES
 from .tables import growths, ladder, principal
 
 # Okabe and Ito: kind of solver by colour, member of it by marker.
-COLOURS = {"kernel": "#000000", "scipy": "#56B4E9", "time-stepping": "#009E73",
-           **{name: engine.colour for name, engine in ENGINES.items()}}
+COLOURS = {
+    "kernel": "#000000",
+    "scipy": "#56B4E9",
+    "time-stepping": "#009E73",
+    **{name: engine.colour for name, engine in ENGINES.items()},
+}
 PEER_COLOUR = "#D55E00"
 MARKERS = "osD^vPX*"
-COSTS = {"cpu": ("CPU time of one run [s]", "cpu_seconds"),
-         "cpu-per-second": ("CPU time per simulated second [s/s]", "cpu_per_second"),
-         "cpu-per-step": ("CPU time per step [s]", "cpu_per_step"),
-         "step": ("mean step [s]", "step"), "steps": ("steps [-]", "steps")}
+COSTS = {
+    "cpu": ("CPU time of one run [s]", "cpu_seconds"),
+    "cpu-per-second": ("CPU time per simulated second [s/s]", "cpu_per_second"),
+    "cpu-per-step": ("CPU time per step [s]", "cpu_per_step"),
+    "step": ("mean step [s]", "step"),
+    "steps": ("steps [-]", "steps"),
+}
 PRINCIPAL = "error"
 SMALLEST = 1e-17  # an error below it, or none at all, cannot be drawn on a logarithmic axis
 
@@ -63,7 +70,7 @@ def draw_pareto(result, x="cpu", y=PRINCIPAL):
     looks = _looks([row["family"] for row in ladder(result)])
     for axis, scene in zip(axes, scenes, strict=False):
         _panel(axis, result, scene, x, y, looks)
-    for axis in figure.axes[len(scenes):]:
+    for axis in figure.axes[len(scenes) :]:
         axis.axis("off")
     _legend(figure.axes[len(scenes)], looks)
     return figure
@@ -79,8 +86,12 @@ def _looks(families):
             continue
         kind = next((kind for kind in COLOURS if family.startswith(kind)), "peer")
         number = counts[kind] = counts.get(kind, -1) + 1
-        found[family] = {"color": COLOURS.get(kind, PEER_COLOUR), "marker": MARKERS[number % len(MARKERS)],
-                         "linestyle": "-", "markersize": 5.5}
+        found[family] = {
+            "color": COLOURS.get(kind, PEER_COLOUR),
+            "marker": MARKERS[number % len(MARKERS)],
+            "linestyle": "-",
+            "markersize": 5.5,
+        }
     return found
 
 
@@ -96,8 +107,11 @@ def _panel(axis, result, scene, x, y, looks):
         drawn, look = True, looks[family]
         hollow = model != NEEDED
         sound = [(a, b) for a, b, lost in points if not lost]
-        axis.plot(*zip(*sound, strict=True) if sound else ((), ()), linewidth=0 if hollow else 1.0,
-                  **{**look, "markerfacecolor": "none" if hollow else look["color"]})
+        axis.plot(
+            *zip(*sound, strict=True) if sound else ((), ()),
+            linewidth=0 if hollow else 1.0,
+            **{**look, "markerfacecolor": "none" if hollow else look["color"]},
+        )
         wrong = [(a, b) for a, b, lost in points if lost]
         if wrong:
             axis.plot(*zip(*wrong, strict=True), "x", color=look["color"], markersize=7, markeredgewidth=1.6)
@@ -123,9 +137,10 @@ def _label(result, scene, name):
 
 def _legend(axis, looks):
     lines = [Line2D([], [], label=family, **look) for family, look in looks.items()]
-    lines += [Line2D([], [], color="0.3", marker="x", linewidth=0, label="impacts lost"),
-              Line2D([], [], color="0.3", marker="o", markerfacecolor="none", linewidth=0,
-                     label="more than the scene needs")]
+    lines += [
+        Line2D([], [], color="0.3", marker="x", linewidth=0, label="impacts lost"),
+        Line2D([], [], color="0.3", marker="o", markerfacecolor="none", linewidth=0, label="more than the scene needs"),
+    ]
     axis.legend(handles=lines, loc="center", fontsize=9, ncols=1 if len(lines) < 22 else 2, frameon=False)
 
 
@@ -144,12 +159,20 @@ def draw_growth(result):
     memory = axes[1, 1]
     for (what, family), found in series.items():
         if what == "duration":
-            memory.plot(found["value"], [value / 2**20 for value in found["traced_bytes"]],
-                        label=f"{family}: allocated", **looks[family])
+            memory.plot(
+                found["value"],
+                [value / 2**20 for value in found["traced_bytes"]],
+                label=f"{family}: allocated",
+                **looks[family],
+            )
             resident = [None if value is None else value / 2**20 for value in found["resident_bytes"]]
             if None not in resident:
-                memory.plot(found["value"], resident, label=f"{family}: resident",
-                            **{**looks[family], "linestyle": ":", "markerfacecolor": "none"})
+                memory.plot(
+                    found["value"],
+                    resident,
+                    label=f"{family}: resident",
+                    **{**looks[family], "linestyle": ":", "markerfacecolor": "none"},
+                )
     memory.set_title("allocated by Python and numpy; resident in the process", fontsize=9)
     memory.set(xscale="log", xlabel=AGAINST["duration"], ylabel="memory of the run, peak [MiB]")
     memory.set_yscale("symlog", linthresh=0.01)
@@ -163,8 +186,9 @@ def draw_growth(result):
             axis.set_xticks(values, [f"{value:g}" for value in values])
         low, high = axis.get_ylim()
         if low > 0:
-            axis.yaxis.set_minor_formatter(NullFormatter() if high > 100 * low else
-                                           LogFormatterSciNotation(minor_thresholds=(3, 0.4)))
+            axis.yaxis.set_minor_formatter(
+                NullFormatter() if high > 100 * low else LogFormatterSciNotation(minor_thresholds=(3, 0.4))
+            )
         if axis.lines:
             axis.legend(fontsize=8, **({"loc": "lower left", "bbox_to_anchor": (0.0, 0.08)} if axis is memory else {}))
     return figure

@@ -23,10 +23,14 @@ RUNNER = "comparisons.studies.speed_error.growth:grown"
 AGAINST = {"duration": "duration [s]", "samples": "record samples per second [1/s]", "runs": "runs in a batch [-]"}
 WARM_SECONDS = 0.02  # s simulated before the memory is measured: code and caches are loaded
 SPREAD_OF_BATCH = 0.2  # amplitudes of a batch lie within this share of the boundary
-SPAN = {"duration": {"analytic": ((100, 200, 400, 800, 1600, 3200), (50, 100, 200, 400)),
-                     "engine": ((5, 10, 20, 40), (1, 2, 4))},
-        "samples": ((100, 200, 400, 800, 1600, 3200), (200, 400, 800)),
-        "runs": ((250, 500, 1000, 2000, 4000, 8000), (100, 200, 400))}
+SPAN = {
+    "duration": {
+        "analytic": ((100, 200, 400, 800, 1600, 3200), (50, 100, 200, 400)),
+        "engine": ((5, 10, 20, 40), (1, 2, 4)),
+    },
+    "samples": ((100, 200, 400, 800, 1600, 3200), (200, 400, 800)),
+    "runs": ((250, 500, 1000, 2000, 4000, 8000), (100, 200, 400)),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,8 +47,12 @@ class Point:
 
     def case(self, turn):
         """The measurement of one round as a `Case`."""
-        settings = {"solver": self.solver, "settings": self.settings, "count": self.count,
-                    "code": fingerprint(self.solver)}
+        settings = {
+            "solver": self.solver,
+            "settings": self.settings,
+            "count": self.count,
+            "code": fingerprint(self.solver),
+        }
         return Case(self.scene, RUNNER, None, settings, {"round": turn})
 
 
@@ -53,20 +61,24 @@ def points(trials, engines, quick):
     pick = 1 if quick else 0
     by_name = {trial.name: trial.scene for trial in trials}
     stands, boundary = by_name["isolated-standing"], by_name["near-overturning"]
-    found = [Point("duration", value, "kernel", lasting(stands, value), "analytic")
-             for value in SPAN["duration"]["analytic"][pick]]
+    found = [
+        Point("duration", value, "kernel", lasting(stands, value), "analytic")
+        for value in SPAN["duration"]["analytic"][pick]
+    ]
     for engine in engines:
-        found += [Point("duration", value, f"{engine}, default", lasting(stands, value), engine)
-                  for value in SPAN["duration"]["engine"][pick]]
-    found += [Point("samples", value, "kernel", sampled(stands, value), "analytic")
-              for value in SPAN["samples"][pick]]
-    return found + [Point("runs", value, "kernel, batch", boundary, "analytic", count=value)
-                    for value in SPAN["runs"][pick]]
+        found += [
+            Point("duration", value, f"{engine}, default", lasting(stands, value), engine)
+            for value in SPAN["duration"]["engine"][pick]
+        ]
+    found += [Point("samples", value, "kernel", sampled(stands, value), "analytic") for value in SPAN["samples"][pick]]
+    return found + [
+        Point("runs", value, "kernel, batch", boundary, "analytic", count=value) for value in SPAN["runs"][pick]
+    ]
 
 
 def lasting(scene, duration):
     """The scene for `duration` seconds, its motion repeated."""
-    samples = scene.motion.samples[:math.floor(scene.duration / scene.motion.dt)]
+    samples = scene.motion.samples[: math.floor(scene.duration / scene.motion.dt)]
     times = math.ceil(duration / (len(samples) * scene.motion.dt)) + 1
     motion = SampledMotion(scene.motion.dt, np.tile(samples, times), f"{scene.motion.label}, repeated")
     return scene.with_(motion=motion, duration=float(duration))
@@ -97,8 +109,9 @@ def grown(scene, *, solver, settings, count, **_):
     run()
     traced = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    return dataclasses.replace(response, cpu_seconds=cpu, impacts=(), uplifts=(),
-                               settings={"traced_bytes": traced, "resident_bytes": resident})
+    return dataclasses.replace(
+        response, cpu_seconds=cpu, impacts=(), uplifts=(), settings={"traced_bytes": traced, "resident_bytes": resident}
+    )
 
 
 def _batch(scene, count):

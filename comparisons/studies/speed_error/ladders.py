@@ -47,8 +47,13 @@ class Entry:
         boundary, settings = self.trial.boundary, {**self.settings, self.knob: self.value}
         if self.solver != PEER:
             settings["history"] = False
-        return Case(self.scene, self.solver, self.variant, settings,
-                    {"boundary": boundary and [boundary.amplitude, boundary.slope], "round": turn})
+        return Case(
+            self.scene,
+            self.solver,
+            self.variant,
+            settings,
+            {"boundary": boundary and [boundary.amplitude, boundary.slope], "round": turn},
+        )
 
 
 def powers(*exponents):
@@ -59,13 +64,23 @@ FREE_3D_STEPS = ((1 / 240, 1e-3, 3e-4, 1e-4), (1 / 240, 1e-3))  # s
 KERNEL = (powers(-3, -4, -6, -8, -10, -12, -14, -16), powers(-4, -8, -12))
 STEPPING = (powers(-2, -2.5, -3, -3.5, -4, -4.5, -5, -6), powers(-2, -3, -4))
 # a restart at every sample makes a scipy run under a record cost seconds
-TWIN = {"DOP853": (powers(-3, -5, -7, -9, -11, -12), powers(-5, -9)),
-        "RK45": (powers(-3, -5, -7, -9, -11), powers(-5, -9)),
-        "LSODA": (powers(-3, -5, -7, -9, -11), powers(-7)), "Radau": (powers(-3, -5, -7), powers(-5))}
-TWIN_SAMPLED = {"DOP853": (powers(-3, -6, -9), ()), "RK45": (powers(-3, -6, -9), ()),
-                "LSODA": (powers(-6), ()), "Radau": (powers(-3), ())}
-PEER_LADDERS = {"heyoka": (powers(-6, -9, -12, -15), powers(-9)), "CyRK DOP853": (powers(-6, -9, -12, -14), powers(-9)),
-                "CVODE Adams": (powers(-6, -9, -12), powers(-9))}
+TWIN = {
+    "DOP853": (powers(-3, -5, -7, -9, -11, -12), powers(-5, -9)),
+    "RK45": (powers(-3, -5, -7, -9, -11), powers(-5, -9)),
+    "LSODA": (powers(-3, -5, -7, -9, -11), powers(-7)),
+    "Radau": (powers(-3, -5, -7), powers(-5)),
+}
+TWIN_SAMPLED = {
+    "DOP853": (powers(-3, -6, -9), ()),
+    "RK45": (powers(-3, -6, -9), ()),
+    "LSODA": (powers(-6), ()),
+    "Radau": (powers(-3), ()),
+}
+PEER_LADDERS = {
+    "heyoka": (powers(-6, -9, -12, -15), powers(-9)),
+    "CyRK DOP853": (powers(-6, -9, -12, -14), powers(-9)),
+    "CVODE Adams": (powers(-6, -9, -12), powers(-9)),
+}
 TWIN_SETTINGS = {"energy": False}
 
 
@@ -93,8 +108,11 @@ def _analytic(trial, pick):
     found = [Entry(trial, "kernel", "analytic", "tolerance", value) for value in KERNEL[pick]]
     found += [Entry(trial, "time-stepping", "time-stepping", "step", value) for value in STEPPING[pick]]
     ladders = TWIN_SAMPLED if trial.name in SAMPLED else TWIN
-    return found + [Entry(trial, f"scipy {method}", "twin", "rtol", value, settings={**TWIN_SETTINGS, "method": method})
-                    for method, ladder in ladders.items() for value in ladder[pick]]
+    return found + [
+        Entry(trial, f"scipy {method}", "twin", "rtol", value, settings={**TWIN_SETTINGS, "method": method})
+        for method, ladder in ladders.items()
+        for value in ladder[pick]
+    ]
 
 
 def _engines(trial, engines, pick):
@@ -108,17 +126,32 @@ def _engines(trial, engines, pick):
 
 
 def _peers(trial, pick):
-    return [Entry(trial, name, PEER, "tolerance", value, settings={"name": name})
-            for name in peers.installed() for value in PEER_LADDERS[name][pick]]
+    return [
+        Entry(trial, name, PEER, "tolerance", value, settings={"name": name})
+        for name in peers.installed()
+        for value in PEER_LADDERS[name][pick]
+    ]
 
 
 def _bouc_wen(trial, pick):
     law = trial.with_law("bouc-wen")
     found = [Entry(law, "kernel, Bouc-Wen", "analytic", "tolerance", value, law="bouc-wen") for value in KERNEL[pick]]
-    found += [Entry(law, "time-stepping, Bouc-Wen", "time-stepping", "step", value, law="bouc-wen")
-              for value in STEPPING[pick]]
-    return found + [Entry(law, "scipy DOP853, Bouc-Wen", "twin", "rtol", value, law="bouc-wen",
-                          settings={**TWIN_SETTINGS, "method": "DOP853"}) for value in TWIN_SAMPLED["DOP853"][pick]]
+    found += [
+        Entry(law, "time-stepping, Bouc-Wen", "time-stepping", "step", value, law="bouc-wen")
+        for value in STEPPING[pick]
+    ]
+    return found + [
+        Entry(
+            law,
+            "scipy DOP853, Bouc-Wen",
+            "twin",
+            "rtol",
+            value,
+            law="bouc-wen",
+            settings={**TWIN_SETTINGS, "method": "DOP853"},
+        )
+        for value in TWIN_SAMPLED["DOP853"][pick]
+    ]
 
 
 def _extras(trial, engines, pick):
@@ -128,11 +161,15 @@ def _extras(trial, engines, pick):
         ways = [(SPRINGS, models.on_stiff_springs)]
         if trial.scene.motion is None:  # a free base does not feel the ground's motion
             ways.append((HEAVY_BASE, models.on_heavy_base))
-        found += [Entry(trial, "kernel", "analytic", "tolerance", value, model=model, scene_of=change)
-                  for model, change in ways for value in powers(-8, -12)[pick:]]
+        found += [
+            Entry(trial, "kernel", "analytic", "tolerance", value, model=model, scene_of=change)
+            for model, change in ways
+            for value in powers(-8, -12)[pick:]
+        ]
     if "pybullet" in engines and trial.scene.bearings is None:
-        found += [Entry(trial, "pybullet, fixed-step", THREE_D, "step", value, model=FREE_3D)
-                  for value in FREE_3D_STEPS[pick]]
+        found += [
+            Entry(trial, "pybullet, fixed-step", THREE_D, "step", value, model=FREE_3D) for value in FREE_3D_STEPS[pick]
+        ]
     return found
 
 

@@ -53,13 +53,26 @@ def free_block_3d(scene, *, step, history=True):
     try:
         body, slab = script.build(client, scene, step)
         pybullet.setPhysicsEngineParameter(
-            fixedTimeStep=step, numSubSteps=0, contactSlop=0.0, contactERP=min(MOST_CORRECTION, CORRECTION_RATE * step),
-            contactBreakingThreshold=BREAKING_THRESHOLD, numSolverIterations=iterations(scene, 2),
-            physicsClientId=client)
+            fixedTimeStep=step,
+            numSubSteps=0,
+            contactSlop=0.0,
+            contactERP=min(MOST_CORRECTION, CORRECTION_RATE * step),
+            contactBreakingThreshold=BREAKING_THRESHOLD,
+            numSolverIterations=iterations(scene, 2),
+            physicsClientId=client,
+        )
         for part, link in ((body, -1), (slab, -1), *(((slab, 0),) if scene.base else ())):
             pybullet.changeDynamics(part, link, linearDamping=0.0, angularDamping=0.0, physicsClientId=client)
-            pybullet.changeDynamics(part, link, lateralFriction=FRICTION, rollingFriction=0.0, spinningFriction=0.0,
-                                    restitution=0.0, jointDamping=0.0, physicsClientId=client)
+            pybullet.changeDynamics(
+                part,
+                link,
+                lateralFriction=FRICTION,
+                rollingFriction=0.0,
+                spinningFriction=0.0,
+                restitution=0.0,
+                jointDamping=0.0,
+                physicsClientId=client,
+            )
         if scene.base:
             pybullet.setJointMotorControl2(slab, 0, pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client)
         begin = time.process_time()
@@ -68,6 +81,15 @@ def free_block_3d(scene, *, step, history=True):
     finally:
         pybullet.disconnect(client)
     trace = trace_of([tuple(map(float, row)) for row in np.array(rows)], scene, FLAT * scene.block.slenderness)
-    return observe(scene, trace, engine="pybullet", variant="3-D free block", cpu_seconds=cpu, steps=len(rows) - 1,
-                   settings={"step": step}, versions=get_engine("pybullet").versions(), history=history,
-                   ended=ended if ended == "overturned" else None)
+    return observe(
+        scene,
+        trace,
+        engine="pybullet",
+        variant="3-D free block",
+        cpu_seconds=cpu,
+        steps=len(rows) - 1,
+        settings={"step": step},
+        versions=get_engine("pybullet").versions(),
+        history=history,
+        ended=ended if ended == "overturned" else None,
+    )

@@ -93,11 +93,13 @@ def trials():
     rocks = Scene(name="isolated, rocking", block=caryatid_block(0.15), duration=LONGEST, **isolated)
     rocks = rocks.with_(duration=math.floor(100 * sensitivity_horizon(rocks).horizon) / 100)
     events = ("impact_time", "restitution")
-    return [_trial("free-rigid", rigid, (*events, "end_tilt")),
-            _trial("free-sliding", sliding, (*events, "peak_displacement")),
-            _trial("isolated-standing", stands, ("peak_displacement",)),
-            _trial("isolated-rocking", rocks, (*events, "peak_tilt", "peak_displacement")),
-            near_overturning()]
+    return [
+        _trial("free-rigid", rigid, (*events, "end_tilt")),
+        _trial("free-sliding", sliding, (*events, "peak_displacement")),
+        _trial("isolated-standing", stands, ("peak_displacement",)),
+        _trial("isolated-rocking", rocks, (*events, "peak_tilt", "peak_displacement")),
+        near_overturning(),
+    ]
 
 
 def near_overturning():
@@ -114,8 +116,14 @@ def near_overturning():
     change = 1e-4
     slope = (at(amplitude * (1 + change)) - at(amplitude * (1 - change))) / (2 * change)
     scene = at_amplitude(scene, amplitude)
-    return Trial("near-overturning", scene.name, scene, ("boundary_shift", "impact_time", "restitution", "peak_tilt"),
-                 tight(scene), Boundary(amplitude, slope))
+    return Trial(
+        "near-overturning",
+        scene.name,
+        scene,
+        ("boundary_shift", "impact_time", "restitution", "peak_tilt"),
+        tight(scene),
+        Boundary(amplitude, slope),
+    )
 
 
 def _trial(name, scene, measures):
@@ -138,9 +146,17 @@ def description(trial):
     """JSON-ready description of a trial for the result file."""
     reference = trial.reference
     impacts = np.array([impact.time for impact in reference.impacts])
-    return {"title": trial.title, "duration": trial.scene.duration, "runs": trial.runs,
-            "measures": list(trial.measures), "outcome": reference.outcome, "impacts": len(impacts),
-            "slenderness": trial.scene.block.slenderness, "peak_tilt_ratio": reference.peak_tilt_ratio,
-            "peak_base_displacement": reference.peak_base_displacement, "digest": trial.scene.digest(),
-            "boundary_amplitude": trial.boundary and trial.boundary.amplitude,
-            "reference_difference": reference_difference(trial)}
+    return {
+        "title": trial.title,
+        "duration": trial.scene.duration,
+        "runs": trial.runs,
+        "measures": list(trial.measures),
+        "outcome": reference.outcome,
+        "impacts": len(impacts),
+        "slenderness": trial.scene.block.slenderness,
+        "peak_tilt_ratio": reference.peak_tilt_ratio,
+        "peak_base_displacement": reference.peak_base_displacement,
+        "digest": trial.scene.digest(),
+        "boundary_amplitude": trial.boundary and trial.boundary.amplitude,
+        "reference_difference": reference_difference(trial),
+    }

@@ -43,18 +43,24 @@ def plan(ask, scenes=None, keep=lambda entry: True, grow=True, *, repeats: Repea
     measured = [[] for _ in chosen]
     for turn in range(rounds):
         taking_part = [index for index, rows in enumerate(measured) if turn < FEW or not _slow(rows[0])]
-        done = yield Batch([chosen[i].case(turn) for i in taking_part], timing.measure,
-                           f"round {turn + 1} of {rounds}", alone=True)
+        done = yield Batch(
+            [chosen[i].case(turn) for i in taking_part], timing.measure, f"round {turn + 1} of {rounds}", alone=True
+        )
         for index, row in zip(taking_part, done, strict=True):
             measured[index].append(row)
     rows = [_row(entry, found) for entry, found in zip(chosen, measured, strict=True)]
     seconds = np.full((len(rows), rounds), np.nan)
     for line, found in zip(seconds, measured, strict=True):
-        line[:len(found)] = [one.cost.get("cpu_seconds", np.nan) for one in found]
+        line[: len(found)] = [one.cost.get("cpu_seconds", np.nan) for one in found]
     if grow:
         rows += yield from _growth(scenes, ask, rounds)
-    settings = {"quick": ask.quick, "rounds": rounds, "scenes": {trial.name: description(trial) for trial in scenes},
-                "laws": _laws(scenes), "peers": peer_versions()}
+    settings = {
+        "quick": ask.quick,
+        "rounds": rounds,
+        "scenes": {trial.name: description(trial) for trial in scenes},
+        "laws": _laws(scenes),
+        "peers": peer_versions(),
+    }
     return Found(settings, rows, {"cpu_seconds": seconds})
 
 
@@ -66,11 +72,23 @@ def _row(entry, found):
     """JSON-ready row of an entry from its rounds."""
     first = found[0]
     values, trial = first.values, entry.trial
-    row = {"table": "ladder", "scene": trial.name, "family": entry.family, "model": entry.model,
-           "law": entry.law or (trial.scene.bearings and trial.scene.bearings.law), "solver": entry.solver,
-           "variant": entry.variant, "knob": entry.knob, "value": entry.value, "outcome": values.get("outcome"),
-           "failure": _evidence(first.failure), "timings": len(found), "errors": {}, "lost_impacts": None,
-           "repeatable": len({_bits(one.values) for one in found}) == 1}
+    row = {
+        "table": "ladder",
+        "scene": trial.name,
+        "family": entry.family,
+        "model": entry.model,
+        "law": entry.law or (trial.scene.bearings and trial.scene.bearings.law),
+        "solver": entry.solver,
+        "variant": entry.variant,
+        "knob": entry.knob,
+        "value": entry.value,
+        "outcome": values.get("outcome"),
+        "failure": _evidence(first.failure),
+        "timings": len(found),
+        "errors": {},
+        "lost_impacts": None,
+        "repeatable": len({_bits(one.values) for one in found}) == 1,
+    }
     seconds = [one.cost["cpu_seconds"] for one in found if one.cost.get("cpu_seconds")]
     if first.failure or not seconds:
         return row
@@ -78,10 +96,18 @@ def _row(entry, found):
     row["errors"] = errors(trial, values, shifts)
     row["lost_impacts"] = row["errors"].pop("lost_impacts", None)
     cpu, simulated, steps = statistics.median(seconds), values["end"]["time"], values["steps"]
-    row |= {"cpu_seconds": cpu, "cpu_low": min(seconds), "cpu_high": max(seconds), "simulated": simulated,
-            "steps": steps or None, "step": simulated / steps if steps else None,
-            "cpu_per_second": cpu / simulated, "cpu_per_step": cpu / steps if steps else None,
-            "boundary_shifts": shifts, "settings": values["settings"]}
+    row |= {
+        "cpu_seconds": cpu,
+        "cpu_low": min(seconds),
+        "cpu_high": max(seconds),
+        "simulated": simulated,
+        "steps": steps or None,
+        "step": simulated / steps if steps else None,
+        "cpu_per_second": cpu / simulated,
+        "cpu_per_step": cpu / steps if steps else None,
+        "boundary_shifts": shifts,
+        "settings": values["settings"],
+    }
     return row
 
 
@@ -104,8 +130,13 @@ def _growth(scenes, ask, rounds):
         for turn in range(min(FEW, rounds)):
             found += yield Batch([place.case(turn)], None, f"growth against {place.against}", alone=True)
         sound = [one for one in found if not one.failed]
-        row = {"table": "growth", "family": place.family, "against": place.against, "value": place.value,
-               "failure": _evidence(found[0].failure)}
+        row = {
+            "table": "growth",
+            "family": place.family,
+            "against": place.against,
+            "value": place.value,
+            "failure": _evidence(found[0].failure),
+        }
         if sound:
             row["cpu_seconds"] = statistics.median(one.cost["cpu_seconds"] for one in sound)
             for name in ("traced_bytes", "resident_bytes"):
@@ -123,5 +154,6 @@ def _laws(scenes):
             other = trial.with_law("bouc-wen").reference
             found[trial.name] = {
                 "peak_displacement": other.peak_base_displacement / trial.reference.peak_base_displacement - 1,
-                "peak_tilt": other.peak_tilt / trial.reference.peak_tilt - 1 if trial.reference.peak_tilt else None}
+                "peak_tilt": other.peak_tilt / trial.reference.peak_tilt - 1 if trial.reference.peak_tilt else None,
+            }
     return found

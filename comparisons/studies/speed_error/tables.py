@@ -52,8 +52,15 @@ def orders(result, scene, axis="value"):
     """
     measure, found = principal(result, scene), {}
     for family in dict.fromkeys(row["family"] for row in ladder(result)):
-        rows = [row for row in ladder(result) if row["scene"] == scene and row["family"] == family
-                and row["model"] == NEEDED and (error(row, measure) or 0) > FLOOR and row.get(axis)]
+        rows = [
+            row
+            for row in ladder(result)
+            if row["scene"] == scene
+            and row["family"] == family
+            and row["model"] == NEEDED
+            and (error(row, measure) or 0) > FLOOR
+            and row.get(axis)
+        ]
         if len(rows) >= 3:
             found[family] = *fit([row[axis] for row in rows], [error(row, measure) for row in rows]), len(rows)
     return found
@@ -82,7 +89,7 @@ def ranking_stability(result):
             ranks = [list(cost_at_error(result, scene, level, seconds=half)) for half in halves]
             common = [family for family in ranks[0] if family in ranks[1]]
             for i, one in enumerate(common):
-                for other in common[i + 1:]:
+                for other in common[i + 1 :]:
                     if 1 / tie < costs[one]["cpu_seconds"] / costs[other]["cpu_seconds"] < tie:
                         continue
                     pairs += 1
@@ -115,19 +122,31 @@ def extras(result):
 
 def _same(rows, row):
     key = row["scene"], row["family"], row["value"]
-    return next((one for one in rows if one["model"] == NEEDED
-                 and (one["scene"], one["family"], one["value"]) == key), None)
+    return next(
+        (one for one in rows if one["model"] == NEEDED and (one["scene"], one["family"], one["value"]) == key), None
+    )
 
 
 def _beside(result, row, model, needed):
     measure = principal(result, row["scene"])
     if needed is None or "cpu_seconds" not in needed or "cpu_seconds" not in row:
         return []
-    return [{"scene": row["scene"], "model": model, "family": row["family"], "knob": row["knob"],
-             "value": row["value"], "needed": needed["family"], "needed_value": needed["value"],
-             "cost_ratio": row["cpu_seconds"] / needed["cpu_seconds"], "error": row["errors"].get(measure),
-             "needed_error": needed["errors"].get(measure), "lost_impacts": row["lost_impacts"],
-             "needed_lost": needed["lost_impacts"]}]
+    return [
+        {
+            "scene": row["scene"],
+            "model": model,
+            "family": row["family"],
+            "knob": row["knob"],
+            "value": row["value"],
+            "needed": needed["family"],
+            "needed_value": needed["value"],
+            "cost_ratio": row["cpu_seconds"] / needed["cpu_seconds"],
+            "error": row["errors"].get(measure),
+            "needed_error": needed["errors"].get(measure),
+            "lost_impacts": row["lost_impacts"],
+            "needed_lost": needed["lost_impacts"],
+        }
+    ]
 
 
 def law_cost(result):
@@ -136,8 +155,17 @@ def law_cost(result):
     for row in ladder(result):
         if row["law"] == "bouc-wen" and "cpu_seconds" in row:
             family = row["family"].removesuffix(", Bouc-Wen")
-            twin = next((one for one in ladder(result) if one["family"] == family and one["scene"] == row["scene"]
-                         and one["value"] == row["value"] and "cpu_seconds" in one), None)
+            twin = next(
+                (
+                    one
+                    for one in ladder(result)
+                    if one["family"] == family
+                    and one["scene"] == row["scene"]
+                    and one["value"] == row["value"]
+                    and "cpu_seconds" in one
+                ),
+                None,
+            )
             if twin:
                 found.setdefault((row["scene"], family), []).append(row["cpu_seconds"] / twin["cpu_seconds"])
     return {key: (statistics.median(ratios), min(ratios), max(ratios)) for key, ratios in found.items()}
@@ -153,8 +181,9 @@ def growths(result):
             series.setdefault((row["against"], row["family"]), []).append(row)
     found = {}
     for key, rows in series.items():
-        entry = {name: [row[name] for row in rows] for name in ("value", "cpu_seconds", "traced_bytes",
-                                                               "resident_bytes")}
+        entry = {
+            name: [row[name] for row in rows] for name in ("value", "cpu_seconds", "traced_bytes", "resident_bytes")
+        }
         if len(rows) >= 3:
             entry["exponent"], entry["exponent_error"] = fit(entry["value"], entry["cpu_seconds"])
             (x0, x1), (y0, y1) = entry["value"][-2:], entry["cpu_seconds"][-2:]

@@ -36,8 +36,12 @@ def measure(case, response):
         if 0 < cpu < TICK and response.outcome != "failed":
             repeats = min(MOST_REPEATS, math.ceil(TICK / cpu))
             cpu = sum(_measure(run, case.scene, goal)[2] for _ in range(repeats)) / repeats
-    return {**response.to_json(), "boundary_shifts": shifts, "knows_impacts": case.solver != PEER,
-            "cost": {"cpu_seconds": cpu / (BOUNDARY_RUNS if goal else 1), "repeats": repeats}}
+    return {
+        **response.to_json(),
+        "boundary_shifts": shifts,
+        "knows_impacts": case.solver != PEER,
+        "cost": {"cpu_seconds": cpu / (BOUNDARY_RUNS if goal else 1), "repeats": repeats},
+    }
 
 
 def searched(run, scene, boundary):
@@ -99,7 +103,24 @@ def peer_response(scene, *, name, tolerance):
     cpu = time.process_time() - begin
     nan = math.nan
     end = State(scene.duration, float(state[0]), float(state[1]) if len(state) > 1 else nan, 0.0, 0.0, 0.0)
-    return Response(engine=name, variant="", outcome="rocks", overturning_time=None, unstable_time=None,
-                    peak_tilt=nan, peak_tilt_ratio=nan, peak_base_displacement=nan, peak_base_acceleration=nan,
-                    impacts=(), uplifts=(), rests=(), friction_demand=nan, min_normal_ratio=nan, end=end,
-                    cpu_seconds=cpu, steps=0, settings={"tolerance": tolerance, "impacts": impacts}, versions={})
+    return Response(
+        engine=name,
+        variant="",
+        outcome="rocks",
+        overturning_time=None,
+        unstable_time=None,
+        peak_tilt=nan,
+        peak_tilt_ratio=nan,
+        peak_base_displacement=nan,
+        peak_base_acceleration=nan,
+        impacts=(),
+        uplifts=(),
+        rests=(),
+        friction_demand=nan,
+        min_normal_ratio=nan,
+        end=end,
+        cpu_seconds=cpu,
+        steps=0,
+        settings={"tolerance": tolerance, "impacts": impacts},
+        versions={},
+    )

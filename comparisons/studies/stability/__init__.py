@@ -4,5 +4,10 @@ from ...running.study import Study
 from .page import draw, section
 from .verdicts import plan
 
-STUDY = Study("stability", "Named hard cases, every solver and variant: right, degraded or failed, with measures, "
-                           "evidence and cures.", plan, lambda result: {"": draw(result)}, section)
+STUDY = Study(
+    "stability",
+    "Named hard cases, every solver and variant: right, degraded or failed, with measures, evidence and cures.",
+    plan,
+    lambda result: {"": draw(result)},
+    section,
+)

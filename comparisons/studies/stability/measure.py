@@ -81,10 +81,12 @@ def oracle(name, of_kernel):
     if response.unstable_time is not None:  # beyond, two motions part exponentially
         until = min(until, response.unstable_time)
     last = case.scene.duration * (1 - LAST_PART)
-    settled = outcome == "stands" or (bool(response.rests) and response.rests[-1] < last
-                                      and all(time < response.rests[-1] for time in response.uplifts))
-    return Oracle(outcome, response.overturning_time, response.uplifts, response.rests, settled, until, response,
-                  noise)
+    settled = outcome == "stands" or (
+        bool(response.rests)
+        and response.rests[-1] < last
+        and all(time < response.rests[-1] for time in response.uplifts)
+    )
+    return Oracle(outcome, response.overturning_time, response.uplifts, response.rests, settled, until, response, noise)
 
 
 def measure(run, response):
@@ -112,9 +114,16 @@ def measure(run, response):
         drift, gain = energy_errors(case.scene, response, until=comparable_until(case.name)[0], step=case.step or 0.0)
         errors["energy drift"] = max(0.0, drift - truth.noise[0])
         errors["energy gain"] = max(0.0, gain - truth.noise[1])
-    return {"outcome": response.outcome, "errors": errors, "until": truth.until, "impacts": response.impact_count,
-            "peak_tilt_ratio": response.peak_tilt_ratio, "peak_base_displacement": response.peak_base_displacement,
-            "steps": response.steps, "settings": response.settings}
+    return {
+        "outcome": response.outcome,
+        "errors": errors,
+        "until": truth.until,
+        "impacts": response.impact_count,
+        "peak_tilt_ratio": response.peak_tilt_ratio,
+        "peak_base_displacement": response.peak_base_displacement,
+        "steps": response.steps,
+        "settings": response.settings,
+    }
 
 
 def _trajectory_errors(case, response, truth, of_kernel):
@@ -125,8 +134,11 @@ def _trajectory_errors(case, response, truth, of_kernel):
     if case.oracle == "free rocking":
         p, e = scene.rocking_frequency, max(restitution(scene), 0.0)
         times = times[:: max(1, len(times) // 200)]
-        tilt = [free_rocking_tilt(p, block.slenderness, e, scene.start.tilt, t) for t in times] if e > 1e-9 else (
-            np.interp(times, kernel.history.time, kernel.history.tilt))
+        tilt = (
+            [free_rocking_tilt(p, block.slenderness, e, scene.start.tilt, t) for t in times]
+            if e > 1e-9
+            else (np.interp(times, kernel.history.time, kernel.history.tilt))
+        )
     else:
         tilt = _at(truth.response, times, "tilt", "tilt_rate")
     errors = {"tilt": float(np.abs(_at(response, times, "tilt", "tilt_rate") - tilt).max()) / block.slenderness}
@@ -161,8 +173,7 @@ def _event_errors(case, response, truth):
     if truth.overturning_time is not None and response.overturning_time is not None:
         errors["overturning time"] = abs(response.overturning_time - truth.overturning_time)
     wanted = [abs(impact.rate_before) for impact in truth.response.impacts if impact.time <= truth.until]
-    least = max(LEAST_RATE * max(wanted, default=0.0),
-                LEAST_SHARE * scene.rocking_frequency * scene.block.slenderness)
+    least = max(LEAST_RATE * max(wanted, default=0.0), LEAST_SHARE * scene.rocking_frequency * scene.block.slenderness)
     if count := sum(rate >= least for rate in wanted):
         own = sum(abs(impact.rate_before) >= OWN * least for impact in response.impacts)
         errors["lost impacts"] = float(max(0, count - own))
@@ -182,6 +193,10 @@ def _at(response, times, value, rate):
     i = np.clip(np.searchsorted(t, times, side="right") - 1, 0, len(t) - 2)
     h = t[i + 1] - t[i]
     u = np.clip((times - t[i]) / np.where(h > 0, h, 1.0), 0.0, 1.0)
-    cubic = ((1 + 2 * u) * (1 - u) ** 2 * y[i] + u * (1 - u) ** 2 * h * v[i]
-             + u * u * (3 - 2 * u) * y[i + 1] - u * u * (1 - u) * h * v[i + 1])
+    cubic = (
+        (1 + 2 * u) * (1 - u) ** 2 * y[i]
+        + u * (1 - u) ** 2 * h * v[i]
+        + u * u * (3 - 2 * u) * y[i + 1]
+        - u * u * (1 - u) * h * v[i + 1]
+    )
     return np.where(times >= t[-1], y[-1], cubic)

@@ -45,11 +45,20 @@ def draw(result):
             colour = COLOURS[row["verdict"]]
             axes.add_patch(Rectangle((i - 0.5, j - 0.5), 1, 1, facecolor=colour, edgecolor="white", linewidth=1.5))
             dark = sum(to_rgb(colour)) < 1.2
-            axes.text(i, j, _word(row) + ("\n" + CURED if _cured(cure) else ""), ha="center", va="center", fontsize=6.5,
-                      color="white" if dark else "black", linespacing=0.95)
+            axes.text(
+                i,
+                j,
+                _word(row) + ("\n" + CURED if _cured(cure) else ""),
+                ha="center",
+                va="center",
+                fontsize=6.5,
+                color="white" if dark else "black",
+                linespacing=0.95,
+            )
     axes.set(xlim=(-0.5, len(solvers) - 0.5), ylim=(len(cases) - 0.5, -0.5))
-    axes.set_xticks(range(len(solvers)), [solver.replace(", ", "\n").replace("-", "-\n") for solver in solvers],
-                    fontsize=7)
+    axes.set_xticks(
+        range(len(solvers)), [solver.replace(", ", "\n").replace("-", "-\n") for solver in solvers], fontsize=7
+    )
     axes.set_yticks(range(len(cases)), cases, fontsize=7.5)
     axes.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)
     for spine in axes.spines.values():
@@ -78,71 +87,113 @@ def section(result):
     """The study's section of the report."""
     cells = matrix(result)
     solvers, cases = result.settings["solvers"], result.settings["cases"]
-    counts = [[solver, *(str(sum(row["verdict"] == verdict for (_, name), (row, _) in cells.items() if name == solver))
-                         for verdict in (RIGHT, DEGRADED, FAILED)),
-               str(sum(_cured(cure) for (_, name), (_, cure) in cells.items() if name == solver))]
-              for solver in solvers]
-    picture = figure_of(draw(result), _spoken(counts), "Verdicts. In the cells: the measure that is farthest outside "
-                        "its tolerance (tol.), and by how many times, or the count lost; “cured”: a setting tried "
-                        "makes it right.")
+    counts = [
+        [
+            solver,
+            *(
+                str(sum(row["verdict"] == verdict for (_, name), (row, _) in cells.items() if name == solver))
+                for verdict in (RIGHT, DEGRADED, FAILED)
+            ),
+            str(sum(_cured(cure) for (_, name), (_, cure) in cells.items() if name == solver)),
+        ]
+        for solver in solvers
+    ]
+    picture = figure_of(
+        draw(result),
+        _spoken(counts),
+        "Verdicts. In the cells: the measure that is farthest outside "
+        "its tolerance (tol.), and by how many times, or the count lost; “cured”: a setting tried "
+        "makes it right.",
+    )
     ill = [(row, cure) for row, cure in cells.values() if row["verdict"] != RIGHT]
     best = [name for name, solver in solvers.items() if solver["default_variant"]]
     tables = [
         Table("Verdicts by solver", ("Solver", "right", "degraded", "failed", "of these cured"), counts),
-        Table("Where the default variants are not right, and what was measured there", FINDINGS,
-              [_line(row, cure) for row, cure in ill if row["solver"] in best])]
+        Table(
+            "Where the default variants are not right, and what was measured there",
+            FINDINGS,
+            [_line(row, cure) for row, cure in ill if row["solver"] in best],
+        ),
+    ]
     tables += [
-        Table(f"Tolerances of {CLASSES[kind]}", ("Measure", "Tolerance", "Unit", "Reason"),
-              [[name, number(limit), MEASURES[name][0], reason] for name, (limit, reason) in limits.items()])
-        for kind, limits in result.settings["tolerances"].items()]
-    tables.append(Table("The cases", ("Case", "What is hard", "Judged by, and tolerances of its own", "Duration [s]"),
-                        [[name, case["title"], _oracle(case), number(case["duration"])]
-                         for name, case in cases.items()]))
-    others = "\n".join("; ".join(f"{head}: {cell}" for head, cell in zip(FINDINGS, _line(row, cure), strict=True))
-                       for row, cure in ill if row["solver"] not in best)
-    evidence = (("Where the other variants are not right", others or "nowhere"), *(
-        (f"{row['case']}: {row['solver']}", _evidence(row)) for row, _ in ill if row["verdict"] == FAILED))
-    return Section("Numerical stability on hard cases", _text(result, cells, ill), tuple(tables), (picture,),
-                   evidence=evidence)
+        Table(
+            f"Tolerances of {CLASSES[kind]}",
+            ("Measure", "Tolerance", "Unit", "Reason"),
+            [[name, number(limit), MEASURES[name][0], reason] for name, (limit, reason) in limits.items()],
+        )
+        for kind, limits in result.settings["tolerances"].items()
+    ]
+    tables.append(
+        Table(
+            "The cases",
+            ("Case", "What is hard", "Judged by, and tolerances of its own", "Duration [s]"),
+            [[name, case["title"], _oracle(case), number(case["duration"])] for name, case in cases.items()],
+        )
+    )
+    others = "\n".join(
+        "; ".join(f"{head}: {cell}" for head, cell in zip(FINDINGS, _line(row, cure), strict=True))
+        for row, cure in ill
+        if row["solver"] not in best
+    )
+    evidence = (
+        ("Where the other variants are not right", others or "nowhere"),
+        *((f"{row['case']}: {row['solver']}", _evidence(row)) for row, _ in ill if row["verdict"] == FAILED),
+    )
+    return Section(
+        "Numerical stability on hard cases", _text(result, cells, ill), tuple(tables), (picture,), evidence=evidence
+    )
 
 
 def _text(result, cells, ill):
     event = [name for name, solver in result.settings["solvers"].items() if solver["kind"] == "event-driven"]
     steppers = [name for name in result.settings["solvers"] if name not in event]
     engine = [row for (_, name), (row, _) in cells.items() if name in steppers]
-    first = (f"{len(result.settings['cases'])} scenes that have broken real integrators, each run by "
-             f"{len(result.settings['solvers'])} solvers and variants as they come. A run is right if every measure is "
-             "within its tolerance, degraded if it ends but is not right, failed if the solver says so, crashes or "
-             "takes more than the time limit, or if what it did is no motion of the scene: states not finite, energy "
-             "from nowhere, the block off its place.")
+    first = (
+        f"{len(result.settings['cases'])} scenes that have broken real integrators, each run by "
+        f"{len(result.settings['solvers'])} solvers and variants as they come. A run is right if every measure is "
+        "within its tolerance, degraded if it ends but is not right, failed if the solver says so, crashes or "
+        "takes more than the time limit, or if what it did is no motion of the scene: states not finite, energy "
+        "from nowhere, the block off its place."
+    )
     own = [row for row, _ in ill if row["solver"] in event]
-    right = {name: sum(row["verdict"] == RIGHT for (_, solver), (row, _) in cells.items() if solver == name)
-             for name in steppers}
+    right = {
+        name: sum(row["verdict"] == RIGHT for (_, solver), (row, _) in cells.items() if solver == name)
+        for name in steppers
+    }
     trusted = [name for name, count in right.items() if count == len(result.settings["cases"])]
-    answer = ("Which solver that steps may be trusted in all cases as hard as these? "
-              f"{', '.join(trusted) or 'None'}. Right are "
-              + ", ".join(f"{name} in {count}" for name, count in right.items())
-              + f" of {len(result.settings['cases'])} cases. The tables say what was wrong in the others, by how much, "
-              "and which setting cures it.")
+    answer = (
+        "Which solver that steps may be trusted in all cases as hard as these? "
+        f"{', '.join(trusted) or 'None'}. Right are "
+        + ", ".join(f"{name} in {count}" for name, count in right.items())
+        + f" of {len(result.settings['cases'])} cases. The tables say what was wrong in the others, by how much, "
+        "and which setting cures it."
+    )
     of_events = sum(name in event for _, name in cells)
-    second = (f"The event-driven solvers (the analytic kernel, and its twin in plain scipy) are right in "
-              f"{of_events - len(own)} of {of_events} cells; "
-              f"the solvers that step in {sum(row['verdict'] == RIGHT for row in engine)} of {len(engine)}, degraded "
-              f"in {sum(row['verdict'] == DEGRADED for row in engine)}, failed in "
-              f"{sum(row['verdict'] == FAILED for row in engine)}.")
+    second = (
+        f"The event-driven solvers (the analytic kernel, and its twin in plain scipy) are right in "
+        f"{of_events - len(own)} of {of_events} cells; "
+        f"the solvers that step in {sum(row['verdict'] == RIGHT for row in engine)} of {len(engine)}, degraded "
+        f"in {sum(row['verdict'] == DEGRADED for row in engine)}, failed in "
+        f"{sum(row['verdict'] == FAILED for row in engine)}."
+    )
     stepped = [(row, cure) for row, cure in ill if row["solver"] in steppers]
     cured, vain = (sum(cure is not None and _cured(cure) == good for _, cure in stepped) for good in (True, False))
-    third = (f"Of the {len(stepped)} cells of theirs that are not right, a finer setting cures {cured}; {vain} stay "
-             f"wrong with every setting tried, and in {len(stepped) - cured - vain} none was tried.")
-    fourth = ("Trajectories are compared up to the sensitivity horizon of each scene, and up to the unstable point; "
-              "beyond, only outcomes that a change of 1e-4 does not alter. Drift and gained energy are what a "
-              "solver shows beyond what the same measure shows on the reference.")
+    third = (
+        f"Of the {len(stepped)} cells of theirs that are not right, a finer setting cures {cured}; {vain} stay "
+        f"wrong with every setting tried, and in {len(stepped) - cured - vain} none was tried."
+    )
+    fourth = (
+        "Trajectories are compared up to the sensitivity horizon of each scene, and up to the unstable point; "
+        "beyond, only outcomes that a change of 1e-4 does not alter. Drift and gained energy are what a "
+        "solver shows beyond what the same measure shows on the reference."
+    )
     return first, second, answer, third, fourth
 
 
 def _spoken(counts):
-    return "Matrix of verdicts. " + "; ".join(f"{name}: {right} right, {degraded} degraded, {failed} failed"
-                                              for name, right, degraded, failed, _ in counts)
+    return "Matrix of verdicts. " + "; ".join(
+        f"{name}: {right} right, {degraded} degraded, {failed} failed" for name, right, degraded, failed, _ in counts
+    )
 
 
 def _line(row, cure):
@@ -171,8 +222,11 @@ def _oracle(case):
         return "closed form of free rocking"
     until = case["twin_until"]
     text = case["oracle"] + ("" if until is None else f" (the twin up to {until:g} s; beyond, the energy ledger)")
-    own = [f"{name} {limit:g} for {CLASSES[kind]}: {reason}" for kind, limits in case["tolerances"].items()
-           for name, (limit, reason) in limits.items()]
+    own = [
+        f"{name} {limit:g} for {CLASSES[kind]}: {reason}"
+        for kind, limits in case["tolerances"].items()
+        for name, (limit, reason) in limits.items()
+    ]
     return "; ".join([text, *own])
 
 

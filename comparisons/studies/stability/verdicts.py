@@ -37,8 +37,10 @@ MEASURES = {
 TOLERANCES = {
     "event-driven": {
         "outcome": (0, "a decision"),
-        "tilt": (1e-6, "steps are good to 1e-10; up to the horizon a difference grows a hundredfold; the rest is "
-                        "reserve"),
+        "tilt": (
+            1e-6,
+            "steps are good to 1e-10; up to the horizon a difference grows a hundredfold; the rest is reserve",
+        ),
         "displacement": (1e-6, "as the tilt"),
         "overturning time": (1e-4, "as the tilt, and falling begins exponentially slowly"),
         "uplift time": (1e-8, "a root of a known function"),
@@ -97,8 +99,10 @@ class Solver:
 
 # What is tried where a solver's verdict is not "right".
 CURES = {
-    ("exudyn", "compliant-corners"): ({"stiffness": 1e12, "longest_step": 1e-3},
-                                      {"stiffness": 1e12, "longest_step": 1e-3, "tolerance": 1e-9}),
+    ("exudyn", "compliant-corners"): (
+        {"stiffness": 1e12, "longest_step": 1e-3},
+        {"stiffness": 1e12, "longest_step": 1e-3, "tolerance": 1e-9},
+    ),
     ("exudyn", "switched-joints"): ({"step": 1e-4},),
     ("exudyn", "native-contact"): ({"step": 5e-5},),
     ("pybullet", "impact-aware"): ({"largest_step": 1e-4}, {"largest_step": 1e-4, "accuracy": 1e-6}),
@@ -108,8 +112,9 @@ CURES = {
     ("mujoco", "fixed-step"): ({"step": 2e-5},),
     ("mujoco", "first-script"): ({"step": 2e-4},),
 }
-TIME_STEPPING = Solver("time-stepping", None, "stepping", {"step": 1e-3}, "step", ({"step": 1e-4}, {"step": 1e-5}),
-                       True)
+TIME_STEPPING = Solver(
+    "time-stepping", None, "stepping", {"step": 1e-3}, "step", ({"step": 1e-4}, {"step": 1e-5}), True
+)
 STEP_NAMES = ("step", "largest_step", "longest_step")
 
 
@@ -120,8 +125,17 @@ def solvers(engines):
         for variant, one in get_engine(name).variants.items():
             fields = [field.name for field in dataclasses.fields(one.settings)]
             step = next((field for field in STEP_NAMES if field in fields), None)
-            found.append(Solver(name, variant, "stepping", {}, step, CURES.get((name, variant), ()),
-                                variant == get_engine(name).default_variant))
+            found.append(
+                Solver(
+                    name,
+                    variant,
+                    "stepping",
+                    {},
+                    step,
+                    CURES.get((name, variant), ()),
+                    variant == get_engine(name).default_variant,
+                )
+            )
     return found
 
 
@@ -132,18 +146,35 @@ def tolerances(hard, kind):
 
 def entry(hard, solver, row):
     """The result file's row of one run: verdict, every measure beside its tolerance, or the evidence of failure."""
-    content = {"case": hard.name, "solver": solver.label, "cure": row.case.tag["cure"], "set": row.case.settings,
-               "cpu_seconds": row.cost.get("cpu_seconds")}
+    content = {
+        "case": hard.name,
+        "solver": solver.label,
+        "cure": row.case.tag["cure"],
+        "set": row.case.settings,
+        "cpu_seconds": row.cost.get("cpu_seconds"),
+    }
     if row.failed:
         failure = {key: _evidence(value) if isinstance(value, str) else value for key, value in row.failure.items()}
-        return {**content, "verdict": FAILED, "failure": failure, "settings": row.values.get("settings"),
-                "last_state": failure.pop("last_state", None) or row.values.get("end")}
+        return {
+            **content,
+            "verdict": FAILED,
+            "failure": failure,
+            "settings": row.values.get("settings"),
+            "last_state": failure.pop("last_state", None) or row.values.get("end"),
+        }
     limits = tolerances(hard, solver.kind)
     errors = {name: [_short(value), limits[name][0]] for name, value in row.values["errors"].items()}
     outside = [name for name, (value, limit) in errors.items() if not (value is not None and value <= limit)]
-    return {**content, "verdict": DEGRADED if outside else RIGHT, "outside": outside, "errors": errors,
-            "outcome": row.values["outcome"], "until": _short(row.values["until"]),
-            "impacts": row.values["impacts"], "steps": row.values["steps"]}
+    return {
+        **content,
+        "verdict": DEGRADED if outside else RIGHT,
+        "outside": outside,
+        "errors": errors,
+        "outcome": row.values["outcome"],
+        "until": _short(row.values["until"]),
+        "impacts": row.values["impacts"],
+        "steps": row.values["steps"],
+    }
 
 
 def _evidence(text):
@@ -158,11 +189,13 @@ def _short(value):
 
 def worst(content):
     """(measure, value, tolerance, value over tolerance) of the measure farthest outside its tolerance, or closest."""
+
     def ratio(name):
         value, limit = content["errors"][name]
         if value is None:
             return math.inf
         return value / limit if limit else (math.inf if value else 0.0)
+
     name = max(content["errors"], key=ratio)
     return (name, *content["errors"][name], ratio(name))
 
@@ -179,8 +212,9 @@ def plan(ask, names=None, columns=None):
     columns : sequence of Solver or None
         None: `solvers`.
     """
-    cases = [case for case in hard_cases().values()
-             if (case.quick or not ask.quick) and (not names or case.name in names)]
+    cases = [
+        case for case in hard_cases().values() if (case.quick or not ask.quick) and (not names or case.name in names)
+    ]
     columns = solvers(ask.engines) if columns is None else columns
     limit = QUICK_LIMIT if ask.quick else TIME_LIMIT
     ill, cure, rows = [(case, column) for case in cases for column in columns], None, []
@@ -190,21 +224,43 @@ def plan(ask, names=None, columns=None):
         entries = [entry(case, column, row) for (case, column), row in zip(ill, done, strict=True)]
         rows += entries
         cure = 0 if cure is None else cure + 1
-        ill = [(case, column) for (case, column), content in zip(ill, entries, strict=True)
-               if content["verdict"] != RIGHT and cure < len(column.cures)
-               and (column.default or not (ask.quick or case.scene.duration > LONG))]
+        ill = [
+            (case, column)
+            for (case, column), content in zip(ill, entries, strict=True)
+            if content["verdict"] != RIGHT
+            and cure < len(column.cures)
+            and (column.default or not (ask.quick or case.scene.duration > LONG))
+        ]
     return Found(_settings(cases, columns, ask.quick, limit), rows)
 
 
 def _settings(cases, columns, quick, limit):
     """What the study was asked, as its result file keeps it: cases, oracles, tolerances and their reasons, solvers."""
     return {
-        "quick": quick, "time_limit": limit,
-        "cases": {case.name: {"title": case.title, "oracle": case.oracle, "duration": case.scene.duration,
-                              "twin_until": case.twin_until, "tolerances": case.tolerances} for case in cases},
-        "measures": MEASURES, "tolerances": TOLERANCES,
-        "solvers": {column.label: {"kind": column.kind, "default_variant": column.default, "settings": _set(column),
-                                   "cures": column.cures} for column in columns}}
+        "quick": quick,
+        "time_limit": limit,
+        "cases": {
+            case.name: {
+                "title": case.title,
+                "oracle": case.oracle,
+                "duration": case.scene.duration,
+                "twin_until": case.twin_until,
+                "tolerances": case.tolerances,
+            }
+            for case in cases
+        },
+        "measures": MEASURES,
+        "tolerances": TOLERANCES,
+        "solvers": {
+            column.label: {
+                "kind": column.kind,
+                "default_variant": column.default,
+                "settings": _set(column),
+                "cures": column.cures,
+            }
+            for column in columns
+        },
+    }
 
 
 def _set(column):

@@ -78,15 +78,19 @@ def test_lean_scipy_refuses_a_block_that_lifts(short_record):
 
 
 def test_a_wrong_count_of_impacts_is_never_the_cheapest():
-    right, wrong = (Entry(A, name, 1e-9, None, error=1e-12, impacts=impacts, seconds=[cost])
-                    for name, impacts, cost in (("kernel", 10, 2.0), ("kernel", 9, 1.0)))
+    right, wrong = (
+        Entry(A, name, 1e-9, None, error=1e-12, impacts=impacts, seconds=[cost])
+        for name, impacts, cost in (("kernel", 10, 2.0), ("kernel", 9, 1.0))
+    )
     assert cheapest([wrong, right], A, lambda name: True, 1e-9) is right
     assert not wrong.row()["counted"]
 
 
 def test_measured_ratio_and_error_belong_to_the_same_runs():
-    entries = [Entry(A, "kernel", 1e-12, kernel_run(A, 1e-12)),
-               Entry(A, "DOP853", 1e-11, block_run(A, "DOP853", 1e-11))]
+    entries = [
+        Entry(A, "kernel", 1e-12, kernel_run(A, 1e-12)),
+        Entry(A, "DOP853", 1e-11, block_run(A, "DOP853", 1e-11)),
+    ]
     measure(entries, 2)
     assert [entry.counted for entry in entries] == [True, True]
     figure = ratios(entries, [A], [])[0]
@@ -113,8 +117,10 @@ def test_a_figure_that_could_not_be_measured_is_not_met():
 
 def test_random_scenes_are_sound_and_repeatable():
     assert random_scenes.random_scene(0, 7).digest() == random_scenes.random_scene(0, 7).digest()
-    kinds = {(scene.base is None, scene.bearings and scene.bearings.law, type(scene.motion).__name__)
-             for scene in (random_scenes.random_scene(0, i) for i in range(200))}
+    kinds = {
+        (scene.base is None, scene.bearings and scene.bearings.law, type(scene.motion).__name__)
+        for scene in (random_scenes.random_scene(0, i) for i in range(200))
+    }
     assert len(kinds) >= 12
     for index in range(300):
         assert random_scenes.faults(random_scenes.random_scene(0, index)) == {}, index
@@ -153,8 +159,10 @@ def test_nearly_elastic_impacts_end():
 
 
 def test_plot_shows_missed_impacts_apart(tmp_path):
-    rows = [{"problem": "A", "solver": name, "tolerance": 1e-9, "error": 1e-10, "counted": counted,
-             "cpu_seconds": cost} for name, counted, cost in (("kernel", True, 1e-5), ("LSODA", False, 1e-2))]
+    rows = [
+        {"problem": "A", "solver": name, "tolerance": 1e-9, "error": 1e-10, "counted": counted, "cpu_seconds": cost}
+        for name, counted, cost in (("kernel", True, 1e-5), ("LSODA", False, 1e-2))
+    ]
     draw(rows, {"processor": "test"}, tmp_path / "plot.png")
     assert (tmp_path / "plot.png").stat().st_size > 10_000
 

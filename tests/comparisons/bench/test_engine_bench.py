@@ -27,8 +27,9 @@ from comparisons.running.cases import Case
 from comparisons.running.provenance import json_ready
 from comparisons.running.sweep import Row
 
-FREE = Scene(block=Block(mass=10.0, radius=1.0, slenderness=0.25), base=Base(mass=5.0), start=Start(tilt=0.15),
-             duration=4.0)
+FREE = Scene(
+    block=Block(mass=10.0, radius=1.0, slenderness=0.25), base=Base(mass=5.0), start=Start(tilt=0.15), duration=4.0
+)
 
 
 def kept(scene, **options):
@@ -52,8 +53,15 @@ def ensemble():
 def test_scenes_lie_in_the_box_and_fill_it(ensemble):
     assert wide_box.wide_scene(1, 7).digest() == ensemble[7].digest() != wide_box.wide_scene(2, 7).digest()
     places = [wide_box.place(scene) for scene in ensemble]
-    box = {"slenderness": (0.03, 1.2), "inertia": (1.01, 3.0), "base": (1e-5, 100.0), "radius": (1e-3, 30.0),
-           "mass": (1e-3, 1e6), "tilt": (1e-4, 0.99), "stiffness": (0.0, 1e9)}
+    box = {
+        "slenderness": (0.03, 1.2),
+        "inertia": (1.01, 3.0),
+        "base": (1e-5, 100.0),
+        "radius": (1e-3, 30.0),
+        "mass": (1e-3, 1e6),
+        "tilt": (1e-4, 0.99),
+        "stiffness": (0.0, 1e9),
+    }
     for name, (low, high) in box.items():
         values = np.array([place[name] for place in places if place[name] is not None])
         assert low * (1 - 1e-9) <= values.min() and values.max() <= high * (1 + 1e-9), name
@@ -117,8 +125,11 @@ def test_peaks_count_from_their_least_value_on(name, scale):
 
 
 def pulse(amplitude, duration=4.0):
-    return Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.25), duration=duration,
-                 motion=PulseMotion("one-sine", amplitude, 6.0))
+    return Scene(
+        block=Block(mass=1.0, radius=1.0, slenderness=0.25),
+        duration=duration,
+        motion=PulseMotion("one-sine", amplitude, 6.0),
+    )
 
 
 @pytest.fixture(scope="module")
@@ -179,33 +190,45 @@ def rows_of(cases, changes=None, failure=None):
     return rows
 
 
-@pytest.mark.parametrize("changes, failure, expected", [
-    ({}, None, "right"), ({"warnings": ["w"]}, None, "right but warned"), ({"tilt": 0.2}, None, "off and silent"),
-    ({"tilt": 0.2, "warnings": ["w"]}, None, "off and warned"),
-    ({}, {"kind": "time limit", "reason": "no result", "message": "m"}, "failed and said")])
+@pytest.mark.parametrize(
+    "changes, failure, expected",
+    [
+        ({}, None, "right"),
+        ({"warnings": ["w"]}, None, "right but warned"),
+        ({"tilt": 0.2}, None, "off and silent"),
+        ({"tilt": 0.2, "warnings": ["w"]}, None, "off and warned"),
+        ({}, {"kind": "time limit", "reason": "no result", "message": "m"}, "failed and said"),
+    ],
+)
 def test_classes(changes, failure, expected):
-    row, = judged([FREE], "exudyn", lambda cases, label: rows_of(cases),
-                  lambda cases: rows_of(cases, changes, failure))
+    (row,) = judged(
+        [FREE], "exudyn", lambda cases, label: rows_of(cases), lambda cases: rows_of(cases, changes, failure)
+    )
     assert row["class"] == expected
     assert row["cause"] == ("no result" if failure else None)
     assert json.loads(json.dumps(json_ready(row)))["place"]["slenderness"] == 0.25
 
 
 def test_overturning_is_judged_up_to_the_unstable_point_and_by_its_outcome():
-    scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.25), duration=4.0,
-                  motion=PulseMotion("one-sine", 8.0, 6.0))
+    scene = Scene(
+        block=Block(mass=1.0, radius=1.0, slenderness=0.25), duration=4.0, motion=PulseMotion("one-sine", 8.0, 6.0)
+    )
     run = kept(scene)
     assert run["outcome"] == "overturns" and rule(scene, run) is None
-    for changes, expected in (({}, "right"), ({"tilt": 9.9, "displacement": 9.9}, "right"),
-                              ({"outcome": "rocks"}, "off and silent"), ({"tilts": [9.9] * 50}, "off and silent"),
-                              ({"outcome": "rocks", "decided": False}, "right")):
-        row, = judged([scene], "exudyn", lambda cases, label: rows_of(cases), partial(rows_of, changes=changes))
+    for changes, expected in (
+        ({}, "right"),
+        ({"tilt": 9.9, "displacement": 9.9}, "right"),
+        ({"outcome": "rocks"}, "off and silent"),
+        ({"tilts": [9.9] * 50}, "off and silent"),
+        ({"outcome": "rocks", "decided": False}, "right"),
+    ):
+        (row,) = judged([scene], "exudyn", lambda cases, label: rows_of(cases), partial(rows_of, changes=changes))
         assert row["class"] == expected and row["judged_until"] == run["unstable"]
     thrown = scene.with_(motion=None, start={"tilt": 0.1, "tilt_rate": 2.0})
     cut = thrown.with_(duration=kept(thrown)["unstable"] * 1.05)
     assert kept(cut)["outcome"] == "overturns"  # the model follows a certain fall to its end, an engine may not
     short = {"outcome": "rocks", "decided": False, "tilt": 1.2 * 0.25}
-    row, = judged([cut], "exudyn", lambda cases, label: rows_of(cases), partial(rows_of, changes=short))
+    (row,) = judged([cut], "exudyn", lambda cases, label: rows_of(cases), partial(rows_of, changes=short))
     assert row["class"] == "right"
 
 
@@ -219,7 +242,7 @@ def test_a_warning_that_the_model_gives_too_is_none_about_the_engine():
 def test_what_the_model_leaves_out_the_engine_is_not_asked():
     scene = FREE.with_(base={"mass": 5e-3}, start={"tilt": 0.0, "tilt_rate": 4.0})  # thrown off its corner at once
     assert rule(scene, kept(scene)) is not None
-    row, = judged([scene], "exudyn", lambda cases, label: rows_of(cases), lambda cases: rows_of(cases) * len(cases))
+    (row,) = judged([scene], "exudyn", lambda cases, label: rows_of(cases), lambda cases: rows_of(cases) * len(cases))
     assert row["class"] == "left out" and row["cause"] == rule(scene, kept(scene)) and row["outcome"] is None
 
 
@@ -240,16 +263,32 @@ def test_bench_from_scenes_to_figure(tmp_path):
 
 def test_tables_count_every_scene_and_name_every_cause():
     place = wide_box.place(FREE)
-    common = {"notes": [], "judged_until": None, "place": place, "cause": None, "findings": [], "warnings": [],
-              "outcome": "rocks", "expected": "rocks"}
+    common = {
+        "notes": [],
+        "judged_until": None,
+        "place": place,
+        "cause": None,
+        "findings": [],
+        "warnings": [],
+        "outcome": "rocks",
+        "expected": "rocks",
+    }
     warning = "radius R [m] = 0.001 is below 0.01, the limit of the range verified"
     off = [{"quantity": "tilt", "error": 0.03, "limit": 0.02}]
-    changes = [{"class": "right"}, {"class": "right but warned", "warnings": [warning]},
-               {"class": "off and silent", "findings": off}, {"class": "left out", "cause": "N <= 0"},
-               {"class": "failed and said", "cause": "no result within the time limit of 60 s"}]
+    changes = [
+        {"class": "right"},
+        {"class": "right but warned", "warnings": [warning]},
+        {"class": "off and silent", "findings": off},
+        {"class": "left out", "cause": "N <= 0"},
+        {"class": "failed and said", "cause": "no result within the time limit of 60 s"},
+    ]
     rows = [{**common, **change, "index": k} for k, change in enumerate(changes)]
     assert [engine_tables.causes(row) for row in rows[1:]] == [
-        ["warned: radius R [m]"], ["off: tilt"], ["N <= 0"], ["no result within the time limit of # s"]]
+        ["warned: radius R [m]"],
+        ["off: tilt"],
+        ["N <= 0"],
+        ["no result within the time limit of # s"],
+    ]
     table = engine_tables.class_table(rows, "five")
     assert list(table.columns[1].cells)[:6] == ["1", "1", "0", "1", "1", "1"]
     assert list(table.columns[2].cells)[0] == "25.0%"  # of the four that are not left out

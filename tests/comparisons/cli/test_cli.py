@@ -17,20 +17,38 @@ from comparisons.studies import BUILT_IN
 from engines import ENGINES, get_engine, installed_engines
 
 PNG = b"\x89PNG\r\n"
-NEEDED = {"engine", "outcome", "overturning_time", "peak_tilt", "peak_tilt_ratio", "peak_base_displacement",
-          "peak_base_acceleration", "impacts", "impact_count", "uplifts", "friction_demand", "min_normal_ratio", "end",
-          "cpu_seconds", "steps", "settings", "versions"}
+NEEDED = {
+    "engine",
+    "outcome",
+    "overturning_time",
+    "peak_tilt",
+    "peak_tilt_ratio",
+    "peak_base_displacement",
+    "peak_base_acceleration",
+    "impacts",
+    "impact_count",
+    "uplifts",
+    "friction_demand",
+    "min_normal_ratio",
+    "end",
+    "cpu_seconds",
+    "steps",
+    "settings",
+    "versions",
+}
 
 
 @pytest.fixture
 def rocking(capfd):
     """Runs ``rocking ARGUMENTS`` in this process; returns (exit status, standard output, standard error)."""
+
     def call(*arguments):
         capfd.readouterr()
         with pytest.raises(SystemExit) as end:
             cli.main([str(argument) for argument in arguments])
         out, err = capfd.readouterr()
         return end.value.code or 0, out, err
+
     return call
 
 
@@ -49,8 +67,9 @@ def test_run_writes_json_csv_and_plot(rocking, tmp_path):
     assert result["peak_base_displacement"] == expected.peak_base_displacement
     with files[1].open() as file:
         rows = list(csv.reader(file))
-    assert ",".join(rows[0]) == ("time,tilt,tilt_rate,base_displacement,base_velocity,bearing_force,"
-                                 "ground_acceleration")
+    assert ",".join(rows[0]) == (
+        "time,tilt,tilt_rate,base_displacement,base_velocity,bearing_force,ground_acceleration"
+    )
     assert len(rows) - 1 == len(expected.history.time)
     assert float(rows[-1][3]) == expected.history.base_displacement[-1]
     assert files[2].read_bytes().startswith(PNG)
@@ -68,16 +87,21 @@ def test_json_of_an_engine_is_alone_too(engine):
     """In a new process: an engine may greet when it is loaded, or when C flushes its buffers at exit."""
     if engine not in installed_engines():
         pytest.skip(f"{engine} is not installed")
-    done = subprocess.run([sys.executable, "-m", "comparisons", "run", "free-rocking-rigid", "--engine", engine,
-                           "--json", "-"], capture_output=True, text=True, timeout=120)
+    done = subprocess.run(
+        [sys.executable, "-m", "comparisons", "run", "free-rocking-rigid", "--engine", engine, "--json", "-"],
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
     assert json.loads(done.stdout)["engine"] == engine
     assert done.returncode == 0, done.stderr
 
 
 def test_module_and_status_in_a_new_process(tmp_path):
     path = write_scene(tmp_path, SCENE.replace("3172.05", "-1"))
-    done = subprocess.run([sys.executable, "-m", "comparisons", "run", str(path)], capture_output=True, text=True,
-                          timeout=120)
+    done = subprocess.run(
+        [sys.executable, "-m", "comparisons", "run", str(path)], capture_output=True, text=True, timeout=120
+    )
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == f"Error: {path}: block.mass = -1: out of range; give a number above 0 [kg]\n"
 
@@ -98,19 +122,22 @@ def test_no_such_scene(rocking, command):
     assert "no-such-scene: scene: cannot be read" in err and "caryatid-isolated" in err
 
 
-@pytest.mark.parametrize("arguments, message", [
-    (["--engine", "ode"], "unknown engine 'ode': choose one of exudyn, pybullet, mujoco, or analytic"),
-    (["--variant", "fast"], "the analytic model has no variant 'fast': leave --variant out"),
-    (["--set", "tolerance"], "--set tolerance: write name=value"),
-    (["--set", "tolerance=tight"], "tolerance = 'tight': give a number"),
-    (["--set", "tolerance=true"], "tolerance = True: give a number"),
-    (["--set", "tolerance=-1"], "tolerance = -1: give a value from"),
-    (["--set", "speed=1"], "the analytic model has no setting 'speed': its settings are tolerance"),
-    (["--set", "history=1"], "the analytic model has no setting 'history'"),
-    (["--plot", "picture.foo"], "picture.foo: not a known picture format; end the name in .png, .svg, .pdf"),
-    (["--csv", "no-folder/x.csv"], "there is no folder no-folder; make it first"),
-    (["--json", "no-folder/x.json"], "there is no folder no-folder; make it first"),
-])
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (["--engine", "ode"], "unknown engine 'ode': choose one of exudyn, pybullet, mujoco, or analytic"),
+        (["--variant", "fast"], "the analytic model has no variant 'fast': leave --variant out"),
+        (["--set", "tolerance"], "--set tolerance: write name=value"),
+        (["--set", "tolerance=tight"], "tolerance = 'tight': give a number"),
+        (["--set", "tolerance=true"], "tolerance = True: give a number"),
+        (["--set", "tolerance=-1"], "tolerance = -1: give a value from"),
+        (["--set", "speed=1"], "the analytic model has no setting 'speed': its settings are tolerance"),
+        (["--set", "history=1"], "the analytic model has no setting 'history'"),
+        (["--plot", "picture.foo"], "picture.foo: not a known picture format; end the name in .png, .svg, .pdf"),
+        (["--csv", "no-folder/x.csv"], "there is no folder no-folder; make it first"),
+        (["--json", "no-folder/x.json"], "there is no folder no-folder; make it first"),
+    ],
+)
 def test_bad_option(rocking, arguments, message):
     status, out, err = rocking("run", "free-rocking-rigid", *arguments)
     assert (status, out) == (2, "")
@@ -138,8 +165,9 @@ def test_setting_reaches_the_solver(rocking):
     assert json.loads(out)["settings"]["tolerance"] == 1e-6
 
 
-@pytest.mark.parametrize("command", [["run", "caryatid-rigid", "--engine", "mujoco"],
-                                     ["compare", "caryatid-rigid", "--engine", "mujoco"]])
+@pytest.mark.parametrize(
+    "command", [["run", "caryatid-rigid", "--engine", "mujoco"], ["compare", "caryatid-rigid", "--engine", "mujoco"]]
+)
 def test_engine_that_is_not_installed(rocking, monkeypatch, command):
     monkeypatch.setitem(sys.modules, "mujoco", None)  # what Python does for a package that cannot be imported
     status, out, err = rocking(*command)
@@ -189,8 +217,12 @@ def test_failed_run_is_told_and_has_a_status_of_its_own(rocking, monkeypatch, tm
 
         @staticmethod
         def simulate(scene, *, variant, history):
-            return dataclasses.replace(simulate(scene, history=False), engine="exudyn", outcome="failed",
-                                       failure=Failure("Newton gave up", "SolverError: no convergence"))
+            return dataclasses.replace(
+                simulate(scene, history=False),
+                engine="exudyn",
+                outcome="failed",
+                failure=Failure("Newton gave up", "SolverError: no convergence"),
+            )
 
     monkeypatch.setattr("engines.get_engine", lambda name: Broken)
     status, out, err = rocking("run", "free-rocking-rigid", "--engine", "exudyn", "--json", "-")
@@ -213,15 +245,22 @@ def test_other_errors_are_not_hidden(rocking, monkeypatch):
 
 def test_parse_settings():
     assert solving.parse_settings(["a=1e-4", "b=true", "c=word", "d=x=y", 'e="1"']) == {
-        "a": 1e-4, "b": True, "c": "word", "d": "x=y", "e": "1"}
+        "a": 1e-4,
+        "b": True,
+        "c": "word",
+        "d": "x=y",
+        "e": "1",
+    }
 
 
 def test_help_loads_no_engine_and_no_plots():
-    code = ("import sys; from comparisons import cli\n"
-            "try: cli.main(['--help'])\n"
-            "except SystemExit: pass\n"
-            "heavy = [m for m in ('exudyn', 'pybullet', 'mujoco', 'matplotlib') if m in sys.modules]\n"
-            "sys.exit(f'loaded: {heavy}' if heavy else 0)")
+    code = (
+        "import sys; from comparisons import cli\n"
+        "try: cli.main(['--help'])\n"
+        "except SystemExit: pass\n"
+        "heavy = [m for m in ('exudyn', 'pybullet', 'mujoco', 'matplotlib') if m in sys.modules]\n"
+        "sys.exit(f'loaded: {heavy}' if heavy else 0)"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr
     for name in ("run", "compare", "engines"):

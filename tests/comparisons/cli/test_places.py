@@ -25,8 +25,17 @@ from comparisons.showing.plots import draw_histories, save
 from engines import get_engine, installed_engines
 
 QUICK = ("run", "free-rocking-rigid")
-ODD_NAMES = ("$x_$", "$\\frac{1$", "[/red]", "[bold]b[/bold]", "a\nb\x1b[31mc", "é 石 \udcff", "%s {0} \\", "x" * 5000,
-             "")
+ODD_NAMES = (
+    "$x_$",
+    "$\\frac{1$",
+    "[/red]",
+    "[bold]b[/bold]",
+    "a\nb\x1b[31mc",
+    "é 石 \udcff",
+    "%s {0} \\",
+    "x" * 5000,
+    "",
+)
 
 
 @pytest.fixture
@@ -37,12 +46,19 @@ def rocking(capfd):
             cli.main([str(argument) for argument in arguments])
         out, err = capfd.readouterr()
         return end.value.code or 0, out, err
+
     return call
 
 
 def started(*arguments, **options):
-    return subprocess.Popen([sys.executable, "-m", "comparisons", *map(str, arguments)], text=True,
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True, **options)
+    return subprocess.Popen(
+        [sys.executable, "-m", "comparisons", *map(str, arguments)],
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+        **options,
+    )
 
 
 def scene_file(folder, name="scene", change=lambda text: text):
@@ -68,6 +84,7 @@ def test_names_are_printed_and_drawn_as_they_are(rocking, tmp_path, name):
 
 def test_the_file_of_a_figure_bears_the_name_literally(tmp_path):
     from analytic import load_scene, simulate
+
     scene = load_scene("caryatid-rigid").with_(name="$m_b$ [x]", duration=0.5)
     figure = draw_histories(scene, [simulate(scene)])
     save(figure, tmp_path / "x.svg")
@@ -79,8 +96,19 @@ def test_places_where_nothing_can_be_written_are_refused_before_the_run(rocking,
     monkeypatch.setattr("comparisons.commands.run.simulate", lambda *_, **__: pytest.fail("it ran"))
     os.mkfifo(tmp_path / "fifo")
     (tmp_path / "file").write_text("")
-    for place in (tmp_path, tmp_path / "fifo", "/dev/full", "/dev/null", "/dev/tty", "/proc/x.json", "a\0b",
-                  tmp_path / ("x" * 300), tmp_path / "file" / "x.json", tmp_path / "none" / "x.json", ""):
+    for place in (
+        tmp_path,
+        tmp_path / "fifo",
+        "/dev/full",
+        "/dev/null",
+        "/dev/tty",
+        "/proc/x.json",
+        "a\0b",
+        tmp_path / ("x" * 300),
+        tmp_path / "file" / "x.json",
+        tmp_path / "none" / "x.json",
+        "",
+    ):
         assert told(*rocking(*QUICK, option, place)), place
     assert sorted(path.name for path in tmp_path.iterdir()) == ["fifo", "file"]  # nothing left of the trials
 
@@ -93,8 +121,9 @@ def test_a_result_does_not_overwrite_what_is_read_nor_another_result(rocking, tm
     assert scene.read_text() == before
 
 
-@pytest.mark.parametrize("command", [("report",), ("study", "fragility"), ("study", "restitution"),
-                                     ("bench", "analytic")])
+@pytest.mark.parametrize(
+    "command", [("report",), ("study", "fragility"), ("study", "restitution"), ("bench", "analytic")]
+)
 def test_folders_where_nothing_can_be_written_are_refused_before_the_work(rocking, tmp_path, command):
     os.mkfifo(tmp_path / "fifo")
     (tmp_path / "file").write_text("")
@@ -120,9 +149,14 @@ def test_a_disk_that_is_full_after_the_run_costs_no_result(rocking, tmp_path, mo
 def test_standard_output_that_is_full_closed_or_not_read(tmp_path):
     environment = {**os.environ, "TMPDIR": str(tmp_path)}
     with open("/dev/full", "w") as full:
-        done = subprocess.run([sys.executable, "-m", "comparisons", *QUICK, "--json", "-"], stdout=full,
-                              stderr=subprocess.PIPE, text=True, env=environment)
-    kept, = tmp_path.glob("*.json")
+        done = subprocess.run(
+            [sys.executable, "-m", "comparisons", *QUICK, "--json", "-"],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=environment,
+        )
+    (kept,) = tmp_path.glob("*.json")
     assert told(done.returncode, "", done.stderr) and str(kept) in done.stderr
     assert json.loads(kept.read_text())["outcome"] == "rocks"
     for shell, status, words in ((">&-", 2, "standard output"), ("| true", 1, ""), (">&- 2>&-", 2, "")):
@@ -133,13 +167,18 @@ def test_standard_output_that_is_full_closed_or_not_read(tmp_path):
 
 
 def test_names_the_terminal_cannot_show(tmp_path):
-    done = subprocess.run([sys.executable, "-m", "comparisons", "run", str(scene_file(tmp_path, "石"))], text=True,
-                          capture_output=True, env={**os.environ, "PYTHONIOENCODING": "ascii"})
+    done = subprocess.run(
+        [sys.executable, "-m", "comparisons", "run", str(scene_file(tmp_path, "石"))],
+        text=True,
+        capture_output=True,
+        env={**os.environ, "PYTHONIOENCODING": "ascii"},
+    )
     assert done.returncode == 0 and "\\u77f3" in done.stdout
 
 
-@pytest.mark.parametrize("value", ["1e400", "-1e400", "NaN", "nan", "1" * 400, "1" * 5000, "[" * 50000, "{}", "null",
-                                   '"1"', "", "1e-400"])
+@pytest.mark.parametrize(
+    "value", ["1e400", "-1e400", "NaN", "nan", "1" * 400, "1" * 5000, "[" * 50000, "{}", "null", '"1"', "", "1e-400"]
+)
 def test_absurd_settings(rocking, value):
     for solver, name in (("analytic", "tolerance"), ("exudyn", ""), ("pybullet", "")):
         if solver != "analytic":
@@ -253,11 +292,13 @@ cli.main(["engines"])
 """
 
 
-@pytest.mark.parametrize("number, status, words", [(signal.SIGINT, 130, "Interrupted.\n"),
-                                                   (signal.SIGTERM, 143, "Ended by SIGTERM.\n")])
+@pytest.mark.parametrize(
+    "number, status, words", [(signal.SIGINT, 130, "Interrupted.\n"), (signal.SIGTERM, 143, "Ended by SIGTERM.\n")]
+)
 def test_signals_while_this_process_itself_is_in_the_kernel(number, status, words):
-    process = subprocess.Popen([sys.executable, "-c", KERNEL_HERE], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                               text=True)
+    process = subprocess.Popen(
+        [sys.executable, "-c", KERNEL_HERE], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
     assert process.stdout.readline() == "begins\n"
     time.sleep(5.0)
     assert process.poll() is None
@@ -281,14 +322,67 @@ def test_an_interrupted_study_resumes(tmp_path):
         assert not any("Interrupt" in json.dumps(row["failure"]) for row in opened.rows.values())
 
 
-WORDS = ("", "-", "--", "x", "run", "[/b]", "$x$", "é", "\0", "nan", "1e400", "-1", "9" * 5000, "a" * 300, "a/" * 3000,
-         "--json", "--csv", "--plot", "--set", "--engine", "--time-limit", "--output", "--record", "--units",
-         "--variant", "step=1e400", "tolerance=nan", "=", "tolerance=1e-3", "exudyn", "analytic", ".", "/",
-         "/dev/full", "/dev/tty", "/proc/self/mem", "/proc/x.png", "x.png", "no/x.json", "--help", "\udcff", "--quick")
-COMMANDS = (["run"], ["run", "free-rocking-rigid"], ["compare"], ["compare", "free-rocking-rigid"], ["design"],
-            ["design", "--period", "2", "--damping", "0.3", "--xmax", "0.3"], ["engines", "x"], ["report", "--output"],
-            ["report", "--record"], ["study"], ["study", "fragility", "--workers"],
-            ["study", "overturning", "--output"], ["bench", "analytic", "--output", "/proc/x"], ["bench"], [])
+WORDS = (
+    "",
+    "-",
+    "--",
+    "x",
+    "run",
+    "[/b]",
+    "$x$",
+    "é",
+    "\0",
+    "nan",
+    "1e400",
+    "-1",
+    "9" * 5000,
+    "a" * 300,
+    "a/" * 3000,
+    "--json",
+    "--csv",
+    "--plot",
+    "--set",
+    "--engine",
+    "--time-limit",
+    "--output",
+    "--record",
+    "--units",
+    "--variant",
+    "step=1e400",
+    "tolerance=nan",
+    "=",
+    "tolerance=1e-3",
+    "exudyn",
+    "analytic",
+    ".",
+    "/",
+    "/dev/full",
+    "/dev/tty",
+    "/proc/self/mem",
+    "/proc/x.png",
+    "x.png",
+    "no/x.json",
+    "--help",
+    "\udcff",
+    "--quick",
+)
+COMMANDS = (
+    ["run"],
+    ["run", "free-rocking-rigid"],
+    ["compare"],
+    ["compare", "free-rocking-rigid"],
+    ["design"],
+    ["design", "--period", "2", "--damping", "0.3", "--xmax", "0.3"],
+    ["engines", "x"],
+    ["report", "--output"],
+    ["report", "--record"],
+    ["study"],
+    ["study", "fragility", "--workers"],
+    ["study", "overturning", "--output"],
+    ["bench", "analytic", "--output", "/proc/x"],
+    ["bench"],
+    [],
+)
 DESIGN = ("--period", "--damping", "--xmax", "--mass", "--count", "--ratio", "--definition")
 
 

@@ -29,8 +29,11 @@ BLOCK = Block(mass=3172.05, radius=1.0884, slenderness=0.2)
 
 def long_shaking(slenderness=0.2, seed=3):
     noise = np.random.default_rng(seed).standard_normal(2000)
-    return Scene(block=BLOCK.model_copy(update={"slenderness": slenderness}), duration=20.0,
-                 motion=SampledMotion(0.01, 2.5 * np.sin(5 * 0.01 * np.arange(2000)) + 0.6 * noise))
+    return Scene(
+        block=BLOCK.model_copy(update={"slenderness": slenderness}),
+        duration=20.0,
+        motion=SampledMotion(0.01, 2.5 * np.sin(5 * 0.01 * np.arange(2000)) + 0.6 * noise),
+    )
 
 
 def test_free_rocking_is_never_parted():
@@ -67,9 +70,13 @@ def test_an_independent_twin_parts_at_the_horizon():
 
 
 def test_no_rocking_no_horizon():
-    scene = Scene(block=BLOCK, base=Base(mass=212.0),
-                  bearings=Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69),
-                  motion=PulseMotion("one-sine", 1.0, 6.0), duration=5.0)
+    scene = Scene(
+        block=BLOCK,
+        base=Base(mass=212.0),
+        bearings=Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69),
+        motion=PulseMotion("one-sine", 1.0, 6.0),
+        duration=5.0,
+    )
     horizon = sensitivity_horizon(scene)
     assert horizon.horizon == 5.0 and horizon.spread[-1] == 0.0
 
@@ -130,8 +137,10 @@ def test_restitution_errors_are_weighted_by_the_rate():
     response = simulate(scene)
     e, (first, *_) = restitution(scene), response.impacts
     rate = first.rate_before
-    impacts = (dataclasses.replace(first, rate_after=rate * e * 1.01),
-               dataclasses.replace(first, rate_before=0.1 * rate, rate_after=0.1 * rate * e * 1.5))
+    impacts = (
+        dataclasses.replace(first, rate_after=rate * e * 1.01),
+        dataclasses.replace(first, rate_before=0.1 * rate, rate_after=0.1 * rate * e * 1.5),
+    )
     rms = restitution_error(scene, dataclasses.replace(response, impacts=impacts))
     assert rms == pytest.approx(np.sqrt((0.01**2 + 0.05**2) / 1.01), rel=1e-6)
     assert restitution_error(scene, dataclasses.replace(response, impacts=())) == 0.0
@@ -149,7 +158,7 @@ def largest_distance(scene, response, reference, until):
     until = min(until, reference.unstable_time or np.inf, response.history.time[-1])
     time = reference.history.time[reference.history.time < until]
     own = np.interp(time, response.history.time, response.history.tilt)
-    return np.abs(own - reference.history.tilt[:len(time)]).max() / scene.block.slenderness
+    return np.abs(own - reference.history.tilt[: len(time)]).max() / scene.block.slenderness
 
 
 def assert_no_engine_parts_before_its_own_horizon(engine, scenes):
@@ -172,14 +181,21 @@ def test_no_engine_parts_before_its_own_horizon(engine):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("engine", ["exudyn", "pybullet", "mujoco"])
-@pytest.mark.parametrize("name", ["RSN1605_DUZCE_DZC270.AT2", "IELC180.AT2", "ARL360.at2",
-                                  "formats/RSN1063_NORTHR_RRS228.AT2"])
+@pytest.mark.parametrize(
+    "name", ["RSN1605_DUZCE_DZC270.AT2", "IELC180.AT2", "ARL360.at2", "formats/RSN1063_NORTHR_RRS228.AT2"]
+)
 def test_no_engine_parts_before_its_own_horizon_on_a_record(engine, name):
     if not (RECORDS / name).exists():
         pytest.skip(f"the record {name} is not here")
     motion = read_record(RECORDS / name)
-    scenes = [Scene(name=f"{slenderness}, {share} of uplift", duration=min(motion.end, 20.0),
-                    block=BLOCK.model_copy(update={"slenderness": slenderness}),
-                    motion=motion.scaled(share * 9.81 * np.tan(slenderness) / motion.peak))
-              for slenderness in (0.15, 0.25) for share in (1.3, 2.0)]
+    scenes = [
+        Scene(
+            name=f"{slenderness}, {share} of uplift",
+            duration=min(motion.end, 20.0),
+            block=BLOCK.model_copy(update={"slenderness": slenderness}),
+            motion=motion.scaled(share * 9.81 * np.tan(slenderness) / motion.peak),
+        )
+        for slenderness in (0.15, 0.25)
+        for share in (1.3, 2.0)
+    ]
     assert_no_engine_parts_before_its_own_horizon(engine, scenes)

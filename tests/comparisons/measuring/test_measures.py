@@ -21,8 +21,12 @@ from comparisons.measuring.measures import (
 
 
 def free(slenderness=0.25, base=None, start=0.6, duration=10.0, **block):
-    return Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=slenderness, **block), base=base,
-                 start=Start(tilt=start * slenderness), duration=duration)
+    return Scene(
+        block=Block(mass=3172.05, radius=1.0884, slenderness=slenderness, **block),
+        base=base,
+        start=Start(tilt=start * slenderness),
+        duration=duration,
+    )
 
 
 @pytest.mark.parametrize("slenderness", [0.1, 0.2, 0.3, 0.45])
@@ -81,8 +85,12 @@ def test_the_jump_error_sees_the_printed_eq_8():
     scene = free(0.28, base=Base(mass=212.0))
     response = simulate(scene)
     factor = scene.block.half_height  # what (8) as printed has too many
-    wrong = dataclasses.replace(response, impacts=tuple(
-        dataclasses.replace(i, base_velocity_jump=i.base_velocity_jump * factor) for i in response.impacts))
+    wrong = dataclasses.replace(
+        response,
+        impacts=tuple(
+            dataclasses.replace(i, base_velocity_jump=i.base_velocity_jump * factor) for i in response.impacts
+        ),
+    )
     np.testing.assert_allclose(base_jump_error(scene, wrong), factor - 1, atol=1e-9)
 
 
@@ -122,8 +130,10 @@ def test_graph_distance_of_shifted_lines_is_the_perpendicular():
     assert middle == pytest.approx(0.5, rel=1e-12)  # the end point (10, 20.5) is nearest to (10, 20)
     wide = with_tilt(response, np.linspace(-1, 11, 121), 2 * np.linspace(-1, 11, 121))
     from comparisons.measuring.measures import _directed
+
     assert _directed(fine, 2 * fine + 0.5, wide.history.time, wide.history.tilt) == pytest.approx(
-        0.5 / math.sqrt(5), rel=1e-9)
+        0.5 / math.sqrt(5), rel=1e-9
+    )
 
 
 @pytest.mark.parametrize("cut", [0.0, 0.003, 0.4])
@@ -142,15 +152,22 @@ def test_graph_distance_is_over_the_same_span(cut):
 def test_graph_distance_of_blocks_that_fall_one_after_the_other_is_the_delay():
     response = simulate(free())
     time, delay = np.linspace(0, 3, 3001), 2e-3
-    falls = [with_tilt(response, t, np.expm1(3 * (t - d).clip(0)))
-             for d in (0.0, delay) for t in (np.append(time[time < 2 + d], 2 + d),)]
+    falls = [
+        with_tilt(response, t, np.expm1(3 * (t - d).clip(0)))
+        for d in (0.0, delay)
+        for t in (np.append(time[time < 2 + d], 2 + d),)
+    ]
     distance = graph_distance(*falls, tilt_scale=1.0, time_scale=1.0)
     assert 0.9 * delay < distance <= delay
 
 
 def test_energy_errors_vanish_for_exact_runs_and_see_a_drift():
-    scene = Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=0.2), base=Base(mass=212.0),
-                  start=Start(tilt=0.12), duration=4.0)
+    scene = Scene(
+        block=Block(mass=3172.05, radius=1.0884, slenderness=0.2),
+        base=Base(mass=212.0),
+        start=Start(tilt=0.12),
+        duration=4.0,
+    )
     response = simulate(scene)
     assert max(energy_errors(scene, response)) < 1e-10
     history = response.history
@@ -160,9 +177,13 @@ def test_energy_errors_vanish_for_exact_runs_and_see_a_drift():
 
 
 def test_energy_drift_with_bearings_and_motion_falls_with_the_sampling():
-    scene = Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=0.15), base=Base(mass=212.0),
-                  bearings=Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69),
-                  motion=PulseMotion("one-sine", 4.0, 6.0), duration=3.0)
+    scene = Scene(
+        block=Block(mass=3172.05, radius=1.0884, slenderness=0.15),
+        base=Base(mass=212.0),
+        bearings=Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69),
+        motion=PulseMotion("one-sine", 4.0, 6.0),
+        duration=3.0,
+    )
     drifts = [energy_errors(scene, simulate(scene, output_step=step))[0] for step in (4e-3, 2e-3, 1e-3)]
     assert drifts[0] / drifts[1] > 3 and drifts[1] / drifts[2] > 3  # trapezoidal rule: factor 4
 

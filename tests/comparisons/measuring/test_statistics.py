@@ -19,8 +19,10 @@ from comparisons.measuring.statistics import (
 )
 
 
-@pytest.mark.parametrize("count, size, low, high", [
-    (81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611), (1, 29, 0.0061, 0.1718)])
+@pytest.mark.parametrize(
+    "count, size, low, high",
+    [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611), (1, 29, 0.0061, 0.1718)],
+)
 def test_wilson_intervals_of_newcombe_1998(count, size, low, high):
     # Newcombe (1998), Statistics in Medicine 17, Table I, method 3
     assert wilson(count, size) == pytest.approx((low, high), abs=5e-5)
@@ -63,8 +65,10 @@ def test_interval_of_kappa_covers_the_truth_as_often_as_it_says():
     p = np.array([[0.45, 0.06], [0.09, 0.40]])
     truth, _, _ = cohen_kappa(p * 1e9)
     random = np.random.default_rng(1)
-    covered = [low <= truth <= high for _, low, high in
-               (cohen_kappa(counts.reshape(2, 2)) for counts in random.multinomial(200, p.ravel(), 2000))]
+    covered = [
+        low <= truth <= high
+        for _, low, high in (cohen_kappa(counts.reshape(2, 2)) for counts in random.multinomial(200, p.ravel(), 2000))
+    ]
     assert np.mean(covered) == pytest.approx(0.95, abs=0.015)  # 3 standard errors of 2000 draws
 
 
@@ -111,8 +115,10 @@ def test_the_statement_says_it_plainly_with_its_numbers():
     b[:2] = False
     same = compare(a, b, ("analytic", "exudyn"))
     assert not same["differ"] and same["difference"] == -0.01
-    assert same["statement"].startswith("no difference found at this sample size (200 motions: 2 overturn in analytic "
-                                        "alone, 0 in exudyn alone; exact McNemar p = 0.5; a difference of ")
+    assert same["statement"].startswith(
+        "no difference found at this sample size (200 motions: 2 overturn in analytic "
+        "alone, 0 in exudyn alone; exact McNemar p = 0.5; a difference of "
+    )
     b[:20] = False
     different = compare(a, b, ("analytic", "exudyn"))
     assert different["differ"] and different["statement"].startswith("they differ (200 motions: 20 overturn")
@@ -157,9 +163,16 @@ def test_fragility_does_not_depend_on_the_unit_of_intensity():
     assert other.dispersion == pytest.approx(one.dispersion, rel=1e-6)
 
 
-@pytest.mark.parametrize("overturned, said", [
-    ([0, 0, 20], "do not overlap"), ([0, 7, 20], "do not overlap"), ([0, 0, 0], "do not overlap"),
-    ([20, 20, 20], "do not overlap"), ([15, 10, 5], "does not become likelier")])
+@pytest.mark.parametrize(
+    "overturned, said",
+    [
+        ([0, 0, 20], "do not overlap"),
+        ([0, 7, 20], "do not overlap"),
+        ([0, 0, 0], "do not overlap"),
+        ([20, 20, 20], "do not overlap"),
+        ([15, 10, 5], "does not become likelier"),
+    ],
+)
 def test_counts_that_determine_no_curve_are_an_error(overturned, said):
     with pytest.raises(ValueError, match=said):
         fit_fragility([1.0, 2.0, 3.0], overturned, [20, 20, 20])

@@ -40,10 +40,20 @@ def test_every_installed_default_variant_has_its_rows():
     for engine in installed_engines():
         default = get_engine(engine).default_variant
         quantities = {row.quantity for row in TABLE if (row.engine, row.variant) == (engine, default)}
-        assert quantities == {"restitution, rms", "base velocity jump, rms", "impact times", "peak tilt", "tilt graph",
-                              "peak displacement", "overturning time", "overturning boundary",
-                              "bearing force replayed", "bearing impulse in the motion",
-                              "corner lift at rest", "base drift at rest"}
+        assert quantities == {
+            "restitution, rms",
+            "base velocity jump, rms",
+            "impact times",
+            "peak tilt",
+            "tilt graph",
+            "peak displacement",
+            "overturning time",
+            "overturning boundary",
+            "bearing force replayed",
+            "bearing impulse in the motion",
+            "corner lift at rest",
+            "base drift at rest",
+        }
 
 
 def test_the_papers_law_agrees_with_the_models_between_many_reversals():
@@ -81,10 +91,23 @@ def test_a_failed_run_is_a_row_that_does_not_hold(monkeypatch):
 
 
 def test_the_section_shows_every_row_and_says_what_does_not_hold():
-    rows = [{"quantity": row.quantity, "engine": row.engine, "variant": row.variant, "scenes": row.scenes,
-             "least": row.least, "bound": row.bound, "unit": row.unit, "measured": row.measured, "source": row.source,
-             "found": 3 * row.bound if k == 0 else row.measured, "holds": k > 0, "failure": None}
-            for k, row in enumerate(TABLE)]
+    rows = [
+        {
+            "quantity": row.quantity,
+            "engine": row.engine,
+            "variant": row.variant,
+            "scenes": row.scenes,
+            "least": row.least,
+            "bound": row.bound,
+            "unit": row.unit,
+            "measured": row.measured,
+            "source": row.source,
+            "found": 3 * row.bound if k == 0 else row.measured,
+            "holds": k > 0,
+            "failure": None,
+        }
+        for k, row in enumerate(TABLE)
+    ]
     section = tolerances.section(Result("tolerances", {}, rows, {}))
     (table,) = section.tables
     assert len(table.rows) == len(TABLE) and {len(row) for row in table.rows} == {len(table.columns)}

@@ -104,8 +104,11 @@ def copied(folder, tmp_path):
 
 def displacement(folder):
     """Peak base displacement of the isolated Caryatid in the analytic model [m], from the result file."""
-    (peak,) = [row["peak_base_displacement"] for row in read_result(folder / runs.CARYATID).rows
-               if (row["scene"], row["solver"]) == ("caryatid-isolated", "analytic")]
+    (peak,) = [
+        row["peak_base_displacement"]
+        for row in read_result(folder / runs.CARYATID).rows
+        if (row["scene"], row["solver"]) == ("caryatid-isolated", "analytic")
+    ]
     return peak
 
 
@@ -129,13 +132,18 @@ def test_outcomes_in_the_page_are_those_of_the_solvers(folder):
             assert value(table["overturns at [s]", "analytic"]) == pytest.approx(expected.overturning_time, rel=1e-4)
         if scene.base:
             assert value(table["peak base displacement [m]", "analytic"]) == pytest.approx(
-                expected.peak_base_displacement, rel=1e-4)
+                expected.peak_base_displacement, rel=1e-4
+            )
 
 
 def test_every_cell_of_the_outcome_tables_equals_the_result_file(folder):
     page, result = Page(folder / "report.html"), read_result(folder / runs.CARYATID)
-    shown = {"overturns at [s]": "overturning_time", "peak base displacement [m]": "peak_base_displacement",
-             "CPU time [s]": "cpu_seconds", "work of the bearings [J]": "bearing_work"}
+    shown = {
+        "overturns at [s]": "overturning_time",
+        "peak base displacement [m]": "peak_base_displacement",
+        "CPU time [s]": "cpu_seconds",
+        "work of the bearings [J]": "bearing_work",
+    }
     compared = 0
     for row in result.rows:
         table = page.table(f"{result.settings['scenes'][row['scene']]['name']}, until decided")
@@ -242,8 +250,10 @@ def test_missing_engines_are_named_with_their_remedy(tmp_path, monkeypatch):
     monkeypatch.setattr("engines.get_engine", nothing_installed)
     make_results(tmp_path, synthetic_motion(), duration=CUT, slendernesses=(SLENDERNESS,))
     page = Page(write_page(tmp_path, studies=NO_STUDIES))
-    assert any("Not in this report: pybullet. engine 'pybullet' needs the package pybullet: install it so" in item
-               for item in page.items)
+    assert any(
+        "Not in this report: pybullet. engine 'pybullet' needs the package pybullet: install it so" in item
+        for item in page.items
+    )
     assert page.table("Caryatid on rigid ground, 7 s")["outcome", "analytic"] == "overturns"
     assert page.table("Caryatid isolated, 7 s")["outcome", "analytic"] == "undecided (stands so far)"
     assert any("in analytic it is undecided (stands so far)" in item for item in page.items)
@@ -266,10 +276,12 @@ def test_a_study_is_shown_by_its_own_section_and_says_when_it_is_old(folder, cop
     file = write_result(studies / "fake.json", "fake", {}, [{"kappa": 0.75}], modules=["analytic.errors"])
     page = Page(write_page(copied, studies=studies))
     assert "fake.json cannot be shown: unknown study" in page.source
-    shown = Section("A fake study", ("Two paragraphs < one.",), (
-        Table("Agreement", ("solver", "kappa [-]"), [["exudyn", "0.75"]]),))
-    monkeypatch.setattr("comparisons.report.studies.get_study",
-                        lambda kind: types.SimpleNamespace(section=lambda result: shown))
+    shown = Section(
+        "A fake study", ("Two paragraphs < one.",), (Table("Agreement", ("solver", "kappa [-]"), [["exudyn", "0.75"]]),)
+    )
+    monkeypatch.setattr(
+        "comparisons.report.studies.get_study", lambda kind: types.SimpleNamespace(section=lambda result: shown)
+    )
     page = Page(write_page(copied, studies=studies))
     assert page.table("Agreement")["exudyn", "kappa [-]"] == "0.75"
     assert "Two paragraphs &lt; one." in page.source
@@ -304,7 +316,7 @@ def test_thinning_keeps_ends_and_the_extremes_of_every_part():
     for begin in range(0, 1_000_000, 10_000):  # the band that a drawn line covers
         inside = shown[(shown >= begin) & (shown < begin + 10_000)]
         for column in columns:
-            part = column[begin:begin + 10_000]
+            part = column[begin : begin + 10_000]
             assert column[inside].min() == part.min() and column[inside].max() == part.max()
     np.testing.assert_array_equal(histories.thinned(columns[0, :5177]), np.arange(5177))
 
@@ -325,8 +337,13 @@ def test_undecided_outcomes_and_warnings_stand_beside_the_outcomes_and_at_the_to
     def cut(content):
         for row in content["rows"]:
             if row["scene"] == "caryatid-rigid":
-                row.update(outcome="rocks", overturning_time=None, decided=False,
-                           verdict="undecided (rocks so far)", warnings=["the record peaks at 5 g"])
+                row.update(
+                    outcome="rocks",
+                    overturning_time=None,
+                    decided=False,
+                    verdict="undecided (rocks so far)",
+                    warnings=["the record peaks at 5 g"],
+                )
         content["rows"][-1]["warnings"] = ["the base is light"]
 
     changed(copied / runs.CARYATID, cut)
@@ -342,9 +359,21 @@ def test_undecided_outcomes_and_warnings_stand_beside_the_outcomes_and_at_the_to
     assert any("it is undecided (rocks so far). Warning: the record peaks at 5 g." in item for item in page.items)
 
 
-@pytest.mark.parametrize("given, shown", [
-    (None, "–"), (math.nan, "–"), (0.0, "0"), (0.21234, "0.212"), (-1.5, "−1.50"), (12345.6, "12346"),
-    (0.001, "0.00100"), (0.000999, "9.99·10⁻⁴"), (-1.25e-17, "−1.25·10⁻¹⁷"), (123456.0, "1.23·10⁵")])
+@pytest.mark.parametrize(
+    "given, shown",
+    [
+        (None, "–"),
+        (math.nan, "–"),
+        (0.0, "0"),
+        (0.21234, "0.212"),
+        (-1.5, "−1.50"),
+        (12345.6, "12346"),
+        (0.001, "0.00100"),
+        (0.000999, "9.99·10⁻⁴"),
+        (-1.25e-17, "−1.25·10⁻¹⁷"),
+        (123456.0, "1.23·10⁵"),
+    ],
+)
 def test_numbers_are_written_for_reading(given, shown):
     assert number(given) == shown
 
@@ -354,10 +383,14 @@ def test_fractions_in_per_cent():
     assert percent(None) == "–"
 
 
-@pytest.mark.parametrize("arguments, words", [
-    (["--units", "g"], "--units g: belongs to a record"),
-    (["--record", "no-such-record.AT2"], "motion.record = 'no-such-record.AT2': cannot be read"),
-    (["--output", __file__], "is a file; give a folder")])
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (["--units", "g"], "--units g: belongs to a record"),
+        (["--record", "no-such-record.AT2"], "motion.record = 'no-such-record.AT2': cannot be read"),
+        (["--output", __file__], "is a file; give a folder"),
+    ],
+)
 def test_mistakes_end_with_one_message(arguments, words, capsys):
     with pytest.raises(SystemExit) as ended:
         main(["report", *arguments])
@@ -383,8 +416,22 @@ def test_a_report_on_a_million_samples_stays_under_800_mb(tmp_path):
     shaking = 0.7 * motion.acceleration(time % motion.end)  # rocks for 200 s and does not overturn
     np.savetxt(tmp_path / "long.txt", np.column_stack([time, shaking]), fmt="%.6f")
     with open(tmp_path / "log", "w") as log:
-        run = subprocess.Popen([sys.executable, "-m", "comparisons", "report", "--record", tmp_path / "long.txt",
-                                "--units", "m/s2", "--output", tmp_path / "report"], stdout=log, stderr=log)
+        run = subprocess.Popen(
+            [
+                sys.executable,
+                "-m",
+                "comparisons",
+                "report",
+                "--record",
+                tmp_path / "long.txt",
+                "--units",
+                "m/s2",
+                "--output",
+                tmp_path / "report",
+            ],
+            stdout=log,
+            stderr=log,
+        )
         most, process = 0, psutil.Process(run.pid)
         while run.poll() is None:
             with contextlib.suppress(psutil.Error):

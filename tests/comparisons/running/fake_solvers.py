@@ -8,9 +8,28 @@ from analytic import Failure, Response, State
 
 
 def response(scene, *, peak=0.0, outcome="stands", failure=None, settings=None):
-    return Response("fake", "", outcome, None, None, peak, peak / scene.block.slenderness, 0.0, 0.0, (), (), (),
-                    0.0, 1.0, State(scene.duration, 0.0, 0.0, 0.0, 0.0, 0.0), time.process_time(), 1,
-                    settings or {}, {}, failure=failure)
+    return Response(
+        "fake",
+        "",
+        outcome,
+        None,
+        None,
+        peak,
+        peak / scene.block.slenderness,
+        0.0,
+        0.0,
+        (),
+        (),
+        (),
+        0.0,
+        1.0,
+        State(scene.duration, 0.0, 0.0, 0.0, 0.0, 0.0),
+        time.process_time(),
+        1,
+        settings or {},
+        {},
+        failure=failure,
+    )
 
 
 def sound(scene, *, work=0, sleep=0.0):
@@ -37,6 +56,7 @@ def exits(scene, *, code=3):
 
 def segfaults(scene):
     import ctypes
+
     if scene.start.tilt == 0.05:
         ctypes.string_at(0)
     return sound(scene)

@@ -50,8 +50,10 @@ def test_provenance_names_machine_versions_and_sources_but_neither_paths_nor_hos
 
 def test_commit_and_dirty_flag_are_those_of_the_checkout_and_none_outside(tmp_path, monkeypatch):
     def git(*words):
-        subprocess.run(["git", "-C", tmp_path, "-c", "user.name=n", "-c", "user.email=e", *words], check=True,
-                       capture_output=True)
+        subprocess.run(
+            ["git", "-C", tmp_path, "-c", "user.name=n", "-c", "user.email=e", *words], check=True, capture_output=True
+        )
+
     monkeypatch.setattr(module, "PROJECT_FOLDER", tmp_path)
     assert module._checkout() == {"commit": None, "dirty": None}
     git("init")

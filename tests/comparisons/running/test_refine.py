@@ -20,7 +20,8 @@ def alone(search, outcome, seen=None):
         if seen is not None:
             seen.append([point for _, point in batch])
         return [outcome(point) for _, point in batch]
-    result, = drive([search], evaluate)
+
+    (result,) = drive([search], evaluate)
     return result
 
 
@@ -63,6 +64,7 @@ def test_many_columns_go_through_in_common_rounds():
     def evaluate(batch):
         rounds.append(len(batch))
         return [steps(*edges[index])(point) for index, point in batch]
+
     columns = drive([boundaries(0.0, 10.0, 21, 1e-3) for _ in edges], evaluate)
     for index, column in enumerate(columns):
         assert [t.position for t in column.transitions] == pytest.approx(edges[index], abs=1e-3)
@@ -87,6 +89,7 @@ def test_every_bracket_holds_an_edge_and_wide_stretches_are_never_missed(edges, 
 
 def test_columns_of_a_sweep(tmp_path, monkeypatch):
     from pathlib import Path
+
     monkeypatch.syspath_prepend(str(Path(__file__).parent))
     from fake_solvers import tilt
 
@@ -94,12 +97,19 @@ def test_columns_of_a_sweep(tmp_path, monkeypatch):
     from comparisons.running.sweep import Case, Serial, Store, run_sweep
 
     with Store(tmp_path / "s.jsonl") as store:
+
         def evaluate(batch):
-            cases = [Case(Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), duration=1.0,
-                                start=Start(tilt=point)), "fake_solvers:sound") for _, point in batch]
+            cases = [
+                Case(
+                    Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), duration=1.0, start=Start(tilt=point)),
+                    "fake_solvers:sound",
+                )
+                for _, point in batch
+            ]
             rows = run_sweep(cases, store=store, executor=Serial(), measure=tilt, progress=False)
             return [row.values["peak"] > 0.5 for row in rows]  # the fake's peak is the square of the tilt
-        column, = drive([boundaries(0.0, 1.0, 5, 1e-4)], evaluate)
+
+        (column,) = drive([boundaries(0.0, 1.0, 5, 1e-4)], evaluate)
         assert len(store) == column.evaluations
     assert [t.position for t in column.transitions] == pytest.approx([0.5**0.5], abs=1e-4)
 
@@ -113,8 +123,14 @@ def test_what_cannot_be_searched_is_an_error():
 
 
 # One-sine overturning, p = 2.14 rad/s, gamma 0.25, e = 0.9, nonlinear: amplitude over g gamma
-ONE_SINE = {2: (1.25090, 2.37418, 2.40806), 3: (1.43539, 3.60487, 3.74275), 4: (1.84430, 5.07937, 5.43676),
-            5: (3.03234, 6.74302, 7.49300), 6: (4.91994, 8.50817, 9.91798), 8: (15.90490,)}
+ONE_SINE = {
+    2: (1.25090, 2.37418, 2.40806),
+    3: (1.43539, 3.60487, 3.74275),
+    4: (1.84430, 5.07937, 5.43676),
+    5: (3.03234, 6.74302, 7.49300),
+    6: (4.91994, 8.50817, 9.91798),
+    8: (15.90490,),
+}
 
 
 def test_the_rocking_block_s_boundaries_and_safe_gap():

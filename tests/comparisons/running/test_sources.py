@@ -15,8 +15,13 @@ def package(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(tmp_path))
     folder = tmp_path / "some_package"
     folder.mkdir()
-    files = {"__init__": "", "a": "import math\nfrom .b import f\n", "c": "x = 1\n", "alone": "y = 1\n",
-             "b": "def f():\n    from . import c\n    return c\n"}
+    files = {
+        "__init__": "",
+        "a": "import math\nfrom .b import f\n",
+        "c": "x = 1\n",
+        "alone": "y = 1\n",
+        "b": "def f():\n    from . import c\n    return c\n",
+    }
 
     def write(name, text):
         (folder / f"{name}.py").write_text(text)
@@ -30,14 +35,27 @@ def package(tmp_path, monkeypatch):
 
 
 def test_imports_are_followed_within_the_package_inside_functions_too(package):
-    assert list(source_digests(["some_package.a"])) == ["some_package", "some_package.a", "some_package.b",
-                                                        "some_package.c"]
+    assert list(source_digests(["some_package.a"])) == [
+        "some_package",
+        "some_package.a",
+        "some_package.b",
+        "some_package.c",
+    ]
     assert list(source_digests(["some_package.alone"])) == ["some_package", "some_package.alone"]
 
 
-@pytest.mark.parametrize("text, same", [
-    ("# why\nx   =  1\n", True), ('"""What."""\nx = 1\n', True), ("x = 2\n", False), ("x = 1.0\n", False),
-    ("x = 1\nx += 1\n", False), ("x = '1'\n", False), ("y = 1\n", False)])
+@pytest.mark.parametrize(
+    "text, same",
+    [
+        ("# why\nx   =  1\n", True),
+        ('"""What."""\nx = 1\n', True),
+        ("x = 2\n", False),
+        ("x = 1.0\n", False),
+        ("x = 1\nx += 1\n", False),
+        ("x = '1'\n", False),
+        ("y = 1\n", False),
+    ],
+)
 def test_code_counts_and_words_do_not(package, text, same):
     before = source_digests(["some_package.a"])
     package("c", text)

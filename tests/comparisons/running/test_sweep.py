@@ -21,6 +21,7 @@ HERE = Path(__file__).parent
 def fakes(monkeypatch):
     monkeypatch.syspath_prepend(str(HERE))
     import fake_solvers
+
     return fake_solvers
 
 
@@ -29,8 +30,9 @@ def scene(tilt):
 
 
 def cases(solver="sound", count=10, **settings):
-    return [Case(scene(round(0.01 * i, 6)), f"fake_solvers:{solver}", settings=settings, tag={"i": i})
-            for i in range(count)]
+    return [
+        Case(scene(round(0.01 * i, 6)), f"fake_solvers:{solver}", settings=settings, tag={"i": i}) for i in range(count)
+    ]
 
 
 def sweep(which, store, **options):
@@ -51,7 +53,7 @@ def test_rows_come_in_the_order_of_the_cases_with_costs_apart(tmp_path, fakes):
 
 
 def test_without_a_measure_the_row_holds_the_whole_response(tmp_path):
-    row, = sweep(cases(count=1), tmp_path / "s.jsonl", executor=Serial())
+    (row,) = sweep(cases(count=1), tmp_path / "s.jsonl", executor=Serial())
     assert row.values["outcome"] == "stands" and row.values["end"]["time"] == 1.0
 
 
@@ -75,17 +77,20 @@ def test_rows_are_reused_and_equal_cases_run_once(tmp_path):
 
 def test_a_key_follows_scene_solver_variant_settings_tag_and_measure(fakes):
     base = Case(scene(0.1), "fake_solvers:sound", settings={"work": 1})
-    others = [Case(scene(0.2), "fake_solvers:sound", settings={"work": 1}),
-              Case(scene(0.1), "fake_solvers:raises", settings={"work": 1}),
-              Case(scene(0.1), "fake_solvers:sound", "fast", {"work": 1}),
-              Case(scene(0.1), "fake_solvers:sound", settings={"work": 2}),
-              Case(scene(0.1), "fake_solvers:sound", settings={"work": 1}, tag={"i": 1})]
+    others = [
+        Case(scene(0.2), "fake_solvers:sound", settings={"work": 1}),
+        Case(scene(0.1), "fake_solvers:raises", settings={"work": 1}),
+        Case(scene(0.1), "fake_solvers:sound", "fast", {"work": 1}),
+        Case(scene(0.1), "fake_solvers:sound", settings={"work": 2}),
+        Case(scene(0.1), "fake_solvers:sound", settings={"work": 1}, tag={"i": 1}),
+    ]
     assert len({base.key(), base.key(fakes.tilt), *(other.key() for other in others)}) == 7
     assert Case(scene(0.1), base.solver, settings={"work": 1}).key() == base.key()
 
 
 def test_a_key_follows_versions_and_source_code(tmp_path, monkeypatch):
     import comparisons.running.cases as module
+
     monkeypatch.syspath_prepend(str(tmp_path))
     file = tmp_path / "changing_solver.py"
 
@@ -135,10 +140,10 @@ def test_exceptions_and_failed_responses_become_failed_rows(tmp_path, fakes):
     raised = sweep(cases("raises"), tmp_path / "s.jsonl", executor=Serial(), measure=fakes.tilt)
     assert [row.case.tag["i"] for row in raised if row.failed] == [5]
     assert raised[5].failure["reason"] == "ValueError: Newton did not converge"
-    failed, = sweep(cases("fails", 1), tmp_path / "s.jsonl", executor=Serial(), measure=fakes.tilt)
+    (failed,) = sweep(cases("fails", 1), tmp_path / "s.jsonl", executor=Serial(), measure=fakes.tilt)
     assert failed.failure["kind"] == "solver" and failed.failure["reason"] == "energy gain"
     assert failed.failure["last_state"]["time"] == 0.5 and failed.values["outcome"] == "failed"
-    unfit, = sweep(cases(count=1), tmp_path / "s.jsonl", executor=Serial(), measure=fakes.broken)
+    (unfit,) = sweep(cases(count=1), tmp_path / "s.jsonl", executor=Serial(), measure=fakes.broken)
     assert unfit.failure["reason"].startswith("TypeError") and "JSON" in unfit.failure["reason"]
 
 
@@ -191,6 +196,7 @@ def test_workers_killed_while_idle_are_replaced(tmp_path):
 
 def test_workers_that_cannot_start_are_an_error_not_an_endless_loop(tmp_path, monkeypatch):
     import comparisons.running.executors as module
+
     monkeypatch.setattr(module, "_start_worker", os._exit)  # the initializer ends every worker
     with pytest.raises(RuntimeError, match="end before they take up any run"):
         sweep(cases(count=3), tmp_path / "s.jsonl", workers=1)
@@ -222,7 +228,8 @@ def test_kill_9_then_resume_equals_an_uninterrupted_sweep(tmp_path):
         "    scene = lambda t: Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), start=Start(tilt=t),"
         " duration=1.0)\n"
         "    return [Case(scene(0.001 * i), 'fake_solvers:counted', settings={'log': log, 'sleep': 0.05})"
-        " for i in range(40)]\n")
+        " for i in range(40)]\n"
+    )
     script = tmp_path / "study.py"
     script.write_text(KILLED_SWEEP.format(here=str(tmp_path), log=str(log), store=str(store)))
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE), str(HERE.parents[2])])}
@@ -249,4 +256,5 @@ def test_kill_9_then_resume_equals_an_uninterrupted_sweep(tmp_path):
     def content(file):
         with Store(file) as opened:
             return {key: (row["values"], row["failure"]) for key, row in opened.rows.items()}
+
     assert content(store) == content(tmp_path / "whole.jsonl") and len(content(store)) == 40

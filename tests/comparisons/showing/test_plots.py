@@ -16,8 +16,12 @@ def drawn(name, horizon=None, count=1):
 
 def test_isolated_scene_has_ground_tilt_displacement_and_loop():
     _, response, axes = drawn("caryatid-isolated")
-    assert set(axes) == {"acceleration [m/s²]", "tilt / slenderness [-]", "base displacement [m]",
-                         "force of all bearings [kN]"}
+    assert set(axes) == {
+        "acceleration [m/s²]",
+        "tilt / slenderness [-]",
+        "base displacement [m]",
+        "force of all bearings [kN]",
+    }
     loop = axes["force of all bearings [kN]"].lines[0]
     np.testing.assert_array_equal(loop.get_ydata(), response.history.bearing_force / 1e3)
     assert loop.axes.get_xlabel() == "base displacement [m]"

@@ -50,8 +50,20 @@ def rows():
 
 def test_every_equation_and_table_has_a_row(rows):
     numbers = [row["number"] for row in rows if row["part"] == "equation"]
-    assert numbers == ["(1)", "(2)", "(3)–(6)", "(7)", "(8)", "(9)–(11)", "(12)", "(13)", "(14)", "Fig. 3",
-                       "Table 1(a)", "Table 1(b)"]
+    assert numbers == [
+        "(1)",
+        "(2)",
+        "(3)–(6)",
+        "(7)",
+        "(8)",
+        "(9)–(11)",
+        "(12)",
+        "(13)",
+        "(14)",
+        "Fig. 3",
+        "Table 1(a)",
+        "Table 1(b)",
+    ]
     checks = {row["number"]: row["value"] for row in rows if row["part"] == "equation"}
     assert checks["(2)"] < 1e-7 and checks["(3)–(6)"] < 1e-9 and checks["(9)–(11)"] < 1e-9 and checks["(8)"] < 1e-12
     corrected = [row["number"] for row in rows if row["part"] == "equation" and row["status"] == CORRECTED]
@@ -72,8 +84,9 @@ def test_misprints_are_seen_in_numbers(rows):
     # momentum share of the base's jump: (1 - e_phi) (R cos gamma - 1) of the whole
     isolated = load_scene("caryatid-isolated")
     after, _ = RockingModel.of(isolated).impact(1.0)
-    assert found["eq. (8)"]["value_printed"] == pytest.approx(1 + (1 - after) * (isolated.block.half_height - 1),
-                                                              rel=1e-9)
+    assert found["eq. (8)"]["value_printed"] == pytest.approx(
+        1 + (1 - after) * (isolated.block.half_height - 1), rel=1e-9
+    )
     assert found["eq. (12)"]["value_corrected"] < 1e-9
     assert found["eq. (12)"]["value_printed"] == pytest.approx(1, abs=1e-3)
     assert found["Table 1(a), ξ"]["value_printed"] == pytest.approx(30.0, abs=0.05)
@@ -100,7 +113,7 @@ def test_slenderness_claims_on_a_pulse(short):
     found, arrays = claims(short, quick=True)
     intervals = {row["claim"]: row["intervals"] for row in found if row["part"] == "claim"}
     # bisection with the kernel against the acceleration of a block that stays down
-    (low, high), = intervals["isolated does not rock"]
+    ((low, high),) = intervals["isolated does not rock"]
     assert low == pytest.approx(uplift_slenderness(short), abs=2e-5) and high == 0.45
     _, edge = intervals["free-standing overturns"][-1]
     free = caryatid(FREE, short).with_(duration=20.0)  # time to fall
@@ -124,8 +137,9 @@ def test_benefit_map_against_single_runs(short):
     for i, gamma in enumerate(slendernesses):
         for k, factor in enumerate(intensities):
             change = {"block": {"slenderness": gamma}, "motion": short.scaled(factor), "duration": 20.0}
-            free, isolated = (simulate(caryatid(name, short).with_(**change), history=False)
-                              for name in (FREE, ISOLATED))
+            free, isolated = (
+                simulate(caryatid(name, short).with_(**change), history=False) for name in (FREE, ISOLATED)
+            )
             assert category[i, k] == named[free.outcome == "overturns", isolated.outcome == "overturns"]
             assert lifted[i, k] == (isolated.outcome != "stands")
             if isolated.outcome == "overturns":
@@ -166,8 +180,10 @@ def test_contact_of_a_block_that_stays_down_is_its_acceleration(short):
 def test_fixed_step_of_the_cost_claim_solves_the_same_problem(law):
     scene = caryatid(ISOLATED, synthetic_motion()).with_(bearings={"law": law}, duration=synthetic_motion().end)
     exact = simulate(scene, history=False)
-    errors = [abs(_fixed_step(scene, n)[1] - exact.end.base_displacement) / exact.peak_base_displacement
-              for n in (DIVISIONS[0], DIVISIONS[-1])]
+    errors = [
+        abs(_fixed_step(scene, n)[1] - exact.end.base_displacement) / exact.peak_base_displacement
+        for n in (DIVISIONS[0], DIVISIONS[-1])
+    ]
     assert errors[0] < 1e-4 and errors[1] < 1e-2 * errors[0]
 
 
@@ -219,11 +235,14 @@ def test_the_paper_with_its_record():
     assert isolated.peak_base_acceleration / 9.81 == pytest.approx(0.236, abs=5e-4)
 
 
-@pytest.mark.parametrize(("arguments", "message"), [
-    (["--record", "no-such-record.AT2"], "no-such-record.AT2"),
-    (["--units", "g"], "--record"),
-    (["--output", __file__], "is a file"),
-])
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--record", "no-such-record.AT2"], "no-such-record.AT2"),
+        (["--units", "g"], "--record"),
+        (["--output", __file__], "is a file"),
+    ],
+)
 def test_mistakes_end_with_status_2_before_any_run(arguments, message, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(SystemExit) as ended:

@@ -58,8 +58,14 @@ def install(folder, source, name="swings", value="swing_study:STUDY"):
 def rocking(folder, *arguments):
     """(status, output, errors) of the command in `folder`, with what is installed there."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join((str(folder), str(PROJECT_FOLDER)))}
-    run = subprocess.run([sys.executable, "-m", "comparisons", *arguments], cwd=folder, env=environment, text=True,
-                         capture_output=True, timeout=300)
+    run = subprocess.run(
+        [sys.executable, "-m", "comparisons", *arguments],
+        cwd=folder,
+        env=environment,
+        text=True,
+        capture_output=True,
+        timeout=300,
+    )
     return run.returncode, run.stdout, run.stderr
 
 
@@ -72,18 +78,29 @@ def test_a_study_of_another_package_gets_command_resumption_and_section(tmp_path
     assert "2 swings of 2.00 kg." in err and "2 runs done, 0 found" in err and "swings.png" in out
     status, _, err = rocking(tmp_path, "study", "swings", "--mass", "2", "--workers", "1")
     assert status == 0 and "2 runs done, 2 found" in err
-    page = ("import sys; from pathlib import Path; from comparisons.report.studies import study_sections\n"
-            "[one] = study_sections(Path(sys.argv[1]))\nprint(one.title, one.age, len(one.tables[0].rows))")
+    page = (
+        "import sys; from pathlib import Path; from comparisons.report.studies import study_sections\n"
+        "[one] = study_sections(Path(sys.argv[1]))\nprint(one.title, one.age, len(one.tables[0].rows))"
+    )
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join((str(tmp_path), str(PROJECT_FOLDER)))}
-    shown = subprocess.run([sys.executable, "-c", page, str(tmp_path / "swings-study")], env=environment, text=True,
-                           capture_output=True, timeout=120)
+    shown = subprocess.run(
+        [sys.executable, "-c", page, str(tmp_path / "swings-study")],
+        env=environment,
+        text=True,
+        capture_output=True,
+        timeout=120,
+    )
     assert shown.stdout.split() == ["Swings", "None", "4"], shown.stderr
     assert "swings" in rocking(tmp_path, "study", "--help")[1]
 
 
-@pytest.mark.parametrize("source, words", [
-    ("raise ValueError('no licence')", "it cannot be imported (ValueError: no licence)"),
-    ("STUDY = 3", "it is no comparisons.running.study.Study called 'swings'")])
+@pytest.mark.parametrize(
+    "source, words",
+    [
+        ("raise ValueError('no licence')", "it cannot be imported (ValueError: no licence)"),
+        ("STUDY = 3", "it is no comparisons.running.study.Study called 'swings'"),
+    ],
+)
 def test_a_broken_one_is_one_message_that_names_who_declares_it(tmp_path, source, words):
     install(tmp_path, source)
     status, _, err = rocking(tmp_path, "study", "swings")
@@ -93,7 +110,7 @@ def test_a_broken_one_is_one_message_that_names_who_declares_it(tmp_path, source
 
 
 def test_names_of_this_project_are_its_own():
-    assert studies.study_names()[:len(studies.BUILT_IN)] == studies.BUILT_IN
+    assert studies.study_names()[: len(studies.BUILT_IN)] == studies.BUILT_IN
     for name in studies.BUILT_IN:
         assert studies.get_study(name).name == name
     with pytest.raises(KeyError, match="unknown study 'none': choose one of restitution, "):

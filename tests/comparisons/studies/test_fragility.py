@@ -33,15 +33,25 @@ class Scaled:
             if case.tag["seed"] in self.failing:
                 failure = {"kind": "crash", "reason": "the worker process ended", "message": "raw evidence"}
             response = simulate(case.scene.with_(motion=case.scene.motion.scaled(self.factor)), history=False)
-            rows.append(Row(case, {"outcome": response.outcome}, failure, {} if failure else {"cpu_seconds": 0.25},
-                            False))
+            rows.append(
+                Row(case, {"outcome": response.outcome}, failure, {} if failure else {"cpu_seconds": 0.25}, False)
+            )
         return rows
 
 
 def study(tmp_path, work):
-    found, = answered(plan(ENGINES, scenes=SCENES, motions=COUNT), work)
-    return read_result(write_result(tmp_path / "fragility.json", "fragility", found.settings, found.rows, found.arrays,
-                                    modules=["analytic"], seed=found.seed))
+    (found,) = answered(plan(ENGINES, scenes=SCENES, motions=COUNT), work)
+    return read_result(
+        write_result(
+            tmp_path / "fragility.json",
+            "fragility",
+            found.settings,
+            found.rows,
+            found.arrays,
+            modules=["analytic"],
+            seed=found.seed,
+        )
+    )
 
 
 def rows_of(result, part, solver):
@@ -71,7 +81,8 @@ def test_a_solver_that_sees_weaker_motions_is_found_out(tmp_path):
     assert all(row["p_holm"] >= row["p_value"] for row in pairs)
     assert sum(row["only_a"] for row in pairs) > sum(row["only_b"] for row in pairs)
     assert rows_of(result, "fit", "pybullet")[0]["median"] is None or (
-        rows_of(result, "fit", "pybullet")[0]["median"] > rows_of(result, "fit", "analytic")[0]["median"])
+        rows_of(result, "fit", "pybullet")[0]["median"] > rows_of(result, "fit", "analytic")[0]["median"]
+    )
     text = " ".join(section(result).text)
     assert "pybullet: they differ" in text
 
@@ -85,7 +96,7 @@ def test_counts_are_those_of_single_simulations(tmp_path):
     for row, values in zip(rows_of(result, "curve", "analytic"), outcomes, strict=True):
         assert row["overturned"] == (values == 1).sum() and row["size"] == COUNT
         assert (row["low"], row["high"]) == pytest.approx(wilson(row["overturned"], COUNT))
-    check, = (row for row in result.rows if row["part"] == "check")
+    (check,) = (row for row in result.rows if row["part"] == "check")
     assert check["undecided"] == 0
 
 
@@ -115,7 +126,7 @@ def test_an_interrupted_study_takes_up_its_own_rows(tmp_path, monkeypatch):
     store = tmp_path / "runs.jsonl"
 
     def attempt():
-        path, = compute(STUDY, tmp_path, engines=ENGINES.engines, workers=1, progress=False, scenes=scenes, motions=2)
+        (path,) = compute(STUDY, tmp_path, engines=ENGINES.engines, workers=1, progress=False, scenes=scenes, motions=2)
         return read_result(path)
 
     def stopping(ask, **options):

@@ -30,7 +30,7 @@ def test_edges_are_the_published_boundaries_and_the_safe_gap():
     for column, amplitudes in zip(columns, PUBLISHED.values(), strict=True):
         # published over g gamma, here over g tan(gamma)
         assert [edge.amplitude for edge in column] == pytest.approx([a * OVER_TANGENT for a in amplitudes], rel=2e-5)
-        assert [(edge.rises, edge.mode) for edge in column] == [(True, 1), (False, 1), (True, 0)][-len(amplitudes):]
+        assert [(edge.rises, edge.mode) for edge in column] == [(True, 1), (False, 1), (True, 0)][-len(amplitudes) :]
         for one, other in zip(column, column[1:], strict=False):
             assert one.high == other.low == pytest.approx(np.sqrt(one.amplitude * other.amplitude))
 
@@ -48,7 +48,7 @@ def test_a_run_beside_a_boundary_is_decided():
 
 
 def search(edge, outcome, ladder=((2e-4, 1.2e-2), (0.1,)), tolerance=2e-5):
-    found, = drive([locate(edge, ladder, tolerance)], lambda batch: [outcome(a) for _, a in batch])
+    (found,) = drive([locate(edge, ladder, tolerance)], lambda batch: [outcome(a) for _, a in batch])
     return found
 
 
@@ -62,8 +62,9 @@ def test_a_shifted_boundary_is_found_to_its_tolerance(shift):
     assert mirrored.shift == pytest.approx(shift, abs=1e-5)
 
 
-@pytest.mark.parametrize("answer, reason", [
-    (True, "overturns on both sides"), (False, "stands on both sides"), (None, "no run was decided")])
+@pytest.mark.parametrize(
+    "answer, reason", [(True, "overturns on both sides"), (False, "stands on both sides"), (None, "no run was decided")]
+)
 def test_a_boundary_that_is_not_there_is_said_to_be_missing(answer, reason):
     found = search(EDGE, lambda amplitude: answer)
     assert found.shift is None and found.half_width is None and found.reason.startswith(reason)
@@ -110,10 +111,12 @@ def study(tmp_path, work, monkeypatch, knobs=True):
     monkeypatch.setattr(overturning_runs, "GROUNDS", {"rigid ground": ("caryatid-rigid", {})})
     one = overturning_runs.ladders_of(("exudyn",))
     monkeypatch.setattr(overturning_runs, "ladders_of", lambda engines: one)
-    found = answered(overturning_runs.plan(Ask(("exudyn", "pybullet"), quick=True)), work,
-                     None if knobs else 1)[-1]
-    return read_result(write_result(tmp_path / "overturning.json", "overturning", found.settings, found.rows,
-                                    found.arrays, modules=["analytic"]))
+    found = answered(overturning_runs.plan(Ask(("exudyn", "pybullet"), quick=True)), work, None if knobs else 1)[-1]
+    return read_result(
+        write_result(
+            tmp_path / "overturning.json", "overturning", found.settings, found.rows, found.arrays, modules=["analytic"]
+        )
+    )
 
 
 @pytest.mark.parametrize("shift", [0.0, 0.02])
@@ -157,8 +160,9 @@ def test_page_and_figures_show_every_boundary(tmp_path, monkeypatch):
     assert all(len(row) == len(table.columns) for table in page.tables for row in table.rows)
     drawn = draw_maps(result).axes[0].lines
     assert sum(len(line.get_xdata()) for line in drawn[:2]) == 12
-    assert all(axis.get_xlabel() and axis.get_title() for draw in (draw_shifts, draw_knobs)
-               for axis in draw(result).axes)
+    assert all(
+        axis.get_xlabel() and axis.get_title() for draw in (draw_shifts, draw_knobs) for axis in draw(result).axes
+    )
 
 
 def test_located_says_how_many_runs_it_took():
@@ -190,8 +194,14 @@ def test_boundaries_at_which_the_model_holds_the_corner_down_are_told_apart(tmp_
     moved = [row for row in shifts if row["amplitude"] in [edge["amplitude"] for edge in pulled]]
     assert 0 < len(moved) < len(shifts)
     assert all(row["shift"] == pytest.approx(-0.05, abs=2e-5) for row in moved)
-    wrong = {region: sum(row["only_a"] + row["only_b"] for row in result.rows
-                         if row["part"] == "confusion" and row["region"] == region) for region in ("outside", "pulled")}
+    wrong = {
+        region: sum(
+            row["only_a"] + row["only_b"]
+            for row in result.rows
+            if row["part"] == "confusion" and row["region"] == region
+        )
+        for region in ("outside", "pulled")
+    }
     assert wrong["outside"] == 0 < wrong["pulled"]
     assert all(row["min_normal"] < 0 for row in result.rows if row["part"] == "surprise")
     page = section(result)
@@ -199,5 +209,5 @@ def test_boundaries_at_which_the_model_holds_the_corner_down_are_told_apart(tmp_
     assert "Not all boundaries lie within 0.5 %" in text
     assert all("may be trusted for overturning" in verdict for verdict in page.verdicts) and len(page.verdicts) == 2
     assert f"give {len(held)} of these {len(held)} boundaries" in text
-    table, = (table for table in page.tables if "holds the corner down" in table.caption)
+    (table,) = (table for table in page.tables if "holds the corner down" in table.caption)
     assert len(table.rows) == len(held) and all(len(row) == len(table.columns) for row in table.rows)

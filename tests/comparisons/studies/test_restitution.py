@@ -52,8 +52,11 @@ def test_friction_of_an_impact_is_the_ratio_of_its_impulses():
 def test_cases_are_tagged_and_run_default_settings_unless_on_the_ladder():
     pytest.importorskip("pybullet")
     cases = grid_cases(Grid((0.2, 0.3), (None,), (0.5,), ((0.2, None),), 4), ("pybullet",))
-    assert {case.settings.get("accuracy") for case in cases if case.variant == "impact-aware"
-            and case.tag["slenderness"] == 0.2} == {None, 1e-3, 1e-4, 1e-6}
+    assert {
+        case.settings.get("accuracy")
+        for case in cases
+        if case.variant == "impact-aware" and case.tag["slenderness"] == 0.2
+    } == {None, 1e-3, 1e-4, 1e-6}
     assert all(not case.settings for case in cases if case.tag["slenderness"] == 0.3)
 
 
@@ -62,15 +65,19 @@ def small(tmp_path_factory):
     pytest.importorskip("pybullet")
     folder = tmp_path_factory.mktemp("study")
     grid = Grid((0.2,), (None, CARYATID_BASE), (0.5, 0.7), ((0.2, None),), 8)
-    path, = compute(STUDY, folder, engines=("pybullet",), workers=2, progress=False, grid=grid)
+    (path,) = compute(STUDY, folder, engines=("pybullet",), workers=2, progress=False, grid=grid)
     return folder, grid, path, draw(STUDY, path)
 
 
 def test_a_small_study_finds_what_is_known(small):
     result = read_result(small[2])
+
     def one(part, **wanted):
-        (row,) = [row for row in result.rows if row["part"] == part
-                  and all(row[key] == value for key, value in wanted.items())]
+        (row,) = [
+            row
+            for row in result.rows
+            if row["part"] == part and all(row[key] == value for key, value in wanted.items())
+        ]
         return row
 
     aware = one("summary", scope="all", variant="impact-aware", ground="rigid ground")
@@ -103,7 +110,7 @@ def test_a_broken_off_study_resumes_to_the_same_result(small):
     before = read_result(path)
     store = folder / "runs.jsonl"
     lines = store.read_text().splitlines(keepends=True)
-    store.write_text("".join(lines[:len(lines) // 2]) + lines[-1][:40])  # the last line cut off, as kill -9 leaves it
+    store.write_text("".join(lines[: len(lines) // 2]) + lines[-1][:40])  # the last line cut off, as kill -9 leaves it
     compute(STUDY, folder, engines=("pybullet",), workers=1, progress=False, grid=grid)
     after = read_result(path)
 

@@ -75,6 +75,7 @@ def test_a_missing_impact_is_lost(free):
 
 def test_swings_that_lose_energy_show_as_restitution(free):
     """Rates that fall by 1 % more from impact to impact than eq. (7) says: e is 1 % low, whatever the impact shows."""
+
     def slower(impacts):
         return [{**impact, "rate_before": impact["rate_before"] * 0.99**k} for k, impact in enumerate(impacts)]
 
@@ -152,9 +153,20 @@ def test_a_first_script_is_not_touched_by_other_clients(free):
 
 
 def row(family, cpu, error, lost=0, step=1.0, failure=None, model=NEEDED):
-    return {"table": "ladder", "scene": "s", "family": family, "model": model, "law": None, "value": step,
-            "errors": {"impact_time": error}, "lost_impacts": lost, "cpu_seconds": cpu, "step": step,
-            "failure": failure, "knob": "step"}
+    return {
+        "table": "ladder",
+        "scene": "s",
+        "family": family,
+        "model": model,
+        "law": None,
+        "value": step,
+        "errors": {"impact_time": error},
+        "lost_impacts": lost,
+        "cpu_seconds": cpu,
+        "step": step,
+        "failure": failure,
+        "knob": "step",
+    }
 
 
 def result_of(rows):
@@ -163,8 +175,15 @@ def result_of(rows):
 
 
 def test_cost_at_an_error_is_the_cheapest_sound_run_that_reaches_it():
-    rows = [row("a", 3.0, 1e-5), row("a", 1.0, 1e-3), row("a", 0.5, 1e-2), row("b", 0.1, 1e-5, lost=2),
-            row("b", 2.0, 1e-4), row("c", 0.01, 1e-9, failure={"reason": "x"}), row("d", 1e-3, 1e-9, model="more")]
+    rows = [
+        row("a", 3.0, 1e-5),
+        row("a", 1.0, 1e-3),
+        row("a", 0.5, 1e-2),
+        row("b", 0.1, 1e-5, lost=2),
+        row("b", 2.0, 1e-4),
+        row("c", 0.01, 1e-9, failure={"reason": "x"}),
+        row("d", 1e-3, 1e-9, model="more"),
+    ]
     found = cost_at_error(result_of(rows), "s", 1e-3)
     assert [(family, one["cpu_seconds"]) for family, one in found.items()] == [("a", 1.0), ("b", 2.0)]
     assert list(cost_at_error(result_of(rows), "s", 1e-4)) == ["b", "a"]
@@ -177,12 +196,15 @@ def test_observed_order_of_a_second_order_ladder():
     assert order == pytest.approx(2.0, abs=1e-12) and points == 3 and spread < 1e-12
 
 
-@pytest.mark.parametrize("rounds, pairs, swapped", [
-    # a, b, c by rounds: quiet, all told apart; b swaps with c; noise of a factor of 2 tells only c from the others
-    ([[1.0, 1.0, 1.0, 1.0], [1.3, 1.3, 1.3, 1.3], [1.7, 1.7, 1.7, 1.7]], 3, 0),
-    ([[1.0, 1.0, 1.0, 1.0], [1.3, 1.5, 1.3, 1.5], [1.9, 1.4, 1.9, 1.4]], 3, 1),
-    ([[1.0, 2.0, 1.0, 2.0], [1.4, 1.4, 1.4, 1.4], [9.0, 9.0, 9.0, 9.0]], 2, 0),
-])
+@pytest.mark.parametrize(
+    "rounds, pairs, swapped",
+    [
+        # a, b, c by rounds: quiet, all told apart; b swaps with c; noise of a factor of 2 tells only c from the others
+        ([[1.0, 1.0, 1.0, 1.0], [1.3, 1.3, 1.3, 1.3], [1.7, 1.7, 1.7, 1.7]], 3, 0),
+        ([[1.0, 1.0, 1.0, 1.0], [1.3, 1.5, 1.3, 1.5], [1.9, 1.4, 1.9, 1.4]], 3, 1),
+        ([[1.0, 2.0, 1.0, 2.0], [1.4, 1.4, 1.4, 1.4], [9.0, 9.0, 9.0, 9.0]], 2, 0),
+    ],
+)
 def test_a_rank_counts_where_the_rounds_tell_two_solvers_apart(monkeypatch, rounds, pairs, swapped):
     monkeypatch.setattr(tables, "LEVELS", (1e-3,))
     monkeypatch.setattr(tables, "NOISE", 50 if swapped else tables.NOISE)  # of three settings, one is noisy
@@ -204,8 +226,9 @@ def test_time_stepping_shows_its_order_in_the_boundary(near):
     """The time at which an impact is noticed is one step late at most: the boundary moves with the first power."""
     shifts = []
     for step in (1e-3, 1e-4, 1e-5):
-        _, found = searched(lambda scene, step=step: simulate_time_stepping(scene, step=step, history=False),
-                            near.scene, near.boundary)
+        _, found = searched(
+            lambda scene, step=step: simulate_time_stepping(scene, step=step, history=False), near.scene, near.boundary
+        )
         shifts.append(errors(near, near.reference.to_json(), found)["boundary_shift"])
     assert shifts[0] < 2e-3
     assert shifts[2] < 0.1 * shifts[0]
@@ -238,7 +261,7 @@ def small(entry):
 
 
 def run_small(folder, near):
-    path, = compute(STUDY, folder, quick=True, progress=False, repeats=2, scenes=[near], keep=small, grow=False)
+    (path,) = compute(STUDY, folder, quick=True, progress=False, repeats=2, scenes=[near], keep=small, grow=False)
     return read_result(path)
 
 
@@ -274,9 +297,25 @@ def test_the_section_speaks_in_numbers_and_draws(studied):
     assert f"the errors of {len(result.rows)} of {len(result.rows)} settings are the same bit for bit" in words
     assert any("kernel" in cells[0] for table in page.tables for cells in table.rows)
     assert len(page.figures) == 2 and all(figure.svg for figure in page.figures)
-    nothing = [dataclasses.replace(result, rows=result.rows + [
-        {"table": "growth", "family": "kernel", "against": "duration", "value": value, "failure": None,
-         "cpu_seconds": 1e-3 * value, "traced_bytes": 1e5, "resident_bytes": None} for value in (1, 2, 4)])]
+    nothing = [
+        dataclasses.replace(
+            result,
+            rows=result.rows
+            + [
+                {
+                    "table": "growth",
+                    "family": "kernel",
+                    "against": "duration",
+                    "value": value,
+                    "failure": None,
+                    "cpu_seconds": 1e-3 * value,
+                    "traced_bytes": 1e5,
+                    "resident_bytes": None,
+                }
+                for value in (1, 2, 4)
+            ],
+        )
+    ]
     assert "exponent 1.000" in draw_growth(nothing[0]).axes[0].get_legend().get_texts()[0].get_text()
 
 
@@ -297,8 +336,20 @@ def test_unknown_axes_are_refused():
 def test_replot_draws_from_a_result_file(studied, tmp_path, capsys):
     folder, _ = studied
     with pytest.raises(SystemExit) as left:
-        main(["study", "speed-error", "--replot", str(folder / "first" / "speed-error.json"), "--output",
-              str(tmp_path), "--x", "steps", "--y", "peak-tilt"])
+        main(
+            [
+                "study",
+                "speed-error",
+                "--replot",
+                str(folder / "first" / "speed-error.json"),
+                "--output",
+                str(tmp_path),
+                "--x",
+                "steps",
+                "--y",
+                "peak-tilt",
+            ]
+        )
     assert left.value.code == 0
     assert (tmp_path / "speed-error-steps-peak-tilt.png").stat().st_size > 10_000
     with pytest.raises(SystemExit) as left:

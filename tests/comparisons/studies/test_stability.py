@@ -161,8 +161,8 @@ def test_columns_cover_every_variant_and_cures_are_settings_they_have():
 
 def test_the_study_writes_cells_cures_and_page_and_resumes(tmp_path):
     names, columns = ("uplift 0.99", "zeno", "critical pulse -0.01"), [KERNEL, TIME_STEPPING]
-    path, = compute(STUDY, tmp_path, engines=(), workers=1, progress=False, names=names, columns=columns)
-    figure, = draw(STUDY, path)
+    (path,) = compute(STUDY, tmp_path, engines=(), workers=1, progress=False, names=names, columns=columns)
+    (figure,) = draw(STUDY, path)
     rows = (tmp_path / "runs.jsonl").read_text()
     result = read_result(path)
     cells = matrix(result)
@@ -180,10 +180,11 @@ def test_the_study_writes_cells_cures_and_page_and_resumes(tmp_path):
     assert "right in 3 of 3 cells" in shown.text[1]
     assert any(line[0] == "zeno" and line[-1].startswith("step = ") for line in shown.tables[1].rows)
 
-    again, = compute(STUDY, tmp_path, engines=(), workers=1, progress=False, names=names, columns=columns)
+    (again,) = compute(STUDY, tmp_path, engines=(), workers=1, progress=False, names=names, columns=columns)
     assert (tmp_path / "runs.jsonl").read_text() == rows  # nothing ran twice
     assert [{**row, "cpu_seconds": 0} for row in read_result(again).rows] == [
-        {**row, "cpu_seconds": 0} for row in result.rows]
+        {**row, "cpu_seconds": 0} for row in result.rows
+    ]
 
 
 def test_committed_result_has_no_ill_cell_of_the_kernel():

@@ -23,8 +23,12 @@ BEARINGS = {"count": 4, "ka": 6.22e4, "kb": 6.22e3, "alpha": 44.69}
 
 
 def rocking(slenderness, base=None, part=0.6, duration=1.3, **block):
-    return Scene(block=Block(slenderness=slenderness, **CARYATID, **block), base=Base(mass=base) if base else None,
-                 start=Start(tilt=part * slenderness), duration=duration)
+    return Scene(
+        block=Block(slenderness=slenderness, **CARYATID, **block),
+        base=Base(mass=base) if base else None,
+        start=Start(tilt=part * slenderness),
+        duration=duration,
+    )
 
 
 def errors(scene, response):
@@ -33,8 +37,10 @@ def errors(scene, response):
     impacts = [impact for impact in response.impacts if abs(impact.rate_before) > fast]
     assert impacts
     lever = scene.mass_share * scene.block.half_height
-    return (np.array([i.rate_after / i.rate_before for i in impacts]) - restitution(scene),
-            np.array([i.base_velocity_jump - lever * (i.rate_before - i.rate_after) for i in impacts]))
+    return (
+        np.array([i.rate_after / i.rate_before for i in impacts]) - restitution(scene),
+        np.array([i.base_velocity_jump - lever * (i.rate_before - i.rate_after) for i in impacts]),
+    )
 
 
 @pytest.mark.parametrize("base", [None, 212.0])
@@ -60,7 +66,8 @@ def test_no_impact_of_a_stocky_fast_block_is_lost(part):
     """It hops for 15 ms after an impact, so that the lift carried back lies microseconds after the landing."""
     response = simulate(rocking(0.45, 3172.05, part, 1.5))
     assert [round(impact.time, 3) for impact in response.impacts[:3]] == [
-        round(impact.time, 3) for impact in exact(rocking(0.45, 3172.05, part, 1.5)).impacts[:3]]
+        round(impact.time, 3) for impact in exact(rocking(0.45, 3172.05, part, 1.5)).impacts[:3]
+    ]
 
 
 def test_error_of_compliant_corners_goes_as_one_over_stiffness():
@@ -72,8 +79,9 @@ def test_error_of_compliant_corners_goes_as_one_over_stiffness():
 @pytest.mark.parametrize("base", [None, 212.0])
 def test_switched_joints_give_the_restitution_to_the_square_of_the_step(base):
     scene = rocking(0.2, base)
-    coarse, fine = (np.abs(errors(scene, simulate(scene, variant="switched-joints", step=step))[0]).max()
-                    for step in (4e-3, 1e-3))
+    coarse, fine = (
+        np.abs(errors(scene, simulate(scene, variant="switched-joints", step=step))[0]).max() for step in (4e-3, 1e-3)
+    )
     assert fine < 1e-6
     assert coarse > 4 * fine
 
@@ -99,8 +107,13 @@ def test_native_contact_is_one_to_ten_percent_off(slenderness):
 
 def test_bearing_force_is_the_one_that_moves_the_base():
     """Momentum: the force in the trace integrates to the momentum of a block that stands on its base."""
-    scene = Scene(block=Block(slenderness=0.45, **CARYATID), base=Base(mass=212.0), bearings=Bearings(**BEARINGS),
-                  motion=PulseMotion("one-sine", 3.0, 5.0, 0.1), duration=3.0)
+    scene = Scene(
+        block=Block(slenderness=0.45, **CARYATID),
+        base=Base(mass=212.0),
+        bearings=Bearings(**BEARINGS),
+        motion=PulseMotion("one-sine", 3.0, 5.0, 0.1),
+        duration=3.0,
+    )
     settings = get_engine("exudyn").variants["compliant-corners"].settings
     trace = corners.run(scene, settings).trace
     t = trace.time
@@ -140,8 +153,7 @@ def test_non_finite_force_surfaces(monkeypatch):
 
 
 def test_a_block_that_sinks_surfaces(monkeypatch):
-    monkeypatch.setattr(corners.Corner, "force",
-                        lambda self, displacement, velocity, offset: [corners.Real(0.0)] * 3)
+    monkeypatch.setattr(corners.Corner, "force", lambda self, displacement, velocity, offset: [corners.Real(0.0)] * 3)
     response = simulate(rocking(0.2))
     assert response.outcome == "failed"
     assert "sank" in response.failure.reason
@@ -163,8 +175,13 @@ def test_memory_does_not_grow_with_the_number_of_runs(variant):
     """exudyn keeps a system alive that has a user function: its steps (400 bytes each) and the ground's segments."""
     dt = 1e-4  # s; as many segments as steps
     motion = SampledMotion(dt, 0.5 * np.sin(8 * dt * np.arange(10_001)))
-    scene = Scene(block=Block(slenderness=0.28, **CARYATID), base=Base(mass=212.0), bearings=Bearings(**BEARINGS),
-                  motion=motion, duration=1.0)
+    scene = Scene(
+        block=Block(slenderness=0.28, **CARYATID),
+        base=Base(mass=212.0),
+        bearings=Bearings(**BEARINGS),
+        motion=motion,
+        duration=1.0,
+    )
     settings = {"switched-joints": {"step": dt}}.get(variant, {})
     process, used = psutil.Process(), []
     for _ in range(8):

@@ -33,7 +33,7 @@ def block(slenderness, inertia=4 / 3, mass=MASS, radius=RADIUS):
 def released(part, body, base=None, impacts=3, **parts):
     """A block released at a part of its slenderness, up to the swing after some impacts of the model."""
     scene = Scene(block=body, base=base, start=Start(tilt=part * body.slenderness), duration=12.0, **parts)
-    times = [impact.time for impact in exact(scene, history=False).impacts[:impacts + 1]]
+    times = [impact.time for impact in exact(scene, history=False).impacts[: impacts + 1]]
     return scene.with_(duration=0.3 * times[-2] + 0.7 * times[-1] if len(times) > 1 else 1.3 * times[0])
 
 
@@ -54,6 +54,7 @@ def trace_of(scene):
 
 # Impacts far from the studies' range.
 
+
 @pytest.mark.parametrize("slenderness", [0.55, 0.6, 0.7])
 def test_stocky_blocks_on_rigid_ground(slenderness):
     """Friction slower than the normal force presses the other corner down: .6 was off by 3e-2."""
@@ -71,8 +72,10 @@ def test_small_starts_lose_no_impact(slenderness, part):
     assert restitution_error(released(part, block(slenderness))) < 1e-4
 
 
-@pytest.mark.parametrize("radius, slenderness, shape, amplitude", [
-    (1.0, 0.12, "rectangular", 1.5), (1.0, 0.68, "one-sine", 1.22), (0.1, 0.25, "half-sine", 1.15)])
+@pytest.mark.parametrize(
+    "radius, slenderness, shape, amplitude",
+    [(1.0, 0.12, "rectangular", 1.5), (1.0, 0.68, "one-sine", 1.22), (0.1, 0.25, "half-sine", 1.15)],
+)
 def test_small_swings_under_a_motion(radius, slenderness, shape, amplitude):
     """Corners stiff enough for large ones gave peaks of .02 to .04 slendernesses that were off by 2 %."""
     body = block(slenderness, mass=3000 * radius**3, radius=radius)
@@ -90,8 +93,13 @@ def test_slow_impacts_of_a_block_whose_corner_gives_way_easily():
 
 
 def test_light_base_that_vibrates_away_within_an_impact_is_said():
-    scene = Scene(block=block(0.2), base=Base(mass=1e-5 * MASS), start=Start(tilt=0.1), duration=1e-3,
-                  bearings=Bearings(law="linear", count=1, ka=1e-5 * MASS * (2e4) ** 2))
+    scene = Scene(
+        block=block(0.2),
+        base=Base(mass=1e-5 * MASS),
+        start=Start(tilt=0.1),
+        duration=1e-3,
+        bearings=Bearings(law="linear", count=1, ka=1e-5 * MASS * (2e4) ** 2),
+    )
     (warning,) = simulate(scene).warnings
     assert "frequency on its bearings over" in warning
     assert simulate(scene.with_(base={"mass": 0.1 * MASS})).warnings == ()
@@ -106,12 +114,19 @@ def test_blocks_of_all_sizes(mass, radius):
 
 # Bases and bearings far from the studies' range: the base's displacement.
 
-@pytest.mark.parametrize("base, ka, damping", [(0.01, 6.22e4, 0.0), (1.0, 6.22e4, 0.0), (212.0, 1e8, 0.0),
-                                               (212.0, 1e9, 0.0), (212.0, 6.22e4, 1e5)])
+
+@pytest.mark.parametrize(
+    "base, ka, damping",
+    [(0.01, 6.22e4, 0.0), (1.0, 6.22e4, 0.0), (212.0, 1e8, 0.0), (212.0, 1e9, 0.0), (212.0, 6.22e4, 1e5)],
+)
 def test_light_bases_and_stiff_or_viscous_bearings(base, ka, damping):
-    scene = Scene(block=block(0.28), base=Base(mass=base), duration=0.6,
-                  bearings=Bearings(law="linear", count=4, ka=ka, damping=damping),
-                  motion=PulseMotion("one-sine", 5.0, 2 * math.pi / 0.5))
+    scene = Scene(
+        block=block(0.28),
+        base=Base(mass=base),
+        duration=0.6,
+        bearings=Bearings(law="linear", count=4, ka=ka, damping=damping),
+        motion=PulseMotion("one-sine", 5.0, 2 * math.pi / 0.5),
+    )
     response, reference = simulate(scene, history=False), exact(scene, history=False)
     assert response.outcome == reference.outcome
     assert response.peak_base_displacement == pytest.approx(reference.peak_base_displacement, rel=0.02)
@@ -120,12 +135,18 @@ def test_light_bases_and_stiff_or_viscous_bearings(base, ka, damping):
 
 # Coulomb's law.
 
-@pytest.mark.parametrize("friction, slenderness, push, duration", [(0.2, 0.45, 0.3, 0.05), (0.1, 0.3, 0.25, 0.05),
-                                                                   (0.3, 0.45, 0.4, 0.1)])
+
+@pytest.mark.parametrize(
+    "friction, slenderness, push, duration", [(0.2, 0.45, 0.3, 0.05), (0.1, 0.3, 0.25, 0.05), (0.3, 0.45, 0.4, 0.1)]
+)
 def test_a_block_that_slid_stays_where_it_came_to_rest(friction, slenderness, push, duration):
     """It was drawn back to where it had stood; the slip of a push of acceleration a for T: v T/2 + v^2/(2 mu g)."""
-    scene = Scene(block=block(slenderness), friction=friction, duration=1.0,
-                  motion=PulseMotion("rectangular", push * 9.81, 2 * math.pi / duration))
+    scene = Scene(
+        block=block(slenderness),
+        friction=friction,
+        duration=1.0,
+        motion=PulseMotion("rectangular", push * 9.81, 2 * math.pi / duration),
+    )
     trace, lasting = trace_of(scene), scene.motion.end
     speed = (push - friction) * 9.81 * lasting
     slip = 0.5 * speed * lasting + speed**2 / (2 * friction * 9.81)
@@ -134,8 +155,9 @@ def test_a_block_that_slid_stays_where_it_came_to_rest(friction, slenderness, pu
 
 
 def test_a_push_below_friction_moves_nothing():
-    scene = Scene(block=block(0.45), friction=0.31, duration=0.3,
-                  motion=PulseMotion("rectangular", 0.3 * 9.81, 2 * math.pi / 0.1))
+    scene = Scene(
+        block=block(0.45), friction=0.31, duration=0.3, motion=PulseMotion("rectangular", 0.3 * 9.81, 2 * math.pi / 0.1)
+    )
     assert np.abs(trace_of(scene).centre[:, 0]).max() < 1e-5 * RADIUS
 
 
@@ -153,6 +175,7 @@ def test_joints_that_cannot_slide_say_where_the_block_would():
 
 
 # What is put in.
+
 
 @pytest.mark.parametrize("base", [None, 212.0])
 def test_a_block_left_alone_does_not_sink(base):
@@ -176,6 +199,7 @@ def test_force_within_a_step_is_the_law_in_full(law, way):
 
 
 # How runs end.
+
 
 @pytest.mark.parametrize("variant", VARIANTS)
 def test_interrupt_ends_the_run_within_a_second_and_is_no_failure(variant):
@@ -208,14 +232,24 @@ def test_every_variant_has_a_verified_range():
 
 @pytest.mark.parametrize("slenderness, inertia, base", [(0.1, 1.2, None), (0.45, 2.0, 0.05 * MASS)])
 def test_default_does_not_warn_within_the_core_range(slenderness, inertia, base):
-    scene = Scene(block=block(slenderness, inertia), base=Base(mass=base) if base else None,
-                  start=Start(tilt=1e-4 * slenderness), duration=0.02)
+    scene = Scene(
+        block=block(slenderness, inertia),
+        base=Base(mass=base) if base else None,
+        start=Start(tilt=1e-4 * slenderness),
+        duration=0.02,
+    )
     assert simulate(scene).warnings == ()
 
 
-@pytest.mark.parametrize("variant, part, radius, word", [
-    ("compliant-corners", 0.5, 40.0, "radius"), ("switched-joints", 1e-3, 1.0, "tilt"),
-    ("switched-joints", 0.5, 0.01, "radius"), ("native-contact", 0.5, 1.0, "1 to 10 %")])
+@pytest.mark.parametrize(
+    "variant, part, radius, word",
+    [
+        ("compliant-corners", 0.5, 40.0, "radius"),
+        ("switched-joints", 1e-3, 1.0, "tilt"),
+        ("switched-joints", 0.5, 0.01, "radius"),
+        ("native-contact", 0.5, 1.0, "1 to 10 %"),
+    ],
+)
 def test_a_run_outside_the_verified_range_says_so(variant, part, radius, word):
     scene = Scene(block=block(0.2, radius=radius), start=Start(tilt=part * 0.2), duration=0.02)
     assert word in " ".join(simulate(scene, variant=variant).warnings)
@@ -227,4 +261,5 @@ def test_stiff_bearings_under_a_small_start_lose_no_impact():
     scene = released(0.01875, body, Base(mass=0.05337 * body.mass), bearings=Bearings(law="linear", ka=3.7e5))
     response, reference = simulate(scene, history=False), exact(scene, history=False)
     assert [impact.time for impact in response.impacts] == pytest.approx(
-        [impact.time for impact in reference.impacts], rel=1e-2)
+        [impact.time for impact in reference.impacts], rel=1e-2
+    )

@@ -7,14 +7,7 @@ import pytest
 
 mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed: pip install 'rocking[mujoco]'")
 
-from analytic import (  # noqa: E402
-    Base,
-    Bearings,
-    Block,
-    PulseMotion,
-    SampledMotion,
-    Start,
-)
+from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Start  # noqa: E402
 from analytic import Scene as AnyScene  # noqa: E402
 from analytic import simulate as exact  # noqa: E402
 from analytic.bearing import BearingLaw  # noqa: E402
@@ -29,8 +22,12 @@ BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 
 
 def scene(slenderness, base=None, duration=2.0, **parts):
-    return AnyScene(block=Block(mass=3172.05, radius=1.0884, slenderness=slenderness),
-                    base=Base(mass=base) if base else None, duration=duration, **parts)
+    return AnyScene(
+        block=Block(mass=3172.05, radius=1.0884, slenderness=slenderness),
+        base=Base(mass=base) if base else None,
+        duration=duration,
+        **parts,
+    )
 
 
 def impact_errors(slenderness, base, starts=8, **settings):
@@ -80,8 +77,13 @@ def test_rest_under_shaking_below_uplift(base):
     time = 0.01 * np.arange(6001)
     level = np.sin(8 * time) + 0.5 * np.sin(26 * time)
     peak = 0.5 if base else 0.9 * 9.81 * math.tan(0.2)
-    given = scene(0.2, base, 60.0, bearings=BEARINGS if base else None,
-                  motion=SampledMotion(0.01, level / np.abs(level).max() * peak))
+    given = scene(
+        0.2,
+        base,
+        60.0,
+        bearings=BEARINGS if base else None,
+        motion=SampledMotion(0.01, level / np.abs(level).max() * peak),
+    )
     chosen = adapter.ImpactAware()
     model, data = built.build(given, chosen)
     rows, ended = stepping.run(model, data, given, chosen)
@@ -132,14 +134,17 @@ def test_run_that_does_not_advance_is_given_up(monkeypatch):
     assert response.failure.reason == "too many steps"
 
 
-@pytest.mark.parametrize("asked, given, words", [
-    (f'mass="{3172.05!r}"', 'mass="3000.0"', "masses is .3000.0., not .3172.05."),
-    ('cone="elliptic"', "", "cone is 0"),
-    ('autoreset="disable"', "", "disabled parts is 0"),
-    ('friction="5.0 0 0"', "", "contact: friction is"),
-    ('type="hinge"', 'type="hinge" damping="1"', "dof_damping"),
-    ("<option", "<optoin", "optoin"),
-])
+@pytest.mark.parametrize(
+    "asked, given, words",
+    [
+        (f'mass="{3172.05!r}"', 'mass="3000.0"', "masses is .3000.0., not .3172.05."),
+        ('cone="elliptic"', "", "cone is 0"),
+        ('autoreset="disable"', "", "disabled parts is 0"),
+        ('friction="5.0 0 0"', "", "contact: friction is"),
+        ('type="hinge"', 'type="hinge" damping="1"', "dof_damping"),
+        ("<option", "<optoin", "optoin"),
+    ],
+)
 def test_what_mujoco_does_not_hold_as_asked_is_refused(monkeypatch, asked, given, words):
     class Forgetful:
         @staticmethod
@@ -173,6 +178,7 @@ def test_mujocos_contact_solver_is_named():
 
 # Classes of scenes far from the Caryatid.
 
+
 def released(slenderness=0.28, tilt=0.6, base=212.0, damping=0.0, stiffness=1.0, duration=2.0, **block):
     bearings = Bearings(count=4, ka=6.22e4 * stiffness, kb=6.22e3 * stiffness, alpha=44.69, damping=damping)
     given = scene(slenderness, base, duration, start=Start(tilt=tilt * slenderness), bearings=bearings)
@@ -185,8 +191,11 @@ def assert_like_the_model(given, peak=5e-3, error=1e-3, variant=None):
     assert response.peak_tilt == pytest.approx(model.peak_tilt, rel=peak)
     if given.base is not None:
         assert response.peak_base_displacement == pytest.approx(model.peak_base_displacement, rel=peak)
-    strong = [impact for impact in response.impacts
-              if abs(impact.rate_before) > 0.2 * max(abs(other.rate_before) for other in model.impacts)]
+    strong = [
+        impact
+        for impact in response.impacts
+        if abs(impact.rate_before) > 0.2 * max(abs(other.rate_before) for other in model.impacts)
+    ]
     assert strong
     for impact in strong:
         assert impact.rate_after / impact.rate_before == pytest.approx(max(restitution(given), 0.0), abs=error)
@@ -210,19 +219,28 @@ def test_restitution_is_read_before_a_strong_damper_stops_the_base(base):
     """n_d c/M of 1e4 1/s: off by .09, .03 and 3e-4 where flat contact began at 1e-4 of the slenderness."""
     mass = 3172.05
     total = (1 + base) * mass
-    given = scene(0.28, base * mass, 2.0, start=Start(tilt=0.2),
-                  bearings=Bearings(law="linear", ka=4 * total, damping=1e4 * total))
+    given = scene(
+        0.28,
+        base * mass,
+        2.0,
+        start=Start(tilt=0.2),
+        bearings=Bearings(law="linear", ka=4 * total, damping=1e4 * total),
+    )
     warnings = assert_like_the_model(given, error=6e-3).warnings
     assert bool(warnings) == (base < 1.0)  # n_d c/m_b above 1e4 omega_r, where other scenes are off by .05
 
 
 def test_viscous_force_is_of_second_order():
     """At the velocity half a step early or late it is of first: the errors of twice the step are twice as large."""
-    given = AnyScene(block=Block(mass=100.0, radius=1.0, slenderness=0.6), base=Base(mass=20.0), duration=0.2,
-                     bearings=Bearings(law="linear", ka=2e4, damping=1e3), start=Start(base_velocity=0.2))
+    given = AnyScene(
+        block=Block(mass=100.0, radius=1.0, slenderness=0.6),
+        base=Base(mass=20.0),
+        duration=0.2,
+        bearings=Bearings(law="linear", ka=2e4, damping=1e3),
+        start=Start(base_velocity=0.2),
+    )
     wanted = exact(given).end.base_displacement
-    errors = [simulate(given, variant="fixed-step", step=step).end.base_displacement - wanted
-              for step in (2e-3, 1e-3)]
+    errors = [simulate(given, variant="fixed-step", step=step).end.base_displacement - wanted for step in (2e-3, 1e-3)]
     assert 3 < errors[0] / errors[1] < 5
 
 
@@ -230,8 +248,12 @@ def test_viscous_force_is_of_second_order():
 @pytest.mark.parametrize("radius", [1e-3, 0.1, 30.0])
 def test_steps_go_with_the_size_of_the_block(radius, variant, error):
     mass = 2460.0 * radius**3
-    given = AnyScene(block=Block(mass=mass, radius=radius, slenderness=0.25), base=Base(mass=0.1 * mass),
-                     start=Start(tilt=0.15), duration=2.5 * math.sqrt(radius))
+    given = AnyScene(
+        block=Block(mass=mass, radius=radius, slenderness=0.25),
+        base=Base(mass=0.1 * mass),
+        start=Start(tilt=0.15),
+        duration=2.5 * math.sqrt(radius),
+    )
     assert_like_the_model(given, error=error, variant=variant)
 
 
@@ -242,8 +264,9 @@ def test_stiff_bearings_shorten_the_steps(stiffness):
     assert_like_the_model(given, peak=2e-2, error=5e-3)
 
 
-@pytest.mark.parametrize("slenderness, share, base", [(0.45, 1.05, None), (0.28, 1.1, 212.0), (0.7, 4 / 3, None),
-                                                      (0.3, 3.0, None)])
+@pytest.mark.parametrize(
+    "slenderness, share, base", [(0.45, 1.05, None), (0.28, 1.1, 212.0), (0.7, 4 / 3, None), (0.3, 3.0, None)]
+)
 def test_inertia_near_a_point_mass_and_stocky_blocks(slenderness, share, base):
     given = scene(slenderness, base, 2.0, start=Start(tilt=0.6 * slenderness))
     assert_like_the_model(given.with_(block={"corner_inertia": share * 3172.05 * 1.0884**2}), error=5e-4)
@@ -255,8 +278,9 @@ def test_small_swings_are_seen(tilt):
     assert_like_the_model(given, error=1e-3)
 
 
-@pytest.mark.parametrize("slenderness, tilt, base", [(0.05, 0.08, 1.4), (0.05, 0.08, None), (0.03, 0.5, None),
-                                                     (0.11, 6e-3, None)])
+@pytest.mark.parametrize(
+    "slenderness, tilt, base", [(0.05, 0.08, 1.4), (0.05, 0.08, None), (0.03, 0.5, None), (0.11, 6e-3, None)]
+)
 def test_restitution_of_slender_blocks_and_small_swings_is_read_after_the_impact(slenderness, tilt, base):
     """The block lands a little beyond level: e was 1.00 where flat contact began even nearer to it."""
     given = scene(slenderness, base, 20.0, start=Start(tilt=tilt * slenderness))
@@ -267,8 +291,7 @@ def test_restitution_of_slender_blocks_and_small_swings_is_read_after_the_impact
 def test_friction_of_the_scene_is_coulombs():
     """A push of .3 g for .05 s on a block that slides at .2 g: (.1 g t^2/2)(1 + .1/.2), and it stays there."""
     given = scene(0.45, duration=0.5, friction=0.2, motion=PulseMotion("rectangular", -0.3 * 9.81, math.pi / 0.05))
-    rows, _ = stepping.run(*built.build(given, adapter.ImpactAware()), given,
-                                  adapter.ImpactAware())
+    rows, _ = stepping.run(*built.build(given, adapter.ImpactAware()), given, adapter.ImpactAware())
     assert abs(rows[-1][8]) == pytest.approx(0.5 * 0.1 * 9.81 * 0.05**2 * 1.5, rel=0.01)
 
 

@@ -21,8 +21,12 @@ BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 
 
 def scene(slenderness, base=None, duration=2.0, **parts):
-    return AnyScene(block=Block(mass=3172.05, radius=1.0884, slenderness=slenderness),
-                    base=Base(mass=base) if base else None, duration=duration, **parts)
+    return AnyScene(
+        block=Block(mass=3172.05, radius=1.0884, slenderness=slenderness),
+        base=Base(mass=base) if base else None,
+        duration=duration,
+        **parts,
+    )
 
 
 def impact_errors(slenderness, base, **settings):
@@ -123,8 +127,9 @@ def test_mass_that_bullet_does_not_take_is_refused(monkeypatch):
 
 def test_joint_motor_or_friction_left_as_it_is_is_refused(monkeypatch):
     change = bullet.pybullet.changeDynamics
-    monkeypatch.setattr(bullet.pybullet, "changeDynamics",
-                        lambda body, link, **values: change(body, -1, **values))  # trap: the link is missed
+    monkeypatch.setattr(
+        bullet.pybullet, "changeDynamics", lambda body, link, **values: change(body, -1, **values)
+    )  # trap: the link is missed
     response = simulate(scene(0.2, 212.0, start=Start(tilt=0.1)))
     assert response.outcome == "failed"
     assert "friction" in response.failure.message
@@ -140,10 +145,12 @@ def test_sliding_block_fails(monkeypatch):
 def test_clients_are_closed(monkeypatch):
     open_clients = []
     connect, disconnect = adapter.pybullet.connect, adapter.pybullet.disconnect
-    monkeypatch.setattr(adapter.pybullet, "connect",
-                        lambda mode: open_clients.append(connect(mode)) or open_clients[-1])
-    monkeypatch.setattr(adapter.pybullet, "disconnect",
-                        lambda client: open_clients.remove(client) or disconnect(client))
+    monkeypatch.setattr(
+        adapter.pybullet, "connect", lambda mode: open_clients.append(connect(mode)) or open_clients[-1]
+    )
+    monkeypatch.setattr(
+        adapter.pybullet, "disconnect", lambda client: open_clients.remove(client) or disconnect(client)
+    )
     monkeypatch.setattr(bullet, "FRICTION", math.nan)
     assert simulate(scene(0.2)).outcome == "failed"
     assert open_clients == []
@@ -154,6 +161,7 @@ def test_bullets_contact_solver_is_named():
 
 
 # Far from the usual scenes: each was wrong in silence once.
+
 
 def worst_restitution(given, **settings):
     response = simulate(given, history=False, **settings)
@@ -188,20 +196,36 @@ def test_any_size_moves_as_one_of_a_metre_does(power):
     assert [time * k.time for k in here.impacts] == pytest.approx([k.time for k in there.impacts], rel=1e-9)
 
 
-@pytest.mark.parametrize("base, ka, damping", [
-    (212.0, 6.22e4, 1e5), (212.0, 6.22e4, 1e6), (0.067, 6.22e4, 500.0), (0.01, 6.22e4, 0.0), (212.0, 1e8, 0.0),
-    (1.0, 1e7, 1e4)], ids=["1e5 N s/m", "1e6 N s/m", "base of 67 g", "base of 10 g", "1e8 N/m", "all at once"])
+@pytest.mark.parametrize(
+    "base, ka, damping",
+    [
+        (212.0, 6.22e4, 1e5),
+        (212.0, 6.22e4, 1e6),
+        (0.067, 6.22e4, 500.0),
+        (0.01, 6.22e4, 0.0),
+        (212.0, 1e8, 0.0),
+        (1.0, 1e7, 1e4),
+    ],
+    ids=["1e5 N s/m", "1e6 N s/m", "base of 67 g", "base of 10 g", "1e8 N/m", "all at once"],
+)
 @pytest.mark.parametrize("start", [0.0, 0.06])
 def test_stiff_damped_and_light_bases_move_as_the_exact_solution(base, ka, damping, start):
-    given = scene(0.15, base, 1.5, bearings=Bearings(law="linear", count=4, ka=ka, damping=damping),
-                  motion=None if start else PulseMotion("one-sine", 1.0, 6.0), start=Start(tilt=start))
+    given = scene(
+        0.15,
+        base,
+        1.5,
+        bearings=Bearings(law="linear", count=4, ka=ka, damping=damping),
+        motion=None if start else PulseMotion("one-sine", 1.0, 6.0),
+        start=Start(tilt=start),
+    )
     response, reference = simulate(given, history=False), exact(given, history=False)
     assert response.outcome == reference.outcome
     assert response.peak_tilt == pytest.approx(reference.peak_tilt, rel=1e-2, abs=1e-6)
     assert response.peak_base_displacement == pytest.approx(reference.peak_base_displacement, rel=1e-2)
     if start and not damping:
         assert response.impacts[0].rate_after / response.impacts[0].rate_before == pytest.approx(
-            restitution(given), abs=1e-3)
+            restitution(given), abs=1e-3
+        )
 
 
 def test_mass_added_for_damping_is_exact_and_bounded():
@@ -221,8 +245,9 @@ def test_stiff_bearings_keep_their_phase(law):
     response, reference = simulate(given), exact(given)
     assert response.steps < 3000
     at = np.linspace(0.9, 1.0, 50)
-    shift = (np.interp(at, response.history.time, response.history.base_displacement)
-             - np.interp(at, reference.history.time, reference.history.base_displacement))
+    shift = np.interp(at, response.history.time, response.history.base_displacement) - np.interp(
+        at, reference.history.time, reference.history.base_displacement
+    )
     assert np.abs(shift).max() < 0.03 * 1e-5
 
 
@@ -239,8 +264,9 @@ def test_a_slow_onset_is_that_of_the_model():
     given = AnyScene(block=block, motion=PulseMotion("ricker", -0.548, 0.786), duration=16.3)
     wanted, found = exact(given).history, simulate(given).history
     late = exact(given).uplifts[0] + np.linspace(0.3, 1.0, 8)
-    np.testing.assert_allclose(np.interp(late, found.time, found.tilt), np.interp(late, wanted.time, wanted.tilt),
-                               rtol=2e-2)
+    np.testing.assert_allclose(
+        np.interp(late, found.time, found.tilt), np.interp(late, wanted.time, wanted.tilt), rtol=2e-2
+    )
 
 
 def test_a_given_friction_is_the_coefficient():
@@ -268,9 +294,15 @@ def test_no_warning_within_the_usual_range(slenderness, inertia, base):
     assert simulate(given, history=False).warnings == ()
 
 
-@pytest.mark.parametrize("change, words", [
-    ({"slenderness": 1.3}, "slenderness"), ({"radius": 40.0}, "radius"),
-    ({"corner_inertia": 3172.05 * 1.0884**2 * 1.001}, "J_O"), ({"corner_inertia": 3172.05 * 1.0884**2 * 4}, "J_O")])
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ({"slenderness": 1.3}, "slenderness"),
+        ({"radius": 40.0}, "radius"),
+        ({"corner_inertia": 3172.05 * 1.0884**2 * 1.001}, "J_O"),
+        ({"corner_inertia": 3172.05 * 1.0884**2 * 4}, "J_O"),
+    ],
+)
 def test_outside_the_verified_range_is_said(change, words):
     given = scene(0.2, duration=0.05, start=Start(tilt=0.05)).with_(block=change)
     (sentence,) = simulate(given, history=False).warnings
