@@ -1,4 +1,4 @@
-"""Which source files a number depends on, as digests that ignore comments, docstrings and where modules lie."""
+"""Which source files a number depends on, as digests that ignore comments, docstrings, types and where modules lie."""
 
 import ast
 import functools
@@ -22,7 +22,8 @@ def source_digests(modules):
     -------
     dict
         Dotted module name -> hexadecimal digest of its code, sorted by name. Comments, docstrings and layout do not
-        count, and of an import only the names that it binds: neither rewording nor moving makes a result stale.
+        count, nor types, but for the fields of classes; of an import count only the names that it binds: neither
+        rewording nor moving nor annotating makes a result stale.
 
     Raises
     ------
@@ -75,7 +76,7 @@ def _file(name):
 
 @functools.cache
 def _read(name, file, _modified):
-    tree = ast.parse(Path(file).read_bytes())
+    tree = _without_types(ast.parse(Path(file).read_bytes()))
     package = name if file.endswith("__init__.py") else name.rpartition(".")[0]
     imported = set()
     for node in ast.walk(tree):
@@ -89,6 +90,71 @@ def _read(name, file, _modified):
             imported.add(base)
             imported.update(f"{base}.{alias.name}" for alias in node.names)
     return hashlib.sha256(_code(tree).encode()).hexdigest(), tuple(sorted(imported))
+
+
+def _without_types(tree):
+    """The tree without what only a type checker reads: annotations, and imports for them alone. Fields keep theirs."""
+    types = _Types()
+    tree = types.visit(tree)
+    code = {getattr(node, "id", getattr(node, "value", None)) for node in ast.walk(tree) if _names(node)}
+    for_types = types.names - code
+
+    def kept(node):
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            node.names = [alias for alias in node.names if (alias.asname or alias.name) not in for_types]
+            return bool(node.names) and getattr(node, "module", None) != "__future__"
+        return True
+
+    for node in ast.walk(tree):
+        for field, value in ast.iter_fields(node):
+            if isinstance(value, list):
+                setattr(node, field, [item for item in value if kept(item)])
+    return tree
+
+
+def _names(node):
+    """Whether it is a name, or text that may be one (in ``__all__``)."""
+    return isinstance(node, ast.Name) or isinstance(node, ast.Constant) and isinstance(node.value, str)
+
+
+class _Types(ast.NodeTransformer):
+    """Takes the annotations of functions and of variables outside classes out of a tree, and keeps their names."""
+
+    def __init__(self):
+        self.names, self.in_class = set(), False
+
+    def take(self, node):
+        self.names.update(part.id for part in ast.walk(node) if isinstance(part, ast.Name))
+
+    def visit_FunctionDef(self, node):
+        for part in (node, *(part for part in ast.walk(node.args) if isinstance(part, ast.arg))):
+            field = "returns" if part is node else "annotation"
+            if getattr(part, field) is not None:
+                self.take(getattr(part, field))
+                setattr(part, field, None)
+        outside, self.in_class = self.in_class, False
+        self.generic_visit(node)
+        self.in_class = outside
+        return node
+
+    def visit_ClassDef(self, node):
+        outside, self.in_class = self.in_class, True
+        self.generic_visit(node)
+        self.in_class = outside
+        return node
+
+    def visit_AnnAssign(self, node):
+        if self.in_class:
+            return self.generic_visit(node)
+        self.take(node.annotation)
+        self.generic_visit(node)
+        return ast.Assign([node.target], node.value) if node.value else None
+
+    def visit_If(self, node):
+        if isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING":
+            self.names.update(name.id for name in ast.walk(node) if isinstance(name, ast.Name))
+            return None
+        return self.generic_visit(node)
 
 
 def _code(node):

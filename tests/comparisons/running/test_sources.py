@@ -31,7 +31,8 @@ def package(tmp_path, monkeypatch):
         write(name, text)
     importlib.invalidate_caches()
     yield write
-    sys.modules.pop("some_package", None)  # the next test's is another one
+    for name in [name for name in sys.modules if name.partition(".")[0] == "some_package"]:
+        del sys.modules[name]  # the next test's is another one
 
 
 def test_imports_are_followed_within_the_package_inside_functions_too(package):
@@ -49,6 +50,8 @@ def test_imports_are_followed_within_the_package_inside_functions_too(package):
     [
         ("# why\nx   =  1\n", True),
         ('"""What."""\nx = 1\n', True),
+        ("from __future__ import annotations\nfrom typing import Any\nx: Any = 1\n", True),
+        ("from typing import Any\nx = 1\n", False),
         ("x = 2\n", False),
         ("x = 1.0\n", False),
         ("x = 1\nx += 1\n", False),
@@ -62,6 +65,23 @@ def test_code_counts_and_words_do_not(package, text, same):
     after = source_digests(["some_package.a"])
     assert (digest_of(before) == digest_of(after)) == same
     assert {name for name in before if before[name] != after[name]} == (set() if same else {"some_package.c"})
+
+
+def test_types_do_not_count_but_for_fields(package):
+    """What only a type checker reads names other modules, and the number does not depend on them."""
+    package("b", "class A:\n    x: int = 1\n\n    def f(self, y):\n        z = y\n        return z\n")
+    before = source_digests(["some_package.a"])
+    assert "some_package.c" not in before
+    package(
+        "b",
+        "from typing import TYPE_CHECKING\nfrom .c import C\nif TYPE_CHECKING:\n    from .alone import Y\n\n"
+        "class A:\n    x: int = 1\n\n    def f(self, y: C) -> Y:\n        z: C = y\n        return z\n",
+    )
+    assert source_digests(["some_package.a"]) == before
+    package("b", "class A:\n    x: float = 1\n\n    def f(self, y):\n        z = y\n        return z\n")
+    assert source_digests(["some_package.a"]) != before
+    package("b", "from .c import C\nclass A:\n    x: int = 1\n\n    def f(self, y: C):\n        return C(y)\n")
+    assert "some_package.c" in source_digests(["some_package.a"])
 
 
 def test_the_reference_does_not_depend_on_engines_nor_studies():
