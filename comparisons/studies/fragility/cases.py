@@ -55,30 +55,12 @@ def plan(ask, scenes=None, motions=None):
     for name, (shipped, block, factors) in scenes.items():
         scene = load_scene(shipped).with_(block=block, motion=None, duration=None)
         intensities = [factor * PEAK / G for factor in factors]
-        described[name] = {
-            "scene": shipped,
-            "block": scene.block.model_dump(),
-            "base": scene.base.model_dump() if scene.base else None,
-            "bearings": scene.bearings.model_dump() if scene.bearings else None,
-            "tan_slenderness": math.tan(scene.block.slenderness),
-            "factors": list(factors),
-            "intensities": intensities,
-        }
+        described[name] = _described(shipped, scene, factors, intensities)
         outcomes, costs, checks = _analytic(scene, shakings, factors)
         rows.append({"part": "check", "scene": name, **checks})
         for solver, variant in solvers:
             label = solver_name(solver, variant)
-            cases = [
-                Case(
-                    scene.with_(motion=shaking.scaled(factor)),
-                    solver,
-                    variant,
-                    {"history": False},
-                    {"factor": factor, "seed": seed},
-                )
-                for factor in factors
-                for seed, shaking in enumerate(shakings)
-            ]
+            cases = _cases(scene, solver, variant, shakings, factors)
             results = yield Batch(cases, measure, f"{name}: {label}")
             outcomes[label] = np.array(
                 [FAILED if row.failed else row.values["outcome"] == "overturns" for row in results], dtype=np.int8
@@ -105,6 +87,34 @@ def plan(ask, scenes=None, motions=None):
         answer = Found(settings, list(rows), dict(arrays), seed=settings["seeds"])
         yield answer
     return answer
+
+
+def _described(shipped, scene, factors, intensities):
+    """A scene and its intensities [g], for the result file."""
+    return {
+        "scene": shipped,
+        "block": scene.block.model_dump(),
+        "base": scene.base.model_dump() if scene.base else None,
+        "bearings": scene.bearings.model_dump() if scene.bearings else None,
+        "tan_slenderness": math.tan(scene.block.slenderness),
+        "factors": list(factors),
+        "intensities": intensities,
+    }
+
+
+def _cases(scene, solver, variant, shakings, factors):
+    """The runs of a solver, all motions at the first factor first; tagged with factor and seed."""
+    return [
+        Case(
+            scene.with_(motion=shaking.scaled(factor)),
+            solver,
+            variant,
+            {"history": False},
+            {"factor": factor, "seed": seed},
+        )
+        for factor in factors
+        for seed, shaking in enumerate(shakings)
+    ]
 
 
 def _analytic(scene, shakings, factors):

@@ -4,16 +4,16 @@ import math
 
 import numpy as np
 
-from analytic import load_scene, overturning_map, simulate
+from analytic import load_scene, overturning_map
 from engines import get_engine
 from engines.pybullet import FIRST_SCRIPT_FRICTION
 
-from ...measuring.statistics import cohen_kappa, confusion
 from ...running.cases import Case
 from ...running.refine import together
 from ...running.study import Batch, Found, say
 from ...showing.wording import solver_name
 from .edges import HIGHEST, LOWEST, edges, least_normal, locate, pulse
+from .outcomes import BAND, judge, label_of
 
 SHAPES = ("one-sine", "one-cosine", "ricker")
 # The isolated Caryatid itself overturns at base displacements far beyond its bearings' 0.30 m only; a more slender
@@ -21,7 +21,6 @@ SHAPES = ("one-sine", "one-cosine", "ricker")
 GROUNDS = {"rigid ground": ("caryatid-rigid", {}), "isolated base": ("caryatid-isolated", {"slenderness": 0.15})}
 FREQUENCIES = (2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0)
 SCAN = np.geomspace(1.05, 19.5, 11)
-BAND = 0.01  # relative distance from a boundary beyond which no solver may differ
 LADDER = ((2e-4, 1.2e-2), (3e-2,), (0.1,), (0.3,))
 KNOB_LADDER = ((2e-3, 2e-2), (0.1,), (0.3,))
 TOLERANCE, KNOB_TOLERANCE = 2e-5, 2e-4
@@ -110,7 +109,7 @@ def plan(ask):
         for key, columns in found.items()
     }
     rows += yield from _search(log, pulled, held_of(ask.engines), "held", LADDER, TOLERANCE)
-    arrays["points"], judged = _judge(log, grounds, shapes, found)
+    arrays["points"], judged = judge(log.points, log.engines, grounds, shapes, found)
     rows += judged
     settings = _settings(ask, grounds, shapes, frequencies)
     yield Found(settings, rows + log.failures, arrays)
@@ -155,7 +154,7 @@ def _settings(ask, grounds, shapes, frequencies):
         "tolerance": TOLERANCE,
         "knob_tolerance": KNOB_TOLERANCE,
         "solvers": [solver_name(*one) for one in defaults_of(ask.engines)],
-        "held": ", ".join(_label(one) for one in held_of(ask.engines)),
+        "held": ", ".join(label_of(one) for one in held_of(ask.engines)),
         "knobs": [
             [solver, variant, knob]
             for solver, variant, knob, _ in (TIME_STEPPING, *ladders_of(ask.engines), *first_scripts_of(ask.engines))
@@ -215,7 +214,7 @@ class _Log:
                 self.failures.append(
                     {
                         "part": "failure",
-                        "solver": _label(engine),
+                        "solver": label_of(engine),
                         "ground": ground,
                         "shape": shape,
                         "frequency": frequency,
@@ -238,7 +237,7 @@ class _Log:
                 for amplitude in map(float, amplitudes):
                     normal = least_normal(scene, pulse(scene, shape, frequency, amplitude))
                     points.append((engine, ground, shape, frequency, amplitude, normal))
-        yield from self.run(points, f"scan: {_label(engine)}", scan=True)
+        yield from self.run(points, f"scan: {label_of(engine)}", scan=True)
 
 
 def _search(log, found, engines, part, ladder, tolerance):
@@ -251,7 +250,7 @@ def _search(log, found, engines, part, ladder, tolerance):
         for edge in column
     ]
 
-    label = f"{part}: {', '.join(dict.fromkeys(_label(engine) for engine in engines))}"
+    label = f"{part}: {', '.join(dict.fromkeys(label_of(engine) for engine in engines))}"
     searches, answers = together([locate(edge, ladder, tolerance) for _, _, edge in jobs]), None
     while True:
         try:
@@ -280,95 +279,3 @@ def _search(log, found, engines, part, ladder, tolerance):
         }
         for (engine, ground, edge), one in zip(jobs, located, strict=True)
     ]
-
-
-def _judge(log, grounds, shapes, found):
-    """(points, rows): the default engines' outcomes beside the analytic ones, in and outside the band.
-
-    Outside it those are apart ("pulled") in which the normal force of the analytic model becomes negative.
-    """
-    keys = list(log.points)
-    scenes = []
-    for _, ground, shape, frequency, amplitude in keys:
-        scene = grounds[ground]
-        motion = pulse(scene, shape, frequency, amplitude)
-        scenes.append(scene.with_(motion=motion))
-    responses = [simulate(scene, history=False) for scene in scenes]
-    reference = np.array([response.outcome == "overturns" for response in responses], dtype=bool)
-    normal = np.array([response.min_normal_ratio for response in responses])
-    answers = [log.points[key][0] for key in keys]
-    scanned = np.array([log.points[key][1] for key in keys], dtype=bool)
-    distance = np.array(
-        [
-            min((abs(amplitude / edge.amplitude - 1) for edge in found[ground, shape][frequency]), default=math.inf)
-            for _, ground, shape, frequency, amplitude in keys
-        ]
-    )
-    decided = np.array([answer is not None for answer in answers], dtype=bool)
-    own = np.array([bool(answer) for answer in answers], dtype=bool)
-    rows = []
-    for engine in log.engines:
-        for ground in grounds:
-            here = np.array([key[0] == engine and key[1] == ground for key in keys]) & decided
-            outside = distance > BAND
-            for region, mask in (
-                ("scan", scanned),
-                ("outside", outside & (normal >= 0)),
-                ("pulled", outside & (normal < 0)),
-                ("inside", ~outside),
-            ):
-                chosen = here & mask
-                if not chosen.any():
-                    continue
-                table = confusion(reference[chosen], own[chosen])
-                kappa, low, high = cohen_kappa(table.table())
-                rows.append(
-                    {
-                        "part": "confusion",
-                        "solver": _label(engine),
-                        "ground": ground,
-                        "region": region,
-                        **vars(table),
-                        "kappa": kappa,
-                        "kappa_low": low,
-                        "kappa_high": high,
-                    }
-                )
-    for k in np.flatnonzero(decided & (distance > BAND) & (reference != own)):
-        engine, ground, shape, frequency, amplitude = keys[k]
-        rows.append(
-            {
-                "part": "surprise",
-                "solver": _label(engine),
-                "ground": ground,
-                "shape": shape,
-                "frequency": frequency,
-                "amplitude": amplitude,
-                "analytic_overturns": bool(reference[k]),
-                "distance": float(distance[k]),
-                "min_normal": float(normal[k]),
-            }
-        )
-    names = list(grounds)
-    points = np.array(
-        [
-            (
-                names.index(ground),
-                shapes.index(shape),
-                log.engines.index(engine),
-                frequency,
-                amplitude,
-                reference[k],
-                own[k] if decided[k] else -1,
-                scanned[k],
-            )
-            for k, (engine, ground, shape, frequency, amplitude) in enumerate(keys)
-        ],
-        dtype=float,
-    )
-    return points, rows
-
-
-def _label(engine):
-    name = solver_name(*engine[:2])
-    return name if not engine[2:] else f"{name}, " + ", ".join(f"{k} {v:g}" for k, v in engine[2].items())

@@ -115,70 +115,39 @@ SCALES = (0.25, 1.0, 4.0)  # of the block, to tell (8) from (8) as printed
 
 def experiment_cases(grid, engines):
     """One suspected cause at a time; tagged with part, experiment, ratio, slenderness, start and value."""
-    cases = []
+    return [*_setting_cases(grid, engines), *_phase_cases(grid, engines), *_size_cases(engines)]
+
+
+def _experiment(name, ratio, start, value, engine, variant, settings, scale=1.0):
+    """The `Case` of an experiment: a block on a base of ratio, released at start, one value of what it changes."""
     gamma = EXPERIMENT_SLENDERNESS
+    tag = {"experiment": name, "ratio": ratio, "slenderness": gamma, "start": start, "value": value}
+    scene = free_scene(gamma, ratio, start, scale)
+    return Case(scene, engine, variant, settings, {"part": "experiment", **tag})
+
+
+def _setting_cases(grid, engines):
+    """One setting at a time, `EXPERIMENTS`."""
     for name, (engine, variant, setting, values) in EXPERIMENTS.items():
         if engine not in engines:
             continue
         for ratio in EXPERIMENT_RATIOS:
             for start in grid.starts[::2]:
-                scene = free_scene(gamma, ratio, start)
-                cases += [
-                    Case(
-                        scene,
-                        engine,
-                        variant,
-                        {setting: value},
-                        {
-                            "part": "experiment",
-                            "experiment": name,
-                            "ratio": ratio,
-                            "slenderness": gamma,
-                            "start": start,
-                            "value": value,
-                        },
-                    )
-                    for value in values
-                ]
+                for value in values:
+                    yield _experiment(name, ratio, start, value, engine, variant, {setting: value})
+
+
+def _phase_cases(grid, engines):
+    """Starts so close together that the first impacts lie within one of the longest steps."""
     if "pybullet" in engines:
-        # Starts so close together that the first impacts lie within one of the longest steps.
-        for start in np.linspace(0.600, 0.604, grid.phase_starts):
-            scene = free_scene(gamma, None, float(start))
-            cases += [
-                Case(
-                    scene,
-                    "pybullet",
-                    "fixed-step",
-                    {"step": step},
-                    {
-                        "part": "experiment",
-                        "experiment": "phase",
-                        "ratio": None,
-                        "slenderness": gamma,
-                        "start": float(start),
-                        "value": step,
-                    },
-                )
-                for step in PHASE_STEPS
-            ]
+        for start in map(float, np.linspace(0.600, 0.604, grid.phase_starts)):
+            for step in PHASE_STEPS:
+                yield _experiment("phase", None, start, step, "pybullet", "fixed-step", {"step": step})
+
+
+def _size_cases(engines):
+    """Blocks of other sizes at default settings."""
     for engine in engines:
-        variant = get_engine(engine).default_variant
         for scale in SCALES:
-            scene = free_scene(gamma, CARYATID_BASE, 0.6, scale)
-            cases.append(
-                Case(
-                    scene,
-                    engine,
-                    variant,
-                    {},
-                    {
-                        "part": "experiment",
-                        "experiment": "size",
-                        "ratio": CARYATID_BASE,
-                        "slenderness": gamma,
-                        "start": 0.6,
-                        "value": scale,
-                    },
-                )
-            )
-    return cases
+            variant = get_engine(engine).default_variant
+            yield _experiment("size", CARYATID_BASE, 0.6, scale, engine, variant, {}, scale)
