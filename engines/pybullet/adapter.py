@@ -15,6 +15,7 @@ from ..contract import Mismatch, Run, Variant
 from ..leapfrog import MOST_ROWS, failure_of, raw_trace_of, row_limit, trace_of
 from ..pace import FLAT
 from ..verified import Range
+from ..vibration import longest_step
 from . import first_script, stepping
 from .scene import MOST_FRICTION, MOST_VELOCITY, Units, assemble
 
@@ -176,7 +177,7 @@ def _largest(scene, chosen):
         return chosen.step
     units = Units.of(scene)
     longest = chosen.largest_step if isinstance(chosen, ImpactAware) else chosen.step
-    return units.time * stepping.longest_step(units.scale(scene), units, longest)
+    return longest_step(scene, units.time * longest)
 
 
 def _beyond(scene, name, chosen):

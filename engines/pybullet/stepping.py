@@ -4,9 +4,6 @@ Bullet is leapfrog: displacements live at the steps' ends t_n, velocities half a
 t_n - h/2 and t_n + h'/2 lie (h + h')/2 seconds, but Bullet multiplies the loads by h' alone. Scaling all loads of a
 step by (h + h')/(2 h') makes the scheme second order for any sequence of steps, the start included (h = 0), and
 needs no correction of velocities when the step changes.
-
-A viscous force is solved for within the step, exactly for a constant rest of the forces: acting with the velocity
-known, c v, on a base heavier by `added_mass`. Given explicitly it blows up where a step times c/mass exceeds 2.
 """
 
 import math
@@ -21,6 +18,7 @@ from analytic.rocking import RockingModel
 from .. import pace as paces
 from ..ground_velocity import ground_velocity
 from ..placement import placement
+from ..vibration import VISCOUS, added_mass, driven_mass, leapfrog_stiffness
 from .scene import iterations
 
 APPROACH = 0.3  # share of the remaining time to the impact that a step may take; .15 to .5: no accuracy knob
@@ -30,36 +28,6 @@ SMALLEST_STEP = 1e-7
 # Most iterations at an impact, where both corners may carry. They matter where e is near 0, for stocky blocks: these
 # need fewer to stand. (Slenderness .96, J_O = 1.09 m R^2: e of .03 for 0 with the iterations of one corner.)
 LANDING_ITERATIONS = 100
-# Most of a step over the time in which the bearings' vibration advances by 1 rad; stable below 2.
-VIBRATION = 0.2
-# Most that viscous bearings may take of a velocity in a step at an impact, in units of `accuracy`.
-VISCOUS = 10.0
-# Leapfrog vibrates too fast, by (h omega)^2/24; this share of the stiffness times h^2 as mass cures it. Without damping
-# the phase at the next impact decides how far the base goes. Not needed below STIFF = h omega.
-LEAPFROG, STIFF = 1 / 12, 0.02
-
-
-def longest_step(scene, units, largest):
-    """The longest step [unit of time], at most `largest`, that follows the base's vibration on its bearings."""
-    if scene.bearings is None:
-        return largest
-    model = RockingModel.of(scene)
-    law = model.bearing
-    k = law.count * (law.kb + law.dk) * units.length * VIBRATION**-2
-    c = law.count * law.damping * units.length / units.time
-    # h^2 k = mass + h c: with much damping the base creeps, with the time constant c/k
-    return min(largest, (c + math.sqrt(c * c + 4 * k * driven_mass(model))) / (2 * k))
-
-
-def driven_mass(model):
-    """Mass that the base puts up against a force while the block pivots through tilt 0 [kg], least for J_O = m R^2."""
-    return model.M - (model.m * model.R * math.cos(model.gamma)) ** 2 / model.J
-
-
-def added_mass(damping, interval, mass):
-    """Mass to add to `mass` where a force c v acts at the velocity before `interval`, to come out right after it."""
-    x = damping * interval / mass
-    return mass * (x / -math.expm1(-x) - 1) if x > 1e-8 else 0.5 * damping * interval
 
 
 def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
@@ -95,9 +63,7 @@ def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
     constants = (law.law, *law.constants)
     count, length, spring = law.count, units.length, law.count * law.kb * units.length
     damping, mass = law.count * law.damping * units.length / units.time, driven_mass(model)
-    # Small vibrations of a hysteretic bearing are those of about half its initial excess of stiffness.
-    elastic = spring + 0.5 * count * law.dk * length
-    heavier = LEAPFROG * elastic if largest * math.sqrt(elastic / mass) > STIFF else 0.0
+    heavier = length * leapfrog_stiffness(law, units.time * largest, mass)
     start, end, limit = scene.start, scene.duration, 0.5 * math.pi
     step_simulation, set_gravity = pybullet.stepSimulation, pybullet.setGravity
     read_both, read, turn = pybullet.getJointStates, pybullet.getJointState, assembly.tilt

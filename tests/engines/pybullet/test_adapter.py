@@ -228,14 +228,6 @@ def test_stiff_damped_and_light_bases_move_as_the_exact_solution(base, ka, dampi
         )
 
 
-def test_mass_added_for_damping_is_exact_and_bounded():
-    """v' after an interval under c v alone: v exp(-c t/m)."""
-    for damping in (1e-9, 1.0, 50.0, 1e9):
-        added = stepping.added_mass(damping, 0.1, 2.0)
-        after = 1 - damping * 0.1 / (2.0 + added)
-        assert after == pytest.approx(math.exp(-damping * 0.05), abs=1e-9)
-
-
 @pytest.mark.parametrize("law", ["linear", "bouc-wen"])
 def test_stiff_bearings_keep_their_phase(law):
     """A base that swings 300 rad: leapfrog alone is .5 rad ahead at these steps."""
