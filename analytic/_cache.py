@@ -6,13 +6,14 @@ Numba's own cache looks at the file of a function alone, so a change in taylor.p
 import hashlib
 import os
 import tempfile
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import numba
 
 
-def _folder():
+def _folder() -> str:
     source = Path(__file__).parent
     digest = hashlib.sha256()
     for file in sorted(source.rglob("*.py")):
@@ -31,12 +32,12 @@ def _folder():
 
 
 @contextmanager
-def kernel_cache():
+def kernel_cache() -> Iterator[None]:
     """Functions decorated inside are cached in a folder of this source; NUMBA_CACHE_DIR, if set, wins."""
-    before = numba.config.CACHE_DIR
+    before = numba.config.CACHE_DIR  # type: ignore[attr-defined]  # made when numba is imported
     if not before:
-        numba.config.CACHE_DIR = _folder()
+        numba.config.CACHE_DIR = _folder()  # type: ignore[attr-defined]  # as above
     try:
         yield
     finally:
-        numba.config.CACHE_DIR = before
+        numba.config.CACHE_DIR = before  # type: ignore[attr-defined]  # as above

@@ -1,8 +1,12 @@
 """Many runs at once, on all cores, with only the outcomes kept: `simulate_many` and `overturning_map`."""
 
+from __future__ import annotations
+
 import os
+from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numba import njit
@@ -14,6 +18,12 @@ from .motion import PulseMotion, SampledMotion
 from .scene import Block, Scene
 from .solver import REST_RATE, TOLERANCE, ground, options, parameters
 from .taylor import Parameters
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from .layout import Options
+    from .types import Motion
 
 # Chunks per worker: enough that a slow chunk does not leave the other cores idle.
 CHUNKS_PER_WORKER = 8
@@ -38,7 +48,7 @@ class Outcomes:
     decided: np.ndarray
 
     @classmethod
-    def of(cls, totals, shape):
+    def of(cls, totals: np.ndarray, shape: tuple[int, ...]) -> Self:
         def column(slot):
             return totals[:, slot].reshape(shape)
 
@@ -55,7 +65,9 @@ class Outcomes:
 
 
 @njit(cache=True, nogil=True)
-def _run_rows(rows, pulses, kind, dt, samples, chosen, totals):
+def _run_rows(
+    rows: np.ndarray, pulses: np.ndarray, kind: int, dt: float, samples: np.ndarray, chosen: Options, totals: np.ndarray
+) -> None:
     """Run each row of parameters under its own pulse (scale, frequency, phase, start, end); totals has a row each."""
     for i in range(rows.shape[0]):
         r = rows[i]
@@ -89,7 +101,9 @@ def _run_rows(rows, pulses, kind, dt, samples, chosen, totals):
         kernel.run(par, Ground(kind, dt, samples, b[0], b[1], b[2], b[3], b[4]), chosen, totals[i])
 
 
-def run_rows(rows, pulses, shaking, chosen, workers=None):
+def run_rows(
+    rows: np.ndarray, pulses: np.ndarray, shaking: Ground, chosen: Options, workers: int | None = None
+) -> np.ndarray:
     """Totals, shape (n, TOTALS), of n runs that share the kind and samples of one ground motion.
 
     rows : (n, fields of Parameters). pulses : (n, 5) scale, frequency, phase, start, end.
@@ -111,15 +125,17 @@ def run_rows(rows, pulses, shaking, chosen, workers=None):
     return totals
 
 
-def _pulse_row(shaking):
+def _pulse_row(shaking: Ground) -> tuple[float, float, float, float, float]:
     return shaking.scale, shaking.frequency, shaking.phase, shaking.start, shaking.end
 
 
-def _outcome_options(tolerance, rest_rate):
+def _outcome_options(tolerance: float, rest_rate: float) -> Options:
     return options(tolerance, rest_rate=rest_rate, record=False, decide=True)
 
 
-def simulate_many(scenes, *, tolerance=TOLERANCE, rest_rate=REST_RATE, workers=None):
+def simulate_many(
+    scenes: Iterable[Scene], *, tolerance: float = TOLERANCE, rest_rate: float = REST_RATE, workers: int | None = None
+) -> Outcomes:
     """Outcomes of a sequence of scenes, in its order, shape (n,).
 
     Scenes are grouped by their ground motion (the same object or equal content), so ensembles of many scenes under
@@ -127,7 +143,7 @@ def simulate_many(scenes, *, tolerance=TOLERANCE, rest_rate=REST_RATE, workers=N
     """
     scenes = list(scenes)
     chosen = _outcome_options(tolerance, rest_rate)
-    groups = {}
+    groups: dict[str | int, list[int]] = {}
     for index, scene in enumerate(scenes):
         motion = scene.motion
         key = motion.digest() if isinstance(motion, SampledMotion) else ground(motion).kind
@@ -141,7 +157,15 @@ def simulate_many(scenes, *, tolerance=TOLERANCE, rest_rate=REST_RATE, workers=N
     return Outcomes.of(totals, (len(scenes),))
 
 
-def overturning_map(scene, shape, frequency_ratios, amplitude_ratios, *, tolerance=TOLERANCE, workers=None):
+def overturning_map(
+    scene: Scene,
+    shape: str,
+    frequency_ratios: npt.ArrayLike,
+    amplitude_ratios: npt.ArrayLike,
+    *,
+    tolerance: float = TOLERANCE,
+    workers: int | None = None,
+) -> Outcomes:
     """Outcomes over pulse frequency and amplitude, shape (len(amplitude_ratios), len(frequency_ratios)).
 
     Parameters
@@ -171,16 +195,16 @@ def overturning_map(scene, shape, frequency_ratios, amplitude_ratios, *, toleran
 
 
 def rocking_spectrum(
-    motion,
-    periods,
-    slenderness,
+    motion: Motion,
+    periods: npt.ArrayLike,
+    slenderness: float,
     *,
-    restitution_value=None,
-    gravity=9.81,
-    duration=None,
-    tolerance=TOLERANCE,
-    workers=None,
-):
+    restitution_value: float | None = None,
+    gravity: float = 9.81,
+    duration: float | None = None,
+    tolerance: float = TOLERANCE,
+    workers: int | None = None,
+) -> Outcomes:
     """Outcomes of rectangular blocks on rigid ground against their rocking period T_r = 2 pi/omega_r, shape (n,).
 
     Fig. 5(a) of the Caryatid paper is peak_tilt against `periods` [s]. The radius follows from T_r and eq. (1);

@@ -1,17 +1,25 @@
 """The force of one bearing: elastic kb x, hysteretic z with |z| <= f0 by one of `laws`, and viscous."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numba import njit
 
 from .laws import LAWS, NUMBERS, chosen
 
+if TYPE_CHECKING:
+    from .laws.law import Law
+    from .scene import Bearings
+    from .types import Values
+
 _after_travel, _sides = chosen("after_travel"), chosen("sides")
 
 
 @njit(cache=True)
-def hysteretic_force(z, dx, law, dk, alpha, d0, f0):
+def hysteretic_force(z: float, dx: float, law: int, dk: float, alpha: float, d0: float, f0: float) -> float:
     """Hysteretic force [N] after monotonic travel dx [m] from a point with hysteretic force z [N]."""
     if dx == 0:
         return z
@@ -19,7 +27,7 @@ def hysteretic_force(z, dx, law, dk, alpha, d0, f0):
 
 
 @njit(cache=True)
-def _path(z, x, law, dk, alpha, d0, f0):
+def _path(z: float, x: np.ndarray, law: int, dk: float, alpha: float, d0: float, f0: float) -> np.ndarray:
     forces = np.empty_like(x)
     forces[0] = z
     for i in range(1, len(x)):
@@ -29,7 +37,7 @@ def _path(z, x, law, dk, alpha, d0, f0):
 
 
 @njit(cache=True)
-def _moved(z, dx, law, dk, alpha, d0, f0):
+def _moved(z: float, dx: float, law: int, dk: float, alpha: float, d0: float, f0: float) -> tuple[float, float, float]:
     z = hysteretic_force(z, dx, law, dk, alpha, d0, f0)
     first, second = _sides(law, z, dk, alpha, d0, f0)
     return z, first, second
@@ -66,7 +74,7 @@ class BearingLaw:
     d0: float = 1.0
 
     @classmethod
-    def of(cls, bearings):
+    def of(cls, bearings: Bearings | None) -> Self:
         """The law of a `Bearings` part; of None, no force at all."""
         if bearings is None:
             return cls(NUMBERS["linear"], 0, 0.0, 0.0, 0.0, 0.0)
@@ -74,35 +82,35 @@ class BearingLaw:
         return cls(number, bearings.count, bearings.damping, **LAWS[number].constants(bearings))
 
     @property
-    def unit(self):
+    def unit(self) -> Law:
         """The `Law` itself."""
         return LAWS[self.law]
 
     @property
-    def constants(self):
+    def constants(self) -> tuple[float, float, float, float]:
         """(dk, alpha, d0, f0), the last arguments of the law's functions."""
         return self.dk, self.alpha, self.d0, self.f0
 
-    def hysteretic(self, z, dx):
+    def hysteretic(self, z: float, dx: float) -> float:
         """z of one bearing [N] after monotonic travel dx [m] from z."""
         return hysteretic_force(z, dx, self.law, *self.constants)
 
-    def moved(self, z, dx):
+    def moved(self, z: float, dx: float) -> tuple[float, float, float]:
         """(z after dx, the two numbers that `Law.expression` continues from there)."""
         return _moved(z, dx, self.law, *self.constants)
 
-    def path(self, x):
+    def path(self, x: np.ndarray) -> np.ndarray:
         """z [N] along displacements x [m], shape (n,), monotonic in between; x[0] is reached by `start`."""
         return _path(self.start(float(x[0])), x, self.law, *self.constants)
 
-    def start(self, displacement):
+    def start(self, displacement: float) -> float:
         """z of one bearing [N] after monotonic loading of the virgin bearing to `displacement` [m]."""
         return self.hysteretic(0.0, displacement)
 
-    def force(self, x, z, v=0.0):
+    def force(self, x: Values, z: Values, v: Values | float = 0.0) -> Values:
         """Force of all bearings together [N], positive against positive x: eqs (9), (11), plus the viscous part."""
         return self.count * (self.kb * x + z + self.damping * v)
 
-    def work(self, z, dx):
+    def work(self, z: float, dx: float) -> float:
         """Integral of the hysteretic force of one bearing over monotonic travel dx [m] from z [J], exact."""
         return 0.0 if dx == 0 else self.unit.work(z, dx, *self.constants)

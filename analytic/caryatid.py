@@ -7,6 +7,6 @@ BASE = Base(mass=212.0)
 BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 
 
-def caryatid_block(slenderness):
+def caryatid_block(slenderness: float) -> Block:
     """A block of the Caryatid's mass and radius; slenderness [rad]."""
     return Block(mass=MASS, radius=RADIUS, slenderness=slenderness)

@@ -6,21 +6,30 @@ Sources: the pendulum's elliptic integral in the form of B. C. Carlson (1995), N
 G. W. Housner (1963), Bull. Seismol. Soc. Am. 53(2), 403-417; N. Makris, J. Zhang (2001), J. Eng. Mech. 127.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.integrate import quad
 from scipy.special import ellipj, elliprf
 
+from .motion import SampledMotion
 
-def swing_energy(slenderness, peak):
+if TYPE_CHECKING:
+    from .types import Motion
+
+
+def swing_energy(slenderness: float, peak: float) -> float:
     """(cos(gamma - |peak|) - cos gamma)/2: energy above the upright position over 2 m g R, no units."""
     peak = abs(peak)
     return math.sin(slenderness - peak / 2) * math.sin(peak / 2)
 
 
-def swing_peak(slenderness, energy):
+def swing_peak(slenderness: float, energy: float) -> float:
     """|phi| [rad] at the peak of a swing of the given `swing_energy`."""
     s = math.sin(slenderness / 2)
     # u = gamma - |phi| has sin(u/2) = root; then sin((gamma - u)/2) without cancellation
@@ -29,7 +38,7 @@ def swing_peak(slenderness, energy):
     return 2 * math.asin(sine)
 
 
-def quarter_period(omega_r, slenderness, energy):
+def quarter_period(omega_r: float, slenderness: float, energy: float) -> float:
     """Time from the peak of a swing, at rest, to the impact [s].
 
     [K(k) - F(psi, k)]/omega_r with k = cos(u0/2), sin psi = cos(gamma/2)/k and u0 = gamma - |peak|, written
@@ -64,7 +73,7 @@ class FreeRocking:
     peaks: np.ndarray
 
 
-def free_rocking(omega_r, slenderness, restitution, tilt, count):
+def free_rocking(omega_r: float, slenderness: float, restitution: float, tilt: float, count: int) -> FreeRocking:
     """The first `count` impacts of a block released at rest from `tilt` [rad], 0 < |tilt| < slenderness.
 
     Successive peaks obey cos(u') - cos(gamma) = e^2 (cos(u) - cos(gamma)), u = gamma - |phi|.
@@ -84,7 +93,7 @@ def free_rocking(omega_r, slenderness, restitution, tilt, count):
     return FreeRocking(np.cumsum(flights), rates[:-1], rates[1:], peaks)
 
 
-def impacts_to_rest(omega_r, slenderness, restitution, tilt, rest_rate):
+def impacts_to_rest(omega_r: float, slenderness: float, restitution: float, tilt: float, rest_rate: float) -> int:
     """Number of impacts until |phi'+| < rest_rate [rad/s], of a block released at rest from `tilt` [rad]."""
     first = 2 * omega_r * math.sqrt(swing_energy(slenderness, tilt))
     count = max(0, math.floor(math.log(rest_rate / first) / math.log(restitution)))
@@ -93,7 +102,7 @@ def impacts_to_rest(omega_r, slenderness, restitution, tilt, rest_rate):
     return count
 
 
-def remaining_time(rate_after, restitution, deceleration):
+def remaining_time(rate_after: float, restitution: float, deceleration: float) -> float:
     """Time [s] in which the further impacts end, after one with small rate_after = |phi'+| [rad/s].
 
     Each flight lasts 2 |phi'+|/deceleration and leaves e times the rate: a geometric sum. `deceleration` is
@@ -102,7 +111,7 @@ def remaining_time(rate_after, restitution, deceleration):
     return 2 * abs(rate_after) / (deceleration * (1 - restitution))
 
 
-def rest_time(omega_r, slenderness, restitution, tilt):
+def rest_time(omega_r: float, slenderness: float, restitution: float, tilt: float) -> float:
     """Time [s] at which the impacts accumulate; released at rest from `tilt` [rad], restitution < 1."""
     count = max(1, impacts_to_rest(omega_r, slenderness, restitution, tilt, 1e-9 * omega_r))
     run = free_rocking(omega_r, slenderness, restitution, tilt, count)
@@ -110,7 +119,7 @@ def rest_time(omega_r, slenderness, restitution, tilt):
     return run.times[-1] + remaining_time(run.rates_after[-1], restitution, deceleration)
 
 
-def free_rocking_tilt(omega_r, slenderness, restitution, tilt, t):
+def free_rocking_tilt(omega_r: float, slenderness: float, restitution: float, tilt: float, t: float) -> float:
     """Tilt [rad] at t [s] of a block released at rest from `tilt` [rad]; 0 once the impacts have accumulated.
 
     Within a swing sin(u/2) = sin(u0/2)/dn(omega_r (t - t_peak), cos(u0/2)), u = gamma - |phi|.
@@ -127,18 +136,18 @@ def free_rocking_tilt(omega_r, slenderness, restitution, tilt, t):
     return side * (slenderness - 2 * math.asin(math.sqrt(complement) / dn))
 
 
-def linear_period(omega_r, tilt_ratio):
+def linear_period(omega_r: float, tilt_ratio: float) -> float:
     """Housner's period [s] of a slender block's full cycle with peaks |phi|/gamma = tilt_ratio, in (0, 1)."""
     return 4 / omega_r * math.acosh(1 / (1 - tilt_ratio))
 
 
-def linear_decay(restitution, tilt_ratio, n):
+def linear_decay(restitution: float, tilt_ratio: float, n: int) -> float:
     """Housner's |phi_n|/gamma: the peak after n impacts of a slender block released from |phi_0|/gamma."""
     energy = restitution ** (2 * n) * tilt_ratio * (2 - tilt_ratio)  # 1 - (1 - tilt_ratio)^2
     return energy / (1 + math.sqrt(1 - energy))  # 1 - sqrt(1 - energy)
 
 
-def rectangular_pulse_critical_duration(omega_r, ratio):
+def rectangular_pulse_critical_duration(omega_r: float, ratio: float) -> float:
     """Shortest rectangular pulse [s] that overturns a slender block; ratio = a/(g gamma).
 
     Infinite for ratio <= 1, where the block does not lift. The block overturns without impact.
@@ -146,7 +155,7 @@ def rectangular_pulse_critical_duration(omega_r, ratio):
     return math.log(ratio / (ratio - 1)) / omega_r if ratio > 1 else math.inf
 
 
-def no_impact_overturning_integral(omega_r, motion, uplift, gravity=9.81):
+def no_impact_overturning_integral(omega_r: float, motion: Motion, uplift: float, gravity: float = 9.81) -> float:
     """|omega_r times the integral of exp(-omega_r (t - uplift)) a_g/g dt| [rad] from `uplift` [s] on.
 
     A slender block that lifts at `uplift` and does not come back before the motion is over overturns exactly
@@ -156,7 +165,8 @@ def no_impact_overturning_integral(omega_r, motion, uplift, gravity=9.81):
     def growth(t):
         return omega_r * math.exp(-omega_r * (t - uplift)) * float(motion.acceleration(t)) / gravity
 
-    if hasattr(motion, "samples"):  # quad must not smear the corners of a record
+    corners: Sequence[float] | np.ndarray
+    if isinstance(motion, SampledMotion):  # quad must not smear the corners of a record
         first = math.floor(uplift / motion.dt) + 1
         corners = [uplift, *(motion.dt * np.arange(first, len(motion.samples)))]
     else:

@@ -19,12 +19,21 @@ Decided is not finished: a run without a duration also waits until neither peak 
 `PEAK_TOLERANCE`, and for some periods of the block and of the base, as one wants to see the swings.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from numba import njit
 
 from .bearing import BearingLaw
 from .laws import chosen
+
+if TYPE_CHECKING:
+    from .response import Response
+    from .scene import Scene
+    from .taylor import Parameters
 
 # Share by which a reported peak could still grow when a run without a duration ends.
 PEAK_TOLERANCE = 1e-4
@@ -38,7 +47,7 @@ _recoverable = chosen("recoverable")
 
 
 @njit(cache=True)
-def recoverable_energy(law, dk, alpha, d0, f0, z):
+def recoverable_energy(law: int, dk: float, alpha: float, d0: float, f0: float, z: float) -> float:
     """S(z) [J] of one bearing: the integral of |z| dx on the way back to z = 0; at least z^2/(2 (ka - kb))."""
     z = abs(z)
     if z == 0:
@@ -47,7 +56,7 @@ def recoverable_energy(law, dk, alpha, d0, f0, z):
 
 
 @njit(cache=True)
-def remaining_energy(par, rocking, tilt, rate, x, v, z):
+def remaining_energy(par: Parameters, rocking: bool, tilt: float, rate: float, x: float, v: float, z: float) -> float:
     """E [J] that can still reach the block, see the module's docstring."""
     kinetic, gravity, momentum = 0.5 * par.M * v * v, 0.0, par.M * v
     if not par.on_base:
@@ -69,7 +78,7 @@ def remaining_energy(par, rocking, tilt, rate, x, v, z):
 
 
 @njit(cache=True)
-def largest_force(par, energy):
+def largest_force(par: Parameters, energy: float) -> float:
     """Largest force of all bearings [N] that `energy` allows in full contact.
 
     By Cauchy and Schwarz over kinetic, elastic and recoverable energy, the last at least z^2/(2 (ka - kb)); or with
@@ -84,7 +93,9 @@ def largest_force(par, energy):
 
 
 @njit(cache=True)
-def will_not_overturn(par, rocking, lifted, tilt, rate, x, v, z):
+def will_not_overturn(
+    par: Parameters, rocking: bool, lifted: bool, tilt: float, rate: float, x: float, v: float, z: float
+) -> bool:
     """After the motion: is the outcome "stands" or "rocks" certain? Rules (a) and (b)."""
     if not (rocking or par.on_base):
         return True
@@ -95,7 +106,18 @@ def will_not_overturn(par, rocking, lifted, tilt, rate, x, v, z):
 
 
 @njit(cache=True)
-def peaks_are_final(par, rocking, tilt, rate, x, v, z, peak_tilt, peak_x, peak_acceleration):
+def peaks_are_final(
+    par: Parameters,
+    rocking: bool,
+    tilt: float,
+    rate: float,
+    x: float,
+    v: float,
+    z: float,
+    peak_tilt: float,
+    peak_x: float,
+    peak_acceleration: float,
+) -> bool:
     """After a decision: can no reported peak grow by more than `PEAK_TOLERANCE`? A negative peak is not asked for.
 
     A base without bearings slides on for ever: its displacement has no peak.
@@ -118,7 +140,7 @@ def peaks_are_final(par, rocking, tilt, rate, x, v, z, peak_tilt, peak_x, peak_a
     return min(math.sqrt(2 * energy / stiffness), near) <= peak_x * slack
 
 
-def period(scene):
+def period(scene: Scene) -> float:
     """The longer of rocking and isolation period [s]: 2 pi/omega_r and 2 pi sqrt((m + m_b)/(n_d k))."""
     rocking = 2 * math.pi / scene.rocking_frequency
     if scene.bearings is None:
@@ -128,22 +150,22 @@ def period(scene):
     return max(rocking, min(2 * math.pi * math.sqrt(scene.total_mass / stiffness), SLOWEST_BASE * rocking))
 
 
-def motion_end(scene):
+def motion_end(scene: Scene) -> float:
     """End of the ground motion [s], 0 without one."""
     return 0.0 if scene.motion is None else scene.motion.end
 
 
-def shortest_duration(scene):
+def shortest_duration(scene: Scene) -> float:
     """What a run without a duration covers at least [s]: the motion and `TAIL_PERIODS` after it."""
     return motion_end(scene) + TAIL_PERIODS * period(scene)
 
 
-def longest_duration(scene):
+def longest_duration(scene: Scene) -> float:
     """Where a run without a duration ends, decided or not [s]: `CAP_PERIODS` after the motion."""
     return motion_end(scene) + CAP_PERIODS * period(scene)
 
 
-def is_decided(scene, response, *, contact_tilt=0.0):
+def is_decided(scene: Scene, response: Response, *, contact_tilt: float = 0.0) -> bool:
     """Is the outcome of a run certain at its end? Rules (a), (b) and (c), applied to the run's own end state.
 
     Parameters
@@ -161,19 +183,25 @@ def is_decided(scene, response, *, contact_tilt=0.0):
     return _at_end(scene, response, contact_tilt)[0]
 
 
-def is_finished(scene, response, *, contact_tilt=0.0):
+def is_finished(scene: Scene, response: Response, *, contact_tilt: float = 0.0) -> bool:
     """Is the outcome of a run certain at its end, and can its peaks no longer grow? See `is_decided`."""
     decided, par, state = _at_end(scene, response, contact_tilt)
     if not decided or state is None:
         return decided
     return bool(
         peaks_are_final(
-            par, *state, response.peak_tilt, response.peak_base_displacement, response.peak_base_acceleration
+            par,  # type: ignore[arg-type]  # with a state come parameters
+            *state,
+            response.peak_tilt,
+            response.peak_base_displacement,
+            response.peak_base_acceleration,
         )
     )
 
 
-def _at_end(scene, response, contact_tilt):
+def _at_end(
+    scene: Scene, response: Response, contact_tilt: float
+) -> tuple[bool, Parameters | None, tuple[bool, float, float, float, float, float] | None]:
     """(decided, kernel's parameters, (rocking, tilt, rate, x, v, z) or None where it has overturned or failed)."""
     from .solver import parameters
 
@@ -192,7 +220,13 @@ def _at_end(scene, response, contact_tilt):
     return bool(will_not_overturn(par, rocking, response.outcome == "rocks", tilt, rate, x, v, z)), par, state
 
 
-def until_decided(simulate, scene, *, at_least=0.0, finished=is_finished):
+def until_decided(
+    simulate: Callable[[Scene], Response],
+    scene: Scene,
+    *,
+    at_least: float = 0.0,
+    finished: Callable[[Scene, Response], bool] = is_finished,
+) -> Response:
     """``simulate(scene)`` with durations that grow until the run has finished, or the longest is reached.
 
     Parameters
@@ -215,7 +249,7 @@ def until_decided(simulate, scene, *, at_least=0.0, finished=is_finished):
         duration = min(begin + 2 * (duration - begin), longest)
 
 
-def model_warnings(scene, friction_demand, min_normal_ratio):
+def model_warnings(scene: Scene, friction_demand: float, min_normal_ratio: float) -> tuple[str, ...]:
     """Sentences on what the model assumes and this run does not keep: contact that only presses, and no sliding."""
     found = []
     if min_normal_ratio <= 0:

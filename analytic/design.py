@@ -41,7 +41,7 @@ class BearingProperties:
     cycle_loss: float
 
 
-def steady_cycle(law, amplitude):
+def steady_cycle(law: BearingLaw, amplitude: float) -> tuple[float, float]:
     """(loss [J], force [N] at +amplitude) of one bearing in the steady cycle between +-amplitude [m].
 
     The loss is the integral of the hysteretic force along both branches, exact.
@@ -53,7 +53,7 @@ def steady_cycle(law, amplitude):
     return 2 * law.work(low, 2 * amplitude), law.kb * amplitude + z
 
 
-def properties(bearings, mass, x_max):
+def properties(bearings: Bearings, mass: float, x_max: float) -> BearingProperties:
     """`BearingProperties` of bearings under `mass` (block and base) [kg] at x_max [m]."""
     law = BearingLaw.of(bearings)
     loss, force = steady_cycle(law, x_max)
@@ -71,13 +71,13 @@ def properties(bearings, mass, x_max):
     )
 
 
-def _mismatch(alpha, loss, secant, x_max, ratio):
+def _mismatch(alpha: float, loss: float, secant: float, x_max: float, ratio: float) -> tuple[float, float]:
     """(ka - kb) that f0 and alpha give less that kb and the ratio give; f0 from the loss on the limit curves."""
     f0 = loss / (4 * (x_max - 1 / (alpha - 2)))
     return 2 * f0 * (alpha - 1) - (ratio - 1) * (secant - f0 / x_max), f0
 
 
-def _feasible(damping, divisor, secant, x_max, ratio):
+def _feasible(damping: float, divisor: float, secant: float, x_max: float, ratio: float) -> tuple[float, float]:
     """(alpha of least mismatch, the mismatch there); a design exists where it is below 0."""
     loss = damping * divisor * 0.5 * secant * x_max**2
     low = math.log(1 / x_max * (1 + 1e-9))
@@ -89,7 +89,17 @@ def _feasible(damping, divisor, secant, x_max, ratio):
     return 2 + math.exp(best.x), best.fun
 
 
-def design_bearings(mass, period, damping, x_max, *, count=4, stiffness_ratio=10.0, definition="paper", delta_k=1e-20):
+def design_bearings(
+    mass: float,
+    period: float,
+    damping: float,
+    x_max: float,
+    *,
+    count: int = 4,
+    stiffness_ratio: float = 10.0,
+    definition: str = "paper",
+    delta_k: float = 1e-20,
+) -> Bearings:
     """Bearings with a given secant period and damping at x_max.
 
     Parameters

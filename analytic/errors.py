@@ -1,9 +1,13 @@
 """Errors a user can mend: each names where, what and the remedy."""
 
+from __future__ import annotations
+
+from os import PathLike
+
 KEY_LENGTH, VALUE_LENGTH, TEXT_LENGTH, FILE_LENGTH = 100, 120, 500, 400  # characters of a message's parts
 
 
-def cut(text, length):
+def cut(text: object, length: int) -> str:
     """The text on one line, printable, its middle left out where it is longer than `length` characters."""
     text = str(text)
     if len(text) > length:
@@ -11,7 +15,7 @@ def cut(text, length):
     return "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in text)
 
 
-def _shown(value):
+def _shown(value: object) -> str:
     """The value as Python writes it, of readable length."""
     if isinstance(value, int) and value.bit_length() > 4 * VALUE_LENGTH:
         return f"an integer of {value.bit_length()} bits"
@@ -38,18 +42,18 @@ class SceneError(ValueError):
         The scene file or record, where there is one.
     """
 
-    def __init__(self, key, value, problem, remedy, file=None):
+    def __init__(self, key: str, value: object, problem: str, remedy: str, file: str | None = None) -> None:
         self.key, self.value, self.problem, self.remedy, self.file = key, value, problem, remedy, file
         super().__init__(key, value, problem, remedy, file)
 
-    def __str__(self):
+    def __str__(self) -> str:
         """One line of readable length, whatever was found."""
         where = f"{cut(self.file, FILE_LENGTH)}: " if self.file else ""
         found = "" if self.value is None else f" = {_shown(self.value)}"
         problem, remedy = cut(self.problem, TEXT_LENGTH), cut(self.remedy, TEXT_LENGTH)
         return f"{where}{cut(self.key, KEY_LENGTH)}{found}: {problem}; {remedy}"
 
-    def in_file(self, file):
+    def in_file(self, file: str | PathLike[str]) -> SceneError:
         """The same error, naming the file it was found in."""
         return SceneError(self.key, self.value, self.problem, self.remedy, str(file))
 
@@ -68,11 +72,11 @@ class EngineBroken(EngineNotInstalled):
     problem : str
     """
 
-    def __init__(self, origin, problem):
+    def __init__(self, origin: str, problem: object) -> None:
         self.origin, self.problem = origin, problem
         super().__init__(origin, problem)
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"{self.origin}: {cut(self.problem, TEXT_LENGTH)}; mend or uninstall that package"
 
 

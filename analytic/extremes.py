@@ -1,6 +1,7 @@
 """What the readable twin keeps of its steps: extremes and, where asked for, the history."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -14,13 +15,13 @@ class Extremes:
     the slenderness waits until the block is below it again, or the run is over.
     """
 
-    def __init__(self, tilt, x, history):
+    def __init__(self, tilt: float, x: float, history: bool) -> None:
         self.tilt, self.x, self.acceleration = abs(tilt), abs(x), 0.0
         self.friction, self.normal = 0.0, 1.0
-        self.waiting = []  # (friction demand, N/(m g))
-        self.rows = [] if history else None
+        self.waiting: list[tuple[float, float]] = []  # (friction demand, N/(m g))
+        self.rows: list[Sequence[float]] | None = [] if history else None
 
-    def step(self, row, absolute, horizontal, normal, slenderness):
+    def step(self, row: Sequence[float], absolute: float, horizontal: float, normal: float, slenderness: float) -> None:
         """One step: a row of the history, the base's acceleration [m/s2], forces at the contact over m g."""
         _, tilt, _, x, *_ = row
         self.tilt, self.x = max(self.tilt, abs(tilt)), max(self.x, abs(x))
@@ -31,12 +32,12 @@ class Extremes:
         if self.rows is not None:
             self.rows.append(row)
 
-    def count_waiting(self):
+    def count_waiting(self) -> None:
         for demand, normal in self.waiting:
             self.friction, self.normal = max(self.friction, demand), min(self.normal, normal)
         self.waiting.clear()
 
-    def history(self):
+    def history(self) -> History | None:
         """The `History`, or None."""
         if self.rows is None:
             return None

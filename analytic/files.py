@@ -3,11 +3,12 @@
 import errno
 import os
 import stat
+from os import PathLike
 
 KINDS = ((stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"), (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"))
 
 
-def read_plain(path, limit):
+def read_plain(path: str | PathLike[str], limit: int) -> bytes:
     """The bytes of the plain file at `path`.
 
     Parameters

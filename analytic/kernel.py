@@ -57,7 +57,7 @@ def run(par, ground, options, totals):
     shaking = L.Ground(
         ground.kind,
         ground.dt,
-        unowned(ground.samples),
+        unowned(ground.samples),  # type: ignore[call-arg]  # numba gives the first
         ground.scale,
         ground.frequency,
         ground.phase,

@@ -1,6 +1,9 @@
 """The linear oscillator x'' + 2 zeta omega x' + omega^2 x = -a_g under a record, and its displacement spectrum."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 import numba
 import numpy as np
@@ -9,10 +12,17 @@ from numba import njit
 from .errors import SettingError
 from .motion import SampledMotion
 
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from .types import Motion
+
 PULSE_INTERVALS = 4000  # of a pulse; its interpolation error is then below 1e-6 of the amplitude
 
 
-def displacement_spectrum(motion, periods, damping_ratios, *, scale=1.0):
+def displacement_spectrum(
+    motion: Motion, periods: npt.ArrayLike, damping_ratios: npt.ArrayLike, *, scale: float = 1.0
+) -> np.ndarray:
     """Largest |x| [m] of linear oscillators that start at rest, the free vibration after the motion included.
 
     Exact for acceleration that is linear between samples (N. C. Nigam and P. C. Jennings 1969, Bull. Seismol. Soc.
@@ -54,7 +64,19 @@ def displacement_spectrum(motion, periods, damping_ratios, *, scale=1.0):
 
 
 @njit(cache=True, inline="always")
-def _advance(x, v, a, slope, w, zeta, wd, decay, c, s, h):
+def _advance(
+    x: float,
+    v: float,
+    a: float,
+    slope: float,
+    w: float,
+    zeta: float,
+    wd: float,
+    decay: float,
+    c: float,
+    s: float,
+    h: float,
+) -> tuple[float, float]:
     """(x, v) after h from (x, v) under a + slope tau: decay = exp(-zeta w h), c and s of wd h."""
     drift = -slope / (w * w)  # particular solution: offset + drift tau
     offset = -a / (w * w) + 2 * zeta * slope / (w * w * w)
@@ -66,7 +88,7 @@ def _advance(x, v, a, slope, w, zeta, wd, decay, c, s, h):
 
 
 @njit(cache=True)
-def _largest_inside(x, v, a, slope, w, zeta, wd, h):
+def _largest_inside(x: float, v: float, a: float, slope: float, w: float, zeta: float, wd: float, h: float) -> float:
     """|x| where the velocity changes sign between 0 and h, by bisection of the exact solution."""
     low, high, found = 0.0, h, x
     for _ in range(50):
@@ -92,7 +114,7 @@ def _largest_inside(x, v, a, slope, w, zeta, wd, h):
 
 
 @njit(cache=True)
-def _peak(dt, samples, w, zeta):
+def _peak(dt: float, samples: np.ndarray, w: float, zeta: float) -> float:
     wd = w * math.sqrt(1 - zeta * zeta)
     decay, c, s = math.exp(-zeta * w * dt), math.cos(wd * dt), math.sin(wd * dt)
     x, v, peak = 0.0, 0.0, 0.0
@@ -109,7 +131,7 @@ def _peak(dt, samples, w, zeta):
 
 
 @njit(cache=True, parallel=True)
-def _spectrum(dt, samples, frequencies, ratios):
+def _spectrum(dt: float, samples: np.ndarray, frequencies: np.ndarray, ratios: np.ndarray) -> np.ndarray:
     n = len(frequencies)
     peaks = np.empty((len(ratios), n))
     for k in numba.prange(len(ratios) * n):

@@ -1,12 +1,18 @@
 """Ground acceleration: sampled records and analytic pulses. SI units, zero outside their duration."""
 
+from __future__ import annotations
+
 import hashlib
 import math
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
 from .errors import SceneError
+
+if TYPE_CHECKING:
+    from .types import Values
 
 PULSES = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
 
@@ -14,7 +20,7 @@ PULSES = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
 RICKER_PERIODS = 4.0
 
 
-def _positive(key, value, unit):
+def _positive(key: str, value: object, unit: str) -> None:
     if not (isinstance(value, (int, float)) and math.isfinite(value) and value > 0):
         raise SceneError(key, value, "not a positive number", f"give a finite value above 0 [{unit}]")
 
@@ -40,7 +46,7 @@ class SampledMotion:
     label: str = "sampled motion"
     warnings: tuple[str, ...] = ()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         _positive("motion.dt", self.dt, "s")
         samples = np.array(self.samples, dtype=np.float64)
         if samples.ndim != 1 or len(samples) < 2:
@@ -59,44 +65,44 @@ class SampledMotion:
         object.__setattr__(self, "samples", samples)
         object.__setattr__(self, "dt", float(self.dt))
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple[type[Self], tuple[float, np.ndarray, str, tuple[str, ...]]]:
         """Built anew in another process: a copy alone could be written to, for which the kernel is compiled again."""
         return type(self), (self.dt, self.samples, self.label, self.warnings)
 
     @property
-    def start(self):
+    def start(self) -> float:
         return 0.0
 
     @property
-    def end(self):
+    def end(self) -> float:
         """Time of the last sample [s]."""
         return (len(self.samples) - 1) * self.dt
 
     @property
-    def peak(self):
+    def peak(self) -> float:
         """Peak ground acceleration [m/s2] (absolute)."""
         return float(np.abs(self.samples).max())
 
     @property
-    def peak_time(self):
+    def peak_time(self) -> float:
         """Time of the peak [s]."""
         return float(np.abs(self.samples).argmax() * self.dt)
 
     @property
-    def jumps(self):
+    def jumps(self) -> tuple[float, ...]:
         """Times above 0 at which the acceleration jumps [s]."""
         return (self.end,) if self.samples[-1] else ()
 
-    def acceleration(self, t):
+    def acceleration(self, t: Values) -> Values:
         """Acceleration [m/s2] at time(s) t [s]; zero before 0 and after the last sample."""
         times = np.arange(len(self.samples)) * self.dt
         return np.interp(t, times, self.samples, left=0.0, right=0.0)
 
-    def scaled(self, factor):
+    def scaled(self, factor: float) -> SampledMotion:
         """The same motion times `factor`."""
         return SampledMotion(self.dt, self.samples * factor, self.label, self.warnings)
 
-    def digest(self):
+    def digest(self) -> str:
         """Content of the motion as a hash: equal motions have equal digests."""
         return hashlib.sha256(np.float64(self.dt).tobytes() + self.samples.tobytes()).hexdigest()
 
@@ -125,7 +131,7 @@ class PulseMotion:
     frequency: float
     start: float = 0.0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.shape not in PULSES:
             raise SceneError("motion.pulse", self.shape, "not a known pulse", "choose one of " + ", ".join(PULSES))
         for name in ("amplitude", "frequency", "start"):
@@ -138,11 +144,11 @@ class PulseMotion:
             raise SceneError("motion.start", self.start, "negative", "start the pulse at 0 or later [s]")
 
     @property
-    def label(self):
+    def label(self) -> str:
         return f"{self.shape} pulse, {self.amplitude:.4g} m/s2, {self.frequency:.4g} rad/s"
 
     @property
-    def length(self):
+    def length(self) -> float:
         """Duration of the pulse [s]."""
         turns = {"one-sine": 1.0, "one-cosine": 1.0, "half-sine": 0.5, "rectangular": 0.5, "ricker": RICKER_PERIODS}[
             self.shape
@@ -150,17 +156,17 @@ class PulseMotion:
         return turns * 2 * math.pi / self.frequency
 
     @property
-    def end(self):
+    def end(self) -> float:
         """Time at which the pulse is over [s]."""
         return self.start + self.length
 
     @property
-    def peak(self):
+    def peak(self) -> float:
         """Peak ground acceleration [m/s2] (absolute)."""
         return abs(self.amplitude)
 
     @property
-    def peak_time(self):
+    def peak_time(self) -> float:
         """First time of the peak [s]."""
         offset = {
             "one-sine": math.pi / 2,
@@ -172,13 +178,13 @@ class PulseMotion:
         return self.start + offset / self.frequency
 
     @property
-    def jumps(self):
+    def jumps(self) -> tuple[float, ...]:
         """Times above 0 at which the acceleration jumps [s]."""
         return tuple(t for t in (self.start, self.end) if t > 0) if self.shape in ("one-cosine", "rectangular") else ()
 
-    def acceleration(self, t):
+    def acceleration(self, t: Values) -> Values:
         """Acceleration [m/s2] at time(s) t [s]; zero outside the pulse."""
-        t = np.asarray(t, dtype=float)
+        t = np.asarray(t, dtype=float)  # type: ignore[assignment]  # a number as well, see the return
         u = self.frequency * (t - self.start)
         if self.shape == "one-cosine":
             value = np.cos(u)
@@ -190,13 +196,13 @@ class PulseMotion:
         else:
             value = np.sin(u)
         inside = (t >= self.start) & (t <= self.end)
-        return np.where(inside, self.amplitude * value, 0.0)[()]
+        return np.where(inside, self.amplitude * value, 0.0)[()]  # type: ignore[return-value]  # [()]: a number for a number
 
-    def scaled(self, factor):
+    def scaled(self, factor: float) -> PulseMotion:
         """The same pulse times `factor`."""
         return PulseMotion(self.shape, self.amplitude * factor, self.frequency, self.start)
 
-    def digest(self):
+    def digest(self) -> str:
         """Content of the motion as a hash: equal motions have equal digests."""
         content = (self.shape, self.amplitude.hex(), self.frequency.hex(), self.start.hex())
         return hashlib.sha256(repr(content).encode()).hexdigest()

@@ -2,7 +2,10 @@
 
 import dataclasses
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from os import PathLike
+from typing import Any, Self, TextIO
 
 import numpy as np
 
@@ -56,7 +59,7 @@ class History:
         "ground_acceleration",
     )
 
-    def to_csv(self, path):
+    def to_csv(self, path: str | PathLike[str] | TextIO) -> None:
         """Write the columns with a header line; `path` is a file name or an open text file."""
         table = np.column_stack([getattr(self, name) for name in self.COLUMNS])
         np.savetxt(path, table, delimiter=",", header=",".join(self.COLUMNS), comments="", fmt="%.17g")
@@ -78,7 +81,7 @@ class Energy:
     impact_loss: float
 
     @property
-    def imbalance(self):
+    def imbalance(self) -> float:
         """input - (changes + losses) [J]; zero for an exact solution."""
         return self.input - (self.kinetic + self.potential + self.hysteretic + self.viscous + self.impact_loss)
 
@@ -123,22 +126,22 @@ class Response:
     energy: Energy | None = None
     history: History | None = field(default=None, repr=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.outcome not in OUTCOMES:
             raise ValueError(f"outcome {self.outcome!r} is none of {OUTCOMES}")
         if (self.outcome == "failed") != (self.failure is not None):
             raise ValueError("a failed response carries a failure, and no other does")
 
     @property
-    def verdict(self):
+    def verdict(self) -> str:
         """The outcome in words for people: the outcome, or "undecided (rocks so far)"."""
         return self.outcome if self.decided or self.outcome == "failed" else f"undecided ({self.outcome} so far)"
 
     @property
-    def impact_count(self):
+    def impact_count(self) -> int:
         return len(self.impacts)
 
-    def to_json(self):
+    def to_json(self) -> dict[str, Any]:
         """The response without its history as a JSON-ready dict; non-finite numbers become None."""
         values = {}
         for part in dataclasses.fields(self):
@@ -146,7 +149,7 @@ class Response:
                 continue
             value = getattr(self, part.name)
             if dataclasses.is_dataclass(value):
-                value = dataclasses.asdict(value)
+                value = dataclasses.asdict(value)  # type: ignore[arg-type]  # no class is a field's value
             elif part.name == "impacts":
                 value = [dataclasses.asdict(impact) for impact in value]
                 values["impact_count"] = len(value)
@@ -156,7 +159,7 @@ class Response:
         return _finite(values)
 
     @classmethod
-    def from_json(cls, values, history=None):
+    def from_json(cls, values: Mapping[str, Any], history: History | None = None) -> Self:
         """The response that gave these values by `to_json`; a number that was not finite is NaN.
 
         values may lack cpu_seconds; history: the `History` to give it.
@@ -181,15 +184,15 @@ class Response:
         )
 
 
-def _of(kind, values):
+def _of(kind: type[Any], values: Mapping[str, Any]) -> Any:
     return kind(**{name: _number(value) for name, value in values.items()})
 
 
-def _number(value):
+def _number(value: float | None) -> float:
     return math.nan if value is None else value
 
 
-def _finite(value):
+def _finite(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: _finite(item) for key, item in value.items()}
     if isinstance(value, list | tuple):

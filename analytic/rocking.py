@@ -3,10 +3,17 @@
 tilt phi > 0 tips toward +x; s = sgn(phi) is the side; x is the base displacement relative to the ground.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
 
 from .bearing import BearingLaw
+
+if TYPE_CHECKING:
+    from .scene import Scene
+    from .types import Values
 
 
 @dataclass(frozen=True)
@@ -38,7 +45,7 @@ class RockingModel:
     mass_share: float
 
     @classmethod
-    def of(cls, scene):
+    def of(cls, scene: Scene) -> Self:
         block = scene.block
         e = restitution(scene) if block.restitution is None else block.restitution
         return cls(
@@ -54,28 +61,30 @@ class RockingModel:
             scene.mass_share,
         )
 
-    def lever(self, s, tilt):
+    def lever(self, s: Values | float, tilt: Values) -> tuple[Values, Values]:
         """(c, n) [m]: height of the centre of mass above the corner, and its signed horizontal lever."""
         angle = s * self.gamma - tilt
-        return self.R * math.cos(angle), self.R * math.sin(angle)
+        return self.R * math.cos(angle), self.R * math.sin(angle)  # type: ignore[return-value]  # `engines.swings.ArrayModel` has it for arrays
 
-    def contact_acceleration(self, bearing_force):
+    def contact_acceleration(self, bearing_force: Values) -> Values:
         """x'' + a_g [m/s2] of the base in full contact, eq. (2)."""
         return -bearing_force / self.M
 
     @property
-    def uplift_acceleration(self):
+    def uplift_acceleration(self) -> float:
         """|absolute base acceleration| above which the block lifts: g tan(gamma) [m/s2]."""
         return self.g * math.tan(self.gamma)
 
-    def accelerations(self, s, tilt, rate, ground, bearing_force):
+    def accelerations(
+        self, s: Values | float, tilt: Values, rate: Values, ground: Values, bearing_force: Values
+    ) -> tuple[Values, Values]:
         """(phi'', x'') [rad/s2, m/s2] while rocking about the corner of side s, eqs (3)-(6).
 
         On rigid ground x'' is 0 and the bearing force is not used.
         """
         c, n = self.lever(s, tilt)
         if not self.on_base:
-            return -self.m * (c * ground + self.g * n) / self.J, 0.0
+            return -self.m * (c * ground + self.g * n) / self.J, 0.0  # type: ignore[return-value]  # 0 for all of an array
         m, M, J = self.m, self.M, self.J
         # M (a_g + x'') + m c phi'' = -m n phi'^2 - F;   m c (a_g + x'') + J phi'' = -m g n
         push, moment = -m * n * rate * rate - bearing_force, -m * self.g * n
@@ -83,7 +92,7 @@ class RockingModel:
         absolute = (J * push - m * c * moment) / determinant
         return (M * moment - m * c * push) / determinant, absolute - ground
 
-    def impact(self, rate):
+    def impact(self, rate: Values) -> tuple[Values, Values]:
         """(phi'+, jump of x') of an impact at tilt rate phi'-, eqs (7) and (8).
 
         (8) is printed with a factor R cos(gamma) too many; this form conserves horizontal momentum.
@@ -91,32 +100,34 @@ class RockingModel:
         after = self.restitution * rate
         return after, self.mass_share * self.R * math.cos(self.gamma) * (rate - after)
 
-    def contact_forces(self, s, tilt, rate, tilt_acceleration, base_acceleration):
+    def contact_forces(
+        self, s: Values | float, tilt: Values, rate: Values, tilt_acceleration: Values, base_acceleration: Values
+    ) -> tuple[Values, Values]:
         """(H, N) [N]: horizontal and normal force of the base on the block, base_acceleration absolute."""
         c, n = self.lever(s, tilt)
         horizontal = self.m * (base_acceleration + c * tilt_acceleration + n * rate * rate)
         normal = self.m * (self.g + n * tilt_acceleration - c * rate * rate)
         return horizontal, normal
 
-    def kinetic_energy(self, s, tilt, rate, v):
+    def kinetic_energy(self, s: float, tilt: float, rate: float, v: float) -> float:
         """[J], in the ground's frame; s = 0 for full contact."""
         c = self.lever(s, tilt)[0] if s else 0.0
         return 0.5 * self.M * v * v + self.m * c * rate * v + 0.5 * self.J * rate * rate
 
-    def potential_energy(self, s, tilt, x):
+    def potential_energy(self, s: float, tilt: float, x: float) -> float:
         """Of gravity and of the springs kb [J], 0 at rest."""
         height = self.lever(s, tilt)[0] - self.R * math.cos(self.gamma) if s else 0.0
         return self.m * self.g * height + 0.5 * self.bearing.count * self.bearing.kb * x**2
 
 
-def restitution(scene):
+def restitution(scene: Scene) -> float:
     """e_phi of eq. (7), momentum-exact: 1 - 2 m b^2/(J_O - m mt h^2). May be negative (stocky block, light base)."""
     block = scene.block
     b, h = block.half_width, block.half_height
     return 1 - 2 * block.mass * b**2 / (block.inertia - block.mass * scene.mass_share * h**2)  # (7)
 
 
-def base_jump_length(scene):
+def base_jump_length(scene: Scene) -> float:
     """e_x of eq. (8), corrected [m]: x'+ = x'- - e_x phi'-."""
     block, mt = scene.block, scene.mass_share
     R, gamma, m = block.radius, block.slenderness, block.mass
@@ -131,7 +142,7 @@ def base_jump_length(scene):
     )  # (8)
 
 
-def base_jump_length_as_printed(scene):
+def base_jump_length_as_printed(scene: Scene) -> float:
     """e_x of eq. (8) as printed: a factor R cos(gamma) too many, so a length squared. Kept to show the misprint."""
     block, mt = scene.block, scene.mass_share
     R, gamma, m = block.radius, block.slenderness, block.mass

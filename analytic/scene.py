@@ -3,7 +3,7 @@
 import hashlib
 import json
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -16,7 +16,7 @@ from .motion import PulseMotion, SampledMotion
 LEAST, MOST = 1e-20, 1e20
 
 
-def _not_vanishing(value):
+def _not_vanishing(value: float) -> float:
     if value < LEAST:
         raise PydanticCustomError("greater_than_equal", "vanishes in products", {"ge": LEAST})
     return value
@@ -48,7 +48,7 @@ class Block(_Part):
     restitution: Annotated[float, Field(ge=0, le=1)] | None = None
 
     @model_validator(mode="after")
-    def _inertia_is_possible(self):
+    def _inertia_is_possible(self) -> Self:
         least = self.mass * self.radius**2
         if self.corner_inertia is not None and self.corner_inertia <= least:
             raise SceneError(
@@ -60,22 +60,22 @@ class Block(_Part):
         return self
 
     @property
-    def inertia(self):
+    def inertia(self) -> float:
         """J_O [kg m2] about a base corner."""
         return 4 / 3 * self.mass * self.radius**2 if self.corner_inertia is None else self.corner_inertia
 
     @property
-    def centre_inertia(self):
+    def centre_inertia(self) -> float:
         """Moment of inertia about the centre of mass [kg m2]."""
         return self.inertia - self.mass * self.radius**2
 
     @property
-    def half_width(self):
+    def half_width(self) -> float:
         """b = R sin(gamma) [m]."""
         return self.radius * math.sin(self.slenderness)
 
     @property
-    def half_height(self):
+    def half_height(self) -> float:
         """h = R cos(gamma) [m]."""
         return self.radius * math.cos(self.slenderness)
 
@@ -95,7 +95,7 @@ class Bearings(_Part):
     any of them.
     """
 
-    law: Literal[*NUMBERS] = "algebraic"
+    law: Literal[*NUMBERS] = "algebraic"  # type: ignore[valid-type]  # the names in `LAWS`
     count: Annotated[int, Field(ge=1, le=10**6)] = 1
     ka: Positive
     kb: NotNegative | None = None
@@ -105,7 +105,7 @@ class Bearings(_Part):
     damping: NotNegative = 0.0
 
     @model_validator(mode="after")
-    def _law_is_complete(self):
+    def _law_is_complete(self) -> Self:
         law = LAWS[NUMBERS[self.law]]
         for name in ("kb", "alpha", "yield_force"):
             given = getattr(self, name)
@@ -113,14 +113,14 @@ class Bearings(_Part):
                 raise SceneError(f"bearings.{name}", None, "missing", f"add it: the {self.law} law needs it")
             if given is not None and name not in law.needs + law.ignores:
                 raise SceneError(f"bearings.{name}", given, f"not used by the {self.law} law", "remove it")
-        if "kb" in law.needs and self.ka <= self.kb:
+        if "kb" in law.needs and self.ka <= self.kb:  # type: ignore[operator]  # given where it is needed
             raise SceneError(
                 "bearings.ka",
                 self.ka,
                 f"not above kb = {self.kb:.6g} N/m",
                 "give the initial stiffness as ka, the smaller one after yielding as kb [N/m]",
             )
-        if "alpha" in law.needs and self.delta_k >= self.ka - self.kb:
+        if "alpha" in law.needs and self.delta_k >= self.ka - self.kb:  # type: ignore[operator]  # as above
             raise SceneError(
                 "bearings.delta_k",
                 self.delta_k,
@@ -162,7 +162,7 @@ class Scene(_Part):
     name: str = ""
 
     @model_validator(mode="after")
-    def _parts_fit(self):
+    def _parts_fit(self) -> Self:
         if self.base is None:
             if self.bearings is not None:
                 raise SceneError("bearings", None, "need a base to carry", "add a table [base] with its mass")
@@ -177,22 +177,22 @@ class Scene(_Part):
         return self
 
     @property
-    def rocking_frequency(self):
+    def rocking_frequency(self) -> float:
         """omega_r = sqrt(m g R/J_O) [rad/s], eq. (1)."""
         block = self.block
         return math.sqrt(block.mass * self.gravity * block.radius / block.inertia)
 
     @property
-    def total_mass(self):
+    def total_mass(self) -> float:
         """m + m_b [kg]."""
         return self.block.mass + (self.base.mass if self.base else 0.0)
 
     @property
-    def mass_share(self):
+    def mass_share(self) -> float:
         """m/(m + m_b), the paper's m-tilde; 0 on rigid ground."""
         return self.block.mass / self.total_mass if self.base else 0.0
 
-    def with_(self, **changes):
+    def with_(self, **changes: Any) -> Self:
         """A copy with fields replaced, validated again; ``block={"slenderness": 0.2}`` changes one part."""
         values = {name: getattr(self, name) for name in type(self).model_fields}
         for name, change in changes.items():
@@ -202,7 +202,7 @@ class Scene(_Part):
             values[name] = change
         return type(self)(**values)
 
-    def digest(self):
+    def digest(self) -> str:
         """Content of the scene as a hash: scenes that simulate alike have equal digests (the name is left out)."""
         content = self.model_dump(mode="python", exclude={"name", "motion"})
         content["motion"] = self.motion.digest() if self.motion else None

@@ -2,14 +2,16 @@
 
 import difflib
 import tomllib
+from collections.abc import Mapping, Sequence
+from os import PathLike
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError
 
 from .errors import SceneError
 from .files import read_plain
-from .motion import PULSES, PulseMotion
+from .motion import PULSES, PulseMotion, SampledMotion
 from .records import UNITS, read_record
 from .scene import Base, Bearings, Block, NotNegative, Number, Positive, Scene, Start, _Part
 from .synthetic import DEFAULT_SEED, STYLES, synthetic_motion
@@ -52,16 +54,16 @@ class _Motion(_Part):
     """The [motion] table: exactly one of record, pulse and synthetic, with the keys that belong to it."""
 
     record: str | None = None
-    units: Literal[*UNITS] | None = None
-    pulse: Literal[*PULSES] | None = None
+    units: Literal[*UNITS] | None = None  # type: ignore[valid-type]  # one list of names, here and where they are read
+    pulse: Literal[*PULSES] | None = None  # type: ignore[valid-type]  # as above
     amplitude: Number | None = None
     frequency: Positive | None = None
     start: NotNegative | None = None
-    synthetic: Literal[*STYLES] | None = None
+    synthetic: Literal[*STYLES] | None = None  # type: ignore[valid-type]  # as above
     seed: Annotated[int, Field(ge=0, lt=2**64)] | None = None
     scale: Number = 1.0
 
-    def motion(self, folder):
+    def motion(self, folder: Path) -> SampledMotion | PulseMotion:
         """The ground motion; records are looked up from `folder`."""
         kinds = [kind for kind in MOTIONS if getattr(self, kind) is not None]
         if len(kinds) != 1:
@@ -81,10 +83,10 @@ class _Motion(_Part):
             for key in ("amplitude", "frequency"):
                 if getattr(self, key) is None:
                     raise _missing(f"motion.{key}")
-            return PulseMotion(self.pulse, self.amplitude, self.frequency, self.start or 0.0).scaled(self.scale)
-        return self._recorded(folder / self.record)
+            return PulseMotion(self.pulse, self.amplitude, self.frequency, self.start or 0.0).scaled(self.scale)  # type: ignore[arg-type]  # checked above
+        return self._recorded(folder / self.record)  # type: ignore[operator]  # checked above: it is the one that is given
 
-    def _recorded(self, path):
+    def _recorded(self, path: Path) -> SampledMotion:
         try:
             return read_record(path, self.units, self.scale)
         except SceneError as error:
@@ -113,12 +115,12 @@ class _SceneFile(_Part):
     run: _Run = _Run()
 
 
-def shipped_scenes():
+def shipped_scenes() -> tuple[str, ...]:
     """Names of the scenes that come with the package: ``load_scene("caryatid-isolated")``."""
     return tuple(sorted(path.stem for path in SHIPPED.glob("*.toml")))
 
 
-def load_scene(path):
+def load_scene(path: str | PathLike[str]) -> Scene:
     """The scene in a TOML file, or a shipped scene by its name.
 
     Raises
@@ -135,7 +137,7 @@ def load_scene(path):
         raise error.in_file(path) from None
 
 
-def _parse(path):
+def _parse(path: Path) -> dict[str, Any]:
     try:
         text = read_plain(path, LARGEST).decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
         for number, line in enumerate(text.split("\n"), 1):
@@ -159,7 +161,7 @@ def _parse(path):
         raise SceneError("scene", None, f"is not valid TOML ({error})", "mend the line named") from error
 
 
-def _scene(table, path):
+def _scene(table: Mapping[str, Any], path: Path) -> Scene:
     try:
         file = _SceneFile(**table)
         motion = file.motion.motion(path.parent) if file.motion else None
@@ -178,7 +180,7 @@ def _scene(table, path):
         raise _scene_error(error.errors()) from None
 
 
-def _scene_error(problems):
+def _scene_error(problems: Sequence[Any]) -> SceneError:
     """The first problem pydantic found as a SceneError; unknown keys first, as they explain missing ones."""
     problem = min(problems, key=lambda found: found["type"] != "extra_forbidden")
     loc = [str(part) for part in problem["loc"]]
@@ -208,17 +210,24 @@ def _scene_error(problems):
     return SceneError(key, value, f"wrong type ({type(value).__name__})", f"give {wanted.get(kind, 'a number')}{unit}")
 
 
-def _missing(key):
+def _missing(key: str) -> SceneError:
     if key in _SceneFile.model_fields:
         return SceneError(key, None, "missing", f"add a table [{key}]")
     unit = f" [{KEY_UNITS[key]}]" if key in KEY_UNITS else ""
     return SceneError(key, None, "missing", f"add {key.split('.')[-1]} = ...{unit}")
 
 
-def _unknown(loc, value):
+def _unknown(loc: Sequence[str], value: object) -> SceneError:
     *tables, name = loc
-    parts = {"block": Block, "base": Base, "bearings": Bearings, "motion": _Motion, "start": Start, "run": _Run}
-    part = parts[tables[0]] if tables else _SceneFile
+    parts: dict[str, type[_Part]] = {
+        "block": Block,
+        "base": Base,
+        "bearings": Bearings,
+        "motion": _Motion,
+        "start": Start,
+        "run": _Run,
+    }
+    part: type[_Part] = parts[tables[0]] if tables else _SceneFile
     close = difflib.get_close_matches(name, part.model_fields, 1)
     hint = f"write {close[0]}" if close else "remove it, known are " + ", ".join(part.model_fields)
     return SceneError(".".join(loc), value, "unknown key", hint)

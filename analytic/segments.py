@@ -1,13 +1,20 @@
 """Ground motion cut where it is not smooth, so that an integrator need not step over a corner."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .motion import RICKER_PERIODS, SampledMotion
 
+if TYPE_CHECKING:
+    from .motion import PulseMotion
+    from .types import GroundFunction, Motion
 
-def segments(motion, duration):
+
+def segments(motion: Motion | None, duration: float) -> list[tuple[float, float, GroundFunction]]:
     """[(start, end, a_g(t)), ...] from 0 to duration [s]: on each, a_g is smooth, and monotone in the open.
 
     One per interval of a record; pulses are cut at their zeros and extremes. a_g takes floats.
@@ -23,7 +30,7 @@ def segments(motion, duration):
             centre = RICKER_PERIODS * math.pi
             turns = [0.0, *(centre + u for u in (-(6**0.5), -(2**0.5), 0.0, 2**0.5, 6**0.5)), 2 * centre]
         else:
-            turns = np.arange(0, motion.length * motion.frequency + 0.1, math.pi / 2)
+            turns = np.arange(0, motion.length * motion.frequency + 0.1, math.pi / 2)  # type: ignore[assignment]  # a sequence of numbers, too
         cuts = [motion.start + u / motion.frequency for u in turns[:-1]] + [motion.end]
         pieces = [(0.0, motion.start, _line(0.0, 0.0, 0.0))]
         pieces += [(a, b, _pulse(motion)) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
@@ -33,11 +40,11 @@ def segments(motion, duration):
     return [(a, min(b, duration), ground) for a, b, ground in pieces if a < min(b, duration)]
 
 
-def _line(start, value, slope):
+def _line(start: float, value: float, slope: float) -> GroundFunction:
     return lambda t: value + slope * (t - start)
 
 
-def _pulse(motion):
+def _pulse(motion: PulseMotion) -> GroundFunction:
     a, w, start = motion.amplitude, motion.frequency, motion.start
     if motion.shape == "rectangular":
         return lambda t: a

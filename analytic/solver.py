@@ -1,9 +1,12 @@
 """``simulate(scene)``: the analytic model, by the compiled kernel."""
 
+from __future__ import annotations
+
 import functools
 import math
 import time
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +20,10 @@ from .polynomial import MAX_ORDER
 from .response import Energy, Failure, History, Impact, Response, State
 from .rocking import RockingModel
 from .taylor import HARMONIC, LINEAR_GROUND, QUIET, RICKER, SHORT_ORDER, Parameters
+
+if TYPE_CHECKING:
+    from .scene import Scene
+    from .types import Motion
 
 # Chosen by measurement (`rocking bench analytic`): where CPU against error is least.
 ORDER = 18  # free flight and pulses: long steps
@@ -33,7 +40,7 @@ _NO_SAMPLES = np.zeros(2)
 _NO_SAMPLES.flags.writeable = False  # the same compiled type as the samples of a motion
 
 
-def parameters(scene):
+def parameters(scene: Scene) -> Parameters:
     """The scene as the kernel's `Parameters`."""
     model, law, start = RockingModel.of(scene), BearingLaw.of(scene.bearings), scene.start
     return Parameters(
@@ -64,7 +71,7 @@ def parameters(scene):
     )
 
 
-def ground(motion, scale=1.0):
+def ground(motion: Motion | None, scale: float = 1.0) -> Ground:
     """The motion as the kernel's `Ground`, times `scale`."""
     if motion is None:
         return Ground(QUIET, 1.0, _NO_SAMPLES, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -81,15 +88,15 @@ def ground(motion, scale=1.0):
 
 
 def options(
-    tolerance=TOLERANCE,
-    order=ORDER,
-    rest_rate=REST_RATE,
-    record=True,
-    decide=False,
-    output_step=0.0,
-    capacity=CAPACITY,
-    shortest=0.0,
-):
+    tolerance: float = TOLERANCE,
+    order: int = ORDER,
+    rest_rate: float = REST_RATE,
+    record: bool = True,
+    decide: bool = False,
+    output_step: float = 0.0,
+    capacity: int = CAPACITY,
+    shortest: float = 0.0,
+) -> Options:
     """The kernel's `Options`, checked.
 
     Raises
@@ -108,7 +115,14 @@ def options(
     )
 
 
-def simulate(scene, *, history=True, tolerance=TOLERANCE, rest_rate=REST_RATE, output_step=None):
+def simulate(
+    scene: Scene,
+    *,
+    history: bool = True,
+    tolerance: float = TOLERANCE,
+    rest_rate: float = REST_RATE,
+    output_step: float | None = None,
+) -> Response:
     """Simulate a scene with the analytic rocking model.
 
     Without a duration the run ends when its outcome is decided and its peaks are final (`decision`). Where a duration
@@ -168,7 +182,7 @@ def simulate(scene, *, history=True, tolerance=TOLERANCE, rest_rate=REST_RATE, o
 
 
 @functools.cache
-def _warm():
+def _warm() -> None:
     """Load (or once per machine compile) the kernel, so that cpu_seconds are those of the simulation alone."""
     from .scene import Block, Scene
 
@@ -177,14 +191,16 @@ def _warm():
 
 
 @functools.cache
-def versions():
+def versions() -> dict[str, str]:
     """Versions of what the analytic model runs on."""
     import numba
 
     return {"numpy": np.__version__, "numba": numba.__version__}
 
 
-def _response(scene, par, totals, result, cpu, settings, history):
+def _response(
+    scene: Scene, par: Parameters, totals: np.ndarray, result: Any, cpu: float, settings: dict[str, Any], history: bool
+) -> Response:
     (tilt, rate, x, v, z), impacts, uplifts, rests, table = result
     law = BearingLaw.of(scene.bearings)
     end = State(float(totals[layout.TIME]), tilt, rate, x, v, law.force(x, z, v))
@@ -234,7 +250,7 @@ def _response(scene, par, totals, result, cpu, settings, history):
     )
 
 
-def _warnings(scene, totals, velocity):
+def _warnings(scene: Scene, totals: np.ndarray, velocity: float) -> tuple[str, ...]:
     found = list(getattr(scene.motion, "warnings", ()))
     found += model_warnings(scene, float(totals[layout.FRICTION]), float(totals[layout.NORMAL]))
     if scene.base is not None and scene.bearings is None and velocity != 0:
@@ -245,7 +261,7 @@ def _warnings(scene, totals, velocity):
     return tuple(found)
 
 
-def _peak_ground_acceleration(motion, until):
+def _peak_ground_acceleration(motion: Motion | None, until: float) -> float:
     if motion is None:
         return 0.0
     if motion.end <= until:
@@ -254,7 +270,7 @@ def _peak_ground_acceleration(motion, until):
     return float(np.abs(motion.acceleration(times)).max())
 
 
-def _energy(scene, par, totals, end):
+def _energy(scene: Scene, par: Parameters, totals: np.ndarray, end: State) -> Energy:
     start = scene.start
     bearing_kb = par.count * par.kb
 
@@ -280,10 +296,10 @@ def _energy(scene, par, totals, end):
     )
 
 
-def _history(scene, table, end):
+def _history(scene: Scene, table: np.ndarray, end: State) -> History:
     last = np.array([[end.time, end.tilt, end.tilt_rate, end.base_displacement, end.base_velocity, end.bearing_force]])
     if not len(table) or table[-1, 0] < end.time:
         table = np.vstack([table, last])
     columns = np.ascontiguousarray(table.T)
     shaking = np.zeros(len(table)) if scene.motion is None else scene.motion.acceleration(columns[0])
-    return History(*columns, shaking)
+    return History(*columns, shaking)  # type: ignore[call-arg]  # six columns and the ground's

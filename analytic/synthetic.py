@@ -25,7 +25,7 @@ BAND = (1.0, 10.0)  # Hz, where the noise has its energy
 DECIMALS = 9  # samples are rounded to 1e-9 m/s2, so that another FFT or libm gives the same motion
 
 
-def synthetic_motion(style="duzce-like", seed=DEFAULT_SEED):
+def synthetic_motion(style: str = "duzce-like", seed: int = DEFAULT_SEED) -> SampledMotion:
     """A synthetic near-fault ground motion; equal seeds give equal motions.
 
     A velocity pulse (Mavroeidis and Papageorgiou 2003, eq. 3) of 0.70 to 0.82 m/s and period 0.95 to 1.36 s, with
@@ -75,7 +75,9 @@ def synthetic_motion(style="duzce-like", seed=DEFAULT_SEED):
     return SampledMotion(DT, samples, f"synthetic {style} motion, seed {seed}")
 
 
-def pulse_acceleration(t, speed, frequency, cycles, phase):
+def pulse_acceleration(
+    t: np.ndarray | float, speed: float, frequency: float, cycles: float, phase: float
+) -> np.ndarray:
     """Acceleration [m/s2] at time(s) t [s] from the centre of a velocity pulse, zero outside it.
 
     v = speed/2 (1 + cos(2 pi f t/cycles)) cos(2 pi f t + phase) for |t| <= cycles/(2 f): Mavroeidis and
@@ -87,7 +89,7 @@ def pulse_acceleration(t, speed, frequency, cycles, phase):
     return np.where(np.abs(bell) <= math.pi, -0.5 * speed * turn * slope, 0.0)
 
 
-def _band_noise(frequencies, uniform):
+def _band_noise(frequencies: np.ndarray, uniform: np.ndarray) -> np.ndarray:
     """Noise of flat spectrum between the BAND's edges, fourth-order roll-off outside, phases 2 pi uniform."""
     low, high = BAND
     inverse = np.divide(low, frequencies, out=np.full_like(frequencies, np.inf), where=frequencies > 0)

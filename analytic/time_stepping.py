@@ -4,10 +4,13 @@ Semi-implicit Euler: accelerations at the step's start, velocities first, then p
 exact one of eqs (7), (8), so everything that differs from the event-driven model comes from time stepping alone.
 """
 
+from __future__ import annotations
+
 import math
 import platform
 import time
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numba
 import numpy as np
@@ -19,8 +22,11 @@ from .errors import SettingError
 from .response import History, Impact, Response, State
 from .rocking import RockingModel
 
+if TYPE_CHECKING:
+    from .scene import Scene
 
-def simulate_time_stepping(scene, *, step, history=True):
+
+def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -> Response:
     """Simulate a scene with steps of fixed length.
 
     Parameters
@@ -90,13 +96,20 @@ def simulate_time_stepping(scene, *, step, history=True):
         settings={"step": step},
         versions={"python": platform.python_version(), "numpy": np.__version__, "numba": numba.__version__},
         scene=scene.name,
-        history=History(*rows[: taken + 1].T, ground[: taken + 1]) if history else None,
+        history=History(*rows[: taken + 1].T, ground[: taken + 1]) if history else None,  # type: ignore[call-arg]  # six columns and the ground's
     )
     return replace(response, decided=is_decided(scene, response))
 
 
 @njit(cache=True, nogil=True)
-def _march(h, ground, y, block, bearing, rows):
+def _march(
+    h: float,
+    ground: np.ndarray,
+    y: tuple[float, ...],
+    block: tuple[float, ...],
+    bearing: tuple[Any, ...],
+    rows: np.ndarray,
+) -> tuple[Any, ...]:
     """All steps; returns (steps taken, overturned?, impacts, uplifts, rests, unstable time or -1, extremes, end)."""
     m, M, J, R, gamma, g, on_base, e, share = block
     law, count, kb, dk, alpha, d0, f0, damping = bearing

@@ -6,11 +6,15 @@ motion, at an impact, an uplift, a reversal of the base (where the bearing's his
 bearing's law or at overturning.
 """
 
+from __future__ import annotations
+
 import functools
 import math
 import platform
 import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy
@@ -25,6 +29,10 @@ from .response import Energy, Failure, Impact, Response, State
 from .rocking import RockingModel
 from .segments import segments
 
+if TYPE_CHECKING:
+    from .scene import Scene
+    from .types import GroundFunction
+
 METHODS = ("DOP853", "RK45", "LSODA", "Radau")
 IMPACT_LIMIT = 50_000  # more in one run means impacts that never accumulate (restitution of 1)
 STALL_LIMIT = 50  # events in a row without progress in time
@@ -32,8 +40,16 @@ REST_HORIZON = 0.1  # a block rests only if its impacts end within this share of
 
 
 def simulate_twin(
-    scene, *, method="DOP853", rtol=1e-10, atol=None, history=True, energy=True, max_step=None, rest_rate=1e-8
-):
+    scene: Scene,
+    *,
+    method: str = "DOP853",
+    rtol: float = 1e-10,
+    atol: float | None = None,
+    history: bool = True,
+    energy: bool = True,
+    max_step: float | None = None,
+    rest_rate: float = 1e-8,
+) -> Response:
     """Simulate a scene with scipy.
 
     Parameters
@@ -105,7 +121,7 @@ def simulate_twin(
 class _Run:
     """One run: the state y = [tilt, rate], on a base x, v and z if integrated, then the ledger's quadratures."""
 
-    def __init__(self, scene, settings, history, energy):
+    def __init__(self, scene: Scene, settings: Mapping[str, Any], history: bool, energy: bool) -> None:
         self.scene, self.settings, self.energy = scene, settings, energy
         self.model = model = RockingModel.of(scene)
         self.law, self.omega_r = model.bearing, scene.rocking_frequency
@@ -135,10 +151,15 @@ class _Run:
         self.side = math.copysign(1.0, start.tilt or start.tilt_rate) if start.tilt or start.tilt_rate else 0.0
         self.lifted = 0.0 if start.tilt == 0 else -1.0  # when tilt was last 0
         self.turned, self.corner = -1.0, math.inf  # when the base last stood still; the bearing's next corner, z [N]
-        self.flight = None  # a guess of the next step [s]
+        self.flight: float | None = None  # a guess of the next step [s]
+        self.overturning: float | None
+        self.unstable: float | None
         self.rocked, self.overturning, self.unstable = self.side != 0, None, None
         if abs(start.tilt) >= model.gamma:
             self.unstable = 0.0
+        self.impacts: list[Impact]
+        self.uplifts: list[float]
+        self.rests: list[float]
         self.impacts, self.uplifts, self.rests = [], [], []
         self.steps, self.stalled, self.impact_loss = 0, 0, 0.0
         self.extremes = Extremes(start.tilt, start.base_displacement, history)
@@ -146,9 +167,9 @@ class _Run:
 
     # the state machine
 
-    def go(self):
+    def go(self) -> Failure | None:
         """Run to the end or to overturning; a Failure, or None."""
-        for _, end, ground in segments(self.scene.motion, self.scene.duration):
+        for _, end, ground in segments(self.scene.motion, self.scene.duration):  # type: ignore[arg-type]  # `until_decided` gave it one
             while self.t < end and self.overturning is None:
                 before = self.t
                 failure = self.advance(end, ground)
@@ -161,28 +182,28 @@ class _Run:
                     )
         return None
 
-    def advance(self, end, ground):
+    def advance(self, end: float, ground: GroundFunction) -> Failure | None:
         """One stretch of smooth motion from self.t, at most to `end`."""
         if self.side == 0:
             a = self.contact_acceleration(self.y, ground(self.t))
             if abs(a) > self.model.uplift_acceleration:
-                return self.lift(a)
+                return self.lift(a)  # type: ignore[func-returns-value]  # None: no failure
             if not self.model.on_base:
-                return self.stand(end, ground)
+                return self.stand(end, ground)  # type: ignore[func-returns-value]  # None: no failure
         return self.integrate(end, ground)
 
-    def contact_acceleration(self, y, ground):
+    def contact_acceleration(self, y: np.ndarray, ground: float) -> float:
         """Absolute acceleration of the base in full contact [m/s2], eq. (2)."""
         if not self.model.on_base:
             return ground
         return self.model.contact_acceleration(self.bearing_force(y))
 
-    def lift(self, acceleration):
+    def lift(self, acceleration: float) -> None:
         """Uplift: the block tips against the acceleration; tilt, rate (and phi'') are 0, so that decides the side."""
         self.side, self.lifted, self.rocked = -math.copysign(1.0, acceleration), self.t, True
         self.uplifts.append(self.t)
 
-    def stand(self, end, ground):
+    def stand(self, end: float, ground: GroundFunction) -> None:
         """Full contact on rigid ground: nothing moves until |a_g| exceeds g tan(gamma)."""
 
         def excess(t):
@@ -196,7 +217,7 @@ class _Run:
         if lifts:
             self.lift(ground(self.t))
 
-    def integrate(self, end, ground):
+    def integrate(self, end: float, ground: GroundFunction) -> Failure | None:
         """Integrate until `end` or the first terminal event, and apply that event."""
         direction = self.direction(end, ground)
         events = self.events(direction)
@@ -237,13 +258,13 @@ class _Run:
                     self.extremes.x = max(self.extremes.x, float(abs(y[2])))
                 elif name == "unstable" and self.unstable is None:
                     self.unstable = float(t)
-            if event.terminal and len(times):  # scipy reports the first terminal event of a stretch only
+            if event.terminal and len(times):  # type: ignore[attr-defined]  # set in `events`; scipy reports the first terminal event of a stretch only
                 terminal = name
         if terminal:
             getattr(self, "at_" + terminal)(ground(self.t))
         return None
 
-    def stepped_over(self, events, solution):
+    def stepped_over(self, events: Sequence[tuple[str, Callable[..., float]]], solution: Any) -> float | None:
         """Time of the first extreme beyond a threshold that was crossed twice within one step, or None.
 
         tilt below 0 where its rate is 0; |a_abs| above g tan(gamma), or the bearing beyond its corner, where the base
@@ -261,7 +282,7 @@ class _Run:
                     found.append(math.nextafter(t, self.t))
         return min(found, default=None)
 
-    def direction(self, end, ground):
+    def direction(self, end: float, ground: GroundFunction) -> float:
         """Sign of the base velocity over the coming stretch; where it stands, of its acceleration."""
         if not self.model.on_base:
             return 0.0
@@ -275,7 +296,7 @@ class _Run:
 
     # events of the integration; "terminal" ones end a stretch and have an at_ method
 
-    def events(self, direction):
+    def events(self, direction: float) -> list[tuple[str, Callable[..., float]]]:
         side, model, lifted, turned = self.side, self.model, self.lifted, self.turned
         found = []
         if side:
@@ -295,23 +316,23 @@ class _Run:
             if ahead < math.inf:
                 found.append(("corner", lambda t, y: direction * (y[4] - corner), True, 1))
         for _, event, terminal, sense in found:
-            event.terminal, event.direction = terminal, sense
+            event.terminal, event.direction = terminal, sense  # type: ignore[attr-defined]  # scipy reads them there
         return [(name, event) for name, event, _, _ in found]
 
-    def at_overturning(self, ground):
+    def at_overturning(self, ground: GroundFunction) -> None:
         self.overturning = self.t
 
-    def at_uplift(self, ground):
+    def at_uplift(self, ground: float) -> None:
         self.lift(self.contact_acceleration(self.y, ground))
 
-    def at_reversal(self, ground):
+    def at_reversal(self, ground: float) -> None:
         self.fix_history()
         self.y[3], self.turned = 0.0, self.t
 
-    def at_corner(self, ground):
+    def at_corner(self, ground: float) -> None:
         self.y[4] = self.corner
 
-    def at_impact(self, ground):
+    def at_impact(self, ground: float) -> None:
         """Eqs (7), (8); then the other corner, or rest if impacts accumulate and the block is held down."""
         y, model = self.y, self.model
         before, kinetic = y[1], self.energies()[0]
@@ -343,7 +364,7 @@ class _Run:
 
     # the equations
 
-    def derivative(self, ground, direction):
+    def derivative(self, ground: GroundFunction, direction: float) -> Callable[[float, np.ndarray], np.ndarray]:
         model, law, side, energy = self.model, self.law, self.side, self.energy
         branch = law.unit.branch and law.unit.branch(self.hysteretic_force(self.y), direction, law)
         if not model.on_base:
@@ -373,19 +394,19 @@ class _Run:
 
         return block_on_base
 
-    def hysteretic_force(self, y):
+    def hysteretic_force(self, y: np.ndarray) -> float:
         """z of one bearing [N]: the state, or exact from the last reversal."""
         return float(y[4]) if self.law.unit.branch else self.law.hysteretic(self.z_c, float(y[2]) - self.x_c)
 
-    def bearing_force(self, y):
+    def bearing_force(self, y: np.ndarray) -> float:
         return self.law.force(float(y[2]), self.hysteretic_force(y), float(y[3])) if self.model.on_base else 0.0
 
-    def fix_history(self):
+    def fix_history(self) -> None:
         """The bearing's memory is the point it turned at."""
         if self.model.on_base:
             self.z_c, self.x_c = self.hysteretic_force(self.y), float(self.y[2])
 
-    def energies(self):
+    def energies(self) -> tuple[float, float]:
         """(kinetic, potential) [J], see `RockingModel`."""
         model, (tilt, rate, *base) = self.model, self.y[:4].tolist()
         x, v = base if model.on_base else (0.0, 0.0)
@@ -393,7 +414,7 @@ class _Run:
 
     # what is kept
 
-    def record(self, t, y, ground):
+    def record(self, t: float, y: np.ndarray, ground: float) -> None:
         """Keep one step."""
         model, force = self.model, self.bearing_force(y)
         tilt, rate = float(y[0]), float(y[1])
@@ -410,16 +431,16 @@ class _Run:
             (t, tilt, rate, x, v, force, ground), absolute, horizontal / weight, normal / weight, model.gamma
         )
 
-    def state(self):
+    def state(self) -> State:
         x, v = (float(self.y[2]), float(self.y[3])) if self.model.on_base else (0.0, 0.0)
         return State(self.t, float(self.y[0]), float(self.y[1]), x, v, self.bearing_force(self.y))
 
-    def ledger(self):
+    def ledger(self) -> Energy:
         kinetic, potential = (now - then for now, then in zip(self.energies(), self.stored, strict=True))
         work = self.y[-3:].tolist() if self.model.on_base else [float(self.y[-1]), 0.0, 0.0]
-        return Energy(kinetic, potential, *work, float(self.impact_loss))
+        return Energy(kinetic, potential, *work, float(self.impact_loss))  # type: ignore[call-arg]  # three of work
 
-    def response(self, cpu_seconds, failure):
+    def response(self, cpu_seconds: float, failure: Failure | None) -> Response:
         outcome = "rocks" if self.rocked else "stands"
         outcome = "failed" if failure else "overturns" if self.overturning is not None else outcome
         extremes = self.extremes

@@ -4,7 +4,9 @@ Compiled code knows a law by its number, its place in `LAWS`, and picks its func
 arguments would compile the whole kernel once for each law.
 """
 
+from collections.abc import Callable
 from types import ModuleType
+from typing import Any
 
 from numba import njit
 
@@ -17,7 +19,7 @@ LAWS = tuple(file.LAW for file in list(globals().values()) if isinstance(file, M
 NUMBERS = {law.name: number for number, law in enumerate(LAWS)}
 
 
-def chosen(name):
+def chosen(name: str) -> Callable[..., Any]:
     """Compiled function of (law's number, *arguments): the law's function `name`."""
     *before, last = (getattr(law, name) for law in LAWS)
 
@@ -26,11 +28,11 @@ def chosen(name):
         return last(*arguments)
 
     for number, own in reversed(list(enumerate(before))):
-        choose = _either(number, own, choose)
+        choose = _either(number, own, choose)  # type: ignore[assignment]  # compiled as well
     return choose
 
 
-def _either(number, own, others):
+def _either(number: int, own: Callable[..., Any], others: Callable[..., Any]) -> Callable[..., Any]:
     @njit(forceinline=True)
     def choose(law, *arguments):
         if law == number:
@@ -40,7 +42,7 @@ def _either(number, own, others):
     return choose
 
 
-def chosen_term():
+def chosen_term() -> Callable[..., float]:
     """`chosen` for the Taylor term, the innermost loop: inlined by numba, which needs the arguments by name."""
     *before, last = (law.term for law in LAWS)
 
@@ -49,11 +51,11 @@ def chosen_term():
         return last(k, factors, x, v, q)
 
     for number, own in reversed(list(enumerate(before))):
-        choose = _either_term(number, own, choose)
+        choose = _either_term(number, own, choose)  # type: ignore[assignment]  # compiled as well
     return choose
 
 
-def _either_term(number, own, others):
+def _either_term(number: int, own: Callable[..., float], others: Callable[..., float]) -> Callable[..., float]:
     @njit(inline="always")
     def choose(law, k, factors, x, v, q):
         if law == number:

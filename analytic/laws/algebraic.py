@@ -4,24 +4,31 @@ From any point (x_c, z_c) of its path it gives z after monotonic travel in close
 memory: no list of reversal points is needed.
 """
 
-import math
+from __future__ import annotations
 
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 from numba import njit
 
 from ..polynomial import INVERSE
 from .law import Law
 
+if TYPE_CHECKING:
+    from ..scene import Bearings
 
-def constants(bearings):
-    dk, alpha = bearings.ka - bearings.kb, bearings.alpha
-    x0 = 0.5 * ((bearings.delta_k / dk) ** (-1 / alpha) - 1)  # (13)
-    d0 = (1 + 2 * x0) ** (1 - alpha)
-    f0 = 0.5 * dk * (d0 - 1) / (1 - alpha)  # (14)
+
+def constants(bearings: Bearings) -> dict[str, float]:
+    dk, alpha = bearings.ka - bearings.kb, bearings.alpha  # type: ignore[operator]  # `Bearings` has checked that its law's needs are given
+    x0 = 0.5 * ((bearings.delta_k / dk) ** (-1 / alpha) - 1)  # type: ignore[operator]  # as above; (13)
+    d0 = (1 + 2 * x0) ** (1 - alpha)  # type: ignore[operator]  # as above
+    f0 = 0.5 * dk * (d0 - 1) / (1 - alpha)  # type: ignore[operator]  # as above; (14)
     return {"kb": bearings.kb, "dk": dk, "alpha": alpha, "x0": x0, "d0": d0, "f0": f0}
 
 
 @njit(cache=True)
-def virtual_travel(s, z, dk, alpha, d0, f0):
+def virtual_travel(s: float, z: float, dk: float, alpha: float, d0: float, f0: float) -> float:
     """D_c: where the point with hysteretic force z stands on the limit curve of direction s [m].
 
     The literal x_j of eqs (10) and (12) raises a negative number to a power beyond 1.33 m of travel; this form
@@ -32,14 +39,14 @@ def virtual_travel(s, z, dk, alpha, d0, f0):
 
 
 @njit(cache=True)
-def after_travel(z, dx, dk, alpha, d0, f0):
+def after_travel(z: float, dx: float, dk: float, alpha: float, d0: float, f0: float) -> float:
     """Eqs (9), (11) less their kb x, with the history in its stable form."""
     s = math.copysign(1.0, dx)
     travel = virtual_travel(s, z, dk, alpha, d0, f0) + abs(dx)
     return s * (dk * (travel ** (1 - alpha) - d0) / (1 - alpha) + f0)
 
 
-def work(z, dx, dk, alpha, d0, f0):
+def work(z: float, dx: float, dk: float, alpha: float, d0: float, f0: float) -> float:
     length = abs(dx)
     start = virtual_travel.py_func(math.copysign(1.0, dx), z, dk, alpha, d0, f0)
     if alpha == 2:
@@ -50,7 +57,7 @@ def work(z, dx, dk, alpha, d0, f0):
 
 
 @njit(cache=True)
-def recoverable(z, dk, alpha, d0, f0):
+def recoverable(z: float, dk: float, alpha: float, d0: float, f0: float) -> float:
     """Along the path of eqs (11), (12) between the virtual travels D of z and of 0.
 
     These are D^-a = D0 + a (f0 + z)/(ka - kb) with a = alpha - 1.
@@ -66,14 +73,16 @@ def recoverable(z, dk, alpha, d0, f0):
 
 
 @njit(cache=True)
-def begin(s, z, travel, dk, alpha, d0, f0):
+def begin(
+    s: float, z: float, travel: float, dk: float, alpha: float, d0: float, f0: float
+) -> tuple[float, tuple[float, float, float], float]:
     """q is y^(1 - alpha) with y = D_c + s (x - x_c), the `travel`."""
     power = travel ** (1 - alpha) if s != 0 else 0.0
     return power, (s * (1.0 / travel), 2 - alpha, s * dk / (1 - alpha)), math.inf
 
 
 @njit(cache=True, inline="always")
-def term(k, factors, x, v, q):
+def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarray, q: np.ndarray) -> float:
     """y q' = (1 - alpha) y' q with y' = s v: k y_0 q_k = s sum((2 - alpha) v q - k x q)."""
     speed, travel = 0.0, 0.0
     for j in range(k):
@@ -85,19 +94,30 @@ def term(k, factors, x, v, q):
 
 
 @njit(cache=True)
-def reached(s, z, q, order, h, travel, dk, alpha, d0, f0):
+def reached(
+    s: float,
+    z: float,
+    q: np.ndarray,
+    order: int,
+    h: float,
+    travel: float,
+    dk: float,
+    alpha: float,
+    d0: float,
+    f0: float,
+) -> float:
     if s == 0:
         return z
     return s * (dk * (travel ** (1 - alpha) - d0) / (1 - alpha) + f0)  # (9), (11)
 
 
 @njit(cache=True)
-def sides(z, dk, alpha, d0, f0):
+def sides(z: float, dk: float, alpha: float, d0: float, f0: float) -> tuple[float, float]:
     """D_c forth and back."""
     return virtual_travel(1.0, z, dk, alpha, d0, f0), virtual_travel(-1.0, z, dk, alpha, d0, f0)
 
 
-def expression(ops, dx, first, second, dk, alpha, d0, f0):
+def expression(ops: Any, dx: Any, first: Any, second: Any, dk: float, alpha: float, d0: float, f0: float) -> Any:
     s = ops.where(dx >= 0.0, 1.0, -1.0)
     travel = ops.where(dx >= 0.0, first + dx, second - dx)
     return s * ((ops.power(travel, 1 - alpha) - d0) * (dk / (1 - alpha)) + f0)

@@ -4,54 +4,65 @@ z' = (ka - kb) x' while |z| < f0, and z = +-f0 beyond. f0 is the characteristic 
 force at which the line of kb meets x = 0; the yield displacement is x_y = F_y/ka = f0/(ka - kb).
 """
 
-import math
+from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 from numba import njit
 
 from .law import Law
 
+if TYPE_CHECKING:
+    from ..bearing import BearingLaw
+    from ..scene import Bearings
 
-def constants(bearings):
-    dk = bearings.ka - bearings.kb
-    return {"kb": bearings.kb, "dk": dk, "f0": bearings.yield_force * (dk / bearings.ka)}
+
+def constants(bearings: Bearings) -> dict[str, float]:
+    dk = bearings.ka - bearings.kb  # type: ignore[operator]  # `Bearings` has checked that its law's needs are given
+    return {"kb": bearings.kb, "dk": dk, "f0": bearings.yield_force * (dk / bearings.ka)}  # type: ignore[operator, dict-item]  # as above
 
 
 @njit(cache=True)
-def after_travel(z, dx, dk, alpha, d0, f0):
+def after_travel(z: float, dx: float, dk: float, alpha: float, d0: float, f0: float) -> float:
     return min(max(z + dk * dx, -f0), f0)
 
 
-def work(z, dx, dk, alpha, d0, f0):
+def work(z: float, dx: float, dk: float, alpha: float, d0: float, f0: float) -> float:
     z, length = math.copysign(1.0, dx) * z, abs(dx)
     elastic = min((f0 - z) / dk, length)
     return z * elastic + 0.5 * dk * elastic**2 + f0 * (length - elastic)
 
 
 @njit(cache=True)
-def recoverable(z, dk, alpha, d0, f0):
+def recoverable(z: float, dk: float, alpha: float, d0: float, f0: float) -> float:
     return 0.5 * z * z / dk
 
 
 @njit(cache=True)
-def begin(s, z, travel, dk, alpha, d0, f0):
+def begin(
+    s: float, z: float, travel: float, dk: float, alpha: float, d0: float, f0: float
+) -> tuple[float, tuple[float, float, float], float]:
     if s * z < f0:
         return z, (dk, 0.0, 0.0), f0
     return z, (0.0, 0.0, 0.0), math.inf
 
 
 @njit(cache=True, inline="always")
-def term(k, factors, x, v, q):
+def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarray, q: np.ndarray) -> float:
     """q is z."""
     q[k] = factors[0] * x[k]
     return q[k]
 
 
-def branch(z, direction, law):
+def branch(z: float, direction: float, law: BearingLaw) -> Callable[[float, float], float]:
     slope = law.dk if direction * z < law.f0 else 0.0
     return lambda z, v: slope * v
 
 
-def expression(ops, dx, first, second, dk, alpha, d0, f0):
+def expression(ops: Any, dx: Any, first: Any, second: Any, dk: float, alpha: float, d0: float, f0: float) -> Any:
     elastic = first + dk * dx
     return ops.where(elastic >= f0, f0, ops.where(elastic >= -f0, elastic, -f0))
 

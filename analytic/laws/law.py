@@ -7,23 +7,35 @@ ka - kb [N/m], f0 the limit of |z| [N]; alpha and d0 are the law's own. s is the
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
 from numba import njit
 
 from ..polynomial import value
 
 
 @njit(cache=True)
-def no_mark(s, z, dk, alpha, d0, f0):
+def no_mark(s: float, z: float, dk: float, alpha: float, d0: float, f0: float) -> float:
     return 1.0
 
 
 @njit(cache=True)
-def last_of_series(s, z, q, order, h, travel, dk, alpha, d0, f0):
+def last_of_series(
+    s: float,
+    z: float,
+    q: np.ndarray,
+    order: int,
+    h: float,
+    travel: float,
+    dk: float,
+    alpha: float,
+    d0: float,
+    f0: float,
+) -> float:
     return value(q, order, h)
 
 
 @njit(cache=True)
-def only_z(z, dk, alpha, d0, f0):
+def only_z(z: float, dk: float, alpha: float, d0: float, f0: float) -> tuple[float, float]:
     return z, 0.0
 
 

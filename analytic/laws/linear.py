@@ -1,46 +1,66 @@
 """A linear spring, f = ka x: no hysteretic part."""
 
-import math
+from __future__ import annotations
 
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 from numba import njit
 
 from .law import Law
 
+if TYPE_CHECKING:
+    from ..scene import Bearings
 
-def constants(bearings):
+
+def constants(bearings: Bearings) -> dict[str, float]:
     return {"kb": bearings.ka, "dk": 0.0, "f0": 0.0}
 
 
 @njit(cache=True)
-def after_travel(z, dx, dk, alpha, d0, f0):
+def after_travel(z: float, dx: float, dk: float, alpha: float, d0: float, f0: float) -> float:
     return z
 
 
-def work(z, dx, dk, alpha, d0, f0):
+def work(z: float, dx: float, dk: float, alpha: float, d0: float, f0: float) -> float:
     return 0.0
 
 
 @njit(cache=True)
-def recoverable(z, dk, alpha, d0, f0):
+def recoverable(z: float, dk: float, alpha: float, d0: float, f0: float) -> float:
     return 0.0
 
 
 @njit(cache=True)
-def begin(s, z, travel, dk, alpha, d0, f0):
+def begin(
+    s: float, z: float, travel: float, dk: float, alpha: float, d0: float, f0: float
+) -> tuple[float, tuple[float, float, float], float]:
     return z, (0.0, 0.0, 0.0), math.inf
 
 
 @njit(cache=True, inline="always")
-def term(k, factors, x, v, q):
+def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarray, q: np.ndarray) -> float:
     return 0.0
 
 
 @njit(cache=True)
-def reached(s, z, q, order, h, travel, dk, alpha, d0, f0):
+def reached(
+    s: float,
+    z: float,
+    q: np.ndarray,
+    order: int,
+    h: float,
+    travel: float,
+    dk: float,
+    alpha: float,
+    d0: float,
+    f0: float,
+) -> float:
     return z
 
 
-def expression(ops, dx, first, second, dk, alpha, d0, f0):
+def expression(ops: Any, dx: Any, first: Any, second: Any, dk: float, alpha: float, d0: float, f0: float) -> Any:
     return first
 
 

@@ -1,6 +1,10 @@
 """Readers of recorded ground acceleration. A format is a module that recognises its lines and reads them."""
 
+from __future__ import annotations
+
+from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,6 +13,10 @@ from ..motion import SampledMotion
 from . import columns, dyna, foreign, peer
 from .content import read_lines
 from .units import UNITS, G, resolve
+
+if TYPE_CHECKING:
+    from .content import Content
+    from .units import Unit
 
 __all__ = ["FORMATS", "G", "UNITS", "read_record"]
 
@@ -19,7 +27,7 @@ USUAL_STEP = (1e-4, 0.1)  # s
 LARGEST_PEAK = 1e6 * G  # m/s2: a damaged number
 
 
-def read_record(path, units=None, scale=1.0):
+def read_record(path: str | PathLike[str], units: str | None = None, scale: float = 1.0) -> SampledMotion:
     """The ground motion in a record file; the format is recognised from the content.
 
     Parameters
@@ -48,7 +56,7 @@ def read_record(path, units=None, scale=1.0):
         raise error.in_file(path) from None
 
 
-def _content(path):
+def _content(path: Path) -> Content:
     lines = read_lines(path)
     if path.suffix.lower() in NOT_ACCELERATIONS:
         raise SceneError(
@@ -62,7 +70,7 @@ def _content(path):
     return next(form for form in FORMATS if form.recognises(lines)).read(lines)
 
 
-def _motion(content, name, units, scale):
+def _motion(content: Content, name: str, units: str | None, scale: float) -> SampledMotion:
     """The `SampledMotion` of a `Content`: its unit, its label and what is odd about it."""
     unit = resolve(content.unit, units, content.no_unit)
     if len(content.values) < 2:
@@ -78,7 +86,7 @@ def _motion(content, name, units, scale):
     return SampledMotion(content.dt, samples * scale, label, tuple(f"{name}: {sentence}" for sentence in odd))
 
 
-def _odd(peak, dt, unit):
+def _odd(peak: float, dt: float, unit: Unit) -> tuple[str, ...]:
     """Sentences on a peak [m/s2] or a step dt [s] that records seldom have."""
     sentences = []
     if not USUAL_PEAK[0] <= peak <= USUAL_PEAK[1]:

@@ -1,6 +1,7 @@
 """Two columns, time and acceleration: parted by blanks, semicolons or commas, with a header or without."""
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -21,12 +22,12 @@ OTHER_TIMES = {"us", "µs", "usec", "ns", "min", "minute", "minutes", "h", "hour
 REMEDY = "write time [s] and acceleration, two numbers a line"
 
 
-def recognises(lines):
+def recognises(lines: Sequence[str]) -> bool:
     """Two columns are what is left when no other format is recognised."""
     return True
 
 
-def read(lines):
+def read(lines: Sequence[str]) -> Content:
     """The `Content` of two columns.
 
     Raises
@@ -56,8 +57,10 @@ def read(lines):
     return Content(usable("time", dt / per_second), np.array(values), unit, no_unit)
 
 
-def _split(lines):
+def _split(lines: Sequence[str]) -> tuple[list[tuple[int, str]], list[tuple[int, str]]]:
     """(line number, text) of the header and of the rows of data, without comments and blank lines."""
+    header: list[tuple[int, str]]
+    rows: list[tuple[int, str]]
     header, rows = [], []
     for at, line in enumerate(lines, 1):
         text = line.strip()
@@ -74,7 +77,7 @@ def _split(lines):
     return header, rows
 
 
-def _dialect(rows):
+def _dialect(rows: Sequence[tuple[int, str]]) -> tuple[str | None, str]:
     """(separator, decimal sign) of all rows; the separator of blanks is None."""
     texts = [row for _, row in rows]
     points = sum("." in text for text in texts)
@@ -106,11 +109,11 @@ def _dialect(rows):
     return separator, "." if separator == "," else ","
 
 
-def _fields(row, separator):
+def _fields(row: str, separator: str | None) -> list[str]:
     return row.split() if separator is None else [field.strip() for field in row.split(separator)]
 
 
-def _titles(header, separator):
+def _titles(header: Sequence[tuple[int, str]], separator: str | None) -> int | None:
     """Line number of the column titles, the last line before the data; refused if it may be a damaged row."""
     if not header:
         return None
@@ -130,7 +133,7 @@ def _titles(header, separator):
     return at
 
 
-def _per_second(header):
+def _per_second(header: Sequence[tuple[int, str]]) -> float:
     """Units of time in a second, from the words of the header."""
     found = {}
     for at, line in header:

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from os import PathLike
 
 import numpy as np
 
@@ -36,7 +37,7 @@ class Content:
     warnings: tuple[str, ...] = ()
 
 
-def read_lines(path):
+def read_lines(path: str | PathLike[str]) -> list[str]:
     """The lines of a text file, without their ends.
 
     Raises
@@ -66,7 +67,7 @@ def read_lines(path):
     return lines
 
 
-def _text(content):
+def _text(content: bytes) -> str:
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         return content.decode("utf-16", errors="replace")
     try:

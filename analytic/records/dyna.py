@@ -1,6 +1,7 @@
 """ESM/DYNA 1.2 ASCII, also as AFAD writes it: lines KEY: value, then one value a line."""
 
 import re
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -17,13 +18,13 @@ SIGNS = ("EVENT_NAME", "SAMPLING_INTERVAL_S", "HEADER_FORMAT")
 REMEDY = "give a complete ESM/DYNA 1.2 ASCII file"
 
 
-def recognises(lines):
+def recognises(lines: Sequence[str]) -> bool:
     """Whether the lines are an ESM/DYNA file."""
     first = next((line for line in lines if line.strip()), "")
     return bool(KEY.match(first)) and any(line.startswith(SIGNS) for line in lines[:HEADER_LINES])
 
 
-def read(lines):
+def read(lines: Sequence[str]) -> Content:
     """The `Content` of an ESM/DYNA file.
 
     Raises
@@ -47,9 +48,9 @@ def read(lines):
     return Content(dt, values, Unit(stated, factor, f"line {line}"), warnings=_peak(header, values))
 
 
-def _header(lines):
+def _header(lines: Sequence[str]) -> tuple[dict[str, tuple[str, int]], int]:
     """{key: (value, line number)} and the index of the first line after them."""
-    header = {}
+    header: dict[str, tuple[str, int]] = {}
     begin = next((index for index, line in enumerate(lines) if line.strip()), 0)
     while begin < len(lines) and (match := KEY.match(lines[begin][:HEADER_WIDTH])):
         key, value = match[1], match[2].strip()
@@ -62,7 +63,7 @@ def _header(lines):
     return header, begin
 
 
-def _peak(header, values):
+def _peak(header: Mapping[str, tuple[str, int]], values: np.ndarray) -> tuple[str, ...]:
     """A sentence if the header states another peak than the data have."""
     stated = header.get("PGA_CM/S^2", ("",))[0]
     if not re.fullmatch(NUMBER, stated) or not len(values):

@@ -1,6 +1,8 @@
 """Formats that are known and not read: each is refused by its name."""
 
 import re
+from collections.abc import Sequence
+from typing import NoReturn
 
 from ..errors import SceneError
 
@@ -12,12 +14,12 @@ SIGNS = {
 }
 
 
-def recognises(lines):
+def recognises(lines: Sequence[str]) -> bool:
     """Whether the first line is that of a known format that is not read."""
     return _name(lines) is not None
 
 
-def read(lines):
+def read(lines: Sequence[str]) -> NoReturn:
     """Refuse the file, saying what to do instead."""
     raise SceneError(
         "record",
@@ -27,6 +29,6 @@ def read(lines):
     )
 
 
-def _name(lines):
+def _name(lines: Sequence[str]) -> str | None:
     first = next((line for line in lines if line.strip()), "")[:200]
     return next((name for name, sign in SIGNS.items() if sign.search(first)), None)

@@ -3,6 +3,7 @@
 import math
 import re
 from collections import Counter
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -21,7 +22,7 @@ _SHORT_EXPONENT = re.compile(r"[EeDd][+-]?[0-9]{1,2}(?![0-9])")
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.I)
 
 
-def number(where, token):
+def number(where: str, token: str) -> float:
     """The number in `token`.
 
     Raises
@@ -37,7 +38,7 @@ def number(where, token):
     raise SceneError(where, token, "not finite" if _NOT_FINITE.fullmatch(token) else "not a number", REMEDY)
 
 
-def numbers(where, line):
+def numbers(where: str, line: str) -> list[float]:
     """All numbers of a line in Fortran's columns, shape (n,): parted by blanks, or stuck together by their signs."""
     values = []
     for token in line.split():
@@ -48,7 +49,7 @@ def numbers(where, line):
     return values
 
 
-def fortran_values(lines, begin):
+def fortran_values(lines: Sequence[str], begin: int) -> np.ndarray:
     """All numbers from the line of index `begin` on, shape (n,).
 
     Raises
@@ -62,12 +63,12 @@ def fortran_values(lines, begin):
     if long and any(_SHORT_EXPONENT.search(line) for line in lines[begin:]):
         usual = Counter(len(line.rstrip()) for line in lines[begin:] if line.strip()).most_common(1)[0][0]
         for at, line in long:
-            if len(line) != usual or _LONG_EXPONENT.search(line)[1] == "0":
+            if len(line) != usual or _LONG_EXPONENT.search(line)[1] == "0":  # type: ignore[index]  # the lines with one
                 raise SceneError(f"line {at}", line, "an exponent of three digits among others of two", REMEDY)
     return np.array(values)
 
 
-def _stuck(where, token):
+def _stuck(where: str, token: str) -> list[float]:
     """Numbers without blanks, where a sign fills the column: "-.1230E+00-.4560E+00".
 
     One Fortran format printed them, so all have a point, as many decimals, and exponents of as many digits; else a
@@ -81,13 +82,13 @@ def _stuck(where, token):
     return [number(where, part) for part in parts]
 
 
-def _form(part):
+def _form(part: str) -> tuple[int, int] | None:
     """Digits after the point and of the exponent; None without a point."""
     match = _PRINTED.fullmatch(part)
     return match and (len(match[1]), len(match[2] or ""))
 
 
-def count(where, token):
+def count(where: str, token: str) -> int:
     """A number of samples.
 
     Raises
@@ -100,7 +101,7 @@ def count(where, token):
     return int(token)
 
 
-def check_count(where, stated, samples):
+def check_count(where: str, stated: int, samples: Sequence[float] | np.ndarray) -> None:
     """Refuse a file that holds another number of samples than its header states."""
     if stated != len(samples):
         raise SceneError(

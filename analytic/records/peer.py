@@ -1,6 +1,7 @@
 """PEER AT2, the old and the new headers: values in columns of Fortran after a line with NPTS and DT."""
 
 import re
+from collections.abc import Sequence
 
 from ..errors import SceneError
 from .content import HEADER_WIDTH, Content
@@ -16,12 +17,12 @@ DT = re.compile(r"\bDT\s*(?:[(\[]\s*([a-z]*)\s*[)\]]\s*)?[=:]\s*((?:[^\s,;]|,(?=
 OLD = re.compile(rf"\s*([0-9]+)[\s,]+({NUMBER})[\s,]*NPTS[\s,]+DT\b(?:\s*[(\[]\s*([a-z]*))?", re.I)
 
 
-def recognises(lines):
+def recognises(lines: Sequence[str]) -> bool:
     """Whether the lines are a PEER AT2 file."""
     return _head(lines) is not None
 
 
-def read(lines):
+def read(lines: Sequence[str]) -> Content:
     """The `Content` of a PEER AT2 file.
 
     Raises
@@ -29,7 +30,7 @@ def read(lines):
     SceneError
         No acceleration, an unreadable number, or another count than stated.
     """
-    head, npts, dt, unit_of_dt = _head(lines)
+    head, npts, dt, unit_of_dt = _head(lines)  # type: ignore[misc]  # `recognises` found it
     where = f"line {head + 1}"
     dt = interval(f"{where}, DT", dt, unit_of_dt)
     unit = stated_unit(((number, line[:HEADER_WIDTH]) for number, line in enumerate(lines[: head + 1], 1)), titles=head)
@@ -38,7 +39,7 @@ def read(lines):
     return Content(dt, values, unit)
 
 
-def _head(lines):
+def _head(lines: Sequence[str]) -> tuple[int, str, str, str] | None:
     """Index of the line with count and step, both as printed, and the word for the unit of the step."""
     for index, line in enumerate(lines[:HEADER_LINES]):
         line = line[:HEADER_WIDTH]

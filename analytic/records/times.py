@@ -1,6 +1,7 @@
 """The sampling interval: stated by a header with its unit of time, or found from a column of printed times."""
 
 import re
+from collections.abc import Sequence
 from decimal import Decimal
 
 import numpy as np
@@ -29,7 +30,7 @@ JITTER = 0.01  # of the step: clocks and single precision
 _STEP = re.compile(rf"({NUMBER})([A-Za-zµ]*)")
 
 
-def interval(where, token, unit=""):
+def interval(where: str, token: str, unit: str = "") -> float:
     """Sampling interval [s] from a token (".02", "10ms") and a word for its unit, "" for seconds.
 
     Raises
@@ -39,7 +40,7 @@ def interval(where, token, unit=""):
     """
     match = _STEP.fullmatch(token)
     value = number(where, match[1] if match else token)
-    unit = match[2] or unit
+    unit = match[2] or unit  # type: ignore[index]  # `number` refused what does not match
     if unit.lower() not in PER_SECOND:
         raise SceneError(
             where,
@@ -50,7 +51,7 @@ def interval(where, token, unit=""):
     return usable(where, value / PER_SECOND[unit.lower()])
 
 
-def usable(where, dt):
+def usable(where: str, dt: float) -> float:
     """The interval dt [s] itself, refused where no record can have it."""
     if dt <= 0:
         raise SceneError(where, dt, "not a sampling interval", "give a step above 0 s")
@@ -59,7 +60,7 @@ def usable(where, dt):
     return dt
 
 
-def uniform_step(tokens):
+def uniform_step(tokens: Sequence[str]) -> float:
     """The interval of equally spaced times [as printed], which rounding to the printed digits may have moved.
 
     The printed times are a uniform series if one line passes within half a unit of the last printed digit of all of
@@ -96,11 +97,11 @@ def uniform_step(tokens):
     )
 
 
-def _exact(token):
+def _exact(token: str) -> Decimal:
     return Decimal(token.replace("D", "E").replace("d", "e"))
 
 
-def _printed_unit(tokens):
+def _printed_unit(tokens: Sequence[str]) -> np.ndarray:
     """Unit of the last printed digit of each time, shape (n,): all have as many decimals, or as many digits."""
     parts = np.array(
         [(len(number.digits), number.exponent) for token in tokens if (number := _exact(token).as_tuple())]
@@ -109,7 +110,7 @@ def _printed_unit(tokens):
     return 10.0 ** np.maximum(exponents.min(), exponents + digits - digits.max())
 
 
-def _fit(times, unit, step):
+def _fit(times: np.ndarray, unit: np.ndarray, step: float) -> float | None:
     """The roundest step of a line that passes within unit/2 of all times; None without such a line."""
     count = np.arange(len(times))
 

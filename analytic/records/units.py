@@ -1,6 +1,7 @@
 """The unit of a record: what its own words state, in the ways headers say it, and what the scene file says."""
 
 import re
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from ..errors import SceneError
@@ -58,12 +59,12 @@ class Unit:
     where: str
 
 
-def factor_of(word):
+def factor_of(word: str) -> float | None:
     """Factor from a unit to m/s2; None if the word is no acceleration."""
     return WORDS.get(_plain(word))
 
 
-def stated_unit(header, titles=None):
+def stated_unit(header: Iterable[tuple[int, str]], titles: int | None = None) -> Unit | None:
     """The unit that the lines of a header state, or None.
 
     Parameters
@@ -108,7 +109,7 @@ def stated_unit(header, titles=None):
     return found
 
 
-def resolve(unit, given, no_unit):
+def resolve(unit: Unit | None, given: str | None, no_unit: str) -> Unit:
     """The `Unit` of a record from its own words (or None) and from the scene file (a key of `UNITS`, or None).
 
     Raises
@@ -121,7 +122,7 @@ def resolve(unit, given, no_unit):
     if unit is None and given is None:
         raise SceneError("motion.units", None, f"missing; {no_unit}", "add units, one of " + ", ".join(UNITS))
     if unit is None:
-        return Unit(given, UNITS[given], "units")
+        return Unit(given, UNITS[given], "units")  # type: ignore[arg-type, index]  # one of the two is given
     if given is not None and UNITS[given] != unit.factor:
         raise SceneError(
             "motion.units",
@@ -132,7 +133,7 @@ def resolve(unit, given, no_unit):
     return unit
 
 
-def _units_in(line, suggest):
+def _units_in(line: str, suggest: bool) -> Iterator[tuple[str, str]]:
     """(key, word) of every unit stated in a line as `_spaced` writes it."""
     quotients = {
         match.start(1): _word(match)
@@ -150,7 +151,7 @@ def _units_in(line, suggest):
             yield "unit", _word(match)
 
 
-def _word(match):
+def _word(match: re.Match[str]) -> str:
     """The unit matched, without what a sentence or a bracket put behind it."""
     word = match[1]
     if word.count(")") > word.count("("):
@@ -158,7 +159,7 @@ def _word(match):
     return word.rstrip(".'\"")
 
 
-def _spaced(line):
+def _spaced(line: str) -> str:
     """The line with single blanks, none of them beside a sign of division or power."""
     line = " ".join(line.split())
     line = re.sub(r" ?\bper ", "/", line, flags=re.I)
@@ -166,7 +167,7 @@ def _spaced(line):
     return re.sub(r" ?(/|\^|\*\*) ?", r"\1", line)
 
 
-def _plain(word):
+def _plain(word: str) -> str:
     """A unit in one spelling: "CM/SEC**2", "cm/(s²)" and "cm/s^2" are all "cm/s2"."""
     word = word.lower().strip(" .'\"").replace("²", "2").replace("⁻", "-").replace("−", "-").replace("·", ".")
     for pattern, short in LONG_NAMES:
