@@ -37,6 +37,7 @@ class Outcomes:
 
     overturns, lifted : bool. failed : bool, the kernel could not go on. peak_tilt [rad]; peak_base_displacement [m].
     impacts : int, until the outcome was certain. decided : bool, False where a duration cut it before it was certain.
+    friction_demand [-], min_normal_ratio [-]: as in `Response`, if they were asked for, else NaN.
     """
 
     overturns: np.ndarray
@@ -46,9 +47,17 @@ class Outcomes:
     peak_base_displacement: np.ndarray
     impacts: np.ndarray
     decided: np.ndarray
+    friction_demand: np.ndarray
+    min_normal_ratio: np.ndarray
+
+    @property
+    def names(self) -> np.ndarray:
+        """The outcomes as `Response.outcome` names them, array of str."""
+        rest = np.where(self.lifted, "rocks", "stands")
+        return np.where(self.failed, "failed", np.where(self.overturns, "overturns", rest))
 
     @classmethod
-    def of(cls, totals: np.ndarray, shape: tuple[int, ...]) -> Self:
+    def of(cls, totals: np.ndarray, shape: tuple[int, ...], contact: bool = False) -> Self:
         def column(slot):
             return totals[:, slot].reshape(shape)
 
@@ -61,6 +70,8 @@ class Outcomes:
             column(layout.PEAK_X),
             column(layout.IMPACTS).astype(int),
             column(layout.CERTAIN) > 0,
+            column(layout.FRICTION) if contact else np.full(shape, np.nan),
+            column(layout.NORMAL) if contact else np.full(shape, np.nan),
         )
 
 
@@ -129,20 +140,28 @@ def _pulse_row(shaking: Ground) -> tuple[float, float, float, float, float]:
     return shaking.scale, shaking.frequency, shaking.phase, shaking.start, shaking.end
 
 
-def _outcome_options(tolerance: float, rest_rate: float) -> Options:
-    return options(tolerance, rest_rate=rest_rate, record=False, decide=True)
+def _outcome_options(tolerance: float, rest_rate: float, contact: bool = False) -> Options:
+    return options(tolerance, rest_rate=rest_rate, record=contact, decide=True, capacity=0)
 
 
 def simulate_many(
-    scenes: Iterable[Scene], *, tolerance: float = TOLERANCE, rest_rate: float = REST_RATE, workers: int | None = None
+    scenes: Iterable[Scene],
+    *,
+    scales: npt.ArrayLike | None = None,
+    contact: bool = False,
+    tolerance: float = TOLERANCE,
+    rest_rate: float = REST_RATE,
+    workers: int | None = None,
 ) -> Outcomes:
     """Outcomes of a sequence of scenes, in its order, shape (n,).
 
     Scenes are grouped by their ground motion (the same object or equal content), so ensembles of many scenes under
-    few records are cheapest.
+    few records are cheapest. scales : (n,) factors on the scenes' motions, 1 without it. contact : also find what the
+    contact has to bear, which costs some more.
     """
     scenes = list(scenes)
-    chosen = _outcome_options(tolerance, rest_rate)
+    factors = np.ones(len(scenes)) if scales is None else np.asarray(scales, dtype=float)
+    chosen = _outcome_options(tolerance, rest_rate, contact)
     groups: dict[str | int, list[int]] = {}
     for index, scene in enumerate(scenes):
         motion = scene.motion
@@ -150,11 +169,11 @@ def simulate_many(
         groups.setdefault(key, []).append(index)
     totals = np.zeros((len(scenes), layout.TOTALS))
     for members in groups.values():
-        shakings = [ground(scenes[i].motion) for i in members]
+        shakings = [ground(scenes[i].motion, factors[i]) for i in members]
         rows = np.array([parameters(scenes[i]) for i in members], dtype=float)
         pulses = np.array([_pulse_row(shaking) for shaking in shakings])
         totals[members] = run_rows(rows, pulses, shakings[0], chosen, workers)
-    return Outcomes.of(totals, (len(scenes),))
+    return Outcomes.of(totals, (len(scenes),), contact)
 
 
 def overturning_map(

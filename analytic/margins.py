@@ -1,0 +1,255 @@
+"""How far is a verdict from its nearest flip, in each quantity that is only known so well?
+
+A verdict need not flip once: resonances leave narrow bands of another outcome far from the first boundary, and safe
+gaps beyond it. So each quantity is scanned, one at a time, at even relative changes, and every boundary between two
+changes is bisected. A band narrower than the scan's `step` may be missed; one of twice the step never is.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .batch import simulate_many
+from .errors import SceneError, SettingError
+from .laws import LAWS, NUMBERS
+from .rocking import RockingModel
+from .scene import Scene
+from .solver import simulate
+
+SPAN, STEP = 0.2, 5e-4
+BISECTIONS = 14  # of a step: boundaries are known to 6e-5 of it
+
+
+@dataclass(frozen=True)
+class Band:
+    """Changes from `low` to `high` [relative] of a quantity with one outcome; `holds`: N > 0, and no sliding."""
+
+    low: float
+    high: float
+    outcome: str
+    holds: bool
+
+
+@dataclass(frozen=True)
+class Margin:
+    """What relative changes of one quantity do to the outcome; `value` is the scene's own, `bands` from low to high."""
+
+    quantity: str
+    value: float
+    unit: str
+    bands: tuple[Band, ...]
+
+    @property
+    def outcome(self) -> str:
+        """That of the scene as it is."""
+        return self._own.outcome
+
+    @property
+    def down(self) -> float | None:
+        """The nearest change below 0 with another outcome, None if there is none in the range scanned."""
+        return max((band.high for band in self._others if band.high <= 0), default=None)
+
+    @property
+    def up(self) -> float | None:
+        """The nearest change above 0 with another outcome, None if there is none in the range scanned."""
+        return min((band.low for band in self._others if band.low >= 0), default=None)
+
+    @property
+    def nearest(self) -> float | None:
+        """The nearer of `down` and `up`."""
+        return min((change for change in (self.down, self.up) if change is not None), key=abs, default=None)
+
+    @property
+    def leaves_model(self) -> float | None:
+        """The nearest change at which the model no longer holds (N <= 0, or sliding); 0 where it does not hold now."""
+        outside = [band for band in self.bands if not band.holds]
+        changes = (0.0 if band.low <= 0 <= band.high else band.low if band.low > 0 else band.high for band in outside)
+        return min(changes, key=abs, default=None)
+
+    def beyond(self, change: float) -> str:
+        """The outcome on the far side of a boundary."""
+        edge = next(b for b in self._others if change in (b.low, b.high) and change * (b.low + b.high) > 0)
+        return edge.outcome
+
+    @property
+    def _own(self):
+        return next(band for band in self.bands if band.low <= 0 <= band.high)
+
+    @property
+    def _others(self):
+        return [band for band in self.bands if band.outcome != self.outcome]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity of a scene: its unit, its value (None where the scene has none) and the scene with it changed."""
+
+    unit: str
+    value: Callable[[Scene], float | None]
+    changed: Callable[[Scene, float], Scene]
+
+
+def _bearing(name, unit):
+    def value(scene):
+        used = scene.bearings and name in ("ka", *LAWS[NUMBERS[scene.bearings.law]].needs)
+        return getattr(scene.bearings, name) if used else None
+
+    return Quantity(unit, value, lambda scene, factor: scene.with_(bearings={name: factor * value(scene)}))
+
+
+def _slenderness(scene, factor):
+    """Another slenderness at the same R, mass and J_O: half width and half height change."""
+    return scene.with_(block={"slenderness": factor * scene.block.slenderness})
+
+
+def _size(scene, factor):
+    """Another R at the same mass and shape."""
+    inertia = scene.block.corner_inertia
+    return scene.with_(
+        block={
+            "radius": factor * scene.block.radius,
+            "corner_inertia": None if inertia is None else factor**2 * inertia,
+        }
+    )
+
+
+def _restitution(scene):
+    return max(RockingModel.of(scene).restitution, 0.0) or None
+
+
+def _started(scene):
+    start = scene.start
+    return next((value for value in (start.tilt, start.tilt_rate) if value), None) if scene.motion is None else None
+
+
+QUANTITIES = {
+    "slenderness": Quantity("rad", lambda scene: scene.block.slenderness, _slenderness),
+    "restitution": Quantity(
+        "-", _restitution, lambda scene, factor: scene.with_(block={"restitution": factor * _restitution(scene)})
+    ),
+    "size": Quantity("m", lambda scene: scene.block.radius, _size),
+    # the motion is scaled by the batch, which then need not copy its samples
+    "motion": Quantity("m/s2", lambda scene: scene.motion and scene.motion.peak, lambda scene, factor: scene),
+    "start": Quantity(
+        "rad, rad/s",
+        _started,
+        lambda scene, factor: scene.with_(
+            start={name: factor * value for name, value in scene.start.model_dump().items()}
+        ),
+    ),
+    "base mass": Quantity(
+        "kg",
+        lambda scene: scene.base and scene.base.mass,
+        lambda scene, factor: scene.with_(base={"mass": factor * scene.base.mass}),
+    ),
+    "ka": _bearing("ka", "N/m"),
+    "kb": _bearing("kb", "N/m"),
+    "alpha": _bearing("alpha", "-"),
+    "yield force": _bearing("yield_force", "N"),
+}
+
+
+def margins(
+    scene: Scene,
+    *,
+    span: float = SPAN,
+    step: float = STEP,
+    workers: int | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> list[Margin]:
+    """How each quantity's relative changes of up to `span` change the outcome; a `Margin` each, the nearest first.
+
+    Every run goes on until its outcome is decided. Changes that are no scene (e above 1, ka below kb) end the range.
+
+    Parameters
+    ----------
+    span, step : float
+        Largest relative change, and how far the scanned ones lie apart.
+    workers : int or None
+        Threads; without it one per core. The result does not depend on it.
+    progress : callable or None
+        Is told the name of each quantity before it is scanned.
+
+    Raises
+    ------
+    SettingError
+        span or step is out of range.
+    """
+    if not 0 < span < 1:
+        raise SettingError(f"span = {span!r}: give the largest relative change, above 0 and below 1")
+    if not 1e-6 <= step <= span:
+        raise SettingError(
+            f"step = {step!r}: give the relative distance of two changes, from 1e-6 to the span {span:g}"
+        )
+    scene = scene.with_(duration=None)
+    count = math.floor(span / step * (1 + 1e-12))
+    changes = step * np.arange(-count, count + 1)
+    found = []
+    for name, quantity in QUANTITIES.items():
+        value = quantity.value(scene)
+        if value is None:
+            continue
+        if progress:
+            progress(name)
+        found.append(Margin(name, float(value), quantity.unit, _bands(scene, name, changes, workers)))
+    return sorted(found, key=lambda margin: math.inf if margin.nearest is None else abs(margin.nearest))
+
+
+@dataclass(frozen=True)
+class Contact:
+    """What the contact has to spare: min N/(m g), the friction demand |H|/N, the scene's coefficient or None."""
+
+    least_normal: float
+    friction_demand: float
+    friction: float | None
+
+
+def contact_margins(scene: Scene) -> Contact:
+    """The `Contact` of a scene as it is, run until its outcome is decided."""
+    response = simulate(scene.with_(duration=None), history=False)
+    return Contact(response.min_normal_ratio, response.friction_demand, scene.friction)
+
+
+def _bands(scene, name, changes, workers):
+    """Tuple of `Band` over the changes, their boundaries bisected."""
+    changes, scenes = _scenes(scene, name, changes)
+    states = _states(scene, name, changes, scenes, workers)
+    edges = np.flatnonzero([one != other for one, other in zip(states[:-1], states[1:], strict=True)])
+    low, high = changes[edges], changes[edges + 1]
+    before = [states[edge] for edge in edges]
+    for _ in range(BISECTIONS if len(edges) else 0):
+        middle = 0.5 * (low + high)
+        same = np.array([a == b for a, b in zip(_states(scene, name, middle, None, workers), before, strict=True)])
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    limits = [changes[0], *(0.5 * (low + high)), changes[-1]]
+    kinds = [states[0], *(states[edge + 1] for edge in edges)]
+    return tuple(Band(float(a), float(b), *kind) for a, b, kind in zip(limits[:-1], limits[1:], kinds, strict=True))
+
+
+def _scenes(scene, name, changes):
+    """(the changes about 0 that give a scene, their scenes)."""
+    changed = QUANTITIES[name].changed
+    kept = {}
+    for direction in (changes[changes >= 0], changes[changes < 0][::-1]):
+        for change in direction:
+            try:
+                kept[change] = changed(scene, 1 + change)
+            except (SceneError, ValueError):
+                break
+    ordered = sorted(kept)
+    return np.array(ordered), [kept[change] for change in ordered]
+
+
+def _states(scene, name, changes, scenes, workers):
+    """[(outcome, whether the model holds)] at each change."""
+    if scenes is None:
+        scenes = [QUANTITIES[name].changed(scene, 1 + change) for change in changes]
+    scales = 1 + changes if name == "motion" else None
+    outcomes = simulate_many(scenes, scales=scales, contact=True, workers=workers)
+    limit = math.inf if scene.friction is None else scene.friction
+    holds = (outcomes.min_normal_ratio > 0) & ~(outcomes.friction_demand > limit)
+    return list(zip(outcomes.names.tolist(), holds.tolist(), strict=True))

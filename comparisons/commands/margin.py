@@ -1,0 +1,67 @@
+"""``rocking margin``: how far the verdict on a scene is from its nearest flip."""
+
+import dataclasses
+import json
+from typing import Annotated
+
+import typer
+
+
+def command(
+    scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
+    span: Annotated[float, typer.Option(metavar="PERCENT", help="Largest change of a quantity.")] = 20.0,
+    plot: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw the outcomes over the changes (.png, .svg or .pdf).")
+    ] = None,
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write the margins; - prints them.")
+    ] = None,
+) -> None:
+    """By how much must slenderness, restitution, motion, bearings ... change until the verdict flips?
+
+    Each quantity is changed alone, in steps of a four-hundredth of the span, by the analytic model. The vertical
+    stiffness of bearings is taken as infinite. Example: rocking margin caryatid-isolated --plot margins.svg
+    """
+    from analytic.margins import contact_margins, margins
+    from analytic.scene_file import load_scene
+
+    from ..running.files import check_writable, write_all
+    from ..running.solving import spinner
+
+    check_writable([json_file], picture=plot, inputs=[scene])
+    what = load_scene(scene)
+    with spinner(f"{what.name}: margins") as tell:
+        found = margins(
+            what, span=span / 100, step=span / 100 / 400, progress=lambda name: tell(f"{what.name}: {name}")
+        )
+        contact = contact_margins(what)
+    results = {}
+    if json_file:
+        content = {
+            "schema": "rocking margin 1",
+            "scene": what.name,
+            "outcome": found[0].outcome,
+            "span": span / 100,
+            "margins": [
+                {
+                    **dataclasses.asdict(margin),
+                    **{name: getattr(margin, name) for name in ("down", "up", "nearest", "leaves_model")},
+                }
+                for margin in found
+            ],
+            "contact": dataclasses.asdict(contact),
+        }
+        results[json_file] = json.dumps(content, indent=2, allow_nan=False) + "\n"
+    if plot:
+        from ..showing.margins import draw_margins
+        from ..showing.plots import save
+
+        figure = draw_margins(what, found)
+        results[plot] = lambda path: save(figure, path)
+    problem = write_all(results)
+    if json_file != "-":
+        from ..showing.margins import print_margins
+
+        print_margins(what, found, contact, span)
+    if problem:
+        raise problem

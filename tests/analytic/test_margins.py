@@ -1,0 +1,113 @@
+"""Margins against closed forms, and against scans by full runs."""
+
+import math
+
+import numpy as np
+import pytest
+
+from analytic import Block, PulseMotion, Scene, SettingError, Start, load_scene, simulate
+from analytic.margins import QUANTITIES, contact_margins, margins
+from comparisons.bench.random_scenes import random_scene
+
+G = 9.81
+
+
+def block_scene(restitution=None, **parts):
+    block = Block(mass=3172.05, radius=1.0884, slenderness=0.28, restitution=restitution)
+    return Scene(block=block, name="block", **parts)
+
+
+def by_name(scene, **keywords):
+    return {margin.quantity: margin for margin in margins(scene, **keywords)}
+
+
+def test_a_released_block_flips_where_its_tilt_reaches_the_slenderness():
+    scene = block_scene(start=Start(tilt=0.26))
+    found = by_name(scene)
+    assert found["start"].outcome == "rocks"
+    assert found["start"].up == pytest.approx(0.28 / 0.26 - 1, abs=1e-7)
+    assert found["start"].beyond(found["start"].up) == "overturns"
+    assert found["start"].down is None
+    assert found["slenderness"].down == pytest.approx(0.26 / 0.28 - 1, abs=1e-7)
+    assert found["size"].nearest is None and len(found["size"].bands) == 1
+    assert "motion" not in found and "ka" not in found and "base mass" not in found
+    assert next(iter(found.values())).nearest == found["slenderness"].nearest, "the nearest comes first"
+
+
+def test_a_standing_block_flips_at_its_uplift_acceleration():
+    """The uplift acceleration of a block on rigid ground is g tan(slenderness); its friction demand is a/g."""
+    a = 2.5
+    scene = block_scene(motion=PulseMotion("rectangular", a, 12.0), friction=0.26)
+    found = by_name(scene)
+    assert found["motion"].outcome == "stands"
+    assert found["motion"].up == pytest.approx(G * math.tan(0.28) / a - 1, abs=1e-7)
+    assert found["slenderness"].down == pytest.approx(math.atan(a / G) / 0.28 - 1, abs=1e-7)
+    assert found["motion"].leaves_model == pytest.approx(0.26 * G / a - 1, abs=1e-7)
+    assert contact_margins(scene).friction_demand == pytest.approx(a / G, rel=1e-12)
+
+
+def test_changes_that_are_no_scene_end_the_range():
+    scene = block_scene(start=Start(tilt=0.1), restitution=0.95)
+    margin = by_name(scene)["restitution"]
+    assert margin.bands[-1].high == pytest.approx(0.0525, abs=1e-9), "the last whole step below e = 1"
+    assert margin.bands[0].low == -0.2
+
+
+def test_an_isolated_scene_has_the_quantities_of_its_bearings():
+    found = by_name(load_scene("caryatid-isolated"), span=0.01, step=5e-3)
+    assert {"base mass", "ka", "kb", "alpha"} < set(found) and "yield force" not in found
+
+
+@pytest.mark.parametrize("keywords", [{"span": 0.0}, {"span": 1.0}, {"step": 0.0}, {"span": 0.01, "step": 0.1}])
+def test_settings_out_of_range_are_refused(keywords):
+    with pytest.raises(SettingError):
+        margins(block_scene(start=Start(tilt=0.1)), **keywords)
+
+
+def scanned(scene, name, count, span=0.2):
+    """(changes, outcomes) of `count` full runs over the changes that the quantity allows."""
+    changes, outcomes = [], []
+    for change in np.linspace(-span, span, count):
+        if name == "motion":
+            other = scene.with_(motion=scene.motion.scaled(1 + change))
+        else:
+            try:
+                other = QUANTITIES[name].changed(scene, 1 + change)
+            except ValueError:
+                continue
+        changes.append(change)
+        outcomes.append(simulate(other, history=False).outcome)
+    return np.array(changes), np.array(outcomes)
+
+
+def assert_scan_agrees(scene, margin, changes, outcomes):
+    """The nearest flip within 1 %, and every gap of the scan wider than .1 % in the bands."""
+    bands = margin.bands
+    spacing = changes[1] - changes[0]
+    for change, outcome in zip(changes, outcomes, strict=True):
+        near = [band.outcome for band in bands if band.low - 1e-6 <= change <= band.high + 1e-6]
+        if outcome not in near:  # in a gap that the margins do not have: it must be a narrow one
+            same = np.flatnonzero(outcomes == outcome)
+            run = same[np.abs(changes[same] - change) <= 1e-3]
+            assert np.ptp(changes[run]) + spacing <= 1e-3, f"{scene.name}, {margin.quantity} {change:+.5f}"
+    others = changes[outcomes != margin.outcome]
+    if len(others):
+        nearest = others[np.abs(others).argmin()]
+        assert margin.nearest is not None
+        assert abs(abs(margin.nearest) - abs(nearest)) <= max(0.01 * abs(nearest), spacing)
+
+
+@pytest.mark.parametrize("index", range(3))
+def test_margins_agree_with_scans(index):
+    scene = random_scene(11, index).with_(duration=None)
+    for margin in margins(scene):
+        assert_scan_agrees(scene, margin, *scanned(scene, margin.quantity, 101))
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1400)
+@pytest.mark.parametrize("index", range(100))
+def test_margins_agree_with_scans_of_2000_runs(index):
+    scene = random_scene(12, index).with_(duration=None)
+    for margin in margins(scene):
+        assert_scan_agrees(scene, margin, *scanned(scene, margin.quantity, 2000))

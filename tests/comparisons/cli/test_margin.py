@@ -1,0 +1,60 @@
+"""``rocking margin`` as a user calls it."""
+
+import json
+
+import pytest
+
+from comparisons import cli
+
+RELEASED = """
+friction = 0.3
+[block]
+mass = 3172.05
+radius = 1.0884
+slenderness = 0.28
+[start]
+tilt = {tilt}
+"""
+
+
+@pytest.fixture
+def scene_file(tmp_path):
+    def write(tilt):
+        path = tmp_path / "released.toml"
+        path.write_text(RELEASED.format(tilt=tilt))
+        return path
+
+    return write
+
+
+def call(capfd, *arguments):
+    capfd.readouterr()
+    with pytest.raises(SystemExit) as end:
+        cli.main([str(argument) for argument in arguments])
+    out, err = capfd.readouterr()
+    return end.value.code or 0, out, err
+
+
+def test_margin_names_the_nearest_flip_and_draws_it(capfd, tmp_path, scene_file):
+    picture, file = tmp_path / "margin.png", tmp_path / "margin.json"
+    status, out, _ = call(capfd, "margin", scene_file(0.26), "--plot", picture, "--json", file)
+    assert status == 0
+    assert "Nearest flip: slenderness -7.14 %, the block then overturns" in " ".join(out.split())
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    content = json.loads(file.read_text())
+    assert content["schema"] == "rocking margin 1" and content["outcome"] == "rocks"
+    nearest = content["margins"][0]
+    assert nearest["quantity"] == "slenderness"
+    assert nearest["nearest"] == pytest.approx(0.26 / 0.28 - 1, abs=1e-7)
+    assert content["contact"]["friction"] == 0.3 and 0 < content["contact"]["friction_demand"] < 0.3
+
+
+def test_margin_says_when_nothing_flips_the_verdict(capfd, scene_file):
+    status, out, _ = call(capfd, "margin", scene_file(0.01), "--span", "5")
+    assert status == 0
+    assert "No change of up to 5 % of any one quantity flips the verdict" in " ".join(out.split())
+
+
+def test_a_span_out_of_range_is_one_message(capfd):
+    status, _, err = call(capfd, "margin", "free-rocking-rigid", "--span", "200")
+    assert status == 2 and "span = 2.0" in err and "below 1" in err
