@@ -1,0 +1,137 @@
+"""A scene file from what one can measure: height, width and weight of a block, its base and bearings, a motion.
+
+text = scene_text("bust", block_from(1.9, 0.55, density=MATERIALS["marble"]))
+"""
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from .bearing import BearingLaw
+from .errors import SettingError
+from .rocking import RockingModel
+from .scene import Base, Bearings, Block, Scene
+
+# Typical densities [kg/m3]; a weighed block is better.
+MATERIALS = {
+    "marble": 2700.0,
+    "granite": 2650.0,
+    "limestone": 2400.0,
+    "sandstone": 2300.0,
+    "concrete": 2400.0,
+    "terracotta": 1900.0,
+    "bronze": 8800.0,
+    "wood": 600.0,
+}
+
+
+def block_from(
+    height: float, width: float, *, depth: float | None = None, density: float | None = None, mass: float | None = None
+) -> Block:
+    """The homogeneous rectangular `Block` of height and width [m], width along the motion.
+
+    Its mass [kg], or its density [kg/m3] with the depth [m] across the motion (the width, where that is not given).
+    R = sqrt(h^2 + b^2) and gamma = atan(b/h) of half height h and half width b.
+
+    Raises
+    ------
+    SettingError
+        A length or the mass is not above 0, or both or none of mass and density are given.
+    """
+    given = {"height": height, "width": width, "depth": depth, "density": density, "mass": mass}
+    for name, value in given.items():
+        if value is not None and not (value > 0 and math.isfinite(value)):
+            raise SettingError(f"{name} = {value!r}: give a number above 0")
+    if (density is None) == (mass is None):
+        raise SettingError("give the block's mass [kg], or its density [kg/m3] or material, and not both")
+    if mass is None:
+        mass = density * height * width * (depth or width)  # type: ignore[operator]  # one of the two is given
+    return Block(mass=mass, radius=0.5 * math.hypot(height, width), slenderness=math.atan2(width, height))
+
+
+def derived(scene: Scene) -> list[tuple[str, float, str]]:
+    """What follows from a scene: rows of (name, value, unit)."""
+    block, model = scene.block, RockingModel.of(scene)
+    uplift = scene.gravity * math.tan(block.slenderness)
+    rows = [
+        ("slenderness", block.slenderness, "rad"),
+        ("radius R, base corner to centre of mass", block.radius, "m"),
+        ("mass", block.mass, "kg"),
+        ("moment of inertia J_O about a corner", block.inertia, "kg m2"),
+        ("rocking frequency omega_r, eq. (1)", scene.rocking_frequency, "rad/s"),
+        ("restitution e_phi, eq. (7)", model.restitution, "-"),
+        ("uplift acceleration g tan(slenderness)", uplift, "m/s2"),
+    ]
+    if scene.bearings is not None:
+        law = BearingLaw.of(scene.bearings)
+        for name, stiffness in (("before yielding", law.kb + law.dk), ("after yielding", law.kb)):
+            if stiffness > 0:
+                period = 2 * math.pi * math.sqrt(scene.total_mass / (law.count * stiffness))
+                rows.append((f"isolation period {name}", period, "s"))
+        if law.f0 > 0:
+            force = law.count * law.f0 / scene.total_mass
+            rows.append(("acceleration at which the bearings yield", force, "m/s2"))
+    return rows
+
+
+def scene_text(
+    name: str,
+    block: Block,
+    *,
+    base: Base | None = None,
+    bearings: Bearings | None = None,
+    motion: Mapping[str, Any] | None = None,
+    tilt: float | None = None,
+    friction: float | None = None,
+    about: Sequence[str] = (),
+) -> str:
+    """A commented scene file (TOML) that `load_scene` reads.
+
+    Parameters
+    ----------
+    name : str
+    block, base, bearings : parts of the scene
+    motion : dict or None
+        Keys of the table [motion].
+    tilt : float or None
+        Of the start [rad].
+    friction : float or None
+        Coefficient between block and base.
+    about : sequence of str
+        Comments at the top.
+    """
+    lines = [*(f"# {line}" for line in about), f"name = {_toml(name)}"]
+    if friction is not None:
+        lines.append(
+            f"friction = {_toml(friction)}  # between the block and what it stands on; the demand is held against it"
+        )
+    lines += ["", "[block]"]
+    lines += _rows({"mass": (block.mass, "kg"), "radius": (block.radius, "m; base corner to centre of mass")})
+    degrees = math.degrees(block.slenderness)
+    lines += _rows({"slenderness": (block.slenderness, f"rad, {degrees:.4g} degrees; atan(width/height)")})
+    lines += [
+        f"# corner_inertia = {block.inertia:.6g}  # kg m2; 4/3 m R^2 of a homogeneous rectangle, unless given",
+        "# restitution = 0.9  # eq. (7) gives it, unless it was measured",
+    ]
+    if base is not None:
+        lines += ["", "[base]", *_rows({"mass": (base.mass, "kg")})]
+    if bearings is not None:
+        units = {"count": "", "ka": "N/m", "kb": "N/m", "alpha": "", "yield_force": "N", "damping": "N s/m"}
+        values = bearings.model_dump(exclude_defaults=True)
+        known = {key: (values[key], unit) for key, unit in units.items() if key in values}
+        lines += ["", "[bearings]  # per bearing", f"law = {_toml(bearings.law)}", *_rows(known)]
+    if motion:
+        lines += ["", "[motion]", *(f"{key} = {_toml(value)}" for key, value in motion.items())]
+    if tilt is not None:
+        lines += ["", "[start]", *_rows({"tilt": (tilt, "rad")})]
+    return "\n".join(lines) + "\n"
+
+
+def _rows(values):
+    return [f"{key} = {_toml(value)}" + (f"  # {unit}" if unit else "") for key, (value, unit) in values.items()]
+
+
+def _toml(value):
+    """A value as TOML writes it, numbers to six digits; JSON's strings and numbers are TOML's."""
+    return json.dumps(float(f"{value:.6g}") if isinstance(value, float) else value, ensure_ascii=False)

@@ -1,0 +1,62 @@
+"""Scene files made from measured dimensions: what is written is read back, and what is derived follows."""
+
+import math
+
+import pytest
+
+from analytic import Base, Bearings, Scene, SettingError, load_scene
+from analytic.new_scene import MATERIALS, block_from, derived, scene_text
+
+BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
+
+
+def test_a_block_follows_from_its_dimensions():
+    block = block_from(1.9, 0.55, depth=0.4, density=2700.0)
+    assert block.mass == pytest.approx(2700 * 1.9 * 0.55 * 0.4, rel=1e-14)
+    assert 2 * block.half_height == pytest.approx(1.9, rel=1e-14)
+    assert 2 * block.half_width == pytest.approx(0.55, rel=1e-14)
+    # of a homogeneous rectangle about its centre m (h^2 + w^2)/12
+    assert block.centre_inertia == pytest.approx(block.mass * (1.9**2 + 0.55**2) / 12, rel=1e-14)
+
+
+def test_the_file_reads_back_as_what_was_asked_for(tmp_path):
+    block = block_from(1.9, 0.55, mass=1500.0)
+    text = scene_text(
+        'bust "of" a man', block, base=Base(mass=400.0), bearings=BEARINGS, tilt=0.1, friction=0.6, about=("first",)
+    )
+    path = tmp_path / "bust.toml"
+    path.write_text(text, encoding="utf-8")
+    scene = load_scene(path)
+    assert scene.name == 'bust "of" a man' and scene.friction == 0.6 and scene.start.tilt == 0.1
+    assert scene.bearings == BEARINGS and scene.base.mass == 400.0
+    assert scene.block.radius == pytest.approx(block.radius, rel=1e-5)
+    assert text.startswith("# first\n") and "# m; base corner to centre of mass" in text
+
+
+def test_derived_numbers_are_the_closed_forms():
+    scene = Scene(block=block_from(1.9, 0.55, mass=1500.0), base=Base(mass=400.0), bearings=BEARINGS)
+    rows = {name: value for name, value, _ in derived(scene)}
+    gamma, radius = math.atan(0.55 / 1.9), 0.5 * math.hypot(1.9, 0.55)
+    assert rows["rocking frequency omega_r, eq. (1)"] == pytest.approx(math.sqrt(3 * 9.81 / (4 * radius)), rel=1e-13)
+    assert rows["uplift acceleration g tan(slenderness)"] == pytest.approx(9.81 * 0.55 / 1.9, rel=1e-13)
+    assert rows["isolation period after yielding"] == pytest.approx(
+        2 * math.pi * math.sqrt(1900 / (4 * 6.22e3)), rel=1e-13
+    )
+    # eq. (7) with J_O = 4/3 m R^2
+    share = 1500 / 1900
+    expected = 1 - 2 * math.sin(gamma) ** 2 / (4 / 3 - share * math.cos(gamma) ** 2)
+    assert rows["restitution e_phi, eq. (7)"] == pytest.approx(expected, rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        ({"height": 0.0, "width": 0.5, "mass": 1.0}, "height = 0.0"),
+        ({"height": 1.0, "width": math.nan, "mass": 1.0}, "width = nan"),
+        ({"height": 1.0, "width": 0.5}, "mass"),
+        ({"height": 1.0, "width": 0.5, "mass": 1.0, "density": MATERIALS["marble"]}, "not both"),
+    ],
+)
+def test_dimensions_that_make_no_block_are_refused(arguments, words):
+    with pytest.raises(SettingError, match=words):
+        block_from(**arguments)
