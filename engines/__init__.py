@@ -4,11 +4,18 @@ An engine is a package with an `engines.contract.Engine` called ``ENGINE``; thos
 others are declared by their packages (`engines.plugins`).
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterable
 from importlib import import_module
+from typing import TYPE_CHECKING
 
 from analytic.errors import EngineNotInstalled
 
 from .plugins import find_engines
+
+if TYPE_CHECKING:
+    from .contract import Engine
 
 BUILT_IN = ("exudyn", "pybullet", "mujoco")
 # By name; imported so, not by statement, a result of one engine does not depend on the records of the others.
@@ -17,7 +24,7 @@ _found, BROKEN = find_engines(ENGINES)  # BROKEN: the errors of entries that hol
 ENGINES |= _found
 
 
-def get_engine(name):
+def get_engine(name: str) -> Engine:
     """The `Engine` called `name`, with its adapter loaded.
 
     Raises
@@ -37,7 +44,7 @@ def get_engine(name):
     return ENGINES[name]
 
 
-def available_engines(names=None):
+def available_engines(names: Iterable[str] | None = None) -> tuple[tuple[str, ...], dict[str, str]]:
     """(those of the engines `names` that can be used, {name: why not} of the others); None: all that are declared.
 
     Raises
@@ -56,6 +63,6 @@ def available_engines(names=None):
     return tuple(present), missing
 
 
-def installed_engines():
+def installed_engines() -> tuple[str, ...]:
     """Names of the engines that can be used here."""
     return available_engines()[0]

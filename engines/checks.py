@@ -1,6 +1,9 @@
 """What must hold in every engine run, however coarse: the bearing law, the block's place, no energy from nowhere."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
@@ -11,6 +14,12 @@ from analytic.response import Failure
 
 from .swings import ArrayModel
 
+if TYPE_CHECKING:
+    from analytic import Scene
+    from analytic.types import Motion
+
+    from .swings import Trace
+
 # Energy gain of a run, in the units of `energy_gain`, above which it counts as failed: half of the motion's energy
 # came from nowhere. The errors of legitimate steps stay below a tenth of it (tests/engines/test_observe.py, steps up
 # to 1/60 s); a contact instability reaches 1, as its gain becomes the largest kinetic energy.
@@ -20,13 +29,13 @@ GAIN_LIMIT = 0.5
 SLIDING_TOLERANCE, HEIGHT_TOLERANCE = 0.03, 2e-3
 
 
-def replayed_force(scene, trace):
+def replayed_force(scene: Scene, trace: Trace) -> np.ndarray:
     """Force of all bearings together [N] at the steps, by the law on the trace's displacements, eqs (9)-(14)."""
     law = BearingLaw.of(scene.bearings)
     return law.force(trace.base_displacement, law.path(trace.base_displacement), trace.base_velocity)
 
 
-def replay_bearing(scene, trace):
+def replay_bearing(scene: Scene, trace: Trace) -> float:
     """Largest difference per bearing between the trace's force and the law replayed, over f0.
 
     The steps of the trace are taken as monotonic, as an engine takes them that commits the history once per
@@ -40,7 +49,7 @@ def replay_bearing(scene, trace):
     return float(np.abs(trace.bearing_force - force).max() / law.count / scale) if scale > 0 else 0.0
 
 
-def energy_balance(scene, trace):
+def energy_balance(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray]:
     """(balance, kinetic) [J], shape (n,): mechanical energy + loss in the bearings - input work, 0 at the start.
 
     In the ground's frame, where the ground motion is the inertial load -a_g on both masses. Constant in flight, about
@@ -61,7 +70,7 @@ def energy_balance(scene, trace):
     return balance - balance[0], kinetic
 
 
-def pivoting_centre(scene, trace):
+def pivoting_centre(scene: Scene, trace: Trace) -> np.ndarray:
     """Centre of a block that turns about its lower corner at the place of a standing one, as `Trace.centre`."""
     side = np.where(trace.tilt < 0, -1.0, 1.0)
     c, n = ArrayModel.of(scene).lever(side, trace.tilt)
@@ -75,7 +84,7 @@ def pivoting_centre(scene, trace):
     )
 
 
-def check_place(scene, trace, overturned):
+def check_place(scene: Scene, trace: Trace, overturned: bool) -> Failure | None:
     """A `Failure` where at the end the block has slid on its base, sunk into it or left it, else None.
 
     On the way it may fly and land again: that is the engine's decision, as long as it lands where it stood. A block
@@ -99,7 +108,7 @@ def check_place(scene, trace, overturned):
     return None
 
 
-def _work(motion, time, moved, rate):
+def _work(motion: Motion | None, time: np.ndarray, moved: np.ndarray, rate: np.ndarray) -> np.ndarray:
     """Work [J] of the inertial load up to each step, from the sum of mass times displacement [kg m] and its rate."""
     if motion is None:
         return np.zeros_like(time)
@@ -111,11 +120,11 @@ def _work(motion, time, moved, rate):
     return -_trapezoid(motion.acceleration(fine), between)[np.searchsorted(fine, time)]
 
 
-def _trapezoid(force, path):
+def _trapezoid(force: np.ndarray, path: np.ndarray) -> np.ndarray:
     return np.concatenate(([0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(path))))
 
 
-def energy_gain(scene, trace):
+def energy_gain(scene: Scene, trace: Trace) -> float:
     """Largest rise of `energy_balance` over its lowest value so far; such a rise has no physical cause.
 
     In units of m g R (1 - cos gamma), which takes the block from rest to the unstable point, or of the largest
@@ -130,7 +139,7 @@ def energy_gain(scene, trace):
     return float((balance - np.minimum.accumulate(balance)).max() / max(unit, kinetic.max()))
 
 
-def check_energy(scene, trace):
+def check_energy(scene: Scene, trace: Trace) -> Failure | None:
     """A `Failure` where a run gained energy beyond `GAIN_LIMIT`, or its energy overflows, else None."""
     gain = energy_gain(scene, trace)
     if gain <= GAIN_LIMIT:
@@ -141,7 +150,7 @@ def check_energy(scene, trace):
     )
 
 
-def _settled(trace):
+def _settled(trace: Trace) -> Trace:
     """The steps of a trace outside the relaxation of a compliant contact after each crossing of tilt = 0.
 
     There the block does not pivot about its corner, and the energy of a pivoting block does not describe it.

@@ -14,10 +14,11 @@ without a duration runs until its outcome is decided, warnings are said, events 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from analytic.errors import EngineBroken, EngineNotInstalled
 from analytic.response import Failure
@@ -75,7 +76,7 @@ class Variant:
     caveats: tuple[str, ...] = ()
     takes_restitution: bool = False
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.rung not in RUNGS:
             raise ValueError(f"rung = {self.rung!r}: choose one of {', '.join(RUNGS)}")
         if self.default not in self.ladder:
@@ -86,7 +87,7 @@ class Variant:
     @property
     def knob(self) -> str:
         """Name of the accuracy knob."""
-        return dataclasses.fields(self.settings)[0].name
+        return dataclasses.fields(self.settings)[0].name  # type: ignore[arg-type]  # a dataclass's instance
 
     @property
     def default(self) -> float:
@@ -214,7 +215,9 @@ class Engine:
         """The bare run of a scene that has a duration; settings: of the variant's dataclass, taken as they are."""
         return self.load().run(scene, variant, settings)
 
-    def simulate(self, scene: Scene, *, variant: str | None = None, history: bool = True, **settings) -> Response:
+    def simulate(
+        self, scene: Scene, *, variant: str | None = None, history: bool = True, **settings: Mapping[str, Any]
+    ) -> Response:
         """The response of a scene; a run that went wrong has the outcome "failed" with its evidence.
 
         Parameters
@@ -240,7 +243,7 @@ class Engine:
         return self.traced(scene, variant=variant, history=history, **settings)[0]
 
     def traced(
-        self, scene: Scene, *, variant: str | None = None, history: bool = True, **settings
+        self, scene: Scene, *, variant: str | None = None, history: bool = True, **settings: Mapping[str, Any]
     ) -> tuple[Response, Trace | None]:
         """(response, the steps it was read from or None) of `simulate`."""
         from .simulating import traced

@@ -1,12 +1,21 @@
 """Impacts, uplifts and rests of a trace, and the forces at its contact: measured by the model's equations."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from analytic.response import Failure, Impact
 
 from .swings import ArrayModel, to_contact
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+    from .swings import Swings, Trace
 
 # A landing after which the block stays in flat contact counts as an impact with rate 0 after it where the rate
 # before it is this many times the rate that leads to the edge of contact; a weaker one is the tail of a chatter.
@@ -19,7 +28,9 @@ STRONG, CLEAR = 0.2, 3.0
 MOST_RESTITUTION = 1.2
 
 
-def find_events(scene, trace, swings):
+def find_events(
+    scene: Scene, trace: Trace, swings: Swings
+) -> tuple[tuple[Impact, ...], tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
     """(impacts, uplifts, rests, missed) of the swings of a trace; see `observe`.
 
     missed: times [s] at which a swing ends and the next begins on the other side, with no impact or landing resolved
@@ -81,29 +92,29 @@ def find_events(scene, trace, swings):
     return tuple(impacts), tuple(uplifts), tuple(float(rest) for rest in rests), tuple(missed)
 
 
-def strong_swings(model, trace, swings):
+def strong_swings(model: ArrayModel, trace: Trace, swings: Swings) -> np.ndarray:
     """Whether the block would, left alone, reach the impact at a speed that counts; shape of `swings`."""
     bounds = np.column_stack([swings.first, swings.last + 1]).ravel()[:-1]
     speed = np.maximum.reduceat(_speeds(model, trace), bounds)[::2]
     return speed >= _least_speed(model, trace, speed.max())
 
 
-def _pull(model):
+def _pull(model: ArrayModel) -> float:
     """|tilt''| toward contact of an unforced block at tilt = 0 [rad/s2]."""
     return abs(float(model.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0]))
 
 
-def _speeds(model, trace):
+def _speeds(model: ArrayModel, trace: Trace) -> np.ndarray:
     """|Tilt rate| [rad/s] at which an unforced block reaches tilt = 0 from each step, at constant acceleration."""
     return np.sqrt(trace.tilt_rate**2 + 2 * _pull(model) * np.abs(trace.tilt))
 
 
-def _least_speed(model, trace, fastest):
+def _least_speed(model: ArrayModel, trace: Trace, fastest: float) -> float:
     """|Tilt rate| [rad/s] from which on an impact counts."""
     return max(STRONG * fastest, CLEAR * math.sqrt(2 * _pull(model) * trace.contact_tilt))
 
 
-def straddled(scene, trace):
+def straddled(scene: Scene, trace: Trace) -> np.ndarray:
     """Times [s] of steps in flight that last longer than the way to the impact and the whole swing after it.
 
     By the model's restitution and the acceleration at the step; where what is left of the speed counts.
@@ -123,7 +134,7 @@ def straddled(scene, trace):
     return trace.time[k[falls & (step > needed)]]
 
 
-def check_impacts(scene, trace, impacts, missed):
+def check_impacts(scene: Scene, trace: Trace, impacts: Sequence[Impact], missed: Sequence[float]) -> Failure | None:
     """A `Failure` where an impact gave energy or was not resolved, else None; `missed` as of `find_events`."""
     least = _least_speed(ArrayModel.of(scene), trace, max((abs(one.rate_before) for one in impacts), default=0.0))
     for impact in impacts:
@@ -150,7 +161,9 @@ def check_impacts(scene, trace, impacts, missed):
     return None
 
 
-def _limit_time(model, scene, trace, last, side, landing, rate):
+def _limit_time(
+    model: ArrayModel, scene: Scene, trace: Trace, last: int, side: float, landing: float, rate: float
+) -> tuple[float, float]:
     """(time at which the model's impacts after a landing accumulate, |tilt''| toward contact there)."""
     ground = float(scene.motion.acceleration(landing)) if scene.motion else 0.0
     pull = -side * float(model.accelerations(side, 0.0, 0.0, ground, trace.bearing_force[last])[0])
@@ -160,7 +173,7 @@ def _limit_time(model, scene, trace, last, side, landing, rate):
     return landing + 2 * e * abs(float(rate)) / (pull * (1 - e)), pull
 
 
-def _uplift_time(model, scene, trace, begin, first):
+def _uplift_time(model: ArrayModel, scene: Scene, trace: Trace, begin: int, first: int) -> float:
     """Time at which |absolute base acceleration| last rose through g tan(gamma) in steps begin..first, eq. (2)."""
     steps = slice(begin, first + 1)
     size = np.abs(_contact_acceleration(model, scene, trace, steps)) - model.uplift_acceleration
@@ -172,7 +185,7 @@ def _uplift_time(model, scene, trace, begin, first):
     return float(t0 - size[k] * (t1 - t0) / (size[k + 1] - size[k]))
 
 
-def _contact_acceleration(model, scene, trace, steps=slice(None)):
+def _contact_acceleration(model: ArrayModel, scene: Scene, trace: Trace, steps: slice = slice(None)) -> np.ndarray:
     """Absolute acceleration of the base in full contact [m/s2] at the steps, eq. (2)."""
     if model.on_base:
         return model.contact_acceleration(trace.bearing_force[steps])
@@ -180,7 +193,7 @@ def _contact_acceleration(model, scene, trace, steps=slice(None)):
     return scene.motion.acceleration(time) if scene.motion else np.zeros(len(time))
 
 
-def contact_measures(scene, trace, falls=False):
+def contact_measures(scene: Scene, trace: Trace, falls: bool = False) -> tuple[float, float, float]:
     """(max |H|/N, min N/(m g), max |absolute base acceleration| [m/s2]) over the steps of a trace.
 
     Where the block `falls`, the first two end at the last step below the slenderness.

@@ -1,13 +1,21 @@
 """Ground velocity over time, exact for records and pulses: what the engine's kicks are made of."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from analytic.motion import RICKER_PERIODS, SampledMotion
 
+if TYPE_CHECKING:
+    from analytic import PulseMotion
+    from analytic.types import Motion
 
-def ground_velocity(motion):
+
+def ground_velocity(motion: Motion | None) -> Callable[[float], float] | None:
     """A function of time [s] giving the integral of the ground acceleration from 0 [m/s].
 
     A step's mean acceleration is the difference of two values over the time between, whatever happens in it: an
@@ -18,7 +26,7 @@ def ground_velocity(motion):
     return _sampled(motion) if isinstance(motion, SampledMotion) else _pulse(motion)
 
 
-def _sampled(motion):
+def _sampled(motion: SampledMotion) -> Callable[[float], float]:
     dt, a = motion.dt, motion.samples
     sums = np.concatenate(([0.0], np.cumsum(0.5 * dt * (a[1:] + a[:-1])))).tolist()
     level, slope = a.tolist(), (np.diff(a) / dt).tolist()
@@ -36,7 +44,7 @@ def _sampled(motion):
     return velocity
 
 
-def _pulse(motion):
+def _pulse(motion: PulseMotion) -> Callable[[float], float]:
     frequency, start, length = motion.frequency, motion.start, motion.length
     size = motion.amplitude / frequency
     half = 0.5 * RICKER_PERIODS * math.pi

@@ -1,5 +1,7 @@
 """A run in a process of its own, so that a hang, a crash or Ctrl-C costs that run only."""
 
+from __future__ import annotations
+
 import contextlib
 import ctypes
 import faulthandler
@@ -10,14 +12,20 @@ import signal
 import sys
 import tempfile
 import traceback
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from multiprocessing import connection
 from multiprocessing.reduction import ForkingPickler
+from typing import IO, TYPE_CHECKING, Any
 
 from analytic.errors import EngineNotInstalled, SceneError, SettingError
 from analytic.response import Failure
 
 from . import get_engine
 from .observe import failed_response
+
+if TYPE_CHECKING:
+    from analytic import Response, Scene
 
 LONGEST = 1e6  # s; longer time limits overflow the system's timers
 GRACE_SECONDS = 0.3  # beyond the time limit, for the process to write down where it hangs
@@ -29,7 +37,7 @@ PR_SET_PDEATHSIG = 1
 TRACE = getattr(signal, "SIGUSR1", None)  # tells a process that hangs to write down where
 
 
-def guarded_simulate(engine_name, scene, *, time_limit, **settings):
+def guarded_simulate(engine_name: str, scene: Scene, *, time_limit: float, **settings: Any) -> Response:
     """The response of ``get_engine(engine_name).simulate(scene, **settings)``, run in its own process.
 
     Parameters
@@ -61,7 +69,14 @@ def guarded_simulate(engine_name, scene, *, time_limit, **settings):
     return guarded(_simulate, engine_name, scene, settings, time_limit, versions)
 
 
-def guarded(run, engine_name, scene, settings, time_limit, versions=None):
+def guarded(
+    run: Callable[[str, Scene, Mapping[str, Any]], Response],
+    engine_name: str,
+    scene: Scene,
+    settings: Mapping[str, Any],
+    time_limit: float,
+    versions: dict[str, str] | None = None,
+) -> Response:
     """``run(engine_name, scene, settings)`` in a process of its own; see `guarded_simulate`.
 
     `run` is a function at the top of a module, so that the process can import it.
@@ -79,13 +94,18 @@ def guarded(run, engine_name, scene, settings, time_limit, versions=None):
     )
 
 
-def check_time_limit(time_limit):
+def check_time_limit(time_limit: float) -> None:
     """Raise `ValueError` unless `time_limit` [s] is positive and at most `LONGEST`."""
     if not (math.isfinite(time_limit) and 0 < time_limit <= LONGEST):
         raise ValueError(f"time_limit = {time_limit!r}: give a time above 0 and up to {LONGEST:g} [s]")
 
 
-def alone(function, *arguments, time_limit, meanwhile=None):
+def alone(
+    function: Callable[..., Any],
+    *arguments: Any,
+    time_limit: float,
+    meanwhile: AbstractContextManager[Any] | None = None,
+) -> tuple[Any, Failure | None]:
     """(what ``function(*arguments)`` returns, None), or (None, the `Failure`) where its process did not get that far.
 
     Parameters
@@ -108,7 +128,7 @@ def alone(function, *arguments, time_limit, meanwhile=None):
     context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
     reader, writer = context.Pipe(duplex=False)
     with _evidence() as log:
-        process = context.Process(target=_work, args=(writer, _number(context, log), function, arguments, time_limit))
+        process = context.Process(target=_work, args=(writer, _number(context, log), function, arguments, time_limit))  # type: ignore[attr-defined]  # every context has it
         # Blocked until the process ignores Ctrl-C, which is this one's to handle: an engine would take it for an
         # error of its own.
         blocked = signal.pthread_sigmask(signal.SIG_BLOCK, STOPPING) if hasattr(signal, "pthread_sigmask") else None
@@ -138,11 +158,11 @@ def alone(function, *arguments, time_limit, meanwhile=None):
     return None, Failure(content[0], f"{content[1]}\n{_ends(printed)}".strip())
 
 
-def _simulate(engine_name, scene, settings):
+def _simulate(engine_name: str, scene: Scene, settings: Mapping[str, Any]) -> Response:
     return get_engine(engine_name).simulate(scene, **settings)
 
 
-def _answer(reader, process, time_limit):
+def _answer(reader: Any, process: Any, time_limit: float) -> tuple[str, Any]:
     """("value", what the function returned), ("mistake", an error) or ("failure", (reason, message))."""
     if not connection.wait([reader, process.sentinel], time_limit):
         if TRACE is not None:
@@ -158,7 +178,9 @@ def _answer(reader, process, time_limit):
     return "failure", ("the engine's process died", _last_words(process.exitcode))
 
 
-def _work(writer, log, function, arguments, time_limit):
+def _work(
+    writer: Any, log: int | None, function: Callable[..., Any], arguments: Sequence[Any], time_limit: float
+) -> None:
     """In the process: answers through `writer`; `log` is a file number for what is printed, or None."""
     signal.set_wakeup_fd(-1)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -188,31 +210,31 @@ def _work(writer, log, function, arguments, time_limit):
     os._exit(0)  # no engine gets a chance to fail at its end
 
 
-def end_with_parent():
+def end_with_parent() -> None:
     """Let this process end when its parent does, whatever compiled code it is in, where the system can do that."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
-def _evidence():
+def _evidence() -> IO[bytes]:
     try:
         return tempfile.TemporaryFile()
     except OSError:  # no room: the run goes on, without evidence
         return open(os.devnull, "r+b")
 
 
-def _number(context, log):
+def _number(context: Any, log: IO[bytes]) -> int | None:
     """The file number of `log` as a forked process has it; a spawned one has none."""
     return log.fileno() if context.get_start_method() == "fork" else None
 
 
-def _ends(text):
+def _ends(text: str) -> str:
     """Beginning and end of what was printed: the engine's words come first, where it was comes last."""
     half = EVIDENCE_CHARACTERS // 2
     return text if len(text) <= 2 * half else f"{text[:half]}\n[...]\n{text[-half:]}"
 
 
-def _last_words(code):
+def _last_words(code: int | None) -> str:
     """An exit code in words; a negative one is the signal that killed the process."""
     if code is not None and code < 0:
         try:

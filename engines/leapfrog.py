@@ -5,6 +5,11 @@ velocity [m/s], hysteretic force of one bearing [N], total force without viscous
 block's centre x, z [m] and x', z' [m/s], as `Trace.centre`. Rates are half a step early, but for the start's.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from analytic.response import Failure
@@ -12,16 +17,19 @@ from analytic.rocking import RockingModel
 
 from .swings import Trace
 
+if TYPE_CHECKING:
+    from analytic import Scene
+
 # Steps after which a run is given up: this many per largest step of the duration, and a reserve for the impacts.
 ROWS_PER_STEP, RESERVE, MOST_ROWS = 50, 100_000, 20_000_000
 
 
-def row_limit(duration, largest):
+def row_limit(duration: float, largest: float) -> int:
     """Most steps of a run of this duration at this largest step [same unit of time]."""
     return int(min(MOST_ROWS, ROWS_PER_STEP * duration / largest + RESERVE))
 
 
-def failure_of(scene, rows, ended):
+def failure_of(scene: Scene, rows: Sequence[Sequence[float]] | np.ndarray, ended: str | None) -> Failure | None:
     """The `Failure` of a run that "not finite" or "too many steps" ended, or None."""
     count, t = len(rows) - 1, rows[-1][0]
     if ended == "not finite":
@@ -31,7 +39,9 @@ def failure_of(scene, rows, ended):
     return None
 
 
-def trace_of(rows, scene, contact_tilt, smeared=None):
+def trace_of(
+    rows: Sequence[Sequence[float]] | np.ndarray, scene: Scene, contact_tilt: float, smeared: int | None = None
+) -> Trace:
     """The `Trace` of rows, velocities brought to the time of the displacements.
 
     A velocity at t_n is the mean of its neighbours, weighted by their distance. Contact solvers spread an impact over
@@ -66,7 +76,7 @@ def trace_of(rows, scene, contact_tilt, smeared=None):
     )
 
 
-def _synchronised(value, h, from_before, from_after):
+def _synchronised(value: np.ndarray, h: np.ndarray, from_before: np.ndarray, from_after: np.ndarray) -> np.ndarray:
     """`value`, known half a step early, at the steps' ends."""
     gain = np.diff(value) / (0.5 * (h[1:] + h[:-1]))  # per second, at t_0 .. t_(n-2)
     result = value.copy()  # the first is the start, not half a step early
@@ -79,7 +89,7 @@ def _synchronised(value, h, from_before, from_after):
     return result
 
 
-def raw_trace_of(rows, scene, contact_tilt):
+def raw_trace_of(rows: Sequence[Sequence[float]] | np.ndarray, scene: Scene, contact_tilt: float) -> Trace:
     """The `Trace` of rows taken as they are, as a first script takes them; it does not look where the block is."""
     t, _, tilt, rate, x, v, _, force = np.array(rows).T[:8]
     law = RockingModel.of(scene).bearing

@@ -1,6 +1,9 @@
 """The momentum that an engine's own motion shows, against the impulse of the bearings' law: did they push so?"""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,6 +12,11 @@ from analytic.response import Failure
 
 from .checks import pivoting_centre
 from .ground_velocity import ground_velocity
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+    from .swings import Trace
 
 # `impulse_error` above which a run counts as failed. A doubled or missing force gives 1. Exact motions read at random
 # steps of 1/60 s on average show up to .03, the tuned variants at their steps at most 2e-3.
@@ -19,7 +27,7 @@ LEAST_IMPULSE = 0.1
 LEAST_MOMENTUM = 1e-3
 
 
-def bearing_impulse(scene, trace):
+def bearing_impulse(scene: Scene, trace: Trace) -> np.ndarray:
     """Impulse of the bearings from the start to each step [N s], by their law on the trace's displacements.
 
     Exact for the viscous part (it is damping times the way); for the others Simpson's rule, the displacement between
@@ -35,14 +43,14 @@ def bearing_impulse(scene, trace):
     return law.count * np.concatenate(([0.0], np.cumsum(parts)))
 
 
-def momentum(scene, trace):
+def momentum(scene: Scene, trace: Trace) -> np.ndarray:
     """Horizontal momentum of block and base relative to the ground [N s], shape (n,); an impact keeps it."""
     centre = pivoting_centre(scene, trace) if trace.centre is None else trace.centre
     base = scene.total_mass - scene.block.mass
     return base * trace.base_velocity + scene.block.mass * centre[:, 2]
 
 
-def missing_impulse(scene, trace):
+def missing_impulse(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray]:
     """(steps' impulse that neither the law nor the ground explains [N s], the law's impulse [N s]), shapes (n,).
 
     The first is constant for an exact solution, whatever the impacts: momentum + impulse of the bearings + total mass
@@ -55,7 +63,7 @@ def missing_impulse(scene, trace):
     return left - left[0], law
 
 
-def impulse_error(scene, trace):
+def impulse_error(scene: Scene, trace: Trace) -> float:
     """Largest range of `missing_impulse` within a window, over that of the law's impulse; 0 without bearings.
 
     A window lasts a rocking period 2 pi/omega_r and begins half a one after the window before. A force that is doubled
@@ -82,7 +90,7 @@ def impulse_error(scene, trace):
     return float(max(np.ptp(missing[window]) for window in windows) / scale)
 
 
-def check_impulse(scene, trace):
+def check_impulse(scene: Scene, trace: Trace) -> Failure | None:
     """A `Failure` where the engine's motion is not that of its bearings' force, else None."""
     error = impulse_error(scene, trace)
     if error <= IMPULSE_LIMIT:

@@ -4,8 +4,12 @@ An engine hands over its accepted steps as a `Trace`; the events, peaks and cont
 the engine, so that no engine is judged by its own measure. The time this takes is not part of ``cpu_seconds``.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import astuple, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
@@ -19,6 +23,9 @@ from .events import check_impacts, contact_measures, find_events
 from .momentum import check_impulse
 from .swings import ArrayModel, Trace, find_swings
 
+if TYPE_CHECKING:
+    from analytic import Scene
+
 __all__ = ["Trace", "energy_gain", "failed_response", "observe", "replay_bearing"]
 
 HISTORY_POINTS = 2000
@@ -26,20 +33,20 @@ HISTORY_POINTS = 2000
 
 @np.errstate(all="ignore")  # what overflows shows in the numbers, and these are looked at
 def observe(
-    scene,
-    trace,
+    scene: Scene,
+    trace: Trace,
     *,
-    engine,
-    variant,
-    cpu_seconds,
-    steps,
-    settings,
-    versions,
-    history=True,
-    failure=None,
-    ended=None,
-    warnings=(),
-):
+    engine: str,
+    variant: str,
+    cpu_seconds: float,
+    steps: int,
+    settings: dict[str, Any],
+    versions: dict[str, str],
+    history: bool = True,
+    failure: Failure | None = None,
+    ended: str | None = None,
+    warnings: Iterable[str] = (),
+) -> Response:
     """The response of an engine's run.
 
     Parameters
@@ -75,11 +82,11 @@ def observe(
     that gives energy, that cannot be resolved or that the steps leap over (`check_impacts`), a motion that is not the
     bearings' (`check_impulse`; of a first script a warning), and a measure that is not finite.
     """
-    trace, failure = _finite_part(trace, failure)
+    trace, failure = _finite_part(trace, failure)  # type: ignore[assignment]  # None, where nothing is finite, goes no further
     overturning_time = None
     if trace is not None:
         trace, overturning_time = _upto_overturning(scene, trace, ended)
-    given = dict(
+    given: dict[str, Any] = dict(
         engine=engine,
         variant=variant,
         cpu_seconds=cpu_seconds,
@@ -101,7 +108,7 @@ def observe(
             warnings=warnings,
         )
     end = State(*(float(getattr(trace, name)[-1]) for name in Trace.COLUMNS))
-    short = scene.duration * (1 - 1e-9) - end.time  # the last of equal steps need not end at the duration
+    short = scene.duration * (1 - 1e-9) - end.time  # type: ignore[operator]  # a run has a duration; the last of equal steps need not end at the duration
     if failure is None and overturning_time is None and short > np.diff(trace.time).max():
         failure = Failure("the run ended early", f"last step at {end.time:.9g} s of {scene.duration:.9g} s", end)
     swings = find_swings(trace)
@@ -160,7 +167,18 @@ def observe(
     return replace(response, decided=is_decided(scene, response, contact_tilt=trace.contact_tilt))
 
 
-def failed_response(scene, failure, *, engine, variant, settings, versions, cpu_seconds=math.nan, steps=0, warnings=()):
+def failed_response(
+    scene: Scene,
+    failure: Failure,
+    *,
+    engine: str,
+    variant: str,
+    settings: dict[str, Any],
+    versions: dict[str, str],
+    cpu_seconds: float = math.nan,
+    steps: int = 0,
+    warnings: Iterable[str] = (),
+) -> Response:
     """A response of outcome "failed" for a run that left no states: every number is NaN, the evidence is kept."""
     nan = math.nan
     return Response(
@@ -190,21 +208,21 @@ def failed_response(scene, failure, *, engine, variant, settings, versions, cpu_
     )
 
 
-def _warnings(scene, warnings):
+def _warnings(scene: Scene, warnings: Iterable[str]) -> tuple[str, ...]:
     """The engine's sentences and those about the record of the motion, each once."""
     record = getattr(scene.motion, "warnings", ())  # pulses have none
     return tuple(dict.fromkeys((*record, *warnings)))
 
 
-def _check_finite(measured):
+def _check_finite(measured: Mapping[str, Any]) -> Failure | None:
     """A `Failure` where a measure, {name: numbers}, is not finite, else None."""
     wrong = [name for name, numbers in measured.items() if not np.isfinite(numbers).all()]
     return Failure("measuring the run gave no number", f"not finite: {', '.join(wrong)}") if wrong else None
 
 
-def _finite_part(trace, failure):
+def _finite_part(trace: Trace, failure: Failure | None) -> tuple[Trace | None, Failure | None]:
     """(the steps before the first non-finite one or None, the failure with its last finite state)."""
-    finite = np.isfinite([getattr(trace, name) for name in Trace.COLUMNS]).all(axis=0)
+    finite: np.ndarray = np.isfinite([getattr(trace, name) for name in Trace.COLUMNS]).all(axis=0)  # type: ignore[assignment]  # of all columns at once
     if trace.centre is not None:
         finite &= np.isfinite(trace.centre).all(axis=1)
     count = len(finite) if finite.all() else int(np.argmin(finite))
@@ -217,7 +235,7 @@ def _finite_part(trace, failure):
     return (trace.upto(count) if count >= 2 else None), failure
 
 
-def _upto_overturning(scene, trace, ended):
+def _upto_overturning(scene: Scene, trace: Trace, ended: str | None) -> tuple[Trace, float | None]:
     """The trace up to |tilt| = pi/2 with that state as its last step, and its time; or the whole trace and None."""
     limit = math.pi / 2
     over = np.flatnonzero(np.abs(trace.tilt) >= limit)
@@ -246,7 +264,7 @@ def _upto_overturning(scene, trace, ended):
     return trace, None
 
 
-def _crossing(time, value, rate, level):
+def _crossing(time: np.ndarray, value: np.ndarray, rate: np.ndarray, level: float) -> float:
     """Time at which the cubic through both ends of a step first takes `level`."""
     roots = CubicHermiteSpline(time, value, rate).solve(level, extrapolate=False)
     roots = roots[np.isfinite(roots)]
@@ -255,7 +273,7 @@ def _crossing(time, value, rate, level):
     return float(np.interp(level, value, time)) if value[0] < value[1] else float(np.interp(-level, -value, time))
 
 
-def _unstable_time(scene, trace):
+def _unstable_time(scene: Scene, trace: Trace) -> float | None:
     """First time of |tilt| = slenderness [s], or None."""
     over = np.flatnonzero(np.abs(trace.tilt) >= scene.block.slenderness)
     if not len(over):
@@ -269,7 +287,7 @@ def _unstable_time(scene, trace):
     )
 
 
-def _peak(time, value, rate):
+def _peak(time: np.ndarray, value: np.ndarray, rate: np.ndarray) -> float:
     """Largest |value|, between the steps by the cubic through both ends of a step."""
     i = int(np.abs(value).argmax())
     side, best = math.copysign(1.0, value[i]), abs(value[i])
@@ -281,10 +299,10 @@ def _peak(time, value, rate):
     return float(best)
 
 
-def _history(scene, trace):
+def _history(scene: Scene, trace: Trace) -> History:
     """The steps on an equal grid: tilt and displacement by cubics through the steps, the others linear."""
     end = trace.time[-1]
-    dt = scene.motion.dt if isinstance(scene.motion, SampledMotion) else scene.duration / HISTORY_POINTS
+    dt = scene.motion.dt if isinstance(scene.motion, SampledMotion) else scene.duration / HISTORY_POINTS  # type: ignore[operator]  # as above
     time = trace.time[0] + dt * np.arange(math.floor((end - trace.time[0]) / dt * (1 + 1e-12)) + 1)
     if time[-1] < end - 1e-9 * dt:
         time = np.append(time, end)

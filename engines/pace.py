@@ -4,7 +4,14 @@ The speed at which the block will reach contact follows from its tilt, its rate 
 grow in flight, and are a share of what is left of it on the way to an impact.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from analytic.rocking import RockingModel
 
 # No accuracy knobs: over the ranges given e moves by at most 2e-5 and the number of steps by at most 8 % (slenderness
 # .1 and .45, rigid ground and a base of 212 kg).
@@ -19,18 +26,18 @@ FLIGHT, IMPACT, REST = range(3)  # what a step is for: one corner carries, both 
 
 
 def impact_aware(
-    model,
-    start_rate,
-    largest,
-    accuracy,
+    model: RockingModel,
+    start_rate: float,
+    largest: float,
+    accuracy: float,
     *,
-    approach,
-    smallest,
-    sharpest=math.inf,
-    standing=0.0,
-    overlong=False,
-    cruise=False,
-):
+    approach: float,
+    smallest: float,
+    sharpest: float = math.inf,
+    standing: float = 0.0,
+    overlong: bool = False,
+    cruise: bool = False,
+) -> Callable[[float, float, bool, float], tuple[float, int]]:
     """A function (tilt, rate, jumped, interval) -> (length [s], FLIGHT, IMPACT or REST) of the step from a state.
 
     It is called before each step; jumped: the tilt lies on the other side than at the call before; interval: between
@@ -104,7 +111,7 @@ def impact_aware(
     return pace
 
 
-def aligned(step, ahead):
+def aligned(step: float, ahead: float) -> float:
     """The step [s], or a shorter one, of a leapfrog so that a jump of the ground's acceleration `ahead` [s] away falls
     between two kicks, which act over half of the steps before and after. A kick that holds the jump lifts a block late.
     """
@@ -113,7 +120,9 @@ def aligned(step, ahead):
     return 2 * ahead if 2 * ahead <= step else 2 / 3 * ahead
 
 
-def fixed(model, step, standing=0.0):
+def fixed(
+    model: RockingModel, step: float, standing: float = 0.0
+) -> Callable[[float, float, bool, float], tuple[float, int]]:
     """As `impact_aware`, the length always `step` [s]."""
     almost = max(STANDING * _weak(model), standing)
     level, ahead = almost / (2 * least_pull(model)), 2 * step
@@ -127,11 +136,11 @@ def fixed(model, step, standing=0.0):
     return pace
 
 
-def least_pull(model):
+def least_pull(model: RockingModel) -> float:
     """|tilt''| toward contact of an unforced block at tilt 0 [rad/s2]."""
     return abs(model.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0])
 
 
-def _weak(model):
+def _weak(model: RockingModel) -> float:
     """Energy of a swing that does not matter, as the square of its speed at the impact [rad2/s2]."""
     return 2 * least_pull(model) * FLAT * model.gamma

@@ -1,9 +1,15 @@
 """Where a scene puts the block at the start: the same for every engine."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from analytic import Scene
 
 
-def placement(scene):
+def placement(scene: Scene) -> tuple[float, float, float, float]:
     """Centre of the block and its velocity at the start: (x, z [m], x', z' [m/s]), z from its standing height.
 
     The block turns about its lower corner on a base at the start's displacement and velocity.

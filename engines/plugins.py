@@ -1,17 +1,24 @@
 """Engines that other packages declare, by the entry point group `rocking.engines`; each entry is an `Engine`."""
 
+from __future__ import annotations
+
+from collections.abc import Collection
 from dataclasses import replace
 from importlib.metadata import entry_points
+from typing import TYPE_CHECKING
 
 from analytic.errors import EngineBroken
 
 from .contract import Engine
 
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
 GROUP = "rocking.engines"
 RESERVED = ("analytic",)  # the model's own name where a solver is asked for
 
 
-def find_engines(taken):
+def find_engines(taken: Collection[str]) -> tuple[dict[str, Engine], dict[str, EngineBroken]]:
     """({name: `Engine`} of the engines declared here, {entry: `EngineBroken`} of those that cannot be used).
 
     Parameters
@@ -19,7 +26,8 @@ def find_engines(taken):
     taken : collection of str
         Names that are given away.
     """
-    found, broken = {}, {}
+    found: dict[str, Engine] = {}
+    broken: dict[str, EngineBroken] = {}
     for entry in sorted(entry_points(group=GROUP), key=lambda entry: (entry.name, _distribution(entry))):
         origin = f"engine {entry.name!r}, declared as {entry.value} by the distribution {_distribution(entry)}"
         try:
@@ -34,7 +42,7 @@ def find_engines(taken):
     return found, broken
 
 
-def _resolve(entry, origin, taken):
+def _resolve(entry: EntryPoint, origin: str, taken: Collection[str]) -> Engine:
     try:
         engine = entry.load()
     except Exception as error:  # whatever another package raises as it is imported
@@ -48,5 +56,5 @@ def _resolve(entry, origin, taken):
     return replace(engine, origin=origin)
 
 
-def _distribution(entry):
+def _distribution(entry: EntryPoint) -> str:
     return f"{entry.dist.name} {entry.dist.version}" if entry.dist else "of no name"

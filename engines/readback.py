@@ -1,5 +1,8 @@
 """What an engine reports back of what it was given: nothing runs with other values."""
 
+from collections.abc import Iterable
+from typing import Any
+
 import numpy as np
 
 from .contract import Mismatch
@@ -7,7 +10,7 @@ from .contract import Mismatch
 RELATIVE, ABSOLUTE = 1e-12, 1e-14  # round-off
 
 
-def require(values):
+def require(values: Iterable[tuple[str, Any, Any]]) -> None:
     """Raise `Mismatch` naming what an engine holds that differs from what it was given.
 
     Parameters
@@ -24,7 +27,7 @@ def require(values):
         raise Mismatch("; ".join(wrong))
 
 
-def _same(used, wanted):
+def _same(used: Any, wanted: Any) -> bool:
     if isinstance(used, int | float) and isinstance(wanted, int | float):
         return abs(used - wanted) <= ABSOLUTE + RELATIVE * abs(wanted)  # not for NaN
     return np.size(wanted) in (1, np.size(used)) and np.allclose(used, wanted, RELATIVE, ABSOLUTE)

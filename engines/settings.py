@@ -1,12 +1,21 @@
 """What a caller may ask of an engine: one of its variants with other settings, and no restitution."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping
 from dataclasses import fields, replace
+from typing import TYPE_CHECKING, Any
 
 from analytic.errors import SceneError, SettingError
 
+if TYPE_CHECKING:
+    from analytic import Scene
 
-def choose(engine, variant, changes):
+    from .contract import Engine
+
+
+def choose(engine: Engine, variant: str | None, changes: Mapping[str, Any]) -> tuple[str, Any]:
     """(name, settings) of an engine's variant with fields replaced.
 
     Parameters
@@ -26,16 +35,16 @@ def choose(engine, variant, changes):
     if name not in variants:
         raise SettingError(f"{engine.name} has no variant {name!r}: choose one of {', '.join(variants)}")
     settings = variants[name].settings
-    known = [field.name for field in fields(settings)]
+    known = [field.name for field in fields(settings)]  # type: ignore[arg-type]  # `Variant` asks for a dataclass
     for key, value in changes.items():
         if key not in known:
             raise SettingError(f"{engine.name} {name} has no setting {key!r}: its settings are {', '.join(known)}")
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < math.inf:
             raise SettingError(f"{engine.name} {name}: {key} = {value!r} is not a positive number")
-    return name, replace(settings, **{key: float(value) for key, value in changes.items()})
+    return name, replace(settings, **{key: float(value) for key, value in changes.items()})  # type: ignore[type-var]  # as above
 
 
-def leave_restitution(engine, scene):
+def leave_restitution(engine: Engine, scene: Scene) -> None:
     """Raise `SceneError` where a scene gives the restitution, which a contact engine decides itself."""
     if scene.block.restitution is not None:
         able = [name for name, variant in engine.variants.items() if variant.takes_restitution]

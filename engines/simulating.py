@@ -1,6 +1,10 @@
 """From a scene and an engine to a response: what is the same for all engines."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping
 from dataclasses import asdict, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,8 +16,16 @@ from .observe import failed_response, observe
 from .settings import choose, leave_restitution
 from .verified import outside
 
+if TYPE_CHECKING:
+    from analytic import Response, Scene
 
-def traced(engine, scene, variant, history, settings):
+    from .contract import Engine, Run, Variant
+    from .swings import Trace
+
+
+def traced(
+    engine: Engine, scene: Scene, variant: str | None, history: bool, settings: Mapping[str, Any]
+) -> tuple[Response, Trace | None]:
     """(response, trace or None) of `Engine.traced`.
 
     A scene without a duration is first run to where the analytic model's run ends, as engines end alike; an engine
@@ -26,7 +38,7 @@ def traced(engine, scene, variant, history, settings):
         chosen = replace(chosen, friction=scene.friction)
     if scene.duration is not None:
         return _once(engine, scene, name, chosen, history)
-    traces = []
+    traces: list[Trace | None] = []
 
     def attempt(cut):
         response, trace = _once(engine, cut, name, chosen, history)
@@ -38,9 +50,9 @@ def traced(engine, scene, variant, history, settings):
     return response, traces[0]
 
 
-def _once(engine, scene, name, chosen, history):
+def _once(engine: Engine, scene: Scene, name: str, chosen: Any, history: bool) -> tuple[Response, Trace | None]:
     run = engine.run(scene, name, chosen)
-    given = dict(
+    given: dict[str, Any] = dict(
         engine=engine.name,
         variant=name,
         settings=asdict(chosen),
@@ -55,8 +67,9 @@ def _once(engine, scene, name, chosen, history):
     return observe(scene, run.trace, history=history, failure=run.failure, ended=run.ended, **given), run.trace
 
 
-def _warnings(variant, scene, run):
+def _warnings(variant: Variant, scene: Scene, run: Run) -> tuple[str, ...]:
     """What is said of every run of a variant, what of this one is outside its verified range, what the adapter says."""
+    found: tuple[str, ...]
     found, peak = (), None
     if run.trace is not None:
         tilt = np.abs(run.trace.tilt)

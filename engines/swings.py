@@ -5,12 +5,21 @@ contact are therefore not trusted: the last state in clean flight is carried for
 after the impact backward to it.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from analytic.rocking import RockingModel
+
+if TYPE_CHECKING:
+    from analytic import Scene
+    from analytic.bearing import BearingLaw
+    from analytic.types import Values
 
 # Carrying one step of an engine to tilt = 0: classical Runge-Kutta steps, and corrections of the end time.
 # 4 steps over 1/60 s leave 1e-11 rad/s; each correction cubes the error of the end time. A base that moves fast on
@@ -24,7 +33,7 @@ GROWTH = 1.0
 class ArrayModel(RockingModel):
     """`RockingModel` for arrays of states."""
 
-    def lever(self, s, tilt):
+    def lever(self, s: Values | float, tilt: Values) -> tuple[Values, Values]:
         angle = s * self.gamma - tilt
         return self.R * np.cos(angle), self.R * np.sin(angle)
 
@@ -72,7 +81,7 @@ class Trace:
 
     COLUMNS = ("time", "tilt", "tilt_rate", "base_displacement", "base_velocity", "bearing_force")
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name in self.COLUMNS:
             array = np.ascontiguousarray(getattr(self, name), dtype=np.float64)
             object.__setattr__(self, name, array)
@@ -90,7 +99,7 @@ class Trace:
         if len(wrong):
             raise ValueError(f"trace.time does not increase after step {wrong[0]}, t = {self.time[wrong[0]]:.9g} s")
 
-    def at(self, steps):
+    def at(self, steps: slice | np.ndarray) -> Trace:
         """The steps of a slice or of an array of indices."""
         return replace(
             self,
@@ -98,7 +107,7 @@ class Trace:
             **{name: getattr(self, name)[steps] for name in self.COLUMNS},
         )
 
-    def upto(self, count):
+    def upto(self, count: int) -> Trace:
         """The first `count` steps."""
         return self.at(slice(count))
 
@@ -116,11 +125,11 @@ class Swings:
     last: np.ndarray
     side: np.ndarray
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.side)
 
 
-def find_swings(trace):
+def find_swings(trace: Trace) -> Swings:
     """The `Swings` of a trace: a swing begins above contact_tilt and ends below half of it (a Schmitt trigger)."""
     size, side = np.abs(trace.tilt), np.sign(trace.tilt).astype(int)
     loose = np.where(size > 0.5 * trace.contact_tilt, side, 0)
@@ -137,7 +146,7 @@ def find_swings(trace):
     return Swings(first, clean, last, side[first])
 
 
-def to_contact(scene, trace, swings, direction):
+def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """States of a trace carried to tilt = 0 by the model's equations of flight.
 
     Parameters
@@ -197,10 +206,10 @@ def to_contact(scene, trace, swings, direction):
             t = t + h
     # moving out of contact where it should move in, or not there at all
     missed = (side * state[1] * direction > 0) | ~(np.abs(state[0]) <= trace.contact_tilt)
-    return tuple(np.where(missed, np.nan, value) for value in (t, state[1], state[3]))
+    return tuple(np.where(missed, np.nan, value) for value in (t, state[1], state[3]))  # type: ignore[return-value]  # three of three
 
 
-def _paces(model):
+def _paces(model: ArrayModel) -> tuple[float, float]:
     """(fastest rate, decay rate) of the base on its bearings while the block rocks [1/s]."""
     if not model.on_base:
         return 0.0, 0.0
@@ -210,7 +219,7 @@ def _paces(model):
     return max(decay, math.sqrt(law.count * (law.kb + law.dk) / mass)), decay
 
 
-def _tangent(trace, swings, direction):
+def _tangent(trace: Trace, swings: Swings, direction: int) -> Callable[[np.ndarray], np.ndarray]:
     """The bearings' force as function of time [s], along the last (or first) two steps of each swing."""
     end = swings.last if direction > 0 else swings.first
     inner = np.maximum(swings.last - 1, swings.first) if direction > 0 else np.minimum(swings.first + 1, swings.last)
@@ -219,7 +228,7 @@ def _tangent(trace, swings, direction):
     return lambda t: trace.bearing_force[end] + rise * (t - trace.time[end])
 
 
-def _time_to_zero(p, q, a, direction):
+def _time_to_zero(p: np.ndarray, q: np.ndarray, a: np.ndarray, direction: int) -> np.ndarray:
     """Root of p + q h + a h^2/2 on the side of `direction`, the nearer one for 0; NaN where there is none.
 
     Where a alone leaves none, as a stiff bearing's may that swings to and fro, that of p + q h.
@@ -235,7 +244,7 @@ def _time_to_zero(p, q, a, direction):
 FAR = 100.0
 
 
-def _branch(law, x, lasting, v):
+def _branch(law: BearingLaw, x: np.ndarray, lasting: np.ndarray, v: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     """Elastic and hysteretic force of all bearings [N] as function of displacement, on the path through (x, force).
 
     The law is taken in the direction of v as it is at two points, and between and behind them by the exponential

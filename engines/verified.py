@@ -1,7 +1,13 @@
 """The range in which a variant of an engine was held against the analytic model, and the warnings outside it."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from analytic import Scene
 
 ANY = (0.0, math.inf)
 NOWHERE = "this variant is verified in no range: its settings are not meant to be right"
@@ -39,7 +45,7 @@ WORDS = {
 }
 
 
-def in_words(verified):
+def in_words(verified: Range | None) -> str:
     """The limits of a `Range`, or that there is none."""
     if verified is None:
         return "nowhere"
@@ -47,13 +53,13 @@ def in_words(verified):
     return "; ".join(f"{WORDS[name]} {_limits(*pair)}" for name, pair in limits.items() if pair != ANY) or "anywhere"
 
 
-def _limits(low, high):
+def _limits(low: float, high: float) -> str:
     if low <= 0 or high == math.inf:
         return f"at most {high:.4g}" if low <= 0 else f"at least {low:.4g}"
     return f"{low:.4g} to {high:.4g}"
 
 
-def quantities(scene, step, peak_tilt=None):
+def quantities(scene: Scene, step: float, peak_tilt: float | None = None) -> dict[str, float]:
     """{name: value} of the quantities of `Range` that a scene has, at a step [s]; peak_tilt [rad]."""
     block = scene.block
     found = {
@@ -65,15 +71,15 @@ def quantities(scene, step, peak_tilt=None):
         found["base_mass"] = scene.base.mass / block.mass
     if scene.bearings is not None:
         bearings = scene.bearings
-        found["stiffness"] = step * math.sqrt(bearings.count * bearings.ka / scene.base.mass)
-        rate = bearings.count * bearings.damping / scene.base.mass
+        found["stiffness"] = step * math.sqrt(bearings.count * bearings.ka / scene.base.mass)  # type: ignore[union-attr]  # bearings have a base
+        rate = bearings.count * bearings.damping / scene.base.mass  # type: ignore[union-attr]  # as above
         found["damping"], found["decay"] = step * rate, rate / scene.rocking_frequency
     if peak_tilt:
         found["tilt"] = peak_tilt / block.slenderness
     return found
 
 
-def outside(scene, verified, *, step, peak_tilt=None):
+def outside(scene: Scene, verified: Range | None, *, step: float, peak_tilt: float | None = None) -> tuple[str, ...]:
     """Sentences, one for each quantity of a scene that lies outside the `Range` verified; () inside.
 
     Parameters

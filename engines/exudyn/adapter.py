@@ -1,9 +1,12 @@
 """exudyn's variants, and what of a run its own solver does not see."""
 
+from __future__ import annotations
+
 import math
 import platform
 from dataclasses import replace
 from importlib.metadata import version
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +17,14 @@ from ..checks import replay_bearing
 from ..contract import Variant
 from ..verified import Range
 from . import corners, joints, native
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+    from ..contract import Run
+    from .corners import CompliantCorners
+    from .joints import SwitchedJoints
+    from .native import NativeContact
 
 # Replayed bearing force, over f0: round-off stays below 1e-12.
 REPLAY_LIMIT = 1e-9
@@ -64,12 +75,12 @@ VARIANTS = {
 }
 
 
-def versions():
+def versions() -> dict[str, str]:
     """Versions that determine the result."""
     return {"exudyn": version("exudyn"), "python": platform.python_version()}
 
 
-def run(scene, variant, settings):
+def run(scene: Scene, variant: str, settings: CompliantCorners | SwitchedJoints | NativeContact) -> Run:
     """The `Run` of a scene.
 
     Raises
@@ -84,7 +95,7 @@ def run(scene, variant, settings):
     return replace(found, failure=found.failure or _fault(scene, found), step=float(np.diff(found.trace.time).max()))
 
 
-def _fault(scene, run):
+def _fault(scene: Scene, run: Run) -> Failure | None:
     """The failure of a run that exudyn took for a success, or None."""
     if not all(np.isfinite(getattr(run.trace, name)).all() for name in run.trace.COLUMNS):
         return None  # observe reports it, with the last finite state
@@ -94,7 +105,7 @@ def _fault(scene, run):
     return None
 
 
-def _start(scene):
+def _start(scene: Scene) -> State:
     law, start = BearingLaw.of(scene.bearings), scene.start
     x, v = start.base_displacement, start.base_velocity
     return State(0.0, start.tilt, start.tilt_rate, x, v, float(law.force(x, law.start(x), v)))

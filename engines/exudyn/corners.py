@@ -5,8 +5,12 @@ The contact's law is this adapter's own, in the tradition of Hunt and Crossley, 
 formula says verifies law and integration, it is no independent physics.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Self
 
 import exudyn as exu
 import numpy as np
@@ -16,6 +20,12 @@ from analytic.bearing import BearingLaw
 
 from .scene import build
 from .stepping import solver_settings, step_through
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+    from ..contract import Run
+    from .scene import Model
 
 Real = exu.symbolic.Real
 
@@ -84,7 +94,7 @@ class CompliantCorners:
     longest_step: float = 5e-3
 
 
-def start_share(scene):
+def start_share(scene: Scene) -> float:
     """Amplitude of the free rocking that a scene starts with, over `MEASURED_START` slendernesses; at most 1."""
     start, gamma = scene.start, scene.block.slenderness
     if scene.motion is not None or (start.tilt == 0 and start.tilt_rate == 0):
@@ -96,7 +106,7 @@ def start_share(scene):
     return min(1.0, (1 - math.sqrt(1 - energy)) / MEASURED_START)
 
 
-def scaled(scene, settings, share):
+def scaled(scene: Scene, settings: CompliantCorners, share: float) -> CompliantCorners:
     """The settings for a scene's size, and for swings of `share` of `MEASURED_START` slendernesses."""
     block = scene.block
     mass, radius, gravity = MEASURED
@@ -122,7 +132,9 @@ def scaled(scene, settings, share):
 
 
 @njit(cache=True)
-def _anchor(anchor, q, v, b, h, stiffness, hardening, stretch):
+def _anchor(
+    anchor: float, q: np.ndarray, v: np.ndarray, b: float, h: float, stiffness: float, hardening: float, stretch: float
+) -> float:
     """Where the block sticks to its base [m], after a step: moved along as far as every corner that bears has slid.
 
     stretch: of the sticking spring over the normal force when it slides [m/N]. A block in the air has no anchor: the
@@ -158,7 +170,7 @@ class Corner:
     friction: float
 
     @classmethod
-    def of(cls, scene, settings):
+    def of(cls, scene: Scene, settings: CompliantCorners) -> Self:
         """Of settings that are scaled to the scene."""
         block, stiffness = scene.block, settings.stiffness
         # on a light base the reduced mass is small: a sticking spring in proportion keeps the step
@@ -179,7 +191,7 @@ class Corner:
             settings.friction,
         )
 
-    def force(self, displacement, velocity, offset):
+    def force(self, displacement: Any, velocity: Any, offset: Any) -> list[Any]:
         """Symbolic force of a Cartesian connector [N]: Hunt-Crossley, clipped at zero, and friction.
 
         Friction sticks to an anchor by spring and damper up to Coulomb's limit; exudyn has subtracted the anchor (the
@@ -205,7 +217,7 @@ class Corner:
 class Anchor:
     """Coulomb's memory: where the block sticks to its base, committed once per accepted step."""
 
-    def __init__(self, model, corner):
+    def __init__(self, model: Model, corner: Corner) -> None:
         block = model.scene.block
         self.at = 0.0
         self.connectors = model.connectors["left"], model.connectors["right"]
@@ -218,7 +230,7 @@ class Anchor:
         )
         self.slop = SLOP * block.mass * model.scene.gravity / corner.sticking
 
-    def commit(self, mbs, q, v):
+    def commit(self, mbs: exu.MainSystem, q: np.ndarray, v: np.ndarray) -> None:
         """Move the anchor after a step to coordinates q and velocities v."""
         at = _anchor(self.at, q, v, *self.shape)
         if abs(at - self.at) > self.slop:
@@ -227,7 +239,7 @@ class Anchor:
                 mbs.SetObjectParameter(connector, "offset", [at, 0.0, 0.0])
 
 
-def assemble(scene, settings):
+def assemble(scene: Scene, settings: CompliantCorners) -> tuple[Model, float]:
     """(model, contact tilt [rad]) of a scene with compliant corners."""
     corner = Corner.of(scene, settings)
     sink = scene.block.mass * scene.gravity / (2 * corner.stiffness)
@@ -238,7 +250,7 @@ def assemble(scene, settings):
     return model, sink / scene.block.half_width
 
 
-def run(scene, settings):
+def run(scene: Scene, settings: CompliantCorners) -> Run:
     """Step a scene with compliant corners; small swings under a motion are stepped again, see `SMALL`."""
     share = start_share(scene)
     found = _run(scene, scaled(scene, settings, share))
@@ -251,7 +263,7 @@ def run(scene, settings):
     return replace(again, cpu_seconds=found.cpu_seconds + again.cpu_seconds, steps=found.steps + again.steps)
 
 
-def _run(scene, settings):
+def _run(scene: Scene, settings: CompliantCorners) -> Run:
     """Step a scene once, with settings that are scaled to it."""
     model, contact_tilt = assemble(scene, settings)
     steps = max(1, math.ceil(scene.duration / settings.longest_step))
@@ -272,7 +284,7 @@ def _run(scene, settings):
     return replace(found, warnings=(*found.warnings, *_unresolved(scene, settings)))
 
 
-def _unresolved(scene, settings):
+def _unresolved(scene: Scene, settings: CompliantCorners) -> Iterator[str]:
     """Sentences on a light base that is gone again while the impact that kicks it still lasts."""
     if scene.bearings is None or scene.base.mass >= LIGHT * scene.block.mass:
         return

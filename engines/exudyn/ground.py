@@ -1,14 +1,23 @@
 """Ground acceleration for exudyn: one smooth expression per segment, and steps that stop where segments meet."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import exudyn as exu
 import numpy as np
 
 from analytic.motion import RICKER_PERIODS, SampledMotion
 
+if TYPE_CHECKING:
+    from analytic.types import Motion
 
-def ground_load(motion):
+    from .scene import Model
+
+
+def ground_load(motion: Motion) -> Callable[[Any, Any], Any]:
     """Symbolic ground acceleration [m/s2] from time and the load vector, which holds the segment's parameters.
 
     Sampled: load = (a, slope) of a = a0 + slope t. Pulse: load = (amplitude, 0), zero outside the pulse.
@@ -29,7 +38,7 @@ def ground_load(motion):
     return pulse
 
 
-def segments(motion, duration):
+def segments(motion: Motion, duration: float) -> tuple[tuple[float, ...], tuple[list[float], ...]]:
     """(ends, loads): end times [s] of the smooth segments up to `duration`, and the load vector in each."""
     if isinstance(motion, SampledMotion):
         slope = np.diff(motion.samples) / motion.dt
@@ -41,14 +50,14 @@ def segments(motion, duration):
     pairs = [(float(end), [a, b, 0.0]) for end, (a, b) in zip(ends, loads, strict=True) if end > 0]
     inside = [pair for pair in pairs if pair[0] < duration]
     after = pairs[len(inside)][1] if len(inside) < len(pairs) else [0.0, 0.0, 0.0]
-    ends, loads = zip(*inside, (duration, after), strict=True)
-    return ends, loads
+    ends, loads = zip(*inside, (duration, after), strict=True)  # type: ignore[assignment]  # tuples of them
+    return ends, loads  # type: ignore[return-value]
 
 
 class Ground:
     """Keeps the loads on the segment of the coming step, and the steps inside segments."""
 
-    def __init__(self, model, longest):
+    def __init__(self, model: Model, longest: float) -> None:
         """longest : longest step [s]."""
         self.ends, self.segment_loads = segments(model.scene.motion, model.scene.duration)
         self.mbs, self.loads, self.longest = model.mbs, model.loads, longest
@@ -62,11 +71,11 @@ class Ground:
         for load in self.loads:
             self.mbs.SetLoadParameter(load, "loadVector", self.segment_loads[self.at])
 
-    def first_step(self, step):
+    def first_step(self, step: float) -> float:
         """The first step [s]: `step`, but inside the first segment."""
         return min(step, self.ends[0])
 
-    def prepare(self, mbs, t):
+    def prepare(self, mbs: exu.MainSystem, t: float) -> bool:
         """Before each attempt of a step that would end at t (PreStep): its segment, and the longest step after it.
 
         The rest of a segment is never cut to leave a sliver: it is one step, or at least two equal ones.

@@ -1,9 +1,12 @@
 """exudyn, variant switched-joints: the idealised block. Joints hold the corner in contact; the adapter, not exudyn,
 decides uplift, impact and rest, localised in time, and applies the impact of eqs (7) and (8)."""
 
+from __future__ import annotations
+
 import math
 import time
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import exudyn as exu
 import numpy as np
@@ -17,6 +20,9 @@ from ..contract import Run
 from .ground import Ground
 from .scene import build
 from .stepping import OVERTURNED, check, interruptible, make_trace, release, solver_settings
+
+if TYPE_CHECKING:
+    from analytic import Scene
 
 REST = 0  # the side of a block in full contact
 STUCK = 10  # events at one instant after which a run is given up; uplift and rest together are two
@@ -33,7 +39,7 @@ class SwitchedJoints:
 class Stepper:
     """A scene between joints: pieces of exudyn's time integration, from one event to the next."""
 
-    def __init__(self, scene, settings):
+    def __init__(self, scene: Scene, settings: SwitchedJoints) -> None:
         self.scene, self.step = scene, settings.step
         self.equations = RockingModel.of(scene)
         self.model = build(scene)
@@ -48,8 +54,10 @@ class Stepper:
         if scene.motion is not None:
             self.model.mbs.SetPreStepUserFunction(Ground(self.model, settings.step).prepare)
         self.model.mbs.SetPostStepUserFunction(self.keep)
+        self.rows: list[tuple[float, np.ndarray, np.ndarray]]
+        self.z: list[float]
         self.rows, self.z, self.time, self.side, self.watching = [], [], 0.0, REST, True
-        self.interrupts = []  # not empty once it shall end
+        self.interrupts: list[int] = []  # not empty once it shall end
 
     def _add_joints(self):
         model, mbs = self.model, self.model.mbs
@@ -62,7 +70,7 @@ class Stepper:
         self.lock = mbs.AddObject(ObjectConnectorCoordinate(markerNumbers=[fixed, turn]))
         model.connectors.update(left=self.joints[-1], right=self.joints[1], lock=self.lock)
 
-    def keep(self, mbs, t):
+    def keep(self, mbs: exu.MainSystem, t: float) -> bool:
         """After each step (PostStep): record it, commit the bearing's history; False stops at an event."""
         system, bearing = mbs.systemData, self.model.bearing
         q, v = system.GetODE2Coordinates(), system.GetODE2Coordinates_t()
@@ -76,31 +84,31 @@ class Stepper:
             return False
         return not (self.watching and self.event())
 
-    def event(self):
+    def event(self) -> bool:
         """Whether the last step ended beyond an impact or an uplift."""
         t, q, v = self.rows[-1]
         if self.side == REST:
             return self.excess(len(self.rows) - 1) > 0
         return -self.side * q.item(2) < 0
 
-    def excess(self, index):
+    def excess(self, index: int) -> float:
         """|absolute acceleration in full contact| above the uplift acceleration [m/s2] at a row."""
         return abs(self.contact_acceleration(index)) - self.equations.uplift_acceleration
 
-    def contact_acceleration(self, index):
+    def contact_acceleration(self, index: int) -> float:
         t, q, v = self.rows[index]
         if self.scene.base:
             return self.equations.contact_acceleration(self.force(index))
         return float(self.scene.motion.acceleration(t)) if self.scene.motion else 0.0
 
-    def force(self, index):
+    def force(self, index: int) -> float:
         """Force of all bearings [N] at a row."""
         if self.model.bearing is None:
             return 0.0
         t, q, v = self.rows[index]
         return self.model.bearing.law.force(q.item(3), self.z[index], v.item(3))
 
-    def advance(self, until, watching=True):
+    def advance(self, until: float, watching: bool = True) -> Failure | None:
         """Integrate from the last row to `until` [s], at most to an event."""
         t, q, v = self.rows[-1]
         mbs, integration = self.model.mbs, self.settings.timeIntegration
@@ -117,7 +125,7 @@ class Stepper:
             return Failure("the solver gave up", self.solver.GetErrorString())
         return None
 
-    def take_back(self):
+    def take_back(self) -> None:
         """Undo the last step."""
         self.rows.pop()
         bearing = self.model.bearing
@@ -125,7 +133,7 @@ class Stepper:
             self.z.pop()
             bearing.restore(self.model.mbs, self.rows[-1][1].item(3), self.z[-1])
 
-    def event_time(self):
+    def event_time(self) -> float:
         """Time of the event within the last step [s]."""
         (t0, q0, v0), (t1, q1, v1) = self.rows[-2:]
         if self.side == REST:
@@ -135,7 +143,7 @@ class Stepper:
         roots = [root for root in curve.roots(extrapolate=False) if t0 < root <= t1]
         return max(roots) if roots else t0
 
-    def impact(self):
+    def impact(self) -> None:
         """Apply eqs (7) and (8) to the last row; the new side, or REST if the next swing is shorter than a step."""
         t, q, v = self.rows[-1]
         equations, old = self.equations, self.side
@@ -150,7 +158,7 @@ class Stepper:
             jump = self.scene.mass_share * self.scene.block.half_height * rate
         self.place(side, after, speed + jump)
 
-    def place(self, side, rate, speed):
+    def place(self, side: int, rate: float, speed: float) -> None:
         """Put the block flat on the base at the last row, with these rates [rad/s, m/s]."""
         t, q, v = self.rows[-1]
         x = q.item(3) if self.scene.base else 0.0
@@ -160,7 +168,7 @@ class Stepper:
         self.rows[-1] = (t, q, v)
         self.side = side
 
-    def run(self):
+    def run(self) -> Failure | None:
         """Step to the scene's end; the failure, or None."""
         system, scene = self.model.mbs.systemData, self.scene
         q, v = np.array(system.GetODE2Coordinates()), np.array(system.GetODE2Coordinates_t())
@@ -194,13 +202,13 @@ class Stepper:
                 self.impact()
         return None
 
-    def lift(self):
+    def lift(self) -> None:
         """Let the block rock, away from the acceleration of the base."""
         side = -int(math.copysign(1, self.contact_acceleration(len(self.rows) - 1)))
         self.place(side, 0.0, self.rows[-1][2].item(3) if self.scene.base else 0.0)
 
 
-def run(scene, settings):
+def run(scene: Scene, settings: SwitchedJoints) -> Run:
     """Step a scene between switched joints."""
     exu.config.printToConsole = False
     stepper = Stepper(scene, settings)
@@ -214,6 +222,6 @@ def run(scene, settings):
         release(stepper.model.mbs)
     cpu = time.process_time() - began
     columns = map(np.array, zip(*stepper.rows, strict=True))
-    trace = make_trace(scene, *columns, stepper.z, stepper.model.bearing, 1e-9, 0.0)
+    trace = make_trace(scene, *columns, stepper.z, stepper.model.bearing, 1e-9, 0.0)  # type: ignore[call-arg, arg-type]  # t, q and v
     ended = "overturned" if trace is not None and abs(trace.tilt[-1]) >= OVERTURNED else None
     return Run(trace, len(stepper.rows) - 1, cpu, failure, ended)

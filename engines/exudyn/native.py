@@ -1,13 +1,22 @@
 """exudyn, variant native-contact: exudyn's own sphere-triangle contact, set up as a first script would."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import exudyn as exu
 from exudyn.itemInterface import MarkerBodyRigid, NodeGenericData, ObjectContactSphereTriangle
 
 from .scene import build
 from .stepping import solver_settings, step_through
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+    from ..contract import Run
+    from .scene import Model
 
 
 @dataclass(frozen=True)
@@ -26,7 +35,7 @@ class NativeContact:
     sphere: float = 2e-2  # m, radius of the corner spheres; with 1e-3 stocky blocks are thrown into the air
 
 
-def assemble(scene, settings):
+def assemble(scene: Scene, settings: NativeContact) -> tuple[Model, float]:
     """(model, static penetration [m]) of a scene with sphere-triangle contacts."""
     block = scene.block
     sink = block.mass * scene.gravity / (2 * settings.stiffness)
@@ -56,7 +65,7 @@ def assemble(scene, settings):
     return model, sink
 
 
-def run(scene, settings):
+def run(scene: Scene, settings: NativeContact) -> Run:
     """Step a scene with exudyn's own contact."""
     model, sink = assemble(scene, settings)
     solver = solver_settings(

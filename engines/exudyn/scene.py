@@ -4,7 +4,11 @@ Coordinates: ground frame, x horizontal, y up; exudyn's rotation is counter-cloc
 motion enters as inertial load, x is relative to the ground.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import exudyn as exu
 import numpy as np
@@ -27,6 +31,11 @@ from analytic.bearing import BearingLaw
 from ..placement import placement
 from .ground import ground_load
 
+if TYPE_CHECKING:
+    from analytic import Scene
+
+    from .corners import Anchor
+
 Real = exu.symbolic.Real
 
 
@@ -34,20 +43,22 @@ Real = exu.symbolic.Real
 class Model:
     """An exudyn system of one scene. `keep` holds the expression trees, which exudyn does not own."""
 
-    scene: object
-    container: object
-    mbs: object
-    ground: object
-    block: object
-    base: object
-    bearing: "Bearing | None" = None
-    anchor: object | None = None  # of the friction, see `corners`
+    scene: Scene
+    container: exu.SystemContainer
+    mbs: exu.MainSystem
+    ground: exu.ObjectIndex
+    block: exu.ObjectIndex
+    base: exu.ObjectIndex
+    bearing: Bearing | None = None
+    anchor: Anchor | None = None  # of the friction, see `corners`
     loads: list = field(default_factory=list)
     connectors: dict = field(default_factory=dict)
     keep: list = field(default_factory=list)
     expected: dict = field(default_factory=dict)  # (object number, field): value the variant asked for
 
-    def connect(self, name, markers, function, **parameters):
+    def connect(
+        self, name: str, markers: Sequence[Any], function: Callable[[Any, Any, Any], Any], **parameters: Any
+    ) -> Any:
         """A Cartesian connector with a symbolic force, kept by name; function(displacement, velocity, offset)."""
 
         def spring(mbs, t, item, displacement, velocity, stiffness, damping, offset):
@@ -60,18 +71,18 @@ class Model:
         self.expected[number, "activeConnector"] = True
         return number
 
-    def load(self, item, function):
+    def load(self, item: Any, function: Callable[..., Any]) -> None:
         """A load with a symbolic value."""
         number = exu.LoadIndex(self.mbs.AddLoad(item))
         self._make_symbolic(number, function, "loadVectorUserFunction", self.mbs.SetLoadParameter)
         self.loads.append(number)
 
-    def _make_symbolic(self, number, function, name, setter):
+    def _make_symbolic(self, number: Any, function: Callable[..., Any], name: str, setter: Callable[..., Any]) -> None:
         tree = CreateSymbolicUserFunction(self.mbs, function, name, number)
         setter(number, name, tree)
         self.keep.append(tree)
 
-    def corner_markers(self, side):
+    def corner_markers(self, side: int) -> list[Any]:
         """Markers of the base point and of the block's bottom corner of that side."""
         b, h = self.scene.block.half_width, self.scene.block.half_height
         return [
@@ -84,16 +95,16 @@ class _Symbols:
     """What a law's formula is made of, see `Law.expression`."""
 
     @staticmethod
-    def where(condition, a, b):
+    def where(condition: Any, a: Any, b: Any) -> Any:
         a, b = (Real(one) if isinstance(one, float) else one for one in (a, b))
         return exu.symbolic.IfThenElse(condition, a, b)
 
     @staticmethod
-    def power(a, b):
+    def power(a: Any, b: float) -> Any:
         return exu.symbolic.pow(a, Real(b))
 
     @staticmethod
-    def exp(a):
+    def exp(a: Any) -> Any:
         return exu.symbolic.exp(a)
 
 
@@ -103,14 +114,14 @@ class Bearing:
     x, z : base displacement [m] and hysteretic force of one bearing [N] at the last accepted step.
     """
 
-    def __init__(self, law, displacement):
+    def __init__(self, law: BearingLaw, displacement: float) -> None:
         self.law, self.x, self.z, self.connector = law, displacement, law.start(displacement), None
 
-    def memory(self):
+    def memory(self) -> list[float]:
         """The history as the three numbers the force expression reads."""
         return [self.x, *self.law.moved(self.z, 0.0)[1:]]
 
-    def commit(self, mbs, x):
+    def commit(self, mbs: exu.MainSystem, x: float) -> float:
         """Move the history to an accepted displacement; the hysteretic force there."""
         if self.law.unit.memory:
             self.z, first, second = self.law.moved(self.z, x - self.x)
@@ -118,12 +129,12 @@ class Bearing:
             mbs.SetObjectParameter(self.connector, "offset", [x, first, second])
         return self.z
 
-    def restore(self, mbs, x, z):
+    def restore(self, mbs: exu.MainSystem, x: float, z: float) -> None:
         """Take the history back to an earlier step."""
         self.x, self.z = x, z
         mbs.SetObjectParameter(self.connector, "offset", self.memory())
 
-    def force(self, displacement, velocity, offset):
+    def force(self, displacement: Any, velocity: Any, offset: Any) -> list[Any]:
         """Symbolic force against the base [N], by the law's formula from the committed point.
 
         exudyn has already subtracted the offset, here the committed displacement, from the displacement.
@@ -134,7 +145,7 @@ class Bearing:
         return [law.count * total, Real(0.0), Real(0.0)]
 
 
-def start_coordinates(scene, sink):
+def start_coordinates(scene: Scene, sink: float) -> tuple[list[float], list[float]]:
     """(q, v) of the block's centre [m, m/s; rad, rad/s], relative to its place at rest; `sink` is the static
     penetration [m] of a block that stands."""
     x, z, across, up = placement(scene)
@@ -145,7 +156,7 @@ def start_coordinates(scene, sink):
     return q, v
 
 
-def build(scene, sink=0.0):
+def build(scene: Scene, sink: float = 0.0) -> Model:
     """The `Model` of a scene without contact."""
     container = exu.SystemContainer()
     mbs = container.AddSystem()
@@ -175,14 +186,14 @@ def build(scene, sink=0.0):
     return model
 
 
-def _add_bearing(model):
+def _add_bearing(model: Model) -> None:
     mbs, law = model.mbs, BearingLaw.of(model.scene.bearings)
     model.bearing = Bearing(law, model.scene.start.base_displacement)
     markers = [mbs.AddMarker(MarkerBodyPosition(bodyNumber=body)) for body in (model.ground, model.base)]
     model.bearing.connector = model.connect("bearing", markers, model.bearing.force, offset=model.bearing.memory())
 
 
-def _add_loads(model):
+def _add_loads(model: Model) -> None:
     """Weight of the block, and inertia of block and base in the ground's frame."""
     scene, mbs = model.scene, model.mbs
     block = mbs.AddMarker(MarkerBodyMass(bodyNumber=model.block))
@@ -204,7 +215,7 @@ def _add_loads(model):
         model.load(LoadForceVector(markerNumber=base), on_base)
 
 
-def read_back(model):
+def read_back(model: Model) -> dict[str, tuple[Any, Any]]:
     """What exudyn really holds, as a dict name -> (in exudyn, in the scene)."""
     scene, mbs = model.scene, model.mbs
     block = mbs.GetObject(model.block)

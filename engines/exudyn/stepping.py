@@ -1,11 +1,15 @@
 """Stepping an exudyn model: record the accepted steps, commit the bearing's history, stop at overturning."""
 
+from __future__ import annotations
+
 import math
 import signal
 import threading
 import time
 from array import array
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
 
 import exudyn as exu
 import numpy as np
@@ -17,6 +21,11 @@ from ..swings import Trace
 from .ground import Ground
 from .scene import read_back
 
+if TYPE_CHECKING:
+    from analytic import Scene
+
+    from .scene import Bearing, Model
+
 OVERTURNED = math.pi / 2
 
 # Steps after which a run is given up: so many per rocking period of the scene, the first one counted double. The
@@ -26,7 +35,7 @@ STEPS_PER_PERIOD = 300_000
 
 
 @contextmanager
-def interruptible():
+def interruptible() -> Iterator[list[Any]]:
     """Runs of exudyn in here end at Ctrl-C, as Python code does.
 
     exudyn takes the KeyboardInterrupt that Python raises in a user function for a failure of its solver. So the
@@ -37,6 +46,7 @@ def interruptible():
     list
         Not empty once the signal has come.
     """
+    came: list[int]
     came, handler = [], signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or not callable(handler):
         yield came  # signals are handled elsewhere, or not at all
@@ -50,12 +60,12 @@ def interruptible():
             signal.raise_signal(signal.SIGINT)
 
 
-def step_limit(scene):
+def step_limit(scene: Scene) -> int:
     """Number of steps after which a run of a scene is given up."""
     return int(STEPS_PER_PERIOD * (2 + scene.duration * scene.rocking_frequency / (2 * math.pi)))
 
 
-def solver_settings(scene, **time_integration):
+def solver_settings(scene: Scene, **time_integration: Any) -> exu.SimulationSettings:
     """Silent exudyn settings for one scene; the time integration's fields as given."""
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
@@ -73,7 +83,14 @@ def solver_settings(scene, **time_integration):
     return settings
 
 
-def step_through(model, settings, solver, contact_tilt, longest, settle=0.0):
+def step_through(
+    model: Model,
+    settings: exu.SimulationSettings,
+    solver: exu.DynamicSolverType,
+    contact_tilt: float,
+    longest: float,
+    settle: float = 0.0,
+) -> Run:
     """Run a model to the scene's end, overturning or failure.
 
     Parameters
@@ -96,6 +113,7 @@ def step_through(model, settings, solver, contact_tilt, longest, settle=0.0):
     # Not lists: a step costs 100 bytes instead of 500.
     times, states, forces = array("d"), array("d"), array("d")
     coordinates, velocities = system.GetODE2Coordinates, system.GetODE2Coordinates_t
+    interrupts: list[int]
     limit, interrupts = step_limit(scene), []
 
     def keep(mbs, t):
@@ -144,7 +162,7 @@ def step_through(model, settings, solver, contact_tilt, longest, settle=0.0):
     return Run(trace, len(times) - 1, cpu, failure, ended)
 
 
-def release(mbs):
+def release(mbs: exu.MainSystem) -> None:
     """Take the user functions out of a system that has run.
 
     With them the system and what they hold are alive as long as the process, in a cycle through exudyn that the
@@ -154,7 +172,7 @@ def release(mbs):
     mbs.SetPostStepUserFunction(0)
 
 
-def check(model):
+def check(model: Model) -> None:
     """Assemble a model and refuse one in which exudyn holds other values than the scene.
 
     Raises
@@ -172,7 +190,16 @@ def check(model):
         raise Mismatch("; ".join(wrong))
 
 
-def make_trace(scene, t, q, v, z, bearing, contact_tilt, settle):
+def make_trace(
+    scene: Scene,
+    t: np.ndarray,
+    q: np.ndarray,
+    v: np.ndarray,
+    z: Sequence[float],
+    bearing: Bearing | None,
+    contact_tilt: float,
+    settle: float,
+) -> Trace | None:
     """The `Trace` of the recorded steps, or None where there are fewer than two."""
     if bearing:
         t, q, v = t[: len(z)], q[: len(z)], v[: len(z)]  # a step whose history could not be committed is not a step

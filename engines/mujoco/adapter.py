@@ -25,10 +25,13 @@ velocity jump (relative) 2.3e-3, now 8e-4.
 All with mujoco 4.0.0; diagexact needs 3.9.
 """
 
+from __future__ import annotations
+
 import math
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import mujoco
 import numpy as np
@@ -40,6 +43,9 @@ from ..leapfrog import failure_of, raw_trace_of, trace_of
 from ..verified import Range
 from . import stepping
 from .scene import build, longest_step
+
+if TYPE_CHECKING:
+    from analytic import Scene
 
 SOLVER_DECIDES = (
     "MuJoCo's contact solver decides when a corner lands, sticks or lifts and what an impact does to the tilt rate and "
@@ -142,13 +148,14 @@ FIRST_CONTACT_TILT = 0.05
 FIRST_SETTLE = 0.1  # s, 5 time constants of the default contact; 0.2 reads the same e to 2e-3
 
 
-def versions():
+def versions() -> dict[str, str]:
     """Versions of what computes: {package: version}."""
     return {"mujoco": mujoco.__version__, "mujoco-library": mujoco.mj_versionString()}
 
 
-def run(scene, variant, settings):
+def run(scene: Scene, variant: str, settings: ImpactAware | FixedStep | FirstScript) -> Run:
     """The `Run` of a scene."""
+    said: list[str]
     said, handler = [], mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(said.append)  # else MuJoCo writes a log file into the working directory
     try:
@@ -172,7 +179,7 @@ def run(scene, variant, settings):
     )
 
 
-def _contact_tilt(chosen, peak, slenderness):
+def _contact_tilt(chosen: ImpactAware | FixedStep | FirstScript, peak: float, slenderness: float) -> float:
     """Tilt [rad] below which the block counts as in flat contact, in a run with this peak tilt.
 
     At rest it tilts by up to 1e-6 of gamma. Impact-aware lands between 1e-6 (gamma .1) and 5e-6 of gamma (.05) beyond
@@ -184,7 +191,9 @@ def _contact_tilt(chosen, peak, slenderness):
     return max(1e-4, 0.25 * chosen.step) * min(max(peak, 0.1 * slenderness), slenderness)
 
 
-def _failure(scene, rows, ended, warned):
+def _failure(
+    scene: Scene, rows: Sequence[Sequence[float]] | np.ndarray, ended: str | None, warned: str
+) -> Failure | None:
     """What went wrong in a finished run, or None."""
     failure = failure_of(scene, rows, ended)
     if ended == "not finite":

@@ -1,12 +1,22 @@
 """The scene as a MuJoCo model."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING, TypeAlias
 
 import mujoco
 
 from ..contract import Mismatch
 from ..placement import placement
 from ..readback import require
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+    from .adapter import FirstScript, FixedStep, ImpactAware
+
+    Settings: TypeAlias = FirstScript | FixedStep | ImpactAware
 
 FRICTION = 5.0  # stands for the model's "no sliding"; of two geoms MuJoCo takes the larger; e is the same with 1
 CORNER_RADIUS = 1e-6  # share of R: the block touches by a sphere at each bottom corner; e is the same with 1e-8
@@ -26,29 +36,29 @@ UNIT_RADIUS = 1.0884  # m, of the Caryatid, for which the variants' times are gi
 VIBRATION, MOST_REFINEMENT = 0.07, 40.0
 
 
-def least_mass(scene):
+def least_mass(scene: Scene) -> float:
     """Least inertia [kg] that a push on the base meets while the block stands or rocks on it, eqs (3)-(6)."""
     block = scene.block
     return scene.total_mass - (block.mass * block.radius) ** 2 / block.inertia
 
 
-def size_scale(scene):
+def size_scale(scene: Scene) -> float:
     """What times set for a block of `UNIT_RADIUS` are multiplied with: rocking goes with sqrt(R/g)."""
     return math.sqrt(scene.block.radius / UNIT_RADIUS)
 
 
-def recovery_rate(scene, chosen):
+def recovery_rate(scene: Scene, chosen: Settings) -> float | None:
     """Rate [1/s] at which a sink decays, None where MuJoCo's defaults are to stay."""
     return None if chosen.recovery is None else chosen.recovery / size_scale(scene)
 
 
-def impedance(scene):
+def impedance(scene: Scene) -> float:
     """Impedance d of the contacts: 1 - d is the share of a landing that they leave, more so where J_O is near m R^2."""
     block = scene.block
     return 1 - (1 - IMPEDANCE) * min(1.0, max(0.1, 3 * block.centre_inertia / (block.mass * block.radius**2)))
 
 
-def longest_step(scene, chosen):
+def longest_step(scene: Scene, chosen: Settings) -> float:
     """Length of the steps in flight and at rest [s]: the variant's, less for a small block and for stiff bearings."""
     if chosen.recovery is None:
         return chosen.largest_step
@@ -59,7 +69,7 @@ def longest_step(scene, chosen):
     return min(step, max(VIBRATION / frequency, step / MOST_REFINEMENT))
 
 
-def coordinates(scene):
+def coordinates(scene: Scene) -> tuple[list[float], list[float]]:
     """Coordinates and velocities at the start: base (if any), block's centre x, z from its standing height, tilt."""
     x, z, vx, vz = placement(scene)
     position, velocity = [x, z, scene.start.tilt], [vx, vz, scene.start.tilt_rate]
@@ -68,7 +78,7 @@ def coordinates(scene):
     return [scene.start.base_displacement, *position], [scene.start.base_velocity, *velocity]
 
 
-def _ground(scene, geom=""):
+def _ground(scene: Scene, geom: str = "") -> str:
     """MJCF of what the block stands on, its top at z = 0: a plane, or a slab on a slide joint for a base."""
     if scene.base is None:
         return f'<geom type="plane" size="0 0 1" {geom}/>'
@@ -80,7 +90,7 @@ def _ground(scene, geom=""):
     )
 
 
-def contact_reference(step, recovery):
+def contact_reference(step: float, recovery: float) -> tuple[float, float]:
     """solref for a step [s]: -stiffness and -damping per unit of mass that stop a corner in this very step.
 
     A corner that has sunk by r then moves up at r min(MOST_RECOVERY/step, recovery), whatever its speed was.
@@ -88,7 +98,7 @@ def contact_reference(step, recovery):
     return -min(MOST_RECOVERY / step, recovery) / step, -1.0 / step
 
 
-def build(scene, chosen):
+def build(scene: Scene, chosen: Settings) -> tuple[mujoco.MjModel, mujoco.MjData]:
     """(model, data) of the block on slide-x, slide-z and hinge-y joints over its ground or base, at the start.
 
     Raises
@@ -126,7 +136,14 @@ def build(scene, chosen):
     return model, data
 
 
-def check_readback(model, data, scene, step, solref, friction):
+def check_readback(
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    scene: Scene,
+    step: float,
+    solref: tuple[float, float] | None,
+    friction: float | None,
+) -> None:
     """Compare what MuJoCo holds with what the scene needs; raises `Mismatch` naming what differs.
 
     The contacts are looked at as MuJoCo combines them: the block is pushed into its base for it, and put back.

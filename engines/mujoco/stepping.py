@@ -1,7 +1,10 @@
 """Stepping a scene in MuJoCo: loads, step length, readback."""
 
+from __future__ import annotations
+
 import math
 from array import array
+from typing import TYPE_CHECKING, Self
 
 import mujoco
 import numpy as np
@@ -14,6 +17,11 @@ from ..leapfrog import row_limit
 from ..pace import aligned, impact_aware
 from .scene import contact_reference, least_mass, recovery_rate, size_scale
 
+if TYPE_CHECKING:
+    from analytic import Scene
+
+    from .scene import Settings
+
 APPROACH = 0.15  # share of the remaining time to the impact that a step may take; .1 to .3: no accuracy knob
 SMALLEST_STEP = 1e-7  # s, at `UNIT_RADIUS`; 1e-8 to 1e-6
 # Viscous impulse of a step over the base's momentum from which on it is solved with the contacts. (MuJoCo's least
@@ -21,7 +29,7 @@ SMALLEST_STEP = 1e-7  # s, at `UNIT_RADIUS`; 1e-8 to 1e-6
 LEAST_RATIO = 2e-4
 
 
-def run(model, data, scene, chosen):
+def run(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, chosen: Settings) -> tuple[np.ndarray, str]:
     """Step until the duration is over, the block has overturned or a state is not finite.
 
     MuJoCo's Euler is leapfrog: displacements live at the steps' ends, velocities half a step earlier. A load that
@@ -126,18 +134,20 @@ class Viscous:
     between the step's ends. Not in the step of an impact: there the damper would hold the base that the block kicks.
     """
 
-    def __init__(self, model, data, damping, mass, lightest):
+    def __init__(
+        self, model: mujoco.MjModel, data: mujoco.MjData, damping: float, mass: float, lightest: float
+    ) -> None:
         self.model, self.active = model, data.eq_active
         self.damping, self.mass, self.lightest = damping, mass, lightest
 
     @classmethod
-    def of(cls, scene, model, data):
+    def of(cls, scene: Scene, model: mujoco.MjModel, data: mujoco.MjData) -> Self | None:
         law = BearingLaw.of(scene.bearings)
         if not law.count * law.damping:
             return None
         return cls(model, data, law.count * law.damping, scene.base.mass, least_mass(scene))
 
-    def solved(self, h, step, scale, landing):
+    def solved(self, h: float, step: float, scale: float, landing: bool) -> bool:
         """Set the constraint for a step [s] after one of h; False where the force is to be applied by itself."""
         pull = self.damping * scale * step
         # v at the end of the step before is the mean of its neighbours, weighted; where that would ring, the later one.
@@ -151,6 +161,6 @@ class Viscous:
         self.model.eq_solref[0] = 0.0, -d / (share * step)
         return True
 
-    def most(self, step):
+    def most(self, step: float) -> float:
         """The damping [N s/m] to apply in a step [s], at most that which stops the base in it."""
         return min(self.damping, self.lightest / step)

@@ -1,9 +1,13 @@
 """PyBullet's variants: Bullet decides contact and impact."""
 
+from __future__ import annotations
+
 import math
 import time
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
 from importlib.metadata import version
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pybullet
@@ -18,6 +22,11 @@ from ..verified import Range
 from ..vibration import longest_step
 from . import first_script, stepping
 from .scene import MOST_FRICTION, MOST_VELOCITY, Units, assemble
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+    from ..swings import Trace
 
 DECIDES = (
     "Bullet's contact solver decides when a corner lands, sticks or lifts and what an impact does to the tilt rate "
@@ -89,7 +98,7 @@ VARIANTS = {
 }
 
 
-def versions():
+def versions() -> dict[str, str]:
     """Versions of what computes: {package: version}."""
     return {"pybullet": version("pybullet"), "bullet-api": str(pybullet.getAPIVersion())}
 
@@ -98,7 +107,7 @@ class TooManySteps(RuntimeError):
     """A run would take more than `MOST_ROWS` steps."""
 
 
-def run(scene, variant, settings):
+def run(scene: Scene, variant: str, settings: ImpactAware | FixedStep | FirstScript) -> Run:
     """The `Run` of a scene."""
     trace, steps, cpu, ended, place, failure = _attempt(scene, settings)
     if failure is None and place is not None and _may_have_left(scene, trace, ended, place):
@@ -147,6 +156,7 @@ def _attempt(scene, chosen, places=False):
 
 def _run(client, scene, chosen, places):
     """(rows, how it ended, place of the block at the end or None, CPU seconds of the stepping)."""
+    rows: Sequence[Sequence[float]] | np.ndarray
     if isinstance(chosen, FirstScript):
         handles = first_script.build(client, scene, chosen.step)
         clock = time.process_time()
@@ -171,7 +181,7 @@ def _run(client, scene, chosen, places):
     return rows, ended, place, cpu
 
 
-def _largest(scene, chosen):
+def _largest(scene: Scene, chosen: ImpactAware | FixedStep | FirstScript) -> float:
     """Longest step [s] of a variant's settings for a scene."""
     if isinstance(chosen, FirstScript):
         return chosen.step
@@ -180,7 +190,7 @@ def _largest(scene, chosen):
     return longest_step(scene, units.time * longest)
 
 
-def _beyond(scene, name, chosen):
+def _beyond(scene: Scene, name: str, chosen: ImpactAware | FixedStep | FirstScript) -> Iterator[str]:
     """Sentences on settings coarser than those verified, and on what Bullet cannot take as it is given."""
     for field in fields(chosen):
         value, usual = getattr(chosen, field.name), getattr(VARIANTS[name].settings, field.name)
@@ -190,7 +200,7 @@ def _beyond(scene, name, chosen):
         yield f"friction = {scene.friction:.4g} is above {MOST_FRICTION:g}: Bullet takes it as {MOST_FRICTION:g}"
 
 
-def _may_have_left(scene, trace, ended, place):
+def _may_have_left(scene: Scene, trace: Trace, ended: str | None, place: np.ndarray) -> bool:
     """Whether the block cannot have turned about its corner all the time: by its energy, or by where it ended."""
     if not energy_gain(scene, trace) <= GAIN_LIMIT:
         return True
@@ -198,7 +208,13 @@ def _may_have_left(scene, trace, ended, place):
     return ended == "done" and off > HEIGHT_TOLERANCE * scene.block.radius
 
 
-def _failure(scene, rows, ended, trace, first=False):
+def _failure(
+    scene: Scene,
+    rows: Sequence[Sequence[float]] | np.ndarray,
+    ended: str | None,
+    trace: Trace | None,
+    first: bool = False,
+) -> Failure | None:
     """What went wrong in a finished run, or None."""
     failure = failure_of(scene, rows, ended)
     if failure:

@@ -5,7 +5,11 @@ contact parameters for games, the bearings' force and the ground's acceleration 
 as they come.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import pybullet
 
@@ -13,13 +17,16 @@ from analytic.bearing import BearingLaw
 
 from ..placement import placement
 
+if TYPE_CHECKING:
+    from analytic import Scene
+
 THICKNESS = 1.0  # m, of the slab
 # Bullet's own default [m]. Process-global: without it a planar run earlier in the process would leave its own here.
 BREAKING_THRESHOLD = 0.02
 MOST_VELOCITY = 100.0  # m/s and rad/s: where Bullet cuts a joint's by default, in silence
 
 
-def build(client, scene, step):
+def build(client: int, scene: Scene, step: float) -> tuple[int, int]:
     """(block, slab) ids: a free 3-D box on a slab; the slab fixed, or on one joint where the scene has a base."""
     block = scene.block
     b, h = block.half_width, block.half_height
@@ -65,7 +72,7 @@ def build(client, scene, step):
     return body, slab
 
 
-def run(handles, client, scene, step):
+def run(handles: tuple[int, int], client: int, scene: Scene, step: float) -> tuple[Sequence[tuple[float, ...]], str]:
     """(rows, ended) as `stepping.run`; rates are those Bullet reports at the step's end."""
     body, slab = handles
     law = BearingLaw.of(scene.bearings)

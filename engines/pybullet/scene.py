@@ -3,14 +3,20 @@
 All traps named here were met with PyBullet 3.2.7; see the comments.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 import pybullet
 
 from ..placement import placement
 from ..readback import require
+
+if TYPE_CHECKING:
+    from analytic import Scene
 
 # Coefficient between the block and what it stands on where the scene gives none: the model's "no sliding". Bullet
 # multiplies the frictions of two bodies and cuts the product to 10, in silence.
@@ -64,11 +70,11 @@ class Units:
     time: float
 
     @classmethod
-    def of(cls, scene):
+    def of(cls, scene: Scene) -> Self:
         power = round(math.log(scene.block.radius, 4))
         return cls(4.0**power, 2.0**power)
 
-    def scale(self, scene):
+    def scale(self, scene: Scene) -> Scene:
         """The scene in these units, but for its motion and bearings, which stay in SI."""
         block, start, length, speed = scene.block, scene.start, self.length, self.length / self.time
         inertia = None if block.corner_inertia is None else block.corner_inertia / length**2
@@ -84,7 +90,7 @@ class Units:
         )
 
 
-def iterations(scene, corners):
+def iterations(scene: Scene, corners: int) -> int:
     """Iterations of the contact solver until ROCKING_REST (one corner) or STANDING_REST (two) is left.
 
     Sequential impulses are Gauss-Seidel's method, the normals first: its rate is an eigenvalue, near 1 for J_O near
@@ -105,7 +111,7 @@ def iterations(scene, corners):
     return min(max(math.ceil(needed), LEAST_ITERATIONS[corners - 1]), MOST_ITERATIONS)
 
 
-def assemble(client, scene, step):
+def assemble(client: int, scene: Scene, step: float) -> Assembly:
     """Build the planar chain of a scene, in Bullet's `Units`, in a fresh client.
 
     The block, on x-prismatic, z-prismatic and y-revolute joints without mass, touches with two corners. The base is
@@ -201,7 +207,7 @@ def assemble(client, scene, step):
     return assembly
 
 
-def check_readback(assembly, scene, step, many, rough):
+def check_readback(assembly: Assembly, scene: Scene, step: float, many: int, rough: float) -> None:
     """Compare what Bullet reports with what the scene needs; raises `Mismatch` naming what differs.
 
     contactSlop and contactBreakingThreshold have no getter in Bullet.

@@ -6,8 +6,11 @@ step by (h + h')/(2 h') makes the scheme second order for any sequence of steps,
 needs no correction of velocities when the step changes.
 """
 
+from __future__ import annotations
+
 import math
 from array import array
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pybullet
@@ -21,6 +24,11 @@ from ..placement import placement
 from ..vibration import VISCOUS, added_mass, driven_mass, leapfrog_stiffness
 from .scene import iterations
 
+if TYPE_CHECKING:
+    from analytic import Scene
+
+    from .scene import Assembly, Units
+
 APPROACH = 0.3  # share of the remaining time to the impact that a step may take; .15 to .5: no accuracy knob
 # [s]; 1e-6 doubles the error of e of the stockiest block on a base, 1e-8 changes nothing.
 SMALLEST_STEP = 1e-7
@@ -30,7 +38,15 @@ SMALLEST_STEP = 1e-7
 LANDING_ITERATIONS = 100
 
 
-def run(assembly, scene, units, largest, accuracy, row_limit, places=False):
+def run(
+    assembly: Assembly,
+    scene: Scene,
+    units: Units,
+    largest: float,
+    accuracy: float | None,
+    row_limit: int,
+    places: bool = False,
+) -> tuple[np.ndarray, str]:
     """Step until the duration is over, the block has overturned or a state is not finite.
 
     Parameters
