@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 # How well a variant is set up: as well as is known; with care, but at a known cost in error or generality; as a first
 # script would.
 RUNGS = ("best", "expert", "first script")
+STEPS = ("step", "largest_step", "longest_step")  # names of a setting that is the longest step [s]
 
 
 class Mismatch(RuntimeError):
@@ -61,11 +62,21 @@ class Variant:
         Warnings said of every run. Without any, a variant verified nowhere says that.
     takes_restitution : bool
         The adapter, not the engine, applies the impact: a scene may give the restitution.
+    finer : tuple of dict
+        Settings that may cure a run that is not right, tried in turn; without any, the ladder beyond the default.
+    varied : dict
+        {setting: values} of what else, changed alone, tells what the variant's error hangs on.
+    friction : float or None
+        Coefficient of the contact where a scene gives none, if it is so low that a block may slide.
+    flight_damping : float or None
+        d [1/s] of a damping in flight that nobody asked for: force d m v (1 + |v|), moment d I w (1 + |w|), SI units.
+    free_block : str or None
+        ``module:function``, called as a solver with ``step`` [s]: the same with a free block of six degrees of freedom.
 
     Raises
     ------
     ValueError
-        An unknown rung, or a ladder without the default.
+        An unknown rung, a ladder without the default, or a value for a setting that does not exist.
     """
 
     settings: object
@@ -75,6 +86,11 @@ class Variant:
     verified: Range | None
     caveats: tuple[str, ...] = ()
     takes_restitution: bool = False
+    finer: tuple[dict[str, float], ...] = ()
+    varied: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    friction: float | None = None
+    flight_damping: float | None = None
+    free_block: str | None = None
 
     def __post_init__(self) -> None:
         if self.rung not in RUNGS:
@@ -83,6 +99,12 @@ class Variant:
             raise ValueError(f"ladder = {self.ladder!r}: it lacks the default, {self.knob} = {self.default!r}")
         if self.verified is None and not self.caveats:
             object.__setattr__(self, "caveats", (NOWHERE,))
+        if not self.finer:
+            beyond = self.ladder[self.ladder.index(self.default) + 1 :]
+            object.__setattr__(self, "finer", tuple({self.knob: value} for value in beyond))
+        known = {setting.name for setting in dataclasses.fields(self.settings)}
+        if strange := sorted(set(self.varied).union(*self.finer) - known):
+            raise ValueError(f"{strange[0]!r} is varied or finer, and no setting: its settings are {', '.join(known)}")
 
     @property
     def knob(self) -> str:
@@ -93,6 +115,12 @@ class Variant:
     def default(self) -> float:
         """Value of the knob."""
         return getattr(self.settings, self.knob)
+
+    @property
+    def step(self) -> str | None:
+        """Name of the setting that is the longest step [s], one of `STEPS`; None: it has none."""
+        names = [setting.name for setting in dataclasses.fields(self.settings)]
+        return next((name for name in STEPS if name in names), None)
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from ..showing.parts import figure_of, number
-from ..showing.plots import style
+from ..showing.plots import marker, style
 
 WIDTH = 5.4  # in: narrow, so that the words stay readable on a phone
 MARKERS = "osD^v"
@@ -117,7 +117,8 @@ def restitution(result):
         for ground in GROUND_LINES:
             rows = [row for row in defaults if row["solver"] == solver and row["ground"] == ground]
             filled = colour if ground == "rigid ground" else "white"
-            points = {"color": colour, "marker": MARKERS[index], "markerfacecolor": filled, "markersize": 6 - index}
+            points = {"color": colour, "marker": marker(solver), "markerfacecolor": filled}
+            points["markersize"] = max(6 - index, 2)
             gammas = [row["slenderness"] for row in rows]
             above.plot(
                 gammas,

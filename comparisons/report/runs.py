@@ -175,8 +175,12 @@ def _free_rocking(rows, engines):
         "seconds": FREE_SECONDS,
         "slowest_impact": SLOWEST_IMPACT,
         "bases": BASES,
-        "decides": {
-            name: {variant: one.decides for variant, one in get_engine(name).variants.items()} for name in engines
+        "variants": {
+            name: {
+                variant: {"rung": kind.rung, "decides": kind.decides, "applies_impact": kind.takes_restitution}
+                for variant, kind in get_engine(name).variants.items()
+            }
+            for name in engines
         },
     }
     return Found(settings, entries, arrays, name=Path(FREE_ROCKING).stem)

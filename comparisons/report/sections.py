@@ -270,14 +270,13 @@ def restitution_sections(result):
                 f"Free rocking for {result.settings['seconds']:g} s, released from rest at φ/γ = {starts} (variants "
                 f"that are not the default: {few}), on rigid ground and on a base of "
                 f"{result.settings['bases']['sliding base']['mass']:g} kg that slides without friction. The engines "
-                "are given no restitution (but for exudyn, switched-joints, which applies the model's own impact): "
-                "it follows from their contact. It is measured as φ̇⁺/φ̇⁻, the tilt rate after over that before the "
-                "impact, from the states in clean flight, carried to the impact by the model's equations, for every "
+                f"are given no restitution{_applied(result)}: it follows from their contact. It is measured as φ̇⁺/φ̇⁻, "
+                "the tilt rate after over that before the impact, from the states in clean flight, carried to the "
+                "impact by the model's equations, for every "
                 f"impact at least {100 * result.settings['slowest_impact']:g} % as fast as the run's fastest.",
-                "The variants of an engine are ways to set it up. compliant-corners: stiff springs under the "
-                "corners; impact-aware: steps that are short where an impact falls; fixed-step: the same step all "
-                "along; switched-joints: hinges that the adapter switches; native-contact and first-script: as a "
-                "first user would set the engine up.",
+                "The variants of an engine are ways to set it up: as well as is known here (best), with care but at a "
+                "known cost in error or generality (expert), as a first user would (first script). The table “What "
+                "each engine decides by itself” says which is which.",
             ),
             tuple(_restitution_table(result, ground) for ground in result.settings["bases"]),
             (figures.restitution(result),),
@@ -319,6 +318,17 @@ def restitution_sections(result):
             (figures.error_and_cost(groups),),
         ),
     ]
+
+
+def _applied(result):
+    """Which variants are the exception: their adapter applies the model's own impact."""
+    names = [
+        f"{engine}, {variant}"
+        for engine, variants in result.settings["variants"].items()
+        for variant, kind in variants.items()
+        if kind["applies_impact"]
+    ]
+    return f" (but for {' and '.join(names)}, whose adapter applies the model's own impact)" if names else ""
 
 
 def _restitution_table(result, ground):

@@ -75,15 +75,16 @@ def _provenance(caryatid, free):
         [f"{solver}, {variant}", ", ".join(f"{key} = {value}" for key, value in chosen.items())]
         for (solver, variant), chosen in settings.items()
     ]
-    decides = []
-    for solver, text in free.settings["decides"].items():
-        texts = text if isinstance(text, dict) else {"": text}
-        decides += [[f"{solver}, {variant}" if variant else solver, words] for variant, words in texts.items()]
+    decides = [
+        [f"{solver}, {variant}", kind["rung"], kind["decides"]]
+        for solver, variants in free.settings["variants"].items()
+        for variant, kind in variants.items()
+    ]
     return Section(
         "Versions, machine, settings",
         (),
         (
-            Table("What each engine decides by itself", ("engine", "what"), decides),
+            Table("What each engine decides by itself", ("engine, variant", "set up as", "what"), decides),
             Table("Versions and machine", ("what", "value"), rows),
             Table("Settings of each solver and variant (SI units)", ("solver", "settings"), listed),
         ),

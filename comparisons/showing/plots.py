@@ -9,11 +9,9 @@ from engines import ENGINES
 
 from ..running.readable import readable
 
-# solver: (colour, dashes, width); the reference lies wide underneath, dots need width to be seen
-STYLES = {
-    "analytic": ("#000000", "-", 2.4),
-    **{name: (engine.colour, engine.dashes, 1.8 if engine.dashes == ":" else 1.4) for name, engine in ENGINES.items()},
-}
+# colour, dashes, width; the reference lies wide underneath, dots need width to be seen
+REFERENCE = ("#000000", "-", 2.4)
+DOTS, LINES = 1.8, 1.4
 TITLE_CHARACTERS = 100
 TILT_RANGE = (0.05, 2.0)  # least and greatest limit of a tilt axis, over slenderness
 SPARE = ("#009E73", (0, (5, 1)), 1.3)
@@ -26,7 +24,10 @@ def marker(solver):
 
 def style(solver):
     """Line keywords of a solver: the same in every figure."""
-    colour, dashes, width = STYLES.get(solver, SPARE)
+    colour, dashes, width = REFERENCE if solver == "analytic" else SPARE
+    if solver in ENGINES:
+        colour, dashes = ENGINES[solver].colour, ENGINES[solver].dashes
+        width = DOTS if dashes == ":" else LINES
     return {"color": colour, "linestyle": dashes, "linewidth": width}
 
 

@@ -39,6 +39,11 @@ def section(result):
         "when it was set, but for round-off. First scripts are held to a band: their errors are known, and must "
         "not vanish unnoticed.",
         "All of them hold." if not broken else f"{len(broken)} of them do not hold.",
+        *(
+            f"{engine} states no tolerances, so none is measured."
+            for engine in result.settings["engines"]
+            if not any(row["engine"] == engine for row in result.rows)
+        ),
     )
     rows = [
         [

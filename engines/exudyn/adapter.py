@@ -38,6 +38,14 @@ VARIANTS = {
         corners.CompliantCorners(),
         rung="best",
         ladder=(1e9, 1e10, 2e11, 1e12),
+        finer=({"stiffness": 1e12, "longest_step": 1e-3}, {"stiffness": 1e12, "longest_step": 1e-3, "tolerance": 1e-9}),
+        varied={
+            "stiffness": (1e8, 1e9, 1e10, 1e11, 1e12),
+            "rebound": (1e-4, 1e-3, 1e-2, 1e-1),
+            "sticking": (0.03, 0.1, 0.3, 1.0),
+            "damping": (0.1, 0.5, 1.0),
+            "friction": (0.05, 0.1, 0.15, 0.2, 0.3, 0.6, 5.0),
+        },
         decides="the integration decides contact, impact, sliding and rest; the corners' law, Hunt-Crossley contact "
         "with Coulomb's friction, is the adapter's: plastic, non-slipping (unless the scene gives a "
         "coefficient) and planar, as Housner assumes, so that an impact which agrees with him verifies law and "
@@ -48,6 +56,7 @@ VARIANTS = {
         joints.SwitchedJoints(),
         rung="expert",
         ladder=(1.6e-2, 4e-3, 1e-3),
+        finer=({"step": 1e-4},),
         takes_restitution=True,
         decides="exudyn decides the motion; uplift, impact and rest are the adapter's",
         verified=Range(
@@ -64,6 +73,7 @@ VARIANTS = {
         native.NativeContact(),
         rung="first script",
         ladder=(1e-3, 3e-4, 1e-4),
+        finer=({"step": 5e-5},),
         decides="exudyn decides contact, impact, sliding and rest through its sphere-triangle contact",
         verified=Range(
             slenderness=(0.1, 0.3), inertia=(1.2, 2.0), base_mass=(0.05, 100.0), radius=(0.5, 2.0), tilt=(0.1, math.inf)

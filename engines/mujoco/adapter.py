@@ -105,6 +105,8 @@ VARIANTS = {
         ImpactAware(),
         rung="best",
         ladder=(1e-3, 1e-4, 5e-6),
+        finer=({"largest_step": 1e-4}, {"largest_step": 1e-4, "accuracy": 1e-6}),
+        varied={"largest_step": (1.2e-4, 2.4e-4, 4.8e-4, 9.6e-4)},
         decides=DECIDES,
         verified=Range(
             slenderness=(0.03, 1.2),
@@ -119,6 +121,7 @@ VARIANTS = {
         FixedStep(),
         rung="expert",
         ladder=(4e-3, 1e-3, 1e-4),
+        finer=({"step": 2e-5},),
         decides=DECIDES,
         verified=Range(
             slenderness=(0.03, 0.45),
@@ -134,6 +137,7 @@ VARIANTS = {
         FirstScript(),
         rung="first script",
         ladder=(1 / 120, 2e-3, 5e-4),
+        finer=({"step": 2e-4},),
         decides=f"{SOLVER_DECIDES}.",
         verified=None,
         caveats=(

@@ -12,6 +12,3 @@ ENGINE = Engine(
     marker="^",
     dashes=":",
 )
-
-# Of first-script: PyBullet's default on either body, which Bullet multiplies. Below tan(slenderness) the block slides.
-FIRST_SCRIPT_FRICTION = 0.5 * 0.5

@@ -73,6 +73,8 @@ VARIANTS = {
         ImpactAware(),
         rung="best",
         ladder=(1e-3, 1e-4, 1e-5, 1e-6),
+        finer=({"largest_step": 1e-4}, {"largest_step": 1e-4, "accuracy": 1e-6}),
+        varied={"largest_step": (5e-4, 1e-3, 2e-3, 4e-3)},
         decides=DECIDES,
         verified=Range(
             slenderness=(0.03, 1.2), inertia=(1.01, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0), decay=(0.0, 1e5)
@@ -82,6 +84,8 @@ VARIANTS = {
         FixedStep(),
         rung="expert",
         ladder=(4e-3, 1e-3, 2.5e-4, 1e-4),
+        finer=({"step": 2e-5},),
+        free_block="engines.pybullet.free_block:simulate",
         decides=DECIDES,
         verified=Range(
             slenderness=(0.1, 0.45),
@@ -93,7 +97,14 @@ VARIANTS = {
         ),
     ),
     "first-script": Variant(  # damping that no one asked for: e off by .01 to .5 at every step
-        FirstScript(), rung="first script", ladder=(1 / 60, 1 / 240, 1 / 1000), decides=DECIDES, verified=None
+        FirstScript(),
+        rung="first script",
+        ladder=(1 / 60, 1 / 240, 1 / 1000),
+        finer=({"step": 2e-4},),
+        decides=DECIDES,
+        verified=None,
+        friction=0.5 * 0.5,  # the default on either body, which Bullet multiplies
+        flight_damping=0.04,  # the default of a multibody
     ),
 }
 

@@ -8,7 +8,7 @@ import numpy as np
 from analytic import load_scene, simulate_many, synthetic_motion
 from analytic.rocking import RockingModel
 from analytic.synthetic import PEAK, G
-from engines.pybullet import FIRST_SCRIPT_FRICTION
+from engines import get_engine
 
 from ...measuring.statistics import compare, fit_fragility, holm, wilson
 from ...running.cases import Case
@@ -26,7 +26,28 @@ FULL = {
 }
 QUICK = {"free-standing": ("caryatid-rigid", {}, (0.9, 1.0, 1.3))}
 MOTIONS, QUICK_MOTIONS = 200, 16
-FIRST_SCRIPT = ("pybullet", "first-script")  # cheap enough to take along
+
+
+def solvers_of(engines):
+    """(engine, variant) of what is compared: every engine as it comes, None, and its first scripts."""
+    return [
+        *((name, None) for name in engines),
+        *(
+            (name, variant)
+            for name in engines
+            for variant, kind in get_engine(name).variants.items()
+            if kind.rung == "first script"
+        ),
+    ]
+
+
+def low_frictions(solvers):
+    """{label: friction} of those of the (engine, variant) whose block may slide for it."""
+    found = {}
+    for name, variant in solvers:
+        engine = get_engine(name)
+        found[solver_name(name, variant)] = engine.variants[variant or engine.default_variant].friction
+    return {label: friction for label, friction in found.items() if friction is not None}
 
 
 def measure(case, response):
@@ -49,7 +70,7 @@ def plan(ask, scenes=None, motions=None):
     """
     scenes = scenes or (QUICK if ask.quick else FULL)
     count = motions or (QUICK_MOTIONS if ask.quick else MOTIONS)
-    solvers = [*((name, None) for name in ask.engines), *([FIRST_SCRIPT] if FIRST_SCRIPT[0] in ask.engines else ())]
+    solvers = solvers_of(ask.engines)
     shakings = [synthetic_motion(seed=seed) for seed in range(count)]
     rows, arrays, described = [], {}, {}
     for name, (shipped, block, factors) in scenes.items():
@@ -81,7 +102,7 @@ def plan(ask, scenes=None, motions=None):
             "seeds": [0, count - 1],
             "motion": "synthetic duzce-like, scaled",
             "twin": TWIN,
-            "first_script_friction": FIRST_SCRIPT_FRICTION,
+            "friction": low_frictions(solvers),
             "solvers": [REFERENCE, *(solver_name(*one) for one in solvers)],
         }
         answer = Found(settings, list(rows), dict(arrays), seed=settings["seeds"])

@@ -16,7 +16,7 @@ READING = (
 )
 REFERENCE = "analytic"
 TWIN_STYLE = {"color": "#56B4E9", "linestyle": (0, (1, 1)), "linewidth": 1.2}
-FIRST_STYLE = {"color": "#D55E00", "linestyle": (0, (4, 1, 1, 1)), "linewidth": 1.2}
+FIRST_STYLE = {"linestyle": (0, (4, 1, 1, 1)), "linewidth": 1.2}
 
 
 def section(result):
@@ -173,12 +173,12 @@ def _answers(result, scene):
 
 
 def _cause(result, scene, label):
-    """Why the first script stays up: its defaults let the block slide."""
-    friction, steepness = result.settings["first_script_friction"], result.settings["scenes"][scene]["tan_slenderness"]
-    if not label.endswith("first-script") or friction >= steepness:
+    """Why a solver's block stays up: friction that lets it slide."""
+    friction, steepness = result.settings["friction"].get(label), result.settings["scenes"][scene]["tan_slenderness"]
+    if friction is None or friction >= steepness:
         return ""
     return (
-        f" Its friction, {friction:g} by PyBullet's defaults, is below tan(slenderness) = {number(steepness)}: the "
+        f" Its friction, {friction:g} by its defaults, is below tan(slenderness) = {number(steepness)}: the "
         "block slides where it should lift."
     )
 
@@ -299,7 +299,8 @@ def _marker(label):
 def _style(label):
     if "," not in label:
         return style(label)
-    return TWIN_STYLE if label.startswith("analytic") else FIRST_STYLE
+    engine = label.partition(",")[0]
+    return TWIN_STYLE if engine == REFERENCE else {**style(engine), **FIRST_STYLE}
 
 
 def _part(result, part, **wanted):

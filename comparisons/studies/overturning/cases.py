@@ -6,7 +6,6 @@ import numpy as np
 
 from analytic import load_scene, overturning_map
 from engines import get_engine
-from engines.pybullet import FIRST_SCRIPT_FRICTION
 
 from ...running.cases import Case
 from ...running.refine import together
@@ -57,7 +56,7 @@ def first_scripts_of(engines):
 def held_of(engines):
     """(engine, variant, settings) of the variants that hold the corner down, as the analytic model does."""
     return [
-        (name, variant, {kind.knob: kind.default / 10})
+        (name, variant, kind.finer[0] if kind.finer else {})
         for name in engines
         for variant, kind in get_engine(name).variants.items()
         if kind.takes_restitution
@@ -154,7 +153,7 @@ def _settings(ask, grounds, shapes, frequencies):
         "tolerance": TOLERANCE,
         "knob_tolerance": KNOB_TOLERANCE,
         "solvers": [solver_name(*one) for one in defaults_of(ask.engines)],
-        "held": ", ".join(label_of(one) for one in held_of(ask.engines)),
+        "held": {solver_name(*one[:2]): label_of(one) for one in held_of(ask.engines)},
         "knobs": [
             [solver, variant, knob]
             for solver, variant, knob, _ in (TIME_STEPPING, *ladders_of(ask.engines), *first_scripts_of(ask.engines))
@@ -163,7 +162,11 @@ def _settings(ask, grounds, shapes, frequencies):
             solver_name(*one): get_engine(one[0]).variants[one[1]].default for one in defaults_of(ask.engines)
         },
         "first_scripts": [solver_name(*one[:2]) for one in first_scripts_of(ask.engines)],
-        "first_script_friction": FIRST_SCRIPT_FRICTION,
+        "friction": {
+            solver_name(solver, variant): friction
+            for solver, variant, *_ in first_scripts_of(ask.engines)
+            if (friction := get_engine(solver).variants[variant].friction) is not None
+        },
     }
 
 

@@ -148,4 +148,4 @@ def _table(points, engines, grounds, shapes):
 def label_of(engine):
     """A solver, its variant and the settings in place of its defaults, if any, in words."""
     name = solver_name(*engine[:2])
-    return name if not engine[2:] else f"{name}, " + ", ".join(f"{k} {v:g}" for k, v in engine[2].items())
+    return name if not any(engine[2:]) else f"{name}, " + ", ".join(f"{k} {v:g}" for k, v in engine[2].items())

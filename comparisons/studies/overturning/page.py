@@ -13,6 +13,12 @@ def section(result):
     text = [
         _asked(result),
         *(_verdict(result, solver) for solver in solvers),
+        *(
+            f"{solver} does not decide the impact: its adapter applies the analytic model's. Its boundaries tell of "
+            "its integration alone, and no other setting of it is tried."
+            for solver in solvers
+            if solver in result.settings["held"]
+        ),
         *_pulled_words(result),
         _band(result),
         *(_knob_words(result, *key, values) for key, values in knob_curves(result).items()),
@@ -94,7 +100,7 @@ def _asked(result):
         f"{', '.join(s['shapes'])} of {min(s['frequencies']):g} to {max(s['frequencies']):g} times "
         f"ω_r and amplitudes of {s['amplitudes'][0]:g} to {s['amplitudes'][1]:g} g tan(slenderness), on two "
         f"grounds ({grounds}). "
-        f"{' and '.join(s['solvers'])} were asked for theirs at default settings."
+        f"{', '.join(s['solvers'])} were asked for theirs at default settings."
     )
 
 
@@ -132,20 +138,21 @@ def _pulled_words(result):
     edges = [edge for edge in _rows(result, "edge") if edge["min_normal"] < 0]
     if not edges:
         return
-    held = _rows(result, "held")
-    found = [abs(row["shift"]) for row in held if row["shift"] is not None]
     text = (
         f"At {len(edges)} boundaries the normal force of the analytic model becomes negative (down to "
         f"{number(min(edge['min_normal'] for edge in edges), 2)} m g): it holds the corner down, where a block in "
         "contact slides or leaves its base, as it does in the engines. There the analytic model is the one not to "
         "be trusted."
     )
-    if found:
-        text += (
-            f" With the corner held by a joint ({result.settings['held']}) the same scenes give {len(found)} of "
-            f"these {len(held)} boundaries, shifted by {percent(max(found), 1)} at most: it is the contact that "
-            "moves them, not the integration."
-        )
+    for solver, label in result.settings["held"].items():
+        held = _rows(result, "held", solver=solver)
+        found = [abs(row["shift"]) for row in held if row["shift"] is not None]
+        if found:
+            text += (
+                f" With the corner held by the adapter ({label}) the same scenes give {len(found)} of these "
+                f"{len(held)} boundaries, shifted by {percent(max(found), 1)} at most"
+            )
+            text += ": it is the contact that moves them, not the integration." if _all_within(held) else "."
     yield text
 
 
@@ -219,15 +226,12 @@ def _first_words(result, solver):
         + (f"; {span}" if span else "")
         + (f". Not found, within 30 % or half-way to the next boundary: {lost}." if lost else ".")
     )
-    slides = [
-        name
-        for name, given in result.settings["grounds"].items()
-        if given["tan_slenderness"] > result.settings["first_script_friction"]
-    ]
-    if solver.startswith("pybullet") and slides and any(ground in slides for ground, _ in reasons):
+    friction = result.settings["friction"].get(solver, math.inf)
+    slides = [name for name, given in result.settings["grounds"].items() if given["tan_slenderness"] > friction]
+    if any(ground in slides for ground, _ in reasons):
         text += (
-            f" On {' and '.join(slides)} its friction, {result.settings['first_script_friction']:g} by PyBullet's "
-            "defaults, is below tan(slenderness): the block slides where it should lift."
+            f" On {' and '.join(slides)} its friction, {friction:g} by its defaults, is below tan(slenderness): the "
+            "block slides where it should lift."
         )
     return text
 
@@ -410,7 +414,7 @@ def _pulled_table(result):
             key = {name: edge[name] for name in ("ground", "shape", "frequency", "amplitude")}
             found = [
                 *(_rows(result, "shift", solver=solver, **key)[0] for solver in s["solvers"]),
-                _rows(result, "held", **key)[0],
+                *(_rows(result, "held", solver=solver, **key)[0] for solver in s["held"]),
             ]
             rows.append(
                 [
@@ -427,7 +431,7 @@ def _pulled_table(result):
             "analytic amplitude [-]",
             "least N/(m g) of the analytic model [-]",
             *(f"{solver} [%]" for solver in s["solvers"]),
-            f"corner held: {s['held']} [%]",
+            *(f"corner held: {label} [%]" for label in s["held"].values()),
         ),
         rows,
     )

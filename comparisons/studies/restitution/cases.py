@@ -98,19 +98,29 @@ def grid_cases(grid, engines):
     return cases
 
 
-# name of an experiment: engine, variant, the setting it changes, its values, slenderness
-EXPERIMENTS = {
-    "stiffness": ("exudyn", "compliant-corners", "stiffness", (1e8, 1e9, 1e10, 1e11, 1e12)),
-    "rebound": ("exudyn", "compliant-corners", "rebound", (1e-4, 1e-3, 1e-2, 1e-1)),
-    "sticking": ("exudyn", "compliant-corners", "sticking", (0.03, 0.1, 0.3, 1.0)),
-    "damping": ("exudyn", "compliant-corners", "damping", (0.1, 0.5, 1.0)),
-    "friction": ("exudyn", "compliant-corners", "friction", (0.05, 0.1, 0.15, 0.2, 0.3, 0.6, 5.0)),
-    "largest step": ("pybullet", "impact-aware", "largest_step", (5e-4, 1e-3, 2e-3, 4e-3)),
-}
 EXPERIMENT_SLENDERNESS = 0.2
 EXPERIMENT_RATIOS = (None, CARYATID_BASE)
 PHASE_STEPS = (4e-3, 1e-3, 2.5e-4)  # s
 SCALES = (0.25, 1.0, 4.0)  # of the block, to tell (8) from (8) as printed
+
+
+def experiments_of(engines):
+    """(name, engine, variant, setting, values) of what the engines say is worth changing alone."""
+    return [
+        (setting.replace("_", " "), engine, variant, setting, values)
+        for engine, variant in variants_of(engines)
+        for setting, values in get_engine(engine).variants[variant].varied.items()
+    ]
+
+
+def fixed_steps_of(engines):
+    """(engine, variant) of those that decide the impact, with care, at one step."""
+    found = []
+    for engine, variant in variants_of(engines):
+        kind = get_engine(engine).variants[variant]
+        if kind.rung == "expert" and kind.knob == "step" and not kind.takes_restitution:
+            found.append((engine, variant))
+    return found
 
 
 def experiment_cases(grid, engines):
@@ -127,10 +137,8 @@ def _experiment(name, ratio, start, value, engine, variant, settings, scale=1.0)
 
 
 def _setting_cases(grid, engines):
-    """One setting at a time, `EXPERIMENTS`."""
-    for name, (engine, variant, setting, values) in EXPERIMENTS.items():
-        if engine not in engines:
-            continue
+    """One setting at a time."""
+    for name, engine, variant, setting, values in experiments_of(engines):
         for ratio in EXPERIMENT_RATIOS:
             for start in grid.starts[::2]:
                 for value in values:
@@ -139,10 +147,10 @@ def _setting_cases(grid, engines):
 
 def _phase_cases(grid, engines):
     """Starts so close together that the first impacts lie within one of the longest steps."""
-    if "pybullet" in engines:
+    for engine, variant in fixed_steps_of(engines):
         for start in map(float, np.linspace(0.600, 0.604, grid.phase_starts)):
             for step in PHASE_STEPS:
-                yield _experiment("phase", None, start, step, "pybullet", "fixed-step", {"step": step})
+                yield _experiment("phase", None, start, step, engine, variant, {"step": step})
 
 
 def _size_cases(engines):

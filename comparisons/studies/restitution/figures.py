@@ -5,13 +5,12 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from engines.pybullet import FIRST_SCRIPT_FRICTION
-
 from ...showing.plots import style
 
 WIDTH = 6.4  # in
 # In the order of an engine's variants: marker, dashes, whether the marker is filled.
 LOOKS = (("o", "-", True), ("s", "--", False), ("^", ":", False))
+UNITS = {"stiffness": " N/m", "step": " s"}  # of accuracy knobs that have one
 FLOOR = 1e-9  # errors below are drawn here
 GROUNDS = ("rigid ground", "sliding base")
 
@@ -33,6 +32,15 @@ def select(result, part, **wanted):
     return [
         row for row in result.rows if row["part"] == part and all(row[key] == value for key, value in wanted.items())
     ]
+
+
+def knob_of(result, row):
+    """Name of the accuracy knob of a row's variant."""
+    return next(
+        knob["knob"]
+        for knob in result.settings["knobs"]
+        if (knob["engine"], knob["variant"]) == (row["engine"], row["variant"])
+    )
 
 
 def base_name(ratio):
@@ -137,7 +145,7 @@ def accuracy(result):
 
 
 def causes(result):
-    """Four experiments, each changing one suspected cause; None where no engine ran them."""
+    """Experiments, each changing one suspected cause in one variant; None where no engine ran them."""
     panels = [
         (draw, rows)
         for draw, rows in (
@@ -146,14 +154,16 @@ def causes(result):
             (_friction, select(result, "experiment", experiment="friction")),
             (_flight_damping, select(result, "flight damping")),
         )
-        if rows
+        for rows in by_variant(rows)
     ]
     if not panels:
         return None
-    figure = Figure(figsize=(WIDTH, 6.0), layout="constrained")
-    axes = figure.subplots(2, 2).flat
+    lines = -(-len(panels) // 2)
+    figure = Figure(figsize=(WIDTH, 3.0 * lines), layout="constrained")
+    axes = figure.subplots(lines, 2, squeeze=False).flat
     for axis, (draw, rows) in zip(axes, panels, strict=False):
         draw(axis, rows, result)
+        axis.set_title(f"{axis.get_title()}\n{rows[0]['engine']}, {rows[0]['variant']}")
         axis.grid(color="0.9")
         axis.set_axisbelow(True)
         axis.legend(fontsize=7)
@@ -163,9 +173,17 @@ def causes(result):
     return figure
 
 
+def by_variant(rows):
+    """The rows of each engine's variant, list of lists."""
+    groups = {}
+    for row in rows:
+        groups.setdefault((row["engine"], row["variant"]), []).append(row)
+    return list(groups.values())
+
+
 def _phase(axis, rows, result):
     for row, marker, shade in zip(rows, "os^", ("#0072B2", "#56B4E9", "#000000"), strict=False):
-        key = f"phase/{row['step']:g}"
+        key = f"phase/{row['engine']}/{row['variant']}/{row['step']:g}"
         error = result.arrays[f"{key}/error"] / row["step"]
         axis.plot(
             result.arrays[f"{key}/phase"],
@@ -178,14 +196,14 @@ def _phase(axis, rows, result):
     axis.set(
         xlabel="place of the impact within the step [-]",
         ylabel="error of restitution / step [1/s]",
-        title="Phase of the step (pybullet, fixed-step)",
+        title="Phase of the step",
     )
 
 
 def _ladder(axis, rows, floor=FLOOR):
     for ratio, marker, dashes, filled in ((None, "o", "-", True), ("base", "s", "--", False)):
         own = [row for row in rows if (row["ratio"] is None) == (ratio is None) and row["rms"] is not None]
-        colour = style("exudyn")["color"]
+        colour = style(rows[0]["engine"])["color"]
         axis.plot(
             [row["value"] for row in own],
             [max(row["rms"], floor) for row in own],
@@ -200,7 +218,7 @@ def _ladder(axis, rows, floor=FLOOR):
 
 def _stiffness(axis, rows, result):
     _ladder(axis, rows)
-    axis.set(xlabel="contact stiffness [N/m]", title="Stiffness (exudyn, compliant-corners)")
+    axis.set(xlabel="contact stiffness [N/m]", title="Stiffness")
 
 
 def _friction(axis, rows, result):
@@ -213,25 +231,26 @@ def _friction(axis, rows, result):
             linestyle=dashes,
             label=f"model's need, {ground}",
         )
-    axis.set(xlabel="friction coefficient [-]", ylim=(1e-7, 1e3), title="Friction (exudyn, compliant-corners)")
+    axis.set(xlabel="friction coefficient [-]", ylim=(1e-7, 1e3), title="Friction")
 
 
 def _flight_damping(axis, rows, result):
-    """Blocks that need more friction than the script's are off the scale: they slide."""
-    steps = sorted({row["step"] for row in rows})
-    stick = [row for row in rows if row["friction_needed"] < FIRST_SCRIPT_FRICTION]
+    """Blocks that need more friction than the variant's are off the scale: they slide."""
+    values, friction = sorted({row["value"] for row in rows}), rows[0]["friction"]
+    stick = [row for row in rows if friction is None or row["friction_needed"] < friction]
+    knob = knob_of(result, rows[0])
     predicted = sorted({(row["slenderness"], row["predicted"]) for row in rows})
     axis.plot(*zip(*predicted, strict=True), "-", color="black", label="default damping in flight, predicted")
-    for step, marker in zip(steps, "o^sv", strict=False):
-        own = sorted((row["slenderness"], row["measured"]) for row in stick if row["step"] == step)
+    for value, marker in zip(values, "o^sv", strict=False):
+        own = sorted((row["slenderness"], row["measured"]) for row in stick if row["value"] == value)
         axis.plot(
-            *zip(*own, strict=True),
+            *(zip(*own, strict=True) if own else ((), ())),
             linestyle="",
             marker=marker,
             markersize=5,
             markerfacecolor="white",
-            color=style("pybullet")["color"],
-            label=f"measured, step {1e3 * step:.3g} ms",
+            color=style(rows[0]["engine"])["color"],
+            label=f"measured, {knob} {value:.3g}{UNITS.get(knob, '')}",
         )
     if len(stick) < len(rows):
         sliding = min(row["slenderness"] for row in rows if row not in stick)
@@ -239,13 +258,13 @@ def _flight_damping(axis, rows, result):
             sliding,
             max(row["slenderness"] for row in rows),
             color="0.9",
-            label=f"slides: needs friction above {FIRST_SCRIPT_FRICTION}",
+            label=f"slides: needs friction above {friction:g}",
         )
     axis.set(
         xlabel="slenderness γ [rad]",
         ylabel="mean error of restitution [-]",
         ylim=(-0.05, 0.0),
-        title="Damping in flight (pybullet, first-script)",
+        title="Damping in flight",
     )
 
 

@@ -2,14 +2,13 @@
 
 from ...showing.parts import Section, Table, figure_of, number, percent
 from ...showing.wording import TRUSTED, USABLE, trust
-from .figures import figures, select
+from .figures import UNITS, by_variant, figures, knob_of, select
 
 RULE = (
     f"An engine may be trusted for restitution if its error, root mean square, is at most {TRUSTED:g} on both "
     f"grounds and no run failed; at most {USABLE:g} it is usable where a per cent does not matter. The answer for "
     "each engine and variant at its default setting, with error and cost:"
 )
-UNITS = {"stiffness": " N/m", "step": " s", "accuracy": ""}  # of the accuracy knobs
 CAPTIONS = {
     "maps": (
         "Error of restitution of every engine and variant over slenderness and base mass.",
@@ -27,8 +26,8 @@ CAPTIONS = {
         "of the same runs. Low and left is better.",
     ),
     "causes": (
-        "Four experiments on the cause of the error: phase of the step, contact stiffness, friction, damping in "
-        "flight.",
+        "Experiments on the cause of the error, where an engine has one: phase of the step, contact stiffness, "
+        "friction, damping in flight.",
         "What causes the error, one suspect at a time.",
     ),
     "eq8": (
@@ -85,7 +84,7 @@ def _setting_words(settings):
 
 def _setting(knob):
     """The default of an accuracy knob with its unit."""
-    return f"{knob['knob']} = {number(knob['default'], 2)}{UNITS[knob['knob']]}"
+    return f"{knob['knob']} = {number(knob['default'], 2)}{UNITS.get(knob['knob'], '')}"
 
 
 def _trust(result, knob):
@@ -93,7 +92,7 @@ def _trust(result, knob):
     rows = select(result, "summary", scope="all", engine=knob["engine"], variant=knob["variant"])
     found = [row for row in rows if row["rms"] is not None]
     name = f"{knob['engine']}, {knob['variant']} ({_setting(knob)})"
-    if knob["variant"] == "switched-joints":
+    if knob["applies_impact"]:
         name += ", whose adapter applies eqs (7) and (8) itself,"
     failed, runs = sum(row["failed"] for row in rows), sum(row["runs"] for row in rows)
     if not found:
@@ -137,58 +136,86 @@ def _verdict(result, knob):
 
 
 def _cause_words(result):
-    """The causes that the experiments name."""
-    phases = select(result, "phase")
-    if phases:
-        finest = min(phases, key=lambda row: row["step"])
-        explained = percent(min(row["explained"] for row in phases), 3)
+    """The causes that the experiments name, and which engines have none of them."""
+    for rows in by_variant(select(result, "phase")):
+        yield _phase_words(rows)
+    for name, words in (("stiffness", _stiffness_words), ("rebound", _rebound_words), ("friction", _friction_words)):
+        for rows in by_variant(select(result, "experiment", experiment=name)):
+            yield from words(result, rows)
+    for rows in by_variant(select(result, "flight damping", slenderness=result.settings["experiment_slenderness"])):
+        yield _damping_words(result, rows)
+    causes = {row["engine"] for part in ("phase", "flight damping") for row in select(result, part)}
+    causes |= {row["engine"] for row in result.settings["experiments"]}
+    without = [engine for engine in result.settings["engines"] if engine not in causes]
+    if without:
         yield (
-            "Step phase. With a fixed step PyBullet's error depends on where in the step the impact falls: a "
-            f"sawtooth of that phase explains {explained} or more of its variance at every step length. At a "
-            f"step of {number(1e3 * finest['step'], 2)} ms the error runs from "
-            f"{number(finest['least'] * finest['step'], 2)} to {number(finest['most'] * finest['step'], 2)}. "
-            "It shrinks with the step; the impact-aware variant makes the step small only where that counts."
+            f"No cause was looked for in {', '.join(without)}. That takes a setting beside the accuracy knob that the "
+            "engine's record names as one to change alone, or a variant that decides the impact at a fixed step."
         )
-    ladder = select(result, "experiment", experiment="stiffness", ratio=None)
-    if len(ladder) > 1:
-        soft, stiff = ladder[0], ladder[-1]
+
+
+def _name(row):
+    return f"{row['engine']}, {row['variant']}"
+
+
+def _phase_words(rows):
+    finest = min(rows, key=lambda row: row["step"])
+    explained = percent(min(row["explained"] for row in rows), 3)
+    return (
+        f"Step phase. With a fixed step the error of {_name(finest)} depends on where in the step the impact falls: a "
+        f"sawtooth of that phase explains {explained} or more of its variance at every step length. At a "
+        f"step of {number(1e3 * finest['step'], 2)} ms the error runs from "
+        f"{number(finest['least'] * finest['step'], 2)} to {number(finest['most'] * finest['step'], 2)}. "
+        "It shrinks with the step; a variant that looks ahead makes the step small only where that counts."
+    )
+
+
+def _stiffness_words(result, rows):
+    rigid = [row for row in rows if row["ratio"] is None]
+    if len(rigid) > 1:
+        soft, stiff = rigid[0], rigid[-1]
         yield (
             f"Stiffness. From {number(soft['value'], 1)} to {number(stiff['value'], 1)} N/m per corner the error of "
-            f"exudyn's compliant corners falls from {number(soft['rms'], 2)} to {number(stiff['rms'], 2)} on rigid "
-            f"ground, at {number(stiff['cpu_per_second'] / soft['cpu_per_second'], 2)} times the cost."
+            f"{_name(soft)} falls from {number(soft['rms'], 2)} to {number(stiff['rms'], 2)} on rigid ground, at "
+            f"{number(stiff['cpu_per_second'] / soft['cpu_per_second'], 2)} times the cost."
         )
-    rebound = [row for row in select(result, "experiment", experiment="rebound") if row["failed"]]
-    if rebound:
+
+
+def _rebound_words(result, rows):
+    failed = [row for row in rows if row["failed"]]
+    if failed:
         yield (
-            f"Contact damping. With a rebound of {number(rebound[0]['value'], 1)} m/s (too little damping) "
-            f"{rebound[0]['failed']} of {rebound[0]['runs']} runs fail: the corners bounce."
+            f"Contact damping. With a rebound of {number(failed[0]['value'], 1)} m/s (too little damping) "
+            f"{failed[0]['failed']} of {failed[0]['runs']} runs of {_name(failed[0])} fail: the corners bounce."
         )
-    friction = select(result, "experiment", experiment="friction", ratio=None)
-    if friction:
-        needed = result.settings["friction_needed"]["rigid ground"]
-        enough = [row["value"] for row in friction if row["rms"] is not None and row["rms"] <= TRUSTED]
-        fails = [row["value"] for row in friction if row["failed"]]
-        yield (
-            f"Friction. At slenderness {number(result.settings['experiments']['friction']['slenderness'], 1)} the "
-            f"model's impact needs a friction coefficient of {number(needed, 2)} on rigid ground (horizontal over "
-            "vertical impulse); in exudyn "
-            + (f"runs fail at {number(max(fails), 2)} and below, and " if fails else "")
-            + (
-                f"{number(min(enough), 2)} keeps the error below {number(TRUSTED, 1)}."
-                if enough
-                else "no value tried keeps the error small."
-            )
+
+
+def _friction_words(result, rows):
+    rigid = [row for row in rows if row["ratio"] is None]
+    needed = result.settings["friction_needed"]["rigid ground"]
+    enough = [row["value"] for row in rigid if row["rms"] is not None and row["rms"] <= TRUSTED]
+    fails = [row["value"] for row in rigid if row["failed"]]
+    yield (
+        f"Friction. At slenderness {number(result.settings['experiment_slenderness'], 1)} the "
+        f"model's impact needs a friction coefficient of {number(needed, 2)} on rigid ground (horizontal over "
+        f"vertical impulse); in {_name(rows[0])} "
+        + (f"runs fail at {number(max(fails), 2)} and below, and " if fails else "")
+        + (
+            f"{number(min(enough), 2)} keeps the error below {number(TRUSTED, 1)}."
+            if enough
+            else "no value tried keeps the error small."
         )
-    gamma = result.settings["experiments"]["friction"]["slenderness"]
-    damping = select(result, "flight damping", slenderness=gamma)
-    if damping:
-        fine = min(damping, key=lambda row: row["step"])
-        yield (
-            f"Damping in flight. PyBullet's default damping alone, put into the model, gives an error of "
-            f"{number(fine['predicted'], 3)} at slenderness {fine['slenderness']:g} on rigid ground; measured "
-            f"with a first script at {number(1e3 * fine['step'], 2)} ms: {number(fine['measured'], 3)}. "
-            "No step cures it. Other slendernesses, which lose more by other causes, are in the figure."
-        )
+    )
+
+
+def _damping_words(result, rows):
+    fine, knob = min(rows, key=lambda row: row["value"]), knob_of(result, rows[0])
+    return (
+        f"Damping in flight. The damping that {_name(fine)} brings unasked, alone, put into the model, gives an "
+        f"error of {number(fine['predicted'], 3)} at slenderness {fine['slenderness']:g} on rigid ground; measured "
+        f"at {knob} {number(fine['value'], 2)}{UNITS.get(knob, '')}: {number(fine['measured'], 3)}. "
+        f"No {knob} cures it. Other slendernesses, which lose more by other causes, are in the figure."
+    )
 
 
 def _equation_words(result):

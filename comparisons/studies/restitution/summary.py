@@ -15,12 +15,12 @@ from ...running.study import Batch, Found
 from .cases import (
     CARYATID_BASE,
     EXPERIMENT_SLENDERNESS,
-    EXPERIMENTS,
     FULL,
     IMPACTS,
     QUICK,
     SCALES,
     experiment_cases,
+    experiments_of,
     free_scene,
     grid_cases,
     knob_of,
@@ -28,8 +28,6 @@ from .cases import (
 )
 
 GROUNDS = ("rigid ground", "sliding base")
-# Bullet's default damping of a multibody: force and moment of d m v (1 + |v|) and d I w (1 + |w|), SI units.
-BULLET_DAMPING = 0.04
 DIGITS = 4
 
 
@@ -66,7 +64,7 @@ def _found(grid, rows):
     pooled = {key: _Pool(members) for key, members in cells.items()}
     entries = [_cell(key, pool) for key, pool in pooled.items()]
     entries += _summaries(pooled, engines, grid)
-    phases = {key[-1]: members for key, members in experiments.items() if key[0] == "phase"}
+    phases = {(*key[1:3], key[-1]): members for key, members in experiments.items() if key[0] == "phase"}
     entries += [_experiment(key, _Pool(members)) for key, members in experiments.items() if key[0] != "phase"]
     found, arrays = _phases(phases)
     entries += found + _flight_damping(pooled) + _failures(rows)
@@ -81,14 +79,20 @@ def _found(grid, rows):
         "radius": RADIUS,
         "engines": engines,
         "knobs": [
-            dict(zip(("engine", "variant", "knob", "default", "values"), (*one, *knob_of(*one)), strict=True))
-            for one in variants_of(engines)
+            {
+                "engine": engine,
+                "variant": variant,
+                **dict(zip(("knob", "default", "values"), knob_of(engine, variant), strict=True)),
+                "applies_impact": get_engine(engine).variants[variant].takes_restitution,
+            }
+            for engine, variant in variants_of(engines)
         ],
         "default_variants": {engine: get_engine(engine).default_variant for engine in engines},
-        "experiments": {
-            name: {"engine": one[0], "variant": one[1], "setting": one[2], "slenderness": EXPERIMENT_SLENDERNESS}
-            for name, one in EXPERIMENTS.items()
-        },
+        "experiments": [
+            dict(zip(("experiment", "engine", "variant", "setting"), one[:4], strict=True))
+            for one in experiments_of(engines)
+        ],
+        "experiment_slenderness": EXPERIMENT_SLENDERNESS,
         "friction_needed": {
             ground: friction_needed(free_scene(EXPERIMENT_SLENDERNESS, ratio, 0.6))
             for ground, ratio in zip(GROUNDS, (None, CARYATID_BASE), strict=True)
@@ -233,14 +237,16 @@ def _experiment(key, pool):
 
 
 def _phases(members):
-    """Error of the first impact against where in the step the model's impact falls, for each step length.
+    """Error of the first impact against where in the step the model's impact falls, by engine, variant and step.
 
     `explained`: share of the error's variance that a sawtooth of that phase explains; `least`, `most`: its ends,
     error over step [1/s].
     """
     entries, arrays = [], {}
-    for step, rows in members.items():
-        sound = [row for row in rows if not row.failed]
+    for (engine, variant, step), rows in members.items():
+        sound = [row for row in rows if not row.failed and row.values["errors"].get("swing")]
+        if len(sound) < 3:  # nothing to fit; the failures have rows of their own
+            continue
         phase = np.array([_model_times(row.case.scene)[0] / step % 1.0 for row in sound])
         error = np.array([_errors(row)["swing"][0] for row in sound])
         fits = []
@@ -249,11 +255,14 @@ def _phases(members):
             constants = np.linalg.lstsq(basis, error, rcond=None)[0]
             fits.append((float(np.sum((error - basis @ constants) ** 2)), constants))
         left, (begin, rise) = min(fits, key=lambda fit: fit[0])
-        arrays[f"phase/{step:g}/phase"], arrays[f"phase/{step:g}/error"] = phase, error
+        key = f"phase/{engine}/{variant}/{step:g}"
+        arrays[f"{key}/phase"], arrays[f"{key}/error"] = phase, error
         ends = sorted((float(begin / step), float((begin + rise) / step)), key=abs)
         entries.append(
             {
                 "part": "phase",
+                "engine": engine,
+                "variant": variant,
                 "step": step,
                 "runs": len(rows),
                 "bias": float(error.mean()),
@@ -267,17 +276,21 @@ def _phases(members):
 
 
 def _flight_damping(pooled):
-    """Bullet's default damping as the cause of first-script's error on rigid ground: predicted beside measured."""
+    """Damping in flight as the cause of a variant's error on rigid ground: predicted beside measured."""
     entries = []
     for key, pool in pooled.items():
-        if key[:2] != ("pybullet", "first-script") or key[3] is not None:
+        kind = get_engine(key[0]).variants[key[1]]
+        if kind.flight_damping is None or key[3] is not None:
             continue
-        predicted = [damped_error(row.case.scene, BULLET_DAMPING) for row in pool.sound]
+        predicted = [damped_error(row.case.scene, kind.flight_damping) for row in pool.sound]
         if predicted and len(pool.get("swing")):
             entries.append(
                 {
                     "part": "flight damping",
-                    "step": key[2],
+                    "engine": key[0],
+                    "variant": key[1],
+                    "friction": kind.friction,
+                    "value": key[2],
                     "slenderness": key[4],
                     "friction_needed": friction_needed(pool.members[0].case.scene),
                     "predicted": float(np.mean(np.concatenate(predicted))),
@@ -288,7 +301,7 @@ def _flight_damping(pooled):
 
 
 def damped_error(scene, damping):
-    """Error of restitution by swing energies, shape (impacts,), of a block on rigid ground that Bullet damps in flight.
+    """Error of restitution by swing energies, shape (impacts,), of a block on rigid ground that is damped in flight.
 
     J_O phi'' = -m g R sin(gamma - phi) - d phi' [J_O + (m R^3 + I_c) |phi'|], d = damping [1/s]; impacts by eq. (7).
     """

@@ -16,12 +16,7 @@ from .measure import MEASURES
 from .tables import growths, ladder, principal
 
 # Okabe and Ito: kind of solver by colour, member of it by marker.
-COLOURS = {
-    "kernel": "#000000",
-    "scipy": "#56B4E9",
-    "time-stepping": "#009E73",
-    **{name: engine.colour for name, engine in ENGINES.items()},
-}
+COLOURS = {"kernel": "#000000", "scipy": "#56B4E9", "time-stepping": "#009E73"}
 PEER_COLOUR = "#D55E00"
 MARKERS = "osD^vPX*"
 COSTS = {
@@ -84,14 +79,10 @@ def _looks(families):
         if other_law:
             found[family] = {**found[base], "linestyle": (0, (3, 2)), "markersize": 4}
             continue
-        kind = next((kind for kind in COLOURS if family.startswith(kind)), "peer")
-        number = counts[kind] = counts.get(kind, -1) + 1
-        found[family] = {
-            "color": COLOURS.get(kind, PEER_COLOUR),
-            "marker": MARKERS[number % len(MARKERS)],
-            "linestyle": "-",
-            "markersize": 5.5,
-        }
+        kind = family.replace(",", "").split()[0]
+        colour = ENGINES[kind].colour if kind in ENGINES else COLOURS.get(kind, PEER_COLOUR)
+        number = counts[colour] = counts.get(colour, -1) + 1
+        found[family] = {"color": colour, "marker": MARKERS[number % len(MARKERS)], "linestyle": "-", "markersize": 5.5}
     return found
 
 

@@ -4,7 +4,7 @@ import dataclasses
 import math
 import time
 import tracemalloc
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -14,12 +14,10 @@ from analytic import simulate
 from analytic.batch import simulate_many
 from analytic.motion import SampledMotion
 
-from ...running.cases import Case, fingerprint
-from ...running.cases import solver as solver_function
+from ...running.cases import Case
 from .scenes import at_amplitude
 from .timing import TICK
 
-RUNNER = "comparisons.studies.speed_error.growth:grown"
 AGAINST = {"duration": "duration [s]", "samples": "record samples per second [1/s]", "runs": "runs in a batch [-]"}
 WARM_SECONDS = 0.02  # s simulated before the memory is measured: code and caches are loaded
 SPREAD_OF_BATCH = 0.2  # amplitudes of a batch lie within this share of the boundary
@@ -42,18 +40,13 @@ class Point:
     family: str
     scene: object
     solver: str
-    settings: dict = field(default_factory=dict)
     count: int = 0
 
     def case(self, turn):
-        """The measurement of one round as a `Case`."""
-        settings = {
-            "solver": self.solver,
-            "settings": self.settings,
-            "count": self.count,
-            "code": fingerprint(self.solver),
-        }
-        return Case(self.scene, RUNNER, None, settings, {"round": turn})
+        """The measurement of one round as a `Case`: its own run, cut short, loads code and caches for `grown`."""
+        warm = self.scene.with_(duration=min(self.scene.duration, WARM_SECONDS))
+        tag = {"duration": self.scene.duration, "count": self.count, "round": turn}
+        return Case(warm, self.solver, None, {"history": False}, tag)
 
 
 def points(trials, engines, quick):
@@ -91,16 +84,18 @@ def sampled(scene, rate):
     return scene.with_(motion=SampledMotion(1.0 / rate, motion.acceleration(times), motion.label))
 
 
-def grown(scene, *, solver, settings, count, **_):
-    """The `Response` of a measurement in a process of its own: CPU time, and in its settings the memory [bytes].
+def grown(case, response):
+    """Measure: CPU time and memory [bytes] of the run that the case's tag names, in a process of its own.
 
     traced_bytes: peak of what Python and numpy allocate during the run (tracemalloc). resident_bytes: how far the
     process's resident memory rises above its size before the run, at its peak; it counts compiled code's memory too.
     """
-    run = _batch(scene, count) if count else lambda: solver_function(solver)(scene, history=False, **settings)
-    solver_function(solver)(scene.with_(duration=min(scene.duration, WARM_SECONDS)), history=False, **settings)
+    scene, count = case.scene.with_(duration=case.tag["duration"]), case.tag["count"]
+    run = _batch(scene, count) if count else dataclasses.replace(case, scene=scene).run
     resident = _resident_growth(run)
     response = run()
+    if response.failure:
+        raise RuntimeError(f"{case.solver}: {response.failure.reason}")
     cpu = response.cpu_seconds
     if cpu < TICK:
         repeats = math.ceil(TICK / cpu)
@@ -109,9 +104,13 @@ def grown(scene, *, solver, settings, count, **_):
     run()
     traced = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    return dataclasses.replace(
-        response, cpu_seconds=cpu, impacts=(), uplifts=(), settings={"traced_bytes": traced, "resident_bytes": resident}
-    )
+    return {
+        "end": response.end.time,
+        "steps": response.steps,
+        "traced_bytes": traced,
+        "resident_bytes": resident,
+        "cost": {"cpu_seconds": cpu},
+    }
 
 
 def _batch(scene, count):

@@ -11,7 +11,6 @@ from . import models
 from .scenes import Trial
 from .timing import PEER
 
-THREE_D = "comparisons.studies.speed_error.models:free_block_3d"
 TRANSPARENT = ("free-rigid", "near-overturning")  # scenes without base or record: what the peers are written for
 SAMPLED = ("isolated-standing", "isolated-rocking")
 
@@ -125,6 +124,16 @@ def _engines(trial, engines, pick):
     return found
 
 
+def applied_impacts(engines):
+    """{family whose impacts are the adapter's: family of the same engine's default variant}."""
+    return {
+        f"{name}, {variant}": f"{name}, {get_engine(name).default_variant}"
+        for name in engines
+        for variant, kind in get_engine(name).variants.items()
+        if kind.takes_restitution
+    }
+
+
 def _peers(trial, pick):
     return [
         Entry(trial, name, PEER, "tolerance", value, settings={"name": name})
@@ -166,9 +175,12 @@ def _extras(trial, engines, pick):
             for model, change in ways
             for value in powers(-8, -12)[pick:]
         ]
-    if "pybullet" in engines and trial.scene.bearings is None:
+    for name in engines if trial.scene.bearings is None else ():
         found += [
-            Entry(trial, "pybullet, fixed-step", THREE_D, "step", value, model=FREE_3D) for value in FREE_3D_STEPS[pick]
+            Entry(trial, f"{name}, {variant}", kind.free_block, "step", value, model=FREE_3D)
+            for variant, kind in get_engine(name).variants.items()
+            if kind.free_block
+            for value in FREE_3D_STEPS[pick]
         ]
     return found
 

@@ -1,7 +1,5 @@
 """The speed-error study in the report: words, tables and figures, all from the result."""
 
-from engines import ENGINES
-
 from ...showing.parts import Section, Table, figure_of, number
 from .figures import draw_growth, draw_pareto
 from .ladders import NEEDED
@@ -19,7 +17,6 @@ from .tables import (
     unrepeatable,
 )
 
-JOINTS = "exudyn, switched-joints"  # uplift, impact and rest are the adapter's
 SHOWN = (1e-2, 1e-3, 1e-4)  # levels of which the words speak
 
 
@@ -106,13 +103,12 @@ def paragraphs(result):
 def _scene_words(result, scene, about):
     """Cheapest engine that decides the impact itself, and the kernel, at each level: one sentence per scene."""
     measure = MEASURES[principal(result, scene)][0]
-    parts, switched = [], []
+    applied = result.settings["applied_impacts"]
+    parts, given = [], {family: [] for family in applied}
     for level in SHOWN:
         best = cost_at_error(result, scene, level)
-        kernel, joints = best.get("kernel"), best.get(JOINTS)
-        engine = next(
-            (row for family, row in best.items() if family.partition(",")[0] in ENGINES and family != JOINTS), None
-        )
+        kernel = best.get("kernel")
+        engine = next((row for family, row in best.items() if row["variant"] and family not in applied), None)
         if kernel is None:
             continue
         parts.append(
@@ -124,10 +120,14 @@ def _scene_words(result, scene, about):
                 "times the analytic kernel"
             )
         )
-        if joints:
-            switched.append(f"{level:g} in {number(joints['cpu_seconds'], 2)} s")
+        for family in applied.keys() & best.keys():
+            given[family].append(f"{level:g} in {number(best[family]['cpu_seconds'], 2)} s")
     words = f"{about['title']}. An error ({measure}) of at most " + "; ".join(parts) + "."
-    return words + (f" {JOINTS}, whose impacts are the adapter's own: {'; '.join(switched)}." if switched else "")
+    return words + "".join(
+        f" {family}, whose impacts are the adapter's own: {'; '.join(costs)}."
+        for family, costs in given.items()
+        if costs
+    )
 
 
 def _failure_words(result):

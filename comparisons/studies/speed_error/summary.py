@@ -10,7 +10,7 @@ import typer
 from ...bench.analytic_bench import peer_versions
 from ...running.study import Batch, Found
 from . import growth, timing
-from .ladders import entries
+from .ladders import applied_impacts, entries
 from .measure import errors
 from .scenes import description, trials
 
@@ -60,6 +60,7 @@ def plan(ask, scenes=None, keep=lambda entry: True, grow=True, *, repeats: Repea
         "scenes": {trial.name: description(trial) for trial in scenes},
         "laws": _laws(scenes),
         "peers": peer_versions(),
+        "applied_impacts": applied_impacts(ask.engines),
     }
     return Found(settings, rows, {"cpu_seconds": seconds})
 
@@ -128,7 +129,7 @@ def _growth(scenes, ask, rounds):
     for place in growth.points(scenes, ask.engines, ask.quick):
         found = []
         for turn in range(min(FEW, rounds)):
-            found += yield Batch([place.case(turn)], None, f"growth against {place.against}", alone=True)
+            found += yield Batch([place.case(turn)], growth.grown, f"growth against {place.against}", alone=True)
         sound = [one for one in found if not one.failed]
         row = {
             "table": "growth",
@@ -140,7 +141,7 @@ def _growth(scenes, ask, rounds):
         if sound:
             row["cpu_seconds"] = statistics.median(one.cost["cpu_seconds"] for one in sound)
             for name in ("traced_bytes", "resident_bytes"):
-                known = [one.values["settings"][name] for one in sound if one.values["settings"][name] is not None]
+                known = [one.values[name] for one in sound if one.values[name] is not None]
                 row[name] = statistics.median(known) if known else None
         rows.append(row)
     return rows

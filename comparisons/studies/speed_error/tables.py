@@ -113,10 +113,11 @@ def extras(result):
         if row["model"] == NEEDED:
             continue
         found += _beside(result, row, row["model"], _same(rows, row))
-    for row in rows:  # engines whose contact is integrated though the block never lifts, beside the joints
-        if row["scene"] == "isolated-standing" and row["family"] == "exudyn, compliant-corners":
-            joints = cost_at_error(result, row["scene"], error(row, principal(result, row["scene"])) or 0.0)
-            found += _beside(result, row, FULL_CONTACT, joints.get("exudyn, switched-joints"))
+    for family, integrated in result.settings["applied_impacts"].items():
+        for row in rows:  # contact is integrated though the block never lifts, beside the adapter's own
+            if row["scene"] == "isolated-standing" and row["family"] == integrated != family:
+                given = cost_at_error(result, row["scene"], error(row, principal(result, row["scene"])) or 0.0)
+                found += _beside(result, row, FULL_CONTACT, given.get(family))
     return found
 
 

@@ -97,46 +97,22 @@ class Solver:
         return Case(hard.scene, self.name, self.variant, settings, tag)
 
 
-# What is tried where a solver's verdict is not "right".
-CURES = {
-    ("exudyn", "compliant-corners"): (
-        {"stiffness": 1e12, "longest_step": 1e-3},
-        {"stiffness": 1e12, "longest_step": 1e-3, "tolerance": 1e-9},
-    ),
-    ("exudyn", "switched-joints"): ({"step": 1e-4},),
-    ("exudyn", "native-contact"): ({"step": 5e-5},),
-    ("pybullet", "impact-aware"): ({"largest_step": 1e-4}, {"largest_step": 1e-4, "accuracy": 1e-6}),
-    ("pybullet", "fixed-step"): ({"step": 2e-5},),
-    ("pybullet", "first-script"): ({"step": 2e-4},),
-    ("mujoco", "impact-aware"): ({"largest_step": 1e-4}, {"largest_step": 1e-4, "accuracy": 1e-6}),
-    ("mujoco", "fixed-step"): ({"step": 2e-5},),
-    ("mujoco", "first-script"): ({"step": 2e-4},),
-}
 TIME_STEPPING = Solver(
     "time-stepping", None, "stepping", {"step": 1e-3}, "step", ({"step": 1e-4}, {"step": 1e-5}), True
 )
-STEP_NAMES = ("step", "largest_step", "longest_step")
 
 
 def solvers(engines):
     """The columns: kernel, twin, time stepping, and every variant of the engines."""
-    found = [*(Solver(name, None, "event-driven", {}, None, (), True) for name in ("analytic", "twin")), TIME_STEPPING]
+    columns = [Solver(name, None, "event-driven", {}, None, (), True) for name in ("analytic", "twin")]
+    columns.append(TIME_STEPPING)
     for name in engines:
-        for variant, one in get_engine(name).variants.items():
-            fields = [field.name for field in dataclasses.fields(one.settings)]
-            step = next((field for field in STEP_NAMES if field in fields), None)
-            found.append(
-                Solver(
-                    name,
-                    variant,
-                    "stepping",
-                    {},
-                    step,
-                    CURES.get((name, variant), ()),
-                    variant == get_engine(name).default_variant,
-                )
-            )
-    return found
+        default = get_engine(name).default_variant
+        columns += [
+            Solver(name, variant, "stepping", {}, kind.step, kind.finer, variant == default)
+            for variant, kind in get_engine(name).variants.items()
+        ]
+    return columns
 
 
 def tolerances(hard, kind):

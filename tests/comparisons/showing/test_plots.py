@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from analytic import load_scene, simulate
-from comparisons.showing.plots import STYLES, draw_histories
+from comparisons.showing.plots import draw_histories, style
+from engines import ENGINES
 
 
 def drawn(name, horizon=None, count=1):
@@ -50,5 +51,5 @@ def test_what_lies_beyond_the_horizon_is_shaded(horizon, shown):
 
 
 def test_solvers_differ_in_colour_and_in_dashes():
-    assert len({colour for colour, _, _ in STYLES.values()}) == len(STYLES)
-    assert len({dashes for _, dashes, _ in STYLES.values()}) == len(STYLES)
+    looks = [style(solver) for solver in ("analytic", *ENGINES)]
+    assert len({look["color"] for look in looks}) == len({look["linestyle"] for look in looks}) == len(looks)

@@ -106,15 +106,15 @@ def test_failed_runs_are_left_out_in_pairs_and_told(tmp_path):
     assert [row["left_out"] for row in rows_of(result, "pair", "exudyn")] == [2, 2, 2]
     assert (result.arrays["free-standing/exudyn"][:, [3, 7]] == -1).all()
     page = section(result)
-    assert "Runs that failed: 18" in " ".join(page.text)
-    assert len(page.evidence) == 18 and "raw evidence" in page.evidence[0][1]
+    assert "Runs that failed: 24" in " ".join(page.text)
+    assert len(page.evidence) == 24 and "raw evidence" in page.evidence[0][1]
 
 
 def test_the_figure_has_a_point_for_every_solver_and_intensity(tmp_path):
     result = study(tmp_path, Scaled(1.0))
     above, below = draw(result).axes
-    assert len(above.containers) == 5 and all(len(bars[0].get_xdata()) == 3 for bars in above.containers)
-    assert len(below.lines) == 4 and below.get_xlabel() and above.get_ylabel()
+    assert len(above.containers) == 6 and all(len(bars[0].get_xdata()) == 3 for bars in above.containers)
+    assert len(below.lines) == 5 and below.get_xlabel() and above.get_ylabel()
     share = above.containers[0][0].get_ydata()
     assert share == pytest.approx((result.arrays["free-standing/analytic"] == 1).mean(axis=1))
     assert np.all(np.diff(share) > 0)
@@ -142,9 +142,9 @@ def test_an_interrupted_study_takes_up_its_own_rows(tmp_path, monkeypatch):
     assert len(before.splitlines()) == 4
     first = attempt()
     assert store.read_text().startswith(before)
-    assert len(store.read_text().splitlines()) == 6
+    assert len(store.read_text().splitlines()) == 8
     again = attempt()  # nothing left to run
-    assert len(store.read_text().splitlines()) == 6
+    assert len(store.read_text().splitlines()) == 8
     assert without_cost(again.rows) == without_cost(first.rows)
     assert all((first.arrays[name] == again.arrays[name]).all() for name in first.arrays)
 

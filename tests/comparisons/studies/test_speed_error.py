@@ -10,7 +10,7 @@ from analytic import simulate
 from analytic.errors import SettingError
 from analytic.time_stepping import simulate_time_stepping
 from comparisons.cli import main
-from comparisons.running.cases import Case
+from comparisons.running.cases import Case, solver
 from comparisons.running.provenance import Result, read_result
 from comparisons.running.store import Store
 from comparisons.running.study import RUNS, compute
@@ -135,7 +135,8 @@ def test_a_heavy_base_errs_by_its_mass_ratio(free):
 
 def test_a_tuned_free_block_rocks_as_the_planar_one(free):
     pytest.importorskip("pybullet")
-    found = errors(free, models.free_block_3d(free.scene, step=1e-3, history=False).to_json())
+    free_block = solver(get_engine("pybullet").variants["fixed-step"].free_block)
+    found = errors(free, free_block(free.scene, step=1e-3, history=False).to_json())
     assert found["lost_impacts"] == 0
     assert found["restitution"] < 5e-3
 
@@ -170,7 +171,7 @@ def row(family, cpu, error, lost=0, step=1.0, failure=None, model=NEEDED):
 
 
 def result_of(rows):
-    settings = {"scenes": {"s": {"title": "s", "measures": ["impact_time"]}}}
+    settings = {"scenes": {"s": {"title": "s", "measures": ["impact_time"]}}, "applied_impacts": {}}
     return Result(STUDY.name, settings, rows, {}, {"cpu_seconds": np.array([[one["cpu_seconds"]] for one in rows])})
 
 
@@ -246,10 +247,11 @@ def test_a_run_grows_in_steps_and_not_in_memory(by_name):
     durations = 50, 100, 200, 400
     for duration in durations:
         scene = growth.lasting(by_name["isolated-standing"].scene, duration)
-        response = growth.grown(scene, solver="analytic", settings={}, count=0)
-        assert response.end.time == duration
-        steps.append(response.steps)
-        memory.append(response.settings["traced_bytes"])
+        case = growth.Point("duration", duration, "kernel", scene, "analytic").case(0)
+        values = growth.grown(case, case.run())
+        assert values["end"] == duration
+        steps.append(values["steps"])
+        memory.append(values["traced_bytes"])
     exponent, _ = growth.fit(durations, steps)
     assert exponent == pytest.approx(1.0, abs=0.05)
     assert max(memory) < 1.01 * min(memory)
