@@ -9,9 +9,10 @@ bound is to be tightened.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from analytic.errors import SettingError
-from engines import ENGINES
+from engines import ENGINES, get_engine
 from engines.bounds import ROUNDING
 
 from . import agreement
@@ -55,9 +56,34 @@ class Tolerance:
         """
         return self.measure(self.engine, self.variant, self.scenes, {} if runs is None else runs)
 
-    def holds(self, value):
+    def holds(self, value: float) -> bool:
         """Whether a measured value lies within the bound (and not below the band)."""
         return self.least <= value <= self.bound
+
+    def result(self, found: float | None, failure: str | None) -> dict[str, Any]:
+        """The row with what was `found`, or why nothing was, as JSON values."""
+        names = "quantity", "engine", "variant", "scenes", "least", "bound", "unit", "measured", "source"
+        holds = found is not None and self.holds(found)
+        return {name: getattr(self, name) for name in names} | {"found": found, "holds": holds, "failure": failure}
+
+    def check(self, runs: dict | None = None) -> float:
+        """The quantity measured here and now, asserted to hold: a test of one's own engine build.
+
+            @pytest.mark.parametrize("row", rows("exudyn"), ids=lambda row: row.name)
+            def test_engine(row):
+                row.check()
+
+        Raises
+        ------
+        AssertionError
+            It does not hold; says what was found.
+        Unmeasurable, EngineNotInstalled
+            As `found`.
+        """
+        value = self.found(runs)
+        band = f"{self.least:.3g} to " if self.least else ""
+        assert self.holds(value), f"{self.name}: {value:.3g} {self.unit}, tolerated {band}{self.bound:.3g}"
+        return value
 
 
 # quantity: how it is measured, unit
@@ -110,6 +136,22 @@ def _table():
 TABLE = _table()
 
 
+def rows(engine: str, variant: str | None = None) -> tuple[Tolerance, ...]:
+    """The rows of an engine's variant, its default one without a name; empty for one that is held to nothing.
+
+    Raises
+    ------
+    EngineNotInstalled
+    SettingError
+        The engine has no such variant.
+    """
+    known = get_engine(engine)
+    variant = variant or known.default_variant
+    if variant not in known.variants:
+        raise SettingError(f"{engine} has no variant {variant!r}; choose among {', '.join(known.variants)}")
+    return tuple(row for row in TABLE if (row.engine, row.variant) == (engine, variant))
+
+
 def measure_all(rows=TABLE):
     """The table measured here and now: a list of dict, JSON values, in the order of `rows`.
 
@@ -122,20 +164,5 @@ def measure_all(rows=TABLE):
             found = row.found(runs)
         except agreement.Unmeasurable as error:
             failure = str(error)
-        results.append(
-            {
-                "quantity": row.quantity,
-                "engine": row.engine,
-                "variant": row.variant,
-                "scenes": row.scenes,
-                "least": row.least,
-                "bound": row.bound,
-                "unit": row.unit,
-                "measured": row.measured,
-                "source": row.source,
-                "found": found,
-                "holds": found is not None and row.holds(found),
-                "failure": failure,
-            }
-        )
+        results.append(row.result(found, failure))
     return results

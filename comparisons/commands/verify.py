@@ -1,0 +1,103 @@
+"""``rocking verify``: do the engines installed here keep the tolerances of this study?"""
+
+import json
+from typing import Annotated, Any
+
+import typer
+
+from ..running.solving import TIME_LIMIT, check_time_limit
+
+
+def command(
+    engine: Annotated[
+        list[str] | None, typer.Option(help="An engine to verify; may be repeated. Default: all that are installed.")
+    ] = None,
+    variant: Annotated[str | None, typer.Option(help="Of the one engine; its default, if not given.")] = None,
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write the rows; - prints them.")
+    ] = None,
+    time_limit: Annotated[
+        float, typer.Option(metavar="SECONDS", help="An engine that takes longer has failed.")
+    ] = TIME_LIMIT,
+) -> None:
+    """Run the tolerance table against the engine builds of this machine. Status 1: a row does not hold.
+
+    From the tests of another project: comparisons.measuring.tolerances.rows("exudyn"), each with `check()`.
+    Example: rocking verify --engine exudyn
+    """
+    from analytic.errors import SettingError
+    from comparisons.measuring.tolerances import rows
+    from engines import get_engine, installed_engines
+
+    from ..running.files import check_writable, write_text
+
+    check_time_limit(time_limit)
+    check_writable([json_file])
+    if variant is not None and len(engine or ()) != 1:
+        raise SettingError(f"--variant {variant}: belongs to one engine; name it with --engine")
+    results: list[dict[str, Any]] = []
+    for name in dict.fromkeys(engine or installed_engines()):
+        results += _verified(name, rows(name, variant), time_limit)
+    if json_file:
+        content = {
+            "schema": "rocking verify 1",
+            "versions": {name: get_engine(name).versions() for name in {row["engine"] for row in results}},
+            "rows": results,
+        }
+        write_text(json_file, json.dumps(content, indent=2, allow_nan=False) + "\n")
+    if json_file != "-":
+        _show(results)
+    if not results or not all(row["holds"] for row in results):
+        raise typer.Exit(1)
+
+
+def _verified(name, table, time_limit):
+    """The rows of an engine, measured in a process of their own; where it dies, each row says so."""
+    from engines.guard import alone
+
+    from ..measuring.tolerances import measure_all
+    from ..running.solving import say, spinner
+
+    if not table:
+        say(f"{name}: held to no tolerance")
+        return []
+    found, failure = alone(
+        measure_all, table, time_limit=time_limit, meanwhile=spinner(f"{name}: {len(table)} tolerances")
+    )
+    if failure is None:
+        return found
+    say(f"{name}: {failure.reason}. {failure.message.partition(chr(10))[0]}")
+    return [row.result(None, failure.reason) for row in table]
+
+
+def _show(results):
+    from rich.console import Console
+
+    console = Console(highlight=False)
+    for solver in dict.fromkeys((row["engine"], row["variant"]) for row in results):
+        console.print(_table(solver, [row for row in results if (row["engine"], row["variant"]) == solver]))
+    for row in results:
+        if row["failure"]:
+            console.print(f"{row['engine']}, {row['quantity']}: {row['failure']}", soft_wrap=True, markup=False)
+    broken = sum(not row["holds"] for row in results)
+    console.print(f"{len(results) - broken} of {len(results)} tolerances hold.")
+
+
+def _table(solver, rows):
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(title=", ".join(solver), box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for name in ("", "quantity and scenes", "found", "tolerated", "unit"):
+        table.add_column(Text(name), justify="right" if name in ("found", "tolerated") else "left")
+    for row in rows:
+        band = f"{row['least']:.2g} to " if row["least"] else ""
+        table.add_row(
+            "holds" if row["holds"] else Text("FAILS", style="bold red"),
+            Text(f"{row['quantity']}\n{row['scenes']}"),
+            "-" if row["found"] is None else f"{row['found']:.3g}",
+            f"{band}{row['bound']:.2g}",
+            row["unit"],
+        )
+    return table
