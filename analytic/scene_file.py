@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import BeforeValidator, Field, ValidationError
 
 from .errors import SceneError
 from .files import read_plain
@@ -40,7 +40,7 @@ KEY_UNITS = {
     "start.base_velocity": "m/s",
     "run.duration": "s",
 }
-MOTIONS = {"record": ("units",), "pulse": ("amplitude", "frequency", "start"), "synthetic": ("seed",)}
+MOTIONS = {"record": ("units", "channel"), "pulse": ("amplitude", "frequency", "start"), "synthetic": ("seed",)}
 
 LIMITS = {
     "greater_than": "above {:.6g}",
@@ -55,6 +55,7 @@ class _Motion(_Part):
 
     record: str | None = None
     units: Literal[*UNITS] | None = None  # type: ignore[valid-type]  # one list of names, here and where they are read
+    channel: Annotated[str, BeforeValidator(lambda found: str(found) if type(found) is int else found)] | None = None
     pulse: Literal[*PULSES] | None = None  # type: ignore[valid-type]  # as above
     amplitude: Number | None = None
     frequency: Positive | None = None
@@ -88,9 +89,9 @@ class _Motion(_Part):
 
     def _recorded(self, path: Path) -> SampledMotion:
         try:
-            return read_record(path, self.units, self.scale)
+            return read_record(path, self.units, self.scale, channel=self.channel)
         except SceneError as error:
-            if error.key in ("motion.units", "motion.scale"):
+            if error.key.startswith("motion.") and error.key != "motion.record":
                 raise SceneError(error.key, error.value, f"{error.problem} ({path.name})", error.remedy) from None
             found = "" if error.value is None else f" = {error.value!r}"
             where = "" if error.key in ("record", "motion.record") else f"{error.key}{found}: "

@@ -246,6 +246,14 @@ BAD = {
         motion('pulse = "one-sine"\namplitude = 1\nfrequency = 2\nunits = "g"'),
         "motion.units = 'g': belongs to a record, not to a pulse; remove it",
     ),
+    "channel of a file that has none": (
+        motion('record = "good.AT2"\nchannel = 1'),
+        "motion.channel = '1': but the file has no several channels (good.AT2); remove channel",
+    ),
+    "channel that is no name": (
+        motion('record = "good.AT2"\nchannel = 1.5'),
+        'motion.channel = 1.5: wrong type (float); give text in "quotes"',
+    ),
     "other units than the AT2 states": (
         motion('record = "good.AT2"\nunits = "m/s2"'),
         "motion.units = 'm/s2': but the record carries its own unit, G (line 3) "
@@ -323,7 +331,7 @@ BAD = {
     "unknown format": (
         motion('record = "odd.dat"'),
         "motion.record = 'odd.dat': line 1 = 'what is this': not a known record format; give PEER AT2 "
-        "(a line NPTS= ..., DT= ...), ESM/DYNA 1.2 ASCII or two columns of numbers",
+        "(a line NPTS= ..., DT= ...), ESM/DYNA 1.2 ASCII, CSMIP volume 2 or two columns of numbers",
     ),
     # the file itself
     "no TOML": (replaced("[run]", "[run"), "scene: is not valid TOML ("),  # the rest is Python's own wording

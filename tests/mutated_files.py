@@ -40,35 +40,59 @@ def _rows(row, step=0.005, origin=0.0, count=24):
     return "".join(row.format(t=origin + i * step, a=VALUES[i % 12]) + "\n" for i in range(count))
 
 
+def csmip(values, step=".005", layout="8f10.5", words="in cm/sec2."):
+    """Three channels of volume 2, 25 lines of text each; velocities and displacements as long as the accelerations."""
+    text, decimals = "", int(layout[-1])
+    for number, name in ((1, "90 Deg"), (2, "Up"), (3, "H1")):
+        samples = [100 * value * number for value in values]
+        data = _columns(samples, 8, 10, decimals)
+        count, reals = len(values), _columns([0.0] * 60 + [float(step)] + [-999.0] * 39, 8, 10, 5)
+        text += f"Corrected accelerogram   00000-X0000-00000.00       Chan  {number}: {name:10s}from\n"
+        text += "Uncorrected Accelerogram Data             Processed: 01/01/00\n" + "Nowhere\n" * 13
+        text += f" {count} points of instrument- and baseline-corrected accel, veloc and displ data\n"
+        text += f"At equally-spaced intervals of {step} sec.\n"
+        text += f"Peak acceleration = {max(samples, key=abs):9.3f}    cm/sec/sec  at  .020   sec.\n"
+        text += "Nowhere\n" * 7 + _columns(range(100), 16, 5) + reals
+        text += f" {count} points of accel data equally spaced at {step} sec, {words} ({layout})\n{data}"
+        text += f" {count} points of veloc data equally spaced at {step} sec, in cm/sec. ({layout})\n{data}"
+        text += f" {count} points of displ data equally spaced at {step} sec, in cm. ({layout})\n{data}"
+        text += f"/&  ----------  End of data for channel  {number}  ----------\n"
+    return text
+
+
+def _columns(values, per_line, width, decimals=0):
+    words = [f"{value:{width}.{decimals}f}" for value in values]
+    return "".join("".join(words[i : i + per_line]) + "\n" for i in range(0, len(words), per_line))
+
+
 def records():
-    """(name, text, units to give) of undamaged records of every family."""
+    """(name, text, what the user says) of undamaged records of every family."""
     history, counts = "ACCELERATION TIME HISTORY IN UNITS OF G", "NPTS=    12, DT=   .0050 SEC"
     semicolons = _rows("{t:.3f};{a:.4f}").replace(".", ",")
     return [
-        ("at2", _at2(history, counts, _fortran(VALUES)), None),
+        ("at2", _at2(history, counts, _fortran(VALUES)), {}),
         (
             "at2 old",
             _at2("ACCELERATION TIME SERIES IN UNITS OF CM/S/S", "    12    .00500  NPTS, DT", _fortran(VALUES)),
-            None,
+            {},
         ),
-        ("at2 ms", _at2("ACCELERATION (CM/SEC2)", "NPTS= 12, DT= 5.0 MSEC", _fortran(VALUES)), None),
-        (
-            "at2 stuck",
-            _at2(history, "NPTS=12,DT=5.0E-003", _fortran([-abs(value) - 0.01 for value in VALUES], 13)),
-            None,
-        ),
-        ("at2 long exponents", _at2(history, counts, _fortran(VALUES, 16, 7, 3)), None),
-        ("at2 of given units", _at2("TIME HISTORY", counts, _fortran(VALUES)), "g"),
-        ("at2 of velocities", _at2("VELOCITY TIME HISTORY IN UNITS OF CM/S", counts, _fortran(VALUES)), None),
-        ("dyna", _dyna(VALUES), None),
-        ("blanks", _rows("{t:8.4f} {a:14.6E}"), "g"),
-        ("comments", "# time acceleration\n" + _rows("{t:.3f}\t{a:.4f}  # remark"), "m/s2"),
-        ("256 Hz", _rows("{t:.3f} {a:.4f}", 1 / 256), "g"),
-        ("epoch", _rows("{t:.4f} {a:.4f}", origin=1.5e9), "g"),
-        ("csv", "Time (s),Acceleration (cm/s^2)\n" + _rows("{t:.3f},{a:.4f}"), None),
-        ("csv ms", "time [ms],acc [g]\n" + _rows("{t:.1f},{a:.4f}", 5.0), None),
-        ("semicolons", "t;a [m/s2]\n" + semicolons, None),
-        ("decimal commas", semicolons.replace(";", "   "), "cm/s2"),
+        ("at2 ms", _at2("ACCELERATION (CM/SEC2)", "NPTS= 12, DT= 5.0 MSEC", _fortran(VALUES)), {}),
+        ("at2 stuck", _at2(history, "NPTS=12,DT=5.0E-003", _fortran([-abs(value) - 0.01 for value in VALUES], 13)), {}),
+        ("at2 long exponents", _at2(history, counts, _fortran(VALUES, 16, 7, 3)), {}),
+        ("at2 of given units", _at2("TIME HISTORY", counts, _fortran(VALUES)), {"units": "g"}),
+        ("at2 of velocities", _at2("VELOCITY TIME HISTORY IN UNITS OF CM/S", counts, _fortran(VALUES)), {}),
+        ("dyna", _dyna(VALUES), {}),
+        ("blanks", _rows("{t:8.4f} {a:14.6E}"), {"units": "g"}),
+        ("comments", "# time acceleration\n" + _rows("{t:.3f}\t{a:.4f}  # remark"), {"units": "m/s2"}),
+        ("256 Hz", _rows("{t:.3f} {a:.4f}", 1 / 256), {"units": "g"}),
+        ("epoch", _rows("{t:.4f} {a:.4f}", origin=1.5e9), {"units": "g"}),
+        ("csv", "Time (s),Acceleration (cm/s^2)\n" + _rows("{t:.3f},{a:.4f}"), {}),
+        ("csv ms", "time [ms],acc [g]\n" + _rows("{t:.1f},{a:.4f}", 5.0), {}),
+        ("semicolons", "t;a [m/s2]\n" + semicolons, {}),
+        ("decimal commas", semicolons.replace(";", "   "), {"units": "cm/s2"}),
+        ("csmip", csmip(VALUES), {"channel": 2}),
+        ("csmip, upper case", csmip(VALUES, words="(UNITS: CM/SEC/SEC)", layout="8f10.3").upper(), {"channel": "up"}),
+        ("csmip, touching", csmip([value - 1.6 for value in VALUES], ".0025", "8f10.5"), {"channel": "1"}),
     ]
 
 
@@ -276,11 +300,11 @@ DAMAGE = (
 
 
 def cases(number, seed=0):
-    """`number` damaged files: (kind, name, content, units), kind "record" or "scene"."""
+    """`number` damaged files: (kind, name, content, what the user says), kind "record" or "scene"."""
     chance = random.Random(seed)
-    kinds = [("record", *record) for record in records()] * 2 + [("scene", *scene, None) for scene in scenes()] * 5
+    kinds = [("record", *record) for record in records()] * 2 + [("scene", *scene, {}) for scene in scenes()] * 9
     for _ in range(number):
-        kind, name, text, units = chance.choice(kinds)
+        kind, name, text, said = chance.choice(kinds)
         if kind == "record" and chance.random() < 0.1:
-            units = chance.choice((None, "g", "cm/s2", "m/s2"))
-        yield kind, name, damaged(text, chance), units
+            said = said | {"units": chance.choice((None, "g", "cm/s2", "m/s2"))}
+        yield kind, name, damaged(text, chance), said

@@ -7,6 +7,7 @@ what is not surely a record is `Refused`.
 
 from fractions import Fraction
 
+import strict_formats
 from strict_words import (
     DIGITS,
     GIVEN,
@@ -25,19 +26,21 @@ from strict_words import (
 )
 
 
-def read(content, given=None):
+def read(content, units=None, channel=None):
     """(least step [s], largest step [s], samples [m/s2]) of the record in the bytes `content`."""
     lines = _lines(content)
     if not any(line.strip() for line in lines):
         raise Refused("empty")
-    step, samples, factor = _at2(lines) or _dyna(lines) or _columns(lines)
-    if given is not None and given not in GIVEN:
+    step, samples, factor = _at2(lines) or _dyna(lines) or _channel(lines, channel) or _columns(lines)
+    if channel is not None and not strict_formats.csmip(lines):
+        raise Refused("no channels")
+    if units is not None and units not in GIVEN:
         raise Refused("unit given")
-    if factor is None and given is None:
+    if factor is None and units is None:
         raise Refused("no unit")
-    if factor is not None and given is not None and factor != GIVEN[given]:
+    if factor is not None and units is not None and factor != GIVEN[units]:
         raise Refused("two units")
-    factor = GIVEN[given] if factor is None else factor
+    factor = GIVEN[units] if factor is None else factor
     if len(samples) < 2:
         raise Refused("samples")
     if not all(Fraction(1, 10**7) <= bound <= 1000 for bound in step):
@@ -110,6 +113,20 @@ def _until(text, stops):
     while i < len(text) and not text[i].isspace() and text[i] not in stops:
         i += 1
     return text[:i], text[i:]
+
+
+def _channel(lines, wanted):
+    """(step, samples, factor) of the channel wanted of a file that has several; None if it is none."""
+    channels = strict_formats.csmip(lines)
+    if channels is None:
+        return None
+    wanted = None if wanted is None else str(wanted).casefold()
+    found = [channel for channel in channels if wanted in (None, channel[0])]
+    found = found or [channel for channel in channels if channel[1] == wanted]
+    if len(found) != 1:
+        raise Refused("channel")
+    _, _, step, samples, factor = found[0]
+    return (step, step), samples, factor
 
 
 def _at2(lines):

@@ -4,40 +4,58 @@ from __future__ import annotations
 
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from ..errors import SceneError
 from ..motion import SampledMotion
-from . import columns, dyna, foreign, peer
-from .content import read_lines
+from . import columns, csmip, dyna, foreign, peer
+from .content import Asked, read_lines
 from .units import UNITS, G, resolve
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from .content import Content
     from .units import Unit
 
 __all__ = ["FORMATS", "G", "UNITS", "read_record"]
 
-FORMATS = (peer, dyna, foreign, columns)  # the first that recognises the lines reads them
+FORMATS: tuple[Format, ...] = (peer, dyna, csmip, foreign, columns)  # the first that recognises the lines reads them
 NOT_ACCELERATIONS = {".vt2": "velocities", ".dt2": "displacements"}
 USUAL_PEAK = (1e-4 * G, 3 * G)  # m/s2
 USUAL_STEP = (1e-4, 0.1)  # s
 LARGEST_PEAK = 1e6 * G  # m/s2: a damaged number
 
 
-def read_record(path: str | PathLike[str], units: str | None = None, scale: float = 1.0) -> SampledMotion:
+class Format(Protocol):
+    """What the module of a format offers."""
+
+    NAME: str
+
+    def recognises(self, lines: Sequence[str]) -> bool:
+        """Whether the lines of a file are of this format."""
+
+    def read(self, lines: Sequence[str], asked: Asked) -> Sequence[Content]:
+        """The `Content` of each channel, in the order of the file; raises `SceneError`."""
+
+
+def read_record(
+    path: str | PathLike[str], units: str | None = None, scale: float = 1.0, *, channel: int | str | None = None
+) -> SampledMotion:
     """The ground motion in a record file; the format is recognised from the content.
 
     Parameters
     ----------
     path : str or Path
-        PEER AT2, ESM/DYNA 1.2 ASCII (also as AFAD writes it) or two columns (time, acceleration; CSV).
+        PEER AT2, ESM/DYNA 1.2 ASCII (also as AFAD writes it), CSMIP volume 2 or two columns (time, acceleration; CSV).
     units : {"m/s2", "cm/s2", "g"}, optional
         Unit of a record whose own words state none; must not contradict them.
     scale : float
         Factor on the accelerations.
+    channel : int or str, optional
+        Number (3) or direction ("Up") of one of the channels of a file that has several.
 
     Returns
     -------
@@ -51,12 +69,12 @@ def read_record(path: str | PathLike[str], units: str | None = None, scale: floa
     """
     path = Path(path)
     try:
-        return _motion(_content(path), path.name, units, scale)
+        return _motion(_content(path, Asked(channel)), path.name, units, scale)
     except SceneError as error:
         raise error.in_file(path) from None
 
 
-def _content(path: Path) -> Content:
+def _content(path: Path, asked: Asked) -> Content:
     lines = read_lines(path)
     if path.suffix.lower() in NOT_ACCELERATIONS:
         raise SceneError(
@@ -67,7 +85,28 @@ def _content(path: Path) -> Content:
         )
     if not any(line.strip() for line in lines):
         raise SceneError("record", None, "is empty", "give a record with at least two accelerations")
-    return next(form for form in FORMATS if form.recognises(lines)).read(lines)
+    return _chosen(next(form for form in FORMATS if form.recognises(lines)).read(lines, asked), asked.channel)
+
+
+def _chosen(contents: Sequence[Content], channel: int | str | None) -> Content:
+    """The one of a file's contents that `channel`, a number or a direction, names; without it the only one."""
+    choice = " or ".join(content.channel_words for content in contents)
+    if channel is None and len(contents) > 1:
+        raise SceneError(
+            "motion.channel", None, f"missing; the file holds channels {choice}", "add channel, one of these"
+        )
+    if channel is None:
+        return contents[0]
+    if not contents[0].channel:
+        raise SceneError("motion.channel", channel, "but the file has no several channels", "remove channel")
+    word = " ".join(str(channel).split()).casefold()
+    found = [content for content in contents if content.channel == word] or [
+        content for content in contents if content.direction.casefold() == word
+    ]
+    if len(found) != 1:
+        problem = "names several channels" if found else "not a channel of the file"
+        raise SceneError("motion.channel", channel, problem, f"choose one of {choice}, by its number")
+    return found[0]
 
 
 def _motion(content: Content, name: str, units: str | None, scale: float) -> SampledMotion:
@@ -81,7 +120,8 @@ def _motion(content: Content, name: str, units: str | None, scale: float) -> Sam
         raise SceneError("record", None, f"its peak of {peak / G:.3g} g is no ground motion", "mend the damaged number")
     if not abs(scale) * peak <= LARGEST_PEAK:
         raise SceneError("motion.scale", scale, f"makes a peak of {abs(scale) * peak / G:.3g} g", "give a smaller one")
-    label = name if scale == 1 else f"{name} x {scale:g}"
+    label = f"{name}, channel {content.channel_words}" if content.channel else name
+    label = label if scale == 1 else f"{label} x {scale:g}"
     odd = _odd(peak, content.dt, unit) + content.warnings
     return SampledMotion(content.dt, samples * scale, label, tuple(f"{name}: {sentence}" for sentence in odd))
 

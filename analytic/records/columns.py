@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..errors import SceneError
-from .content import HEADER_WIDTH, UNKNOWN, Content
+from .content import HEADER_WIDTH, UNKNOWN, Asked, Content
 from .numbers import number
 from .times import PER_SECOND, uniform_step, usable
 from .units import stated_unit
@@ -27,7 +27,7 @@ def recognises(lines: Sequence[str]) -> bool:
     return True
 
 
-def read(lines: Sequence[str]) -> Content:
+def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     """The `Content` of two columns.
 
     Raises
@@ -54,7 +54,7 @@ def read(lines: Sequence[str]) -> Content:
         values.append(number(where, fields[1]))
     dt = uniform_step(times) if len(times) > 1 else 1.0  # one sample is refused by the caller
     no_unit = "the header names no unit" if header else "two columns carry no unit"
-    return Content(usable("time", dt / per_second), np.array(values), unit, no_unit)
+    return (Content(usable("time", dt / per_second), np.array(values), unit, no_unit),)
 
 
 def _split(lines: Sequence[str]) -> tuple[list[tuple[int, str]], list[tuple[int, str]]]:

@@ -14,7 +14,7 @@ LARGEST = 200_000_000  # bytes: some 1e7 samples
 HEADER_WIDTH = 400  # characters of a header line that are looked at
 UNKNOWN = (
     "not a known record format",
-    "give PEER AT2 (a line NPTS= ..., DT= ...), ESM/DYNA 1.2 ASCII or two columns of numbers",
+    "give PEER AT2 (a line NPTS= ..., DT= ...), ESM/DYNA 1.2 ASCII, CSMIP volume 2 or two columns of numbers",
 )
 PACKED = {
     b"\x1f\x8b": ("gzip", "gunzip"),
@@ -26,15 +26,33 @@ CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
 
 @dataclass(frozen=True)
+class Asked:
+    """What the user says of a record. None: nothing, and the file itself must say it.
+
+    channel : int, str or None
+        Number or direction of one of several channels.
+    """
+
+    channel: int | str | None = None
+
+
+@dataclass(frozen=True)
 class Content:
-    """A record as read: sampling interval dt [s], values as printed, shape (n,), the unit its own words state (None:
-    none), what it says of a missing one, and sentences on what is odd."""
+    """One channel of a record as read: sampling interval dt [s], values as printed, shape (n,), the unit its own words
+    state (None: none), what it says of a missing one, sentences on what is odd, the channel's number and direction."""
 
     dt: float
     values: np.ndarray
     unit: Unit | None
     no_unit: str = "the header names no unit"
     warnings: tuple[str, ...] = ()
+    channel: str = ""
+    direction: str = ""
+
+    @property
+    def channel_words(self) -> str:
+        """The channel as messages name it: 3 (Up)."""
+        return f"{self.channel} ({self.direction})" if self.direction else self.channel
 
 
 def read_lines(path: str | PathLike[str]) -> list[str]:

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ..errors import SceneError
-from .content import HEADER_WIDTH, Content
-from .numbers import NUMBER, check_count, count, fortran_values, number
+from .content import HEADER_WIDTH, Asked, Content
+from .numbers import NUMBER, check_count, count, fortran_values, number, odd_peak
 from .times import interval
 from .units import Unit, factor_of
 
@@ -24,7 +24,7 @@ def recognises(lines: Sequence[str]) -> bool:
     return bool(KEY.match(first)) and any(line.startswith(SIGNS) for line in lines[:HEADER_LINES])
 
 
-def read(lines: Sequence[str]) -> Content:
+def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     """The `Content` of an ESM/DYNA file.
 
     Raises
@@ -45,7 +45,7 @@ def read(lines: Sequence[str]) -> Content:
     values = fortran_values(lines, begin)
     check_count("NDATA", count("NDATA", header["NDATA"][0]), values)
     dt = interval("SAMPLING_INTERVAL_S", header["SAMPLING_INTERVAL_S"][0])
-    return Content(dt, values, Unit(stated, factor, f"line {line}"), warnings=_peak(header, values))
+    return (Content(dt, values, Unit(stated, factor, f"line {line}"), warnings=_peak(header, values)),)
 
 
 def _header(lines: Sequence[str]) -> tuple[dict[str, tuple[str, int]], int]:
@@ -66,9 +66,4 @@ def _header(lines: Sequence[str]) -> tuple[dict[str, tuple[str, int]], int]:
 def _peak(header: Mapping[str, tuple[str, int]], values: np.ndarray) -> tuple[str, ...]:
     """A sentence if the header states another peak than the data have."""
     stated = header.get("PGA_CM/S^2", ("",))[0]
-    if not re.fullmatch(NUMBER, stated) or not len(values):
-        return ()
-    peak = float(np.abs(values).max())
-    if abs(abs(number("PGA_CM/S^2", stated)) - peak) <= 0.01 * peak:
-        return ()
-    return (f"the header states a peak of {stated} cm/s2, the data have {peak:.6g}: check that the file is whole",)
+    return odd_peak(number("PGA_CM/S^2", stated), "cm/s2", values) if re.fullmatch(NUMBER, stated) else ()

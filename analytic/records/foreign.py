@@ -5,11 +5,13 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from ..errors import SceneError
+from .content import Asked
 
+NAME = "a format that is not read"
 SIGNS = {
     "COSMOS": re.compile(r"\(format v[0-9.]+ with", re.I),
     "USGS SMC": re.compile(r"\s*[0-9] (?:un)?corrected (?:accelerogram|velocity|displacement)", re.I),
-    "CSMIP volume 1, 2 or 3": re.compile(r"\s*(?:un)?corrected accelerogram", re.I),
+    "CSMIP volume 1": re.compile(r"\s*uncorrected accelerogram", re.I),
     "K-NET": re.compile(r"origin time\b", re.I),
 }
 
@@ -19,7 +21,7 @@ def recognises(lines: Sequence[str]) -> bool:
     return _name(lines) is not None
 
 
-def read(lines: Sequence[str]) -> NoReturn:
+def read(lines: Sequence[str], asked: Asked) -> NoReturn:
     """Refuse the file, saying what to do instead."""
     raise SceneError(
         "record",

@@ -88,6 +88,14 @@ def _form(part: str) -> tuple[int, int] | None:
     return match and (len(match[1]), len(match[2] or ""))
 
 
+def odd_peak(stated: float, unit: str, values: Sequence[float] | np.ndarray) -> tuple[str, ...]:
+    """A sentence if the largest of the values is off by more than 1 % from the peak that the header states [unit]."""
+    peak = float(np.abs(values).max()) if len(values) else 0.0
+    if not peak or abs(abs(stated) - peak) <= 0.01 * peak:
+        return ()
+    return (f"the header states a peak of {stated:.6g} {unit}, the data have {peak:.6g}: check that the file is whole",)
+
+
 def count(where: str, token: str) -> int:
     """A number of samples.
 

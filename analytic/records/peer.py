@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 
 from ..errors import SceneError
-from .content import HEADER_WIDTH, Content
+from .content import HEADER_WIDTH, Asked, Content
 from .numbers import NUMBER, check_count, count, fortran_values
 from .times import PER_SECOND, interval
 from .units import stated_unit
@@ -22,7 +22,7 @@ def recognises(lines: Sequence[str]) -> bool:
     return _head(lines) is not None
 
 
-def read(lines: Sequence[str]) -> Content:
+def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     """The `Content` of a PEER AT2 file.
 
     Raises
@@ -36,7 +36,7 @@ def read(lines: Sequence[str]) -> Content:
     unit = stated_unit(((number, line[:HEADER_WIDTH]) for number, line in enumerate(lines[: head + 1], 1)), titles=head)
     values = fortran_values(lines, head + 1)
     check_count(f"{where}, NPTS", count(f"{where}, NPTS", npts), values)
-    return Content(dt, values, unit)
+    return (Content(dt, values, unit),)
 
 
 def _head(lines: Sequence[str]) -> tuple[int, str, str, str] | None:

@@ -33,12 +33,12 @@ DEFAULTS = {
 }
 
 
-def judged(kind, path, content, units):
+def judged(kind, path, content, said):
     """How the project's reader and the strict one judge a file: "same", "both refuse", "only ... reads", "differ"."""
     path.write_bytes(content)
     begin = time.process_time()
     try:
-        found = read_record(path, units) if kind == "record" else load_scene(path)
+        found = read_record(path, **said) if kind == "record" else load_scene(path)
     except SceneError as error:
         found = None
         message = str(error)
@@ -46,7 +46,7 @@ def judged(kind, path, content, units):
         assert error.key is not None and error.remedy
     assert time.process_time() - begin < HANG
     try:
-        expected = strict_records.read(content, units) if kind == "record" else strict_scenes.read(content)
+        expected = strict_records.read(content, **said) if kind == "record" else strict_scenes.read(content)
     except (strict_records.Refused, strict_scenes.Refused):
         return "both refuse" if found is None else "only the project reads"
     if found is None:
@@ -95,23 +95,23 @@ def same_scene(scene, tables):
 def count_judgements(folder, number, seed):
     """{judgement: count} of `number` damaged files, and the files on which the readers differ."""
     counts, wrong = Counter(), []
-    for kind, name, content, units in cases(number, seed):
-        judgement = judged(kind, folder / "file", content, units)
+    for kind, name, content, said in cases(number, seed):
+        judgement = judged(kind, folder / "file", content, said)
         counts[kind, judgement] += 1
         if judgement in ("differ", "only the project reads"):
-            wrong.append((judgement, name, units, content))
+            wrong.append((judgement, name, said, content))
     return counts, wrong
 
 
-@pytest.mark.parametrize("name, text, units", records(), ids=[name for name, *_ in records()])
-def test_undamaged_records_are_judged_the_same(tmp_path, name, text, units):
-    judgement = judged("record", tmp_path / "file", text.encode(), units)
+@pytest.mark.parametrize("name, text, said", records(), ids=[name for name, *_ in records()])
+def test_undamaged_records_are_judged_the_same(tmp_path, name, text, said):
+    judgement = judged("record", tmp_path / "file", text.encode(), said)
     assert judgement == ("both refuse" if "velocities" in name else "same")
 
 
 @pytest.mark.parametrize("name, text", scenes(), ids=[name for name, _ in scenes()])
 def test_undamaged_scenes_are_judged_the_same(tmp_path, name, text):
-    assert judged("scene", tmp_path / "file", text.encode(), None) == "same"
+    assert judged("scene", tmp_path / "file", text.encode(), {}) == "same"
 
 
 def test_damaged_files(tmp_path):

@@ -214,10 +214,6 @@ def test_real_near_fault_record():
     "name, problem",
     [
         ("RSN1063_NORTHR_RRS228.AT2.gz", "is packed by gzip; unpack it first"),
-        ("ferndale.v2", "is a CSMIP volume 1, 2 or 3 file, which is not read; write its accelerations as two columns"),
-        ("ce36456p_CE36456.V2", "is a CSMIP"),
-        ("CE89146.V2", "is a CSMIP"),
-        ("CE58667.V2", "is a CSMIP"),
         ("AOM001.EW", "is a K-NET file"),
         ("0111a.smc", "is a USGS SMC file"),
         ("cosmos.V2c", "is a COSMOS file"),

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from bad_scenes import BAD, SCENE, write_scene
+from mutated_files import VALUES, csmip
 
 from analytic import Base, Bearings, Block, PulseMotion, SceneError, Start, load_scene, shipped_scenes
 from analytic.synthetic import synthetic_motion
@@ -69,6 +70,14 @@ def test_record_is_looked_up_beside_the_scene_file(tmp_path, monkeypatch):
     )
     monkeypatch.chdir("/")
     assert load_scene(path).motion.samples.tolist() == pytest.approx([0.03, 0.06])
+
+
+@pytest.mark.parametrize("channel", ["2", '"2"', '"Up"'])
+def test_a_channel_of_a_record_by_number_or_direction(tmp_path, channel):
+    (tmp_path / "r.v2").write_text(csmip(VALUES))
+    path = write_scene(tmp_path, SCENE.replace('synthetic = "duzce-like"', f'record = "r.v2"\nchannel = {channel}'))
+    motion = load_scene(path).motion
+    assert motion.label == "r.v2, channel 2 (Up)" and motion.samples[0] == pytest.approx(2 * VALUES[0])
 
 
 def test_synthetic_motion_with_seed_and_scale(tmp_path):

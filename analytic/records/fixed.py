@@ -1,0 +1,69 @@
+"""Numbers in columns of equal width, as a Fortran format such as 8F10.5 prints them: cut by position, not by blanks.
+
+Numbers that fill their columns touch each other, so that blanks do not part them; and a sign that is lost or slips in
+moves what is behind it, which shows.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import SceneError
+from .numbers import number
+
+DAMAGED = "the file is cut or damaged: fetch it again"
+_FORMAT = re.compile(r"\( *([1-9][0-9]?) *[A-Z]{1,2}([1-9][0-9]?)\.([0-9]{1,2})(?:E[0-9]?)? *\)", re.I)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Numbers a line, characters of each, and its digits after the point (None: as many as the first one has)."""
+
+    per_line: int
+    width: int
+    decimals: int | None = None
+
+
+def stated_layout(line: str) -> Layout | None:
+    """The `Layout` of the last Fortran format in brackets that a line holds, (8F10.5); None without one."""
+    found = _FORMAT.findall(line)
+    return Layout(*(int(part) for part in found[-1])) if found else None
+
+
+def fixed_values(lines: Sequence[str], begin: int, count: int, layout: Layout) -> tuple[np.ndarray, int]:
+    """(`count` numbers from the line of index `begin` on, index of the line behind them).
+
+    Raises
+    ------
+    SceneError
+        A line that is not full (the last one may hold fewer numbers), what is not a number that ends where its column
+        ends, or other digits after the point; names the line.
+    """
+    values: list[float] = []
+    decimals, at = layout.decimals, begin
+    while len(values) < count:
+        wanted = min(layout.per_line, count - len(values))
+        text = lines[at].rstrip(" ") if at < len(lines) else ""
+        where = f"line {at + 1}"
+        if len(text) != wanted * layout.width:
+            problem = f"not {wanted} numbers of {layout.width} characters; {count} samples are stated"
+            raise SceneError(where, text, problem, DAMAGED)
+        for left in range(0, len(text), layout.width):
+            field = text[left : left + layout.width].lstrip(" ")
+            values.append(number(where, field))
+            found = _decimals(field)
+            decimals = found if decimals is None else decimals
+            if found is None or found != decimals:
+                raise SceneError(where, field, f"not a number of {decimals} decimals, as the others", DAMAGED)
+        at += 1
+    return np.array(values), at
+
+
+def _decimals(field: str) -> int | None:
+    """Digits after the point of a number; None without a point."""
+    _, point, behind = re.split(r"[EeDd]", field)[0].partition(".")
+    return len(behind) if point else None
