@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
@@ -13,7 +13,7 @@ from numba import njit
 
 from . import kernel, layout
 from .decision import CAP_PERIODS, longest_duration
-from .layout import Ground
+from .layout import Ground, Vertical
 from .motion import PulseMotion, SampledMotion
 from .scene import Block, Scene
 from .solver import REST_RATE, TOLERANCE, ground, options, parameters
@@ -77,9 +77,19 @@ class Outcomes:
 
 @njit(cache=True, nogil=True)
 def _run_rows(
-    rows: np.ndarray, pulses: np.ndarray, kind: int, dt: float, samples: np.ndarray, chosen: Options, totals: np.ndarray
+    rows: np.ndarray,
+    pulses: np.ndarray,
+    kind: int,
+    dt: float,
+    samples: np.ndarray,
+    upright: np.ndarray | None,
+    chosen: Options,
+    totals: np.ndarray,
 ) -> None:
-    """Run each row of parameters under its own pulse (scale, frequency, phase, start, end); totals has a row each."""
+    """Run each row of parameters under its own pulse, see `pulse_row`; totals has a row each.
+
+    upright : samples of the vertical motion, or None without one.
+    """
     for i in range(rows.shape[0]):
         r = rows[i]
         par = Parameters(
@@ -109,7 +119,11 @@ def _run_rows(
             r[23],
         )
         b = pulses[i]
-        kernel.run(par, Ground(kind, dt, samples, b[0], b[1], b[2], b[3], b[4]), chosen, totals[i])
+        if upright is None:
+            kernel.run(par, Ground(kind, dt, samples, b[0], b[1], b[2], b[3], b[4], None), chosen, totals[i])
+        else:
+            vertical = Vertical(upright, b[5], b[6])
+            kernel.run(par, Ground(kind, dt, samples, b[0], b[1], b[2], b[3], b[4], vertical), chosen, totals[i])
 
 
 def run_rows(
@@ -117,12 +131,13 @@ def run_rows(
 ) -> np.ndarray:
     """Totals, shape (n, TOTALS), of n runs that share the kind and samples of one ground motion.
 
-    rows : (n, fields of Parameters). pulses : (n, 5) scale, frequency, phase, start, end.
+    rows : (n, fields of Parameters). pulses : (n, 7), rows of `pulse_row`.
     The result does not depend on the number of workers (threads; the kernel holds no lock).
     """
     n = len(rows)
     totals = np.zeros((n, layout.TOTALS))
-    arguments = (shaking.kind, shaking.dt, shaking.samples, chosen)
+    upright = shaking.vertical and shaking.vertical.samples
+    arguments = (shaking.kind, shaking.dt, shaking.samples, upright, chosen)
     workers = workers or os.cpu_count() or 1
     _run_rows(rows[:1], pulses[:1], *arguments, totals[:1])  # compiled or loaded before threads start
     size = max(1, -(-n // (workers * CHUNKS_PER_WORKER)))
@@ -136,8 +151,10 @@ def run_rows(
     return totals
 
 
-def _pulse_row(shaking: Ground) -> tuple[float, float, float, float, float]:
-    return shaking.scale, shaking.frequency, shaking.phase, shaking.start, shaking.end
+def pulse_row(shaking: Ground) -> tuple[float, ...]:
+    """What a run of `run_rows` has of its own: scale, frequency, phase, start, end, vertical scale and phase."""
+    vertical = (0.0, 0.0) if shaking.vertical is None else (shaking.vertical.scale, shaking.vertical.phase)
+    return shaking.scale, shaking.frequency, shaking.phase, shaking.start, shaking.end, *vertical
 
 
 def _outcome_options(tolerance: float, rest_rate: float, contact: bool = False) -> Options:
@@ -162,16 +179,17 @@ def simulate_many(
     scenes = list(scenes)
     factors = np.ones(len(scenes)) if scales is None else np.asarray(scales, dtype=float)
     chosen = _outcome_options(tolerance, rest_rate, contact)
-    groups: dict[str | int, list[int]] = {}
+    groups: dict[str | tuple[int, bool], list[int]] = {}
     for index, scene in enumerate(scenes):
         motion = scene.motion
-        key = motion.digest() if isinstance(motion, SampledMotion) else ground(motion).kind
+        shaking = ground(motion)
+        key = motion.digest() if isinstance(motion, SampledMotion) else (shaking.kind, shaking.vertical is None)
         groups.setdefault(key, []).append(index)
     totals = np.zeros((len(scenes), layout.TOTALS))
     for members in groups.values():
         shakings = [ground(scenes[i].motion, factors[i]) for i in members]
         rows = np.array([parameters(scenes[i]) for i in members], dtype=float)
-        pulses = np.array([_pulse_row(shaking) for shaking in shakings])
+        pulses = np.array([pulse_row(shaking) for shaking in shakings])
         totals[members] = run_rows(rows, pulses, shakings[0], chosen, workers)
     return Outcomes.of(totals, (len(scenes),), contact)
 
@@ -182,6 +200,8 @@ def overturning_map(
     frequency_ratios: npt.ArrayLike,
     amplitude_ratios: npt.ArrayLike,
     *,
+    vertical_ratio: float = 0.0,
+    vertical_phase: float = 0.0,
     tolerance: float = TOLERANCE,
     workers: int | None = None,
 ) -> Outcomes:
@@ -198,18 +218,26 @@ def overturning_map(
         Pulse frequency / omega_r.
     amplitude_ratios : array
         Pulse amplitude / (g tan(slenderness)).
+    vertical_ratio, vertical_phase : float
+        Amplitude of the vertical pulse over that of the horizontal one, and its phase [rad].
     """
+
+    def pulse(frequency):
+        level = PulseMotion(shape, 1.0, frequency)
+        up = replace(level, amplitude=vertical_ratio, phase=vertical_phase) if vertical_ratio else None
+        return ground(replace(level, vertical=up))
+
     frequencies = np.asarray(frequency_ratios, dtype=float) * scene.rocking_frequency
     unit = scene.gravity * np.tan(scene.block.slenderness)
     amplitudes = np.asarray(amplitude_ratios, dtype=float) * unit
-    columns = [_pulse_row(ground(PulseMotion(shape, 1.0, frequency))) for frequency in frequencies]
+    columns = [pulse_row(pulse(frequency)) for frequency in frequencies]
     pulses = np.tile(np.array(columns), (len(amplitudes), 1))
     pulses[:, 0] = np.repeat(amplitudes, len(frequencies))
+    pulses[:, 5] = vertical_ratio * pulses[:, 0]
     rows = np.tile(np.array(parameters(scene), dtype=float), (len(pulses), 1))
     if scene.duration is None:
         rows[:, _field("duration")] = pulses[:, 4] + longest_duration(scene.with_(motion=None))
-    shaking = ground(PulseMotion(shape, 1.0, frequencies[0]))
-    totals = run_rows(rows, pulses, shaking, _outcome_options(tolerance, REST_RATE), workers)
+    totals = run_rows(rows, pulses, pulse(frequencies[0]), _outcome_options(tolerance, REST_RATE), workers)
     return Outcomes.of(totals, (len(amplitudes), len(frequencies)))
 
 
@@ -240,6 +268,6 @@ def rocking_spectrum(
     if duration is None:
         rows[:, _field("duration")] = motion.end + CAP_PERIODS * periods
     shaking = ground(motion)
-    pulses = np.tile(np.array(_pulse_row(shaking)), (len(periods), 1))
+    pulses = np.tile(np.array(pulse_row(shaking)), (len(periods), 1))
     totals = run_rows(rows, pulses, shaking, _outcome_options(tolerance, REST_RATE), workers)
     return Outcomes.of(totals, (len(periods),))

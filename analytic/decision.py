@@ -42,6 +42,11 @@ TAIL_PERIODS, CAP_PERIODS = 3.0, 100.0
 # A base softer than this many rocking periods does not stretch the tail any further.
 SLOWEST_BASE = 10.0
 
+RIGID_BEARINGS = (
+    "the vertical motion passes through the bearings as if they were rigid: real ones sway vertically at some 10 to 20 "
+    "Hz, within the band of vertical shaking"
+)
+
 
 _recoverable = chosen("recoverable")
 
@@ -250,8 +255,11 @@ def until_decided(
 
 
 def model_warnings(scene: Scene, friction_demand: float, min_normal_ratio: float) -> tuple[str, ...]:
-    """Sentences on what the model assumes and this run does not keep: contact that only presses, and no sliding."""
+    """Sentences on what the model assumes and this run does not keep: contact that only presses, and no sliding; and on
+    bearings that carry a vertical motion, which are not rigid."""
     found = []
+    if scene.bearings is not None and scene.motion is not None and scene.motion.vertical is not None:
+        found.append(RIGID_BEARINGS)
     if min_normal_ratio <= 0:
         found.append(
             f"the least normal force at the contact is {min_normal_ratio:.3g} m g: the block would jump, and "

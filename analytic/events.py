@@ -23,18 +23,30 @@ TOUCH = 1e-9
 
 
 @njit(cache=True)
-def find_uplift(P, row, order, threshold, refused, h, event, work):
-    """|absolute acceleration| (row of P) exceeds g tan(gamma)."""
+def find_uplift(P, row, order, threshold, refused, h, event, work, slope=0.0, highest=-1, G=None):
+    """|absolute acceleration| (row of P) exceeds the threshold g tan(gamma).
+
+    With the series G of g + a_v, up to `highest`, that is `slope` G, slope = tan(gamma).
+    """
     size, power = abs(P[row, 0]), 1.0
     for k in range(1, order + 1):
         power *= h
         size += abs(P[row, k]) * power
-    found = -1.0
-    if size >= threshold:
+    found, least = -1.0, threshold
+    if G is not None:
+        least, power = slope * G[0], slope
+        for k in range(1, highest + 1):
+            power *= h
+            least -= abs(G[k]) * power
+    if size >= least:
         for side in (-1.0, 1.0):
             for k in range(order + 1):
                 event[k] = side * P[row, k]
-            event[0] += threshold
+            if G is None:
+                event[0] += threshold
+            else:
+                for k in range(max(highest, 0) + 1):
+                    event[k] += slope * G[k]
             if refused and abs(event[0]) <= TOUCH * threshold:
                 event[0] = 0.0  # the touch just refused; a later crossing still counts
                 if event[1] < 0:
@@ -98,13 +110,16 @@ def find_corner(z, direction, corner, order, h, event, work):
 
 
 @njit(cache=True)
-def direction_from_rest(par, rocking, s, tilt, rate, highest, P, force):
-    """Sign of the motion a base at standstill starts into: that of its first derivative that is not zero."""
+def direction_from_rest(par, gravity, rocking, s, tilt, rate, highest, P, force):
+    """Sign of the motion a base at standstill starts into: that of its first derivative that is not zero.
+
+    gravity : g + a_v [m/s2].
+    """
     ground = P[GROUND, 0] if highest >= 0 else 0.0
     if rocking:
         c = par.m * par.R * math.cos(s * par.gamma - tilt)
         n = par.m * par.R * math.sin(s * par.gamma - tilt)
-        absolute = (par.J * (-force - n * rate * rate) + c * par.g * n) / (par.M * par.J - c * c)  # (3)-(6) solved
+        absolute = (par.J * (-force - n * rate * rate) + c * gravity * n) / (par.M * par.J - c * c)  # (3)-(6) solved
     else:
         absolute = -force / par.M  # (2)
     start = absolute - ground
@@ -114,23 +129,26 @@ def direction_from_rest(par, rocking, s, tilt, rate, highest, P, force):
 
 
 @njit(cache=True)
-def hop_deceleration(par, s, ground, force):
-    """-s phi'' at phi = 0 on side s [rad/s2]; positive where gravity brings the block back. From eqs (3)-(6)."""
+def hop_deceleration(par, s, gravity, ground, force):
+    """-s phi'' at phi = 0 on side s [rad/s2]; positive where gravity brings the block back. From eqs (3)-(6).
+
+    gravity, ground : g + a_v and a_g [m/s2].
+    """
     h, b = par.R * math.cos(par.gamma), s * par.R * math.sin(par.gamma)
     if not par.on_base:
-        return s * par.m * (h * ground + par.g * b) / par.J
+        return s * par.m * (h * ground + gravity * b) / par.J
     determinant = par.M * par.J - (par.m * h) ** 2
-    return s * (par.M * par.m * par.g * b - par.m * h * force) / determinant
+    return s * (par.M * par.m * gravity * b - par.m * h * force) / determinant
 
 
 @njit(cache=True)
-def remaining_hops(par, rate, ground, force):
+def remaining_hops(par, rate, gravity, ground, force):
     """Time that the impacts after one that leaves tilt rate `rate` still take [s]; -1 if they do not end in rest.
 
     A hop lasts 2 w/q on its side and w falls by e at each impact: a geometric series, exact for small hops.
     """
     s = 1.0 if rate > 0 else -1.0
-    here, there = hop_deceleration(par, s, ground, force), hop_deceleration(par, -s, ground, force)
+    here, there = hop_deceleration(par, s, gravity, ground, force), hop_deceleration(par, -s, gravity, ground, force)
     w = abs(rate)
     if here <= 0 or there <= 0:
         # exactly on the threshold rounding decides the sign: hops shrink for ever
@@ -155,10 +173,10 @@ def impact_loss(par, v, before, after, jump):
 
 
 @njit(inline="always")
-def land(par, rate, base, ground, rest_rate, t, impacts, rests, totals):
+def land(par, rate, base, gravity, ground, rest_rate, t, impacts, rests, totals):
     """Across an impact, eqs (7), (8): (rate, base velocity, whether the block now stays down). Keeps its row.
 
-    base : (x, v, z) before; ground : its acceleration [m/s2]; rest_rate [rad/s].
+    base : (x, v, z) before; gravity, ground : g + a_v and a_g [m/s2]; rest_rate [rad/s].
     """
     (x, v, z), before, lever = base, rate, par.mt * par.R * math.cos(par.gamma)
     rate = par.e * before  # (7)
@@ -172,7 +190,7 @@ def land(par, rate, base, ground, rest_rate, t, impacts, rests, totals):
     force = par.count * (par.kb * x + z + par.damping * v)
     landed, remaining = rate == 0, -1.0
     if landed or abs(rate) < rest_rate:
-        remaining = remaining_hops(par, rate, ground, force)
+        remaining = remaining_hops(par, rate, gravity, ground, force)
     if not (landed or remaining >= 0):
         return rate, v, False
     left = lever * rate  # the hops left out: their momentum stays with the base

@@ -15,13 +15,14 @@ from ._unowned import unowned
 from .decision import peaks_are_final, will_not_overturn
 from .events import NEARLY_ELASTIC, land, settle
 from .polynomial import BISECTIONS, MAX_ORDER, value
-from .readings import write_history
+from .readings import gravity_at, write_history
 from .steps import (
     bearing_of_step,
     contact_of_step,
     end_of_base,
     end_of_block,
     first_event,
+    gravity_of_step,
     ground_of_step,
     read_step,
     rocking_of_step,
@@ -47,6 +48,11 @@ def run(par, ground, options, totals):
     end : (tilt, rate, x, v, z); impacts : (n, 4) time, rates before and after, base velocity jump; uplifts, rests :
     (n,); history : (n, 6) at multiples of output_step: time, tilt, rate, x, v, F (empty if output_step is 0).
     """
+    return _run(par, ground, ground.vertical, options, totals)  # an argument of its own: see layout.Ground
+
+
+@njit(cache=True, nogil=True)
+def _run(par, ground, vertical, options, totals):
     workspace, scratch = np.zeros((L.ROWS, MAX_ORDER + 2)), np.empty((BISECTIONS + 2, MAX_ORDER + 1))
     capacity = options.capacity if options.record else 0
     impacts, uplifts, rests = np.empty((capacity, 4)), np.empty(capacity), np.empty(capacity)
@@ -63,10 +69,12 @@ def run(par, ground, options, totals):
         ground.phase,
         ground.start,
         ground.end,
+        None,
     )
     end, written = _march(
         par,
         shaking,
+        vertical,
         options,
         unowned(workspace),
         unowned(scratch),
@@ -83,7 +91,7 @@ def run(par, ground, options, totals):
 
 # Longer than others: two loops over some twenty numbers of state, which each further part would take and give back.
 @njit(inline="always")
-def _march(par, ground, options, P, work, impacts, uplifts, rests, history, totals):
+def _march(par, ground, vertical, options, P, work, impacts, uplifts, rests, history, totals):
     """The run itself, on arrays without references; returns (end state, rows of the history written)."""
     tilt, rate, base = par.tilt, par.rate, (par.x, par.v, par.z)
     status, mode, s, t = L.COMPLETE, L.CONTACT, 0.0, 0.0
@@ -95,9 +103,11 @@ def _march(par, ground, options, P, work, impacts, uplifts, rests, history, tota
     segment, begin, written, idle, steps = 0, 0.0, 0, 0, 0
     rest_rate = max(options.rest_rate, ELASTIC_REST_RATE) if par.e > NEARLY_ELASTIC else options.rest_rate
     rest_rate *= math.sqrt(par.p2)
-    threshold = par.g * math.tan(par.gamma)
+    inclination = math.tan(par.gamma)
     while begin < par.duration and mode != L.OVERTURNED and status == L.COMPLETE:
-        kind, a0, slope, finish, order = stretch_of_ground(ground, segment, begin, options, par.duration)
+        kind, a0, slope, lift, rise, finish, order = stretch_of_ground(
+            ground, vertical, segment, begin, options, par.duration
+        )
         after = kind == QUIET and begin >= ground.end  # the motion is over
         segment += 1
         length, tau = finish - begin, 0.0
@@ -127,12 +137,17 @@ def _march(par, ground, options, P, work, impacts, uplifts, rests, history, tota
             steps += 1
 
             highest, h = ground_of_step(ground, kind, a0, slope, t, tau, order, h, P[L.GROUND])
+            if vertical is not None:
+                gravity_of_step(ground, vertical, par.g, kind, lift, rise, t, tau, order, P[L.GRAVITY])
+            gravity = gravity_at(par, vertical, P, highest, 0.0)
             used, factors, corner = order, (0.0, 0.0, 0.0), math.inf
             if par.on_base:
-                branch, factors, corner = bearing_of_step(par, rocking, s, tilt, rate, base, branch, highest, P)
+                branch, factors, corner = bearing_of_step(
+                    par, gravity, rocking, s, tilt, rate, base, branch, highest, P
+                )
             if rocking:
                 used, h = rocking_of_step(
-                    par, kind, s, tilt, rate, fresh, factors, highest, order, options.tolerance, h, P
+                    par, vertical, gravity, kind, s, tilt, rate, fresh, factors, highest, order, options.tolerance, h, P
                 )
                 if fresh and not s * P[L.PHI, 3] > 0:  # the threshold was only touched: the block stays down
                     mode, s, fresh, refused = L.CONTACT, 0.0, False, True
@@ -145,7 +160,23 @@ def _march(par, ground, options, P, work, impacts, uplifts, rests, history, tota
                 break
 
             found, h = first_event(
-                par, rocking, s, threshold, refused, branch[0], corner, used, t, h, P, options.record, totals, work
+                par,
+                vertical,
+                gravity,
+                rocking,
+                s,
+                inclination,
+                refused,
+                branch[0],
+                corner,
+                used,
+                highest,
+                t,
+                h,
+                P,
+                options.record,
+                totals,
+                work,
             )
             idle = idle + 1 if h <= 0 else 0
             if idle > PATIENCE:
@@ -153,7 +184,7 @@ def _march(par, ground, options, P, work, impacts, uplifts, rests, history, tota
                 break
 
             written, held = read_step(
-                par, rocking, s, tilt, used, highest, t, h, P, options, history, written, held, totals
+                par, vertical, rocking, s, tilt, used, highest, t, h, P, options, history, written, held, totals
             )
             if rocking:
                 tilt, rate, peak_tilt = end_of_block(s, rate, used, h, P, peak_tilt)
@@ -168,13 +199,14 @@ def _march(par, ground, options, P, work, impacts, uplifts, rests, history, tota
             if found == L.UPLIFT:
                 onset = value(P[L.ABSOLUTE if par.on_base else L.GROUND], used, h)
                 mode, s, tilt, rate = L.ROCKING, -math.copysign(1.0, onset), 0.0, 0.0
-                fresh = abs(onset) < threshold * (1 + ONSET)
+                fresh = abs(onset) < gravity_at(par, vertical, P, highest, h) * inclination * (1 + ONSET)
                 if totals[L.UPLIFTS] < uplifts.shape[0]:
                     uplifts[int(totals[L.UPLIFTS])] = t
                 totals[L.UPLIFTS] += 1
             elif found == L.IMPACT:
                 shaking = value(P[L.GROUND], highest, h) if highest >= 0 else 0.0
-                rate, v, stays = land(par, rate, base, shaking, rest_rate, t, impacts, rests, totals)
+                gravity = gravity_at(par, vertical, P, highest, h)
+                rate, v, stays = land(par, rate, base, gravity, shaking, rest_rate, t, impacts, rests, totals)
                 mode, s, tilt, base = L.ROCKING, math.copysign(1.0, rate), 0.0, (base[0], v, base[2])
                 if stays:
                     mode, s = L.CONTACT, 0.0

@@ -31,15 +31,18 @@ COMPLETE, DECIDED, STUCK, NOT_FINITE = range(4)
 ) = range(20)
 TOTALS = 20
 # Rows of the workspace: Taylor coefficients of tilt, rate, sin and cos, base displacement and velocity, bearing memory,
-# bearing force, absolute base acceleration, ground acceleration; then scratch.
-(PHI, W, S, C, X, V, Q, F, ABSOLUTE, GROUND, EVENT, PRODUCT_A, PRODUCT_B) = range(13)
-ROWS = 13
+# bearing force, absolute base acceleration, ground acceleration, gravity (used under vertical motion); then scratch.
+(PHI, W, S, C, X, V, Q, F, ABSOLUTE, GROUND, GRAVITY, EVENT, PRODUCT_A, PRODUCT_B) = range(14)
+ROWS = 14
 # Kinds of event inside a step.
 NONE, UPLIFT, IMPACT, REVERSAL, CORNER, OVERTURNING = range(6)
 
 # Ground motion: sampled (dt, samples) or a pulse; `kind` is QUIET, LINEAR_GROUND (sampled), HARMONIC
 # (scale sin(phase + frequency (t - start))) or RICKER. A rectangular pulse is HARMONIC with frequency 0.
-Ground = namedtuple("Ground", "kind dt samples scale frequency phase start end")
+# `vertical` is None or a `Vertical`, of the same kind, times and frequency. As the two have types of their own the
+# kernel is compiled for each: what asks whether `vertical is None` is decided then.
+Ground = namedtuple("Ground", "kind dt samples scale frequency phase start end vertical")
+Vertical = namedtuple("Vertical", "samples scale phase")
 # What to do: `record` keeps events (up to `capacity` of a kind), ledger and diagnostics; `decide` stops when
 # the outcome is certain and the peaks are final (decision.py), but not before the time `shortest`.
 Options = namedtuple("Options", "tolerance order rest_rate record decide output_step capacity shortest")

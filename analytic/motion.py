@@ -1,10 +1,13 @@
-"""Ground acceleration: sampled records and analytic pulses. SI units, zero outside their duration."""
+"""Ground acceleration: sampled records and analytic pulses. SI units, zero outside their duration.
+
+A motion is horizontal; where it has a `vertical` one beside it, that is a motion of the same kind.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
@@ -12,9 +15,10 @@ import numpy as np
 from .errors import SceneError
 
 if TYPE_CHECKING:
-    from .types import Values
+    from .types import Motion, Values
 
 PULSES = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
+PHASED = ("one-sine", "one-cosine", "half-sine")
 
 # A Ricker wavelet has no ends; four periods around its centre leave a step below 1e-15 of the amplitude.
 RICKER_PERIODS = 4.0
@@ -23,6 +27,11 @@ RICKER_PERIODS = 4.0
 def _positive(key: str, value: object, unit: str) -> None:
     if not (isinstance(value, (int, float)) and math.isfinite(value) and value > 0):
         raise SceneError(key, value, "not a positive number", f"give a finite value above 0 [{unit}]")
+
+
+def vertical_acceleration(motion: Motion | None, t: Values) -> Values | float:
+    """Vertical ground acceleration a_v [m/s2], upward, at time(s) t [s]; 0.0 where the motion, or None, has none."""
+    return motion.vertical.acceleration(t) if motion is not None and motion.vertical is not None else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,12 +48,16 @@ class SampledMotion:
         What the motion is, for plots and tables.
     warnings : tuple of str
         What is odd about it (a peak above 3 g, ...), as sentences; every response of a scene repeats them.
+    vertical : SampledMotion or None
+        The vertical ground acceleration a_v, upward: as many samples at the same interval (`pairing.paired`). Gravity
+        is then g + a_v. Bearings carry it rigidly.
     """
 
     dt: float
     samples: np.ndarray = field(repr=False)
     label: str = "sampled motion"
     warnings: tuple[str, ...] = ()
+    vertical: SampledMotion | None = None
 
     def __post_init__(self) -> None:
         _positive("motion.dt", self.dt, "s")
@@ -64,10 +77,18 @@ class SampledMotion:
         samples.flags.writeable = False
         object.__setattr__(self, "samples", samples)
         object.__setattr__(self, "dt", float(self.dt))
+        up = self.vertical
+        if up is not None and (up.dt, len(up.samples), up.vertical) != (self.dt, len(samples), None):
+            raise SceneError(
+                "motion.vertical",
+                f"{len(up.samples)} samples at {up.dt:.6g} s",
+                f"not {len(samples)} samples at {self.dt:.6g} s as the horizontal motion",
+                "resample and pad it",
+            )
 
-    def __reduce__(self) -> tuple[type[Self], tuple[float, np.ndarray, str, tuple[str, ...]]]:
+    def __reduce__(self) -> tuple[type[Self], tuple[float, np.ndarray, str, tuple[str, ...], SampledMotion | None]]:
         """Built anew in another process: a copy alone could be written to, for which the kernel is compiled again."""
-        return type(self), (self.dt, self.samples, self.label, self.warnings)
+        return type(self), (self.dt, self.samples, self.label, self.warnings, self.vertical)
 
     @property
     def start(self) -> float:
@@ -91,7 +112,7 @@ class SampledMotion:
     @property
     def jumps(self) -> tuple[float, ...]:
         """Times above 0 at which the acceleration jumps [s]."""
-        return (self.end,) if self.samples[-1] else ()
+        return (self.end,) if self.samples[-1] or self.vertical and self.vertical.samples[-1] else ()
 
     def acceleration(self, t: Values) -> Values:
         """Acceleration [m/s2] at time(s) t [s]; zero before 0 and after the last sample."""
@@ -99,12 +120,14 @@ class SampledMotion:
         return np.interp(t, times, self.samples, left=0.0, right=0.0)
 
     def scaled(self, factor: float) -> SampledMotion:
-        """The same motion times `factor`."""
-        return SampledMotion(self.dt, self.samples * factor, self.label, self.warnings)
+        """The same motion times `factor`, the vertical one too."""
+        up = self.vertical and self.vertical.scaled(factor)
+        return SampledMotion(self.dt, self.samples * factor, self.label, self.warnings, up)
 
     def digest(self) -> str:
         """Content of the motion as a hash: equal motions have equal digests."""
-        return hashlib.sha256(np.float64(self.dt).tobytes() + self.samples.tobytes()).hexdigest()
+        content = np.float64(self.dt).tobytes() + self.samples.tobytes()
+        return hashlib.sha256(content + (self.vertical.digest().encode() if self.vertical else b"")).hexdigest()
 
 
 @dataclass(frozen=True)
@@ -124,17 +147,24 @@ class PulseMotion:
         [rad/s], above 0.
     start : float
         [s], not negative.
+    phase : float
+        [rad], added to u in the sines and the cosine, within the same times.
+    vertical : PulseMotion or None
+        The vertical ground acceleration a_v, upward: a pulse of the same shape, frequency and start, with its own
+        amplitude and phase. Gravity is then g + a_v. Bearings carry it rigidly.
     """
 
     shape: str
     amplitude: float
     frequency: float
     start: float = 0.0
+    phase: float = 0.0
+    vertical: PulseMotion | None = None
 
     def __post_init__(self) -> None:
         if self.shape not in PULSES:
             raise SceneError("motion.pulse", self.shape, "not a known pulse", "choose one of " + ", ".join(PULSES))
-        for name in ("amplitude", "frequency", "start"):
+        for name in ("amplitude", "frequency", "start", "phase"):
             value = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
                 raise SceneError(f"motion.{name}", value, "not a finite number", "give a finite number")
@@ -142,10 +172,23 @@ class PulseMotion:
         _positive("motion.frequency", self.frequency, "rad/s")
         if self.start < 0:
             raise SceneError("motion.start", self.start, "negative", "start the pulse at 0 or later [s]")
+        if self.phase and self.shape not in PHASED:
+            raise SceneError(
+                "motion.phase", self.phase, f"a {self.shape} pulse has none", "leave it out, or choose a sine or cosine"
+            )
+        up, same = self.vertical, (self.shape, self.frequency, self.start, None)
+        if up is not None and (up.shape, up.frequency, up.start, up.vertical) != same:
+            raise SceneError(
+                "motion.vertical",
+                up.label,
+                "not the same pulse but for its amplitude and phase",
+                "give it the shape, frequency and start of the horizontal motion",
+            )
 
     @property
     def label(self) -> str:
-        return f"{self.shape} pulse, {self.amplitude:.4g} m/s2, {self.frequency:.4g} rad/s"
+        up = f", vertical {self.vertical.amplitude:.4g} m/s2" if self.vertical else ""
+        return f"{self.shape} pulse, {self.amplitude:.4g} m/s2, {self.frequency:.4g} rad/s{up}"
 
     @property
     def length(self) -> float:
@@ -169,9 +212,9 @@ class PulseMotion:
     def peak_time(self) -> float:
         """First time of the peak [s]."""
         offset = {
-            "one-sine": math.pi / 2,
-            "half-sine": math.pi / 2,
-            "one-cosine": 0.0,
+            "one-sine": (math.pi / 2 - self.phase) % math.pi,
+            "half-sine": (math.pi / 2 - self.phase) % math.pi,
+            "one-cosine": -self.phase % math.pi,
             "rectangular": 0.0,
             "ricker": RICKER_PERIODS * math.pi,
         }[self.shape]
@@ -180,29 +223,34 @@ class PulseMotion:
     @property
     def jumps(self) -> tuple[float, ...]:
         """Times above 0 at which the acceleration jumps [s]."""
-        return tuple(t for t in (self.start, self.end) if t > 0) if self.shape in ("one-cosine", "rectangular") else ()
+        if self.shape in ("one-cosine", "rectangular") or self.phase or self.vertical and self.vertical.phase:
+            return tuple(t for t in (self.start, self.end) if t > 0)
+        return ()
 
     def acceleration(self, t: Values) -> Values:
         """Acceleration [m/s2] at time(s) t [s]; zero outside the pulse."""
         t = np.asarray(t, dtype=float)  # type: ignore[assignment]  # a number as well, see the return
         u = self.frequency * (t - self.start)
         if self.shape == "one-cosine":
-            value = np.cos(u)
+            value = np.cos(u + self.phase)
         elif self.shape == "rectangular":
             value = np.ones_like(u)
         elif self.shape == "ricker":
             b = 0.25 * (u - RICKER_PERIODS * math.pi) ** 2
             value = (1 - 2 * b) * np.exp(-b)
         else:
-            value = np.sin(u)
+            value = np.sin(u + self.phase)
         inside = (t >= self.start) & (t <= self.end)
         return np.where(inside, self.amplitude * value, 0.0)[()]  # type: ignore[return-value]  # [()]: a number for a number
 
     def scaled(self, factor: float) -> PulseMotion:
-        """The same pulse times `factor`."""
-        return PulseMotion(self.shape, self.amplitude * factor, self.frequency, self.start)
+        """The same pulse times `factor`, the vertical one too."""
+        up = self.vertical and self.vertical.scaled(factor)
+        return replace(self, amplitude=self.amplitude * factor, vertical=up)
 
     def digest(self) -> str:
         """Content of the motion as a hash: equal motions have equal digests."""
-        content = (self.shape, self.amplitude.hex(), self.frequency.hex(), self.start.hex())
+        content: tuple[str, ...] = (self.shape, self.amplitude.hex(), self.frequency.hex(), self.start.hex())
+        if self.phase or self.vertical:  # else the digests that stored results carry
+            content += (self.phase.hex(), self.vertical.digest() if self.vertical else "")
         return hashlib.sha256(repr(content).encode()).hexdigest()

@@ -6,7 +6,9 @@ from numba import njit
 
 from .layout import (
     ABSOLUTE,
+    EVENT,
     FRICTION,
+    GRAVITY,
     GROUND,
     HYSTERETIC,
     INPUT,
@@ -18,6 +20,7 @@ from .layout import (
     VISCOUS,
     C,
     F,
+    S,
     V,
     W,
     X,
@@ -61,8 +64,18 @@ def _integral_of_product(f, highest, g, order, h):
     return total
 
 
+@njit(cache=True, inline="always")
+def gravity_at(par, vertical, P, highest, d):
+    """g + a_v [m/s2] at d [s] in the step; highest : order of the ground's series."""
+    if vertical is None:
+        gravity = par.g
+    else:
+        gravity = value(P[GRAVITY], max(highest, 0), d)
+    return gravity
+
+
 @njit(cache=True)
-def read_contact(par, s, rocking, P, order, highest, h, totals):
+def read_contact(par, vertical, s, rocking, P, order, highest, h, totals):
     """Friction demand |H|/N, least N/(m g) and peak absolute base acceleration within the step."""
     for probe in range(PROBES + 1):
         d = h * probe / PROBES
@@ -70,7 +83,7 @@ def read_contact(par, s, rocking, P, order, highest, h, totals):
             acceleration = value(P[ABSOLUTE], order, d)
         else:
             acceleration = value(P[GROUND], highest, d) if highest >= 0 else 0.0
-        horizontal, vertical = acceleration, par.g
+        horizontal, upward = acceleration, gravity_at(par, vertical, P, highest, d)
         if rocking:
             rate, second = value(P[W], order, d), 0.0
             for k in range(order, 0, -1):
@@ -78,11 +91,30 @@ def read_contact(par, s, rocking, P, order, highest, h, totals):
             angle = s * par.gamma - value(P[PHI], order, d)
             c, n = par.R * math.cos(angle), par.R * math.sin(angle)
             horizontal += c * second + n * rate * rate
-            vertical += n * second - c * rate * rate
-            totals[NORMAL] = min(totals[NORMAL], vertical / par.g)
-        demand = abs(horizontal) / vertical if vertical > 0 else math.inf
+            upward += n * second - c * rate * rate
+        if rocking or vertical is not None:
+            totals[NORMAL] = min(totals[NORMAL], upward / par.g)
+        demand = abs(horizontal) / upward if upward > 0 else math.inf
         totals[FRICTION] = max(totals[FRICTION], demand)
         totals[PEAK_ACCELERATION] = max(totals[PEAK_ACCELERATION], abs(acceleration))
+
+
+@njit(cache=True)
+def read_lifting(par, P, order, highest, h, totals):
+    """Work of the vertical ground motion on the rocking block within the step [J]: -int a_v m n phi' dt."""
+    lift, rising = P[EVENT], P[PRODUCT_A]
+    for k in range(max(highest, 0) + 1):
+        lift[k] = P[GRAVITY, k]
+    lift[0] -= par.g
+    last = 0.0  # the series of sin ends one term before the others on rigid ground
+    for j in range(order):
+        last -= P[W, j] * P[C, order - 1 - j]
+    P[S, order] = last * INVERSE[order]
+    for k in range(order + 1):  # of phi' sin
+        rising[k] = 0.0
+        for j in range(k + 1):
+            rising[k] += P[S, j] * P[W, k - j]
+    totals[INPUT] -= par.m * par.R * _integral_of_product(lift, max(highest, 0), rising, order, h)
 
 
 @njit(cache=True)

@@ -1,6 +1,7 @@
 """Uplift, rocking and impact of a rigid block: eqs (1)-(8) of the Caryatid paper, corrected where misprinted.
 
-tilt phi > 0 tips toward +x; s = sgn(phi) is the side; x is the base displacement relative to the ground.
+tilt phi > 0 tips toward +x; s = sgn(phi) is the side; x is the base displacement relative to the ground. Under a
+vertical ground acceleration a_v, upward, gravity is g + a_v wherever it stands: bearings carry a_v rigidly.
 """
 
 from __future__ import annotations
@@ -73,21 +74,32 @@ class RockingModel:
     @property
     def uplift_acceleration(self) -> float:
         """|absolute base acceleration| above which the block lifts: g tan(gamma) [m/s2]."""
-        return self.g * math.tan(self.gamma)
+        return self.uplift_limit(0.0)
+
+    def uplift_limit(self, vertical: Values) -> Values:
+        """The uplift acceleration [m/s2] under a vertical ground acceleration [m/s2]."""
+        return (self.g + vertical) * math.tan(self.gamma)
 
     def accelerations(
-        self, s: Values | float, tilt: Values, rate: Values, ground: Values, bearing_force: Values
+        self,
+        s: Values | float,
+        tilt: Values,
+        rate: Values,
+        ground: Values,
+        bearing_force: Values,
+        vertical: Values | float = 0.0,
     ) -> tuple[Values, Values]:
         """(phi'', x'') [rad/s2, m/s2] while rocking about the corner of side s, eqs (3)-(6).
 
-        On rigid ground x'' is 0 and the bearing force is not used.
+        ground, vertical : ground accelerations a_g and a_v [m/s2]. On rigid ground x'' is 0 and the bearing force is
+        not used.
         """
-        c, n = self.lever(s, tilt)
+        (c, n), g = self.lever(s, tilt), self.g + vertical
         if not self.on_base:
-            return -self.m * (c * ground + self.g * n) / self.J, 0.0  # type: ignore[return-value]  # 0 for all of an array
+            return -self.m * (c * ground + g * n) / self.J, 0.0  # type: ignore[return-value]  # 0 for all of an array
         m, M, J = self.m, self.M, self.J
-        # M (a_g + x'') + m c phi'' = -m n phi'^2 - F;   m c (a_g + x'') + J phi'' = -m g n
-        push, moment = -m * n * rate * rate - bearing_force, -m * self.g * n
+        # M (a_g + x'') + m c phi'' = -m n phi'^2 - F;   m c (a_g + x'') + J phi'' = -m (g + a_v) n
+        push, moment = -m * n * rate * rate - bearing_force, -m * g * n
         determinant = M * J - (m * c) ** 2
         absolute = (J * push - m * c * moment) / determinant
         return (M * moment - m * c * push) / determinant, absolute - ground
@@ -101,12 +113,18 @@ class RockingModel:
         return after, self.mass_share * self.R * math.cos(self.gamma) * (rate - after)
 
     def contact_forces(
-        self, s: Values | float, tilt: Values, rate: Values, tilt_acceleration: Values, base_acceleration: Values
+        self,
+        s: Values | float,
+        tilt: Values,
+        rate: Values,
+        tilt_acceleration: Values,
+        base_acceleration: Values,
+        vertical: Values | float = 0.0,
     ) -> tuple[Values, Values]:
         """(H, N) [N]: horizontal and normal force of the base on the block, base_acceleration absolute."""
         c, n = self.lever(s, tilt)
         horizontal = self.m * (base_acceleration + c * tilt_acceleration + n * rate * rate)
-        normal = self.m * (self.g + n * tilt_acceleration - c * rate * rate)
+        normal = self.m * (self.g + vertical + n * tilt_acceleration - c * rate * rate)
         return horizontal, normal
 
     def kinetic_energy(self, s: float, tilt: float, rate: float, v: float) -> float:

@@ -14,7 +14,7 @@ from . import kernel, layout
 from .bearing import BearingLaw
 from .decision import longest_duration, model_warnings, shortest_duration
 from .errors import SettingError
-from .layout import Ground, Options
+from .layout import Ground, Options, Vertical
 from .motion import RICKER_PERIODS, SampledMotion
 from .polynomial import MAX_ORDER
 from .response import Energy, Failure, History, Impact, Response, State
@@ -74,9 +74,13 @@ def parameters(scene: Scene) -> Parameters:
 def ground(motion: Motion | None, scale: float = 1.0) -> Ground:
     """The motion as the kernel's `Ground`, times `scale`."""
     if motion is None:
-        return Ground(QUIET, 1.0, _NO_SAMPLES, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return Ground(QUIET, 1.0, _NO_SAMPLES, 0.0, 0.0, 0.0, 0.0, 0.0, None)
+    vertical: Vertical | None = None
+    scale = float(scale)
     if isinstance(motion, SampledMotion):
-        return Ground(LINEAR_GROUND, motion.dt, motion.samples, float(scale), 0.0, 0.0, 0.0, motion.end)
+        if motion.vertical:
+            vertical = Vertical(motion.vertical.samples, scale, 0.0)
+        return Ground(LINEAR_GROUND, motion.dt, motion.samples, scale, 0.0, 0.0, 0.0, motion.end, vertical)
     kind, frequency, phase = {
         "one-sine": (HARMONIC, motion.frequency, 0.0),
         "half-sine": (HARMONIC, motion.frequency, 0.0),
@@ -84,7 +88,10 @@ def ground(motion: Motion | None, scale: float = 1.0) -> Ground:
         "rectangular": (HARMONIC, 0.0, 0.0),
         "ricker": (RICKER, motion.frequency, -RICKER_PERIODS * math.pi),
     }[motion.shape]
-    return Ground(kind, 1.0, _NO_SAMPLES, motion.amplitude * scale, frequency, phase, motion.start, motion.end)
+    if motion.vertical:
+        vertical = Vertical(_NO_SAMPLES, motion.vertical.amplitude * scale, phase + motion.vertical.phase)
+    amplitude, phase = motion.amplitude * scale, phase + motion.phase
+    return Ground(kind, 1.0, _NO_SAMPLES, amplitude, frequency, phase, motion.start, motion.end, vertical)
 
 
 def options(
@@ -166,7 +173,7 @@ def simulate(
         shortest=shortest_duration(scene) if scene.duration is None else 0.0,
     )
     par, shaking, totals = parameters(scene), ground(motion), np.zeros(layout.TOTALS)
-    _warm()
+    _warm(shaking.vertical is not None)
     begin = time.process_time()
     result = kernel.run(par, shaking, chosen, totals)
     most = int(totals[[layout.IMPACTS, layout.UPLIFTS, layout.RESTS]].max())
@@ -182,12 +189,13 @@ def simulate(
 
 
 @functools.cache
-def _warm() -> None:
+def _warm(vertical: bool) -> None:
     """Load (or once per machine compile) the kernel, so that cpu_seconds are those of the simulation alone."""
     from .scene import Block, Scene
 
     scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.2), duration=1e-3)
-    kernel.run(parameters(scene), ground(None), options(output_step=1.0), np.zeros(layout.TOTALS))
+    quiet = ground(None)._replace(vertical=Vertical(_NO_SAMPLES, 0.0, 0.0) if vertical else None)
+    kernel.run(parameters(scene), quiet, options(output_step=1.0), np.zeros(layout.TOTALS))
 
 
 @functools.cache

@@ -20,7 +20,7 @@ from .events import (
 )
 from .laws import chosen
 from .polynomial import bracketed_root, value
-from .readings import read_contact, read_energy, write_history
+from .readings import read_contact, read_energy, read_lifting, write_history
 from .taylor import (
     HARMONIC,
     LINEAR_GROUND,
@@ -39,26 +39,32 @@ mark, begin_step, reached = chosen("mark"), chosen("begin"), chosen("reached")
 
 
 @njit(inline="always")
-def stretch_of_ground(ground, segment, begin, options, duration):
-    """The next stretch of ground motion without a corner: (kind, a0, slope, end [s], order of the series).
+def stretch_of_ground(ground, vertical, segment, begin, options, duration):
+    """The next stretch of ground motion without a corner: (kind, a0, slope, of a_v too, end [s], order of the series).
 
-    Between samples a_g is a0 + slope t; a pulse has the scale a0, with nothing before and after it.
+    Between samples a_g is a0 + slope t; a pulse has the scale a0, with nothing before and after it. So has a_v.
     """
     kind, a0, slope, end, order = QUIET, 0.0, 0.0, duration, options.order
+    lift, rise = 0.0, 0.0
     if ground.kind == LINEAR_GROUND:
         if segment < ground.samples.shape[0] - 1:
             a0 = ground.scale * ground.samples[segment]
             slope = (ground.scale * ground.samples[segment + 1] - a0) / ground.dt
             end = min((segment + 1) * ground.dt, duration)
             order = SHORT_ORDER
-            if a0 != 0 or slope != 0:
+            if vertical is not None:
+                lift = vertical.scale * vertical.samples[segment]
+                rise = (vertical.scale * vertical.samples[segment + 1] - lift) / ground.dt
+            if a0 != 0 or slope != 0 or lift != 0 or rise != 0:
                 kind = LINEAR_GROUND
     elif ground.kind != QUIET:
         if segment == 0:
             end = min(ground.start, duration)
         elif segment == 1:
             kind, a0, end = ground.kind, ground.scale, min(ground.end, duration)
-    return kind, a0, slope, end, order
+            if vertical is not None:
+                lift = vertical.scale
+    return kind, a0, slope, lift, rise, end, order
 
 
 @njit(inline="always")
@@ -73,10 +79,21 @@ def ground_of_step(ground, kind, a0, slope, t, tau, order, h, A):
 
 
 @njit(inline="always")
-def bearing_of_step(par, rocking, s, tilt, rate, base, branch, highest, P):
+def gravity_of_step(ground, vertical, g, kind, lift, rise, t, tau, order, G):
+    """Series of g + a_v, as `ground_of_step`."""
+    G[0], G[1] = 0.0, 0.0
+    if kind == HARMONIC and ground.frequency == 0:
+        kind = LINEAR_GROUND
+    phase = vertical.phase + ground.frequency * (t - ground.start)
+    ground_series(order, kind, lift + rise * tau, rise, ground.frequency, phase, G)
+    G[0] += g
+
+
+@njit(inline="always")
+def bearing_of_step(par, gravity, rocking, s, tilt, rate, base, branch, highest, P):
     """Base and bearing at the start of a step; fills x, v, q and F of order 0.
 
-    base : (x, v, z). branch : (direction of travel, x_c and D_c of the last reversal).
+    gravity : g + a_v [m/s2]. base : (x, v, z). branch : (direction of travel, x_c and D_c of the last reversal).
     Returns (branch, factors of the bearing's series, the bearing's next corner).
     """
     (x, v, z), (direction, x_c, mark_c) = base, branch
@@ -84,7 +101,7 @@ def bearing_of_step(par, rocking, s, tilt, rate, base, branch, highest, P):
     P[L.F, 0] = par.count * (par.kb * x + z + par.damping * v)
     moving = math.copysign(1.0, v)
     if v == 0:
-        moving = direction_from_rest(par, rocking, s, tilt, rate, highest, P, P[L.F, 0])
+        moving = direction_from_rest(par, gravity, rocking, s, tilt, rate, highest, P, P[L.F, 0])
     if moving != direction and moving != 0:
         direction, x_c = moving, x
         mark_c = mark(par.law, direction, z, par.dk, par.alpha, par.d0, par.f0)
@@ -107,13 +124,13 @@ def contact_of_step(par, factors, highest, order, tolerance, h, P):
 
 
 @njit(inline="always")
-def rocking_of_step(par, kind, s, tilt, rate, fresh, factors, highest, order, tolerance, h, P):
-    """Series while rocking; returns (order used, step [s])."""
+def rocking_of_step(par, vertical, gravity, kind, s, tilt, rate, fresh, factors, highest, order, tolerance, h, P):
+    """Series while rocking; returns (order used, step [s]). gravity : g + a_v [m/s2] at its start."""
     phi, w, S, C, A, v, F = P[L.PHI], P[L.W], P[L.S], P[L.C], P[L.GROUND], P[L.V], P[L.F]
     angle, used, reach = s * par.gamma - tilt, order, h
     phi[0], w[0], S[0], C[0] = tilt, rate, math.sin(angle), math.cos(angle)
     if tilt == 0 and rate != 0 and kind != LINEAR_GROUND:  # a hop: its length tells the order it needs
-        back = hop_deceleration(par, s, A[0] if highest >= 0 else 0.0, F[0])
+        back = hop_deceleration(par, s, gravity, A[0] if highest >= 0 else 0.0, F[0])
         if back > 0:
             hop = 2 * abs(rate) / back
             used = hop_order(math.sqrt(par.p2) * hop, order, tolerance)
@@ -122,10 +139,17 @@ def rocking_of_step(par, kind, s, tilt, rate, fresh, factors, highest, order, to
     while True:
         good = reach
         if par.on_base:
-            base_series(used, par, factors, highest, A, phi, w, S, C, P[L.X], v, P[L.Q], F, P[L.ABSOLUTE])
+            if vertical is None:
+                base_series(used, par, factors, highest, A, phi, w, S, C, P[L.X], v, P[L.Q], F, P[L.ABSOLUTE])
+            else:
+                base_series(
+                    used, par, factors, highest, A, phi, w, S, C, P[L.X], v, P[L.Q], F, P[L.ABSOLUTE], P[L.GRAVITY]
+                )
             good = allowed_step(F, used, tolerance, allowed_step(v, used, tolerance, good))
-        else:
+        elif vertical is None:
             rigid_series(used, par.p2, par.g, highest, A, phi, w, S, C)
+        else:
+            rigid_series(used, par.p2, par.g, highest, A, phi, w, S, C, P[L.GRAVITY])
         if fresh:
             phi[2], w[1] = 0.0, 0.0
         good = allowed_step(w, used, tolerance, good)
@@ -135,15 +159,23 @@ def rocking_of_step(par, kind, s, tilt, rate, fresh, factors, highest, order, to
 
 
 @njit(inline="always")
-def first_event(par, rocking, s, threshold, refused, direction, corner, order, t, h, P, record, totals, work):
-    """(kind of the first event in the step, its time since the start; NONE and h without one)."""
+def first_event(
+    par, vertical, gravity, rocking, s, slope, refused, direction, corner, order, highest, t, h, P, record, totals, work
+):
+    """(kind of the first event in the step, its time since the start; NONE and h without one).
+
+    gravity : g + a_v [m/s2] at the start; slope : tan(gamma), whose product with gravity is the uplift threshold.
+    """
     found, event, phi = L.NONE, P[L.EVENT], P[L.PHI]
     if not rocking:
-        row = L.ABSOLUTE if par.on_base else L.GROUND
+        row, threshold = (L.ABSOLUTE if par.on_base else L.GROUND), gravity * slope
         if abs(P[row, 0]) > threshold and not refused:
             found, h = L.UPLIFT, 0.0
         else:
-            root = find_uplift(P, row, order, threshold, refused, h, event, work)
+            if vertical is None:
+                root = find_uplift(P, row, order, threshold, refused, h, event, work)
+            else:
+                root = find_uplift(P, row, order, threshold, refused, h, event, work, slope, highest, P[L.GRAVITY])
             if root >= 0:
                 found, h = L.UPLIFT, root
     else:
@@ -169,7 +201,7 @@ def first_event(par, rocking, s, threshold, refused, direction, corner, order, t
 
 
 @njit(inline="always")
-def read_step(par, rocking, s, tilt, order, highest, t, h, P, options, history, written, held, totals):
+def read_step(par, vertical, rocking, s, tilt, order, highest, t, h, P, options, history, written, held, totals):
     """History, diagnostics and ledger of the step.
 
     Returns (rows of the history written, friction demand and normal force held since |tilt| was last below gamma).
@@ -177,11 +209,13 @@ def read_step(par, rocking, s, tilt, order, highest, t, h, P, options, history, 
     if history.shape[0] > 0 and (h > 0 or t == 0):
         written = write_history(history, written, options.output_step, t, h, P, order, par.on_base, rocking)
     if options.record and h > 0:
-        read_contact(par, s, rocking, P, order, highest, h, totals)
+        read_contact(par, vertical, s, rocking, P, order, highest, h, totals)
         if abs(tilt) <= par.gamma:  # what comes later is the last fall, or it comes back
             held = totals[L.FRICTION], totals[L.NORMAL]
         if rocking or par.on_base:
             read_energy(par, rocking, P, order, highest, h, totals)
+        if vertical is not None and rocking:
+            read_lifting(par, P, order, highest, h, totals)
     return written, held
 
 

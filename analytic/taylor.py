@@ -77,7 +77,7 @@ def ground_series(order, kind, a0, a1, frequency, u, A):
 
 
 @njit(cache=True, inline="always")
-def _rigid_series(order, p2, g, highest, A, phi, w, S, C):
+def _rigid_series(order, p2, g, highest, A, phi, w, S, C, G):
     for k in range(order):
         if k > 0:
             sine, cosine = 0.0, 0.0
@@ -89,17 +89,23 @@ def _rigid_series(order, p2, g, highest, A, phi, w, S, C):
         push = 0.0
         for j in range(min(k, highest) + 1):
             push += A[j] * C[k - j]
-        w[k + 1] = -p2 * (S[k] + push / g) * INVERSE[k + 1]
+        if G is None:
+            w[k + 1] = -p2 * (S[k] + push / g) * INVERSE[k + 1]
+        else:
+            for j in range(min(k, max(highest, 0)) + 1):
+                push += G[j] * S[k - j]
+            w[k + 1] = -p2 / g * push * INVERSE[k + 1]
         phi[k + 1] = w[k] * INVERSE[k + 1]
 
 
 @njit(cache=True)
-def rigid_series(order, p2, g, highest, A, phi, w, S, C):
-    """Rocking on rigid ground, eq. (4) with x = 0: phi'' = -p^2 (S + a_g/g C)."""
+def rigid_series(order, p2, g, highest, A, phi, w, S, C, G=None):
+    """Rocking on rigid ground, eq. (4) with x = 0: phi'' = -p^2 (S + a_g/g C); with the series G of g + a_v, as many
+    terms as a_g has, phi'' = -p^2/g (G S + a_g C)."""
     if order == SHORT_ORDER:  # a constant order is unrolled: twice as fast
-        _rigid_series(SHORT_ORDER, p2, g, highest, A, phi, w, S, C)
+        _rigid_series(SHORT_ORDER, p2, g, highest, A, phi, w, S, C, G)
     else:
-        _rigid_series(order, p2, g, highest, A, phi, w, S, C)
+        _rigid_series(order, p2, g, highest, A, phi, w, S, C, G)
 
 
 @njit(cache=True, inline="always")
@@ -126,7 +132,7 @@ def contact_series(order, par, factors, highest, A, x, v, q, F, absolute):
 
 
 @njit(cache=True, inline="always")
-def _base_series(order, law, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute):
+def _base_series(order, law, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute, G):
     count, kb, damping, M, J, g = float(par.count), par.kb, par.damping, par.M, par.J, par.g
     mR = par.m * par.R
     c0 = mR * C[0]
@@ -149,7 +155,13 @@ def _base_series(order, law, par, factors, highest, A, phi, w, S, C, x, v, q, F,
             lever += C[j] * absolute[k - j]
         momentum += C[k + 1] * w[0]
         push = -F[k] - mR * (k + 1) * momentum
-        moment = -mR * (g * S[k] + lever)
+        if G is None:
+            weight = g * S[k]
+        else:
+            weight = 0.0
+            for j in range(min(k, max(highest, 0)) + 1):
+                weight += G[j] * S[k - j]
+        moment = -mR * (weight + lever)
         absolute[k] = (J * push - c0 * moment) * scale
         if k < order:
             w[k + 1] = (M * moment - c0 * push) * scale * INVERSE[k + 1]
@@ -160,12 +172,13 @@ def _base_series(order, law, par, factors, highest, A, phi, w, S, C, x, v, q, F,
 
 
 @njit(cache=True)
-def base_series(order, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute):
+def base_series(order, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute, G=None):
     """Rocking on the base, eqs (3)-(6), with c phi'' + n phi'^2 written as (c phi')'.
 
-    M X + m (c phi')' = -F;   m c X + J phi'' = -m g n;   X = a_g + x''.
+    M X + m (c phi')' = -F;   m c X + J phi'' = -m g n;   X = a_g + x''. With the series G of g + a_v, as many terms as
+    a_g has, that stands for g.
     """
     if order == SHORT_ORDER and par.law == USUAL_LAW:
-        _base_series(SHORT_ORDER, USUAL_LAW, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute)
+        _base_series(SHORT_ORDER, USUAL_LAW, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute, G)
     else:
-        _base_series(order, par.law, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute)
+        _base_series(order, par.law, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute, G)

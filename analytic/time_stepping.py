@@ -19,6 +19,7 @@ from numba import njit
 from .bearing import hysteretic_force
 from .decision import is_decided, until_decided
 from .errors import SettingError
+from .motion import vertical_acceleration
 from .response import History, Impact, Response, State
 from .rocking import RockingModel
 
@@ -66,12 +67,15 @@ def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -
     )
     bearing = (law.law, law.count, law.kb, law.dk, law.alpha, law.d0, law.f0, law.damping)
     y = (start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity, law.start(start.base_displacement))
-    _march(step, np.zeros(1), y, block, bearing, np.empty((0, 6)))  # compiled before the clock starts
+    _march(step, np.zeros(1), np.zeros(1), y, block, bearing, np.empty((0, 6)))  # compiled before the clock starts
     started = time.process_time()
     times = step * np.arange(count + 1)
     ground = np.zeros(count + 1) if scene.motion is None else scene.motion.acceleration(times)
+    gravity = np.full(count + 1, model.g) + vertical_acceleration(scene.motion, times)
     rows = np.empty((count + 1 if history else 0, 6))
-    taken, over, impacts, uplifts, rests, unstable, extremes, end = _march(step, ground, y, block, bearing, rows)
+    taken, over, impacts, uplifts, rests, unstable, extremes, end = _march(
+        step, ground, gravity, y, block, bearing, rows
+    )
     seconds = time.process_time() - started
     peak_tilt, peak_x, peak_acceleration, friction, normal = extremes
     rocked = start.tilt != 0 or start.tilt_rate != 0 or len(uplifts) > 0
@@ -105,23 +109,27 @@ def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -
 def _march(
     h: float,
     ground: np.ndarray,
+    gravity: np.ndarray,
     y: tuple[float, ...],
     block: tuple[float, ...],
     bearing: tuple[Any, ...],
     rows: np.ndarray,
 ) -> tuple[Any, ...]:
-    """All steps; returns (steps taken, overturned?, impacts, uplifts, rests, unstable time or -1, extremes, end)."""
-    m, M, J, R, gamma, g, on_base, e, share = block
+    """All steps, under a_g and g + a_v [m/s2] at each.
+
+    Returns (steps taken, overturned?, impacts, uplifts, rests, unstable time or -1, extremes, end).
+    """
+    m, M, J, R, gamma, standard, on_base, e, share = block
     law, count, kb, dk, alpha, d0, f0, damping = bearing
     tilt, rate, x, v, z = y
-    threshold, arm = g * math.tan(gamma), share * R * math.cos(gamma)
+    slope, arm = math.tan(gamma), share * R * math.cos(gamma)
     side = math.copysign(1.0, tilt if tilt != 0 else rate) if tilt != 0 or rate != 0 else 0.0
     impacts, uplifts, rests = [(0.0, 0.0, 0.0, 0.0)], [0.0], [0.0]
     impacts.pop(), uplifts.pop(), rests.pop()
     unstable, peak_tilt, peak_x, peak_a, friction, normal = -1.0, abs(tilt), abs(x), 0.0, 0.0, 1.0
     force, taken, over = 0.0, 0, False
     for k in range(len(ground)):
-        taken, t, a = k, k * h, ground[k]
+        taken, t, a, g = k, k * h, ground[k], gravity[k]
         force = count * (kb * x + z + damping * v)
         if len(rows) > 0:
             rows[k] = (t, tilt, rate, x, v, force)
@@ -132,7 +140,7 @@ def _march(
         if over:
             break
         absolute = -force / M if on_base else a  # (2)
-        if side == 0 and abs(absolute) > threshold:
+        if side == 0 and abs(absolute) > g * slope:
             side = -math.copysign(1.0, absolute)
             uplifts.append(t)
         spin, horizontal, vertical = 0.0, m * absolute, m * g
@@ -148,7 +156,7 @@ def _march(
             vertical = m * (g + n * spin - c * rate * rate)
         peak_a = max(peak_a, abs(absolute))
         friction = max(friction, abs(horizontal) / vertical if vertical > 0 else math.inf)
-        normal = min(normal, vertical / (m * g))
+        normal = min(normal, vertical / (m * standard))
         if k == len(ground) - 1:
             break
         rate += h * spin

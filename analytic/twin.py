@@ -24,10 +24,10 @@ from scipy.optimize import brentq
 from .decision import is_decided, model_warnings, until_decided
 from .errors import SettingError
 from .extremes import Extremes
-from .motion import SampledMotion
+from .motion import PulseMotion, SampledMotion
 from .response import Energy, Failure, Impact, Response, State
 from .rocking import RockingModel
-from .segments import segments
+from .segments import shared_segments
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 METHODS = ("DOP853", "RK45", "LSODA", "Radau")
 IMPACT_LIMIT = 50_000  # more in one run means impacts that never accumulate (restitution of 1)
 STALL_LIMIT = 50  # events in a row without progress in time
+STAND_POINTS = 33  # of a segment, at which a block that stands is looked at under two motions
 REST_HORIZON = 0.1  # a block rests only if its impacts end within this share of 1/omega_r
 
 
@@ -169,7 +170,9 @@ class _Run:
 
     def go(self) -> Failure | None:
         """Run to the end or to overturning; a Failure, or None."""
-        for _, end, ground in segments(self.scene.motion, self.scene.duration):  # type: ignore[arg-type]  # `until_decided` gave it one
+        duration: float = self.scene.duration  # type: ignore[assignment]  # `until_decided` gave it one
+        for _, end, ground, vertical in shared_segments(self.scene.motion, duration):
+            self.vertical = vertical  # a_v(t) [m/s2] of the segment
             while self.t < end and self.overturning is None:
                 before = self.t
                 failure = self.advance(end, ground)
@@ -186,7 +189,7 @@ class _Run:
         """One stretch of smooth motion from self.t, at most to `end`."""
         if self.side == 0:
             a = self.contact_acceleration(self.y, ground(self.t))
-            if abs(a) > self.model.uplift_acceleration:
+            if abs(a) > self.model.uplift_limit(self.vertical(self.t)):
                 return self.lift(a)  # type: ignore[func-returns-value]  # None: no failure
             if not self.model.on_base:
                 return self.stand(end, ground)  # type: ignore[func-returns-value]  # None: no failure
@@ -204,14 +207,17 @@ class _Run:
         self.uplifts.append(self.t)
 
     def stand(self, end: float, ground: GroundFunction) -> None:
-        """Full contact on rigid ground: nothing moves until |a_g| exceeds g tan(gamma)."""
+        """Full contact on rigid ground: nothing moves until |a_g| exceeds (g + a_v) tan(gamma)."""
 
         def excess(t):
-            return abs(ground(t)) - self.model.uplift_acceleration
+            return abs(ground(t)) - self.model.uplift_limit(self.vertical(t))
 
-        start = self.t
-        lifts = excess(end) > 0  # |a_g| has no maximum inside a segment
-        self.t = brentq(excess, start, end, xtol=1e-15, rtol=1e-15) if lifts else end
+        start, until = self.t, end
+        if isinstance(self.scene.motion, PulseMotion):  # the difference of two sines may have a maximum
+            times = np.linspace(start, end, STAND_POINTS).tolist()
+            until = next((t for t in times if excess(t) > 0), end)
+        lifts = excess(until) > 0  # |a_g| has no maximum inside a segment
+        self.t = brentq(excess, start, until, xtol=1e-15, rtol=1e-15) if lifts else end
         for t in (start, self.t):
             self.record(t, self.y, ground(t))
         if lifts:
@@ -276,7 +282,8 @@ class _Run:
                 if name == "apex" and self.side * y[0] < 0:
                     found.append(float(t))
                 elif name == "reversal" and self.side == 0:
-                    if abs(self.contact_acceleration(y, 0.0)) > self.model.uplift_acceleration * (1 + 1e-13):
+                    limit = self.model.uplift_limit(self.vertical(t))
+                    if abs(self.contact_acceleration(y, 0.0)) > limit * (1 + 1e-13):
                         found.append(float(t))
                 if name == "reversal" and abs(self.corner) < math.inf and abs(y[4]) > abs(self.corner):
                     found.append(math.nextafter(t, self.t))
@@ -307,8 +314,8 @@ class _Run:
             if self.unstable is None:
                 found.append(("unstable", lambda t, y: side * y[0] - model.gamma, False, 1))
         else:
-            threshold = model.uplift_acceleration
-            found.append(("uplift", lambda t, y: abs(self.contact_acceleration(y, 0.0)) - threshold, True, 1))
+            limit, vertical = model.uplift_limit, self.vertical
+            found.append(("uplift", lambda t, y: abs(self.contact_acceleration(y, 0.0)) - limit(vertical(t)), True, 1))
         if direction:
             found.append(("reversal", lambda t, y: direction * y[3] if t > turned else 1.0, self.law.unit.memory, -1))
             ahead = self.law.unit.begin(direction, self.hysteretic_force(self.y), 1.0, *self.law.constants)[2]
@@ -346,7 +353,8 @@ class _Run:
         force, e = self.bearing_force(y), model.restitution
         # how hard either corner is pressed down: sides alternate, and a force makes them unequal
         here, there = (
-            -side * model.accelerations(side, 0.0, y[1], ground, force)[0] for side in (self.side, -self.side)
+            -side * model.accelerations(side, 0.0, y[1], ground, force, self.vertical(self.t))[0]
+            for side in (self.side, -self.side)
         )
         held, remaining = min(here, there) > 0, math.inf
         if held and e < 1:  # two geometric sums
@@ -365,31 +373,35 @@ class _Run:
     # the equations
 
     def derivative(self, ground: GroundFunction, direction: float) -> Callable[[float, np.ndarray], np.ndarray]:
-        model, law, side, energy = self.model, self.law, self.side, self.energy
+        model, law, side, energy, vertical = self.model, self.law, self.side, self.energy, self.vertical
         branch = law.unit.branch and law.unit.branch(self.hysteretic_force(self.y), direction, law)
         if not model.on_base:
 
             def block_alone(t, y):
-                a, rate = ground(t), y[1]
-                slope = (rate, model.accelerations(side, y[0], rate, a, 0.0)[0])
-                return (*slope, -a * model.m * model.lever(side, y[0])[0] * rate) if energy else slope
+                a, up, rate = ground(t), vertical(t), y[1]
+                slope = (rate, model.accelerations(side, y[0], rate, a, 0.0, up)[0])
+                if not energy:
+                    return slope
+                c, n = model.lever(side, y[0])
+                return (*slope, -model.m * (a * c + up * n) * rate)
 
             return block_alone
 
         def block_on_base(t, y):
-            a, (tilt, rate, x, v) = ground(t), y[:4].tolist()
+            a, up, (tilt, rate, x, v) = ground(t), vertical(t), y[:4].tolist()
             z = self.hysteretic_force(y)
             force = law.force(x, z, v)
             if side:
-                spin, push = model.accelerations(side, tilt, rate, a, force)
+                spin, push = model.accelerations(side, tilt, rate, a, force, up)
             else:
                 spin, push = 0.0, model.contact_acceleration(force) - a
             slope = [rate, spin, v, push]
             if branch:
                 slope.append(branch(z, v))
             if energy:
-                momentum = model.M * v + (model.m * model.lever(side, tilt)[0] * rate if side else 0.0)
-                slope += [-a * momentum, law.count * z * v, law.count * law.damping * v * v]
+                c, n = model.lever(side, tilt) if side else (0.0, 0.0)
+                work = -a * (model.M * v + model.m * c * rate) - up * model.m * n * rate
+                slope += [work, law.count * z * v, law.count * law.damping * v * v]
             return slope
 
         return block_on_base
@@ -416,15 +428,15 @@ class _Run:
 
     def record(self, t: float, y: np.ndarray, ground: float) -> None:
         """Keep one step."""
-        model, force = self.model, self.bearing_force(y)
+        model, force, up = self.model, self.bearing_force(y), self.vertical(t)
         tilt, rate = float(y[0]), float(y[1])
         if self.side:
-            spin, push = model.accelerations(self.side, tilt, rate, ground, force)
+            spin, push = model.accelerations(self.side, tilt, rate, ground, force, up)
             absolute = push + ground
-            horizontal, normal = model.contact_forces(self.side, tilt, rate, spin, absolute)
+            horizontal, normal = model.contact_forces(self.side, tilt, rate, spin, absolute, up)
         else:
             absolute = self.contact_acceleration(y, ground)
-            horizontal, normal = model.m * absolute, model.m * model.g
+            horizontal, normal = model.m * absolute, model.m * (model.g + up)
         x, v = (float(y[2]), float(y[3])) if model.on_base else (0.0, 0.0)
         weight = model.m * model.g
         self.extremes.step(

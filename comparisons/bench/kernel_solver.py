@@ -3,7 +3,7 @@
 import numpy as np
 
 from analytic import kernel, layout
-from analytic.batch import run_rows
+from analytic.batch import pulse_row, run_rows
 from analytic.solver import ground, options, parameters
 
 
@@ -25,8 +25,7 @@ def kernel_batch(problem, tolerance, count):
     scene = problem.scene
     shaking, chosen = ground(scene.motion), _options(problem, tolerance, problem.horizon < scene.duration)
     rows = np.tile(np.array(parameters(scene), dtype=float), (count, 1))
-    pulse = (shaking.scale, shaking.frequency, shaking.phase, shaking.start, shaking.end)
-    pulses = np.tile(np.array(pulse), (count, 1))
+    pulses = np.tile(np.array(pulse_row(shaking)), (count, 1))
     return lambda: run_rows(rows, pulses, shaking, chosen, workers=1)
 
 

@@ -1,0 +1,214 @@
+"""Vertical ground motion: gravity becomes g + a_v(t), in the kernel, its twin, batches and time stepping."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, simulate
+from analytic.batch import overturning_map, simulate_many
+from analytic.decision import RIGID_BEARINGS
+from analytic.synthetic import synthetic_motion
+from analytic.time_stepping import simulate_time_stepping
+from analytic.twin import simulate_twin
+
+G = 9.81
+BLOCK = Block(mass=3172.05, radius=1.0884, slenderness=0.28)
+LRB = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
+BILINEAR = Bearings(law="bilinear", count=4, ka=6.22e4, kb=6.22e3, yield_force=700.0)
+FREE = Scene(block=BLOCK, duration=4.0)
+SLIDING = FREE.with_(base=Base(mass=212.0))
+ISOLATED = SLIDING.with_(bearings=LRB, block={"slenderness": 0.15})
+
+
+def shaken(seed, peak=4.0, dt=0.01, duration=4.0, ratio=0.7):
+    """Rough motions, corners at every sample, the vertical one with more of high frequency."""
+    rng, t = np.random.default_rng(seed), np.arange(0, duration, dt)
+    level = np.sin(2 * np.pi * 0.8 * t) + 0.6 * rng.standard_normal(len(t))
+    upright = np.sin(2 * np.pi * 3 * t) + rng.standard_normal(len(t))
+    level, upright = (a * np.exp(-(((t - 1.5) / 1.2) ** 2)) for a in (level, upright))
+    upright = SampledMotion(dt, ratio * peak * upright / np.abs(upright).max())
+    return SampledMotion(dt, peak * level / np.abs(level).max(), vertical=upright)
+
+
+def pulse(shape, amplitude, frequency, vertical, phase=0.0):
+    level = PulseMotion(shape, amplitude, frequency, 0.2)
+    return replace(level, vertical=replace(level, amplitude=vertical, phase=phase))
+
+
+def heaving(amplitude, frequency, duration=4.0, dt=0.005):
+    """No horizontal motion, a vertical sine."""
+    t = np.arange(0, duration, dt)
+    return SampledMotion(dt, 0 * t, vertical=SampledMotion(dt, amplitude * np.sin(frequency * t)))
+
+
+def both_synthetic(scale):
+    return replace(synthetic_motion(), vertical=synthetic_motion(seed=1).scaled(0.6)).scaled(scale)
+
+
+SCENES = {
+    "released under a sine": FREE.with_(start=Start(tilt=0.1), motion=heaving(4.0, 9.0)),
+    "one-sine": FREE.with_(motion=pulse("one-sine", 4.0, 5.0, 2.4, 1.0)),
+    "one-cosine": FREE.with_(motion=pulse("one-cosine", 4.0, 5.0, 2.4, 0.4)),
+    "half-sine": FREE.with_(motion=pulse("half-sine", 5.0, 5.0, -2.5, 2.0)),
+    "ricker": FREE.with_(motion=pulse("ricker", 5.0, 9.0, 2.5)),
+    "rectangular": FREE.with_(motion=pulse("rectangular", 3.5, 9.0, 1.05)),
+    "rough, rigid ground": FREE.with_(motion=shaken(1)),
+    "rough, sliding base": SLIDING.with_(start=Start(tilt=0.15), motion=shaken(2)),
+    "rough, on bearings": ISOLATED.with_(motion=shaken(3, peak=6.0)),
+    "sine, on bearings": ISOLATED.with_(motion=pulse("one-sine", 5.0, 8.0, 2.5, 2.0)),
+    "rough, bilinear bearings": ISOLATED.with_(bearings=BILINEAR, motion=shaken(5, peak=6.0)),
+    "long record, rigid ground": FREE.with_(block={"slenderness": 0.4}, motion=both_synthetic(1.0), duration=25.0),
+    "long record, on bearings": ISOLATED.with_(block={"slenderness": 0.2}, motion=both_synthetic(1.2), duration=25.0),
+}
+
+
+def state(response):
+    end = response.end
+    return [end.tilt, end.tilt_rate, end.base_displacement, end.base_velocity]
+
+
+def scale_of(scene, response):
+    """Energy [J] that an imbalance is measured against."""
+    block = scene.block
+    tipping = block.mass * G * block.radius * (1 - math.cos(block.slenderness))
+    return max(abs(response.energy.input), tipping)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_kernel_and_twin_agree_and_the_ledger_closes(name):
+    scene = SCENES[name]
+    run = simulate(scene, history=False, tolerance=1e-15)
+    twin = simulate_twin(scene, rtol=1e-12, history=False)
+    assert run.outcome == twin.outcome != "stands"
+    assert run.impact_count == twin.impact_count
+    times = [[impact.time for impact in one.impacts] for one in (run, twin)]
+    np.testing.assert_allclose(*times, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(state(run), state(twin), rtol=0, atol=1e-9)
+    assert run.min_normal_ratio == pytest.approx(twin.min_normal_ratio, abs=2e-3)  # at its steps, and at the kernel's
+    assert abs(run.energy.imbalance) < 1e-11 * scale_of(scene, run)
+    assert abs(twin.energy.imbalance) < 1e-10 * scale_of(scene, twin)
+    assert run.energy.input == pytest.approx(twin.energy.input, rel=1e-8)
+    # and the vertical motion matters in it
+    level = simulate(scene.with_(motion=replace(scene.motion, vertical=None)), history=False)
+    assert abs(run.energy.input - level.energy.input) > 1e-3 * scale_of(scene, run)
+
+
+@pytest.mark.parametrize("change", [-1.5, 1.0])
+@pytest.mark.parametrize("scene", [FREE, SLIDING, ISOLATED], ids=["rigid", "sliding", "on bearings"])
+def test_a_constant_vertical_acceleration_is_another_gravity(scene, change):
+    scene = scene.with_(start=Start(tilt=0.1), duration=3.0)
+    still = SampledMotion(0.01, np.zeros(301))
+    held = simulate(scene.with_(motion=replace(still, vertical=SampledMotion(0.01, np.full(301, change)))))
+    other = simulate(scene.with_(motion=still, gravity=G + change))
+    assert held.outcome == other.outcome == "rocks"
+    # the rate below which impacts are summed goes with the scene's own gravity
+    times = [[impact.time for impact in one.impacts if abs(impact.rate_after) > 1e-6] for one in (held, other)]
+    assert len(times[0]) > 2
+    np.testing.assert_allclose(*times, rtol=1e-12, atol=0)
+    np.testing.assert_allclose(state(held), state(other), rtol=1e-11, atol=1e-13)
+    assert held.uplifts == pytest.approx(other.uplifts, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["rough, rigid ground", "rough, on bearings", "one-cosine", "released under a sine"])
+def test_mirrored_scenes_are_mirrored(name):
+    scene = SCENES[name]
+    up, start = scene.motion.vertical, scene.start
+    motion = replace(scene.motion.scaled(-1), vertical=up)
+    other = simulate(scene.with_(motion=motion, start=Start(tilt=-start.tilt)), history=False)
+    run = simulate(scene, history=False)
+    assert [impact.time for impact in run.impacts] == [impact.time for impact in other.impacts]
+    assert state(run) == [-value for value in state(other)]
+    assert (run.energy.input, run.min_normal_ratio) == (other.energy.input, other.min_normal_ratio)
+
+
+def test_uplift_is_where_the_acceleration_exceeds_the_weight():
+    motion = pulse("one-sine", 3.0, 5.0, 2.0, 0.5)
+    run = simulate(FREE.with_(motion=motion))
+    t = np.linspace(0.2, motion.end, 200_001)
+    over = np.abs(motion.acceleration(t)) - (G + motion.vertical.acceleration(t)) * math.tan(0.28)
+    first = t[np.argmax(over > 0)]
+    assert run.uplifts[0] == pytest.approx(first, abs=1e-5)
+    uplift = run.uplifts[0]
+    threshold = (G + motion.vertical.acceleration(uplift)) * math.tan(0.28)
+    assert abs(motion.acceleration(uplift)) == pytest.approx(threshold, rel=1e-13)
+
+
+@pytest.mark.parametrize("engine", [simulate, simulate_twin, lambda scene: simulate_time_stepping(scene, step=1e-3)])
+def test_forces_at_the_contact_of_a_standing_block(engine):
+    # the base keeps the block's horizontal acceleration; it weighs m (g + a_v)
+    t = np.arange(0, 2.001, 0.01)
+    up = SampledMotion(0.01, 5.0 * np.sin(12.0 * t))
+    run = engine(FREE.with_(motion=SampledMotion(0.01, 0.2 * up.samples, vertical=up), duration=2.0))
+    assert run.outcome == "stands"
+    assert run.min_normal_ratio == pytest.approx(1 + up.samples.min() / G, rel=1e-9)
+    assert run.friction_demand == pytest.approx((0.2 * np.abs(up.samples) / (G + up.samples)).max(), rel=1e-9)
+
+
+def test_a_block_that_would_jump_is_said():
+    scene = FREE.with_(motion=heaving(1.2 * G, 9.0), start=Start(tilt=0.05))
+    for run in (simulate(scene), simulate_twin(scene)):
+        assert run.min_normal_ratio <= 0
+        assert any("the block would jump, and the verdict is outside the model" in text for text in run.warnings)
+    assert not simulate(scene.with_(motion=heaving(0.2 * G, 9.0))).warnings
+
+
+def test_bearings_that_carry_it_are_said():
+    scene = SCENES["sine, on bearings"]
+    assert RIGID_BEARINGS in simulate(scene).warnings
+    for other in (scene.with_(motion=replace(scene.motion, vertical=None)), scene.with_(bearings=None)):
+        assert RIGID_BEARINGS not in simulate(other).warnings
+
+
+def test_it_is_over_before_a_run_may_end():
+    quiet = SampledMotion(0.01, np.zeros(801))
+    up = np.zeros(801)
+    up[700:] = 3.0
+    scene = Scene(block=BLOCK, motion=replace(quiet, vertical=SampledMotion(0.01, up)), start=Start(tilt=0.05))
+    run = simulate(scene)
+    assert run.decided and run.end.time >= 8.0
+
+
+def test_batches_give_what_single_runs_do():
+    scenes = [scene.with_(duration=None) for scene in SCENES.values() if "long" not in scene.name]
+    scenes += [SCENES["one-sine"].with_(motion=replace(SCENES["one-sine"].motion, vertical=None), duration=None)]
+    found = simulate_many(scenes, workers=1)
+    for i, scene in enumerate(scenes):
+        run = simulate(scene, history=False)
+        assert (found.overturns[i], found.lifted[i]) == (run.outcome == "overturns", run.outcome != "stands")
+        assert found.peak_tilt[i] == pytest.approx(run.peak_tilt, rel=1e-9)
+
+
+def test_a_map_with_vertical_motion():
+    scene, ratios = FREE.with_(duration=None), [2.0, 3.0]
+    with_, without = (
+        overturning_map(scene, "one-sine", ratios, [1.4, 2.0], vertical_ratio=ratio, vertical_phase=0.7)
+        for ratio in (0.8, 0.0)
+    )
+    unit, p = G * math.tan(0.28), scene.rocking_frequency
+    for i, amplitude in enumerate([1.4, 2.0]):
+        for j, ratio in enumerate(ratios):
+            level = PulseMotion("one-sine", amplitude * unit, ratio * p)
+            up = replace(level, amplitude=0.8 * level.amplitude, phase=0.7)
+            run = simulate(scene.with_(motion=replace(level, vertical=up)), history=False)
+            assert with_.overturns[i, j] == (run.outcome == "overturns")
+            assert with_.peak_tilt[i, j] == pytest.approx(run.peak_tilt, rel=1e-9)
+    assert not np.allclose(with_.peak_tilt, without.peak_tilt, rtol=1e-3)
+
+
+def test_time_stepping_tends_to_the_kernel():
+    scene = FREE.with_(motion=pulse("one-sine", 4.5, 5.0, 2.4, 1.0), duration=1.2)
+    exact = simulate(scene).end.tilt
+    errors = [abs(simulate_time_stepping(scene, step=step).end.tilt - exact) for step in (4e-3, 2.5e-4)]
+    level = simulate(scene.with_(motion=replace(scene.motion, vertical=None))).end.tilt
+    assert 4 * errors[1] < errors[0] < 0.1 * abs(level - exact)
+
+
+def test_scaled_takes_both_and_digests_tell_them_apart():
+    for motion in (shaken(1), pulse("one-sine", 4.0, 5.0, 2.0, 1.0)):
+        twice, t = motion.scaled(-2), np.linspace(0, 2, 50)
+        np.testing.assert_array_equal(twice.vertical.acceleration(t), -2 * motion.vertical.acceleration(t))
+        bare = replace(motion, vertical=None)
+        assert len({motion.digest(), twice.digest(), bare.digest(), motion.vertical.digest()}) == 4
+        assert replace(bare, vertical=motion.vertical).digest() == motion.digest()
