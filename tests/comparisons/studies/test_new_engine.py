@@ -1,0 +1,159 @@
+"""An engine from outside is in every study, with no line here that knows it: its cases, its words, its pictures.
+
+Two fakes: one whose adapter applies the impact, and one that says it decides it, with a knob no engine here has.
+"""
+
+import dataclasses
+import importlib
+import sys
+
+import pytest
+from answered import answered
+from installed_package import FAKE_ENGINE, install_fake_engine
+
+import engines
+from analytic import simulate, synthetic_motion
+from comparisons.report.runs import caryatid_scenes, free_rocking_cases
+from comparisons.report.studies import RESULTS
+from comparisons.running.executors import Serial
+from comparisons.running.provenance import read_result, write_result
+from comparisons.running.study import Ask
+from comparisons.running.sweep import Row, run_sweep
+from comparisons.studies import BUILT_IN, get_study
+from comparisons.studies.caryatid.runs import simulations
+from comparisons.studies.overturning import cases as overturning
+from comparisons.studies.restitution.cases import CARYATID_BASE, Grid
+from comparisons.studies.speed_error import growth
+from comparisons.studies.speed_error.scenes import near_overturning, trials
+from engines.plugins import find_engines
+
+ASK = Ask(("crude",), quick=True)
+DECIDING = FAKE_ENGINE.replace("takes_restitution=True,", "").replace("step: float", "span: float")
+DECIDING = DECIDING.replace("settings.step", "settings.span")
+COLOUR = "#d55e00"
+# of the overturning study, in place of those that take the model's batches
+MAPS = {"frequency": [2.0, 4.0], "amplitude": [1.0, 2.0], "rigid ground/one-sine": [[-1, -1], [0, 1]]}
+# study: what its plan is given so that it stays short
+SHORT = {
+    "restitution": {"grid": Grid((0.2,), (None, CARYATID_BASE), (0.6,), ((0.2, None),), 4)},
+    "fragility": {"scenes": {"free-standing": ("caryatid-rigid", {}, (0.6, 1.0))}, "motions": 2},
+    "stability": {"names": ("uplift 0.99", "critical pulse +0.01")},
+    "speed-error": {"keep": lambda entry: entry.family.startswith(("crude", "kernel")), "grow": False, "repeats": 1},
+}
+
+
+@pytest.fixture(params=[FAKE_ENGINE, DECIDING], ids=["applies the impact", "decides the impact"])
+def crude(request, monkeypatch, tmp_path):
+    """A fake, installed for the time of a test; its variant."""
+    packages = tmp_path / "packages"
+    packages.mkdir()
+    monkeypatch.syspath_prepend(install_fake_engine(packages))
+    (packages / "crude_engine.py").write_text(request.param)
+    importlib.invalidate_caches()
+    found, broken = find_engines(engines.BUILT_IN)
+    assert broken == {}
+    monkeypatch.setitem(engines.ENGINES, "crude", found["crude"])
+    variant = found["crude"].variants["euler"]
+    assert (variant.takes_restitution, variant.knob) == (
+        (True, "step") if request.param is FAKE_ENGINE else (False, "span")
+    )
+    yield variant
+    del sys.modules["crude_engine"]
+
+
+def really(tmp_path):
+    """Answer batches by runs, in this process."""
+    return lambda batch: run_sweep(
+        batch.cases, store=tmp_path / "runs.jsonl", measure=batch.measure, executor=Serial(), progress=False
+    )
+
+
+def modelled(batch):
+    """Answer batches by the analytic model in place of the fake, where its runs would take minutes."""
+    rows = []
+    for case in batch.cases:
+        response = dataclasses.replace(simulate(case.scene), engine=case.solver)
+        rows.append(Row(case, batch.measure(case, response), None, {"cpu_seconds": 0.1}, False))
+    return rows
+
+
+def shown(study, found, tmp_path):
+    """The study's section of an answer that went through a result file."""
+    settings = {**found.settings, "changed_while_running": []}
+    path = write_result(tmp_path / "r.json", study.name, settings, found.rows, found.arrays, modules=["analytic"])
+    section = study.section(read_result(path))
+    assert all(len(row) == len(table.columns) for table in section.tables for row in table.rows)
+    return section
+
+
+def drawn(section):
+    return any(COLOUR in figure.svg.decode().lower() for figure in section.figures)
+
+
+def rows_with(section):
+    return [row for table in section.tables for row in table.rows if any("crude" in str(cell) for cell in row)]
+
+
+@pytest.mark.parametrize("name", SHORT)
+def test_a_study_runs_and_shows_it(crude, tmp_path, name):
+    study, options = get_study(name), dict(SHORT[name])
+    if name == "speed-error":
+        options["scenes"] = [near_overturning()]
+    run = modelled if name == "fragility" else really(tmp_path)
+    found = answered(study.plan(ASK, **options), run)[-1]
+    section = shown(study, found, tmp_path)
+    assert rows_with(section) and any("crude" in text for text in section.text)
+    assert name == "stability" or drawn(section)  # its picture is a table of words
+    assert name not in ("restitution", "fragility") or any("crude" in verdict for verdict in section.verdicts)
+    failed = [row for row in found.rows if row.get("failure")]
+    assert not failed, failed[0]
+
+
+def test_the_overturning_study_runs_and_shows_it(crude, monkeypatch, tmp_path):
+    monkeypatch.setattr(overturning, "GROUNDS", {"rigid ground": ("caryatid-rigid", {})})
+    monkeypatch.setattr(overturning, "_maps", lambda grounds, shapes, quick: MAPS)
+    monkeypatch.setattr(overturning, "TIME_STEPPING", ("time-stepping", None, "step", (1e-2,)))
+    study = get_study("overturning")
+    found = answered(study.plan(ASK), modelled)[-1]
+    section = shown(study, found, tmp_path)
+    assert any(verdict.startswith("crude, euler may be trusted") for verdict in section.verdicts) and drawn(section)
+    assert any("does not decide the impact" in text for text in section.text) == crude.takes_restitution
+    tried = [row["settings"] for row in found.rows if row["part"] == "knob" and row["solver"] == "crude, euler"]
+    assert bool(tried) != crude.takes_restitution
+
+
+@pytest.mark.parametrize("crude", [FAKE_ENGINE], indirect=True)
+def test_the_study_of_the_paper_runs_and_shows_it(crude, tmp_path):
+    """Its simulations; what the analytic model alone finds is taken from the stored result."""
+    stored = read_result(RESULTS / "caryatid-under-synthetic.json")
+    plan, batches = simulations(synthetic_motion(), ASK.engines, quick=True), []
+    try:
+        batch = next(plan)
+        while True:
+            batches.append(batch)
+            batch = plan.send(modelled(batch))
+    except StopIteration as stop:
+        rows, histories = stop.value
+    assert {case.solver for batch in batches for case in batch.cases} == {"analytic", "crude"}
+    assert {f"{scene}/crude/tilt" for scene in ("free-standing", "isolated")} <= histories.keys()
+    rows = [row for row in stored.rows if "solver" not in row or row["solver"] == "analytic"] + rows
+    section = shown(get_study("caryatid"), dataclasses.replace(stored, rows=rows), tmp_path)
+    assert len(rows_with(section)) >= 6 and "crude, isolated: stands" in section.text[0] and drawn(section)
+
+
+def test_the_tolerances_say_that_it_states_none(crude, tmp_path):
+    study = get_study("tolerances")
+    (found,) = answered(study.plan(ASK), None)
+    assert "crude states no tolerances, so none is measured." in shown(study, found, tmp_path).text
+
+
+def test_the_growth_of_cost_and_the_report_run_it(crude):
+    points = [point for point in growth.points(trials(), ASK.engines, True) if point.solver == "crude"]
+    assert len(points) == 3 and all(point.case(0).solver == "crude" for point in points)
+    cases = free_rocking_cases(ASK.engines, (0.2,))
+    assert {case.variant for case in cases if case.solver == "crude"} == {"euler"}
+    assert len(caryatid_scenes(synthetic_motion())) == 2  # in every engine asked for: see the report's own test
+
+
+def test_every_study_of_this_project_is_covered():
+    assert set(BUILT_IN) == {*SHORT, "overturning", "caryatid", "tolerances"}

@@ -1,0 +1,71 @@
+"""Nothing in `comparisons` knows an engine, or a variant of one, by its name: it asks `engines` which can do what."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+import comparisons
+from engines import BUILT_IN, ENGINES
+
+FOLDER = Path(comparisons.__file__).parent
+VARIANTS = {variant for name in BUILT_IN if ENGINES[name].installed for variant in ENGINES[name].variants}
+ENGINE = re.compile(rf"(?<![\w-])({'|'.join(BUILT_IN)})(?![\w-])", re.IGNORECASE)
+VARIANT = re.compile(rf"(^|, )({'|'.join(sorted(VARIANTS))})$")
+
+
+def names_in(source):
+    """(line, what) of every string but docstrings that names an engine or a variant, and every import of an engine."""
+    tree, found = ast.parse(source), []
+    scopes = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    docstrings = {
+        id(node.body[0].value)
+        for node in ast.walk(tree)
+        if isinstance(node, scopes) and node.body and isinstance(node.body[0], ast.Expr)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docstrings:
+            if ENGINE.search(node.value) or VARIANT.search(node.value):
+                found.append((node.lineno, node.value))
+        modules = [name.name for name in node.names] if isinstance(node, ast.Import | ast.ImportFrom) else []
+        modules += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+        found += [(node.lineno, module) for module in modules if ENGINE.search(module)]
+    return found
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        'ENGINES = ("exudyn", "pybullet")',
+        'if "mujoco" in engines: pass',
+        'JOINTS = "exudyn, switched-joints"',
+        'TITLE = "Phase of the step (PyBullet)"',
+        'words = f"in exudyn {number}"',
+        'apart = variant == "switched-joints"',
+        "from engines.pybullet import scene",
+        "import mujoco",
+    ],
+)
+def test_a_name_is_seen(line):
+    pytest.importorskip("exudyn")  # else its variants are not known
+    assert names_in(line)
+
+
+def test_prose_is_not_taken_for_one():
+    source = '"""As exudyn does."""\n# as in PyBullet\nKIND = "fixed-step RK4"\ndef f():\n    "mujoco, say"\n'
+    assert names_in(source) == []
+
+
+def test_no_module_names_an_engine():
+    found = {
+        str(file.relative_to(FOLDER)): names
+        for file in sorted(FOLDER.rglob("*.py"))
+        if (names := names_in(file.read_text()))
+    }
+    assert found == {}
+
+
+def test_no_template_names_an_engine():
+    templates = list(FOLDER.rglob("*.html"))
+    assert templates and not [file.name for file in templates if ENGINE.search(file.read_text())]
