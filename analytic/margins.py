@@ -133,7 +133,7 @@ QUANTITIES = {
     ),
     "size": Quantity("m", lambda scene: scene.block.radius, _size),
     # the motion is scaled by the batch, which then need not copy its samples
-    "motion": Quantity("m/s2", lambda scene: scene.motion and scene.motion.peak, lambda scene, factor: scene),
+    "motion": Quantity("m/s2", lambda scene: scene.motion and scene.motion.peak, lambda scene, factor: scene),  # type: ignore[arg-type, return-value]  # a motion or None is the number or None
     "start": Quantity(
         "rad, rad/s",
         _started,
@@ -143,8 +143,8 @@ QUANTITIES = {
     ),
     "base mass": Quantity(
         "kg",
-        lambda scene: scene.base and scene.base.mass,
-        lambda scene, factor: scene.with_(base={"mass": factor * scene.base.mass}),
+        lambda scene: scene.base and scene.base.mass,  # type: ignore[arg-type, return-value]  # a base or None, likewise
+        lambda scene, factor: scene.with_(base={"mass": factor * scene.base.mass}),  # type: ignore[union-attr]  # asked where there is one
     ),
     "ka": _bearing("ka", "N/m"),
     "kb": _bearing("kb", "N/m"),

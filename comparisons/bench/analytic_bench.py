@@ -1,7 +1,10 @@
 """The whole benchmark of the analytic model: measure, write the result file, the plot and the faulty scenes."""
 
 import json
+from collections.abc import Callable
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 from analytic.errors import SettingError
 from analytic.records import read_record
@@ -19,7 +22,14 @@ MODULES = ("comparisons.bench.analytic_bench", "analytic.kernel")
 PEER_PACKAGES = ("heyoka", "scikit-sundae", "CyRK")
 
 
-def bench_analytic(output, *, quick=False, random_scenes=0, record=None, advance=lambda total: None):
+def bench_analytic(
+    output: str | PathLike[str],
+    *,
+    quick: bool = False,
+    random_scenes: int = 0,
+    record: str | PathLike[str] | None = None,
+    advance: Callable[[str], Any] = lambda total: None,
+) -> tuple[list[figures.Figure], list[dict[str, Any]], list[dict[str, Any]]]:
     """Run it; returns (figures, rows of work-precision, faulty random scenes).
 
     Parameters
@@ -95,7 +105,7 @@ def bench_analytic(output, *, quick=False, random_scenes=0, record=None, advance
     return found, rows, faulty
 
 
-def peer_versions():
+def peer_versions() -> dict[str, str]:
     """Versions of the installed peers."""
     from importlib.metadata import version
 

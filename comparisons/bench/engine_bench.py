@@ -8,9 +8,14 @@ not changed is not run again, so that a broken-off bench goes on, and a mended e
 `examine` runs one scene again.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable, Sequence
+from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
 
 from analytic.errors import SettingError
 from engines import get_engine
@@ -32,10 +37,24 @@ from .kept import keep
 from .random_scenes import describe
 from .wide_box import place, wide_scene
 
+if TYPE_CHECKING:
+    from analytic import Scene
+
+    from ..running.sweep import Row
+
 KERNEL_SECONDS = 30.0  # beyond, there is nothing to compare with: bases that shake 1e6 times a run
 
 
-def bench_engines(engine, output, *, scenes=2000, seed=1, workers=None, time_limit=60.0, progress=True):
+def bench_engines(
+    engine: str,
+    output: str | PathLike[str],
+    *,
+    scenes: int = 2000,
+    seed: int = 1,
+    workers: int | None = None,
+    time_limit: float = 60.0,
+    progress: bool = True,
+) -> list[dict[str, Any]]:
     """Run scenes 0 .. scenes-1 of the ensemble `seed`; write bench-engines-ENGINE.json and return its rows.
 
     Parameters
@@ -69,7 +88,7 @@ def bench_engines(engine, output, *, scenes=2000, seed=1, workers=None, time_lim
         Store(output / f"{engine}.jsonl") as store,
         Processes(workers, ("analytic", engine)) as executor,
     ):
-        options = dict(executor=executor, measure=keep, progress=progress)
+        options: dict[str, Any] = dict(executor=executor, measure=keep, progress=progress)
 
         def model_runs(cases, label):
             return run_sweep(cases, store=reference, time_limit=KERNEL_SECONDS, label=label, **options)
@@ -100,7 +119,12 @@ def bench_engines(engine, output, *, scenes=2000, seed=1, workers=None, time_lim
     return rows
 
 
-def judged(ensemble, engine, model_runs, engine_runs):
+def judged(
+    ensemble: Sequence[Scene],
+    engine: str,
+    model_runs: Callable[[list[Case], str], list[Row]],
+    engine_runs: Callable[[list[Case]], list[Row]],
+) -> list[dict[str, Any]]:
     """Rows of all scenes; `model_runs(cases, label)` and `engine_runs(cases)` run them, the engine only what counts."""
     models = model_runs([Case(scene) for scene in ensemble], "analytic model")
     reasons = [_unusable(scene, model) for scene, model in zip(ensemble, models, strict=True)]
@@ -174,7 +198,9 @@ def _row(scene, model, run, word, cause, off, notes, until):
     }
 
 
-def examine(engine, index, *, seed=1, time_limit=60.0):
+def examine(
+    engine: str, index: int, *, seed: int = 1, time_limit: float = 60.0
+) -> tuple[Scene, dict[str, Any], dict[str, Any], dict[str, Any]]:
     """(scene, kept analytic values, kept engine values, row of the bench) of one scene, run again; nothing stored."""
     scene, seen = wide_scene(seed, index), {}
     with (
@@ -182,7 +208,7 @@ def examine(engine, index, *, seed=1, time_limit=60.0):
         Store(Path(folder) / "runs.jsonl") as store,
         Processes(1, ("analytic", engine)) as executor,
     ):
-        options = dict(store=store, executor=executor, measure=keep, progress=False)
+        options: dict[str, Any] = dict(store=store, executor=executor, measure=keep, progress=False)
 
         def model_runs(cases, label):
             rows = run_sweep(cases, time_limit=KERNEL_SECONDS, **options) if cases else []

@@ -1,5 +1,9 @@
 """Where in the wide box an engine is right, warns, fails or is off."""
 
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from typing import Any
+
 from matplotlib.figure import Figure
 
 from .engine_verdicts import CLASSES
@@ -35,7 +39,7 @@ PANELS = (
 )
 
 
-def draw(rows, title, path):
+def draw(rows: Sequence[Mapping[str, Any]], title: str, path: str | PathLike[str]) -> None:
     """Write the figure of result rows to `path`."""
     figure = Figure(figsize=(14, 7.2), layout="constrained")
     axes = figure.subplots(2, 4).ravel()

@@ -2,6 +2,8 @@
 
 import re
 from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from rich.markup import escape
@@ -12,7 +14,7 @@ from .engine_verdicts import CLASSES
 TELLING = 3  # quantities shown for a cause: those in which its scenes lie furthest from the others
 
 
-def causes(row):
+def causes(row: Mapping[str, Any]) -> list[str]:
     """Why a row is not simply right: words, without numbers, that rows of one cause share."""
     if row["class"] == "left out" or row["class"] == "failed and said":
         return [re.sub(r"-?\d[\d.e+-]*", "#", row["cause"]) if row["class"] == "failed and said" else row["cause"]]
@@ -20,7 +22,7 @@ def causes(row):
     return words + [f"warned: {re.split(r' = | is ', sentence)[0][:60]}" for sentence in row["warnings"]]
 
 
-def class_table(rows, title):
+def class_table(rows: Sequence[Mapping[str, Any]], title: str) -> Table:
     """Counts and shares of the classes, in all and in the core range; shares are of the scenes not left out."""
     table = Table("class", "scenes", "share", "core range", "share", title=title)
     core = [row for row in rows if row["place"]["core"]]
@@ -37,7 +39,7 @@ def class_table(rows, title):
     return table
 
 
-def cause_table(rows):
+def cause_table(rows: Sequence[Mapping[str, Any]]) -> Table:
     """Every cause of every class but right: its count, and where in the box its scenes lie."""
     table = Table("class", "cause", "scenes", "core", "examples", "where (10 to 90 % of its scenes)")
     for name in CLASSES[1:]:
@@ -53,7 +55,7 @@ def cause_table(rows):
     return table
 
 
-def where(found, rows):
+def where(found: Sequence[Mapping[str, Any]], rows: Sequence[Mapping[str, Any]]) -> str:
     """In words: the quantities in which the rows found lie furthest from all rows, with their range there."""
     words = []
     for name in rows[0]["place"]:
@@ -70,7 +72,7 @@ def _number(value):
     return isinstance(value, float | int) and not isinstance(value, bool)
 
 
-def off_table(rows):
+def off_table(rows: Sequence[Mapping[str, Any]]) -> Table:
     """Every run that was off in silence."""
     table = Table("index", "found", "outcome", "expected", "notes", "place", title="Off and silent")
     for row in rows:

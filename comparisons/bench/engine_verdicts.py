@@ -24,8 +24,12 @@ start, amplitude or slenderness: it does not count, and peaks do only up to the 
 another outcome part by more than APART.
 """
 
+from __future__ import annotations
+
 import math
 import re
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -34,6 +38,9 @@ from analytic.rocking import RockingModel, restitution
 from ..measuring.horizon import twin_scenes
 from .kept import GRID, RESOLVED
 
+if TYPE_CHECKING:
+    from analytic import Scene
+
 RESTITUTION, PEAK, APART = 1e-2, 0.02, 0.2
 LEAST_TILT, LEAST_DISPLACEMENT, LEAST_SWING = 1e-4, 1e-5, 1e-3
 FRICTION = 5.0  # of every engine's default, where the scene names none
@@ -41,7 +48,7 @@ SMALL, BOUNDARY = 1e-4, 1e-2  # relative changes of the twins
 CLASSES = ("right", "right but warned", "off and warned", "failed and said", "off and silent", "left out")
 
 
-def range_warnings(model, run):
+def range_warnings(model: Mapping[str, Any], run: Mapping[str, Any]) -> list[str]:
     """The warnings of a run that are about the engine: those that the analytic model's run does not give as well."""
     known = {_cause(sentence) for sentence in model["warnings"]}
     return [sentence for sentence in run["warnings"] if _cause(sentence) not in known]
@@ -51,12 +58,12 @@ def _cause(sentence):
     return re.split(r"-?\d", sentence)[0]
 
 
-def near_twins(scene):
+def near_twins(scene: Scene) -> dict[str, Scene]:
     """{name: scene} of the twins that tell how well the peaks are determined."""
     return {f"{name}, {SMALL:g}": twin for name, twin in twin_scenes(scene, SMALL).items()}
 
 
-def boundary_twins(scene):
+def boundary_twins(scene: Scene) -> dict[str, Scene]:
     """{name: scene} of the twins that tell whether another outcome is near."""
     twins = {}
     for sign, word in ((1, "up"), (-1, "down")):
@@ -70,7 +77,7 @@ def boundary_twins(scene):
     return twins
 
 
-def rule(scene, model):
+def rule(scene: Scene, model: Mapping[str, Any]) -> str | None:
     """Why a scene is left out, by the kept values of its analytic run, or None."""
     if model["normal"] is None or model["normal"] <= 0:
         return "N <= 0"
@@ -80,17 +87,23 @@ def rule(scene, model):
     return None
 
 
-def span(scene, model):
+def span(scene: Scene, model: Mapping[str, Any]) -> float:
     """Time [s] up to which a scene is judged: inf, or where a block that overturns first passes the slenderness."""
     return min(scene.duration, model["unstable"]) if model["outcome"] == "overturns" else math.inf
 
 
-def findings(scene, model, run, until=math.inf, determined=math.inf):
+def findings(
+    scene: Scene,
+    model: Mapping[str, Any],
+    run: Mapping[str, Any],
+    until: float = math.inf,
+    determined: float = math.inf,
+) -> list[dict[str, Any]]:
     """What is off in a run up to the time `until` [s]: list of {quantity, error, limit}; both as kept by `keep`.
 
     determined: time [s] up to which impacts are compared one by one.
     """
-    found = []
+    found: list[dict[str, Any]] = []
     if _other(scene, model, run):
         found.append({"quantity": "outcome", "error": f"{run['outcome']}, not {model['outcome']}", "limit": None})
     for name, error in peak_errors(scene, model, run, until).items():
@@ -119,7 +132,7 @@ def _other(scene, one, other):
     return None not in outcomes and len(outcomes) > 1
 
 
-def least(scene):
+def least(scene: Scene) -> dict[str, float]:
     """{peak: value below which it is not told from nothing}: [rad], [m]."""
     block = scene.block
     return {
@@ -128,7 +141,9 @@ def least(scene):
     }
 
 
-def peak_errors(scene, model, run, until=math.inf):
+def peak_errors(
+    scene: Scene, model: Mapping[str, Any], run: Mapping[str, Any], until: float = math.inf
+) -> dict[str, float]:
     """{"tilt", "displacement": |difference| of the peaks up to `until` over the model's}."""
     last = _last(scene, until)
     errors = {}
@@ -146,7 +161,7 @@ def _last(scene, until):
     return None if until > scene.duration else math.floor(until / scene.duration * GRID * (1 + 1e-9)) - 1
 
 
-def resolved(scene, kept, until=math.inf):
+def resolved(scene: Scene, kept: Mapping[str, Any], until: float = math.inf) -> np.ndarray:
     """The impacts, rows of time, rate before and after, that count, up to `until`."""
     model, impacts = RockingModel.of(scene), np.array(kept["impacts"], dtype=float).reshape(-1, 3)
     before, after = np.abs(impacts[:, 1:]).T
@@ -158,7 +173,7 @@ def resolved(scene, kept, until=math.inf):
     return impacts[~small & ~(impacts[:, 0] > until)]
 
 
-def restitution_error(scene, run, until=math.inf):
+def restitution_error(scene: Scene, run: Mapping[str, Any], until: float = math.inf) -> float:
     """Largest |e - eq. (7)| of the impacts that count; 0 without any."""
     impacts = resolved(scene, run, until)
     if not len(impacts):
@@ -168,7 +183,9 @@ def restitution_error(scene, run, until=math.inf):
         return float(np.abs(impacts[:, 2] / impacts[:, 1] - expected).max())
 
 
-def lost_impacts(scene, model, run, until=math.inf):
+def lost_impacts(
+    scene: Scene, model: Mapping[str, Any], run: Mapping[str, Any], until: float = math.inf
+) -> list[float]:
     """Times [s] of the model's impacts that count and have none in the run."""
     wanted, lost = resolved(scene, model), []
     own = np.array(run["impacts"], dtype=float).reshape(-1, 3)
@@ -185,7 +202,7 @@ def lost_impacts(scene, model, run, until=math.inf):
     return lost
 
 
-def parting(scene, model, twins, share):
+def parting(scene: Scene, model: Mapping[str, Any], twins: Iterable[Mapping[str, Any]], share: float) -> float:
     """Time [s] up to which no twin's peaks part from the model's by more than a share; inf where none ever does."""
     first = math.inf
     for twin in twins:
@@ -201,7 +218,14 @@ def parting(scene, model, twins, share):
     return first
 
 
-def judge(scene, model, run, small, large, until=math.inf):
+def judge(
+    scene: Scene,
+    model: Mapping[str, Any],
+    run: Mapping[str, Any],
+    small: Mapping[str, Mapping[str, Any]],
+    large: Mapping[str, Mapping[str, Any]],
+    until: float = math.inf,
+) -> tuple[list[dict[str, Any]], list[str]]:
     """(findings, notes) of a run; small, large: kept values of the near and the boundary twins, until: as `findings`.
 
     notes: "ill-conditioned" or "near a boundary" where these took something from the comparison.

@@ -1,13 +1,23 @@
 """The figures the project promises of its analytic model, measured; each beside what was asked for."""
 
+from __future__ import annotations
+
 import statistics
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from analytic import simulate
 from analytic.twin import simulate_twin
 
 from . import throughput
 from .work_precision import KERNEL, cheapest, is_scipy, ratio
+
+if TYPE_CHECKING:
+    from analytic.types import Motion
+
+    from .problems import Problem
+    from .work_precision import Entry
 
 TWIN_TOLERANCE = 1e-13  # of the independent solution the reference is held against
 
@@ -24,7 +34,7 @@ class Figure:
     how: str
 
     @property
-    def met(self):
+    def met(self) -> bool | None:
         """Whether it is as asked for, None where nothing is; a figure that could not be measured is not."""
         if self.limit is None:
             return None
@@ -32,7 +42,7 @@ class Figure:
             return False
         return self.value >= self.limit if self.sense == "at least" else self.value <= self.limit
 
-    def row(self):
+    def row(self) -> dict[str, Any]:
         """JSON-ready."""
         return {
             "figure": self.name,
@@ -45,7 +55,7 @@ class Figure:
         }
 
 
-def ratios(entries, blocks, records):
+def ratios(entries: Sequence[Entry], blocks: Sequence[Problem], records: Sequence[Problem]) -> list[Figure]:
     """Figures of the work-precision study: CPU time of others over the kernel's at equal error."""
     found = []
     for problem in blocks:
@@ -73,7 +83,7 @@ def _ratio(entries, problem, belongs, name, error, sense, limit):
     return Figure(title, ratio(slow, fast), "", sense, limit, how)
 
 
-def independent_difference(problem):
+def independent_difference(problem: Problem) -> tuple[float, int]:
     """Error, in the problem's own measure, of scipy's DOP853 at its tightest against the reference."""
     response = simulate_twin(
         problem.scene, rtol=TWIN_TOLERANCE, history=False, energy=False, rest_rate=problem.rest_rate
@@ -82,7 +92,7 @@ def independent_difference(problem):
     return (problem.error([end.tilt, end.tilt_rate, end.base_displacement, end.base_velocity]), response.impact_count)
 
 
-def agreement(problem):
+def agreement(problem: Problem) -> Figure:
     """The kernel at its default tolerance against the independent solution."""
     end = simulate(problem.scene, history=False).end
     kernel_error = problem.error([end.tilt, end.tilt_rate, end.base_displacement, end.base_velocity])
@@ -99,8 +109,9 @@ def agreement(problem):
     )
 
 
-def costs(blocks, records, motion, rounds):
+def costs(blocks: Sequence[Problem], records: Sequence[Problem], motion: Motion, rounds: int) -> list[Figure]:
     """Figures of throughput and start-up."""
+    seconds: Any  # a number, then one per round
     found = []
     for problem in blocks:
         seconds = statistics.median(throughput.batch_cost(problem, rounds, 1e-14))

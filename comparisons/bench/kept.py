@@ -1,12 +1,21 @@
 """What is kept of a response to be judged by: a module of its own, so that a change of the judgement repeats no run."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
+
+if TYPE_CHECKING:
+    from analytic import Response
+
+    from ..running.cases import Case
 
 RESOLVED = 0.1  # share of the run's largest rate from which on an impact counts
 GRID, MOST_IMPACTS = 50, 400  # points of the growing peaks, impacts kept
 
 
-def keep(case, response):
+def keep(case: Case, response: Response) -> dict[str, Any]:
     """Measure: what the judgement needs of a response with its history, as JSON values."""
     history = response.history
     steps = (

@@ -1,13 +1,21 @@
 """The kernel as the benchmark calls it: no history, no ledger, outcomes only."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from analytic import kernel, layout
 from analytic.batch import pulse_row, run_rows
 from analytic.solver import ground, options, parameters
 
+if TYPE_CHECKING:
+    from .problems import Problem
 
-def kernel_run(problem, tolerance):
+
+def kernel_run(problem: Problem, tolerance: float) -> Callable[[], tuple[Any, int]]:
     """A function without arguments that runs `problem` and returns (state at the horizon, impacts)."""
     scene, totals = problem.scene, np.zeros(layout.TOTALS)
     inside = problem.horizon < scene.duration
@@ -20,7 +28,7 @@ def kernel_run(problem, tolerance):
     return run
 
 
-def kernel_batch(problem, tolerance, count):
+def kernel_batch(problem: Problem, tolerance: float, count: int) -> Callable[[], Any]:
     """A function that does `count` equal runs of `problem` in one compiled loop on one core."""
     scene = problem.scene
     shaking, chosen = ground(scene.motion), _options(problem, tolerance, problem.horizon < scene.duration)

@@ -1,22 +1,29 @@
 """Solvers of the optional extra `peers`: heyoka, SUNDIALS CVODE (scikit-sundae), CyRK. Each only where installed."""
 
+from __future__ import annotations
+
 import importlib.util
 import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .solvers_scipy import block_constants, block_start
 
+if TYPE_CHECKING:
+    from .problems import Problem
+
 PEERS = {"heyoka": "heyoka", "CVODE Adams": "sksundae", "CyRK DOP853": "CyRK"}
 COOLDOWN = 1e-12  # s; heyoka's own choice drops the shortest hops silently
 
 
-def installed():
+def installed() -> list[str]:
     """Names of the peers that can be imported here."""
     return [name for name, module in PEERS.items() if importlib.util.find_spec(module)]
 
 
-def heyoka_run(problem, tolerance):
+def heyoka_run(problem: Problem, tolerance: float) -> Callable[[], tuple[Any, int]]:
     """Problem A or B by heyoka: one compiled system in flight under the pulse, one for free flight.
 
     Impacts are a callback in heyoka's own loop; the restart between them costs no return to Python.
@@ -75,7 +82,7 @@ def heyoka_run(problem, tolerance):
     return run
 
 
-def cvode_run(problem, rtol):
+def cvode_run(problem: Problem, rtol: float) -> Callable[[], tuple[Any, int]]:
     """Problem A or B by SUNDIALS CVODE (Adams) with its root function; restarted at every impact."""
     from sksundae.cvode import CVODE
 
@@ -93,7 +100,7 @@ def cvode_run(problem, rtol):
     def impact(t, y, events):
         events[0] = now["s"] * y[0] / (t - now["begin"]) if t > now["begin"] else 1.0
 
-    impact.terminal, impact.direction = [True], [-1]
+    impact.terminal, impact.direction = [True], [-1]  # type: ignore[attr-defined]  # CVODE reads them there
 
     def run():
         t, y, impacts, state = start, np.array([tilt0, rate0]), 0, None
@@ -130,7 +137,7 @@ def cvode_run(problem, rtol):
     return run
 
 
-def cyrk_run(problem, rtol):
+def cyrk_run(problem: Problem, rtol: float) -> Callable[[], tuple[Any, int]]:
     """Problem A or B by CyRK's compiled DOP853 with an event; restarted at every impact."""
     from CyRK import pysolve_ivp
 
@@ -153,7 +160,7 @@ def cyrk_run(problem, rtol):
     def impact(t, y):
         return now["s"] * y[0] / (t - now["begin"]) if t > now["begin"] else 1.0
 
-    impact.terminal, impact.direction = 1, -1
+    impact.terminal, impact.direction = 1, -1  # type: ignore[attr-defined]  # CyRK reads them there
 
     def run():
         t, y, impacts, state = start, np.array([tilt0, rate0]), 0, None

@@ -1,6 +1,9 @@
 """Error against CPU time, one panel per problem."""
 
 import math
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from typing import Any
 
 from matplotlib.figure import Figure
 
@@ -18,7 +21,7 @@ STYLES = {
 FLOOR = 1e-16  # errors below it are drawn on it
 
 
-def draw(rows, machine, path):
+def draw(rows: Sequence[Mapping[str, Any]], machine: Mapping[str, Any], path: str | PathLike[str]) -> None:
     """Write the work-precision plot of result rows to `path`; wrong counts of impacts are crossed out, not joined."""
     problems = list(dict.fromkeys(row["problem"] for row in rows))
     columns = min(2, len(problems))

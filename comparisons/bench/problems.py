@@ -1,7 +1,11 @@
 """What the solvers are timed on: problems A and B, the isolated Caryatid under a record."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,6 +13,10 @@ from analytic import Scene, simulate
 from analytic.caryatid import BASE, BEARINGS, caryatid_block
 from analytic.problems import problem_a, problem_b
 from analytic.solver import REST_RATE
+
+if TYPE_CHECKING:
+    from analytic import SampledMotion
+    from analytic.types import Motion
 
 TIGHTEST = 1e-17
 SLENDER = 0.18  # rad: the isolated Caryatid rocks without overturning, under the Duzce record and the synthetic motion
@@ -31,14 +39,14 @@ class Problem:
     reference: np.ndarray
     scale: np.ndarray
 
-    def error(self, state):
+    def error(self, state: Sequence[float] | np.ndarray) -> float:
         """Largest error of a state (tilt, tilt rate, displacement, velocity) at the horizon, over its scale."""
         if len(self.reference) == 1:
             state = np.abs(state[:1])
         return float(np.max(np.abs(np.asarray(state) - self.reference) / self.scale))
 
 
-def block_problems():
+def block_problems() -> tuple[Problem, Problem]:
     """Problems A (10 impacts to 7 s) and B (81 impacts, until one leaves less than 1e-4 omega_r)."""
     gamma = problem_a().block.slenderness
     scale = np.array([gamma])
@@ -48,7 +56,7 @@ def block_problems():
     return a, b
 
 
-def caryatid(slenderness, motion, duration):
+def caryatid(slenderness: float, motion: Motion, duration: float | None) -> Scene:
     """The Caryatid on the bearings of the paper's Table 1 under `motion`."""
     return Scene(
         name=f"isolated Caryatid, slenderness {slenderness:g}",
@@ -60,7 +68,7 @@ def caryatid(slenderness, motion, duration):
     )
 
 
-def caryatid_problem(slenderness, motion, duration):
+def caryatid_problem(slenderness: float, motion: Motion, duration: float) -> Problem:
     """The isolated Caryatid under `motion`, judged at its end; the reference is the kernel at its tightest.
 
     How far an independent solver is from that reference is one of the benchmark's figures.
@@ -75,7 +83,7 @@ def caryatid_problem(slenderness, motion, duration):
     return Problem(scene.name, scene, duration, REST_RATE, response.impact_count, state, scale)
 
 
-def record_problems(motion):
+def record_problems(motion: SampledMotion) -> tuple[Problem, ...]:
     """The isolated Caryatid under a record: as it is, where it stands, and slender, in the middle of its rocking."""
     stands = caryatid_problem(0.28, motion, motion.end)
     whole = simulate(caryatid(SLENDER, motion, motion.end), history=False)

@@ -1,7 +1,11 @@
 """Random valid scenes through the kernel: no NaN, no hang, no failure, no energy from nothing."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable, Sequence
 from concurrent.futures import TimeoutError
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pebble import ProcessExpired, ProcessPool
@@ -11,6 +15,9 @@ from analytic.motion import PULSES
 
 from ..running.provenance import json_ready
 
+if TYPE_CHECKING:
+    from analytic import Impact
+
 IMBALANCE_LIMIT = 1e-6  # of the largest energy in the run
 LOSS_ROUND_OFF = 1e-12  # an impact may seem to add this share of the energy it meets
 # Energies below this share of what it takes to tip the block are rounding (a pulse that just touches the threshold).
@@ -19,7 +26,7 @@ CHUNK = 200
 CHUNK_SECONDS, SCENE_SECONDS = 60.0, 20.0  # time limits of a chunk, of a scene alone
 
 
-def random_scene(seed, index):
+def random_scene(seed: int, index: int) -> Scene:
     """Scene number `index` of the ensemble `seed`; parameters cover what a scene may hold, extremes included."""
     rng = np.random.default_rng([seed, index])
     block = _block(rng)
@@ -114,10 +121,10 @@ def _start(rng, block, omega, base):
     return Start(**values)
 
 
-def faults(scene):
+def faults(scene: Scene) -> dict[str, Any]:
     """What is wrong with the kernel's run of `scene`: a dict of findings, empty for a sound one."""
     response = simulate(scene, history=False)
-    found = {}
+    found: dict[str, Any] = {}
     if response.failure:
         found["failure"] = response.failure.reason
     numbers = [
@@ -168,7 +175,7 @@ def _peak_velocity(motion):
     return float(np.abs(np.cumsum(motion.acceleration(times))).max() * times[1])
 
 
-def least_impact_loss(scene, impacts):
+def least_impact_loss(scene: Scene, impacts: Sequence[Impact]) -> float:
     """Least share of its tilting energy that an impact takes away; below 0 it would have added some.
 
     The base velocity drops out: w h J-terms, with j the jump, leave J (w-^2 - w+^2)/2 - m h j w+ - M j^2/2.
@@ -194,7 +201,9 @@ def _check(seed, indices):
     return found
 
 
-def check_random_scenes(count, seed=0, workers=2, advance=lambda done: None):
+def check_random_scenes(
+    count: int, seed: int = 0, workers: int = 2, advance: Callable[[int], Any] = lambda done: None
+) -> list[dict[str, Any]]:
     """Run scenes 0 .. count-1 of the ensemble `seed` in worker processes that may hang or crash.
 
     Returns
@@ -228,7 +237,7 @@ def _one_by_one(pool, seed, chunk):
     return found
 
 
-def describe(scene):
+def describe(scene: Scene) -> dict[str, Any]:
     """The scene as JSON values, motion included."""
     content = scene.model_dump(exclude={"motion"})
     motion = scene.motion

@@ -4,7 +4,11 @@ No classes, floats instead of arrays in the right-hand side, the smallest set of
 length of the coming hop. The readable set-up, the one to learn from, is analytic/twin.py.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -14,11 +18,14 @@ from analytic.motion import SampledMotion
 from analytic.rocking import RockingModel
 from analytic.twin import simulate_twin
 
+if TYPE_CHECKING:
+    from .problems import Problem
+
 METHODS = ("RK45", "DOP853", "LSODA", "Radau")
 SHORT_HOP = 0.3  # in units of 1/omega_r: below it, the first step is the whole hop
 
 
-def block_start(problem):
+def block_start(problem: Problem) -> tuple[float, float, float, float, list[float]]:
     """(time, tilt, tilt rate, side, corners of the motion) from which the block of A or B moves; exact."""
     scene = problem.scene
     if scene.motion is None:
@@ -27,7 +34,7 @@ def block_start(problem):
     return math.asin(1 / ratio) / scene.motion.frequency, 0.0, 0.0, -1.0, [scene.motion.end]
 
 
-def block_constants(problem):
+def block_constants(problem: Problem) -> tuple[float, float, float, float, float, float]:
     """omega_r^2, slenderness, restitution, omega_r of the block of A or B; its pulse's amplitude over g and frequency.
 
     Floats; amplitude and frequency are 0 without a pulse.
@@ -38,7 +45,7 @@ def block_constants(problem):
     return omega**2, model.gamma, model.restitution, omega, a, frequency
 
 
-def block_run(problem, method, rtol):
+def block_run(problem: Problem, method: str, rtol: float) -> Callable[[], tuple[Any, int]]:
     """A function that runs problem A or B and returns (state at the horizon, impacts)."""
     p2, gamma, e, omega, a, frequency = block_constants(problem)
     start, tilt0, rate0, side0, corners = block_start(problem)
@@ -71,7 +78,7 @@ def block_run(problem, method, rtol):
                 def impact(now, z):  # the root at take-off is divided out
                     return side * z[0] / (now - begin) if now > begin else 1.0  # noqa: B023
 
-                impact.terminal, impact.direction = True, -1
+                impact.terminal, impact.direction = True, -1  # type: ignore[attr-defined]  # scipy reads them there
                 step = {"first_step": min(first, stop - t)} if first else {}
                 solution = solve_ivp(
                     (forced if pushed else free)(s), (t, stop), y, method, events=impact, rtol=rtol, atol=atol, **step
@@ -95,7 +102,7 @@ def block_run(problem, method, rtol):
     return run
 
 
-def twin_run(problem, method, rtol):
+def twin_run(problem: Problem, method: str, rtol: float) -> Callable[[], tuple[Any, int]]:
     """A function that runs a problem under a record with the readable twin: a restart, at best a step, per sample."""
     longest = problem.scene.motion.dt  # half the twin's own cost; whether a hop is missed the count of impacts tells
 
@@ -115,7 +122,7 @@ def twin_run(problem, method, rtol):
     return run
 
 
-def contact_run(problem, method, rtol):
+def contact_run(problem: Problem, method: str, rtol: float) -> Callable[[], tuple[Any, int]]:
     """A function that runs a block which never lifts, under a record: a stop at reversals of the base only.
 
     The record's corners are left to the error control, which is cheaper than a restart at each of them.
@@ -158,8 +165,8 @@ def contact_run(problem, method, rtol):
             def uplift(now, state):
                 return threshold - abs(force(state[0])) / M  # noqa: B023
 
-            reversal.terminal, reversal.direction = True, -1
-            uplift.terminal = True
+            reversal.terminal, reversal.direction = True, -1  # type: ignore[attr-defined]  # as above
+            uplift.terminal = True  # type: ignore[attr-defined]  # as above
             solution = solve_ivp(
                 derivative,
                 (t, duration),

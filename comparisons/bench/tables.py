@@ -1,9 +1,17 @@
 """Tables of the benchmark for the terminal."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
 from rich.table import Table
 
+if TYPE_CHECKING:
+    from .figures import Figure
 
-def solver_table(rows):
+
+def solver_table(rows: Sequence[Mapping[str, Any]]) -> Table:
     """CPU time and error of every solver at every tolerance."""
     table = Table("problem", "solver", "tolerance", "CPU [ms]", "10-90 %", "error", "impacts", title="One run")
     for row in rows:
@@ -34,7 +42,7 @@ def solver_table(rows):
     return table
 
 
-def figure_table(found):
+def figure_table(found: Iterable[Figure]) -> Table:
     """The figures beside what was asked for."""
     table = Table("figure", "measured", "asked for", "met", "how", title="Figures")
     for figure in found:

@@ -1,11 +1,14 @@
 """What the kernel costs at its work: per record sample, per run of a map, per spectrum, per process."""
 
+from __future__ import annotations
+
 import os
 import statistics
 import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +16,11 @@ from analytic import Block, Scene, overturning_map, rocking_spectrum
 from analytic.solver import TOLERANCE
 
 from .kernel_solver import kernel_batch
+
+if TYPE_CHECKING:
+    from analytic.types import Motion
+
+    from .problems import Problem
 
 PROJECT = Path(__file__).parents[2]
 # A process that runs one scene, with the seconds since its start after each part.
@@ -34,18 +42,18 @@ print(numpy_done - begin, numba_done - numpy_done, analytic_done - numba_done, r
 """
 
 
-def sample_cost(problem, rounds, tolerance=TOLERANCE, count=20):
+def sample_cost(problem: Problem, rounds: int, tolerance: float = TOLERANCE, count: int = 20) -> list[float]:
     """CPU seconds per record sample of equal runs in one compiled loop, one per round."""
     run, samples = kernel_batch(problem, tolerance, count), len(problem.scene.motion.samples) - 1
     return _cpu_seconds(run, rounds, count * samples)
 
 
-def batch_cost(problem, rounds, tolerance, count=200):
+def batch_cost(problem: Problem, rounds: int, tolerance: float, count: int = 200) -> list[float]:
     """CPU seconds per run of equal runs in one compiled loop, one per round."""
     return _cpu_seconds(kernel_batch(problem, tolerance, count), rounds, count)
 
 
-def map_cost(rounds, points=100):
+def map_cost(rounds: int, points: int = 100) -> tuple[list[float], float]:
     """(CPU seconds per run, one per round; share that overturns) of a one-sine map on one core.
 
     Block: p = 2.14 rad/s, slenderness 0.25, e = 0.9; frequencies 1 to 8 p,
@@ -58,9 +66,9 @@ def map_cost(rounds, points=100):
     return _cpu_seconds(lambda: overturning_map(scene, "one-sine", *ratios, workers=1), rounds, points**2), share
 
 
-def spectrum_cost(motion, rounds, periods=500, workers=2):
+def spectrum_cost(motion: Motion, rounds: int, periods: int = 500, workers: int = 2) -> tuple[list[float], float]:
     """(wall seconds, one per round; share that overturns) of a rocking spectrum, T_r from 0.5 to 10 s, on 2 cores."""
-    periods, seconds = np.linspace(0.5, 10, periods), []
+    periods, seconds = np.linspace(0.5, 10, periods), []  # type: ignore[assignment]  # from their number to them
     outcomes = rocking_spectrum(motion, periods, 0.28, workers=workers)
     for _ in range(rounds):
         begin = time.perf_counter()
@@ -69,7 +77,7 @@ def spectrum_cost(motion, rounds, periods=500, workers=2):
     return seconds, float(outcomes.overturns.mean())
 
 
-def start_up(rounds):
+def start_up(rounds: int) -> tuple[list[float], dict[str, float], float]:
     """Processes that run one scene with the cached kernel: elapsed seconds, medians of their parts and of their CPU."""
     environment = {**os.environ, "PYTHONPATH": str(PROJECT)}
     seconds, parts = [], []

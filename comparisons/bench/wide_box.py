@@ -7,6 +7,7 @@ of .3 to 10 times the uplift acceleration at .5 to 10 omega_r. A third of the sc
 """
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +23,7 @@ DENSITY = (200.0, 2e4)  # kg per m3 of R^3: masses that go with the size
 ALPHA = (1.5, 1e5)  # of a bearing; it yields at 1/(2 (alpha - 1)) m
 
 
-def wide_scene(seed, index):
+def wide_scene(seed: int, index: int) -> Scene:
     """Scene number `index` of the ensemble `seed`."""
     rng = np.random.default_rng([seed, index])
     core = rng.random() < CORE_SHARE
@@ -60,7 +61,7 @@ def wide_scene(seed, index):
     )
 
 
-def is_core(scene):
+def is_core(scene: Scene) -> bool:
     """Whether a scene lies in the core range, where nothing may be warned of."""
     block = scene.block
     inertia = block.inertia / (block.mass * block.radius**2)
@@ -71,7 +72,7 @@ def is_core(scene):
     )
 
 
-def place(scene):
+def place(scene: Scene) -> dict[str, Any]:
     """Where in the box a scene lies: {quantity: value}, None where it has none.
 
     frequency: of the base on its bearings, sqrt(n_d k_a/m_b), and damping: n_d c/m_b, both over omega_r.

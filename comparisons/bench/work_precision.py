@@ -1,14 +1,21 @@
 """Error against CPU time: every solver at every tolerance, timed in turns within one process."""
 
+from __future__ import annotations
+
 import statistics
 import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import peers
 from .kernel_solver import kernel_run
 from .solvers_scipy import METHODS, block_run, contact_run, twin_run
+
+if TYPE_CHECKING:
+    from .problems import Problem
 
 KERNEL = "kernel"
 TICK = 2e-3  # s: least CPU time of one timing; fast runs are repeated within it
@@ -49,10 +56,10 @@ TWIN_QUICK = {"DOP853": (1e-6,)}
 class Entry:
     """One solver at one tolerance on one problem. seconds: CPU per run, one per round; failure: what it raised."""
 
-    problem: object
+    problem: Problem
     solver: str
     tolerance: float
-    run: object
+    run: Callable[[], tuple[Any, int]]
     error: float = float("nan")
     impacts: int = -1
     batch: int = 1
@@ -60,15 +67,15 @@ class Entry:
     failure: str | None = None
 
     @property
-    def counted(self):
+    def counted(self) -> bool:
         """Whether every impact was found; only then do its figures count."""
         return self.impacts == self.problem.impacts
 
     @property
-    def median(self):
+    def median(self) -> float:
         return statistics.median(self.seconds)
 
-    def row(self):
+    def row(self) -> dict[str, Any]:
         """JSON-ready."""
         low, median, high = np.percentile(self.seconds, (10, 50, 90)).tolist() if self.seconds else 3 * [None]
         return {
@@ -88,10 +95,10 @@ class Entry:
         }
 
 
-def block_entries(problem, quick):
+def block_entries(problem: Problem, quick: bool) -> list[Entry]:
     """All solvers on problem A or B."""
     runs = {KERNEL: kernel_run, **{name: peers.RUNS[name] for name in peers.installed()}}
-    runs |= {method: (lambda chosen, rtol, method=method: block_run(chosen, method, rtol)) for method in METHODS}
+    runs |= {method: (lambda chosen, rtol, method=method: block_run(chosen, method, rtol)) for method in METHODS}  # type: ignore[misc]  # of a problem and a tolerance
     ladder = QUICK if quick else TOLERANCES
     return [
         Entry(problem, name, tolerance, make(problem, tolerance))
@@ -100,7 +107,7 @@ def block_entries(problem, quick):
     ]
 
 
-def record_entries(problem, quick):
+def record_entries(problem: Problem, quick: bool) -> list[Entry]:
     """Kernel and scipy on a problem under a record: the readable twin, and a lean set-up where nothing rocks."""
     found = [
         Entry(problem, KERNEL, tolerance, kernel_run(problem, tolerance))
@@ -120,7 +127,7 @@ def record_entries(problem, quick):
     return found
 
 
-def measure(entries, rounds, advance=lambda: None):
+def measure(entries: Sequence[Entry], rounds: int, advance: Callable[[], Any] = lambda: None) -> None:
     """Error and impacts of each entry, then its CPU time in `rounds` rounds of one timing each, in turns."""
     for entry in entries:
         begin = time.process_time()
@@ -152,7 +159,7 @@ def measure(entries, rounds, advance=lambda: None):
         advance()
 
 
-def cheapest(entries, problem, belongs, error):
+def cheapest(entries: Sequence[Entry], problem: Problem, belongs: Callable[[str], bool], error: float) -> Entry | None:
     """The cheapest sound entry on `problem` of a solver for which `belongs(name)` that reaches `error`, or None."""
     able = [
         entry
@@ -162,11 +169,11 @@ def cheapest(entries, problem, belongs, error):
     return min(able, key=lambda entry: entry.median, default=None)
 
 
-def ratio(slow, fast):
+def ratio(slow: Entry, fast: Entry) -> float:
     """Median over the rounds of CPU time of `slow` over that of `fast`."""
     return statistics.median(a / b for a, b in zip(slow.seconds, fast.seconds, strict=False))
 
 
-def is_scipy(name):
+def is_scipy(name: str) -> bool:
     """Whether a solver's name is that of a scipy method, in any set-up."""
     return name.split(",")[0] in METHODS

@@ -7,11 +7,12 @@ Heavy modules are imported inside `main`, where Ctrl-C is taken care of.
 import contextlib
 import os
 import sys
+from collections.abc import Sequence
 
 from .interrupts import open_streams, stoppable
 
 
-def mendable():
+def mendable() -> tuple[type[Exception], ...]:
     """The errors a user can mend: told without a traceback."""
     from analytic.errors import EngineNotInstalled, SceneError, SettingError
 
@@ -22,7 +23,7 @@ def mendable():
     return SceneError, SettingError, EngineNotInstalled, PlaceError, ResultError, StoreError
 
 
-def main(arguments=None):
+def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and exit with its status."""
     open_streams()  # first: else another file takes the number of one that is closed
     with stoppable():

@@ -5,6 +5,7 @@ import os
 import signal
 import sys
 import threading
+from collections.abc import Iterator
 
 GRACE_SECONDS = 0.5  # to close workers and files in good order; then the process is ended
 SHOW_CURSOR = b"\x1b[?25h"  # a progress bar that was cut off has hidden it
@@ -13,14 +14,14 @@ SHOW_CURSOR = b"\x1b[?25h"  # a progress bar that was cut off has hidden it
 class Stopped(BaseException):
     """The command was told to end. No KeyboardInterrupt: libraries turn that into something of their own."""
 
-    def __init__(self, number):
+    def __init__(self, number: int) -> None:
         super().__init__(number)
         self.status = 128 + number
         self.words = "Interrupted." if number == signal.SIGINT else f"Ended by {signal.Signals(number).name}."
 
 
 @contextlib.contextmanager
-def stoppable():
+def stoppable() -> Iterator[None]:
     """SIGINT and SIGTERM raise `Stopped` inside, and then end the process with status 130 or 143.
 
     Where compiled code does not let the exception through, the process is ended in the midst. Does nothing outside the
@@ -52,7 +53,7 @@ def stoppable():
 
 
 class _State:
-    def __init__(self):
+    def __init__(self) -> None:
         self.stopped = self.told = False
 
     def handle(self, number, _frame):
@@ -85,11 +86,11 @@ def _end(state, stop):
 def _end_children():
     psutil = sys.modules.get("psutil")  # where processes are started it has been imported; guarded runs end anyway
     for child in psutil.Process().children(recursive=True) if psutil else ():
-        with contextlib.suppress(psutil.Error):
+        with contextlib.suppress(psutil.Error):  # type: ignore[union-attr]  # it was there for the loop
             child.kill()
 
 
-def open_streams():
+def open_streams() -> None:
     """Give standard streams that are closed a place: reading ends at once, writing results is an error, notes vanish.
 
     What the terminal cannot show is printed as its code.
@@ -102,4 +103,4 @@ def open_streams():
             setattr(sys, name, open(number, "w" if number else "r", closefd=False))
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(AttributeError, OSError, ValueError):
-            stream.reconfigure(errors="backslashreplace")
+            stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]  # what Python itself opens has it

@@ -26,7 +26,7 @@ def analytic(
         typer.Option(metavar="FILE", help="Record for the isolated Caryatid; without it the shipped synthetic motion."),
     ] = None,
     output: Annotated[str, typer.Option(metavar="DIR", help="Where the results go.")] = "bench-analytic",
-):
+) -> None:
     """Kernel against scipy and other solvers, and the figures it promises. Status 1: a random scene failed."""
     from rich.console import Console
 
@@ -58,7 +58,7 @@ def engines(
     time_limit: Annotated[float, typer.Option(min=0.1, help="Of an engine's run [s].")] = 60.0,
     index: Annotated[int | None, typer.Option(min=0, help="Run this scene alone and print it.")] = None,
     output: Annotated[str, typer.Option(metavar="DIR", help="Where runs and results go.")] = "bench-engines",
-):
+) -> None:
     """An engine against the analytic model on random scenes of a wide box. Status 1: a run was off in silence."""
     import json
 

@@ -1,7 +1,11 @@
 """``rocking compare``: all solvers on one scene."""
 
+from __future__ import annotations
+
 import json
-from typing import Annotated
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -18,6 +22,9 @@ from ..running.solving import (
     tell_failures,
 )
 
+if TYPE_CHECKING:
+    from ..measuring.horizon import Horizon
+
 
 def command(
     scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
@@ -29,7 +36,7 @@ def command(
         str | None, typer.Option("--json", metavar="FILE", help="Write the results; - prints them.")
     ] = None,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", help=TIME_LIMIT_HELP)] = TIME_LIMIT,
-):
+) -> None:
     """Simulate one scene with the analytic model and the engines: outcomes, errors and CPU time side by side.
 
     An engine that fails costs its own row. Status 1: the analytic model failed.
@@ -62,7 +69,7 @@ def command(
         except EngineNotInstalled:
             if engine:  # asked for by name
                 raise
-    horizons = {}
+    horizons: dict[str, Horizon] = {}
     if not responses[0].failure:
         horizons, failure = alone(
             _horizons, what, responses, time_limit=time_limit, meanwhile=spinner(f"{what.name}: sensitivity horizons")
@@ -71,7 +78,7 @@ def command(
             horizons = {}
             say(f"no sensitivity horizons: {failure.reason}. {readable(failure.message.partition(chr(10))[0])}")
     horizon = min((found.horizon for found in horizons.values() if found.parts), default=None)
-    results = {}
+    results: dict[str, str | Callable[[Path], object]] = {}
     if json_file:
         content = {
             "scene": what.name,
@@ -88,7 +95,7 @@ def command(
         from ..showing.plots import draw_histories, save
 
         figure = draw_histories(what, drawn, horizon)
-        results[plot] = lambda path: save(figure, path)
+        results[plot] = lambda path: save(figure, path)  # type: ignore[index]  # else nothing is drawn
     elif plot:
         say("there is no history to draw")
     problem = write_all(results)

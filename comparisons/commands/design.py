@@ -18,7 +18,7 @@ def command(
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write the design; - prints it.")
     ] = None,
-):
+) -> None:
     """Bearing constants for a target period, damping and displacement: Table 1(a) to Table 1(b), and back."""
     from rich.console import Console
 

@@ -1,7 +1,7 @@
 """``rocking engines``: what can be used here, and how it can be set."""
 
 
-def command():
+def command() -> None:
     """List the engines: version, variants with rung and settings, where each is verified, and who decides what."""
     from rich.console import Console
 

@@ -2,6 +2,8 @@
 
 import dataclasses
 import json
+from collections.abc import Callable
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -35,7 +37,7 @@ def command(
             what, span=span / 100, step=span / 100 / 400, progress=lambda name: tell(f"{what.name}: {name}")
         )
         contact = contact_margins(what)
-    results = {}
+    results: dict[str, str | Callable[[Path], object]] = {}
     if json_file:
         content = {
             "schema": "rocking margin 1",

@@ -16,7 +16,7 @@ def command(
     ] = None,
     units: Annotated[str | None, typer.Option(help="Of a record in two columns: m/s2, cm/s2 or g.")] = None,
     output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the page and its result files.")] = "report",
-):
+) -> None:
     """All solvers on the Caryatid, free-standing and isolated: one HTML page and the result files it is made from."""
     from ..report.study import make_results
     from ..report.write import write_page

@@ -2,6 +2,8 @@
 
 import json
 import sys
+from collections.abc import Callable
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -30,7 +32,7 @@ def command(
     csv: Annotated[str | None, typer.Option(metavar="FILE", help="Write the history.")] = None,
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the history (.png, .svg or .pdf).")] = None,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", help=TIME_LIMIT_HELP)] = TIME_LIMIT,
-):
+) -> None:
     """Simulate one scene. Status 1: the solver failed on it; 2: the scene, a setting or a place is wrong."""
     from analytic.scene_file import load_scene
 
@@ -49,14 +51,14 @@ def command(
         time_limit=time_limit,
         words=f"{what.name}: {engine}",
     )
-    results = {}
+    results: dict[str, str | Callable[[Path], object]] = {}
     if json_file:
         results[json_file] = json.dumps(response.to_json(), indent=2, allow_nan=False) + "\n"
     if (csv or plot) and response.history is None:
         print("there is no history to write", file=sys.stderr)
         csv = plot = None
     if csv:
-        results[csv] = response.history.to_csv
+        results[csv] = response.history.to_csv  # type: ignore[union-attr]  # there is one, see above
     if plot:
         from ..showing.plots import draw_histories, save
 

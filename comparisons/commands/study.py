@@ -1,12 +1,18 @@
 """``rocking study NAME``: every study as a command of its own, made of its `Study`."""
 
+from __future__ import annotations
+
 import inspect
-from typing import Annotated
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from typer.core import TyperGroup
 
 from ..studies import StudyBroken, draw, get_study, study_names
+
+if TYPE_CHECKING:
+    from ..running.study import Study
 
 Quick = Annotated[bool, typer.Option("--quick", help="A first look, in minutes.")]
 Output = Annotated[
@@ -35,7 +41,7 @@ def _options(function):
     ]
 
 
-def command_of(study):
+def command_of(study: Study) -> Callable[..., None]:
     """A function that Typer makes the study's command of."""
     drawing = {parameter.name for parameter in _options(study.figures)}
 
@@ -73,7 +79,7 @@ def command_of(study):
         *_options(study.plan),
         *_options(study.figures),
     ]
-    command.__signature__ = inspect.Signature(parameters)
+    command.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]  # Typer reads it there
     command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
     command.__doc__ = study.question
     return command

@@ -4,7 +4,10 @@ Each takes (engine, variant, scenes, runs) and returns one number, the worst fou
 names below. runs: a dict in which simulations are kept that several measures share.
 """
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +19,10 @@ from engines.momentum import impulse_error
 
 from .measures import compare
 from .restitution import impact_errors, rms
+
+if TYPE_CHECKING:
+    from analytic import Response
+    from engines.swings import Trace
 
 STARTS = (0.3, 0.37, 0.44, 0.51, 0.59, 0.66, 0.73, 0.8)  # released tilt over slenderness
 SLENDERNESSES = (0.1, 0.2, 0.3, 0.45)
@@ -50,7 +57,7 @@ class Unmeasurable(RuntimeError):
     """The engine's run failed, or lacks what is to be measured; says which and why."""
 
 
-def traced(engine, variant, scene, history=True):
+def traced(engine: str, variant: str, scene: Scene, history: bool = True) -> tuple[Response, Trace]:
     """(the engine's response, its accepted steps as a `Trace`); raises `Unmeasurable` where it failed."""
     response, trace = get_engine(engine).traced(scene, variant=variant, history=history)
     if response.failure is not None:
@@ -58,15 +65,15 @@ def traced(engine, variant, scene, history=True):
     return response, trace
 
 
-def run(engine, variant, scene, history=True):
+def run(engine: str, variant: str, scene: Scene, history: bool = True) -> Response:
     """The engine's response; raises `Unmeasurable` where it failed."""
     return traced(engine, variant, scene, history)[0]
 
 
-def free_rocking(scenes):
+def free_rocking(scenes: str) -> dict[float, list[Scene]]:
     """{slenderness: scenes} of a family: free rocking from every start, up to past the third impact's swing."""
     base, slendernesses = FREE_ROCKING[scenes]
-    family = {}
+    family: dict[float, list[Scene]] = {}
     for slenderness in slendernesses:
         block = caryatid_block(slenderness)
         for start in STARTS:
@@ -90,7 +97,7 @@ def _worst_rms(groups):
     return max(rms(np.concatenate(values)) for values in groups)
 
 
-def restitution_rms(engine, variant, scenes, runs):
+def restitution_rms(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """Error of e_phi against eq. (7) from the states at the first three impacts, rms over starts; worst slenderness."""
     return _worst_rms(
         [
@@ -100,7 +107,7 @@ def restitution_rms(engine, variant, scenes, runs):
     )
 
 
-def swing_restitution_bias(engine, variant, scenes, runs):
+def swing_restitution_bias(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """|mean| error of e_phi against eq. (7) from the energies of the swings around the first three impacts."""
     errors = [
         impact_errors(scene, response, IMPACTS)["swing"]
@@ -110,7 +117,7 @@ def swing_restitution_bias(engine, variant, scenes, runs):
     return float(abs(np.nanmean(np.concatenate(errors))))
 
 
-def base_jump_rms(engine, variant, scenes, runs):
+def base_jump_rms(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """Relative error of the base velocity jump against momentum, rms over starts and impacts; worst slenderness."""
     return _worst_rms(
         [
@@ -120,7 +127,7 @@ def base_jump_rms(engine, variant, scenes, runs):
     )
 
 
-def impact_times(engine, variant, scenes, runs):
+def impact_times(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """Largest error of the times of the first three impacts [s]."""
     worst = 0.0
     for pairs in _free_responses(engine, variant, scenes, runs).values():
@@ -133,7 +140,7 @@ def impact_times(engine, variant, scenes, runs):
     return float(worst)
 
 
-def named_scene(name):
+def named_scene(name: str) -> Scene:
     """The scenes of the table that are one scene each."""
     if name == ISOLATED:
         return load_scene("caryatid-isolated")
@@ -175,27 +182,27 @@ def _agreement(engine, variant, scenes, runs):
     return runs[key]
 
 
-def peak_tilt(engine, variant, scenes, runs):
+def peak_tilt(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """|Error| of the peak tilt over slenderness."""
     return abs(_agreement(engine, variant, scenes, runs).peak_tilt_error)
 
 
-def peak_displacement(engine, variant, scenes, runs):
+def peak_displacement(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """|Error| of the peak base displacement, relative."""
     return abs(_agreement(engine, variant, scenes, runs).peak_displacement_error)
 
 
-def tilt_graph(engine, variant, scenes, runs):
+def tilt_graph(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """Distance of the tilt graphs over the whole scene: tilt over slenderness, time over 2 pi/omega_r."""
     return _agreement(engine, variant, scenes, runs).graph_distance
 
 
-def overturning_time(engine, variant, scenes, runs):
+def overturning_time(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """|Error| of the time of overturning [s]."""
     return abs(_agreement(engine, variant, scenes, runs).overturning_time_error)
 
 
-def boundary_scene(slenderness, pulse, frequency, amplitude):
+def boundary_scene(slenderness: float, pulse: str, frequency: float, amplitude: float) -> Scene:
     """One pulse of frequency times omega_r and amplitude times g tan(slenderness), on rigid ground."""
     scene = Scene(block=caryatid_block(slenderness), duration=1.0)
     motion = PulseMotion(pulse, amplitude * 9.81 * math.tan(slenderness), frequency * scene.rocking_frequency)
@@ -208,14 +215,14 @@ def _overturns(engine, variant, scene):
     return run(engine, variant, scene, history=False).outcome == "overturns"
 
 
-def first_boundary(*pulse):
+def first_boundary(*pulse: Any) -> float:
     """Least amplitude over g tan(slenderness) at which the model overturns; found by scanning, then halving.
 
     pulse : slenderness, shape, frequency, as `boundary_scene`.
     """
 
     def falls(amplitude):
-        return _overturns("analytic", None, boundary_scene(*pulse, amplitude))
+        return _overturns("analytic", None, boundary_scene(*pulse, amplitude))  # type: ignore[call-arg]  # slenderness, shape, frequency
 
     amplitudes = np.arange(1.0, 12.0, 0.02)
     over = next(k for k, a in enumerate(amplitudes) if falls(float(a)))
@@ -226,7 +233,7 @@ def first_boundary(*pulse):
     return high
 
 
-def boundary_shift(engine, variant, scenes, runs):
+def boundary_shift(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """Largest relative shift of the first overturning boundary, its bracket included, under the pulses `scenes`."""
     slenderness, pulses = BOUNDARIES[scenes]
     worst = 0.0
@@ -234,7 +241,7 @@ def boundary_shift(engine, variant, scenes, runs):
         exact = first_boundary(slenderness, *pulse)
 
         def falls(shift, exact=exact, pulse=pulse):
-            return _overturns(engine, variant, boundary_scene(slenderness, *pulse, exact * (1 + shift)))
+            return _overturns(engine, variant, boundary_scene(slenderness, *pulse, exact * (1 + shift)))  # type: ignore[call-arg]  # shape, frequency
 
         low, high = -1e-4, 1e-4
         while falls(low):
@@ -248,7 +255,7 @@ def boundary_shift(engine, variant, scenes, runs):
     return worst
 
 
-def bearing_replay(engine, variant, scenes, runs):
+def bearing_replay(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """Largest difference of the engine's bearing force from `paper_force` on its own displacements, over n_d f0."""
     scene = named_scene(scenes)
     trace, law = traced(engine, variant, scene)[1], BearingLaw.of(scene.bearings)
@@ -256,7 +263,7 @@ def bearing_replay(engine, variant, scenes, runs):
     return float(np.abs(trace.bearing_force - force).max() / (law.count * law.f0))
 
 
-def bearing_impulse(engine, variant, scenes, runs):
+def bearing_impulse(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """What the momentum of the engine's own motion shows of the bearings' force, against the law: relative error.
 
     Unlike `bearing_replay` it does not ask the adapter what the force was.
@@ -265,7 +272,7 @@ def bearing_impulse(engine, variant, scenes, runs):
     return impulse_error(scene, traced(engine, variant, scene)[1])
 
 
-def paper_force(law, x):
+def paper_force(law: BearingLaw, x: np.ndarray) -> np.ndarray:
     """Force of all bearings [N] along displacements x [m], shape (n,), x[0] = 0, by the paper's eqs (9)-(12).
 
     With its own history, the reversal points, and (12) with the sign mended: a second implementation beside
@@ -285,7 +292,7 @@ def paper_force(law, x):
     return law.count * force
 
 
-def corner_lift(engine, variant, scenes, runs):
+def corner_lift(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """Largest lift of a corner of a block that should stand [m]."""
     scene = named_scene(scenes)
     response = run(engine, variant, scene, history=False)
@@ -294,7 +301,7 @@ def corner_lift(engine, variant, scenes, runs):
     return 2 * scene.block.half_width * response.peak_tilt
 
 
-def base_drift(engine, variant, scenes, runs):
+def base_drift(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """Largest difference of the base displacement from the model's [m] while the block stands."""
     scene = named_scene(scenes)
     found, reference = run(engine, variant, scene).history, simulate(scene).history

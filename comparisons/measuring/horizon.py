@@ -5,7 +5,10 @@ exact model too. Point-wise agreement of two solvers can be asked for only until
 large the solvers' errors are: each solver has its own horizon.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +16,9 @@ from analytic import simulate
 from analytic.rocking import RockingModel, restitution
 
 from .measures import state_restitution
+
+if TYPE_CHECKING:
+    from analytic import Response, Scene
 
 # Relative changes of the twins where no solver is asked for; a good engine's are 1e-5 to 1e-3 (`perturbation_of`).
 PERTURBATION = 1e-4
@@ -43,12 +49,12 @@ class Horizon:
     twins: dict
 
     @property
-    def parts(self):
+    def parts(self) -> bool:
         """Whether a twin parts before the run ends."""
         return any(time is not None for time in self.twins.values())
 
 
-def twin_scenes(scene, perturbation=PERTURBATION):
+def twin_scenes(scene: Scene, perturbation: float = PERTURBATION) -> dict[str, Scene]:
     """Scenes next to `scene`, by name: restitution, and motion amplitude and start, changed by +-perturbation."""
     twins = {}
     e = max(restitution(scene), 0.0) if scene.block.restitution is None else scene.block.restitution
@@ -65,7 +71,7 @@ def twin_scenes(scene, perturbation=PERTURBATION):
     return twins
 
 
-def sensitivity_horizon(scene, *, perturbation=PERTURBATION, spread=SPREAD):
+def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION, spread: float = SPREAD) -> Horizon:
     """Time until which the motion of a scene can be compared point by point.
 
     Parameters
@@ -106,7 +112,7 @@ def sensitivity_horizon(scene, *, perturbation=PERTURBATION, spread=SPREAD):
     )
 
 
-def perturbation_of(scene, response, reference):
+def perturbation_of(scene: Scene, response: Response, reference: Response) -> float:
     """Size of the relative change of `twin_scenes` that moves the model as far as a solver's errors move the solver.
 
     Measured in the run: from `restitution_error` on, `LADDER` times as large until the twins are as far off the model
@@ -143,7 +149,7 @@ def perturbation_of(scene, response, reference):
     return float(min(size, MOST))
 
 
-def restitution_error(scene, response, *, until=np.inf):
+def restitution_error(scene: Scene, response: Response, *, until: float = np.inf) -> float:
     """Relative error of e_phi, rms over the impacts resolved up to `until` [s], weighted by rate; 0 without any."""
     rates = np.array([impact.rate_before for impact in response.impacts if impact.time <= until])
     e = RockingModel.of(scene).restitution
@@ -153,6 +159,6 @@ def restitution_error(scene, response, *, until=np.inf):
     return float(np.sqrt(np.sum((rates * errors) ** 2) / np.sum(rates**2)))
 
 
-def solver_horizon(scene, response, reference, *, spread=SPREAD):
+def solver_horizon(scene: Scene, response: Response, reference: Response, *, spread: float = SPREAD) -> Horizon:
     """The `Horizon` of one solver: that of its own size of perturbation, `perturbation_of`."""
     return sensitivity_horizon(scene, perturbation=perturbation_of(scene, response, reference), spread=spread)

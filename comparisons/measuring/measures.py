@@ -1,7 +1,10 @@
 """How a response is measured, the same for every solver: nothing here knows which engine made it."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
@@ -9,11 +12,15 @@ from numba import njit
 from engines.checks import energy_balance, energy_gain
 from engines.swings import Trace
 
+if TYPE_CHECKING:
+    from analytic import Response, Scene
+    from analytic.types import Values
+
 # Time after an impact that belongs to it [s]: exudyn's compliant corners relax for 6 ms.
 SETTLE = 0.01
 
 
-def swing_restitution(scene, response):
+def swing_restitution(scene: Scene, response: Response) -> np.ndarray:
     """Effective restitution of each impact from the energies of the swings around it, shape (impacts,).
 
     For free rocking on rigid ground: cos(u') - cos(gamma) = e^2 (cos(u) - cos(gamma)), u = gamma - peak |tilt| of
@@ -42,7 +49,7 @@ def swing_restitution(scene, response):
         return np.sqrt(energy[1:] / energy[:-1])
 
 
-def flight_energy(scene, tilt, rate):
+def flight_energy(scene: Scene, tilt: Values, rate: Values) -> Values:
     """Energy over m g R of a block in free flight, 0 at tilt = rate = 0; constant between impacts. Arrays or floats.
 
     cos(u) - cos(gamma) + rate^2/(2 p^2), u = gamma - |tilt|; on a freely sliding base relative to the centre of mass.
@@ -56,7 +63,7 @@ def flight_energy(scene, tilt, rate):
     return raised + share * rate**2 / (2 * scene.rocking_frequency**2)
 
 
-def state_restitution(response):
+def state_restitution(response: Response) -> np.ndarray:
     """e_phi = rate after / rate before of each impact, shape (impacts,); for any base and motion, eq. (7).
 
     An engine's rates are its flight states carried to the impact by the model's equations (engines.observe).
@@ -65,7 +72,7 @@ def state_restitution(response):
     return rates[:, 1] / rates[:, 0]
 
 
-def base_jump_error(scene, response):
+def base_jump_error(scene: Scene, response: Response) -> np.ndarray:
     """Error of the base velocity's jump against momentum, relative, shape (impacts,).
 
     Momentum: x'+ - x'- = mt h (w- - w+), eq. (8) corrected, with the rates the response itself has.
@@ -83,7 +90,7 @@ def base_jump_error(scene, response):
     return jumps / expected - 1
 
 
-def impact_time_errors(response, reference):
+def impact_time_errors(response: Response, reference: Response) -> np.ndarray:
     """Time of the impact minus that of the reference's [s], shape (reference impacts,); NaN for a lost one.
 
     An impact belongs to the reference's impact on the same side that is nearest in time, if it lies within half
@@ -104,7 +111,9 @@ def impact_time_errors(response, reference):
     return errors
 
 
-def graph_distance(response, reference, *, tilt_scale, time_scale, until=math.inf):
+def graph_distance(
+    response: Response, reference: Response, *, tilt_scale: float, time_scale: float, until: float = math.inf
+) -> float:
     """Hausdorff distance of the graphs (time/time_scale, tilt/tilt_scale) of two responses up to `until` [s].
 
     The measure for motions whose velocity jumps (M. D. P. Monteiro Marques 1987, doi:10.1016/0022-0396(87)90143-4;
@@ -156,7 +165,9 @@ def _directed(ta, ya, tb, yb):
     return worst
 
 
-def energy_errors(scene, response, *, until=math.inf, step=0.0):
+def energy_errors(
+    scene: Scene, response: Response, *, until: float = math.inf, step: float = 0.0
+) -> tuple[float, float]:
     """(drift between events, gain from nowhere) up to `until` [s] and the unstable point, from the history.
 
     Drift: largest change of the balance (mechanical energy + loss in the bearings - input work) within one swing or
@@ -165,7 +176,7 @@ def energy_errors(scene, response, *, until=math.inf, step=0.0):
     """
     history = _history(response)
     last = min(until, math.inf if response.unstable_time is None else response.unstable_time)
-    trace = Trace(*(getattr(history, name) for name in Trace.COLUMNS), contact_tilt=1e-12, settle=SETTLE)
+    trace = Trace(*(getattr(history, name) for name in Trace.COLUMNS), contact_tilt=1e-12, settle=SETTLE)  # type: ignore[misc]  # the columns come before these
     trace = trace.upto(max(2, int(np.searchsorted(history.time, last, side="right"))))
     balance, _ = energy_balance(scene, trace)
     events = sorted([impact.time for impact in response.impacts] + list(response.rests) + list(response.uplifts))
@@ -198,7 +209,7 @@ class Agreement:
     until: float
 
 
-def compare(scene, response, reference, *, until=math.inf):
+def compare(scene: Scene, response: Response, reference: Response, *, until: float = math.inf) -> Agreement:
     """The `Agreement` of two responses of one scene, trajectories up to the sensitivity horizon `until` [s].
 
     Tilt is scaled by the slenderness and time by 2 pi/omega_r. An impact of the reference counts as

@@ -1,6 +1,9 @@
 """Error of restitution: the one way from a run's impacts to its errors, for agreement, report and studies."""
 
+from __future__ import annotations
+
 import dataclasses
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -8,17 +11,22 @@ from analytic.rocking import base_jump_length, base_jump_length_as_printed, rest
 
 from .measures import base_jump_error, state_restitution, swing_restitution
 
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from analytic import Impact, Response, Scene
+
 # Of the run's fastest: slower impacts are no swings but an engine's own chatter on its way to rest.
 SLOWEST_IMPACT = 0.1
 
 
-def strong_impacts(response):
+def strong_impacts(response: Response) -> tuple[Impact, ...]:
     """The impacts of a response that are at least `SLOWEST_IMPACT` as fast as its fastest."""
     fastest = max((abs(impact.rate_before) for impact in response.impacts), default=0.0)
     return tuple(impact for impact in response.impacts if abs(impact.rate_before) >= SLOWEST_IMPACT * fastest)
 
 
-def impact_errors(scene, response, most=None):
+def impact_errors(scene: Scene, response: Response, most: int | None = None) -> dict[str, np.ndarray]:
     """Errors of the strong impacts of a run, of the first `most` of them.
 
     Returns
@@ -46,7 +54,7 @@ def impact_errors(scene, response, most=None):
     return {name: values[:most] for name, values in errors.items()}
 
 
-def rate_restitution(response):
+def rate_restitution(response: Response) -> np.ndarray:
     """Restitution of each strong impact of free rocking from successive rates, shape (impacts kept,).
 
     The swing between two impacts keeps its energy (and the base's momentum), so the rate before the next impact is the
@@ -59,11 +67,11 @@ def rate_restitution(response):
     return np.abs(before[1:] / before[:-1])[kept]
 
 
-def rms(values):
+def rms(values: npt.ArrayLike) -> float:
     """Root mean square."""
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def worst(values):
+def worst(values: npt.ArrayLike) -> float:
     """Largest absolute value."""
     return float(np.abs(values).max())

@@ -1,11 +1,18 @@
 """Are two solvers' overturning outcomes different? Intervals, paired tests and fragility curves."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.optimize import brentq, minimize
 from scipy.stats import binom, binomtest, norm
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 
 @dataclass(frozen=True)
@@ -18,19 +25,19 @@ class Confusion:
     only_b: int  # overturns in B alone
 
     @property
-    def size(self):
+    def size(self) -> int:
         return self.both_stand + self.both_overturn + self.only_a + self.only_b
 
     @property
-    def discordant(self):
+    def discordant(self) -> int:
         return self.only_a + self.only_b
 
-    def table(self):
+    def table(self) -> np.ndarray:
         """Rows: A stands, A overturns; columns: B stands, B overturns; shape (2, 2)."""
         return np.array([[self.both_stand, self.only_b], [self.only_a, self.both_overturn]])
 
 
-def confusion(a, b):
+def confusion(a: npt.ArrayLike, b: npt.ArrayLike) -> Confusion:
     """Confusion table of two arrays of outcomes, shape (n,), True where it overturns.
 
     Raises
@@ -48,20 +55,20 @@ def confusion(a, b):
     return Confusion(int((~a & ~b).sum()), int((a & b).sum()), int((a & ~b).sum()), int((~a & b).sum()))
 
 
-def wilson(count, size, level=0.95):
+def wilson(count: int, size: int, level: float = 0.95) -> tuple[float, float]:
     """Wilson score interval (low, high) of a probability seen `count` times in `size` (Wilson 1927)."""
     interval = binomtest(count, size).proportion_ci(level, method="wilson")
     return float(interval.low), float(interval.high)
 
 
-def mcnemar(table):
+def mcnemar(table: Confusion) -> float:
     """Two-sided p-value of the exact McNemar test: are the discordant pairs of a `Confusion` split evenly?"""
     if table.discordant == 0:
         return 1.0
     return float(binomtest(table.only_a, table.discordant, 0.5).pvalue)
 
 
-def cohen_kappa(table, level=0.95):
+def cohen_kappa(table: npt.ArrayLike, level: float = 0.95) -> tuple[float, float, float] | tuple[None, None, None]:
     """Cohen's kappa (1960) of a square table of counts, and its interval: (kappa, low, high).
 
     The interval is the large-sample one of Fleiss, Cohen and Everitt (1969). Without any
@@ -89,7 +96,7 @@ def cohen_kappa(table, level=0.95):
     return kappa, max(kappa - width, -1.0), min(kappa + width, 1.0)
 
 
-def detectable_difference(size, discordance, level=0.05, power=0.8):
+def detectable_difference(size: int, discordance: float, level: float = 0.05, power: float = 0.8) -> float | None:
     """Smallest difference of two overturning probabilities that `size` pairs would show, or None if none.
 
     Exact power of the exact McNemar test. The number of discordant pairs is binomial with the rate
@@ -122,7 +129,7 @@ def detectable_difference(size, discordance, level=0.05, power=0.8):
     return float(brentq(excess, 1e-9, 1.0, xtol=1e-9))
 
 
-def holm(p_values):
+def holm(p_values: npt.ArrayLike) -> np.ndarray:
     """p-values of several tests, adjusted for their number by Holm's step-down method (1979); shape kept."""
     p_values = np.asarray(p_values, dtype=float)
     order = np.argsort(p_values, axis=None)
@@ -132,7 +139,9 @@ def holm(p_values):
     return adjusted.reshape(p_values.shape)
 
 
-def compare(a, b, names=("A", "B"), level=0.05):
+def compare(
+    a: npt.ArrayLike, b: npt.ArrayLike, names: Sequence[str] = ("A", "B"), level: float = 0.05
+) -> dict[str, Any]:
     """Do solvers A and B overturn the same blocks? A dict of counts, tests and one plain statement.
 
     Parameters
@@ -183,12 +192,12 @@ class Fragility:
     median_interval: tuple[float, float]
     dispersion_interval: tuple[float, float]
 
-    def probability(self, intensity):
+    def probability(self, intensity: npt.ArrayLike) -> Any:
         """Probability of overturning at `intensity` (array or float, the unit of the fit)."""
         return norm.cdf(np.log(np.asarray(intensity) / self.median) / self.dispersion)
 
 
-def fit_fragility(intensity, overturned, size):
+def fit_fragility(intensity: npt.ArrayLike, overturned: npt.ArrayLike, size: npt.ArrayLike) -> Fragility:
     """Lognormal fragility by maximum likelihood, Baker (2015), doi:10.1193/021113EQS025M, eq. (11).
 
     Parameters

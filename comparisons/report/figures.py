@@ -1,5 +1,10 @@
 """The figures of the report, each drawn from the arrays and rows of a result file."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
@@ -7,13 +12,17 @@ from matplotlib.ticker import NullFormatter
 from ..showing.parts import figure_of, number
 from ..showing.plots import marker, style
 
+if TYPE_CHECKING:
+    from ..running.provenance import Result
+    from ..showing.parts import Figure as Picture
+
 WIDTH = 5.4  # in: narrow, so that the words stay readable on a phone
 MARKERS = "osD^v"
 ZERO = 1e-16  # an error of 0 is drawn here: below double precision
 GROUND_LINES = {"rigid ground": "-", "sliding base": "--"}
 
 
-def ground_motion(result):
+def ground_motion(result: Result) -> Picture:
     """Ground acceleration over time."""
     motion = result.settings["motion"]
     figure = Figure(figsize=(WIDTH, 2.3), layout="constrained")
@@ -29,7 +38,14 @@ def ground_motion(result):
     )
 
 
-def histories(result, name, column, label, scale=1.0, limits=(None, None)):
+def histories(
+    result: Result,
+    name: str,
+    column: str,
+    label: str,
+    scale: float = 1.0,
+    limits: tuple[float | None, float | None] = (None, None),
+) -> Picture:
     """One column of all solvers over each other, and below what the engines differ by from the analytic model."""
     solvers = [
         row["solver"] for row in result.rows if row["scene"] == name and f"{name}/{row['solver']}/time" in result.arrays
@@ -73,7 +89,7 @@ def histories(result, name, column, label, scale=1.0, limits=(None, None)):
     )
 
 
-def loops(result, name):
+def loops(result: Result, name: str) -> Picture:
     """Force over displacement of all bearings together."""
     figure = Figure(figsize=(WIDTH, 3.4), layout="constrained")
     axis = figure.subplots()
@@ -98,7 +114,7 @@ def loops(result, name):
     )
 
 
-def restitution(result):
+def restitution(result: Result) -> Picture:
     """Measured restitution on the curve of eq. (7), and its error."""
     figure = Figure(figsize=(WIDTH, 6.2), layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True)
@@ -152,7 +168,7 @@ def restitution(result):
     )
 
 
-def error_and_cost(groups):
+def error_and_cost(groups: Sequence[Mapping[str, Any]]) -> Picture:
     """Error of restitution and of impact times beside the CPU time of the same runs; `groups` as in sections.py."""
     panels = (
         ("rms", "error of restitution\nrms [-]"),

@@ -3,15 +3,23 @@
 Measured is what was computed; thinned only what a figure or the result file shows of a long record.
 """
 
+from __future__ import annotations
+
 import hashlib
+from collections.abc import Mapping
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from analytic.response import History, Response
 
 from ..running.provenance import ResultError
+
+if TYPE_CHECKING:
+    from ..running.cases import Case
 
 # A history of up to so many samples is shown whole; of a longer one the extremes in each of so many parts.
 MOST_SHOWN, PARTS = 20_000, 1_500
@@ -23,14 +31,14 @@ class ToFile:
 
     folder: str
 
-    def __call__(self, case, response):
+    def __call__(self, case: Case, response: Response) -> dict[str, Any]:
         content = (response.scene, response.engine, response.variant)
         name = hashlib.sha256(repr(content).encode()).hexdigest()[:16] + ".npy"
         np.save(Path(self.folder) / name, [getattr(response.history, column) for column in History.COLUMNS])
         return {**response.to_json(), "history": name}
 
 
-def response_of(values, folder):
+def response_of(values: Mapping[str, Any], folder: str | PathLike[str]) -> Response:
     """The `Response` of a row's values, its history from `folder`."""
     file = values["history"]
     return Response.from_json(
@@ -46,7 +54,7 @@ def _history(path):
     return History(*np.load(path))
 
 
-def differences(history, reference):
+def differences(history: History, reference: History) -> dict[str, np.ndarray]:
     """{"apart/time", "apart/tilt", "apart/base_displacement": array}: history minus reference, thinned.
 
     At the reference's samples up to the end of the shorter one.
@@ -60,7 +68,7 @@ def differences(history, reference):
     return {f"apart/{column}": values[shown] for column, values in {"time": time, **apart}.items()}
 
 
-def thinned(*columns, most=MOST_SHOWN, parts=PARTS):
+def thinned(*columns: np.ndarray, most: int = MOST_SHOWN, parts: int = PARTS) -> np.ndarray:
     """Indices, in order, of the samples to draw of columns of equal length.
 
     All of up to `most` samples. Else both ends, and where each column is least and greatest in each of so many

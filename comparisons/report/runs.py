@@ -1,7 +1,12 @@
 """The runs behind the report: the Caryatid in every solver, and free rocking in every variant; as result files."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import asdict
+from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.integrate import trapezoid
@@ -19,6 +24,12 @@ from ..running.cases import Case
 from ..running.study import Batch, Found, say
 from .histories import ToFile, differences, response_of, thinned
 
+if TYPE_CHECKING:
+    from analytic import Scene
+    from analytic.types import Motion
+
+    from ..running.study import Ask, Plan
+
 CARYATID, FREE_ROCKING = "caryatid.json", "free-rocking.json"
 SCENES = ("caryatid-rigid", "caryatid-isolated")
 
@@ -32,7 +43,13 @@ FREE_SECONDS = 3.0
 TIME_LIMIT, LIMIT_PER_SECOND, LIMIT_PER_SAMPLE = 60.0, 1.0, 1e-3
 
 
-def plan(ask, motion, histories, duration=None, slendernesses=SLENDERNESSES):
+def plan(
+    ask: Ask,
+    motion: Motion,
+    histories: str | PathLike[str],
+    duration: float | None = None,
+    slendernesses: Sequence[float] = SLENDERNESSES,
+) -> Plan:
     """The plan of the report's own runs; histories: folder in which those of the Caryatid's are kept meanwhile."""
     scenes = caryatid_scenes(motion, duration)
     caryatid = [
@@ -48,15 +65,15 @@ def plan(ask, motion, histories, duration=None, slendernesses=SLENDERNESSES):
     return _free_rocking(rows, ask.engines)
 
 
-def caryatid_scenes(motion, duration=None):
+def caryatid_scenes(motion: Motion, duration: float | None = None) -> dict[str, Scene]:
     """The free-standing and the isolated Caryatid (Table 1 of the paper) under `motion`, by name."""
     return {name: load_scene(name).with_(motion=motion, duration=duration) for name in SCENES}
 
 
-def free_rocking_cases(engines, slendernesses):
+def free_rocking_cases(engines: Sequence[str], slendernesses: Sequence[float]) -> list[Case]:
     """Blocks of the Caryatid's mass and radius released from rest, in every solver and variant."""
     block = load_scene(SCENES[0]).block
-    solvers = [("analytic", None, STARTS)]
+    solvers: list[tuple[str, str | None, tuple[float, ...]]] = [("analytic", None, STARTS)]
     for name in engines:
         engine = get_engine(name)
         solvers += [
@@ -80,7 +97,7 @@ def free_rocking_cases(engines, slendernesses):
     return cases
 
 
-def impacts_only(case, response):
+def impacts_only(case: Case, response: Response) -> dict[str, Any]:
     """Measure: everything but the history."""
     return response.to_json()
 
@@ -159,7 +176,7 @@ def _free_rocking(rows, engines):
     for row in rows:
         key = (row.case.solver, row.case.variant, row.case.tag["ground"], row.case.tag["slenderness"])
         groups.setdefault(key, []).append(row)
-    entries = [_restitution_entry(*key, members) for key, members in groups.items()]
+    entries = [_restitution_entry(*key, members) for key, members in groups.items()]  # type: ignore[call-arg]  # a key has the four before
     arrays = {"curve/slenderness": np.linspace(0.05, 0.5, 91)}
     for ground in BASES:
         scene = next(row.case.scene for row in rows if row.case.tag["ground"] == ground)
@@ -203,7 +220,7 @@ def _restitution_entry(solver, variant, ground, slenderness, members):
             {"start": row.case.tag["start"], "time": float(time), "restitution": float(error) + formula}
             for time, error in zip(times, errors["state"], strict=True)
         ]
-    errors = np.array([impact["restitution"] for impact in impacts]) - formula
+    errors = np.array([impact["restitution"] for impact in impacts]) - formula  # type: ignore[assignment]  # the name's second use
     simulated = sum(row.values["end"]["time"] for row in sound)
     return {
         "solver": solver,
@@ -219,7 +236,7 @@ def _restitution_entry(solver, variant, ground, slenderness, members):
         "warnings": list(dict.fromkeys(warning for row in sound for warning in row.values["warnings"])),
         "bias": _of(errors, np.mean),
         "rms": _of(errors, rms),
-        "worst": _of(np.abs(errors), np.max),
+        "worst": _of(np.abs(errors), np.max),  # type: ignore[call-overload]  # as above
         "jump_rms": _of(jumps, rms) if scene.base else None,
         "time_rms": _of(time_errors, rms),
         "settings": sound[0].values["settings"] if sound else None,

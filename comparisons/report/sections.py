@@ -1,14 +1,20 @@
 """The sections of the report, from the result files; every number in them stands there."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING, Any
 
 from ..showing.drawing import draw_scenes
 from ..showing.parts import Section, Table, number
 from ..showing.wording import TRUSTED, USABLE, trust
 from . import figures
 
+if TYPE_CHECKING:
+    from ..running.provenance import Result
 
-def variant_groups(result):
+
+def variant_groups(result: Result) -> list[dict[str, Any]]:
     """One dict a solver and variant, over all grounds and slendernesses of ``free-rocking.json``.
 
     solver, name, default, impacts (their number), rms, worst, jump_rms, time_rms, cpu_per_second, failures, warnings;
@@ -43,7 +49,7 @@ def _pooled(rows, measure):
     return math.sqrt(sum(weight * value**2 for value, weight in known) / count) if count else None
 
 
-def caryatid_sections(result):
+def caryatid_sections(result: Result) -> list[Section]:
     """Scene, ground motion, free-standing and isolated Caryatid."""
     scenes = result.settings["scenes"]
     rigid, isolated = scenes
@@ -182,7 +188,7 @@ def _span(scene):
     return "until decided" if scene["duration"] is None else f"{scene['duration']:g} s at most"
 
 
-def warned(result, name):
+def warned(result: Result, name: str) -> dict[str, list[str]]:
     """{warning: the solvers whose runs of a scene carry it}."""
     found = {}
     for row in result.rows:
@@ -244,7 +250,7 @@ def _agreement(result, name):
     )
 
 
-def restitution_sections(result):
+def restitution_sections(result: Result) -> list[Section]:
     """Restitution against eq. (7), and error beside cost."""
     starts = ", ".join(f"{start:g}" for start in result.settings["starts"])
     few = ", ".join(f"{start:g}" for start in result.settings["variant_starts"])

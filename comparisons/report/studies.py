@@ -1,6 +1,7 @@
 """The studies' stored results as sections of the report."""
 
 from dataclasses import replace
+from pathlib import Path
 
 from ..running.provenance import PROJECT_FOLDER, ResultError, age, read_result
 from ..showing.parts import Section
@@ -9,7 +10,7 @@ from ..studies import StudyBroken, get_study, study_names
 RESULTS = PROJECT_FOLDER / "comparisons" / "results"
 
 
-def study_sections(folder=RESULTS):
+def study_sections(folder: Path = RESULTS) -> list[Section]:
     """Sections of all result files ``<study>.json`` in `folder`, in the studies' order; see the package."""
     order = study_names()
 

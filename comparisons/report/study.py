@@ -1,11 +1,19 @@
 """The report's own runs as a study, and their results in the report's folder."""
 
+from __future__ import annotations
+
 import shutil
+from collections.abc import Sequence
+from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..running.study import Study, compute
 from .runs import SLENDERNESSES, plan
 from .sections import caryatid_sections
+
+if TYPE_CHECKING:
+    from analytic.types import Motion
 
 # Under a record of more samples one engine runs at a time: each needs some 100 bytes a step several times over.
 SHORT_RECORD = 200_000
@@ -14,7 +22,13 @@ UNFINISHED = "unfinished"  # folder of what a report that is broken off goes on 
 STUDY = Study("report", "The Caryatid and free rocking in every solver.", plan, lambda result: {}, caryatid_sections)
 
 
-def make_results(folder, motion, *, duration=None, slendernesses=SLENDERNESSES):
+def make_results(
+    folder: str | PathLike[str],
+    motion: Motion,
+    *,
+    duration: float | None = None,
+    slendernesses: Sequence[float] = SLENDERNESSES,
+) -> None:
     """Simulate everything the report shows and write its result files into `folder`.
 
     Parameters

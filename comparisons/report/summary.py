@@ -1,12 +1,20 @@
 """The answer in plain words, put together from the numbers of the result files."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
 from ..showing.parts import number, percent
+
+if TYPE_CHECKING:
+    from ..running.provenance import Result
 
 WORDS = {"stands": "never lifts", "rocks": "rocks and stays upright", "overturns": "overturns"}
 MOST_WARNINGS = 3  # of a scene, at the top of the page
 
 
-def summary(caryatid, groups):
+def summary(caryatid: Result, groups: Sequence[Mapping[str, Any]]) -> list[str]:
     """Sentences, list of str: outcomes, agreement, restitution, cost."""
     sentences = []
     for name, scene in caryatid.settings["scenes"].items():
@@ -47,7 +55,7 @@ def summary(caryatid, groups):
     return sentences
 
 
-def outcomes(rows):
+def outcomes(rows: Sequence[Mapping[str, Any]]) -> str:
     """Who found what: "in all 3 solvers it overturns", or the solvers by outcome."""
     by_outcome = {}
     for row in rows:

@@ -1,5 +1,6 @@
 """The page: result files in, one HTML file out."""
 
+from os import PathLike
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -14,7 +15,7 @@ from .summary import summary
 PAGE = "report.html"
 
 
-def write_page(folder, studies=RESULTS):
+def write_page(folder: str | PathLike[str], studies: Path = RESULTS) -> Path:
     """Write ``report.html`` into `folder` from the result files there and those of the studies; returns its path.
 
     Raises

@@ -1,18 +1,24 @@
 """One run of a study: which scene, which solver, how set; and what its result depends on."""
 
+from __future__ import annotations
+
 import functools
 import hashlib
 import importlib
 import json
 import platform
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING, Any
 
 from analytic import Block, Scene, Start
 from engines import ENGINES, get_engine
 
 from .sources import digest_of, source_digests
+
+if TYPE_CHECKING:
+    from analytic import Response
 
 # solver: (module, function); every other name is an engine's, or "module:function"
 SOLVERS = {
@@ -40,11 +46,11 @@ class Case:
     settings: dict = field(default_factory=dict)
     tag: dict = field(default_factory=dict)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "settings", dict(self.settings))
         object.__setattr__(self, "tag", dict(self.tag))
 
-    def key(self, measure=None):
+    def key(self, measure: Callable[..., Any] | None = None) -> str:
         """Hash of all that the row depends on: scene, solver, variant, settings, tag, measure, versions, sources."""
         content = (
             self.scene.digest(),
@@ -57,13 +63,13 @@ class Case:
         )
         return hashlib.sha256(json.dumps(content, sort_keys=True, allow_nan=False).encode()).hexdigest()[:32]
 
-    def run(self):
+    def run(self) -> Response:
         """Simulate it here and now; returns the `Response`."""
         variant = {} if self.variant is None else {"variant": self.variant}
         return solver(self.solver)(self.scene, **variant, **self.settings)
 
 
-def solver(name) -> Callable:
+def solver(name: str) -> Callable:
     """The function called `name`: takes a scene, returns a `Response`.
 
     Raises
@@ -79,7 +85,7 @@ def solver(name) -> Callable:
     return getattr(importlib.import_module(module), function)
 
 
-def compile_kernels(names):
+def compile_kernels(names: Iterable[str]) -> None:
     """Let those of the solvers `names` that have a compiled kernel fill its cache on disk.
 
     Else every worker process would compile it by itself, within its time limit.
@@ -90,15 +96,15 @@ def compile_kernels(names):
         solver(name)(scene, **COMPILED[name])
 
 
-def module_of(name):
+def module_of(name: str) -> str:
     """The module that holds the solver `name`."""
     return ENGINES[name].adapter if name in ENGINES else _place(name)[0]
 
 
-def versions(name):
+def versions(name: str) -> dict[str, str | None]:
     """Versions of Python and of the packages that the solver `name` rests on."""
     packages = ["numpy", "scipy", "numba"] + ([ENGINES[name].package] if name in ENGINES else [])
-    found = {"python": platform.python_version()}
+    found: dict[str, str | None] = {"python": platform.python_version()}
     for package in packages:
         try:
             found[package] = version(package)
@@ -107,7 +113,7 @@ def versions(name):
     return found
 
 
-def name_of(function):
+def name_of(function: Callable[..., Any] | None) -> str | None:
     """``module:function`` of a module-level function, ``module:class`` of an object that is called; None for None."""
     if function is None:
         return None
@@ -117,7 +123,7 @@ def name_of(function):
     return name
 
 
-def fingerprint(name, measure=None):
+def fingerprint(name: str, measure: Callable[..., Any] | None = None) -> str:
     """Digest of the versions and of the project's source files behind a solver and a measure."""
     return _fingerprint(name, measure.__module__ if measure else None)
 

@@ -13,12 +13,12 @@ import threading
 import time
 import traceback
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import TimeoutError
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from multiprocessing import forkserver, resource_tracker
-from typing import Protocol
+from typing import Any, Protocol, Self
 
 from pebble import ProcessExpired, ProcessPool
 
@@ -77,11 +77,11 @@ class Executor(Protocol):
 
 
 class _Closing:
-    def __enter__(self):
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *_):
-        self.close()
+    def __exit__(self, *_: object) -> None:
+        self.close()  # type: ignore[attr-defined]  # an executor's
 
 
 class Serial(_Closing):
@@ -89,26 +89,26 @@ class Serial(_Closing):
 
     slots = 1
 
-    def __init__(self):
-        self._tasks = deque()
+    def __init__(self) -> None:
+        self._tasks: deque[Task] = deque()
 
-    def submit(self, task):
+    def submit(self, task: Task) -> None:
         self._tasks.append(task)
 
-    def next(self):
+    def next(self) -> Done:
         task = self._tasks.popleft()
         return Done(task.ticket, *_lines(task))
 
-    def close(self):
+    def close(self) -> None:
         self._tasks.clear()
 
 
-def number_of(workers):
+def number_of(workers: int | None) -> int:
     """How many worker processes that is, one per core for None; raises `SettingError` if they are too many or few."""
-    most, number = max(MOST_WORKERS, os.cpu_count()), os.cpu_count() if workers is None else workers
-    if not 1 <= number <= most:
+    most, number = max(MOST_WORKERS, os.cpu_count()), os.cpu_count() if workers is None else workers  # type: ignore[type-var]  # no system hides its cores
+    if not 1 <= number <= most:  # type: ignore[operator]  # as above
         raise SettingError(f"{workers} worker processes: give 1 to {most}")
-    return number
+    return number  # type: ignore[return-value]
 
 
 class Processes(_Closing):
@@ -118,10 +118,10 @@ class Processes(_Closing):
     hundredths of a second, and nothing of this process's state reaches them.
     """
 
-    def __init__(self, workers=None, solvers=()):
+    def __init__(self, workers: int | None = None, solvers: Iterable[str] = ()) -> None:
         self._workers = number_of(workers)
         self.slots = 2 * self._workers
-        self._ended = queue.SimpleQueue()
+        self._ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._evidence = tempfile.TemporaryDirectory(prefix="sweep-")
         server = "forkserver" in multiprocessing.get_all_start_methods()
         self._context = multiprocessing.get_context("forkserver" if server else "spawn")
@@ -130,11 +130,11 @@ class Processes(_Closing):
             resource_tracker.ensure_running()  # of the forkserver, whose start would undo the blocking
             with _one_thread(), _ctrl_c_blocked():  # the server and its workers leave Ctrl-C to this process
                 forkserver.ensure_running()
-        self._under_way = {}  # future: task and its log
+        self._under_way: dict[Any, tuple[Task, str]] = {}  # future: task and its log
         self._broken = 0  # pools in a row that ended without finishing a task
         self._pool = self._new_pool()
 
-    def submit(self, task):
+    def submit(self, task: Task) -> None:
         log = os.path.join(self._evidence.name, f"{task.ticket}.log")
         with _one_thread():  # workers started by this inherit it
             if not self._pool.active:
@@ -143,7 +143,7 @@ class Processes(_Closing):
         self._under_way[future] = task, log
         future.add_done_callback(self._ended.put)
 
-    def next(self):
+    def next(self) -> Done:
         while True:
             try:
                 future = self._ended.get(timeout=GRACE_SECONDS)
@@ -172,7 +172,7 @@ class Processes(_Closing):
             lost["message"] = _tail(log)
             return Done(task.ticket, lost=lost)
 
-    def close(self):
+    def close(self) -> None:
         self._close_pool()
         self._evidence.cleanup()
 

@@ -6,6 +6,8 @@ import shutil
 import stat
 import sys
 import tempfile
+from collections.abc import Callable, Iterable, Mapping
+from os import PathLike
 from pathlib import Path
 
 from analytic.errors import SettingError
@@ -19,7 +21,7 @@ class PlaceError(RuntimeError):
     """A result could not be written where it was asked for; the message says where it is instead."""
 
 
-def check_writable(paths, picture=None, inputs=()):
+def check_writable(paths: Iterable[str | None], picture: str | None = None, inputs: Iterable[str] = ()) -> None:
     """Raise `SettingError` if a file cannot be written.
 
     Parameters
@@ -42,7 +44,7 @@ def check_writable(paths, picture=None, inputs=()):
         taken[place] = "is given for two results"
 
 
-def check_folder(output, option="--output"):
+def check_folder(output: str | PathLike[str], option: str = "--output") -> None:
     """Raise `SettingError` if `output`, the folder to write to, is a file or cannot be written; it need not exist."""
     mode = _mode(output, f"{option} {output}")
     if mode is not None and not stat.S_ISDIR(mode):
@@ -56,7 +58,7 @@ def check_folder(output, option="--output"):
     _probe(above, f"{option} {output}")
 
 
-def write(path, writer):
+def write(path: str | PathLike[str], writer: Callable[[Path], object]) -> None:
     """Write a result file by ``writer(path)``, whole or not at all.
 
     Raises
@@ -78,7 +80,7 @@ def write(path, writer):
             part.unlink(missing_ok=True)
 
 
-def write_text(path, text):
+def write_text(path: str | PathLike[str], text: str) -> None:
     """Write `text` to the file `path` in UTF-8, or to standard output where that is "-"; see `write`."""
 
     def writer(place):
@@ -95,7 +97,7 @@ def write_text(path, text):
         raise _kept("standard output", error, writer, ".json") from error
 
 
-def write_all(writers):
+def write_all(writers: Mapping[str, str | Callable[[Path], object]]) -> PlaceError | None:
     """Write several results, {path: function of a path, or text}; return the `PlaceError` of those that failed.
 
     One that fails does not keep the others from being written. None: all are written.

@@ -8,10 +8,13 @@ import site
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, is_dataclass
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import psutil
@@ -40,7 +43,7 @@ class Result:
     arrays: dict = field(default_factory=dict)
 
 
-def provenance(modules=("analytic",), seed=None):
+def provenance(modules: Iterable[str] = ("analytic",), seed: object = None) -> dict[str, Any]:
     """Where numbers computed here and now come from, as a JSON-ready dict without paths or names.
 
     Parameters
@@ -62,7 +65,7 @@ def provenance(modules=("analytic",), seed=None):
     }
 
 
-def machine():
+def machine() -> dict[str, Any]:
     """Processor model, cores (physical and logical), memory [GiB], operating system."""
     model = platform.processor()
     if Path("/proc/cpuinfo").exists():
@@ -77,7 +80,16 @@ def machine():
     }
 
 
-def write_result(path, kind, settings, rows, arrays=None, *, modules, seed=None):
+def write_result(
+    path: str | PathLike[str],
+    kind: str,
+    settings: Mapping[str, Any],
+    rows: Sequence[Any],
+    arrays: Mapping[str, np.ndarray] | None = None,
+    *,
+    modules: Iterable[str],
+    seed: object = None,
+) -> Path:
     """Write a result file: JSON at `path`, and the arrays, if any, beside it as ``.npz``.
 
     Parameters
@@ -120,13 +132,13 @@ def write_result(path, kind, settings, rows, arrays=None, *, modules, seed=None)
     path.parent.mkdir(parents=True, exist_ok=True)
     if arrays:
         beside = path.with_suffix(".npz")
-        np.savez_compressed(beside, **arrays)
+        np.savez_compressed(beside, **arrays)  # type: ignore[arg-type]  # no array is called allow_pickle
         content["arrays"] = {"file": beside.name, "digest": _digest(beside)}
     path.write_text(_layout(content))
     return path
 
 
-def read_result(path):
+def read_result(path: str | PathLike[str]) -> Result:
     """The `Result` in the file at `path`.
 
     Raises
@@ -156,7 +168,7 @@ def read_result(path):
     return Result(content["kind"], content["settings"], content["rows"], content["provenance"], arrays)
 
 
-def age(result):
+def age(result: Result) -> str | None:
     """In words: None if the code behind `result` is the code here, else what has changed since.
 
     Code counts, wherever it has moved; comments, docstrings and package versions do not.
@@ -175,7 +187,7 @@ def age(result):
     )
 
 
-def scrub(text):
+def scrub(text: str) -> str:
     """`text` without this machine's paths and addresses: project files stay readable, others lose their folders."""
     for root, name in _roots():
         text = text.replace(root, name)
@@ -183,7 +195,7 @@ def scrub(text):
     return re.sub(r"0x[0-9a-fA-F]{6,}", "0x...", text)
 
 
-def json_ready(value):
+def json_ready(value: Any) -> Any:
     """`value` as plain JSON types; arrays become lists, numbers that are not finite become None."""
     if is_dataclass(value) and not isinstance(value, type):
         value = asdict(value)

@@ -3,7 +3,7 @@
 MOST_CHARACTERS = 600
 
 
-def readable(text, most=MOST_CHARACTERS):
+def readable(text: object, most: int = MOST_CHARACTERS) -> str:
     """`text` with its middle left out beyond `most` characters; what is not printable is shown as its code."""
     text = str(text)
     if len(text) > most:  # both ends matter: what it is about, and what to do

@@ -7,7 +7,9 @@ one impact" and "overturns without" bisection must meet the safe gap, however th
 cannot.
 """
 
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +24,7 @@ class Transition:
     after: object
 
     @property
-    def position(self):
+    def position(self) -> float:
         return 0.5 * (self.low + self.high)
 
 
@@ -34,7 +36,9 @@ class Column:
     evaluations: int
 
 
-def together(searches):
+def together(
+    searches: Sequence[Generator[list[Any], list[Any], Any]],
+) -> Generator[list[tuple[int, Any]], list[Any], list[Any]]:
     """Many searches as one, in rounds.
 
     Parameters
@@ -59,7 +63,7 @@ def together(searches):
         asked = {}
         for index, answer in answers.items():
             try:
-                asked[index] = list(searches[index].send(answer))
+                asked[index] = list(searches[index].send(answer))  # type: ignore[arg-type]  # None starts a search
             except StopIteration as stop:
                 results[index] = stop.value
         batch = [(index, point) for index, points in asked.items() for point in points]
@@ -71,18 +75,22 @@ def together(searches):
     return results
 
 
-def drive(searches, evaluate):
+def drive(
+    searches: Sequence[Generator[list[Any], list[Any], Any]], evaluate: Callable[[list[tuple[int, Any]]], list[Any]]
+) -> list[Any]:
     """What each of `searches` returned; evaluate(batch) gives the outcomes of a round, see `together`."""
     rounds, outcomes = together(searches), None
     while True:
         try:
-            batch = rounds.send(outcomes)
+            batch = rounds.send(outcomes)  # type: ignore[arg-type]  # None starts it
         except StopIteration as stop:
             return stop.value
         outcomes = evaluate(batch)
 
 
-def boundaries(low, high, scan, tolerance, near=4):
+def boundaries(
+    low: float, high: float, scan: int, tolerance: float, near: int = 4
+) -> Generator[list[float], list[Any], Column]:
     """Search for all transitions on [low, high]: scan, look closer beside each change, then bisect each.
 
     The outcome need not be monotone. Found for certain: every stretch of one outcome wider than the scan
@@ -113,7 +121,7 @@ def boundaries(low, high, scan, tolerance, near=4):
 
 
 def _boundaries(low, high, scan, tolerance, near):
-    known = {}
+    known: dict[float, Any] = {}
 
     def learn(points):
         points = [point for point in points if point not in known]

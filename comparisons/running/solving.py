@@ -1,5 +1,7 @@
 """One run as a user asks for it: ground motion, solver and settings by name, checked; progress on standard error."""
 
+from __future__ import annotations
+
 import contextlib
 import dataclasses
 import inspect
@@ -7,10 +9,16 @@ import json
 import math
 import os
 import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from os import PathLike
+from typing import TYPE_CHECKING, Any
 
 from analytic.errors import SettingError
 
 from .readable import readable
+
+if TYPE_CHECKING:
+    from analytic import Response, SampledMotion, Scene
 
 ANALYTIC = "analytic"
 TIME_LIMIT = 300.0  # s, of one run
@@ -18,7 +26,7 @@ TIME_LIMIT_HELP = "A run that takes longer is ended, and counts as failed."
 SHOWN = 60  # characters of what is under way
 
 
-def parse_settings(pairs):
+def parse_settings(pairs: Iterable[str]) -> dict[str, Any]:
     """``["step=1e-4"]`` -> ``{"step": 0.0001}``; values are JSON, anything else is text.
 
     Raises
@@ -41,7 +49,7 @@ def parse_settings(pairs):
     return settings
 
 
-def ground_motion(record=None, units=None):
+def ground_motion(record: str | PathLike[str] | None = None, units: str | None = None) -> SampledMotion:
     """The motion in the file `record`, or the shipped synthetic one without it; `units` of a record in two columns.
 
     Raises
@@ -59,7 +67,15 @@ def ground_motion(record=None, units=None):
     return read_record(record, units) if record else synthetic_motion()
 
 
-def simulate(scene, solver=ANALYTIC, variant=None, settings=None, history=True, time_limit=TIME_LIMIT, words=None):
+def simulate(
+    scene: Scene,
+    solver: str = ANALYTIC,
+    variant: str | None = None,
+    settings: Mapping[str, Any] | None = None,
+    history: bool = True,
+    time_limit: float = TIME_LIMIT,
+    words: str | None = None,
+) -> Response:
     """The `Response` of the solver called `solver`, run in a process of its own while `words` are shown.
 
     What is odd about the record stands among its warnings. A run that crashes, or takes more than `time_limit` [s], is
@@ -77,7 +93,14 @@ def simulate(scene, solver=ANALYTIC, variant=None, settings=None, history=True, 
     settings = settings or {}
     check_solver(solver)
     response, failure = alone(
-        _simulate, scene, solver, variant, settings, history, time_limit=time_limit, meanwhile=words and spinner(words)
+        _simulate,
+        scene,
+        solver,
+        variant,
+        settings,
+        history,
+        time_limit=time_limit,
+        meanwhile=words and spinner(words),  # type: ignore[arg-type]  # no words: None or ""
     )
     if failure:
         from engines.observe import failed_response
@@ -94,7 +117,7 @@ def simulate(scene, solver=ANALYTIC, variant=None, settings=None, history=True, 
     return dataclasses.replace(response, warnings=(*odd, *response.warnings))
 
 
-def check_solver(name):
+def check_solver(name: str) -> None:
     """Raise `SettingError` if no solver is called `name`."""
     from engines import BROKEN, ENGINES
 
@@ -104,7 +127,7 @@ def check_solver(name):
         raise SettingError(f"unknown engine {name!r}: choose one of {', '.join(ENGINES)}, or {ANALYTIC}")
 
 
-def check_time_limit(seconds):
+def check_time_limit(seconds: float) -> None:
     """Raise `SettingError` if a run cannot be given so many seconds."""
     from engines.guard import check_time_limit
 
@@ -171,7 +194,7 @@ def _check_size(name, value):
         raise SettingError(f"{name} = {value!r}: not a finite number; give one")
 
 
-def tell_failures(responses):
+def tell_failures(responses: Iterable[Response]) -> None:
     """Name the failed ones of the responses on standard error, with what a terminal can hold of the evidence."""
     for response in responses:
         if response.failure:
@@ -179,13 +202,13 @@ def tell_failures(responses):
             say(f"{response.engine} failed: {response.failure.reason}. {evidence}".rstrip(". ") + ".")
 
 
-def say(text):
+def say(text: str) -> None:
     """A line of progress on standard error."""
     print(text, file=sys.stderr, flush=True)
 
 
 @contextlib.contextmanager
-def spinner(text):
+def spinner(text: str) -> Iterator[Callable[[str], None]]:
     """A line on standard error with the time elapsed, while something runs; nothing where that is no terminal."""
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
@@ -198,7 +221,7 @@ def spinner(text):
 
 
 @contextlib.contextmanager
-def stdout_to_stderr():
+def stdout_to_stderr() -> Iterator[None]:
     """What this process prints to standard output, compiled code included, goes to standard error."""
     sys.stdout.flush()
     kept = os.dup(1)

@@ -4,12 +4,13 @@ import ast
 import functools
 import hashlib
 import importlib.util
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 PROJECT = ("analytic", "engines", "comparisons")
 
 
-def source_digests(modules):
+def source_digests(modules: Iterable[str]) -> dict[str, str]:
     """Digest of every project source file that `modules` reach through their imports.
 
     Parameters
@@ -48,14 +49,14 @@ def source_digests(modules):
     return dict(sorted(digests.items()))
 
 
-def digest_of(digests):
+def digest_of(digests: Mapping[str, str]) -> str:
     """One digest for a dict of digests, whatever their names."""
     return hashlib.sha256(repr(sorted(digests.values())).encode()).hexdigest()
 
 
-def digests_of_all(packages):
+def digests_of_all(packages: Iterable[str]) -> set[str]:
     """Digests of every source file of some packages or modules, as a set: what the code holds, wherever it lies."""
-    found = set()
+    found: set[str] = set()
     for package in packages:
         file = _file(package)
         if file is None:
@@ -78,7 +79,7 @@ def _file(name):
 def _read(name, file, _modified):
     tree = _without_types(ast.parse(Path(file).read_bytes()))
     package = name if file.endswith("__init__.py") else name.rpartition(".")[0]
-    imported = set()
+    imported: set[str] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             imported.update(alias.name for alias in node.names)
@@ -120,8 +121,9 @@ def _names(node):
 class _Types(ast.NodeTransformer):
     """Takes the annotations of functions and of variables outside classes out of a tree, and keeps their names."""
 
-    def __init__(self):
-        self.names, self.in_class = set(), False
+    def __init__(self) -> None:
+        self.names: set[str] = set()
+        self.in_class = False
 
     def take(self, node):
         self.names.update(part.id for part in ast.walk(node) if isinstance(part, ast.Name))

@@ -5,12 +5,15 @@ import io
 import json
 import os
 import time
+from collections.abc import Iterable
+from os import PathLike
 from pathlib import Path
+from typing import Any, Self
 
 try:
     import fcntl
 except ImportError:  # Windows has none: no lock there
-    fcntl = None
+    fcntl = None  # type: ignore[assignment]  # Windows has none
 
 SYNC_SECONDS = 1.0  # a killed process loses nothing written; only a power cut can cost this much
 
@@ -31,7 +34,7 @@ class Store:
         Another sweep has the file open, it cannot be read and written, or a whole line in it is no row.
     """
 
-    def __init__(self, path):
+    def __init__(self, path: str | PathLike[str]) -> None:
         self.path = Path(path)
         self.torn = False
         try:
@@ -49,20 +52,20 @@ class Store:
             raise
         self._synced = time.monotonic()
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         self.close()
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.rows)
 
-    def get(self, key):
+    def get(self, key: str) -> dict[str, Any] | None:
         """The row stored last under `key`, or None."""
         return self.rows.get(key)
 
-    def append(self, lines):
+    def append(self, lines: Iterable[str]) -> list[dict[str, Any]]:
         """Write rows given as lines of JSON (str, no line end) and return them as dicts.
 
         Raises
@@ -84,12 +87,12 @@ class Store:
         self.rows.update((row["key"], row) for row in rows)
         return rows
 
-    def sync(self):
+    def sync(self) -> None:
         """Force what was written onto the disk."""
         os.fsync(self._file.fileno())
         self._synced = time.monotonic()
 
-    def close(self):
+    def close(self) -> None:
         if not self._file.closed:
             with contextlib.suppress(OSError):  # said when the rows were written
                 self.sync()

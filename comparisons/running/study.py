@@ -14,10 +14,12 @@ the last one is returned. What runs, stores, resumes, draws and writes is `compu
 import contextlib
 import sys
 import time
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 from analytic.errors import SettingError
 from engines import ENGINES, get_engine, installed_engines
@@ -29,7 +31,7 @@ from .provenance import Result, write_result
 from .solving import stdout_to_stderr
 from .sources import PROJECT, digests_of_all, source_digests
 from .store import Store
-from .sweep import run_sweep
+from .sweep import Row, run_sweep
 
 RUNS = "runs.jsonl"  # rows of single runs, beside the result
 TIME_LIMIT = 300.0  # s, of one run
@@ -73,6 +75,9 @@ class Found:
     name: str = ""
 
 
+Plan = Generator[Batch | Found, list[Row], Found]
+
+
 @dataclass(frozen=True)
 class Study:
     """A study, as commands, report and `compute` know it.
@@ -86,13 +91,22 @@ class Study:
 
     name: str
     question: str
-    plan: Callable[..., Generator]
+    plan: Callable[..., Plan]
     figures: Callable[..., dict]
-    section: Callable[[Result], object]
+    section: Callable[[Result], Any]
     problems: Callable[[Result], list] = lambda result: []
 
 
-def compute(study, folder, *, engines=None, quick=False, workers=None, progress=True, **options):
+def compute(
+    study: Study,
+    folder: str | PathLike[str],
+    *,
+    engines: Iterable[str] | None = None,
+    quick: bool = False,
+    workers: int | None = None,
+    progress: bool = True,
+    **options: Any,
+) -> list[Path]:
     """Run a study's plan; returns the paths of its result files in `folder`, mostly one.
 
     Parameters
@@ -173,7 +187,7 @@ def _asked(engines, quick):
     return Ask(installed_engines() if engines is None else tuple(dict.fromkeys(engines)), quick)
 
 
-def say(text):
+def say(text: str) -> None:
     """A line of progress on standard error, with the time."""
     print(f"{time.strftime('%H:%M:%S')} {text}", file=sys.stderr, flush=True)
 

@@ -6,10 +6,15 @@ The store can be reused: rows whose scene, solver, variant, settings, tag, measu
 unchanged are not run again.
 """
 
+from __future__ import annotations
+
 import json
 from collections import deque
+from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
+from os import PathLike
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -18,6 +23,9 @@ from .cases import Case, compile_kernels, name_of, solver
 from .executors import Done, Executor, Processes, Serial, Task
 from .provenance import json_ready
 from .store import Store
+
+if TYPE_CHECKING:
+    from analytic import Response
 
 __all__ = ["Case", "Done", "Executor", "Processes", "Row", "Serial", "Store", "Task", "run_sweep"]
 
@@ -43,13 +51,21 @@ class Row:
     reused: bool
 
     @property
-    def failed(self):
+    def failed(self) -> bool:
         return self.failure is not None
 
 
 def run_sweep(
-    cases, *, store, workers=None, time_limit=300.0, measure=None, executor=None, progress=True, label="runs"
-):
+    cases: Iterable[Case],
+    *,
+    store: str | PathLike[str] | Store,
+    workers: int | None = None,
+    time_limit: float = 300.0,
+    measure: Callable[[Case, Response], dict[str, Any]] | None = None,
+    executor: Executor | None = None,
+    progress: bool = True,
+    label: str = "runs",
+) -> list[Row]:
     """Run every case and return its `Row`s in the order of the cases, whatever the order they ran in.
 
     Parameters
@@ -97,15 +113,15 @@ def run_sweep(
             _run(waiting, store, executor, measure, time_limit, lambda count: bar.advance(line, count))
         rows = [store.get(key) for key in keys]
     return [
-        Row(case, row["values"], row["failure"], row["cost"], key not in waiting)
+        Row(case, row["values"], row["failure"], row["cost"], key not in waiting)  # type: ignore[index]  # each was run, or found
         for case, key, row in zip(cases, keys, rows, strict=True)
     ]
 
 
 def _run(waiting, store, executor, measure, time_limit, advance):
     chunks = _Chunks(waiting, executor.slots)
-    alone = deque()  # members of lost tasks: each runs by itself, to find the guilty one
-    submitted = {}
+    alone: deque[Any] = deque()  # members of lost tasks: each runs by itself, to find the guilty one
+    submitted: dict[str, Any] = {}
     while chunks or alone or submitted:
         while len(submitted) < executor.slots and (alone or chunks):
             members = [alone.popleft()] if alone else chunks.take()
@@ -131,12 +147,12 @@ def _run(waiting, store, executor, measure, time_limit, advance):
 class _Chunks:
     """Cuts the waiting cases into tasks of about `CHUNK_SECONDS`, as the runs before took."""
 
-    def __init__(self, waiting, slots):
+    def __init__(self, waiting: dict[str, Case], slots: int) -> None:
         self._waiting = deque(waiting.items())
         self._slots = slots
-        self._seconds = {}  # kind of case: seconds per run of the last task
+        self._seconds: dict[Any, float] = {}  # kind of case: seconds per run of the last task
 
-    def __bool__(self):
+    def __bool__(self) -> bool:
         return bool(self._waiting)
 
     def take(self):

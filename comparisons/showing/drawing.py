@@ -1,18 +1,25 @@
 """The scenes drawn to scale: block, base, bearings and the symbols of the equations."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Polygon, Rectangle
 
 from .parts import figure_of
 
+if TYPE_CHECKING:
+    from .parts import Figure as Picture
+
 STONE, STEEL, RUBBER, LINE, FAINT = "#e9e2d0", "#c7cdd3", "#4a4a4a", "#1a1a1a", "#8a8a8a"
 SLAB, RUBBER_HEIGHT = 0.16, 0.20  # m, of base and bearings as drawn
 TILT = 0.6  # of the outline that shows phi, over slenderness
 
 
-def draw_scenes(scenes):
+def draw_scenes(scenes: Sequence[Mapping[str, Any]]) -> Picture:
     """Figure of scenes as in the settings of ``caryatid.json``: a list of dicts, side by side."""
     figure = Figure(figsize=(5.4, 3.9), layout="constrained")
     for axis, scene in zip(figure.subplots(1, len(scenes), sharey=True, squeeze=False)[0], scenes, strict=True):

@@ -1,6 +1,10 @@
 """The margins of a verdict, as a table for the terminal and as a picture."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
@@ -12,11 +16,15 @@ from rich.text import Text
 from ..running.readable import readable
 from .plots import TITLE_CHARACTERS
 
+if TYPE_CHECKING:
+    from analytic import Scene
+    from analytic.margins import Contact, Margin
+
 # Okabe and Ito; the hatches tell them apart in print.
 COLOURS = {"stands": ("#009E73", ""), "rocks": ("#F0E442", ".."), "overturns": ("#D55E00", "//"), "failed": ("0.4", "")}
 
 
-def print_margins(scene, margins, contact, span):
+def print_margins(scene: Scene, margins: Sequence[Margin], contact: Contact, span: float) -> None:
     """Print a row for each `Margin`, the nearest first, and what the contact has to spare."""
     outcome, nearest = margins[0].outcome, margins[0]
     table = Table(
@@ -52,7 +60,7 @@ def print_margins(scene, margins, contact, span):
         console.print("Assumed: the bearings are stiff vertically (real ones sway at 10 to 20 Hz).", soft_wrap=True)
 
 
-def draw_margins(scene, margins):
+def draw_margins(scene: Scene, margins: Sequence[Margin]) -> Figure:
     """Outcomes over the relative change of each quantity, a strip for each `Margin`: a matplotlib Figure."""
     figure = Figure(figsize=(8, 1.5 + 0.42 * len(margins)), layout="constrained")
     axis = figure.subplots()

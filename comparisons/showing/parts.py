@@ -1,11 +1,17 @@
 """What a section of the report is made of, and how numbers are written in it."""
 
+from __future__ import annotations
+
 import base64
 import io
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import matplotlib
+
+if TYPE_CHECKING:
+    import matplotlib.figure
 
 MINUS_DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 # Glyphs as paths: the page looks alike where fonts differ. The salt makes equal figures equal bytes.
@@ -34,7 +40,7 @@ class Figure:
     wide: bool = False
 
     @property
-    def source(self):
+    def source(self) -> str:
         """The picture as a data URI."""
         return "data:image/svg+xml;base64," + base64.b64encode(self.svg).decode()
 
@@ -60,15 +66,15 @@ class Section:
 WIDE = 7.0
 
 
-def figure_of(figure, alt, caption):
+def figure_of(figure: matplotlib.figure.Figure, alt: str, caption: str) -> Figure:
     """The `Figure` of a matplotlib figure."""
     file = io.BytesIO()
-    with matplotlib.rc_context(SVG):
+    with matplotlib.rc_context(SVG):  # type: ignore[arg-type]  # a few keys of them
         figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
     return Figure(file.getvalue(), alt, caption, wide=figure.get_size_inches()[0] > WIDE)
 
 
-def number(value, digits=3):
+def number(value: float | None, digits: int = 3) -> str:
     """A number with so many significant digits; a dash for None, powers of ten where digits would not do."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return "–"
@@ -81,6 +87,6 @@ def number(value, digits=3):
     return f"{mantissa}·10{str(int(power)).translate(MINUS_DIGITS)}".replace("-", "−")
 
 
-def percent(fraction, digits=2):
+def percent(fraction: float | None, digits: int = 2) -> str:
     """A fraction in per cent."""
     return "–" if fraction is None else f"{number(100 * fraction, digits)} %"

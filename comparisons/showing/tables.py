@@ -1,8 +1,12 @@
 """Tables for the terminal."""
 
+from __future__ import annotations
+
 import dataclasses
 import inspect
 import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from rich import box
 from rich.console import Console
@@ -10,6 +14,12 @@ from rich.table import Table
 from rich.text import Text
 
 from ..running.readable import readable
+
+if TYPE_CHECKING:
+    from analytic import Response, Scene
+    from engines.contract import Engine
+
+    from ..measuring.horizon import Horizon
 
 TITLE_CHARACTERS = 100
 
@@ -22,7 +32,7 @@ def _name(scene):
     return readable(scene.name, TITLE_CHARACTERS)
 
 
-def summary(scene, response):
+def summary(scene: Scene, response: Response) -> Table:
     """The main figures of one response, as a table."""
     title = Text(f"{_name(scene)}: {response.engine}" + (f", {response.variant}" if response.variant else ""))
     table = Table(title=title, box=box.SIMPLE, show_header=False)
@@ -44,7 +54,7 @@ def summary(scene, response):
     return table
 
 
-def comparison(scene, responses, horizons):
+def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[str, Horizon]) -> Table:
     """Responses of several solvers side by side, the first being the reference; horizons: {solver: its `Horizon`}."""
     limit = "Not sensitive: the histories can be compared to the end." if horizons else "No sensitivity horizon known."
     if any(found.parts for found in horizons.values()):
@@ -96,7 +106,7 @@ def comparison(scene, responses, horizons):
     return table
 
 
-def show(table, responses):
+def show(table: Table, responses: Sequence[Response]) -> None:
     """Print a table of responses, and below it the warnings they carry."""
     console = Console()
     console.print(table)
@@ -105,7 +115,7 @@ def show(table, responses):
             console.print(Text(f"Warning, {response.engine}: {readable(sentence)}"), soft_wrap=True)
 
 
-def engine_text(engine):
+def engine_text(engine: Engine) -> str:
     """What an `Engine` says of itself: versions, and of each variant rung, settings (the knob first), ladder, who
     decides what, and where it is verified."""
     from engines.verified import in_words
@@ -114,10 +124,10 @@ def engine_text(engine):
     lines = [f"{engine.name} ({versions})"]
     for name, variant in engine.variants.items():
         default = "default, " if name == engine.default_variant else ""
-        about = inspect.getdoc(type(variant.settings)).split("\n\n")[0].replace("\n", " ")
+        about = inspect.getdoc(type(variant.settings)).split("\n\n")[0].replace("\n", " ")  # type: ignore[union-attr]  # settings say what they are
         values = [
             f"{field}={value:.6g}" if isinstance(value, float) else f"{field}={value}"
-            for field, value in dataclasses.asdict(variant.settings).items()
+            for field, value in dataclasses.asdict(variant.settings).items()  # type: ignore[call-overload]  # a dataclass's instance
         ]
         values[:1] = [f"{value} (knob)" for value in values[:1]]
         lines += [

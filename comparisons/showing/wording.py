@@ -4,12 +4,12 @@
 TRUSTED, USABLE = 1e-3, 1e-2
 
 
-def solver_name(solver, variant=None):
+def solver_name(solver: str, variant: str | None = None) -> str:
     """A solver as tables and plots call it."""
     return solver if variant is None else f"{solver}, {variant}"
 
 
-def trust(rms, failed):
+def trust(rms: float | None, failed: int) -> str:
     """May restitution be trusted at this root mean square error, None for none, and number of failed runs? In words."""
     if rms is not None and not failed:
         if rms <= TRUSTED:

@@ -3,11 +3,18 @@
 Other packages declare theirs in the entry point group `rocking.studies`; an entry resolves to a `Study` of its name.
 """
 
+from __future__ import annotations
+
 from importlib import import_module
 from importlib.metadata import entry_points
+from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from analytic.errors import SettingError
+
+if TYPE_CHECKING:
+    from ..running.study import Study
 
 GROUP = "rocking.studies"
 PACKAGE = "comparisons.studies"
@@ -19,12 +26,12 @@ class StudyBroken(SettingError):
     """A study that another package declares cannot be used; the message names who declares it."""
 
 
-def study_names():
+def study_names() -> tuple[str, ...]:
     """Names of all studies, those of this project first, each once."""
     return tuple(dict.fromkeys([*BUILT_IN, *sorted(entry.name for entry in entry_points(group=GROUP))]))
 
 
-def get_study(name):
+def get_study(name: str) -> Study:
     """The `Study` called `name`.
 
     Raises
@@ -45,7 +52,9 @@ def get_study(name):
     return _resolve(entries[0], who)
 
 
-def draw(study, path, folder=None, **options):
+def draw(
+    study: Study, path: str | PathLike[str], folder: str | PathLike[str] | None = None, **options: Any
+) -> list[Path]:
     """Draw the figures of the result file at `path` into `folder`, by default beside it; returns their paths."""
     from ..running.provenance import read_result
     from ..showing.plots import save

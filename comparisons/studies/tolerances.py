@@ -1,13 +1,21 @@
 """The table of agreement tolerances, every row measured anew: how far is each engine, and what is it held to?"""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from engines import ENGINES, get_engine
 
 from ..measuring.tolerances import TABLE, measure_all
 from ..running.study import Found, Study, say
 from ..showing.parts import Section, Table, number
 
+if TYPE_CHECKING:
+    from ..running.provenance import Result
+    from ..running.study import Ask, Plan
 
-def plan(ask):
+
+def plan(ask: Ask) -> Plan:
     """The plan of the study: rows of `TABLE`, where it is quick of default variants only, engine by engine."""
     results = []
     for engine in ask.engines:
@@ -21,7 +29,7 @@ def plan(ask):
     return Found({"engines": ask.engines, "quick": ask.quick}, results, solvers=bounds)
 
 
-def problems(result):
+def problems(result: Result) -> list[str]:
     """Sentences on the rows that do not hold."""
     return [
         f"does not hold: {row['quantity']}, {row['engine']}, {row['variant']}, {row['scenes']}: "
@@ -31,7 +39,7 @@ def problems(result):
     ]
 
 
-def section(result):
+def section(result: Result) -> Section:
     """The table as a section of the report."""
     broken = [row for row in result.rows if not row["holds"]]
     text = (

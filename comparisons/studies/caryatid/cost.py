@@ -1,7 +1,10 @@
 """The paper's cost claim: the algebraic bearing against Bouc-Wen, at equal error, interleaved in one process."""
 
+from __future__ import annotations
+
 import math
 import time
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numba import njit
@@ -15,6 +18,9 @@ from analytic.twin import simulate_twin
 
 from .runs import ISOLATED, caryatid
 
+if TYPE_CHECKING:
+    from analytic.types import Motion
+
 LAWS = ("algebraic", "bouc-wen")
 ALGEBRAIC, BOUC_WEN = (NUMBERS[law] for law in LAWS)
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
@@ -25,7 +31,7 @@ REPEATS = 6  # of which the least counts, in every round
 EVALUATIONS = 200_000
 
 
-def cost_rows(motion, quick=False):
+def cost_rows(motion: Motion, quick: bool = False) -> list[dict[str, Any]]:
     """Rows: CPU of the algebraic over that of the Bouc-Wen bearing, median and spread over rounds.
 
     Errors are those of the final displacement over the peak, of each law against its own tight solution.

@@ -1,6 +1,9 @@
 """The study's figures, each drawn from a result file alone. Colours of Okabe and Ito; every axis carries its unit."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
@@ -12,6 +15,9 @@ from ...showing.plots import marker, style
 from .paper import X_MAX
 from .runs import FREE, ISOLATED
 from .variations import CATEGORIES, FRICTION_LIMITS, ONLY_FREE, ONLY_ISOLATED
+
+if TYPE_CHECKING:
+    from ...running.provenance import Result
 
 WIDTH = 5.6  # in
 BLACK, ORANGE, SKY, GREEN, BLUE, RED, PURPLE = (
@@ -36,7 +42,7 @@ class Drawing:
     caption: str
 
 
-def drawings(result):
+def drawings(result: Result) -> dict[str, Drawing]:
     """Name -> `Drawing` of all figures of a result file."""
     makers = {
         "paper": {"fig3": loops, "eq8": momentum, "eq12": reversal, "definitions": definitions},
@@ -53,7 +59,7 @@ def drawings(result):
     return {name: maker(result) for name, maker in makers.items()}
 
 
-def figures(result):
+def figures(result: Result) -> dict[str, Figure]:
     """Name -> matplotlib figure of all figures of a result file."""
     return {name: drawing.figure for name, drawing in drawings(result).items()}
 
@@ -63,7 +69,7 @@ def _axes(rows=1, columns=1, height=3.2, **kind):
     return figure, figure.subplots(rows, columns, **kind)
 
 
-def loops(result):
+def loops(result: Result) -> Drawing:
     """Fig. 3: force of one bearing over displacement."""
     figure, axis = _axes(height=3.6)
     arrays = result.arrays
@@ -94,7 +100,7 @@ def loops(result):
     )
 
 
-def momentum(result):
+def momentum(result: Result) -> Drawing:
     """Eq. (8): momentum after an impact over that before."""
     figure, axes = _axes(1, 2, sharey=False)
     for axis, by, label in ((axes[0], "slenderness", "slenderness γ [rad]"), (axes[1], "radius", "radius R [m]")):
@@ -120,7 +126,7 @@ def momentum(result):
     )
 
 
-def reversal(result):
+def reversal(result: Result) -> Drawing:
     """Eq. (12): the force at a reversal."""
     figure, axis = _axes()
     arrays = result.arrays
@@ -146,7 +152,7 @@ def reversal(result):
     )
 
 
-def definitions(result):
+def definitions(result: Result) -> Drawing:
     """Secant period and both dampings over the amplitude."""
     figure, (left, right) = _axes(1, 2)
     arrays = result.arrays
@@ -173,7 +179,7 @@ def definitions(result):
     )
 
 
-def rocking(result):
+def rocking(result: Result) -> Drawing:
     """Fig. 5(a): rocking spectrum."""
     figure, axis = _axes()
     arrays, gamma = result.arrays, result.settings["slenderness"]
@@ -213,7 +219,7 @@ def _points(axis, rows, value):
             )
 
 
-def displacement(result):
+def displacement(result: Result) -> Drawing:
     """Fig. 5(b): displacement spectra."""
     figure, axis = _axes(height=3.6)
     arrays = result.arrays
@@ -240,7 +246,7 @@ def displacement(result):
     )
 
 
-def vulnerable(result):
+def vulnerable(result: Result) -> Drawing:
     """Vulnerable period over slenderness, and the interval that fits all claims."""
     figure, axis = _axes()
     axis.plot(
@@ -264,7 +270,7 @@ def vulnerable(result):
     )
 
 
-def benefit(result):
+def benefit(result: Result) -> Drawing:
     """Who stays upright, over slenderness and intensity."""
     figure, axis = _axes(height=4.2)
     arrays = result.arrays
@@ -299,7 +305,7 @@ def benefit(result):
     )
 
 
-def seeds(result):
+def seeds(result: Result) -> Drawing:
     """Share of the synthetic motions in which isolation helps, and in which it harms."""
     figure, axes = _axes(1, 2, height=3.4, sharey=True)
     arrays = result.arrays
@@ -326,7 +332,7 @@ def seeds(result):
     )
 
 
-def contact(result):
+def contact(result: Result) -> Drawing:
     """Friction demand and least normal force."""
     figure, axes = _axes(2, 2, height=5.4, sharex=True, sharey=True)
     arrays = result.arrays
@@ -364,7 +370,7 @@ def contact(result):
     )
 
 
-def free_standing(result):
+def free_standing(result: Result) -> Drawing:
     """Fig. 4: the motion, and the free-standing Caryatid."""
     figure, (above, below) = _axes(2, 1, height=4.4, sharex=True)
     _ground(above, result)
@@ -389,7 +395,7 @@ def free_standing(result):
     )
 
 
-def isolated(result):
+def isolated(result: Result) -> Drawing:
     """Fig. 6: tilt and displacement of the isolated Caryatid."""
     figure, (above, below) = _axes(2, 1, height=4.4, sharex=True)
     for row in result.rows:

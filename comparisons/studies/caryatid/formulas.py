@@ -1,6 +1,7 @@
 """What needs no ground motion: the bearing law of Fig. 3, Table 1, and the misprints, each by a number."""
 
 import math
+from typing import Any
 
 import numpy as np
 from scipy.integrate import cumulative_simpson
@@ -22,7 +23,7 @@ SLENDERNESSES = np.linspace(0.1, 0.45, 71)  # rad
 AMPLITUDES = np.linspace(0.02, 0.40, 96)  # m
 
 
-def formulas():
+def formulas() -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
     """(rows, arrays) of the result file ``paper``."""
     scene = load_scene("caryatid-isolated").with_(motion=None)
     law = BearingLaw.of(scene.bearings)

@@ -1,6 +1,7 @@
 """What the Caryatid paper prints, as far as it is known here, and what kind of agreement each number got."""
 
 from dataclasses import dataclass
+from typing import Any
 
 REPRODUCED, CORRECTED, NOT_REPRODUCIBLE = "reproduced", "corrected", "not reproducible"
 GIVEN, DERIVED, ADDED, OTHER_MOTION = "input", "not printed, derived", "added here", "other motion"
@@ -39,10 +40,10 @@ class Value:
     status: str
     note: str = ""
 
-    def row(self):
+    def row(self) -> dict[str, Any]:
         """As a row of the result file, with the difference where both are numbers."""
         numbers = isinstance(self.paper, float) and isinstance(self.study, float)
-        difference = self.study - self.paper if numbers and self.status != GIVEN else None
+        difference = self.study - self.paper if numbers and self.status != GIVEN else None  # type: ignore[operator]  # both are numbers
         return {
             "part": "value",
             "where": self.where,
@@ -55,7 +56,7 @@ class Value:
         }
 
 
-def judged(where, quantity, paper, study, within, note=""):
+def judged(where: str, quantity: str, paper: float, study: float, within: float, note: str = "") -> Value:
     """A `Value` that is reproduced if it lies within half a printed digit, or within what "about" allows."""
     status = REPRODUCED if abs(study - paper) <= within else NOT_REPRODUCIBLE
     return Value(where, quantity, paper, study, status, note)

@@ -1,5 +1,10 @@
 """The paper's simulations in every solver: Figs 4(b) and 6, points of Figs 5(a) and 5(b)."""
 
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from analytic import Base, Bearings, Scene, load_scene, rocking_spectrum
@@ -7,6 +12,13 @@ from analytic.linear_oscillator import displacement_spectrum
 
 from ...running.cases import Case
 from ...running.study import Batch
+
+if TYPE_CHECKING:
+    from analytic import Response
+    from analytic.design import BearingProperties
+    from analytic.types import Motion
+
+    from ...running.sweep import Row
 
 FREE, ISOLATED = "free-standing", "isolated"
 SHIPPED = {FREE: "caryatid-rigid", ISOLATED: "caryatid-isolated"}
@@ -18,19 +30,19 @@ TIME_LIMIT = 120.0  # s
 HISTORY_STEP = 0.01  # s, at which histories are kept
 
 
-def caryatid(name, motion):
+def caryatid(name: str, motion: Motion | None) -> Scene:
     """The free-standing or the isolated Caryatid under `motion`."""
     return load_scene(SHIPPED[name]).with_(motion=motion, duration=None)
 
 
-def slender_block(motion, period, slenderness):
+def slender_block(motion: Motion, period: float, slenderness: float) -> Scene:
     """A block on rigid ground whose rocking period T_r is `period` [s], as in Fig. 5(a)."""
     scene = caryatid(FREE, motion)
     radius = 3 * scene.gravity * (period / (2 * np.pi)) ** 2 / 4  # (1) with J_O = 4/3 m R^2
     return scene.with_(block={"radius": float(radius), "slenderness": slenderness})
 
 
-def oscillator(motion, period, damping):
+def oscillator(motion: Motion, period: float, damping: float) -> Scene:
     """A linear oscillator as a scene: a block that cannot lift, on one linear bearing with a damper."""
     scene = caryatid(ISOLATED, motion)
     omega = 2 * np.pi / period
@@ -49,13 +61,13 @@ def oscillator(motion, period, damping):
     )
 
 
-def scalars(case, response):
+def scalars(case: Case, response: Response) -> dict[str, Any]:
     """Measure: what came out, without history and impacts."""
     values = response.to_json()
     return {name: value for name, value in values.items() if name not in ("impacts", "uplifts", "rests", "energy")}
 
 
-def with_history(case, response):
+def with_history(case: Case, response: Response) -> dict[str, Any]:
     """Measure: the scalars, and tilt and base displacement at multiples of `HISTORY_STEP`."""
     history = response.history
     time = np.arange(0.0, history.time[-1], HISTORY_STEP)
@@ -65,7 +77,9 @@ def with_history(case, response):
     return {**scalars(case, response), "history": {"time": time.tolist(), **kept}}
 
 
-def simulations(motion, engines, quick=False):
+def simulations(
+    motion: Motion, engines: Sequence[str], quick: bool = False
+) -> Generator[Batch, list[Row], tuple[list[dict[str, Any]], dict[str, np.ndarray]]]:
     """Plan of all runs; returns their rows, and the histories of Figs 4(b) and 6 as arrays."""
     solvers = ("analytic", *engines)
     figures = [
@@ -116,7 +130,7 @@ def _points(motion, solvers, quick):
     ]
 
 
-def spectra(motion, quick=False):
+def spectra(motion: Motion, quick: bool = False) -> dict[str, np.ndarray]:
     """Arrays of Fig. 5(a), max tilt over slenderness against T_r, and Fig. 5(b), max displacement against T_bi."""
     slenderness = caryatid(FREE, motion).block.slenderness
     periods = np.linspace(0.5, 8.0, 151 if quick else 751)
@@ -132,7 +146,7 @@ def spectra(motion, quick=False):
     }
 
 
-def equivalent_oscillators(motion, properties, nonlinear):
+def equivalent_oscillators(motion: Motion, properties: BearingProperties, nonlinear: float) -> list[dict[str, Any]]:
     """What a linear oscillator at T_bi predicts, with the damping in either definition, beside the bearings' own."""
     return [
         {

@@ -1,13 +1,20 @@
 """The study's result files as sections of the report."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from ...showing.parts import Section, Table, figure_of, number, percent
 from . import paper
 from .figures import drawings
 from .runs import FREE, ISOLATED
 from .variations import CATEGORIES, FRICTION_LIMITS, ONLY_FREE, ONLY_ISOLATED, WITHIN
 
+if TYPE_CHECKING:
+    from ...running.provenance import Result
 
-def section(result):
+
+def section(result: Result) -> Section:
     """The `Section` of one result file of the study."""
     figures = tuple(figure_of(one.figure, one.alt, one.caption) for one in drawings(result).values())
     part = {"paper": _paper, "motion": _motion, "histories": _histories}[result.settings["part"]]

@@ -1,6 +1,9 @@
 """Which slendernesses fit the paper's three claims: the number it does not print, enclosed by bisection."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,19 +13,22 @@ from ...running.refine import boundaries, drive
 from . import paper
 from .runs import FREE, ISOLATED, caryatid
 
+if TYPE_CHECKING:
+    from analytic.types import Motion
+
 LOW, HIGH = 0.10, 0.45  # rad
 TOLERANCE = 1e-5  # rad
 LONGEST = 8.0  # s, of the rocking periods looked at
 
 
-def vulnerable_period(motion, slenderness, step=0.02):
+def vulnerable_period(motion: Motion, slenderness: float, step: float = 0.02) -> float:
     """Largest rocking period T_r [s] up to `LONGEST` at which a block overturns, on a grid of `step`; 0 if none."""
     periods = np.arange(LONGEST, 0.4, -step)
     overturns = rocking_spectrum(motion, periods, slenderness).overturns
     return round(float(periods[overturns].max(initial=0.0)), 6)
 
 
-def claims(motion, quick=False):
+def claims(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
     """Rows: for each claim the intervals of slenderness in which it holds; the last row is where all do.
 
     Also the arrays of vulnerable period over slenderness.
@@ -48,7 +54,7 @@ def claims(motion, quick=False):
     for claim, (holds, points, tolerance) in tests.items():
         (column,) = drive(
             [boundaries(LOW, HIGH, points, tolerance)],
-            lambda batch, holds=holds: list(map(bool, holds([point for _, point in batch]))),
+            lambda batch, holds=holds: list(map(bool, holds([point for _, point in batch]))),  # type: ignore[misc]  # of a round's batch, see `drive`
         )
         intervals = _intervals(column.transitions, bool(holds([LOW])[0]))
         found.append(intervals)
@@ -68,7 +74,7 @@ def claims(motion, quick=False):
     }
 
 
-def uplift_slenderness(motion):
+def uplift_slenderness(motion: Motion) -> float:
     """Least slenderness [rad] that stays down on the bearings, from the acceleration alone: atan(max|a|/g).
 
     A block that stays down does not change the acceleration of its base, so any that does gives it.

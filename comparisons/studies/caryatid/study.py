@@ -7,12 +7,14 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from analytic import SampledMotion
 from analytic.design import properties
 from analytic.linear_oscillator import displacement_spectrum
+from analytic.types import Motion
 from engines import available_engines
 
 from ...running.solving import ground_motion
-from ...running.study import Found, say
+from ...running.study import Ask, Found, Plan, say
 from . import paper
 from .cost import cost_rows
 from .formulas import formulas
@@ -30,7 +32,7 @@ Record = Annotated[
 Units = Annotated[str | None, typer.Option(help="Of a record that does not say: m/s2, cm/s2 or g.")]
 
 
-def plan(ask, motion=None, *, record: Record = None, units: Units = None):
+def plan(ask: Ask, motion: SampledMotion | None = None, *, record: Record = None, units: Units = None) -> Plan:
     """The plan of the study, an answer for each part.
 
     Parameters
@@ -112,7 +114,7 @@ def _analytic(rows, motion, quick):
     )
 
 
-def is_papers_motion(motion):
+def is_papers_motion(motion: Motion) -> bool:
     """Whether it is a Duzce record, by its name: only then are the paper's numbers the ones to meet."""
     return "DUZCE" in motion.label.upper() and not motion.label.startswith("synthetic")
 

@@ -1,6 +1,10 @@
 """What the paper leaves out: other slendernesses, intensities and motions. Does isolation help, when does it harm?"""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +15,10 @@ from ...running.refine import boundaries, drive
 from . import paper
 from .runs import FREE, ISOLATED, caryatid
 
+if TYPE_CHECKING:
+    from analytic import Scene
+    from analytic.types import Motion
+
 # who stays upright
 BOTH, ONLY_ISOLATED, ONLY_FREE, NEITHER = range(4)
 CATEGORIES = ("both stay upright", "only the isolated one does", "only the free-standing one does", "both overturn")
@@ -19,7 +27,7 @@ SEEDS = 12
 FRICTION_LIMITS = (0.3, 0.5, 0.7)  # [-], of stone on stone and steel, low to high
 
 
-def grid(quick, fine=True):
+def grid(quick: bool, fine: bool = True) -> tuple[np.ndarray, np.ndarray]:
     """(slendernesses [rad], intensities [-])."""
     if quick:
         return np.linspace(0.10, 0.45, 15), np.linspace(0.25, 3.0, 12)
@@ -30,7 +38,9 @@ def grid(quick, fine=True):
     )
 
 
-def benefit(motion, slendernesses, intensities):
+def benefit(
+    motion: Motion, slendernesses: np.ndarray, intensities: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Category (uint8), whether the isolated block lifts, and its peak base displacement [m], shape (n, k).
 
     The displacement is NaN where the isolated block overturns: runs end when that is certain.
@@ -63,7 +73,9 @@ def benefit(motion, slendernesses, intensities):
     return category.astype(np.uint8), isolated.lifted.reshape(shape), displacement.astype(np.float32)
 
 
-def maps(motion, quick=False, advance=lambda text: None):
+def maps(
+    motion: Motion, quick: bool = False, advance: Callable[[str], Any] = lambda text: None
+) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
     """(rows, arrays): the map of `motion`, how many of the synthetic motions agree cell by cell, and critical
     intensities of the Caryatid itself."""
     slendernesses, intensities = grid(quick)
@@ -137,7 +149,7 @@ def _critical(motion):
     return rows
 
 
-def contact(motion, quick=False):
+def contact(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
     """(rows, arrays): friction demand and least normal force over slenderness and intensity.
 
     Of runs that overturn only what comes before the tilt first reaches the slenderness counts: nobody needs a block
@@ -183,7 +195,7 @@ def _demand(scene):
     return response.friction_demand, response.min_normal_ratio, response.outcome != "overturns"
 
 
-def impact_friction(scene):
+def impact_friction(scene: Scene) -> float:
     """Horizontal over vertical impulse at an impact [-], for any speed: the friction an impact itself asks for.
 
     With w before and e w after, the centre of mass changes its velocity by (1 - mt) h (1 - e) w sideways, jump of the

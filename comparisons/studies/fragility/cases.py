@@ -1,7 +1,11 @@
 """The runs behind the fragility study: synthetic motions x intensities x solvers, and their statistics."""
 
+from __future__ import annotations
+
 import math
 import time
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +18,11 @@ from ...measuring.statistics import compare, fit_fragility, holm, wilson
 from ...running.cases import Case
 from ...running.study import Batch, Found, say
 from ...showing.wording import solver_name
+
+if TYPE_CHECKING:
+    from analytic import Response
+
+    from ...running.study import Ask, Plan
 
 TWIN = 1e-4  # relative change of the restitution: the model's own sensitivity
 REFERENCE, SENSITIVITY = "analytic", "analytic, restitution + 1e-4"
@@ -50,12 +59,12 @@ def low_frictions(solvers):
     return {label: friction for label, friction in found.items() if friction is not None}
 
 
-def measure(case, response):
+def measure(case: Case, response: Response) -> dict[str, Any]:
     """What is kept of a run."""
     return {"outcome": response.outcome}
 
 
-def plan(ask, scenes=None, motions=None):
+def plan(ask: Ask, scenes: Mapping[str, Any] | None = None, motions: int | None = None) -> Plan:
     """The plan of the study; an answer with one scene more each time.
 
     Rows by "part": "curve" (probability of overturning of one solver at one intensity), "fit" (lognormal curve), "pair"

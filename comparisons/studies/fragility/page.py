@@ -1,11 +1,18 @@
 """The fragility study's result in words, tables and a figure, from the result alone."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 from matplotlib.figure import Figure
 from scipy.stats import norm
 
 from ...showing.parts import Section, Table, figure_of, number, percent
 from ...showing.plots import marker, style
+
+if TYPE_CHECKING:
+    from ...running.provenance import Result
 
 LEVEL = 0.05
 READING = (
@@ -19,7 +26,7 @@ TWIN_STYLE = {"color": "#56B4E9", "linestyle": (0, (1, 1)), "linewidth": 1.2}
 FIRST_STYLE = {"linestyle": (0, (4, 1, 1, 1)), "linewidth": 1.2}
 
 
-def section(result):
+def section(result: Result) -> Section:
     """The `Section` of a result of this study."""
     text = [_asked(result), READING]
     tables = []
@@ -51,7 +58,7 @@ def section(result):
     )
 
 
-def draw(result):
+def draw(result: Result) -> Figure:
     """Curves over intensity above, disagreements with the analytic model below; one column per scene."""
     scenes = list(result.settings["scenes"])
     figure = Figure(figsize=(5.6 * len(scenes), 6.6), layout="constrained")

@@ -1,6 +1,10 @@
 """The runs behind the overturning study: analytic maps, a scan of all solvers, their boundaries, their knobs."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +17,11 @@ from ...running.study import Batch, Found, say
 from ...showing.wording import solver_name
 from .edges import HIGHEST, LOWEST, edges, least_normal, locate, pulse
 from .outcomes import BAND, judge, label_of
+
+if TYPE_CHECKING:
+    from analytic import Response, Scene
+
+    from ...running.study import Ask, Plan
 
 SHAPES = ("one-sine", "one-cosine", "ricker")
 # The isolated Caryatid itself overturns at base displacements far beyond its bearings' 0.30 m only; a more slender
@@ -28,12 +37,12 @@ KNOB_FREQUENCIES = (2.0, 8.0)
 TIME_STEPPING = ("time-stepping", None, "step", (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5))
 
 
-def defaults_of(engines):
+def defaults_of(engines: Sequence[str]) -> list[tuple[str, str]]:
     """(engine, variant) of the engines at default settings."""
     return [(name, get_engine(name).default_variant) for name in engines]
 
 
-def ladders_of(engines):
+def ladders_of(engines: Sequence[str]) -> list[tuple[str, str, str, tuple[float, ...]]]:
     """(engine, variant, knob, values) of all variants but first scripts: step, accuracy or stiffness."""
     return [
         (name, variant, kind.knob, kind.ladder)
@@ -43,7 +52,7 @@ def ladders_of(engines):
     ]
 
 
-def first_scripts_of(engines):
+def first_scripts_of(engines: Sequence[str]) -> list[tuple[str, str, str, tuple[float, ...]]]:
     """The same of the first scripts, at their default."""
     return [
         (name, variant, kind.knob, (kind.default,))
@@ -53,7 +62,7 @@ def first_scripts_of(engines):
     ]
 
 
-def held_of(engines):
+def held_of(engines: Sequence[str]) -> list[tuple[str, str, dict[str, float]]]:
     """(engine, variant, settings) of the variants that hold the corner down, as the analytic model does."""
     return [
         (name, variant, kind.finer[0] if kind.finer else {})
@@ -63,12 +72,12 @@ def held_of(engines):
     ]
 
 
-def measure(case, response):
+def measure(case: Case, response: Response) -> dict[str, Any]:
     """What is kept of a run."""
     return {"outcome": response.outcome, "decided": response.decided, "end_tilt": response.end.tilt}
 
 
-def plan(ask):
+def plan(ask: Ask) -> Plan:
     """The plan of the study: an answer first without other settings than the defaults, then growing.
 
     Rows by "part": "edge" (a boundary of the analytic model), "shift" (a solver's beside it, at default settings),
@@ -186,7 +195,7 @@ def _maps(grounds, shapes, quick):
 class _Log:
     """Runs points of the map through the solvers and remembers all outcomes and failures."""
 
-    def __init__(self, engines, grounds):
+    def __init__(self, engines: Sequence[Any], grounds: Mapping[str, Scene]) -> None:
         self.engines, self._grounds = engines, grounds
         self.points, self.failures = {}, []
 

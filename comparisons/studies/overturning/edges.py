@@ -3,14 +3,22 @@
 Amplitudes are over g tan(slenderness), frequencies over omega_r.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from analytic import PulseMotion, simulate, simulate_many
 
 from ...running.refine import boundaries, drive
+
+if TYPE_CHECKING:
+    from analytic import Scene
+    from analytic.types import Motion
 
 LOWEST, HIGHEST = 0.5, 20.0  # of the amplitudes searched
 SCAN = 400  # points of the first scan, equidistant in the logarithm: 0.9 % apart
@@ -50,13 +58,13 @@ class Located:
     runs: int
 
 
-def pulse(scene, shape, frequency, amplitude):
+def pulse(scene: Scene, shape: str, frequency: float, amplitude: float) -> PulseMotion:
     """The `PulseMotion` of the two ratios."""
     unit = scene.gravity * math.tan(scene.block.slenderness)
     return PulseMotion(shape, amplitude * unit, frequency * scene.rocking_frequency)
 
 
-def edges(scene, shape, frequencies):
+def edges(scene: Scene, shape: str, frequencies: Sequence[float]) -> list[list[Edge]]:
     """All `Edge`s of the analytic model, a list for each frequency."""
 
     def evaluate(batch):
@@ -99,12 +107,14 @@ def _edges(scene, shape, frequency, transitions):
     return found
 
 
-def least_normal(scene, motion):
+def least_normal(scene: Scene, motion: Motion) -> float:
     """Least N/(m g) in the analytic model under `motion`."""
     return simulate(scene.with_(motion=motion, duration=None), history=False).min_normal_ratio
 
 
-def locate(edge, ladder, tolerance):
+def locate(
+    edge: Edge, ladder: Sequence[Sequence[float]], tolerance: float
+) -> Generator[list[float], list[Any], Located]:
     """Search for a solver's boundary beside an analytic one, outward in the steps of `ladder`, then by bisection.
 
     Of several boundaries the nearest is taken. Where two boundaries lie closer than the ladder reaches, it is

@@ -1,5 +1,9 @@
 """Figures of the overturning study, drawn from its result alone."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
@@ -8,12 +12,15 @@ from matplotlib.patches import Patch
 
 from ...showing.plots import marker, style
 
+if TYPE_CHECKING:
+    from ...running.provenance import Result
+
 MODES = ("white", "#9ecae1", "#6baed6", "#d9d9d9")  # stands; overturns without, after one, after more impacts
 SHADES = ("#000000", "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00")  # Okabe and Ito
 LIMIT = 0.5  # %, asked of the boundaries at default settings
 
 
-def draw_maps(result):
+def draw_maps(result: Result) -> Figure:
     """Analytic map, the engines' boundaries on it, and every scanned point where the outcomes differ."""
     s = result.settings
     figure = Figure(figsize=(4.3 * len(s["shapes"]) + 0.6, 3.9 * len(s["grounds"]) + 0.9), layout="constrained")
@@ -57,7 +64,7 @@ def draw_maps(result):
     for axis in axes[-1]:
         axis.set_xlabel("pulse frequency / $ω_r$ [-]")
     names = ("stands", "overturns without impact", "overturns after one impact", "overturns after more impacts")
-    handles = [
+    handles: list[Any] = [
         Patch(facecolor=colour, edgecolor="0.5", label=f"analytic: {name}")
         for colour, name in zip(MODES, names, strict=True)
     ]
@@ -81,7 +88,7 @@ def draw_maps(result):
     return figure
 
 
-def draw_shifts(result):
+def draw_shifts(result: Result) -> Figure:
     """Relative difference of every boundary from the analytic one, over the pulse frequency."""
     grounds = list(result.settings["grounds"])
     figure = Figure(figsize=(5.2 * len(grounds), 4.2), layout="constrained")
@@ -121,7 +128,7 @@ def draw_shifts(result):
     return figure
 
 
-def draw_knobs(result):
+def draw_knobs(result: Result) -> Figure:
     """Largest and median |shift| over the setting that buys accuracy, one panel for each solver and variant."""
     curves = knob_curves(result)
     figure = Figure(figsize=(3.2 * len(curves), 3.6), layout="constrained")
@@ -130,7 +137,7 @@ def draw_knobs(result):
         x = sorted(values)
         for shade, (name, measure) in zip(SHADES[1:], (("largest", np.max), ("median", np.median)), strict=False):
             y = [
-                100 * measure(np.abs(found)) if len(found) else np.nan
+                100 * measure(np.abs(found)) if len(found) else np.nan  # type: ignore[operator]  # np.max or np.median
                 for found in (
                     np.array([row["shift"] for row in values[value] if row["shift"] is not None]) for value in x
                 )
@@ -162,7 +169,7 @@ def draw_knobs(result):
     return figure
 
 
-def knob_curves(result):
+def knob_curves(result: Result) -> dict[tuple[str, str], dict[float, list[dict[str, Any]]]]:
     """{(solver, knob): {value: rows}} of the settings tried, the default ones taken from the same boundaries."""
     curves = {}
     keys = {(row["ground"], row["shape"], row["frequency"]) for row in _rows(result, "knob")}

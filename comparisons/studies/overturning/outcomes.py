@@ -1,7 +1,11 @@
 """Outcomes of the engines at default settings beside those of the analytic model, near its boundaries and far off."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,6 +14,9 @@ from analytic import simulate
 from ...measuring.statistics import cohen_kappa, confusion
 from ...showing.wording import solver_name
 from .edges import pulse
+
+if TYPE_CHECKING:
+    from analytic import Scene
 
 BAND = 0.01  # relative distance from a boundary beyond which no solver may differ
 
@@ -32,7 +39,13 @@ class _Points:
     distance: np.ndarray
 
 
-def judge(answers, engines, grounds, shapes, edges):
+def judge(
+    answers: Mapping[Any, Any],
+    engines: Sequence[Any],
+    grounds: Mapping[str, Scene],
+    shapes: Sequence[str],
+    edges: Mapping[Any, Any],
+) -> tuple[np.ndarray, list[dict[str, Any]]]:
     """(array "points", rows "confusion" and "surprise") of the study's result, see its plan.
 
     Outside the band those are apart ("pulled") in which the normal force of the analytic model becomes negative.
@@ -145,7 +158,7 @@ def _table(points, engines, grounds, shapes):
     return np.array(rows, dtype=float)
 
 
-def label_of(engine):
+def label_of(engine: tuple[Any, ...]) -> str:
     """A solver, its variant and the settings in place of its defaults, if any, in words."""
     name = solver_name(*engine[:2])
     return name if not any(engine[2:]) else f"{name}, " + ", ".join(f"{k} {v:g}" for k, v in engine[2].items())

@@ -1,13 +1,19 @@
 """The overturning study's result in words and tables, from the result alone."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 from ...showing.parts import Section, Table, figure_of, number, percent
 from ...showing.wording import solver_name
 from .figures import LIMIT, draw_knobs, draw_maps, draw_shifts, knob_curves
 
+if TYPE_CHECKING:
+    from ...running.provenance import Result
 
-def section(result):
+
+def section(result: Result) -> Section:
     """The `Section` of a result of this study."""
     solvers = result.settings["solvers"]
     text = [

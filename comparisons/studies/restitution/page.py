@@ -1,8 +1,15 @@
 """The restitution study as a section of the report: words and tables from its result alone."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from ...showing.parts import Section, Table, figure_of, number, percent
 from ...showing.wording import TRUSTED, USABLE, trust
 from .figures import UNITS, by_variant, figures, knob_of, select
+
+if TYPE_CHECKING:
+    from ...running.provenance import Result
 
 RULE = (
     f"An engine may be trusted for restitution if its error, root mean square, is at most {TRUSTED:g} on both "
@@ -38,7 +45,7 @@ CAPTIONS = {
 }
 
 
-def section_of(result):
+def section_of(result: Result) -> Section:
     """The `Section` of a `Result` of the restitution study."""
     settings = result.settings
     defaults = [row for row in select(result, "summary", scope="all")]

@@ -10,6 +10,7 @@ from matplotlib.ticker import LogFormatterSciNotation, NullFormatter
 from analytic.errors import SettingError
 from engines import ENGINES
 
+from ...running.provenance import Result
 from .growth import AGAINST
 from .ladders import NEEDED
 from .measure import MEASURES
@@ -30,12 +31,12 @@ PRINCIPAL = "error"
 SMALLEST = 1e-17  # an error below it, or none at all, cannot be drawn on a logarithmic axis
 
 
-def axis_names():
+def axis_names() -> tuple[str, ...]:
     """What --x and --y may be."""
     return (*COSTS, PRINCIPAL, *(name.replace("_", "-") for name in MEASURES))
 
 
-def check_axes(*names):
+def check_axes(*names: str) -> None:
     """Raise `SettingError` for an axis that does not exist."""
     for name in names:
         if name not in axis_names():
@@ -46,14 +47,14 @@ Horizontal = Annotated[str, typer.Option(help="Horizontal axis of the figure.")]
 Vertical = Annotated[str, typer.Option(help="Vertical axis; 'error' is each scene's principal measure.")]
 
 
-def figures(result, *, x: Horizontal = "cpu", y: Vertical = "error"):
+def figures(result: Result, *, x: Horizontal = "cpu", y: Vertical = "error") -> dict[str, Figure]:
     """Figures of the study by the suffix of their files."""
     if (x, y) != ("cpu", PRINCIPAL):
         return {f"{x}-{y}": draw_pareto(result, x, y)}
     return {"": draw_pareto(result), "step": draw_pareto(result, "step"), "growth": draw_growth(result)}
 
 
-def draw_pareto(result, x="cpu", y=PRINCIPAL):
+def draw_pareto(result: Result, x: str = "cpu", y: str = PRINCIPAL) -> Figure:
     """One panel per scene: every solver's ladder, one point per setting, as a matplotlib Figure.
 
     Crosses: impacts lost. Hollow markers: modelled with more than the scene needs.
@@ -135,7 +136,7 @@ def _legend(axis, looks):
     axis.legend(handles=lines, loc="center", fontsize=9, ncols=1 if len(lines) < 22 else 2, frameon=False)
 
 
-def draw_growth(result):
+def draw_growth(result: Result) -> Figure:
     """CPU time against duration, sample rate and number of runs; memory against duration."""
     figure = Figure(figsize=(11, 7), layout="constrained")
     axes = figure.subplots(2, 2)

@@ -1,6 +1,10 @@
 """Errors of one run against the reference, the same code for every solver; nothing here knows who made the run."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -9,6 +13,9 @@ from analytic.rocking import restitution
 
 from ...measuring.measures import impact_time_errors, state_restitution
 from ...measuring.restitution import SLOWEST_IMPACT, rate_restitution, rms, strong_impacts
+
+if TYPE_CHECKING:
+    from .scenes import Trial
 
 # measure: (label with unit, words)
 MEASURES = {
@@ -25,7 +32,7 @@ MEASURES = {
 STRAY, LAST = 0.025, 3
 
 
-def errors(trial, values, shifts=None):
+def errors(trial: Trial, values: Mapping[str, Any], shifts: Sequence[float | None] = None) -> dict[str, float]:
     """Absolute errors by measure, of those the trial asks for and the run can show; and "lost_impacts".
 
     Parameters
@@ -81,5 +88,5 @@ def _restitution_error(scene, impacts):
     if scene.motion is None and scene.bearings is None:
         found = rate_restitution(impacts) - restitution(scene)
     else:
-        found = state_restitution(SimpleNamespace(impacts=strong_impacts(impacts))) - restitution(scene)
+        found = state_restitution(SimpleNamespace(impacts=strong_impacts(impacts))) - restitution(scene)  # type: ignore[arg-type]  # its impacts are all that is read
     return rms(found) if len(found) else None

@@ -1,7 +1,11 @@
 """The five scenes of the speed-error study, what is measured on each, and the references errors are taken from."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.optimize import brentq
@@ -14,6 +18,9 @@ from analytic.synthetic import synthetic_motion
 from analytic.twin import simulate_twin
 
 from ...measuring.horizon import sensitivity_horizon
+
+if TYPE_CHECKING:
+    from analytic import State
 
 TIGHTEST = 1e-17  # tolerance of the kernel as a reference
 TWIN_TOLERANCE = 1e-13  # of the independent solution each reference is held against
@@ -50,22 +57,22 @@ class Trial:
     boundary: Boundary | None = None
 
     @property
-    def runs(self):
+    def runs(self) -> int:
         """Simulations that make one measurement."""
         return 1 if self.boundary is None else BOUNDARY_RUNS
 
-    def with_law(self, law):
+    def with_law(self, law: str) -> Trial:
         """The same trial with another bearing law, and that law's own reference."""
         scene = self.scene.with_(bearings={"law": law})
         return replace(self, scene=scene, reference=tight(scene))
 
 
-def tight(scene):
+def tight(scene: Scene) -> Response:
     """The reference response of a scene."""
     return simulate(scene, history=False, tolerance=TIGHTEST)
 
 
-def margin(scene, end):
+def margin(scene: Scene, end: State | Mapping[str, Any]) -> float:
     """Energy beyond what tipping over needs, over m g R (1 - cos gamma), after the motion's end; conserved in flight.
 
     end : State, or a dict of its fields. Negative: the block falls back; positive: it overturns. With u = gamma -
@@ -77,16 +84,16 @@ def margin(scene, end):
     return (0.5 * rate**2 - 2 * p2 * math.sin(0.5 * u) ** 2) / (2 * p2 * math.sin(0.5 * gamma) ** 2)
 
 
-def at_amplitude(scene, amplitude):
+def at_amplitude(scene: Scene, amplitude: float) -> Scene:
     """The scene with its pulse at another amplitude [m/s2]."""
-    return scene.with_(motion=replace(scene.motion, amplitude=float(amplitude)))
+    return scene.with_(motion=replace(scene.motion, amplitude=float(amplitude)))  # type: ignore[arg-type]  # a pulse
 
 
-def trials():
+def trials() -> list[Trial]:
     """The five trials, in order of what they ask of a solver."""
     motion = synthetic_motion()
     free = caryatid_block(0.2)
-    isolated = {"base": BASE, "bearings": BEARINGS, "motion": motion}
+    isolated: dict[str, Any] = {"base": BASE, "bearings": BEARINGS, "motion": motion}
     rigid = Scene(name="free rocking on rigid ground", block=free, start=Start(tilt=0.12), duration=5.0)
     sliding = rigid.with_(name="free rocking on a sliding base", base=BASE, duration=4.0)
     stands = Scene(name="isolated, standing", block=caryatid_block(0.28), duration=LONGEST, **isolated)
@@ -102,7 +109,7 @@ def trials():
     ]
 
 
-def near_overturning():
+def near_overturning() -> Trial:
     """One sine at the amplitude where the block just overturns after one impact; its boundary is the question."""
     block = caryatid_block(0.25)
     unit = 9.81 * math.tan(block.slenderness)
@@ -130,7 +137,7 @@ def _trial(name, scene, measures):
     return Trial(name, scene.name, scene, measures, tight(scene))
 
 
-def reference_difference(trial):
+def reference_difference(trial: Trial) -> dict[str, float]:
     """What an independent solution (scipy DOP853 at its tightest) differs by: a dict as `errors` gives it."""
     from .measure import errors
     from .timing import searched
@@ -142,7 +149,7 @@ def reference_difference(trial):
     return errors(trial, response.to_json(), shifts)
 
 
-def description(trial):
+def description(trial: Trial) -> dict[str, Any]:
     """JSON-ready description of a trial for the result file."""
     reference = trial.reference
     impacts = np.array([impact.time for impact in reference.impacts])

@@ -1,11 +1,18 @@
 """What the rows of the speed-error study say: cost at an error, observed order, what extra modelling costs."""
 
+from __future__ import annotations
+
 import statistics
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .growth import fit
 from .ladders import NEEDED
+
+if TYPE_CHECKING:
+    from ...running.provenance import Result
 
 LEVELS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-9)  # of the scene's principal measure
 FLOOR = 1e-13  # errors below it are rounding and tell no order
@@ -14,21 +21,27 @@ NOISE = 95  # percentile of the settings' spread over the rounds, below which tw
 FULL_CONTACT = "full contact integrated as rocking"
 
 
-def ladder(result):
+def ladder(result: Result) -> list[dict[str, Any]]:
     return [row for row in result.rows if row["table"] == "ladder"]
 
 
-def principal(result, scene):
+def principal(result: Result, scene: str) -> str:
     """Name of the scene's principal measure."""
     return result.settings["scenes"][scene]["measures"][0]
 
 
-def error(row, measure):
+def error(row: Mapping[str, Any], measure: str) -> float | None:
     """The row's error, or None where it has none, lost impacts, or failed."""
     return None if row["failure"] or row["lost_impacts"] else row["errors"].get(measure)
 
 
-def cost_at_error(result, scene, level, measure=None, seconds=None):
+def cost_at_error(
+    result: Result,
+    scene: str,
+    level: float,
+    measure: str | None = None,
+    seconds: Sequence[float] | np.ndarray | None = None,
+) -> dict[str, dict[str, Any]]:
     """{family: cheapest row that reaches the level}, cheapest family first; of what the scene needs only.
 
     seconds: CPU time per row of `ladder(result)` in place of the medians.
@@ -45,7 +58,7 @@ def cost_at_error(result, scene, level, measure=None, seconds=None):
     return {family: row for family, (cost, row) in sorted(best.items(), key=lambda item: item[1][0])}
 
 
-def orders(result, scene, axis="value"):
+def orders(result: Result, scene: str, axis: str = "value") -> dict[str, tuple[float, float, int]]:
     """{family: (order, standard error, points)}: error ~ knob^order (axis "value") or ~ mean step^order ("step").
 
     Errors at rounding and runs that lost impacts are left out; three points or more.
@@ -66,7 +79,7 @@ def orders(result, scene, axis="value"):
     return found
 
 
-def ranking_stability(result):
+def ranking_stability(result: Result) -> tuple[float, int, list[tuple[str, float, str, str]]]:
     """How the ranking of solvers repeats between the odd and the even rounds.
 
     Returns
@@ -103,7 +116,7 @@ def _median(values):
     return float(np.median(known)) if len(known) else float("nan")
 
 
-def extras(result):
+def extras(result: Result) -> list[dict[str, Any]]:
     """Rows modelled with more than the scene needs, each beside the needed model of the same family and setting.
 
     List of dicts: scene, model, family, value, cost_ratio, error, needed_error.
@@ -150,7 +163,7 @@ def _beside(result, row, model, needed):
     ]
 
 
-def law_cost(result):
+def law_cost(result: Result) -> dict[tuple[str, str], tuple[float, float, float]]:
     """{(scene, family): median over equal knob values of CPU time Bouc-Wen / algebraic, lowest, highest}."""
     found = {}
     for row in ladder(result):
@@ -172,7 +185,7 @@ def law_cost(result):
     return {key: (statistics.median(ratios), min(ratios), max(ratios)) for key, ratios in found.items()}
 
 
-def growths(result):
+def growths(result: Result) -> dict[tuple[str, str], dict[str, Any]]:
     """{(against, family): dict of values, cpu_seconds, traced_bytes, resident_bytes, exponent, exponent_error, and
     last_exponent, that between the last two points}.
     """
@@ -186,13 +199,13 @@ def growths(result):
             name: [row[name] for row in rows] for name in ("value", "cpu_seconds", "traced_bytes", "resident_bytes")
         }
         if len(rows) >= 3:
-            entry["exponent"], entry["exponent_error"] = fit(entry["value"], entry["cpu_seconds"])
+            entry["exponent"], entry["exponent_error"] = fit(entry["value"], entry["cpu_seconds"])  # type: ignore[assignment]  # beside the lists
             (x0, x1), (y0, y1) = entry["value"][-2:], entry["cpu_seconds"][-2:]
-            entry["last_exponent"] = float(np.log(y1 / y0) / np.log(x1 / x0))
+            entry["last_exponent"] = float(np.log(y1 / y0) / np.log(x1 / x0))  # type: ignore[assignment]  # as above
         found[key] = entry
     return found
 
 
-def unrepeatable(result):
+def unrepeatable(result: Result) -> list[dict[str, Any]]:
     """Rows whose values were not the same bit for bit in every round."""
     return [row for row in ladder(result) if not row["repeatable"]]

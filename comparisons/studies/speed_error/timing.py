@@ -1,15 +1,24 @@
 """One measurement in a worker: warm, repeated if short; error and CPU time from the very same runs."""
 
+from __future__ import annotations
+
 import dataclasses
 import functools
 import math
 import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from analytic.response import Response, State
 
 from .scenes import BOUNDARY_RUNS, Boundary, at_amplitude, margin
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+    from ...running.cases import Case
 
 PEER = "comparisons.studies.speed_error.timing:peer_response"
 TICK = 4e-3  # s of CPU: shorter measurements are repeated until they took as long, and the mean counts
@@ -19,7 +28,7 @@ STRIDE = 0.05  # longest move of a boundary search, relative; it ends within six
 SMALL = 1e-3  # margin below which the reference's slope alone is as good as a chord
 
 
-def measure(case, response):
+def measure(case: Case, response: Response) -> dict[str, Any]:
     """What is kept of one measurement, and its CPU time: the mean over runs of at least `TICK` in all.
 
     The run that made `response` has loaded code and caches; where it was long enough it is the measurement itself. A
@@ -44,7 +53,9 @@ def measure(case, response):
     }
 
 
-def searched(run, scene, boundary):
+def searched(
+    run: Callable[[Scene], Response], scene: Scene, boundary: Boundary | None
+) -> tuple[Response, list[float | None] | None]:
     """(the first response, boundary shifts or None): a single run, or a search for the solver's own boundary.
 
     The margin is smooth in the amplitude, so moving by the reference's slope converges at once for a solver near the
@@ -95,7 +106,7 @@ def _peer_run(name, tolerance, scene):
     return run
 
 
-def peer_response(scene, *, name, tolerance):
+def peer_response(scene: Scene, *, name: str, tolerance: float) -> Response:
     """What a peer of the benchmark found: its end state only; it keeps no impacts and counts no steps."""
     run = _peer_run(name, tolerance, scene)
     begin = time.process_time()

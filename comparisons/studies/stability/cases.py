@@ -41,7 +41,7 @@ class HardCase:
     quick: bool = False
 
     @property
-    def name(self):
+    def name(self) -> str:
         return self.scene.name
 
 
@@ -53,7 +53,7 @@ def _times(seconds, dt=0.01):
     return np.arange(round(seconds / dt) + 1) * dt
 
 
-def hard_cases():
+def hard_cases() -> dict[str, HardCase]:
     """Name -> `HardCase`, in the order of the report."""
     cases = [*_rest(), *_uplift(), *_overturning(), *_proportions(), *_bearings(), *_steps(), *_records()]
     found = {case.name: case for case in cases}

@@ -1,8 +1,11 @@
 """What is measured in one run of a hard case: errors against the case's oracle, drift, gained energy, lost events."""
 
+from __future__ import annotations
+
 import dataclasses
 import functools
 import math
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +17,11 @@ from analytic.twin import simulate_twin
 from ...measuring.horizon import sensitivity_horizon, twin_scenes
 from ...measuring.measures import energy_errors
 from .cases import hard_cases
+
+if TYPE_CHECKING:
+    from analytic import Response, Scene
+
+    from ...running.cases import Case
 
 JUDGE_TOLERANCE = 1e-15  # of the kernel where it judges others
 # Impacts are counted down to this share of the strongest one's rate, but not below 1e-3 omega_r slenderness, which
@@ -47,7 +55,7 @@ def _case(name):
 
 
 @functools.cache
-def comparable_until(name):
+def comparable_until(name: str) -> tuple[float, bool]:
     """(time [s] up to which the trajectory can be compared, whether the outcome can)."""
     scene = _case(name).scene
     until = sensitivity_horizon(scene).horizon
@@ -56,7 +64,7 @@ def comparable_until(name):
     return until, robust
 
 
-def twin_step(scene):
+def twin_step(scene: Scene) -> float:
     """Longest step of the twin [s]: its own choice, but short enough to interpolate in to 1e-8."""
     longest = 0.005
     if hasattr(scene.motion, "dt"):
@@ -67,7 +75,7 @@ def twin_step(scene):
 
 
 @functools.cache
-def oracle(name, of_kernel):
+def oracle(name: str, of_kernel: bool) -> Oracle:
     """The `Oracle` of the case `name`: the twin for the kernel, the kernel for all others."""
     case = _case(name)
     until, robust = comparable_until(name)
@@ -89,7 +97,7 @@ def oracle(name, of_kernel):
     return Oracle(outcome, response.overturning_time, response.uplifts, response.rests, settled, until, response, noise)
 
 
-def measure(run, response):
+def measure(run: Case, response: Response) -> dict[str, Any]:
     """Errors of one run, name -> number, and its outcome; see `MEASURES` for the units.
 
     What does not apply is left out. run: a `Case` whose tag names the hard case.

@@ -1,7 +1,10 @@
 """The stability study as a picture and as a section of the report."""
 
+from __future__ import annotations
+
 import math
 import textwrap
+from typing import TYPE_CHECKING, Any
 
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure as Canvas
@@ -9,6 +12,9 @@ from matplotlib.patches import Rectangle
 
 from ...showing.parts import Section, Table, figure_of, number
 from .verdicts import DEGRADED, FAILED, MEASURES, RIGHT, worst
+
+if TYPE_CHECKING:
+    from ...running.provenance import Result
 
 # Okabe and Ito; told apart by lightness and by the words in the cells, too
 COLOURS = {RIGHT: "#B5DDF2", DEGRADED: "#E69F00", FAILED: "#882200"}
@@ -18,7 +24,7 @@ FINDINGS = "Case", "Solver", "Verdict", "Measure", "Value", "Tolerance", "Cure"
 CLASSES = {"event-driven": "event-driven solvers", "stepping": "solvers that step"}
 
 
-def matrix(result):
+def matrix(result: Result) -> dict[tuple[str, str], tuple[dict[str, Any], dict[str, Any] | None]]:
     """(case, solver) -> (its row as the settings come, the row of the last cure tried or None).
 
     Cures are tried in turn until one is right.
@@ -34,7 +40,7 @@ def _cured(cure):
     return cure is not None and cure["verdict"] == RIGHT
 
 
-def draw(result):
+def draw(result: Result) -> Canvas:
     """The matrix of verdicts: a line per case, a column per solver; a matplotlib Figure."""
     cases, solvers, cells = list(result.settings["cases"]), list(result.settings["solvers"]), matrix(result)
     canvas = Canvas(figsize=(2.2 + 0.76 * len(solvers), 1.4 + 0.39 * len(cases)), layout="constrained")
@@ -83,7 +89,7 @@ def _reason(row):
     return "time limit" if row["failure"]["kind"] == "time limit" else row["failure"]["reason"]
 
 
-def section(result):
+def section(result: Result) -> Section:
     """The study's section of the report."""
     cells = matrix(result)
     solvers, cases = result.settings["solvers"], result.settings["cases"]
