@@ -79,7 +79,7 @@ class Variant:
         An unknown rung, a ladder without the default, or a value for a setting that does not exist.
     """
 
-    settings: object
+    settings: Any
     rung: str
     ladder: tuple[float, ...]
     decides: str
@@ -109,7 +109,7 @@ class Variant:
     @property
     def knob(self) -> str:
         """Name of the accuracy knob."""
-        return dataclasses.fields(self.settings)[0].name  # type: ignore[arg-type]  # a dataclass's instance
+        return dataclasses.fields(self.settings)[0].name
 
     @property
     def default(self) -> float:

@@ -35,13 +35,13 @@ def choose(engine: Engine, variant: str | None, changes: Mapping[str, Any]) -> t
     if name not in variants:
         raise SettingError(f"{engine.name} has no variant {name!r}: choose one of {', '.join(variants)}")
     settings = variants[name].settings
-    known = [field.name for field in fields(settings)]  # type: ignore[arg-type]  # `Variant` asks for a dataclass
+    known = [field.name for field in fields(settings)]
     for key, value in changes.items():
         if key not in known:
             raise SettingError(f"{engine.name} {name} has no setting {key!r}: its settings are {', '.join(known)}")
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < math.inf:
             raise SettingError(f"{engine.name} {name}: {key} = {value!r} is not a positive number")
-    return name, replace(settings, **{key: float(value) for key, value in changes.items()})  # type: ignore[type-var]  # as above
+    return name, replace(settings, **{key: float(value) for key, value in changes.items()})
 
 
 def leave_restitution(engine: Engine, scene: Scene) -> None:

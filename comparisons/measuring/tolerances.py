@@ -7,7 +7,7 @@ is at most twice the `measured` worst (but for round-off); where an engine gets 
 bound is to be tightened.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -42,10 +42,10 @@ class Tolerance:
     round_off: bool = False
 
     @property
-    def name(self):
+    def name(self) -> str:
         return f"{self.quantity}: {self.engine}, {self.variant}, {self.scenes}"
 
-    def found(self, runs=None):
+    def found(self, runs: dict[Any, Any] | None = None) -> float:
         """The quantity measured here and now; `runs` (dict) keeps simulations that rows share.
 
         Raises
@@ -152,12 +152,13 @@ def rows(engine: str, variant: str | None = None) -> tuple[Tolerance, ...]:
     return tuple(row for row in TABLE if (row.engine, row.variant) == (engine, variant))
 
 
-def measure_all(rows=TABLE):
+def measure_all(rows: Iterable[Tolerance] = TABLE) -> list[dict[str, Any]]:
     """The table measured here and now: a list of dict, JSON values, in the order of `rows`.
 
     Each holds the row's columns, `found` (None where a run failed), `holds`, and `failure`, in words or None.
     """
-    results, runs = [], {}
+    runs: dict[Any, Any] = {}
+    results = []
     for row in rows:
         found, failure = None, None
         try:

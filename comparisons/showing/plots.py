@@ -1,6 +1,11 @@
 """Plots that several commands share. Colours are those of Okabe and Ito, told apart by colour-blind readers."""
 
+from __future__ import annotations
+
 import warnings
+from collections.abc import Sequence
+from os import PathLike
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -8,6 +13,9 @@ from matplotlib.figure import Figure
 from engines import ENGINES
 
 from ..running.readable import readable
+
+if TYPE_CHECKING:
+    from analytic import Response, Scene
 
 # colour, dashes, width; the reference lies wide underneath, dots need width to be seen
 REFERENCE = ("#000000", "-", 2.4)
@@ -17,12 +25,12 @@ TILT_RANGE = (0.05, 2.0)  # least and greatest limit of a tilt axis, over slende
 SPARE = ("#009E73", (0, (5, 1)), 1.3)
 
 
-def marker(solver):
+def marker(solver: str) -> str:
     """Marker of a solver: the same in every figure."""
     return ENGINES[solver].marker if solver in ENGINES else "o"
 
 
-def style(solver):
+def style(solver: str) -> dict[str, Any]:
     """Line keywords of a solver: the same in every figure."""
     colour, dashes, width = REFERENCE if solver == "analytic" else SPARE
     if solver in ENGINES:
@@ -31,7 +39,7 @@ def style(solver):
     return {"color": colour, "linestyle": dashes, "linewidth": width}
 
 
-def draw_histories(scene, responses, horizon=None):
+def draw_histories(scene: Scene, responses: Sequence[Response], horizon: float | None = None) -> Figure:
     """Ground motion, tilt, base displacement and hysteresis loop of one or more responses, as far as they exist.
 
     Each response needs its history. horizon [s], if any, is where point-wise comparison ends.
@@ -41,7 +49,7 @@ def draw_histories(scene, responses, horizon=None):
     loop = scene.bearings is not None
     figure = Figure(figsize=(11 if loop else 8, 0.6 + 2.1 * len(rows)), layout="constrained")
     mosaic = [[row, "loop"] if loop else [row] for row in rows]
-    axes = figure.subplot_mosaic(mosaic, width_ratios=[2, 1] if loop else None)
+    axes = figure.subplot_mosaic(mosaic, width_ratios=[2, 1] if loop else None)  # type: ignore[arg-type]  # names in lists
     for row in rows:
         axes[row].axhline(0, color="0.8", linewidth=0.8, zorder=0)
         axes[row].sharex(axes[rows[0]])
@@ -92,7 +100,7 @@ def _draw_ground(axis, motion, end):
     axis.set_title(readable(motion.label, TITLE_CHARACTERS), fontsize="small", parse_math=False)
 
 
-def save(figure, path):
+def save(figure: Figure, path: str | PathLike[str]) -> None:
     """Write a figure; the format follows from the name (see `files.check_writable`)."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing")  # a name in letters the font lacks is shown as boxes

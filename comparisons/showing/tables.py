@@ -127,7 +127,7 @@ def engine_text(engine: Engine) -> str:
         about = inspect.getdoc(type(variant.settings)).split("\n\n")[0].replace("\n", " ")  # type: ignore[union-attr]  # settings say what they are
         values = [
             f"{field}={value:.6g}" if isinstance(value, float) else f"{field}={value}"
-            for field, value in dataclasses.asdict(variant.settings).items()  # type: ignore[call-overload]  # a dataclass's instance
+            for field, value in dataclasses.asdict(variant.settings).items()
         ]
         values[:1] = [f"{value} (knob)" for value in values[:1]]
         lines += [

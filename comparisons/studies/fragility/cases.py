@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,7 +37,7 @@ QUICK = {"free-standing": ("caryatid-rigid", {}, (0.9, 1.0, 1.3))}
 MOTIONS, QUICK_MOTIONS = 200, 16
 
 
-def solvers_of(engines):
+def solvers_of(engines: Sequence[str]) -> list[tuple[str, str | None]]:
     """(engine, variant) of what is compared: every engine as it comes, None, and its first scripts."""
     return [
         *((name, None) for name in engines),
@@ -50,7 +50,7 @@ def solvers_of(engines):
     ]
 
 
-def low_frictions(solvers):
+def low_frictions(solvers: Iterable[tuple[str, str | None]]) -> dict[str, float]:
     """{label: friction} of those of the (engine, variant) whose block may slide for it."""
     found = {}
     for name, variant in solvers:

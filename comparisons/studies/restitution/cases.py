@@ -5,6 +5,7 @@ at a time.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,7 +46,7 @@ FULL = Grid(
 QUICK = Grid((0.1, 0.2, 0.3, 0.45), (None, 10.0, 1.0, CARYATID_BASE), STARTS, ((0.2, None), (0.2, CARYATID_BASE)), 16)
 
 
-def free_scene(slenderness, ratio, start, scale=1.0):
+def free_scene(slenderness: float, ratio: float | None, start: float, scale: float = 1.0) -> Scene:
     """A block on rigid ground (ratio None) or on a freely sliding base of ratio times its mass, tilted and let go.
 
     It ends past the peak of the swing after the third impact of the model, or a little after coming to rest.
@@ -63,18 +64,18 @@ def free_scene(slenderness, ratio, start, scale=1.0):
     return scene.with_(duration=times[-1] + 0.2 * math.sqrt(scale))
 
 
-def knob_of(engine, variant):
+def knob_of(engine: str, variant: str) -> tuple[str, float, tuple[float, ...]]:
     """(name, default, values) of a variant's accuracy knob."""
     kind = get_engine(engine).variants[variant]
     return kind.knob, kind.default, tuple(sorted(kind.ladder))
 
 
-def variants_of(engines):
+def variants_of(engines: Sequence[str]) -> list[tuple[str, str]]:
     """(engine, variant) pairs."""
     return [(engine, variant) for engine in engines for variant in get_engine(engine).variants]
 
 
-def grid_cases(grid, engines):
+def grid_cases(grid: Grid, engines: Sequence[str]) -> list[Case]:
     """The grid as cases, tagged with part, ratio, slenderness, start and knob value."""
     cases = []
     for ratio in grid.ratios:
@@ -104,7 +105,7 @@ PHASE_STEPS = (4e-3, 1e-3, 2.5e-4)  # s
 SCALES = (0.25, 1.0, 4.0)  # of the block, to tell (8) from (8) as printed
 
 
-def experiments_of(engines):
+def experiments_of(engines: Sequence[str]) -> list[tuple[str, str, str, str, tuple[float, ...]]]:
     """(name, engine, variant, setting, values) of what the engines say is worth changing alone."""
     return [
         (setting.replace("_", " "), engine, variant, setting, values)
@@ -113,7 +114,7 @@ def experiments_of(engines):
     ]
 
 
-def fixed_steps_of(engines):
+def fixed_steps_of(engines: Sequence[str]) -> list[tuple[str, str]]:
     """(engine, variant) of those that decide the impact, with care, at one step."""
     found = []
     for engine, variant in variants_of(engines):
@@ -123,7 +124,7 @@ def fixed_steps_of(engines):
     return found
 
 
-def experiment_cases(grid, engines):
+def experiment_cases(grid: Grid, engines: Sequence[str]) -> list[Case]:
     """One suspected cause at a time; tagged with part, experiment, ratio, slenderness, start and value."""
     return [*_setting_cases(grid, engines), *_phase_cases(grid, engines), *_size_cases(engines)]
 

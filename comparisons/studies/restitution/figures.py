@@ -1,11 +1,19 @@
 """The figures of the restitution study, drawn from its result alone."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from ...showing.plots import style
+
+if TYPE_CHECKING:
+    from ...running.provenance import Result
 
 WIDTH = 6.4  # in
 # In the order of an engine's variants: marker, dashes, whether the marker is filled.
@@ -15,7 +23,7 @@ FLOOR = 1e-9  # errors below are drawn here
 GROUNDS = ("rigid ground", "sliding base")
 
 
-def figures(result):
+def figures(result: Result) -> dict[str, Figure]:
     """{name: matplotlib figure}."""
     drawn = {
         "maps": maps(result, "rms", "error of restitution, rms [-]"),
@@ -27,14 +35,14 @@ def figures(result):
     return {name: figure for name, figure in drawn.items() if figure is not None}
 
 
-def select(result, part, **wanted):
+def select(result: Result, part: str, **wanted: Any) -> list[dict[str, Any]]:
     """Rows of a part whose columns have these values."""
     return [
         row for row in result.rows if row["part"] == part and all(row[key] == value for key, value in wanted.items())
     ]
 
 
-def knob_of(result, row):
+def knob_of(result: Result, row: Mapping[str, Any]) -> str:
     """Name of the accuracy knob of a row's variant."""
     return next(
         knob["knob"]
@@ -43,12 +51,12 @@ def knob_of(result, row):
     )
 
 
-def base_name(ratio):
+def base_name(ratio: float | None) -> str:
     """A mass ratio as a label."""
     return "rigid" if ratio is None else f"{ratio:.2g}"
 
 
-def maps(result, measure, label):
+def maps(result: Result, measure: str, label: str) -> Figure:
     """Error over slenderness and base mass at the default setting, a panel for each variant."""
     knobs = result.settings["knobs"]
     gammas = result.settings["slendernesses"]
@@ -91,7 +99,7 @@ def maps(result, measure, label):
     return figure
 
 
-def look(result, engine, variant):
+def look(result: Result, engine: str, variant: str) -> dict[str, Any]:
     """Line keywords of a variant."""
     names = [knob["variant"] for knob in result.settings["knobs"] if knob["engine"] == engine]
     marker, dashes, filled = LOOKS[names.index(variant) % len(LOOKS)]
@@ -105,7 +113,7 @@ def look(result, engine, variant):
     }
 
 
-def accuracy(result):
+def accuracy(result: Result) -> Figure:
     """Error against the accuracy knob, and against the cost of the same runs."""
     figure = Figure(figsize=(WIDTH, 6.2), layout="constrained")
     axes = figure.subplots(2, 2, sharey=True)
@@ -144,7 +152,7 @@ def accuracy(result):
     return figure
 
 
-def causes(result):
+def causes(result: Result) -> Figure | None:
     """Experiments, each changing one suspected cause in one variant; None where no engine ran them."""
     panels = [
         (draw, rows)
@@ -173,7 +181,7 @@ def causes(result):
     return figure
 
 
-def by_variant(rows):
+def by_variant(rows: Sequence[Mapping[str, Any]]) -> list[list[Any]]:
     """The rows of each engine's variant, list of lists."""
     groups = {}
     for row in rows:
@@ -268,7 +276,7 @@ def _flight_damping(axis, rows, result):
     )
 
 
-def equation_8(result):
+def equation_8(result: Result) -> Figure:
     """Base velocity jump against eq. (8), corrected and as printed, over slenderness and over the block's size."""
     figure = Figure(figsize=(WIDTH, 3.4), layout="constrained")
     left, right = figure.subplots(1, 2, sharey=True)

@@ -1,6 +1,10 @@
 """From the runs of the restitution study to its result: errors of each cell, each setting and each experiment."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -27,11 +31,19 @@ from .cases import (
     variants_of,
 )
 
+if TYPE_CHECKING:
+    from analytic import Response, Scene
+
+    from ...running.cases import Case
+    from ...running.study import Ask, Plan
+    from ...running.sweep import Row
+    from .cases import Grid
+
 GROUNDS = ("rigid ground", "sliding base")
 DIGITS = 4
 
 
-def measure(case, response):
+def measure(case: Case, response: Response) -> dict[str, Any]:
     """What is measured in one run: the errors of its first `IMPACTS` impacts."""
     return {
         "outcome": response.outcome,
@@ -41,7 +53,7 @@ def measure(case, response):
     }
 
 
-def plan(ask, grid=None):
+def plan(ask: Ask, grid: Grid | None = None) -> Plan:
     """The plan of the study; grid: what to cover, in place of FULL or QUICK."""
     grid = grid or (QUICK if ask.quick else FULL)
     cases = grid_cases(grid, ask.engines) + experiment_cases(grid, ask.engines)
@@ -117,7 +129,7 @@ def _found(grid, rows):
 class _Pool:
     """The runs of one cell, measured: arrays of all impacts together."""
 
-    def __init__(self, members):
+    def __init__(self, members: Sequence[Row]) -> None:
         self.runs, self.members = len(members), members
         self.sound = [row for row in members if not row.failed]
         errors = [_errors(row) for row in self.sound]
@@ -218,7 +230,7 @@ def _summaries(pooled, engines, grid):
                 if (found := pools(value, grid.ladder))
             ]
             found = [(row["value"], row["rms"]) for row in ladder if row["rms"]]
-            order = np.polyfit(*np.log(np.transpose(found)), 1)[0] if len(found) > 1 else None
+            order = np.polyfit(*np.log(np.transpose(found)), 1)[0] if len(found) > 1 else None  # type: ignore[call-overload]  # of x and y
             entries += [*ladder, {"part": "order", **given, "order": order and float(order)}]
     return entries
 
@@ -300,7 +312,7 @@ def _flight_damping(pooled):
     return entries
 
 
-def damped_error(scene, damping):
+def damped_error(scene: Scene, damping: float) -> np.ndarray:
     """Error of restitution by swing energies, shape (impacts,), of a block on rigid ground that is damped in flight.
 
     J_O phi'' = -m g R sin(gamma - phi) - d phi' [J_O + (m R^3 + I_c) |phi'|], d = damping [1/s]; impacts by eq. (7).
@@ -318,19 +330,19 @@ def damped_error(scene, damping):
     def peak(t, y):
         return y[1]
 
-    landing.terminal = peak.terminal = True
-    landing.direction = peak.direction = -1
+    landing.terminal = peak.terminal = True  # type: ignore[attr-defined]  # scipy reads them there
+    landing.direction = peak.direction = -1  # type: ignore[attr-defined]  # as above
     tilt, energies = abs(scene.start.tilt), []
     for _ in range(IMPACTS + 1):
         energies.append(math.cos(gamma - tilt) - math.cos(gamma))
         down = solve_ivp(fall, (0, 30), (tilt, 0.0), events=landing, rtol=1e-9, atol=1e-12)
         up = solve_ivp(fall, (0, 30), (1e-12, -e * down.y[1, -1]), events=peak, rtol=1e-9, atol=1e-12)
         tilt = up.y[0, -1]
-    energies = np.array(energies)
-    return np.sqrt(energies[1:] / energies[:-1]) - e
+    energies = np.array(energies)  # type: ignore[assignment]  # the list, as an array
+    return np.sqrt(energies[1:] / energies[:-1]) - e  # type: ignore[operator]
 
 
-def friction_needed(scene):
+def friction_needed(scene: Scene) -> float:
     """Friction that an impact of the model needs: horizontal over vertical impulse on the block.
 
     Centre of mass: before, velocity (h, -b) |w|, after, (e h, e b) |w|, less the base's jump.

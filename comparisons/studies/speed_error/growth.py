@@ -1,11 +1,15 @@
 """How CPU time and memory of a run grow with duration, sample rate and number of runs."""
 
+from __future__ import annotations
+
 import dataclasses
 import math
 import time
 import tracemalloc
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import psutil
@@ -18,10 +22,17 @@ from ...running.cases import Case
 from .scenes import at_amplitude
 from .timing import TICK
 
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from analytic import Response, Scene
+
+    from .scenes import Trial
+
 AGAINST = {"duration": "duration [s]", "samples": "record samples per second [1/s]", "runs": "runs in a batch [-]"}
 WARM_SECONDS = 0.02  # s simulated before the memory is measured: code and caches are loaded
 SPREAD_OF_BATCH = 0.2  # amplitudes of a batch lie within this share of the boundary
-SPAN = {
+SPAN: dict[str, Any] = {
     "duration": {
         "analytic": ((100, 200, 400, 800, 1600, 3200), (50, 100, 200, 400)),
         "engine": ((5, 10, 20, 40), (1, 2, 4)),
@@ -38,18 +49,18 @@ class Point:
     against: str
     value: float
     family: str
-    scene: object
+    scene: Scene
     solver: str
     count: int = 0
 
-    def case(self, turn):
+    def case(self, turn: int) -> Case:
         """The measurement of one round as a `Case`: its own run, cut short, loads code and caches for `grown`."""
         warm = self.scene.with_(duration=min(self.scene.duration, WARM_SECONDS))
         tag = {"duration": self.scene.duration, "count": self.count, "round": turn}
         return Case(warm, self.solver, None, {"history": False}, tag)
 
 
-def points(trials, engines, quick):
+def points(trials: Sequence[Trial], engines: Sequence[str], quick: bool) -> list[Point]:
     """All measurements: the isolated Caryatid under a repeated motion, and batches near the overturning boundary."""
     pick = 1 if quick else 0
     by_name = {trial.name: trial.scene for trial in trials}
@@ -69,7 +80,7 @@ def points(trials, engines, quick):
     ]
 
 
-def lasting(scene, duration):
+def lasting(scene: Scene, duration: float) -> Scene:
     """The scene for `duration` seconds, its motion repeated."""
     samples = scene.motion.samples[: math.floor(scene.duration / scene.motion.dt)]
     times = math.ceil(duration / (len(samples) * scene.motion.dt)) + 1
@@ -77,14 +88,14 @@ def lasting(scene, duration):
     return scene.with_(motion=motion, duration=float(duration))
 
 
-def sampled(scene, rate):
+def sampled(scene: Scene, rate: float) -> Scene:
     """The scene with its motion sampled `rate` times a second; above its own rate, the very same motion."""
     motion = scene.motion
     times = np.arange(round(scene.duration * rate) + 1) / rate
     return scene.with_(motion=SampledMotion(1.0 / rate, motion.acceleration(times), motion.label))
 
 
-def grown(case, response):
+def grown(case: Case, response: Response) -> dict[str, Any]:
     """Measure: CPU time and memory [bytes] of the run that the case's tag names, in a process of its own.
 
     traced_bytes: peak of what Python and numpy allocate during the run (tracemalloc). resident_bytes: how far the
@@ -140,7 +151,7 @@ def _resident_growth(run):
     return max(0, int(peak.split()[1]) * 1024 - before)
 
 
-def fit(x, y):
+def fit(x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[float, float]:
     """(exponent, its standard error) of y ~ x^exponent by least squares of the logarithms; three points or more."""
     u, v = np.log(x), np.log(y)
     slope, offset = np.polyfit(u, v, 1)

@@ -1,7 +1,11 @@
 """Every solver and the ladder of its accuracy knob: what is run on which scene."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from engines import get_engine
 
@@ -10,6 +14,9 @@ from ...running.cases import Case
 from . import models
 from .scenes import Trial
 from .timing import PEER
+
+if TYPE_CHECKING:
+    from analytic import Scene
 
 TRANSPARENT = ("free-rigid", "near-overturning")  # scenes without base or record: what the peers are written for
 SAMPLED = ("isolated-standing", "isolated-rocking")
@@ -35,13 +42,13 @@ class Entry:
     settings: dict = field(default_factory=dict)
     law: str | None = None
     model: str = NEEDED
-    scene_of: object = None
+    scene_of: Callable[[Scene], Scene] | None = None
 
     @property
-    def scene(self):
+    def scene(self) -> Scene:
         return self.trial.scene if self.scene_of is None else self.scene_of(self.trial.scene)
 
-    def case(self, turn):
+    def case(self, turn: int) -> Case:
         """The measurement of one round as a `Case`."""
         boundary, settings = self.trial.boundary, {**self.settings, self.knob: self.value}
         if self.solver != PEER:
@@ -55,7 +62,7 @@ class Entry:
         )
 
 
-def powers(*exponents):
+def powers(*exponents: float) -> tuple[float, ...]:
     return tuple(10.0**exponent for exponent in exponents)
 
 
@@ -83,13 +90,13 @@ PEER_LADDERS = {
 TWIN_SETTINGS = {"energy": False}
 
 
-def refined(ladder):
+def refined(ladder: Sequence[float]) -> list[float]:
     """A ladder with the geometric means of its neighbours."""
     means = (math.sqrt(a * b) for a, b in zip(ladder, ladder[1:], strict=False))
     return sorted({*ladder, *means}, reverse=ladder[0] > ladder[-1])
 
 
-def entries(trials, engines, quick):
+def entries(trials: Sequence[Trial], engines: Sequence[str], quick: bool) -> list[Entry]:
     """All entries, ordered so that solvers alternate."""
     pick = 1 if quick else 0
     found = []
@@ -124,7 +131,7 @@ def _engines(trial, engines, pick):
     return found
 
 
-def applied_impacts(engines):
+def applied_impacts(engines: Sequence[str]) -> dict[str, str]:
     """{family whose impacts are the adapter's: family of the same engine's default variant}."""
     return {
         f"{name}, {variant}": f"{name}, {get_engine(name).default_variant}"

@@ -1,5 +1,9 @@
 """The speed-error study in the report: words, tables and figures, all from the result."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 from ...showing.parts import Section, Table, figure_of, number
 from .figures import draw_growth, draw_pareto
 from .ladders import NEEDED
@@ -17,10 +21,13 @@ from .tables import (
     unrepeatable,
 )
 
+if TYPE_CHECKING:
+    from ...running.provenance import Result
+
 SHOWN = (1e-2, 1e-3, 1e-4)  # levels of which the words speak
 
 
-def section(result):
+def section(result: Result) -> Section:
     """The study's `Section` of the report."""
     failed = [row for row in ladder(result) if row["failure"]]
     figures = [
@@ -60,7 +67,7 @@ def section(result):
     )
 
 
-def paragraphs(result):
+def paragraphs(result: Result) -> list[str]:
     """Plain words with computed numbers, list of str."""
     settings = result.settings
     found = [
@@ -213,7 +220,7 @@ def _growth_words(result):
     return [text]
 
 
-def tables(result):
+def tables(result: Result) -> list[Table]:
     """Cost at an error for every scene; observed orders; what the scene needs; cost per second and per step."""
     found = [_cost_table(result, scene, about) for scene, about in result.settings["scenes"].items()]
     return [*found, _order_table(result), _extra_table(result), _unit_table(result)]

@@ -2,17 +2,18 @@
 
 import json
 import statistics
+from collections.abc import Callable, Sequence
 from typing import Annotated
 
 import numpy as np
 import typer
 
 from ...bench.analytic_bench import peer_versions
-from ...running.study import Batch, Found
+from ...running.study import Ask, Batch, Found, Plan
 from . import growth, timing
-from .ladders import applied_impacts, entries
+from .ladders import Entry, applied_impacts, entries
 from .measure import errors
-from .scenes import description, trials
+from .scenes import Trial, description, trials
 
 REPEATS, QUICK_REPEATS = 5, 3
 SLOW = 0.5  # s of CPU: such measurements are repeated `FEW` times only
@@ -22,7 +23,14 @@ EVIDENCE = 600  # characters of an engine's message that a row keeps
 Repeats = Annotated[int | None, typer.Option(min=1, help="Fresh processes in turn. Default 5, quick 3.")]
 
 
-def plan(ask, scenes=None, keep=lambda entry: True, grow=True, *, repeats: Repeats = None):
+def plan(
+    ask: Ask,
+    scenes: Sequence[Trial] | None = None,
+    keep: Callable[[Entry], bool] = lambda entry: True,
+    grow: bool = True,
+    *,
+    repeats: Repeats = None,
+) -> Plan:
     """The plan of the study: in each round, one fresh process, every solver has its turn.
 
     Parameters

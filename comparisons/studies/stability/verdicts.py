@@ -1,7 +1,11 @@
 """Solvers, tolerances and verdicts of the stability study."""
 
+from __future__ import annotations
+
 import dataclasses
 import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from engines import ENGINES, get_engine
 
@@ -10,6 +14,11 @@ from ...running.provenance import scrub
 from ...running.study import Batch, Found
 from .cases import hard_cases
 from .measure import measure, twin_step
+
+if TYPE_CHECKING:
+    from ...running.study import Ask, Plan
+    from ...running.sweep import Row
+    from .cases import HardCase
 
 QUICK_LIMIT, TIME_LIMIT = 60.0, 900.0  # s, of one run; the longest takes 75 s of CPU time
 LONG = 60.0  # s; in longer scenes cures are tried on the engines' default variants only, to save time
@@ -81,10 +90,10 @@ class Solver:
     default: bool = False  # the engine's best effort
 
     @property
-    def label(self):
+    def label(self) -> str:
         return self.name if self.variant is None else f"{self.name}, {self.variant}"
 
-    def case(self, hard, cure=None):
+    def case(self, hard: HardCase, cure: int | None = None) -> Case:
         """The run of a hard case; `cure`: which of the cures, None for the settings as they come."""
         settings = dict(self.settings)
         if self.name == "twin":
@@ -102,7 +111,7 @@ TIME_STEPPING = Solver(
 )
 
 
-def solvers(engines):
+def solvers(engines: Iterable[str]) -> list[Solver]:
     """The columns: kernel, twin, time stepping, and every variant of the engines."""
     columns = [Solver(name, None, "event-driven", {}, None, (), True) for name in ("analytic", "twin")]
     columns.append(TIME_STEPPING)
@@ -115,12 +124,12 @@ def solvers(engines):
     return columns
 
 
-def tolerances(hard, kind):
+def tolerances(hard: HardCase, kind: str) -> dict[str, tuple[float, str]]:
     """measure -> (tolerance, reason) of a hard case for a class of solvers."""
     return {**TOLERANCES[kind], **hard.tolerances.get(kind, {})}
 
 
-def entry(hard, solver, row):
+def entry(hard: HardCase, solver: Solver, row: Row) -> dict[str, Any]:
     """The result file's row of one run: verdict, every measure beside its tolerance, or the evidence of failure."""
     content = {
         "case": hard.name,
@@ -163,7 +172,7 @@ def _short(value):
     return value if value is None or not math.isfinite(value) else float(f"{value:.3g}")
 
 
-def worst(content):
+def worst(content: Mapping[str, Any]) -> tuple[str, float | None, float, float]:
     """(measure, value, tolerance, value over tolerance) of the measure farthest outside its tolerance, or closest."""
 
     def ratio(name):
@@ -176,7 +185,7 @@ def worst(content):
     return (name, *content["errors"][name], ratio(name))
 
 
-def plan(ask, names=None, columns=None):
+def plan(ask: Ask, names: Iterable[str] | None = None, columns: Sequence[Solver] | None = None) -> Plan:
     """The plan of the study: all cells, then the cures tried in turn where the verdict was not "right".
 
     Parameters
