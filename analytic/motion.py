@@ -29,9 +29,9 @@ def _positive(key: str, value: object, unit: str) -> None:
         raise SceneError(key, value, "not a positive number", f"give a finite value above 0 [{unit}]")
 
 
-def vertical_acceleration(motion: Motion | None, t: Values) -> Values | float:
-    """Vertical ground acceleration a_v [m/s2], upward, at time(s) t [s]; 0.0 where the motion, or None, has none."""
-    return motion.vertical.acceleration(t) if motion is not None and motion.vertical is not None else 0.0
+def vertical_acceleration(motion: Motion | None, t: Values) -> Values:
+    """Vertical ground acceleration a_v [m/s2], upward, at time(s) t [s]; 0 where the motion, or None, has none."""
+    return motion.vertical.acceleration(t) if motion is not None and motion.vertical is not None else 0.0 * t
 
 
 @dataclass(frozen=True, eq=False)

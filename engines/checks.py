@@ -52,9 +52,9 @@ def replay_bearing(scene: Scene, trace: Trace) -> float:
 def energy_balance(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray]:
     """(balance, kinetic) [J], shape (n,): mechanical energy + loss in the bearings - input work, 0 at the start.
 
-    In the ground's frame, where the ground motion is the inertial load -a_g on both masses. Constant in flight, about
-    a corner or free, for an exact solution; every impact lowers it. Work by the trapezoidal rule, over the trace's
-    steps and the motion's samples together.
+    In the ground's frame, where the ground motion is the inertial load -a_g on both masses and -a_v on the block.
+    Constant in flight, about a corner or free, for an exact solution; every impact lowers it. Work by the trapezoidal
+    rule, over the trace's steps and the motion's samples together.
     """
     model = ArrayModel.of(scene)
     law, m, base = model.bearing, model.m, model.M - model.m if model.on_base else 0.0
@@ -67,6 +67,8 @@ def energy_balance(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray]:
     lost = _trapezoid(trace.bearing_force - law.count * law.kb * x, x)
     moved = base * x + m * centre[:, 0], base * v + m * centre[:, 2]
     balance = kinetic + potential + lost - _work(scene.motion, trace.time, *moved)
+    if scene.motion is not None:
+        balance = balance - _work(scene.motion.vertical, trace.time, m * z, m * centre[:, 3])
     return balance - balance[0], kinetic
 
 

@@ -5,7 +5,7 @@ A package that offers an engine holds one `Engine`. The adapter, a module of its
 - ``VARIANTS``: {name: `Variant`}, the default first;
 - ``versions()``: {package: version} of what computes;
 - ``run(scene, variant, settings)``: a `Run` of a scene with a duration; `variant` is a name, `settings` an instance of
-  that variant's dataclass, both checked.
+  that variant's dataclass, both checked. Where the motion has a `vertical` one, the block's weight is m (g + a_v).
 
 All else is the same for every engine and is done here and in `engines.simulating`: settings are checked, a scene
 without a duration runs until its outcome is decided, warnings are said, events and peaks are found outside the engine.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from analytic.motion import vertical_acceleration
 from analytic.response import Failure, Impact
 
 from .swings import ArrayModel, to_contact
@@ -125,7 +126,8 @@ def straddled(scene: Scene, trace: Trace) -> np.ndarray:
         return k
     side, step = np.sign(trace.tilt[k]), np.diff(trace.time)[k]
     ground = scene.motion.acceleration(trace.time[k]) if scene.motion else np.zeros(len(k))
-    gain = side * model.accelerations(side, trace.tilt[k], trace.tilt_rate[k], ground, trace.bearing_force[k])[0]
+    up = vertical_acceleration(scene.motion, trace.time[k])
+    gain = side * model.accelerations(side, trace.tilt[k], trace.tilt_rate[k], ground, trace.bearing_force[k], up)[0]
     p, q = np.abs(trace.tilt[k]), side * trace.tilt_rate[k]
     speed = np.sqrt(np.maximum(q * q - 2 * gain * p, 0.0))
     falls = (gain < 0) & (model.restitution * speed >= _least_speed(model, trace, _speeds(model, trace)[k].max()))
@@ -166,7 +168,8 @@ def _limit_time(
 ) -> tuple[float, float]:
     """(time at which the model's impacts after a landing accumulate, |tilt''| toward contact there)."""
     ground = float(scene.motion.acceleration(landing)) if scene.motion else 0.0
-    pull = -side * float(model.accelerations(side, 0.0, 0.0, ground, trace.bearing_force[last])[0])
+    up = float(vertical_acceleration(scene.motion, landing))
+    pull = -side * float(model.accelerations(side, 0.0, 0.0, ground, trace.bearing_force[last], up)[0])
     e = model.restitution
     if not (pull > 0 and np.isfinite(rate) and e < 1):
         return landing, pull
@@ -174,9 +177,10 @@ def _limit_time(
 
 
 def _uplift_time(model: ArrayModel, scene: Scene, trace: Trace, begin: int, first: int) -> float:
-    """Time at which |absolute base acceleration| last rose through g tan(gamma) in steps begin..first, eq. (2)."""
+    """Time at which |absolute base acceleration| last rose through (g + a_v) tan(gamma) in steps begin..first, (2)."""
     steps = slice(begin, first + 1)
-    size = np.abs(_contact_acceleration(model, scene, trace, steps)) - model.uplift_acceleration
+    limit = model.uplift_limit(vertical_acceleration(scene.motion, trace.time[steps]))
+    size = np.abs(_contact_acceleration(model, scene, trace, steps)) - limit
     rising = np.flatnonzero((size[:-1] <= 0) & (size[1:] > 0))
     if not len(rising):
         return float(trace.time[begin] if size[0] > 0 else trace.time[first])
@@ -200,17 +204,20 @@ def contact_measures(scene: Scene, trace: Trace, falls: bool = False) -> tuple[f
     """
     model = ArrayModel.of(scene)
     level = _contact_acceleration(model, scene, trace)
+    vertical = vertical_acceleration(scene.motion, trace.time)
+    weight = (model.g + vertical) / model.g
     # In contact above the uplift acceleration the block is off the base already, unseen by the engine's resolution.
-    lifting = np.abs(level) > model.uplift_acceleration
+    lifting = np.abs(level) > model.uplift_limit(vertical)
     flight = lifting | (np.abs(trace.tilt) > trace.contact_tilt)
-    demand, normal, absolute = np.abs(level) / model.g, np.ones(len(level)), level.copy()
+    demand, normal, absolute = np.abs(level) / model.g / weight, weight.copy(), level.copy()
     if flight.any():
         tilt, rate = trace.tilt[flight], trace.tilt_rate[flight]
         side = np.where(np.abs(tilt) > trace.contact_tilt, np.sign(tilt), -np.sign(level[flight]))
         ground = scene.motion.acceleration(trace.time[flight]) if scene.motion else np.zeros(len(tilt))
-        tilting, sliding = model.accelerations(side, tilt, rate, ground, trace.bearing_force[flight])
+        up = vertical[flight]
+        tilting, sliding = model.accelerations(side, tilt, rate, ground, trace.bearing_force[flight], up)
         absolute[flight] = ground + sliding
-        H, N = model.contact_forces(side, tilt, rate, tilting, absolute[flight])
+        H, N = model.contact_forces(side, tilt, rate, tilting, absolute[flight], up)
         demand[flight] = np.where(N > 0, np.abs(H) / np.where(N > 0, N, 1.0), np.inf)
         normal[flight] = N / (model.m * model.g)
     held = slice(None)

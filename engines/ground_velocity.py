@@ -46,12 +46,12 @@ def _sampled(motion: SampledMotion) -> Callable[[float], float]:
 
 def _pulse(motion: PulseMotion) -> Callable[[float], float]:
     frequency, start, length = motion.frequency, motion.start, motion.length
-    size = motion.amplitude / frequency
+    size, phase = motion.amplitude / frequency, motion.phase
     half = 0.5 * RICKER_PERIODS * math.pi
     forms = {
-        "one-sine": lambda u: 1 - math.cos(u),
-        "half-sine": lambda u: 1 - math.cos(u),
-        "one-cosine": math.sin,
+        "one-sine": lambda u: math.cos(phase) - math.cos(u + phase),
+        "half-sine": lambda u: math.cos(phase) - math.cos(u + phase),
+        "one-cosine": lambda u: math.sin(u + phase) - math.sin(phase),
         "rectangular": lambda u: u,
         # with y = u/2 - 2 pi: d(2 y exp(-y^2))/du = (1 - 2 y^2) exp(-y^2)
         "ricker": lambda u: (

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from analytic.decision import is_decided, model_warnings
-from analytic.motion import SampledMotion
+from analytic.motion import SampledMotion, vertical_acceleration
 from analytic.response import Failure, History, Response, State
 
 from .checks import check_energy, check_place, energy_gain, replay_bearing
@@ -258,7 +258,9 @@ def _upto_overturning(scene: Scene, trace: Trace, ended: str | None) -> tuple[Tr
     if ended == "overturned" and side * trace.tilt_rate[-1] > 0:
         model = ArrayModel.of(scene)
         ground = scene.motion.acceleration(trace.time[-1]) if scene.motion else 0.0
-        pull = side * model.accelerations(side, trace.tilt[-1], trace.tilt_rate[-1], ground, trace.bearing_force[-1])[0]
+        up = vertical_acceleration(scene.motion, trace.time[-1])
+        force = trace.bearing_force[-1]
+        pull = side * model.accelerations(side, trace.tilt[-1], trace.tilt_rate[-1], ground, force, up)[0]
         q, p = side * trace.tilt_rate[-1], abs(trace.tilt[-1]) - limit
         return trace, float(trace.time[-1] - 2 * p / (q + math.sqrt(max(q * q - 2 * pull * p, 0.0))))
     return trace, None

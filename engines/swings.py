@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from analytic.motion import vertical_acceleration
 from analytic.rocking import RockingModel
 
 if TYPE_CHECKING:
@@ -184,7 +185,8 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
         if fast.any():
             given = np.where(within, np.interp(t, trace.time, trace.bearing_force), along(t))
             force = np.where(fast, given, force)
-        tilting, sliding = model.accelerations(side, tilt, rate, ground(t), force)
+        up = vertical_acceleration(scene.motion, t)
+        tilting, sliding = model.accelerations(side, tilt, rate, ground(t), force, up)
         return np.stack([rate, tilting, v, np.broadcast_to(sliding, rate.shape)])
 
     state, fast = np.stack([tilt, rate, x, v]), np.zeros(len(t), dtype=bool)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analytic.motion import vertical_acceleration
 from analytic.response import Failure
 from analytic.rocking import RockingModel
 from engines.contract import Engine, Run, Variant
@@ -57,9 +58,10 @@ def run(scene, variant, settings):
     for k in range(1, math.ceil(scene.duration / step - 1e-9) + 1):
         a, force = float(ground((k - 1) * step)), rows[-1][-1]
         level = model.contact_acceleration(force) if model.on_base else a
-        if side == 0 and abs(level) > model.uplift_acceleration:
+        up = float(vertical_acceleration(scene.motion, (k - 1) * step))
+        if side == 0 and abs(level) > model.uplift_limit(up):
             side = -int(np.sign(level))
-        spin, push = model.accelerations(side, tilt, rate, a, force) if side else (0.0, (level - a) * model.on_base)
+        spin, push = model.accelerations(side, tilt, rate, a, force, up) if side else (0.0, (level - a) * model.on_base)
         rate, v = rate + step * spin, v + step * push
         tilt, x = tilt + step * rate, x + step * v
         z = model.bearing.hysteretic(z, step * v)

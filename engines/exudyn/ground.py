@@ -28,6 +28,8 @@ def ground_load(motion: Motion) -> Callable[[Any, Any], Any]:
 
     def pulse(t, load):
         u = motion.frequency * (t - motion.start)
+        if motion.phase:
+            u = u + motion.phase
         if motion.shape == "rectangular":
             return load[0]
         if motion.shape == "ricker":
@@ -59,8 +61,10 @@ class Ground:
 
     def __init__(self, model: Model, longest: float) -> None:
         """longest : longest step [s]."""
-        self.ends, self.segment_loads = segments(model.scene.motion, model.scene.duration)
-        self.mbs, self.loads, self.longest = model.mbs, model.loads, longest
+        self.ends, _ = segments(model.scene.motion, model.scene.duration)
+        vectors = {motion: segments(motion, model.scene.duration)[1] for _, motion in model.loads}
+        self.loads = [(number, vectors[motion]) for number, motion in model.loads]
+        self.mbs, self.longest = model.mbs, longest
         self.slack = 1e-12 * max(1.0, model.scene.duration)  # round-off of a sum of steps
         self.at, self.limited = 0, False
         self.iterations = None
@@ -68,8 +72,8 @@ class Ground:
 
     def _enter(self):
         self.end = self.ends[self.at]
-        for load in self.loads:
-            self.mbs.SetLoadParameter(load, "loadVector", self.segment_loads[self.at])
+        for number, vectors in self.loads:
+            self.mbs.SetLoadParameter(number, "loadVector", vectors[self.at])
 
     def first_step(self, step: float) -> float:
         """The first step [s]: `step`, but inside the first segment."""

@@ -13,6 +13,7 @@ import numpy as np
 from exudyn.itemInterface import MarkerNodeCoordinate, NodePointGround, ObjectConnectorCoordinate, ObjectJointRevolute2D
 from scipy.interpolate import CubicHermiteSpline
 
+from analytic.motion import vertical_acceleration
 from analytic.response import Failure
 from analytic.rocking import RockingModel
 
@@ -93,7 +94,8 @@ class Stepper:
 
     def excess(self, index: int) -> float:
         """|absolute acceleration in full contact| above the uplift acceleration [m/s2] at a row."""
-        return abs(self.contact_acceleration(index)) - self.equations.uplift_acceleration
+        limit = self.equations.uplift_limit(float(vertical_acceleration(self.scene.motion, self.rows[index][0])))
+        return abs(self.contact_acceleration(index)) - limit
 
     def contact_acceleration(self, index: int) -> float:
         t, q, v = self.rows[index]
@@ -151,7 +153,8 @@ class Stepper:
         speed = v.item(3) if self.scene.base else 0.0
         after, jump = equations.impact(rate)
         ground = float(self.scene.motion.acceleration(t)) if self.scene.motion else 0.0
-        pull = old * equations.accelerations(-old, 0.0, 0.0, ground, self.force(len(self.rows) - 1))[0]
+        up = float(vertical_acceleration(self.scene.motion, t))
+        pull = old * equations.accelerations(-old, 0.0, 0.0, ground, self.force(len(self.rows) - 1), up)[0]
         side = -old
         if after == 0 or (pull > 0 and 2 * abs(after) / pull < self.step):
             side, after = REST, 0.0

@@ -33,6 +33,7 @@ from .ground import ground_load
 
 if TYPE_CHECKING:
     from analytic import Scene
+    from analytic.types import Motion
 
     from .corners import Anchor
 
@@ -51,7 +52,7 @@ class Model:
     base: exu.ObjectIndex
     bearing: Bearing | None = None
     anchor: Anchor | None = None  # of the friction, see `corners`
-    loads: list = field(default_factory=list)
+    loads: list = field(default_factory=list)  # (number, motion whose segment it follows)
     connectors: dict = field(default_factory=dict)
     keep: list = field(default_factory=list)
     expected: dict = field(default_factory=dict)  # (object number, field): value the variant asked for
@@ -71,11 +72,11 @@ class Model:
         self.expected[number, "activeConnector"] = True
         return number
 
-    def load(self, item: Any, function: Callable[..., Any]) -> None:
-        """A load with a symbolic value."""
+    def load(self, item: Any, function: Callable[..., Any], motion: Motion) -> None:
+        """A load with a symbolic value, whose vector holds the segment's parameters of the motion."""
         number = exu.LoadIndex(self.mbs.AddLoad(item))
         self._make_symbolic(number, function, "loadVectorUserFunction", self.mbs.SetLoadParameter)
-        self.loads.append(number)
+        self.loads.append((number, motion))
 
     def _make_symbolic(self, number: Any, function: Callable[..., Any], name: str, setter: Callable[..., Any]) -> None:
         tree = CreateSymbolicUserFunction(self.mbs, function, name, number)
@@ -205,14 +206,21 @@ def _add_loads(model: Model) -> None:
     def on_block(mbs, t, load):
         return [-acceleration(t, load), Real(-scene.gravity), Real(0.0)]
 
-    model.load(LoadMassProportional(markerNumber=block), on_block)
+    model.load(LoadMassProportional(markerNumber=block), on_block, scene.motion)
+    if scene.motion.vertical:
+        rising = ground_load(scene.motion.vertical)
+
+        def upright(mbs, t, load):
+            return [Real(0.0), -rising(t, load), Real(0.0)]
+
+        model.load(LoadMassProportional(markerNumber=block), upright, scene.motion.vertical)
     if scene.base:
         base = mbs.AddMarker(MarkerBodyPosition(bodyNumber=model.base))
 
         def on_base(mbs, t, load):
             return [-scene.base.mass * acceleration(t, load), Real(0.0), Real(0.0)]
 
-        model.load(LoadForceVector(markerNumber=base), on_base)
+        model.load(LoadForceVector(markerNumber=base), on_base, scene.motion)
 
 
 def read_back(model: Model) -> dict[str, tuple[Any, Any]]:

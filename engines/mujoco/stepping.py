@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 
 from analytic.bearing import BearingLaw
+from analytic.motion import vertical_acceleration
 from analytic.rocking import RockingModel
 
 from ..ground_velocity import ground_velocity
@@ -56,6 +57,7 @@ def run(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, chosen: Settin
         else None
     )
     ground, sampled = ground_velocity(scene.motion), scene.motion.acceleration if scene.motion else None
+    upright = ground_velocity(scene.motion.vertical) if scene.motion else None
     corners, half_height, half_width = not as_it_comes, scene.block.half_height, scene.block.half_width
     viscous = None if as_it_comes else Viscous.of(scene, model, data)
     advance, state, speed, push = mujoco.mj_step, data.qpos, data.qvel, data.qfrc_applied
@@ -68,7 +70,7 @@ def run(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, chosen: Settin
     t, h, used = 0.0, 0.0, largest
     tilt, rate, x, v = start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity
     z = law.start(x)
-    force, gained, interval, last_scale, jumped = law.force(x, z), 0.0, 1.0, 1.0, False
+    force, gained, risen, interval, last_scale, jumped = law.force(x, z), 0.0, 0.0, 1.0, 1.0, False
     rows = array("d", (t, h, tilt, rate, x, v, z, force, *state[-3:-1].tolist(), *speed[-3:-1].tolist()))
     ended, width = "done", len(rows)
     while t < end:
@@ -90,7 +92,13 @@ def run(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, chosen: Settin
             reached = ground(t + 0.5 * step)
             gravity[0] = (gained - reached) / step
             gained = reached
-        if scale != last_scale:
+        if upright and as_it_comes:
+            gravity[2] = -g - float(vertical_acceleration(scene.motion, t))
+        elif upright:
+            reached = upright(t + 0.5 * step)
+            gravity[2] = -g * scale + (risen - reached) / step
+            risen = reached
+        elif scale != last_scale:
             gravity[2] = -g * scale
             last_scale = scale
         if loaded:

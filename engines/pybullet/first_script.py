@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import pybullet
 
 from analytic.bearing import BearingLaw
+from analytic.motion import vertical_acceleration
 
 from ..placement import placement
 
@@ -84,7 +85,8 @@ def run(handles: tuple[int, int], client: int, scene: Scene, step: float) -> tup
     rows = [(t, 0.0, start.tilt, start.tilt_rate, x, v, z, force)]
     for k in range(1, round(scene.duration / step) + 1):
         if acceleration:
-            pybullet.setGravity(-float(acceleration(t)), 0, -scene.gravity, client)
+            up = float(vertical_acceleration(scene.motion, t))
+            pybullet.setGravity(-float(acceleration(t)), 0, -scene.gravity - up, client)
         if scene.bearings:
             pybullet.applyExternalForce(
                 slab, 0, [-law.force(x, z, v), 0, 0], [0, 0, 0], pybullet.LINK_FRAME, physicsClientId=client

@@ -76,6 +76,7 @@ def run(
     on_base, loaded = assembly.base is not None, scene.bearings is not None
     joints, centre = (assembly.tilt, assembly.base), (assembly.slide, assembly.lift)
     ground, clock = ground_velocity(scene.motion), units.time
+    upright = ground_velocity(scene.motion.vertical) if scene.motion else None
     constants = (law.law, *law.constants)
     count, length, spring = law.count, units.length, law.count * law.kb * units.length
     damping, mass = law.count * law.damping * units.length / units.time, driven_mass(model)
@@ -93,7 +94,7 @@ def run(
     force, committed = spring * x + count * z, x
     rows = array("d", (t, h, tilt, rate, x, v, z, force, *(placement(scene) if places else ())))
     keep, step, side, width = rows.extend, largest, tilt > 0, len(rows)
-    interval, gained, last_scale, used = 1.0, 0.0, -1.0, 0
+    interval, gained, risen, last_scale, used = 1.0, 0.0, 0.0, -1.0, 0
     few, many = iterations(scene, 1), iterations(scene, 2)
     sweeps = few, min(many, max(few, LANDING_ITERATIONS)), many  # in FLIGHT, at an IMPACT, at REST
     pushed, held, added = 0.0, 0.0, 0.0
@@ -140,9 +141,13 @@ def run(
         scale = 1.0 if step == h else 0.5 * (step + h) / step
         if ground is not None:
             reached = ground(clock * (t + 0.5 * step)) / clock
-            pushed = (gained - reached) / step
-            set_gravity(pushed, 0.0, -g * scale, client)
+            pushed, pull = (gained - reached) / step, -g * scale
             gained = reached
+            if upright is not None:
+                reached = upright(clock * (t + 0.5 * step)) / clock
+                pull += (risen - reached) / step
+                risen = reached
+            set_gravity(pushed, 0.0, pull, client)
         elif scale != last_scale:
             set_gravity(0.0, 0.0, -g * scale, client)
             last_scale = scale

@@ -1,0 +1,110 @@
+"""Every engine under a vertical motion, against the analytic model, within the rows of its tolerance table."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, simulate
+from analytic.decision import RIGID_BEARINGS
+from engines import get_engine
+from engines.checks import energy_balance
+from engines.events import contact_measures
+from engines.ground_velocity import ground_velocity
+from engines.swings import Trace
+
+ENGINES = ["exudyn", "pybullet", "mujoco"]
+BLOCK = Block(mass=3172.05, radius=1.0884, slenderness=0.2)
+LRB = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
+TIMES = np.arange(0, 4.001, 0.005)
+HEAVING = SampledMotion(0.005, 0 * TIMES, vertical=SampledMotion(0.005, 2.0 * np.sin(9.0 * TIMES)))
+RELEASED = Scene(block=BLOCK, start=Start(tilt=0.1), motion=HEAVING, duration=2.5)
+PULSE = PulseMotion("one-sine", 3.0, 8.0, vertical=PulseMotion("one-sine", -1.0, 8.0))
+DRIVEN = Scene(
+    block=Block(mass=3172.05, radius=1.0884, slenderness=0.15),
+    base=Base(mass=212.0),
+    bearings=LRB,
+    motion=PULSE,
+    duration=3.0,
+)
+
+
+def bound(engine, quantity, scenes):
+    """Of the engine's first variant."""
+    rows = engine.bounds()[engine.default_variant]
+    return next(row.bound for row in rows if (row.quantity, row.scenes) == (quantity, scenes))
+
+
+def without(scene):
+    return scene.with_(motion=replace(scene.motion, vertical=None))
+
+
+def first_impacts(response):
+    return np.array([impact.time for impact in response.impacts[:3]])
+
+
+@pytest.mark.parametrize("scenes, base", [("rigid ground", None), ("sliding base", Base(mass=212.0))])
+@pytest.mark.parametrize("name", ENGINES)
+def test_impact_times_of_a_released_block(name, scenes, base):
+    engine, scene = get_engine(name), RELEASED.with_(base=base)
+    limit, wanted = bound(engine, "impact times", scenes), first_impacts(simulate(scene))
+    found = engine.simulate(scene, history=False)
+    assert found.outcome == "rocks" and found.failure is None
+    np.testing.assert_allclose(first_impacts(found), wanted, rtol=0, atol=limit)
+    assert abs(first_impacts(simulate(without(scene)))[1] - wanted[1]) > 50 * limit
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_peaks_on_bearings(name):
+    engine, exact, level = get_engine(name), simulate(DRIVEN), simulate(without(DRIVEN))
+    found = engine.simulate(DRIVEN, history=False)
+    limit = bound(engine, "peak tilt", "rocking on bearings, one-sine")
+    assert found.peak_tilt_ratio == pytest.approx(exact.peak_tilt_ratio, abs=limit)
+    assert abs(level.peak_tilt_ratio - exact.peak_tilt_ratio) > 50 * limit
+    limit = bound(engine, "peak displacement", "rocking on bearings, one-sine")
+    assert found.peak_base_displacement == pytest.approx(exact.peak_base_displacement, rel=limit)
+    assert found.min_normal_ratio == pytest.approx(exact.min_normal_ratio, abs=2e-3)
+    assert RIGID_BEARINGS in found.warnings
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_every_variant_feels_it(name):
+    engine, scenes = get_engine(name), [one.with_(duration=0.6) for one in (RELEASED, without(RELEASED))]
+    wanted = np.subtract(*(first_impacts(simulate(scene))[0] for scene in scenes))
+    for variant in engine.variants:
+        runs = (engine.simulate(scene, variant=variant, history=False) for scene in scenes)
+        assert np.subtract(*(first_impacts(run)[0] for run in runs)) == pytest.approx(wanted, rel=0.15), variant
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_a_block_that_would_jump_is_said(name):
+    up = SampledMotion(0.005, 12.0 * np.sin(9.0 * TIMES))
+    scene = RELEASED.with_(motion=replace(HEAVING, vertical=up), start=Start(tilt=0.05), duration=1.0)
+    found = get_engine(name).simulate(scene, history=False)
+    assert found.failure is not None or any("the block would jump" in text for text in found.warnings)
+
+
+def kernel_trace(scene):
+    history = simulate(scene, output_step=1e-3).history
+    columns = [getattr(history, column) for column in Trace.COLUMNS]
+    return Trace(*columns, contact_tilt=1e-6)
+
+
+def test_measures_on_exact_states():
+    for scene in (RELEASED.with_(duration=0.4), DRIVEN.with_(duration=0.7)):
+        exact, trace = simulate(scene), kernel_trace(scene)
+        assert exact.impact_count == 0
+        demand, normal, acceleration = contact_measures(scene, trace)
+        assert demand == pytest.approx(exact.friction_demand, rel=1e-3)
+        assert normal == pytest.approx(exact.min_normal_ratio, rel=1e-3)
+        balance, kinetic = energy_balance(scene, trace)
+        assert np.abs(balance).max() < 1e-4 * kinetic.max()
+        assert np.abs(energy_balance(without(scene), trace)[0]).max() > 5e-3 * kinetic.max()
+
+
+@pytest.mark.parametrize("shape", ["one-sine", "half-sine", "one-cosine"])
+def test_velocity_of_a_pulse_with_a_phase(shape):
+    pulse = PulseMotion(shape, 2.0, 5.0, 0.3, phase=0.8)
+    velocity, times = ground_velocity(pulse), np.linspace(0, 2, 200_001)
+    gained = np.concatenate([[0], np.cumsum(np.diff(times) * pulse.acceleration(0.5 * (times[1:] + times[:-1])))])
+    np.testing.assert_allclose([velocity(t) for t in times[::4000].tolist()], gained[::4000], rtol=0, atol=3e-5)
