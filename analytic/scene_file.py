@@ -3,6 +3,7 @@
 import difflib
 import tomllib
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -12,6 +13,7 @@ from pydantic import BeforeValidator, Field, ValidationError
 from .errors import SceneError
 from .files import read_plain
 from .motion import PULSES, PulseMotion, SampledMotion
+from .pairing import paired
 from .records import UNITS, read_record
 from .scene import Base, Bearings, Block, NotNegative, Number, Positive, Scene, Start, _Part
 from .synthetic import DEFAULT_SEED, STYLES, synthetic_motion
@@ -34,13 +36,18 @@ KEY_UNITS = {
     "motion.amplitude": "m/s2",
     "motion.frequency": "rad/s",
     "motion.start": "s",
+    "motion.vertical_phase": "rad",
     "start.tilt": "rad",
     "start.tilt_rate": "rad/s",
     "start.base_displacement": "m",
     "start.base_velocity": "m/s",
     "run.duration": "s",
 }
-MOTIONS = {"record": ("units", "channel"), "pulse": ("amplitude", "frequency", "start"), "synthetic": ("seed",)}
+MOTIONS = {
+    "record": ("units", "channel", "vertical", "vertical_channel"),
+    "pulse": ("amplitude", "frequency", "start", "vertical_ratio", "vertical_phase"),
+    "synthetic": ("seed", "vertical_ratio", "vertical_seed"),
+}
 
 LIMITS = {
     "greater_than": "above {:.6g}",
@@ -50,18 +57,28 @@ LIMITS = {
 }
 
 
+def _as_text(found: object) -> object:
+    """A channel's number as text."""
+    return str(found) if type(found) is int else found
+
+
 class _Motion(_Part):
     """The [motion] table: exactly one of record, pulse and synthetic, with the keys that belong to it."""
 
     record: str | None = None
     units: Literal[*UNITS] | None = None  # type: ignore[valid-type]  # one list of names, here and where they are read
-    channel: Annotated[str, BeforeValidator(lambda found: str(found) if type(found) is int else found)] | None = None
+    channel: Annotated[str, BeforeValidator(_as_text)] | None = None
     pulse: Literal[*PULSES] | None = None  # type: ignore[valid-type]  # as above
     amplitude: Number | None = None
     frequency: Positive | None = None
     start: NotNegative | None = None
     synthetic: Literal[*STYLES] | None = None  # type: ignore[valid-type]  # as above
     seed: Annotated[int, Field(ge=0, lt=2**64)] | None = None
+    vertical: str | None = None
+    vertical_channel: Annotated[str, BeforeValidator(_as_text)] | None = None
+    vertical_ratio: Number | None = None
+    vertical_phase: Number | None = None
+    vertical_seed: Annotated[int, Field(ge=0, lt=2**64)] | None = None
     scale: Number = 1.0
 
     def motion(self, folder: Path) -> SampledMotion | PulseMotion:
@@ -72,30 +89,69 @@ class _Motion(_Part):
             raise SceneError(
                 "motion", ", ".join(kinds) or None, problem, "give exactly one of record, pulse and synthetic"
             )
-        for kind, keys in MOTIONS.items():
-            for key in keys:
-                if kind != kinds[0] and getattr(self, key) is not None:
-                    raise SceneError(
-                        f"motion.{key}", getattr(self, key), f"belongs to a {kind}, not to a {kinds[0]}", "remove it"
-                    )
+        for key in dict.fromkeys(key for keys in MOTIONS.values() for key in keys):
+            owners = [kind for kind, keys in MOTIONS.items() if key in keys]
+            if kinds[0] not in owners and getattr(self, key) is not None:
+                belongs = f"belongs to a {' or a '.join(owners)}, not to a {kinds[0]}"
+                raise SceneError(f"motion.{key}", getattr(self, key), belongs, "remove it")
+        for key in ("vertical_phase", "vertical_seed"):
+            if self.vertical_ratio is None and getattr(self, key) is not None:
+                raise SceneError(f"motion.{key}", getattr(self, key), "without a vertical motion", "add vertical_ratio = ...")
         if self.synthetic:
-            return synthetic_motion(self.synthetic, DEFAULT_SEED if self.seed is None else self.seed).scaled(self.scale)
+            return self._synthesised().scaled(self.scale)
         if self.pulse:
-            for key in ("amplitude", "frequency"):
-                if getattr(self, key) is None:
-                    raise _missing(f"motion.{key}")
-            return PulseMotion(self.pulse, self.amplitude, self.frequency, self.start or 0.0).scaled(self.scale)  # type: ignore[arg-type]  # checked above
-        return self._recorded(folder / self.record)  # type: ignore[operator]  # checked above: it is the one that is given
+            return self._pulsed().scaled(self.scale)
+        level = self._recorded(folder, "record")
+        if self.vertical is None and self.vertical_channel is None:
+            return level
+        return paired(level, self._recorded(folder, "vertical"))
 
-    def _recorded(self, path: Path) -> SampledMotion:
+    def _synthesised(self) -> SampledMotion:
+        seed = DEFAULT_SEED if self.seed is None else self.seed
+        level = synthetic_motion(self.synthetic, seed)  # type: ignore[arg-type]  # the one that is given
+        if not self.vertical_ratio:
+            return level
+        other = (seed + 1) % 2**64 if self.vertical_seed is None else self.vertical_seed
+        return paired(level, synthetic_motion(self.synthetic, other).scaled(self.vertical_ratio))  # type: ignore[arg-type]  # as above
+
+    def _pulsed(self) -> PulseMotion:
+        for key in ("amplitude", "frequency"):
+            if getattr(self, key) is None:
+                raise _missing(f"motion.{key}")
+        level = PulseMotion(self.pulse, self.amplitude, self.frequency, self.start or 0.0)  # type: ignore[arg-type]  # checked above
+        if not self.vertical_ratio:
+            return level
         try:
+            phase = self.vertical_phase or 0.0
+            return replace(level, vertical=replace(level, amplitude=level.amplitude * self.vertical_ratio, phase=phase))
+        except SceneError as error:
+            raise SceneError("motion.vertical_phase", error.value, error.problem, error.remedy) from None
+
+    def _read(self, path: Path, key: Literal["record", "vertical"]) -> SampledMotion:
+        if key == "record":
             return read_record(path, self.units, self.scale, channel=self.channel)
+        try:
+            return read_record(path, None, self.scale, channel=self.vertical_channel)
+        except SceneError as error:
+            if error.key != "motion.units":
+                raise
+        return read_record(path, self.units, self.scale, channel=self.vertical_channel)  # it does not say its unit
+
+    def _recorded(self, folder: Path, key: Literal["record", "vertical"]) -> SampledMotion:
+        """The component that `key` names; a vertical one without a file is another channel of the record's."""
+        name = self.vertical or self.record if key == "vertical" else self.record
+        path = folder / name  # type: ignore[operator]  # checked: it is given
+        try:
+            return self._read(path, key)
         except SceneError as error:
             if error.key.startswith("motion.") and error.key != "motion.record":
-                raise SceneError(error.key, error.value, f"{error.problem} ({path.name})", error.remedy) from None
+                own, remedy = error.key, error.remedy
+                if own == "motion.channel" and key == "vertical":
+                    own, remedy = "motion.vertical_channel", remedy.replace("channel", "vertical_channel")
+                raise SceneError(own, error.value, f"{error.problem} ({path.name})", remedy) from None
             found = "" if error.value is None else f" = {error.value!r}"
             where = "" if error.key in ("record", "motion.record") else f"{error.key}{found}: "
-            raise SceneError("motion.record", self.record, where + error.problem, error.remedy) from None
+            raise SceneError(f"motion.{key}", name, where + error.problem, error.remedy) from None
 
 
 class _Run(_Part):

@@ -246,6 +246,34 @@ BAD = {
         motion('pulse = "one-sine"\namplitude = 1\nfrequency = 2\nunits = "g"'),
         "motion.units = 'g': belongs to a record, not to a pulse; remove it",
     ),
+    "vertical file of a pulse": (
+        motion('pulse = "one-sine"\namplitude = 1\nfrequency = 2\nvertical = "two.txt"'),
+        "motion.vertical = 'two.txt': belongs to a record, not to a pulse; remove it",
+    ),
+    "vertical ratio of a record": (
+        motion('record = "good.AT2"\nvertical_ratio = 0.5'),
+        "motion.vertical_ratio = 0.5: belongs to a pulse or a synthetic, not to a record; remove it",
+    ),
+    "vertical phase without a ratio": (
+        motion('pulse = "one-sine"\namplitude = 1\nfrequency = 2\nvertical_phase = 1'),
+        "motion.vertical_phase = 1.0: without a vertical motion; add vertical_ratio = ...",
+    ),
+    "vertical phase of a pulse without one": (
+        motion('pulse = "ricker"\namplitude = 1\nfrequency = 2\nvertical_ratio = 1\nvertical_phase = 1'),
+        "motion.vertical_phase = 1.0: a ricker pulse has none; leave it out, or choose a sine or cosine",
+    ),
+    "vertical file that is not there": (
+        motion('record = "good.AT2"\nvertical = "nowhere.AT2"'),
+        "motion.vertical = 'nowhere.AT2': cannot be read",
+    ),
+    "vertical channel of a file that has none": (
+        motion('record = "good.AT2"\nvertical_channel = 3'),
+        "motion.vertical_channel = '3': but the file has no several channels (good.AT2); remove vertical_channel",
+    ),
+    "vertical file without a unit": (
+        motion('record = "good.AT2"\nvertical = "two.txt"'),
+        "motion.units: missing; two columns carry no unit (two.txt); add units, one of m/s2, cm/s2, g",
+    ),
     "channel of a file that has none": (
         motion('record = "good.AT2"\nchannel = 1'),
         "motion.channel = '1': but the file has no several channels (good.AT2); remove channel",

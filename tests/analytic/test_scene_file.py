@@ -80,6 +80,56 @@ def test_a_channel_of_a_record_by_number_or_direction(tmp_path, channel):
     assert motion.label == "r.v2, channel 2 (Up)" and motion.samples[0] == pytest.approx(2 * VALUES[0])
 
 
+def with_motion(tmp_path, lines):
+    return load_scene(write_scene(tmp_path, SCENE.replace('synthetic = "duzce-like"', lines))).motion
+
+
+def test_vertical_file_beside_the_record(tmp_path):
+    (tmp_path / "h.txt").write_text("0 1\n0.5 2\n")
+    (tmp_path / "v.txt").write_text("0 3\n0.5 4\n1.0 5\n")
+    motion = with_motion(tmp_path, 'record = "h.txt"\nvertical = "v.txt"\nunits = "cm/s2"\nscale = 3')
+    assert motion.samples.tolist() == pytest.approx([0.03, 0.06, 0])
+    assert motion.vertical.samples.tolist() == pytest.approx([0.09, 0.12, 0.15])
+    assert motion.label == "h.txt x 3, vertical v.txt x 3"
+    assert motion.warnings[-1] == "h.txt x 3: 0.5 s of zeros put at its end, as the other component is longer"
+
+
+def test_units_are_for_the_file_that_does_not_say_its_own(tmp_path):
+    (tmp_path / "h.txt").write_text("0 1\n0.5 2\n")
+    (tmp_path / "v.txt").write_text("time (s), acceleration (g)\n0, 1\n0.5, 2\n")
+    motion = with_motion(tmp_path, 'record = "h.txt"\nvertical = "v.txt"\nunits = "cm/s2"')
+    assert motion.vertical.samples.tolist() == pytest.approx([9.81, 19.62])
+    assert motion.samples.tolist() == pytest.approx([0.01, 0.02])
+
+
+@pytest.mark.parametrize("file", ["", 'vertical = "v.v2"\n'])
+def test_vertical_channel_of_the_same_file_or_another(tmp_path, file):
+    for name in ("r.v2", "v.v2"):
+        (tmp_path / name).write_text(csmip(VALUES))
+    motion = with_motion(tmp_path, f'record = "r.v2"\nchannel = 1\n{file}vertical_channel = "Up"\nscale = 0.5')
+    assert motion.samples[0] == pytest.approx(0.5 * VALUES[0])
+    assert motion.vertical.samples[0] == pytest.approx(VALUES[0])
+    assert motion.vertical.label == f"{'v' if file else 'r'}.v2, channel 2 (Up) x 0.5"
+
+
+def test_vertical_ratio_of_a_pulse_with_a_phase(tmp_path):
+    lines = 'pulse = "one-sine"\namplitude = 2\nfrequency = 5\nvertical_ratio = 0.5\nvertical_phase = 0.7\nscale = 3'
+    up = PulseMotion("one-sine", 3.0, 5.0, phase=0.7)
+    assert with_motion(tmp_path, lines) == PulseMotion("one-sine", 6.0, 5.0, vertical=up)
+    for lines in (
+        lines.replace("vertical_ratio = 0.5\nvertical_phase = 0.7\n", more) for more in ("", "vertical_ratio = 0\n")
+    ):
+        assert with_motion(tmp_path, lines) == PulseMotion("one-sine", 6.0, 5.0)
+
+
+def test_vertical_ratio_of_a_synthetic_motion_has_a_seed_of_its_own(tmp_path):
+    for more, seed in (("", 6), ("\nvertical_seed = 9", 9)):
+        motion = with_motion(tmp_path, f'synthetic = "duzce-like"\nseed = 5\nscale = 2\nvertical_ratio = 0.6{more}')
+        assert motion.samples.tolist() == pytest.approx(synthetic_motion(seed=5).scaled(2).samples.tolist())
+        wanted = synthetic_motion(seed=seed).scaled(1.2).samples.tolist()
+        assert motion.vertical.samples.tolist() == pytest.approx(wanted, rel=1e-12)
+
+
 def test_synthetic_motion_with_seed_and_scale(tmp_path):
     path = write_scene(tmp_path, SCENE.replace('"duzce-like"', '"duzce-like"\nseed = 5\nscale = 0.5'))
     assert load_scene(path).motion.digest() == synthetic_motion(seed=5).scaled(0.5).digest()

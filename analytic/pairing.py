@@ -1,0 +1,47 @@
+"""Two recorded motions, horizontal and vertical, brought to one step and one length: the pair is one motion."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from .motion import SampledMotion
+
+SAME_STEP = 1e-9  # relative difference of two steps that are the same, printed to other digits
+
+
+def paired(level: SampledMotion, upright: SampledMotion) -> SampledMotion:
+    """The motion `level` with `upright` as its vertical one; both count their time from their first sample.
+
+    The coarser of the two is resampled to the step of the other, linearly, as a motion is between its samples; the
+    shorter one gets zeros at its end. Both is said in the warnings, which also repeat those of `upright`.
+    """
+    said: list[str] = []
+    step = min(level.dt, upright.dt)
+    first, second = (_resampled(motion, step, said) for motion in (level, upright))
+    count = max(len(first), len(second))
+    first, second = (
+        _padded(samples, count, step, motion.label, said) for samples, motion in ((first, level), (second, upright))
+    )
+    warnings = tuple(dict.fromkeys((*level.warnings, *upright.warnings, *said)))
+    vertical = replace(upright, dt=step, samples=second, warnings=())
+    return SampledMotion(step, first, f"{level.label}, vertical {upright.label}", warnings, vertical)
+
+
+def _resampled(motion: SampledMotion, step: float, said: list[str]) -> np.ndarray:
+    """Samples at the step [s]; the last one at the motion's end, or the first after it."""
+    if math.isclose(motion.dt, step, rel_tol=SAME_STEP):
+        return motion.samples
+    said.append(f"{motion.label}: resampled from {motion.dt:.6g} s to the {step:.6g} s of the other component")
+    times = step * np.arange(math.ceil(motion.end / step * (1 - SAME_STEP)) + 1)
+    last = times[-1] <= motion.end * (1 + SAME_STEP)
+    return motion.acceleration(np.append(times[:-1], motion.end) if last else times)
+
+
+def _padded(samples: np.ndarray, count: int, step: float, label: str, said: list[str]) -> np.ndarray:
+    missing = count - len(samples)
+    if missing:
+        said.append(f"{label}: {missing * step:.6g} s of zeros put at its end, as the other component is longer")
+    return np.append(samples, np.zeros(missing))
