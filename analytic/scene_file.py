@@ -96,7 +96,9 @@ class _Motion(_Part):
                 raise SceneError(f"motion.{key}", getattr(self, key), belongs, "remove it")
         for key in ("vertical_phase", "vertical_seed"):
             if self.vertical_ratio is None and getattr(self, key) is not None:
-                raise SceneError(f"motion.{key}", getattr(self, key), "without a vertical motion", "add vertical_ratio = ...")
+                raise SceneError(
+                    f"motion.{key}", getattr(self, key), "without a vertical motion", "add vertical_ratio = ..."
+                )
         if self.synthetic:
             return self._synthesised().scaled(self.scale)
         if self.pulse:
