@@ -36,6 +36,7 @@ KEY_UNITS = {
     "motion.amplitude": "m/s2",
     "motion.frequency": "rad/s",
     "motion.start": "s",
+    "motion.dt": "s",
     "motion.vertical_phase": "rad",
     "start.tilt": "rad",
     "start.tilt_rate": "rad/s",
@@ -44,7 +45,7 @@ KEY_UNITS = {
     "run.duration": "s",
 }
 MOTIONS = {
-    "record": ("units", "channel", "vertical", "vertical_channel"),
+    "record": ("units", "dt", "column", "channel", "vertical", "vertical_column", "vertical_channel"),
     "pulse": ("amplitude", "frequency", "start", "vertical_ratio", "vertical_phase"),
     "synthetic": ("seed", "vertical_ratio", "vertical_seed"),
 }
@@ -67,6 +68,8 @@ class _Motion(_Part):
 
     record: str | None = None
     units: Literal[*UNITS] | None = None  # type: ignore[valid-type]  # one list of names, here and where they are read
+    dt: Positive | None = None
+    column: Annotated[int, Field(ge=1)] | None = None
     channel: Annotated[str, BeforeValidator(_as_text)] | None = None
     pulse: Literal[*PULSES] | None = None  # type: ignore[valid-type]  # as above
     amplitude: Number | None = None
@@ -75,6 +78,7 @@ class _Motion(_Part):
     synthetic: Literal[*STYLES] | None = None  # type: ignore[valid-type]  # as above
     seed: Annotated[int, Field(ge=0, lt=2**64)] | None = None
     vertical: str | None = None
+    vertical_column: Annotated[int, Field(ge=1)] | None = None
     vertical_channel: Annotated[str, BeforeValidator(_as_text)] | None = None
     vertical_ratio: Number | None = None
     vertical_phase: Number | None = None
@@ -104,7 +108,7 @@ class _Motion(_Part):
         if self.pulse:
             return self._pulsed().scaled(self.scale)
         level = self._recorded(folder, "record")
-        if self.vertical is None and self.vertical_channel is None:
+        if self.vertical is None and self.vertical_column is None and self.vertical_channel is None:
             return level
         return paired(level, self._recorded(folder, "vertical"))
 
@@ -131,13 +135,15 @@ class _Motion(_Part):
 
     def _read(self, path: Path, key: Literal["record", "vertical"]) -> SampledMotion:
         if key == "record":
-            return read_record(path, self.units, self.scale, channel=self.channel)
+            said: dict[str, Any] = {"column": self.column, "channel": self.channel}
+            return read_record(path, self.units, self.scale, dt=self.dt, **said)
+        said = {"column": self.vertical_column, "channel": self.vertical_channel}
         try:
-            return read_record(path, None, self.scale, channel=self.vertical_channel)
+            return read_record(path, None, self.scale, dt=self.dt, **said)
         except SceneError as error:
             if error.key != "motion.units":
                 raise
-        return read_record(path, self.units, self.scale, channel=self.vertical_channel)  # it does not say its unit
+        return read_record(path, self.units, self.scale, dt=self.dt, **said)  # it does not say its unit
 
     def _recorded(self, folder: Path, key: Literal["record", "vertical"]) -> SampledMotion:
         """The component that `key` names; a vertical one without a file is another channel of the record's."""
@@ -148,8 +154,9 @@ class _Motion(_Part):
         except SceneError as error:
             if error.key.startswith("motion.") and error.key != "motion.record":
                 own, remedy = error.key, error.remedy
-                if own == "motion.channel" and key == "vertical":
-                    own, remedy = "motion.vertical_channel", remedy.replace("channel", "vertical_channel")
+                word = own.removeprefix("motion.")
+                if word in ("column", "channel") and key == "vertical":
+                    own, remedy = f"motion.vertical_{word}", remedy.replace(word, f"vertical_{word}")
                 raise SceneError(own, error.value, f"{error.problem} ({path.name})", remedy) from None
             found = "" if error.value is None else f" = {error.value!r}"
             where = "" if error.key in ("record", "motion.record") else f"{error.key}{found}: "

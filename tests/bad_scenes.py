@@ -107,7 +107,7 @@ BAD = {
     ),
     "no units": (
         motion('record = "two.txt"'),
-        "motion.units: missing; two columns carry no unit (two.txt); add units, one of m/s2, cm/s2, g",
+        "motion.units: missing; columns of numbers carry no unit (two.txt); add units, one of m/s2, cm/s2, g",
     ),
     # wrong type
     "text for number": (replaced("3172.05", '"heavy"'), "block.mass = 'heavy': wrong type (str); give a number [kg]"),
@@ -278,6 +278,18 @@ BAD = {
         motion('record = "good.AT2"\nchannel = 1'),
         "motion.channel = '1': but the file has no several channels (good.AT2); remove channel",
     ),
+    "column of a file that has none": (
+        motion('record = "good.AT2"\ncolumn = 2'),
+        "motion.column = 2: but the file is PEER AT2 (good.AT2); remove column",
+    ),
+    "column that is none": (
+        motion('record = "two.txt"\ncolumn = 0'),
+        "motion.column = 0: out of range; give a number fr",
+    ),
+    "other step than that of the record": (
+        motion('record = "good.AT2"\ndt = 0.5'),
+        "motion.dt = 0.5: but the step of the record itself is 0.01 s (good.AT2); remove dt, or correct the record",
+    ),
     "channel that is no name": (
         motion('record = "good.AT2"\nchannel = 1.5'),
         'motion.channel = 1.5: wrong type (float); give text in "quotes"',
@@ -359,7 +371,7 @@ BAD = {
     "unknown format": (
         motion('record = "odd.dat"'),
         "motion.record = 'odd.dat': line 1 = 'what is this': not a known record format; give PEER AT2 "
-        "(a line NPTS= ..., DT= ...), ESM/DYNA 1.2 ASCII, CSMIP volume 2 or two columns of numbers",
+        "(a line NPTS= ..., DT= ...), ESM/DYNA 1.2, CSMIP volume 2, COSMOS, K-NET, SMC or columns of numbers",
     ),
     # the file itself
     "no TOML": (replaced("[run]", "[run"), "scene: is not valid TOML ("),  # the rest is Python's own wording

@@ -1,8 +1,11 @@
 """Small records and scenes, made up here, and what damage makes of them: the same for the same seed."""
 
+import math
 import random
 
 VALUES = [0.001, -0.123, -0.456, 0.25, -1.5, 0.0, 0.75, 0.031, -0.2, 0.11, 0.4, -0.33]
+
+SMOOTH = [math.sin(0.3 * i) * math.exp(-0.02 * i) for i in range(46)]
 
 
 def _fortran(values, width=15, digits=7, exponent=2):
@@ -60,9 +63,68 @@ def csmip(values, step=".005", layout="8f10.5", words="in cm/sec2."):
     return text
 
 
+def cosmos(values, layout="8F10.5", units="cm/sec2(04)", step=5.0, channels=("1:340 deg", "2:Up")):
+    """Channels of COSMOS 1.20; the accelerations of the second one are twice those of the first."""
+    text = ""
+    for times, name in enumerate(channels, 1):
+        samples = [100 * value * times for value in values]
+        reals = [-999.0] * 33 + [0.02] + [-999.0] * 27 + [step, step * len(values) / 1000, max(samples, key=abs), 0.02]
+        text += "Corrected acceleration    (Format v01.20 with 13 text lines)\n" + "Nowhere\n" * 7
+        text += f"Sta Chan   {name} (Rcrdr Chan  1) Location:\n" + "Nowhere\n" * 4
+        text += " 100 Integer-header values follow on  10 lines, Format= (10I8)\n"
+        text += _columns([2, 1, 4, 120, 1] + [-999] * 95, 10, 8)
+        text += " 100 Real-header values follow on  20 lines, Format= (5F15.6)\n"
+        text += _columns(reals + [-999.0] * (100 - len(reals)), 5, 15, 6)
+        text += '   1 Comment line(s) follow, each starting with a "|":\n| made up\n'
+        text += f"{len(values):8d} acceleration pts, approx    0 secs, units={units},Format=({layout})\n"
+        text += (
+            _columns(samples, 8, 10, 5) if layout.startswith("8") else "".join(f"{value:15.6e}\n" for value in samples)
+        )
+        text += f"End-of-data for Chan  {times} acceleration\n"
+    return text
+
+
+def knet(counts, direction="E-W", frequency=200):
+    """A K-NET file of 10 gals a million counts."""
+    keys = {
+        "Origin Time": "2000/01/01 00:00:00",
+        "Lat.": "0.0",
+        "Station Code": "NWH001",
+        "Sampling Freq(Hz)": f"{frequency}Hz",
+        "Duration Time(s)": f"{len(counts) / frequency:g}",
+        "Dir.": direction,
+        "Scale Factor": "2000(gal)/200000000",
+        "Max. Acc. (gal)": f"{max(abs(count - sum(counts) / len(counts)) for count in counts) / 1e5:.3f}",
+        "Last Correction": "2000/01/01 00:00:00",
+        "Memo.": "",
+    }
+    text = "".join(f"{key:18s}{value}\n" for key, value in keys.items())
+    words = [f"{count:8d} " for count in counts]
+    return text + "".join("".join(words[i : i + 8]) + "\n" for i in range(0, len(words), 8))
+
+
+def smc(values, high=False, rate=200.0, first="2 CORRECTED ACCELEROGRAM"):
+    """A USGS SMC file [cm/s2] with two lines of comments; `high`: of the newer, longer numbers."""
+    samples = [100 * value for value in values]
+    integers = [-32768] * 48
+    integers[15:18], integers[46] = (2, len(samples), 0), 8 if high else -32768
+    reals = [1.7e38] * 50
+    reals[1], reals[29], reals[31] = rate, max(samples), min(samples)
+    per_line, width, digits = (5, 14, 7) if high else (8, 10, 4)
+    words = [f"{value:.{digits}E}".replace("E+0", "E+").replace("E-0", "E-").rjust(width) for value in samples]
+    data = "".join("".join(words[i : i + per_line]) + "\n" for i in range(0, len(words), per_line))
+    text = f"{first}\n" + "*\n" * 5 + "station = Nowhere          component=    360\n" + "*\n" * 4
+    return text + _columns(integers, 8, 10) + _fortran(reals) + "|\n| made up\n" + data
+
+
 def _columns(values, per_line, width, decimals=0):
     words = [f"{value:{width}.{decimals}f}" for value in values]
     return "".join("".join(words[i : i + per_line]) + "\n" for i in range(0, len(words), per_line))
+
+
+def _list(values, per_line=6):
+    words = [f"{value:.5f}" for value in values]
+    return "".join(" ".join(words[i : i + per_line]) + "\n" for i in range(0, len(words), per_line))
 
 
 def records():
@@ -90,9 +152,22 @@ def records():
         ("csv ms", "time [ms],acc [g]\n" + _rows("{t:.1f},{a:.4f}", 5.0), {}),
         ("semicolons", "t;a [m/s2]\n" + semicolons, {}),
         ("decimal commas", semicolons.replace(";", "   "), {"units": "cm/s2"}),
+        ("one column", "acceleration [cm/s2]\n" + _rows("{a:.4f}"), {"dt": 0.005}),
+        ("one column, own step", "# dt = 5 ms\n" + _rows("{a:.4f}"), {"units": "g"}),
+        ("list", _list(SMOOTH), {"units": "g", "dt": 0.01}),
+        ("channels", "t [s];x (g);y (g);v (cm/s)\n" + _rows("{t:.3f};{a:.4f};-{t:.4f};1"), {"column": 3}),
+        ("tabs", "Time (s)\tx (g)\ty (g)\n" + _rows("{t:.3f}\t{a:.4f}\t-{t:.4f}"), {"column": 2}),
+        ("channels, no times", _rows("{a:.4f} -{t:.4f} 1"), {"units": "g", "dt": 0.01, "column": 2}),
         ("csmip", csmip(VALUES), {"channel": 2}),
         ("csmip, upper case", csmip(VALUES, words="(UNITS: CM/SEC/SEC)", layout="8f10.3").upper(), {"channel": "up"}),
         ("csmip, touching", csmip([value - 1.6 for value in VALUES], ".0025", "8f10.5"), {"channel": "1"}),
+        ("cosmos", cosmos(VALUES), {"channel": "Up"}),
+        ("cosmos, one channel", cosmos(VALUES, "1E15.6", "g (2)", 5.0, ("?:Other",)), {}),
+        ("cosmos, no step", cosmos(VALUES, "1E15.6", "cm/s^2 (4)", -999.0), {"channel": 1, "dt": 0.005}),
+        ("knet", knet([round(1e5 * value) - 12_000 for value in VALUES]), {}),
+        ("kiknet", knet([round(1e6 * value) for value in VALUES], "5", 100), {"units": "cm/s2"}),
+        ("smc", smc(VALUES), {}),
+        ("smc, long numbers", smc(VALUES, high=True), {}),
     ]
 
 
@@ -191,6 +266,22 @@ def damaged(text, chance):
     if chance.random() < 0.05 and content:
         at = chance.randrange(len(content))
         content = content[:at] + bytes([chance.randrange(256)]) + content[at + 1 :]
+    return content
+
+
+def damaged_bytes(content, chance):
+    """Bytes after one to three of them were changed, lost, doubled or cut away."""
+    for _ in range(chance.choice((1, 1, 2, 3))):
+        at, length = chance.randrange(len(content) + 1), chance.choice((1, 1, 4, 30))
+        kind = chance.randrange(4)
+        if kind == 0:
+            content = content[:at] + bytes([chance.randrange(256)]) + content[at + 1 :]
+        elif kind == 1:
+            content = content[:at] + content[at + length :]
+        elif kind == 2:
+            content = content[: at + length] + content[at:]
+        else:
+            content = content[:at]
     return content
 
 
@@ -302,7 +393,7 @@ DAMAGE = (
 def cases(number, seed=0):
     """`number` damaged files: (kind, name, content, what the user says), kind "record" or "scene"."""
     chance = random.Random(seed)
-    kinds = [("record", *record) for record in records()] * 2 + [("scene", *scene, {}) for scene in scenes()] * 9
+    kinds = [("record", *record) for record in records()] * 2 + [("scene", *scene, {}) for scene in scenes()] * 11
     for _ in range(number):
         kind, name, text, said = chance.choice(kinds)
         if kind == "record" and chance.random() < 0.1:

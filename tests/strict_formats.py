@@ -6,7 +6,7 @@ if the file is not of its format.
 
 from fractions import Fraction
 
-from strict_words import DIGITS, LETTERS, Refused, scan, single, step_of, unit_of
+from strict_words import DIGITS, KNOWN, LETTERS, G, Refused, scan, single, step_of, unit_of
 
 
 def layout_of(line):
@@ -57,6 +57,8 @@ def columns_of(lines, at, count, layout):
             if found is None or found != decimals:
                 raise Refused("decimals")
             values.append(value)
+        at += 1
+    while at < len(lines) and not lines[at].strip():
         at += 1
     return values, at
 
@@ -117,3 +119,197 @@ def _csmip_channel(lines):
             raise Refused("two steps")
         rounded = exact[0]
     return str(int(number)), " ".join(words).casefold(), rounded, values, unit_of([lines[data]], None)
+
+
+def _leading(text, most):
+    """(whole number, rest) of a text that begins with one of up to `most` digits; None without one."""
+    i = 0
+    while text[i : i + 1] and text[i] in DIGITS:
+        i += 1
+    return (int(text[:i]), text[i:]) if 0 < i <= most else None
+
+
+def cosmos(lines):
+    first = next((line for line in lines if line.strip()), "")
+    if _cosmos_text(first) is None:
+        return None
+    begins = [at for at, line in enumerate(lines) if _cosmos_text(line) is not None] + [len(lines)]
+    pairs = zip(begins, begins[1:], strict=False)
+    return [_cosmos_channel(lines[begin:end], order) for order, (begin, end) in enumerate(pairs, 1)]
+
+
+def _cosmos_text(line):
+    """Lines of text that the first line of a channel counts; None if it is none."""
+    inside = line[:400].lower().partition("(")[2].partition(")")[0].split(" ")
+    good = len(inside) == 6 and inside[0] == "format" and inside[2] == "with" and inside[4:] == ["text", "lines"]
+    if not good or inside[1][:1] != "v" or not inside[1][1:] or any(sign not in DIGITS + "." for sign in inside[1][1:]):
+        return None
+    found = _leading(inside[3], 2)
+    return found[0] if found and not found[1] and ")" in line[:400] else None
+
+
+def _cosmos_header(lines, at, kind):
+    """(tokens, index of the line behind) of a header of numbers."""
+    words = lines[at][:400].lower().split() if at < len(lines) else []
+    if words[1:5] != [f"{kind}-header", "values", "follow", "on"] or len(words) < 7 or words[6][:5] != "lines":
+        raise Refused("header")
+    count, rows = _leading(words[0], 4), _leading(words[5], 3)
+    if not count or count[1] or not rows or rows[1] or words[6][5:6].isalnum():
+        raise Refused("header")
+    tokens = " ".join(lines[at + 1 : at + 1 + rows[0]]).split()
+    if len(tokens) != count[0]:
+        raise Refused("header values")
+    return tokens, at + 1 + rows[0]
+
+
+def _cosmos_data(line):
+    """(count, kind, unit, its code or None) of a line that announces data; None of another."""
+    words = line[:400].lower().split()
+    count = _leading(words[0], 9) if words else None
+    if not count or count[1] or len(words) < 4 or words[2][:4] != "pts," or any(s not in LETTERS for s in words[1]):
+        return None
+    behind = line[:400].partition(",")[2].lower()
+    pieces = behind.split("units")
+    places = [k for k in range(1, len(pieces)) if pieces[k].lstrip(" ")[:1] == "="]
+    if not places or (pieces[places[0] - 1][-1:].isalnum() or pieces[places[0] - 1][-1:] == "_"):
+        return None
+    rest, comma, _ = "units".join(pieces[places[0] :]).lstrip(" ")[1:].partition(",")
+    unit, opened, code = rest.partition("(")
+    code = code.rstrip(" ")
+    if not comma or not unit.strip(" ") or (opened and not code.endswith(")")):
+        return None
+    code = code[:-1].strip(" ") if opened else None
+    if code is not None and (not code or any(sign not in DIGITS for sign in code)):
+        return None
+    return count[0], words[1], unit.strip(" "), code and (code.lstrip("0") or "0")
+
+
+def _ends(line):
+    return starts(line, "end-of-data") or line.lstrip().startswith("/&")
+
+
+def _cosmos_channel(lines, order):
+    at = _cosmos_text(lines[0])
+    number, direction = str(order), ""
+    for line in lines[:at]:
+        words = line[:400].lower().split()
+        if words[:1] == ["sta"] and words[1:] and words[1][:3] == "cha":
+            behind = line[:400].lower().partition("cha")[2].removeprefix("n").strip().removeprefix(":").strip()
+            stated, colon, name = behind.partition(":")
+            found = _leading(stated.strip(), 4)
+            if colon and ((found and not found[1]) or stated.strip() == "?"):
+                number = stated.strip() if found else str(order)
+                direction = " ".join(name.partition("(")[0].split())
+                break
+    integers, at = _cosmos_header(lines, at, "integer")
+    reals, at = _cosmos_header(lines, at, "real")
+    words = lines[at][:400].lower().split() if at < len(lines) else []
+    comments = _leading(words[0], 4) if words else None
+    if not comments or comments[1] or words[1:2] != ["comment"] or not words[2:] or words[2][:4] != "line":
+        raise Refused("comments")
+    at += 1 + comments[0]
+    data = _cosmos_data(lines[at]) if at < len(lines) else None
+    integer = single(integers[1]) if len(integers) > 1 else -999
+    if not data or data[1] != "acceleration" or integer not in (1, -999):
+        raise Refused("no acceleration")
+    layout, factor = layout_of(lines[at]), KNOWN.get(data[2])
+    if factor is None or {"2": G, "4": Fraction(1, 100)}.get(data[3], factor) != factor or not layout:
+        raise Refused("unit")
+    values, behind = columns_of(lines, at + 1, data[0], layout)
+    rest = lines[behind:]
+    if not any(_ends(line) for line in rest) or not (_ends(rest[0]) or _cosmos_data(rest[0])):
+        raise Refused("end")
+    milliseconds, length, _ = (single(reals[k]) if len(reals) > k else -999 for k in (61, 62, 63))
+    if milliseconds <= 0:
+        return number, direction, None, values, factor
+    step = milliseconds / 1000
+    if length > 0 and abs(length - data[0] * step) > max(length / 100, 2 * step):
+        raise Refused("length")
+    return number, direction, step, values, factor
+
+
+def knet(lines):
+    first = next((line for line in lines if line.strip()), "")
+    if not first.lower().startswith("origin time "):
+        return None
+    end = next((at for at, line in enumerate(lines[:30]) if line.lower().startswith("memo.")), None)
+    if end is None:
+        raise Refused("memo")
+    header = [line[:400] for line in lines[:end]]
+    frequency = _knet_numbers(header, ("sampling freq", "(hz)"), [6], ("hz", ""))[0]
+    duration = _knet_numbers(header, ("duration time", "(s)"), [6], ("",))[0]
+    gal, steps = _knet_numbers(header, ("scale factor", ""), [9, 12], ("",))
+    if sum(line.lower().startswith("dir.") for line in header) != 1 or not frequency * gal * steps:
+        raise Refused("header")
+    counts = []
+    for line in lines[end + 1 :]:
+        for token in line.split():
+            bare = token[1:] if token[0] in "+-" else token
+            found = _leading(bare, 9)
+            if not found or found[1]:
+                raise Refused("count")
+            counts.append(-found[0] if token[0] == "-" else found[0])
+    if len(counts) != round(duration * frequency):
+        raise Refused("samples")
+    mean = Fraction(sum(counts), max(len(counts), 1))
+    values = [(count - mean) * gal / steps for count in counts]
+    return [("", "", 1 / frequency, values, Fraction(1, 100))]
+
+
+def _knet_numbers(header, names, digits, ends):
+    """The numbers of the one line of the header that begins with `names`; "(gal)/" stands between two."""
+    found = []
+    for line in header:
+        rest = line.lower()
+        good = rest.startswith(names[0])
+        rest = rest[len(names[0]) :].lstrip(" ")
+        good, rest = good and rest.startswith(names[1]), rest[len(names[1]) :].lstrip(" ")
+        numbers = []
+        for k, most in enumerate(digits):
+            if k:
+                good = good and rest.lstrip(" ").startswith("(gal)")
+                rest = rest.lstrip(" ").removeprefix("(gal)").lstrip(" ")
+                good, rest = good and rest[:1] == "/", rest[1:].lstrip(" ")
+            whole = _leading(rest, most)
+            decimals = whole and whole[1][:1] == "." and _leading(whole[1][1:], 400)
+            if not whole:
+                good = False
+                break
+            text = rest[: len(rest) - len(whole[1])]
+            rest = whole[1]
+            if rest[:1] == ".":
+                tail = decimals[1] if decimals else rest[1:]
+                text, rest = text + rest[: len(rest) - len(tail)], tail
+            numbers.append(single(text))
+        if good and rest.strip(" ") in ends:
+            found.append(numbers)
+    if len(found) != 1:
+        raise Refused("header")
+    return found[0]
+
+
+def smc(lines):
+    begin = next(at for at, line in enumerate(lines) if line.strip())
+    words = lines[begin][:400].lower().split()
+    kinds = [word for word in words[1:3] if word not in ("corrected", "uncorrected")]
+    if not words or len(words[0]) != 1 or words[0] not in DIGITS or not kinds:
+        return None
+    if not any(starts(kinds[0], kind) for kind in ("accelerogram", "velocity", "displacement", "response")):
+        return None
+    if starts(kinds[0], "response") and words[2:3] != ["spectra"]:
+        return None
+    if not starts(kinds[0], "accelerogram"):
+        raise Refused("no acceleration")
+    rows = [line.split() for line in lines[begin + 11 : begin + 27]]
+    if [len(row) for row in rows] != [8] * 6 + [5] * 10:
+        raise Refused("header")
+    numbers = [single(token) for row in rows for token in row]
+    comments, count, precision = (numbers[k] for k in (15, 16, 46))
+    frequency = numbers[48 + 1]
+    if any(value != int(value) for value in (comments, count, precision)) or not 0 < frequency < 10**30:
+        raise Refused("header")
+    layout = (5, 14, 7) if precision == 8 else (8, 10, 4)
+    values, behind = columns_of(lines, begin + 27 + max(int(comments), 0), int(count), layout)
+    if any(line.strip() for line in lines[behind:]):
+        raise Refused("more numbers")
+    return [("", "", 1 / frequency, values, Fraction(1, 100))]

@@ -7,32 +7,21 @@ what is not surely a record is `Refused`.
 
 from fractions import Fraction
 
+import strict_columns
 import strict_formats
-from strict_words import (
-    DIGITS,
-    GIVEN,
-    KNOWN,
-    LETTERS,
-    TIME_WORDS,
-    G,
-    Refused,
-    ends_of,
-    fortran,
-    single,
-    step_of,
-    unit_of,
-    whole,
-    words_of,
-)
+from strict_words import DIGITS, GIVEN, KNOWN, LETTERS, TIME_WORDS, G, Refused, fortran, step_of, unit_of, whole
 
 
-def read(content, units=None, channel=None):
+def read(content, units=None, dt=None, column=None, channel=None):
     """(least step [s], largest step [s], samples [m/s2]) of the record in the bytes `content`."""
     lines = _lines(content)
     if not any(line.strip() for line in lines):
         raise Refused("empty")
-    step, samples, factor = _at2(lines) or _dyna(lines) or _channel(lines, channel) or _columns(lines)
-    if channel is not None and not strict_formats.csmip(lines):
+    found = _at2(lines) or _dyna(lines) or _channel(lines, channel)
+    if found and column is not None:
+        raise Refused("no columns")
+    step, samples, factor = found or strict_columns.columns(lines, dt is not None, column)
+    if channel is not None and not (strict_formats.csmip(lines) or strict_formats.cosmos(lines)):
         raise Refused("no channels")
     if units is not None and units not in GIVEN:
         raise Refused("unit given")
@@ -43,6 +32,11 @@ def read(content, units=None, channel=None):
     factor = GIVEN[units] if factor is None else factor
     if len(samples) < 2:
         raise Refused("samples")
+    if step is None and dt is None:
+        raise Refused("no step")
+    step = (Fraction(dt), Fraction(dt)) if step is None else step
+    if dt is not None and abs(Fraction(dt) - sum(step) / 2) > sum(step) / 2 / 10**6:
+        raise Refused("two steps")
     if not all(Fraction(1, 10**7) <= bound <= 1000 for bound in step):
         raise Refused("step")
     if max(abs(sample) for sample in samples) * factor > 10**6 * G:
@@ -59,7 +53,7 @@ def _lines(content):
         except UnicodeDecodeError:
             text = "".join(chr(byte) for byte in content)
         text = text[1:] if text[:1] == "\ufeff" else text
-    if content.startswith((b"\x1f\x8b", b"PK\x03\x04", b"BZh", b"\xfd7zXZ")):
+    if content.startswith((b"\x1f\x8b", b"PK", b"BZh", b"\xfd7zXZ")):  # `test_packed` damages packed files
         raise Refused("packed")
     while text.endswith("\x1a"):
         text = text[:-1]
@@ -117,7 +111,8 @@ def _until(text, stops):
 
 def _channel(lines, wanted):
     """(step, samples, factor) of the channel wanted of a file that has several; None if it is none."""
-    channels = strict_formats.csmip(lines)
+    channels = strict_formats.csmip(lines) or strict_formats.cosmos(lines)
+    channels = channels or strict_formats.knet(lines) or strict_formats.smc(lines)
     if channels is None:
         return None
     wanted = None if wanted is None else str(wanted).casefold()
@@ -126,7 +121,7 @@ def _channel(lines, wanted):
     if len(found) != 1:
         raise Refused("channel")
     _, _, step, samples, factor = found[0]
-    return (step, step), samples, factor
+    return step and (step, step), samples, factor
 
 
 def _at2(lines):
@@ -201,128 +196,3 @@ def _dyna(lines):
         raise Refused("count")
     step = step_of(keys.get("SAMPLING_INTERVAL_S", ""))
     return (step, step), samples, KNOWN[unit]
-
-
-def _columns(lines):
-    """(step, samples, factor) of two columns."""
-    header, rows = [], []
-    for line in lines:
-        text = line.strip()
-        if text[:1] in ("#", "%", "!") or text[:2] == "//":
-            header += [] if rows else [text]
-        elif text:
-            word = ""
-            for sign in text.lower().lstrip("+-"):
-                if not (sign.isalnum() or sign == "_"):
-                    break
-                word += sign
-            if rows or text[0] in "-+.,;" + DIGITS or word in ("nan", "inf", "infinity"):
-                rows.append(text.split("#")[0].strip())
-            else:
-                header.append(text)
-    everything = "\n".join(rows)
-    first = next((line for line in lines if line.strip()), "").lower()
-    if not rows or "corrected accel" in first[:60] or first.startswith("origin time"):
-        raise Refused("format")
-    semicolons, commas = ";" in everything, "," in everything
-    spaced = any(
-        row[0] == ","
-        or row[-1] == ","
-        or any(sign == "," and (row[i - 1] in " \t" or row[i + 1 : i + 2] in (" ", "\t")) for i, sign in enumerate(row))
-        for row in rows
-        if row
-    )
-    by, decimal = None, "."
-    if semicolons:
-        by, decimal = ";", "," if commas else "."
-    elif commas and (
-        spaced or (any(len(row.split()) < 2 for row in rows) and 2 * sum("." in row for row in rows) >= len(rows))
-    ):
-        by = ","
-    elif commas and all(len(row.split()) > 1 for row in rows):
-        decimal = ","
-    elif commas:
-        raise Refused("comma")
-    if decimal == "," and "." in everything:
-        raise Refused("points and commas")
-    pairs = []
-    for row in rows:
-        fields = [field.strip() for field in (row.split(by) if by else row.split())]
-        if len(fields) != 2:
-            raise Refused("columns")
-        pairs.append([field.replace(",", ".") if decimal == "," else field for field in fields])
-    if header:
-        last = header[-1]
-        fields = [field.strip() for field in (last.split(by) if by else last.split())][1:]
-        if last[0] not in "#%!" and last[:2] != "//" and any(_numeric(field) for field in fields):
-            raise Refused("header")
-        if any(
-            "npts" in "".join(sign if sign.isalnum() or sign == "_" else " " for sign in line.lower()).split()
-            for line in header
-        ):
-            raise Refused("NPTS")
-    factor = unit_of(header, len(header) - 1)
-    per_second = {found for line in header for found in _times_in(line)}
-    if len(per_second) > 1 or None in per_second:
-        raise Refused("unit of time")
-    samples = [single(second) for _, second in pairs]
-    times = [single(first) for first, _ in pairs]
-    if len(times) < 2:
-        raise Refused("samples")
-    low, high = _uniform(times, [first for first, _ in pairs])
-    scale = per_second.pop() if per_second else 1
-    return (low / scale, high / scale), samples, factor
-
-
-def _numeric(field):
-    field = field[1:] if field[:1] in ("+", "-") else field
-    field = field[1:] if field[:1] in (".", ",") else field
-    return field[:1] in tuple(DIGITS)
-
-
-def _times_in(line):
-    """Units of time that stand behind the word time (or t) of a header line, in units a second; None: another unit."""
-    found = []
-    flat = " ".join(line[:400].lower().split())
-    words = words_of(flat.replace("/", " , ").replace("_", " "))
-    for i, word in enumerate(words):
-        if word in ("time", "t"):
-            rest = words[i + 1 :]
-            while rest and rest[0] in ("(", "[", ",", ":", "=", "in", "unit", "units"):
-                rest = rest[1:]
-            unit = ends_of(rest[0]) if rest else ""
-            if unit in ("us", "µs", "usec", "ns", "min", "minute", "minutes", "h", "hour", "hours", "samples"):
-                found.append(None)
-            elif unit in TIME_WORDS:
-                found.append(TIME_WORDS[unit])
-    return found
-
-
-def _uniform(times, tokens):
-    """(least, largest) step of the lines that pass within half a printed unit of all times."""
-    count = len(times)
-    mean = (times[-1] - times[0]) / (count - 1)
-    steps = [after - before for before, after in zip(times, times[1:], strict=False)]
-    if min(steps) <= 0:
-        raise Refused("time goes back")
-    if max(steps) - min(steps) <= mean / 10**6:
-        return mean * (1 - Fraction(1, 10**11)), mean * (1 + Fraction(1, 10**11))
-    lasts, digits = [], []
-    for token in tokens:
-        mantissa, _, exponent = token.lower().replace("d", "e").partition("e")
-        figures = mantissa.lstrip("+-").replace(".", "").lstrip("0")
-        lasts.append((int(exponent) if exponent else 0) - len(mantissa.partition(".")[2]))
-        digits.append(max(len(figures), 1))
-    units = [
-        Fraction(10) ** max(min(lasts), last + figures - max(digits))
-        for last, figures in zip(lasts, digits, strict=True)
-    ]
-    for unit in (units, [mean / 100] * count):
-        if max(unit) * 2 > mean:
-            continue
-        half = [one / 2 + max(unit) / 1000 for one in unit]  # the reader's own margin
-        low = max((times[k] - half[k] - times[j] - half[j]) / (k - j) for k in range(count) for j in range(k))
-        high = min((times[k] + half[k] - times[j] + half[j]) / (k - j) for k in range(count) for j in range(k))
-        if low <= high:
-            return low, high
-    raise Refused("not uniform")

@@ -201,7 +201,10 @@ def unit_of(lines, titles):
     """Factor of the unit that header lines state, None without one; `titles` is the index of the titles' line."""
     factors, quantities = set(), set()
     for index, line in enumerate(lines):
-        words = words_of(line[:400])
+        flat = " ".join(line[:400].replace('"', " ").split())
+        for sign in ("/", "^", "**"):
+            flat = flat.replace(f" {sign}", sign).replace(f"{sign} ", sign)
+        words = words_of(flat)
         parts = "".join(sign if sign in LETTERS else " " for sign in line[:400].lower()).split()
         named = {QUANTITIES[part] for part in parts if part in QUANTITIES}
         quantities |= named

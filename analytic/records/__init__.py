@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
@@ -10,19 +11,20 @@ import numpy as np
 
 from ..errors import SceneError
 from ..motion import SampledMotion
-from . import columns, csmip, dyna, foreign, peer
+from . import columns, cosmos, csmip, dyna, foreign, knet, peer, smc
 from .content import Asked, read_lines
-from .units import UNITS, G, resolve
+from .times import resolved_step
+from .units import UNITS, G, Unit, resolve
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from .content import Content
-    from .units import Unit
 
-__all__ = ["FORMATS", "G", "UNITS", "read_record"]
+__all__ = ["FORMATS", "G", "UNITS", "Channel", "read_channels", "read_record"]
 
-FORMATS: tuple[Format, ...] = (peer, dyna, csmip, foreign, columns)  # the first that recognises the lines reads them
+# The first that recognises the lines reads them.
+FORMATS: tuple[Format, ...] = (peer, dyna, csmip, cosmos, knet, smc, foreign, columns)
 NOT_ACCELERATIONS = {".vt2": "velocities", ".dt2": "displacements"}
 USUAL_PEAK = (1e-4 * G, 3 * G)  # m/s2
 USUAL_STEP = (1e-4, 0.1)  # s
@@ -41,19 +43,43 @@ class Format(Protocol):
         """The `Content` of each channel, in the order of the file; raises `SceneError`."""
 
 
+@dataclass(frozen=True, eq=False)
+class Channel:
+    """A channel of a record file as read: format, number and direction ("" where the file names none), what was done to
+    its values, the unit they were printed in, and the ground motion [m/s2]."""
+
+    format: str
+    number: str
+    direction: str
+    note: str
+    unit: Unit
+    motion: SampledMotion
+
+
 def read_record(
-    path: str | PathLike[str], units: str | None = None, scale: float = 1.0, *, channel: int | str | None = None
+    path: str | PathLike[str],
+    units: str | None = None,
+    scale: float = 1.0,
+    *,
+    dt: float | None = None,
+    column: int | None = None,
+    channel: int | str | None = None,
 ) -> SampledMotion:
     """The ground motion in a record file; the format is recognised from the content.
 
     Parameters
     ----------
     path : str or Path
-        PEER AT2, ESM/DYNA 1.2 ASCII (also as AFAD writes it), CSMIP volume 2 or two columns (time, acceleration; CSV).
+        PEER AT2, ESM/DYNA 1.2 ASCII (also as AFAD writes it), CSMIP volume 2, COSMOS, K-NET, KiK-net, USGS SMC, or
+        columns of numbers (CSV, value lists); or gzip or zip of one of them.
     units : {"m/s2", "cm/s2", "g"}, optional
         Unit of a record whose own words state none; must not contradict them.
     scale : float
         Factor on the accelerations.
+    dt : float, optional
+        Sampling interval [s] of a record whose own words state none; must not contradict them.
+    column : int, optional
+        Which of several columns holds the accelerations, counted from 1; the first one holds the times, if any does.
     channel : int or str, optional
         Number (3) or direction ("Up") of one of the channels of a file that has several.
 
@@ -67,36 +93,53 @@ def read_record(
     SceneError
         Names the file, the line or header key, what was found and the remedy.
     """
+    found = read_channels(path, units, scale, dt=dt, column=column, channel=channel)
+    if len(found) > 1:
+        problem = "missing; the file holds channels " + " or ".join(_words(one.number, one.direction) for one in found)
+        raise SceneError("motion.channel", None, problem, "add channel, one of these").in_file(path)
+    return found[0].motion
+
+
+def read_channels(
+    path: str | PathLike[str],
+    units: str | None = None,
+    scale: float = 1.0,
+    *,
+    dt: float | None = None,
+    column: int | None = None,
+    channel: int | str | None = None,
+) -> tuple[Channel, ...]:
+    """All channels of a record file, or the chosen one alone; parameters and errors as those of `read_record`."""
     path = Path(path)
     try:
-        return _motion(_content(path, Asked(channel)), path.name, units, scale)
+        form, contents = _contents(path, Asked(dt, column))
+        chosen = contents if channel is None else [_chosen(contents, channel)]
+        return tuple(_channel(form.NAME, content, path.name, units, scale, dt) for content in chosen)
     except SceneError as error:
         raise error.in_file(path) from None
 
 
-def _content(path: Path, asked: Asked) -> Content:
-    lines = read_lines(path)
-    if path.suffix.lower() in NOT_ACCELERATIONS:
+def _contents(path: Path, asked: Asked) -> tuple[Format, Sequence[Content]]:
+    """The format of a file and what it holds."""
+    lines, name = read_lines(path)
+    suffix = Path(name).suffix
+    if suffix.lower() in NOT_ACCELERATIONS:
         raise SceneError(
             "record",
             None,
-            f"holds {NOT_ACCELERATIONS[path.suffix.lower()]}, as {path.suffix} files do",
+            f"holds {NOT_ACCELERATIONS[suffix.lower()]}, as {suffix} files do",
             "give the acceleration file (.AT2) of this record",
         )
     if not any(line.strip() for line in lines):
         raise SceneError("record", None, "is empty", "give a record with at least two accelerations")
-    return _chosen(next(form for form in FORMATS if form.recognises(lines)).read(lines, asked), asked.channel)
+    form = next(form for form in FORMATS if form.recognises(lines))
+    if asked.column is not None and form is not columns:
+        raise SceneError("motion.column", asked.column, f"but the file is {form.NAME}", "remove column")
+    return form, form.read(lines, asked)
 
 
-def _chosen(contents: Sequence[Content], channel: int | str | None) -> Content:
-    """The one of a file's contents that `channel`, a number or a direction, names; without it the only one."""
-    choice = " or ".join(content.channel_words for content in contents)
-    if channel is None and len(contents) > 1:
-        raise SceneError(
-            "motion.channel", None, f"missing; the file holds channels {choice}", "add channel, one of these"
-        )
-    if channel is None:
-        return contents[0]
+def _chosen(contents: Sequence[Content], channel: int | str) -> Content:
+    """The one of a file's contents that `channel`, a number or a direction, names."""
     if not contents[0].channel:
         raise SceneError("motion.channel", channel, "but the file has no several channels", "remove channel")
     word = " ".join(str(channel).split()).casefold()
@@ -105,25 +148,34 @@ def _chosen(contents: Sequence[Content], channel: int | str | None) -> Content:
     ]
     if len(found) != 1:
         problem = "names several channels" if found else "not a channel of the file"
+        choice = " or ".join(_words(content.channel, content.direction) for content in contents)
         raise SceneError("motion.channel", channel, problem, f"choose one of {choice}, by its number")
     return found[0]
 
 
-def _motion(content: Content, name: str, units: str | None, scale: float) -> SampledMotion:
-    """The `SampledMotion` of a `Content`: its unit, its label and what is odd about it."""
+def _words(number: str, direction: str) -> str:
+    """A channel as messages name it: 3 (Up)."""
+    return f"{number} ({direction})" if direction else number
+
+
+def _channel(form: str, content: Content, name: str, units: str | None, scale: float, dt: float | None) -> Channel:
+    """The `Channel` of a `Content`: its unit, its step, its label and what is odd about it."""
     unit = resolve(content.unit, units, content.no_unit)
     if len(content.values) < 2:
         raise SceneError("record", None, f"holds {len(content.values)} samples", "give at least two accelerations")
+    dt = resolved_step(content.dt, dt)
     samples = content.values * unit.factor
     peak = float(np.abs(samples).max())
     if peak > LARGEST_PEAK:
         raise SceneError("record", None, f"its peak of {peak / G:.3g} g is no ground motion", "mend the damaged number")
     if not abs(scale) * peak <= LARGEST_PEAK:
         raise SceneError("motion.scale", scale, f"makes a peak of {abs(scale) * peak / G:.3g} g", "give a smaller one")
-    label = f"{name}, channel {content.channel_words}" if content.channel else name
+    label = f"{name}, channel {_words(content.channel, content.direction)}" if content.channel else name
+    label = f"{label} ({content.note})" if content.note else label
     label = label if scale == 1 else f"{label} x {scale:g}"
-    odd = _odd(peak, content.dt, unit) + content.warnings
-    return SampledMotion(content.dt, samples * scale, label, tuple(f"{name}: {sentence}" for sentence in odd))
+    odd = tuple(f"{name}: {sentence}" for sentence in _odd(peak, dt, unit) + content.warnings)
+    motion = SampledMotion(dt, samples * scale, label, odd)
+    return Channel(form, content.channel, content.direction, content.note, unit, motion)
 
 
 def _odd(peak: float, dt: float, unit: Unit) -> tuple[str, ...]:

@@ -3,25 +3,21 @@
 import re
 from dataclasses import dataclass
 from os import PathLike
+from pathlib import Path
 
 import numpy as np
 
 from ..errors import SceneError
 from ..files import read_plain
+from .packed import unpacked
 from .units import Unit
 
 LARGEST = 200_000_000  # bytes: some 1e7 samples
 HEADER_WIDTH = 400  # characters of a header line that are looked at
 UNKNOWN = (
     "not a known record format",
-    "give PEER AT2 (a line NPTS= ..., DT= ...), ESM/DYNA 1.2 ASCII, CSMIP volume 2 or two columns of numbers",
+    "give PEER AT2 (a line NPTS= ..., DT= ...), ESM/DYNA 1.2, CSMIP volume 2, COSMOS, K-NET, SMC or columns of numbers",
 )
-PACKED = {
-    b"\x1f\x8b": ("gzip", "gunzip"),
-    b"PK\x03\x04": ("zip", "unzip"),
-    b"BZh": ("bzip2", "bunzip2"),
-    b"\xfd7zXZ": ("xz", "unxz"),
-}
 CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
 
@@ -29,39 +25,39 @@ CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 class Asked:
     """What the user says of a record. None: nothing, and the file itself must say it.
 
-    channel : int, str or None
-        Number or direction of one of several channels.
+    dt : float or None
+        Sampling interval [s].
+    column : int or None
+        The column of the accelerations, from 1 on.
     """
 
-    channel: int | str | None = None
+    dt: float | None = None
+    column: int | None = None
 
 
 @dataclass(frozen=True)
 class Content:
-    """One channel of a record as read: sampling interval dt [s], values as printed, shape (n,), the unit its own words
-    state (None: none), what it says of a missing one, sentences on what is odd, the channel's number and direction."""
+    """One channel of a record as read: sampling interval dt [s] and unit as its own words state them (None: they do
+    not), values as printed, shape (n,), what to say of a missing unit, sentences on what is odd, number and direction
+    of the channel, and what was done to the values."""
 
-    dt: float
+    dt: float | None
     values: np.ndarray
     unit: Unit | None
     no_unit: str = "the header names no unit"
     warnings: tuple[str, ...] = ()
     channel: str = ""
     direction: str = ""
-
-    @property
-    def channel_words(self) -> str:
-        """The channel as messages name it: 3 (Up)."""
-        return f"{self.channel} ({self.direction})" if self.direction else self.channel
+    note: str = ""
 
 
-def read_lines(path: str | PathLike[str]) -> list[str]:
-    """The lines of a text file, without their ends.
+def read_lines(path: str | PathLike[str]) -> tuple[list[str], str]:
+    """(lines without their ends, name) of a text file, or of the one file that a packed file holds.
 
     Raises
     ------
     SceneError
-        The file cannot be read, is packed, or is not text.
+        The file cannot be read or unpacked, or is not text.
     """
     try:
         content = read_plain(path, LARGEST)
@@ -72,9 +68,7 @@ def read_lines(path: str | PathLike[str]) -> list[str]:
             f"cannot be read ({error.strerror})",
             "give the path of a record, relative to the scene file",
         ) from error
-    for magic, (name, command) in PACKED.items():
-        if content.startswith(magic):
-            raise SceneError("record", None, f"is packed by {name}", f"unpack it first ({command})")
+    content, name = unpacked(content, Path(path).name, LARGEST)
     # Ctrl-Z ended DOS files. CR CR LF is what a DOS text becomes after one more conversion.
     lines = re.sub(r"\r++\n?+", "\n", _text(content).rstrip("\x1a")).split("\n")
     for number, line in enumerate(lines, 1):
@@ -82,7 +76,7 @@ def read_lines(path: str | PathLike[str]) -> list[str]:
             raise SceneError(
                 f"line {number}", None, f"{UNKNOWN[0]}: it holds the control character {odd[0]!r}", UNKNOWN[1]
             )
-    return lines
+    return lines, name
 
 
 def _text(content: bytes) -> str:

@@ -35,7 +35,7 @@ def stated_layout(line: str) -> Layout | None:
 
 
 def fixed_values(lines: Sequence[str], begin: int, count: int, layout: Layout) -> tuple[np.ndarray, int]:
-    """(`count` numbers from the line of index `begin` on, index of the line behind them).
+    """(`count` numbers from the line of index `begin` on, index of the next line that is not blank).
 
     Raises
     ------
@@ -60,7 +60,7 @@ def fixed_values(lines: Sequence[str], begin: int, count: int, layout: Layout) -
             if found is None or found != decimals:
                 raise SceneError(where, field, f"not a number of {decimals} decimals, as the others", DAMAGED)
         at += 1
-    return np.array(values), at
+    return np.array(values), next((index for index in range(at, len(lines)) if lines[index].strip()), len(lines))
 
 
 def _decimals(field: str) -> int | None:

@@ -8,12 +8,7 @@ from ..errors import SceneError
 from .content import Asked
 
 NAME = "a format that is not read"
-SIGNS = {
-    "COSMOS": re.compile(r"\(format v[0-9.]+ with", re.I),
-    "USGS SMC": re.compile(r"\s*[0-9] (?:un)?corrected (?:accelerogram|velocity|displacement)", re.I),
-    "CSMIP volume 1": re.compile(r"\s*uncorrected accelerogram", re.I),
-    "K-NET": re.compile(r"origin time\b", re.I),
-}
+SIGNS = {"CSMIP volume 1": re.compile(r"\s*uncorrected accelerogram", re.I)}
 
 
 def recognises(lines: Sequence[str]) -> bool:

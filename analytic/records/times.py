@@ -26,6 +26,7 @@ PER_SECOND = {
     "milliseconds": 1000,
 }
 USABLE = (1e-7, 1e3)  # s: beyond it no step is one of a ground motion
+SAME = 1e-6  # of a step: two that differ by less are one, printed twice
 JITTER = 0.01  # of the step: clocks and single precision
 _STEP = re.compile(rf"({NUMBER})([A-Za-zµ]*)")
 
@@ -58,6 +59,30 @@ def usable(where: str, dt: float) -> float:
     if not USABLE[0] <= dt <= USABLE[1]:
         raise SceneError(where, dt, "not a sampling interval of a ground motion", "give the step in seconds")
     return dt
+
+
+def resolved_step(stated: float | None, given: float | None) -> float:
+    """The interval [s] from the record's own words (or None) and from the user (or None).
+
+    Raises
+    ------
+    SceneError
+        Neither states one, or they contradict each other.
+    """
+    if given is not None:
+        given = usable("motion.dt", given)
+    if stated is None and given is None:
+        raise SceneError("motion.dt", None, "missing; the record states no sampling interval", "add dt, the step in s")
+    if stated is None:
+        return given  # type: ignore[return-value]  # one of the two is given
+    if given is not None and abs(given - stated) > SAME * stated:
+        raise SceneError(
+            "motion.dt",
+            given,
+            f"but the step of the record itself is {stated:.9g} s",
+            "remove dt, or correct the record",
+        )
+    return stated
 
 
 def uniform_step(tokens: Sequence[str]) -> float:

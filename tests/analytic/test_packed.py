@@ -1,0 +1,115 @@
+"""Packed records: read as what they hold, or refused; damaged ones never read as something else."""
+
+import gzip
+import io
+import random
+import zipfile
+
+import numpy as np
+import pytest
+from mutated_files import VALUES, cosmos, csmip, damaged_bytes, records
+
+from analytic.errors import SceneError
+from analytic.records import content, read_record
+
+AT2 = "a\nb\nACCELERATION IN UNITS OF G\nNPTS= 4, DT= .01 SEC\n.1 .2 -.3 .4\n"
+
+
+def zipped(files, method=zipfile.ZIP_DEFLATED):
+    """A zip file of {name: text}; a name that ends in / is a folder."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", method) as archive:
+        for name, text in files.items():
+            archive.writestr(name, text)
+    return packed.getvalue()
+
+
+def write(folder, packed, name="record.zip"):
+    path = folder / name
+    path.write_bytes(packed)
+    return path
+
+
+@pytest.mark.parametrize("name, text, said", records(), ids=[name for name, *_ in records()])
+def test_packed_is_read_as_plain(tmp_path, name, text, said):
+    if "velocities" in name:
+        pytest.skip("no record")
+    plain = read_record(write(tmp_path, text.encode(), "plain"), **said)
+    for packed in (gzip.compress(text.encode()), zipped({"folder/": "", "folder/x.dat": text, "__MACOSX/x": "-"})):
+        motion = read_record(write(tmp_path, packed), **said)
+        np.testing.assert_array_equal(motion.samples, plain.samples)
+        assert motion.dt == plain.dt and motion.label.startswith("record.zip")
+
+
+def locked():
+    """A zip file that says that it has a password."""
+    packed = bytearray(zipped({"a": AT2}))
+    for magic, place in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
+        packed[packed.index(magic) + place] |= 1
+    return bytes(packed)
+
+
+BAD = {
+    "gzip cut": (gzip.compress(AT2.encode())[:-9], "is a damaged gzip file"),
+    "zip cut": (zipped({"a": AT2})[:-30], "is a damaged zip file"),
+    "several": (zipped({f"{n}.AT2": AT2 for n in "abcdefg"}), "holds 7 files: a.AT2, b.AT2, c.AT2, d.AT2, e.AT2, ...;"),
+    "none": (zipped({}), "is packed by zip, and empty"),
+    "folder alone": (zipped({"a/": ""}), "holds 0 files"),
+    "password": (locked(), "is a zip file with a password; unpack it first"),
+    "twice": (gzip.compress(zipped({"a": AT2})), "is packed by zip; unpack it once, it is packed twice (unzip)"),
+    "bzip2": (b"BZh91AY&SY", "is packed by bzip2; unpack it first (bunzip2)"),
+    "velocities": (zipped({"a.VT2": AT2}), "holds velocities, as .VT2 files do"),
+    "nothing in it": (gzip.compress(b""), "record: is empty"),
+}
+
+
+@pytest.mark.parametrize("packed, message", BAD.values(), ids=BAD)
+def test_refused(tmp_path, packed, message):
+    with pytest.raises(SceneError) as caught:
+        read_record(write(tmp_path, packed))
+    assert message in str(caught.value)
+
+
+def test_velocities_are_refused_by_the_name_within(tmp_path):
+    with pytest.raises(SceneError, match="holds velocities"):
+        read_record(write(tmp_path, gzip.compress(AT2.encode()), "record.VT2.gz"))
+
+
+@pytest.mark.parametrize("pack", [gzip.compress, lambda text: zipped({"a": text})])
+def test_no_more_is_unpacked_than_a_record_can_hold(tmp_path, monkeypatch, pack):
+    monkeypatch.setattr(content, "LARGEST", 100_000)
+    with pytest.raises(SceneError, match="unpacks to more than 0.1 MB"):
+        read_record(write(tmp_path, pack(bytes(10_000_000))))
+
+
+PACKED = [
+    (pack(text.encode()), said)
+    for text, said in ((AT2, {}), (csmip(VALUES), {"channel": 2}), (cosmos(VALUES), {"channel": 1}))
+    for pack in (gzip.compress, lambda text: zipped({"a": text}), lambda text: zipped({"a": text}, zipfile.ZIP_STORED))
+]
+
+
+def judge_damaged(folder, number, seed):
+    """How many of `number` damaged packed files are read; each as before the damage."""
+    chance, read = random.Random(seed), 0
+    for packed, said in PACKED:
+        whole = read_record(write(folder, packed), **said)
+        for _ in range(number // len(PACKED)):
+            path = write(folder, damaged_bytes(packed, chance))
+            try:
+                motion = read_record(path, "g" if chance.random() < 0.1 else None, **said)
+            except SceneError as error:
+                assert str(error).isprintable() and error.remedy
+                continue
+            assert motion.dt == whole.dt and motion.samples.tolist() == whole.samples.tolist()
+            read += 1
+    return read
+
+
+def test_damaged_packed_files_are_refused_or_read_the_same(tmp_path):
+    assert 0 < judge_damaged(tmp_path, 270, seed=0) < 135
+
+
+@pytest.mark.slow
+def test_many_damaged_packed_files(tmp_path):
+    assert judge_damaged(tmp_path, 9 * 500, seed=1)
