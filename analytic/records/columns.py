@@ -215,7 +215,7 @@ def _stated_step(header: Sequence[tuple[int, str]]) -> float | None:
         for match in STEP.finditer(" ".join(line[:HEADER_WIDTH].split())):
             if match[2] is None:
                 raise SceneError(f"line {at}", line, "its dt is no number", "write dt = .01 s")
-            word = match[3].lower()
+            word = (match[3] or match[1] or "").lower()
             unit = word if word in PER_SECOND or word in OTHER_TIMES else match[1] or ""
             found[interval(f"line {at}, dt", match[2], unit)] = at
     if len(found) > 1:
