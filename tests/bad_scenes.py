@@ -272,7 +272,7 @@ BAD = {
     ),
     "vertical file without a unit": (
         motion('record = "good.AT2"\nvertical = "two.txt"'),
-        "motion.units: missing; two columns carry no unit (two.txt); add units, one of m/s2, cm/s2, g",
+        "motion.units: missing; columns of numbers carry no unit (two.txt); add units, one of m/s2, cm/s2, g",
     ),
     "channel of a file that has none": (
         motion('record = "good.AT2"\nchannel = 1'),
@@ -281,6 +281,10 @@ BAD = {
     "column of a file that has none": (
         motion('record = "good.AT2"\ncolumn = 2'),
         "motion.column = 2: but the file is PEER AT2 (good.AT2); remove column",
+    ),
+    "column of a vertical motion that has none": (
+        motion('record = "good.AT2"\nvertical_column = 3'),
+        "motion.vertical_column = 3: but the file is PEER AT2 (good.AT2); remove vertical_column",
     ),
     "column that is none": (
         motion('record = "two.txt"\ncolumn = 0'),

@@ -75,7 +75,11 @@ BAD = {
     "several columns": (table(";"), {}, "motion.column: missing; the file has 4 columns; add column, 2 to 4"),
     "the time": (table(";"), {"column": 1}, "motion.column = 1: is the time; give column, 2 to 4"),
     "beyond": (table(";"), {"column": 5}, "motion.column = 5: but the file has 4 columns; give column, 2 to 4"),
-    "a velocity": (TITLES.format(";") + table(";"), {"column": 4, "units": None}, "line 1, unit = 'cm/s': not an acceleration"),
+    "a velocity": (
+        TITLES.format(";") + table(";"),
+        {"column": 4, "units": None},
+        "line 1, unit = 'cm/s': not an acceleration",
+    ),
     "a column less": (table(";") + "0.1;2\n", {"column": 2}, "line 13 = '0.1;2': holds 2 columns, the first line 4"),
     "one column, no step": ("1\n2\n", {}, "motion.dt: missing; the file holds one column of numbers, no times; add dt"),
     "two of one column": (

@@ -112,6 +112,14 @@ def test_vertical_channel_of_the_same_file_or_another(tmp_path, file):
     assert motion.vertical.label == f"{'v' if file else 'r'}.v2, channel 2 (Up) x 0.5"
 
 
+def test_columns_of_a_logger_at_a_step_that_is_given(tmp_path):
+    (tmp_path / "r.csv").write_text("x;y;z\n" + "".join(f"{a};{-a};{0.5 * a}\n" for a in VALUES))
+    motion = with_motion(tmp_path, 'record = "r.csv"\nunits = "g"\ndt = 0.02\ncolumn = 2\nvertical_column = 3')
+    assert (motion.dt, motion.label) == (0.02, "r.csv (column 2), vertical r.csv (column 3)")
+    assert motion.samples[1] == pytest.approx(-9.81 * VALUES[1])
+    assert motion.vertical.samples[1] == pytest.approx(0.5 * 9.81 * VALUES[1])
+
+
 def test_vertical_ratio_of_a_pulse_with_a_phase(tmp_path):
     lines = 'pulse = "one-sine"\namplitude = 2\nfrequency = 5\nvertical_ratio = 0.5\nvertical_phase = 0.7\nscale = 3'
     up = PulseMotion("one-sine", 3.0, 5.0, phase=0.7)
