@@ -49,15 +49,7 @@ class History:
     bearing_force: np.ndarray
     ground_acceleration: np.ndarray
 
-    COLUMNS = (
-        "time",
-        "tilt",
-        "tilt_rate",
-        "base_displacement",
-        "base_velocity",
-        "bearing_force",
-        "ground_acceleration",
-    )
+    COLUMNS = (*(column.name for column in dataclasses.fields(State)), "ground_acceleration")
 
     def to_csv(self, path: str | PathLike[str] | TextIO) -> None:
         """Write the columns with a header line; `path` is a file name or an open text file."""
@@ -159,6 +151,13 @@ class Response:
         return _finite(values)
 
     @classmethod
+    def unmeasured(cls, **known: Any) -> Self:
+        """The response of a run of which no more than this is known: other numbers are NaN, there are no events."""
+        numbers = {part.name: math.nan for part in dataclasses.fields(cls) if part.type is float}
+        nothing = dict(overturning_time=None, unstable_time=None, impacts=(), uplifts=(), rests=(), steps=0)
+        return cls(**{**numbers, **nothing, "end": State(*[math.nan] * 6), **known})
+
+    @classmethod
     def from_json(cls, values: Mapping[str, Any], history: History | None = None) -> Self:
         """The response that gave these values by `to_json`; a number that was not finite is NaN.
 
@@ -175,7 +174,7 @@ class Response:
                 **values,
                 **numbers,
                 **series,
-                "impacts": tuple(_of(Impact, one) for one in values["impacts"]),
+                "impacts": tuple(_of(Impact, impact) for impact in values["impacts"]),
                 "end": _of(State, values["end"]),
                 "failure": failure,
                 "energy": energy and Energy(**energy),

@@ -7,7 +7,8 @@ grow in flight, and are a share of what is left of it on the way to an impact.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -20,34 +21,18 @@ SETTLING = 4  # steps that stay as small after an impact as at it: engines sprea
 FLAT = 1e-6  # swings below this share of gamma do not matter, their impacts are stepped over; 1e-7 to 1e-5
 STANDING = 100  # energy below which the block counts as standing, over that of a swing which does not matter
 LEAST_AHEAD = 1e-3  # of a step: a jump that is nearer is not worth a step of its own
+ROUNDING = 1e-9  # of a step, by which the steps' sum may miss the duration
 FAR = 1.2  # longer than this times the largest step over the approach is far from an impact
 
 FLIGHT, IMPACT, REST = range(3)  # what a step is for: one corner carries, both may, both do
 
 
-def impact_aware(
-    model: RockingModel,
-    start_rate: float,
-    largest: float,
-    accuracy: float,
-    *,
-    approach: float,
-    smallest: float,
-    sharpest: float = math.inf,
-    standing: float = 0.0,
-    overlong: bool = False,
-    cruise: bool = False,
-) -> Callable[[float, float, bool, float], tuple[float, int]]:
-    """A function (tilt, rate, jumped, interval) -> (length [s], FLIGHT, IMPACT or REST) of the step from a state.
-
-    It is called before each step; jumped: the tilt lies on the other side than at the call before; interval: between
-    the rates of the two calls [s].
+@dataclass(frozen=True)
+class StepRule:
+    """What an engine asks of its steps.
 
     Parameters
     ----------
-    model : RockingModel
-    start_rate : float
-        Tilt rate at the start [rad/s].
     largest, smallest : float
         Limits of a step [s].
     accuracy : float
@@ -64,9 +49,31 @@ def impact_aware(
     cruise : bool
         Far from an impact keep the largest step without a closer look.
     """
+
+    largest: float
+    smallest: float
+    accuracy: float
+    approach: float
+    sharpest: float = math.inf
+    standing: float = 0.0
+    overlong: bool = False
+    cruise: bool = False
+
+
+def impact_aware(
+    model: RockingModel, start_rate: float, rule: StepRule
+) -> Callable[[float, float, bool, float], tuple[float, int]]:
+    """A function (tilt, rate, jumped, interval) -> (length [s], FLIGHT, IMPACT or REST) of the step from a state.
+
+    It is called before each step of a `RockingModel` that starts at the tilt rate `start_rate` [rad/s]. rule: a
+    `StepRule`. jumped: the tilt lies on the other side than at the call before; interval: between the rates of the two
+    calls [s].
+    """
+    largest, smallest, accuracy, approach = rule.largest, rule.smallest, rule.accuracy, rule.approach
+    sharpest, overlong, cruise = rule.sharpest, rule.overlong, rule.cruise
     least = least_pull(model)
     twice, weak = 2 * least, _weak(model)
-    almost = max(STANDING * weak, standing)
+    almost = max(STANDING * weak, rule.standing)
     level, reach = almost / twice, largest / approach * FAR
     # A first swing may be short: start small and let the step grow.
     step = min(largest, max(smallest, accuracy * abs(start_rate) / least, 1e-2 * largest))
@@ -109,6 +116,28 @@ def impact_aware(
         return step, purpose
 
     return pace
+
+
+def limits(
+    duration: float, largest: float, jumps: Iterable[float] = ()
+) -> tuple[float, Callable[[float, float], tuple[float, float]]]:
+    """(first time that a step may not pass unseen, a function (t, step) -> step and the next such time).
+
+    Such times are the `jumps` of the ground's acceleration, in their order, and the end of the run; `largest`: the
+    longest step; all in the same unit.
+    """
+    ahead = iter(jumps)
+    jump, gate = next(ahead, math.inf), duration - ROUNDING * largest + 2 * ROUNDING * largest
+
+    def fitted(t, step):
+        nonlocal jump
+        if t + step >= jump:
+            if t >= jump:
+                jump = next(ahead, math.inf)
+            step = aligned(step, jump - t)
+        return (duration - t if t + step > gate else step), min(jump, gate)
+
+    return min(jump, gate), fitted
 
 
 def aligned(step: float, ahead: float) -> float:

@@ -198,17 +198,22 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
             fast = (pace * longest > PACE * MOST_STEPS) if direction > 0 else (decay * longest > GROWTH)
         least = RK_STEPS if correction == 0 else 1
         steps = int(np.clip(math.ceil(min(pace * longest.max() / PACE, MOST_STEPS)), least, MOST_STEPS))
-        h = wanted / steps
-        for _ in range(steps):
-            k1 = slope(t, *state)
-            k2 = slope(t + h / 2, *(state + h / 2 * k1))
-            k3 = slope(t + h / 2, *(state + h / 2 * k2))
-            k4 = slope(t + h, *(state + h * k3))
-            state = state + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-            t = t + h
+        t, state = _runge_kutta(slope, t, state, wanted / steps, steps)
     # moving out of contact where it should move in, or not there at all
     missed = (side * state[1] * direction > 0) | ~(np.abs(state[0]) <= trace.contact_tilt)
     return tuple(np.where(missed, np.nan, value) for value in (t, state[1], state[3]))  # type: ignore[return-value]  # three of three
+
+
+def _runge_kutta(slope, t, state, h, steps):
+    """(t, state) after so many steps of length h of the classical method; `slope(t, *state)` is its derivative."""
+    for _ in range(steps):
+        k1 = slope(t, *state)
+        k2 = slope(t + h / 2, *(state + h / 2 * k1))
+        k3 = slope(t + h / 2, *(state + h / 2 * k2))
+        k4 = slope(t + h, *(state + h * k3))
+        state = state + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        t = t + h
+    return t, state
 
 
 def _paces(model: ArrayModel) -> tuple[float, float]:
@@ -238,8 +243,8 @@ def _time_to_zero(p: np.ndarray, q: np.ndarray, a: np.ndarray, direction: int) -
     with np.errstate(invalid="ignore", divide="ignore"):
         square = q * q - 2 * a * p
         sign = direction if direction else np.where(q > 0, -1, 1)
-        found = np.where(square >= 0, sign * 2 * p / (np.sqrt(square) - sign * q), -p / q)
-        return np.where(p == 0, 0.0, np.where(found * direction >= 0, found, np.nan))
+        root = np.where(square >= 0, sign * 2 * p / (np.sqrt(square) - sign * q), -p / q)
+        return np.where(p == 0, 0.0, np.where(root * direction >= 0, root, np.nan))
 
 
 # Exponent beyond which the bearing is on its limit force, whatever the number [-].

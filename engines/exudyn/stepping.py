@@ -83,6 +83,17 @@ def solver_settings(scene: Scene, **time_integration: Any) -> exu.SimulationSett
     return settings
 
 
+class Steps:
+    """What is recorded of a run: times, states (coordinates, then velocities) and bearing forces, step after step.
+
+    Not in lists: a step costs 100 bytes instead of 500. interrupts: as of `interruptible`.
+    """
+
+    def __init__(self) -> None:
+        self.times, self.states, self.forces = array("d"), array("d"), array("d")
+        self.interrupts: list[int] = []
+
+
 def step_through(
     model: Model,
     settings: exu.SimulationSettings,
@@ -107,14 +118,41 @@ def step_through(
         For the trace [s].
     """
     exu.config.printToConsole = False
-    scene, mbs, bearing, anchor = model.scene, model.mbs, model.bearing, model.anchor
+    scene, mbs, limit = model.scene, model.mbs, step_limit(model.scene)
     check(model)
-    system = mbs.systemData
-    # Not lists: a step costs 100 bytes instead of 500.
-    times, states, forces = array("d"), array("d"), array("d")
+    steps = Steps()
+    mbs.SetPostStepUserFunction(_recorder(model, steps, limit))
+    dynamic = _integrator(settings.timeIntegration, solver)
+    if scene.motion is not None:
+        mbs.SetPreStepUserFunction(_ground(model, settings.timeIntegration, dynamic, longest).prepare)
+    began = time.process_time()
+    failure = None
+    try:
+        with interruptible() as steps.interrupts:
+            done = dynamic.SolveSystem(mbs, settings)
+        if not done:
+            failure = Failure("the solver gave up", dynamic.GetErrorString())
+    except exu.ExudynError as error:
+        failure = Failure("the solver stopped with an error", f"{error} {dynamic.GetErrorString()}".strip())
+    finally:
+        release(mbs)
+    cpu = time.process_time() - began
+    if failure is None and len(steps.times) > limit:
+        failure = Failure(
+            "the run took too many steps",
+            f"{limit} steps reached t = {steps.times[-1]:.9g} s of {scene.duration:.9g} s",
+        )
+    q, v = np.split(np.array(steps.states).reshape(-1, 8 if scene.base else 6), 2, axis=1)
+    trace = make_trace(scene, np.array(steps.times), q, v, steps.forces, model.bearing, contact_tilt, settle)
+    ended = "overturned" if trace is not None and abs(trace.tilt[-1]) >= OVERTURNED else None
+    return Run(trace, len(steps.times) - 1, cpu, failure, ended)
+
+
+def _recorder(model, steps, limit):
+    """exudyn's function after each step: keeps it in `steps` and says whether to go on, at most for `limit` of them."""
+    bearing, anchor, system = model.bearing, model.anchor, model.mbs.systemData
+    times, states, forces = steps.times, steps.states, steps.forces
     coordinates, velocities = system.GetODE2Coordinates, system.GetODE2Coordinates_t
-    interrupts: list[int]
-    limit, interrupts = step_limit(scene), []
 
     def keep(mbs, t):
         q, v = coordinates(), velocities()
@@ -126,40 +164,26 @@ def step_through(
         if anchor is not None:
             anchor.commit(mbs, q, v)
         # False for NaN too
-        return -OVERTURNED < q.item(2) < OVERTURNED and len(times) <= limit and not interrupts
+        return -OVERTURNED < q.item(2) < OVERTURNED and len(times) <= limit and not steps.interrupts
 
-    mbs.SetPostStepUserFunction(keep)
-    integration = settings.timeIntegration
-    integration.solverType = solver
+    return keep
+
+
+def _integrator(integration, solver):
+    """exudyn's solver object for a solver type, which is set in the time integration's settings."""
     implicit = solver == exu.DynamicSolverType.TrapezoidalIndex2
-    dynamic = exu.MainSolverImplicitSecondOrder() if implicit else exu.MainSolverExplicit()
+    integration.solverType = solver
     integration.generalizedAlpha.useNewmark = integration.generalizedAlpha.useIndex2Constraints = implicit
-    if scene.motion is not None:
-        ground = Ground(model, longest)
-        if integration.automaticStepSize:
-            ground.iterations = dynamic.it
-            integration.initialStepSize = ground.first_step(integration.initialStepSize)
-        mbs.SetPreStepUserFunction(ground.prepare)
-    began = time.process_time()
-    failure = None
-    try:
-        with interruptible() as interrupts:
-            done = dynamic.SolveSystem(mbs, settings)
-        if not done:
-            failure = Failure("the solver gave up", dynamic.GetErrorString())
-    except exu.ExudynError as error:
-        failure = Failure("the solver stopped with an error", f"{error} {dynamic.GetErrorString()}".strip())
-    finally:
-        release(mbs)
-    cpu = time.process_time() - began
-    if failure is None and len(times) > limit:
-        failure = Failure(
-            "the run took too many steps", f"{limit} steps reached t = {times[-1]:.9g} s of {scene.duration:.9g} s"
-        )
-    q, v = np.split(np.array(states).reshape(-1, 8 if scene.base else 6), 2, axis=1)
-    trace = make_trace(scene, np.array(times), q, v, forces, bearing, contact_tilt, settle)
-    ended = "overturned" if trace is not None and abs(trace.tilt[-1]) >= OVERTURNED else None
-    return Run(trace, len(times) - 1, cpu, failure, ended)
+    return exu.MainSolverImplicitSecondOrder() if implicit else exu.MainSolverExplicit()
+
+
+def _ground(model, integration, dynamic, longest):
+    """The `Ground` under a model; where the solver chooses its steps, the first is one that the motion allows."""
+    ground = Ground(model, longest)
+    if integration.automaticStepSize:
+        ground.iterations = dynamic.it
+        integration.initialStepSize = ground.first_step(integration.initialStepSize)
+    return ground
 
 
 def release(mbs: exu.MainSystem) -> None:
@@ -182,9 +206,9 @@ def check(model: Model) -> None:
     """
     model.mbs.Assemble()
     wrong = [
-        f"{name} is {found!r} in exudyn, {wanted!r} in the scene"
-        for name, (found, wanted) in read_back(model).items()
-        if found != wanted
+        f"{name} is {held!r} in exudyn, {wanted!r} in the scene"
+        for name, (held, wanted) in read_back(model).items()
+        if held != wanted
     ]
     if wrong:
         raise Mismatch("; ".join(wrong))

@@ -15,7 +15,7 @@ from analytic.rocking import RockingModel
 
 from ..ground_velocity import ground_velocity
 from ..leapfrog import row_limit
-from ..pace import aligned, impact_aware
+from ..pace import FLIGHT, ROUNDING, StepRule, impact_aware, limits
 from .scene import contact_reference, least_mass, recovery_rate, size_scale
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def run(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, chosen: Settin
     """Step until the duration is over, the block has overturned or a state is not finite.
 
     MuJoCo's Euler is leapfrog: displacements live at the steps' ends, velocities half a step earlier. A load that
-    acts for the mean of two steps is scaled by (h + h')/(2 h'), see engines.pybullet.stepping. Not so for a first
+    acts for the mean of two steps is scaled by (h + h')/(2 h'), see engines.pybullet.stepping; not so for a first
     script.
 
     Returns
@@ -42,74 +42,27 @@ def run(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, chosen: Settin
     rows, ended
         Rows as `engines.leapfrog` has them, the start first; "done", "overturned", "not finite" or "too many steps".
     """
-    largest, recovery, as_it_comes = model.opt.timestep, recovery_rate(scene, chosen), chosen.recovery is None
-    law, g, start = BearingLaw.of(scene.bearings), scene.gravity, scene.start
-    pace = (
-        impact_aware(
-            RockingModel.of(scene),
-            start.tilt_rate,
-            largest,
-            chosen.accuracy,
-            approach=APPROACH,
-            smallest=SMALLEST_STEP * size_scale(scene),
-        )
-        if chosen.accuracy
-        else None
-    )
-    ground, sampled = ground_velocity(scene.motion), scene.motion.acceleration if scene.motion else None
-    upright = ground_velocity(scene.motion.vertical) if scene.motion else None
-    corners, half_height, half_width = not as_it_comes, scene.block.half_height, scene.block.half_width
-    viscous = None if as_it_comes else Viscous.of(scene, model, data)
-    advance, state, speed, push = mujoco.mj_step, data.qpos, data.qvel, data.qfrc_applied
-    option, gravity, solref = model.opt, model.opt.gravity, model.geom_solref
-    on_base, loaded, damping = scene.base is not None, scene.bearings is not None, law.count * law.damping
-    end, limit = scene.duration - 1e-9 * largest, 0.5 * math.pi
-    most = row_limit(scene.duration, largest)
-    jumps = iter(scene.motion.jumps if scene.motion and pace else ())
-    jump = next(jumps, math.inf)
-    t, h, used = 0.0, 0.0, largest
+    largest, corners = model.opt.timestep, chosen.recovery is not None  # a first script has a box's
+    law, start, loaded = BearingLaw.of(scene.bearings), scene.start, scene.bearings is not None
+    pace = _pace(scene, chosen, largest)
+    limit, fitted = limits(scene.duration, largest, scene.motion.jumps if scene.motion and chosen.accuracy else ())
+    load = _mean_loads(model, data, scene, chosen) if corners else _sampled_loads(model, data, scene)
+    advance, state, speed = mujoco.mj_step, data.qpos, data.qvel
+    half_height, half_width, on_base = scene.block.half_height, scene.block.half_width, scene.base is not None
+    end, fallen, most = scene.duration - ROUNDING * largest, 0.5 * math.pi, row_limit(scene.duration, largest)
+    t, h, interval, jumped = 0.0, 0.0, 1.0, False
     tilt, rate, x, v = start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity
     z = law.start(x)
-    force, gained, risen, interval, last_scale, jumped = law.force(x, z), 0.0, 0.0, 1.0, 1.0, False
+    force = law.force(x, z)
     rows = array("d", (t, h, tilt, rate, x, v, z, force, *state[-3:-1].tolist(), *speed[-3:-1].tolist()))
     ended, width = "done", len(rows)
     while t < end:
-        step = pace(tilt, rate, jumped, interval)[0] if pace else largest
-        if t + step >= jump:
-            if t >= jump:
-                jump = next(jumps, math.inf)
-            step = aligned(step, jump - t)
-        if t + step > end + 2e-9 * largest:
-            step = scene.duration - t
-        if step != used:
-            option.timestep = used = step
-            if not as_it_comes:
-                solref[:] = contact_reference(step, recovery)
-        scale = 1.0 if as_it_comes else 0.5 * (step + h) / step
-        if sampled and as_it_comes:
-            gravity[0] = -float(sampled(t))
-        elif ground:
-            reached = ground(t + 0.5 * step)
-            gravity[0] = (gained - reached) / step
-            gained = reached
-        if upright and as_it_comes:
-            gravity[2] = -g - float(vertical_acceleration(scene.motion, t))
-        elif upright:
-            reached = upright(t + 0.5 * step)
-            gravity[2] = -g * scale + (risen - reached) / step
-            risen = reached
-        elif scale != last_scale:
-            gravity[2] = -g * scale
-            last_scale = scale
-        if loaded:
-            pushed = force
-            if as_it_comes:
-                pushed += damping * v
-            elif viscous and not viscous.solved(h, step, scale, jumped or (tilt > 0) != (tilt + step * rate > 0)):
-                pushed += viscous.most(step) * v
-            push[0] = -pushed * scale
+        step = pace(tilt, rate, jumped, interval)[0]
+        if t + step >= limit:
+            step, limit = fitted(t, step)
+        interval = load(t, step, h, tilt, rate, v, force, jumped)
         advance(model, data)
-        interval, before, was = 0.5 * (step + h), x, tilt > 0
+        before, was = x, tilt > 0
         tilt, rate, across, up = state.item(-1), speed.item(-1), state.item(-3), state.item(-2)
         if on_base:
             x, v = state.item(0), speed.item(0)
@@ -125,13 +78,78 @@ def run(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, chosen: Settin
             state[-2] = up = up - turned * (up + half_height)
         t, h, jumped = t + step, step, (tilt > 0) != was
         rows.extend((t, h, tilt, rate, x, v, z, force, across, up, speed.item(-3), speed.item(-2)))
-        if not -limit < tilt < limit:
+        if not -fallen < tilt < fallen:
             ended = "overturned" if math.isfinite(tilt) else "not finite"
             break
         if len(rows) > most * width:
             ended = "too many steps"
             break
     return np.frombuffer(rows).reshape(-1, width), ended
+
+
+def _pace(scene, chosen, largest):
+    """Length and purpose of a step as `engines.pace` has them; without an accuracy all are the largest [s]."""
+    if not chosen.accuracy:
+        return lambda *_: (largest, FLIGHT)
+    rule = StepRule(largest, SMALLEST_STEP * size_scale(scene), chosen.accuracy, APPROACH)
+    return impact_aware(RockingModel.of(scene), scene.start.tilt_rate, rule)
+
+
+def _sampled_loads(model, data, scene):
+    """As `_mean_loads`, taken as they are at the start of the step."""
+    motion, law, g = scene.motion, BearingLaw.of(scene.bearings), scene.gravity
+    option, gravity, push = model.opt, model.opt.gravity, data.qfrc_applied
+    loaded, damping = scene.bearings is not None, law.count * law.damping
+
+    def load(t, step, h, tilt, rate, v, force, jumped):
+        option.timestep = step
+        if motion:
+            gravity[0] = -float(motion.acceleration(t))
+        if motion and motion.vertical:
+            gravity[2] = -g - float(vertical_acceleration(motion, t))
+        if loaded:
+            push[0] = -(force + damping * v)
+        return 0.5 * (step + h)
+
+    return load
+
+
+def _mean_loads(model, data, scene, chosen):
+    """A function (t, step, h, tilt, rate, v, force, jumped) that sets length and loads of a step after one of h [s].
+
+    It returns the time between the velocities before and after the step [s].
+    """
+    ground, upright = ground_velocity(scene.motion), ground_velocity(scene.motion and scene.motion.vertical)
+    viscous, recovery = Viscous.of(scene, model, data), recovery_rate(scene, chosen)
+    option, gravity, solref, push = model.opt, model.opt.gravity, model.geom_solref, data.qfrc_applied
+    loaded, g = scene.bearings is not None, scene.gravity
+    used, gained, risen, last_scale = option.timestep, 0.0, 0.0, 1.0
+
+    def load(t, step, h, tilt, rate, v, force, jumped):
+        nonlocal used, gained, risen, last_scale
+        if step != used:
+            option.timestep = used = step
+            solref[:] = contact_reference(step, recovery)
+        interval = 0.5 * (step + h)
+        scale = interval / step
+        if ground:
+            reached = ground(t + 0.5 * step)
+            gravity[0] = (gained - reached) / step
+            gained = reached
+        if upright:
+            reached = upright(t + 0.5 * step)
+            gravity[2] = -g * scale + (risen - reached) / step
+            risen = reached
+        elif scale != last_scale:
+            gravity[2] = -g * scale
+            last_scale = scale
+        if loaded:
+            if viscous and not viscous.solved(h, step, scale, jumped or (tilt > 0) != (tilt + step * rate > 0)):
+                force += viscous.most(step) * v
+            push[0] = -force * scale
+        return interval
+
+    return load
 
 
 class Viscous:

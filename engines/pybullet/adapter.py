@@ -16,7 +16,7 @@ from analytic.response import Failure
 
 from ..checks import GAIN_LIMIT, HEIGHT_TOLERANCE, energy_gain, pivoting_centre
 from ..contract import Mismatch, Run, Variant
-from ..leapfrog import MOST_ROWS, failure_of, raw_trace_of, row_limit, trace_of
+from ..leapfrog import MOST_ROWS, failure_of, raw_trace_of, trace_of
 from ..pace import FLAT
 from ..verified import Range
 from ..vibration import longest_step
@@ -183,7 +183,7 @@ def _run(client, scene, chosen, places):
         )
     assembly = assemble(client, sized, largest)
     clock = time.process_time()
-    rows, ended = stepping.run(assembly, sized, units, largest, accuracy, row_limit(sized.duration, largest), places)
+    rows, ended = stepping.run(assembly, sized, units, largest, accuracy, places)
     cpu = time.process_time() - clock
     place = [
         units.length * state[0]

@@ -17,6 +17,7 @@ from analytic.bearing import BearingLaw
 from analytic.motion import vertical_acceleration
 
 from ..placement import placement
+from .scene import chain
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -40,23 +41,7 @@ def build(client: int, scene: Scene, step: float) -> tuple[int, int]:
     if scene.base is None:
         slab = pybullet.createMultiBody(0, flat, -1, below, physicsClientId=client)
     else:
-        slab = pybullet.createMultiBody(
-            0,
-            -1,
-            -1,
-            [0, 0, 0],
-            linkMasses=[scene.base.mass],
-            linkCollisionShapeIndices=[flat],
-            linkVisualShapeIndices=[-1],
-            linkPositions=[below],
-            linkOrientations=[[0, 0, 0, 1]],
-            linkInertialFramePositions=[[0, 0, 0]],
-            linkInertialFrameOrientations=[[0, 0, 0, 1]],
-            linkParentIndices=[0],
-            linkJointTypes=[pybullet.JOINT_PRISMATIC],
-            linkJointAxis=[[1, 0, 0]],
-            physicsClientId=client,
-        )
+        slab = chain(client, [(scene.base.mass, flat, below, pybullet.JOINT_PRISMATIC, [1, 0, 0], 0)])
         pybullet.resetJointState(
             slab, 0, scene.start.base_displacement, scene.start.base_velocity, physicsClientId=client
         )

@@ -126,7 +126,7 @@ def assemble(client: int, scene: Scene, step: float) -> Assembly:
     block, start = scene.block, scene.start
     many = iterations(scene, 2)
     rough = math.sqrt(FRICTION if scene.friction is None else min(scene.friction, MOST_FRICTION))  # of each body
-    b, h, inertia = block.half_width, block.half_height, block.centre_inertia
+    inertia = block.centre_inertia
     pybullet.setPhysicsEngineParameter(
         fixedTimeStep=step,
         numSubSteps=0,
@@ -136,18 +136,11 @@ def assemble(client: int, scene: Scene, step: float) -> Assembly:
         physicsClientId=client,
     )
     pybullet.setGravity(0.0, 0.0, -scene.gravity, client)
-    r = CORNER_RADIUS * block.radius
-    corners = pybullet.createCollisionShapeArray(
-        shapeTypes=[pybullet.GEOM_SPHERE] * 2,
-        radii=[r] * 2,
-        collisionFramePositions=[[-b, 0, r - h], [b, 0, r - h]],
-        physicsClientId=client,
-    )
-    plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, planeNormal=[0, 0, 1], physicsClientId=client)
+    corners, plane = _shapes(client, block)
     sliding, turning = pybullet.JOINT_PRISMATIC, pybullet.JOINT_REVOLUTE
     # link: mass, shape, position, joint, axis, parent
     links = [
-        (0.0, -1, [0, 0, h], sliding, [1, 0, 0], 0),
+        (0.0, -1, [0, 0, block.half_height], sliding, [1, 0, 0], 0),
         (0.0, -1, [0, 0, 0], sliding, [0, 0, 1], 1),
         (block.mass, corners, [0, 0, 0], turning, [0, 1, 0], 2),
     ]
@@ -158,9 +151,39 @@ def assemble(client: int, scene: Scene, step: float) -> Assembly:
     else:
         base = 3
         links.append((scene.base.mass, plane, [0, 0, 0], sliding, [1, 0, 0], 0))
+    body = chain(client, links, flags=pybullet.URDF_USE_SELF_COLLISION)
+    for link in range(-1, len(links)):
+        without_losses(client, body, link, rough, maxJointVelocity=MOST_VELOCITY)
+    # Inertia without mass in the same call can set the mass to 0 and give NaN in the first step.
+    pybullet.changeDynamics(body, 2, mass=block.mass, localInertiaDiagonal=[inertia] * 3, physicsClientId=client)
+    x, z, vx, vz = placement(scene)
+    for joint, value, rate in ((0, x, vx), (1, z, vz), (2, start.tilt, start.tilt_rate)):
+        pybullet.resetJointState(body, joint, value, rate, physicsClientId=client)
+    if base is not None:
+        pybullet.resetJointState(body, base, start.base_displacement, start.base_velocity, physicsClientId=client)
+    assembly = Assembly(client, body, ground, 0, 1, 2, base)
+    check_readback(assembly, scene, step, many, rough)
+    return assembly
+
+
+def _shapes(client, block):
+    """Two corners for the block's link, and a plane for what it stands on."""
+    b, h, r = block.half_width, block.half_height, CORNER_RADIUS * block.radius
+    corners = pybullet.createCollisionShapeArray(
+        shapeTypes=[pybullet.GEOM_SPHERE] * 2,
+        radii=[r] * 2,
+        collisionFramePositions=[[-b, 0, r - h], [b, 0, r - h]],
+        physicsClientId=client,
+    )
+    plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, planeNormal=[0, 0, 1], physicsClientId=client)
+    return corners, plane
+
+
+def chain(client: int, links: list[tuple], **options: int) -> int:
+    """A multibody on a fixed origin of links (mass, shape, position, joint, axis, parent); their frames are level."""
     masses, shapes, positions, joints, axes, parents = (list(column) for column in zip(*links, strict=True))
     count = len(links)
-    body = pybullet.createMultiBody(
+    return pybullet.createMultiBody(
         0,
         -1,
         -1,
@@ -175,36 +198,21 @@ def assemble(client: int, scene: Scene, step: float) -> Assembly:
         linkParentIndices=parents,
         linkJointTypes=joints,
         linkJointAxis=axes,
-        flags=pybullet.URDF_USE_SELF_COLLISION,
         physicsClientId=client,
+        **options,
     )
-    for link in range(-1, count):
-        # Damping and velocity limits in a call force its linkIndex to -1: friction goes in a call of its own.
-        pybullet.changeDynamics(
-            body, link, linearDamping=0.0, angularDamping=0.0, maxJointVelocity=MOST_VELOCITY, physicsClientId=client
-        )
-        pybullet.changeDynamics(
-            body,
-            link,
-            lateralFriction=rough,
-            rollingFriction=0.0,
-            spinningFriction=0.0,
-            restitution=0.0,
-            jointDamping=0.0,
-            physicsClientId=client,
-        )
-        if link >= 0:  # joints come with a motor of 1 N s per step
-            pybullet.setJointMotorControl2(body, link, pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client)
-    # Inertia without mass in the same call can set the mass to 0 and give NaN in the first step.
-    pybullet.changeDynamics(body, 2, mass=block.mass, localInertiaDiagonal=[inertia] * 3, physicsClientId=client)
-    x, z, vx, vz = placement(scene)
-    for joint, value, rate in ((0, x, vx), (1, z, vz), (2, start.tilt, start.tilt_rate)):
-        pybullet.resetJointState(body, joint, value, rate, physicsClientId=client)
-    if base is not None:
-        pybullet.resetJointState(body, base, start.base_displacement, start.base_velocity, physicsClientId=client)
-    assembly = Assembly(client, body, ground, 0, 1, 2, base)
-    check_readback(assembly, scene, step, many, rough)
-    return assembly
+
+
+def without_losses(client: int, body: int, link: int, friction: float, **limits: float) -> None:
+    """Take Bullet's damping, restitution and motor out of a link (-1: the body itself), and set its friction.
+
+    Damping and velocity limits in a call force its linkIndex to -1: friction goes in a call of its own.
+    """
+    pybullet.changeDynamics(body, link, linearDamping=0.0, angularDamping=0.0, physicsClientId=client, **limits)
+    none = dict.fromkeys(("rollingFriction", "spinningFriction", "restitution", "jointDamping"), 0.0)
+    pybullet.changeDynamics(body, link, lateralFriction=friction, physicsClientId=client, **none)
+    if link >= 0:  # joints come with a motor of 1 N s per step
+        pybullet.setJointMotorControl2(body, link, pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client)
 
 
 def check_readback(assembly: Assembly, scene: Scene, step: float, many: int, rough: float) -> None:

@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pybullet
 
-from analytic.bearing import hysteretic_force
+from analytic.bearing import BearingLaw, hysteretic_force
 from analytic.rocking import RockingModel
 
-from .. import pace as paces
 from ..ground_velocity import ground_velocity
+from ..leapfrog import row_limit
+from ..pace import ROUNDING, StepRule, fixed, impact_aware, least_pull, limits
 from ..placement import placement
 from ..vibration import VISCOUS, added_mass, driven_mass, leapfrog_stiffness
 from .scene import iterations
@@ -39,106 +40,123 @@ LANDING_ITERATIONS = 100
 
 
 def run(
-    assembly: Assembly,
-    scene: Scene,
-    units: Units,
-    largest: float,
-    accuracy: float | None,
-    row_limit: int,
-    places: bool = False,
+    assembly: Assembly, scene: Scene, units: Units, largest: float, accuracy: float | None, places: bool = False
 ) -> tuple[np.ndarray, str]:
     """Step until the duration is over, the block has overturned or a state is not finite.
 
     Parameters
     ----------
-    scene : Scene
-        In Bullet's `Units` (`Units.scale`), but for its motion and bearings.
-    units : Units
+    scene, units : Scene, Units
+        The scene in Bullet's units (`Units.scale`), but for its motion and bearings.
     largest : float
         Longest step [unit of time]; the only one where `accuracy` is None.
     accuracy : float or None
         Share of its speed at the impact that the block may gain in one step there.
-    row_limit : int
-        Steps after which the run is given up.
     places : bool
         Read the block's centre, too; a step costs up to a tenth more.
 
     Returns
     -------
-    rows : array, shape (steps + 1, 8), with `places` 12
-        As `engines.leapfrog` has them, in SI, the start first.
-    ended : str
-        "done", "overturned", "not finite" or "too many steps".
+    rows, ended
+        As `engines.mujoco.stepping.run`, in SI.
     """
-    client, body = assembly.client, assembly.body
-    model = RockingModel.of(scene)
-    law, g = model.bearing, model.g
-    on_base, loaded = assembly.base is not None, scene.bearings is not None
-    joints, centre = (assembly.tilt, assembly.base), (assembly.slide, assembly.lift)
-    ground, clock = ground_velocity(scene.motion), units.time
-    upright = ground_velocity(scene.motion.vertical) if scene.motion else None
-    constants = (law.law, *law.constants)
-    count, length, spring = law.count, units.length, law.count * law.kb * units.length
-    damping, mass = law.count * law.damping * units.length / units.time, driven_mass(model)
-    heavier = length * leapfrog_stiffness(law, units.time * largest, mass)
-    start, end, limit = scene.start, scene.duration, 0.5 * math.pi
-    step_simulation, set_gravity = pybullet.stepSimulation, pybullet.setGravity
-    read_both, read, turn = pybullet.getJointStates, pybullet.getJointState, assembly.tilt
-    # A force on the base's link is the same as one on its joint, and the call costs half as much.
-    drive, base, middle, frame = pybullet.applyExternalForce, assembly.base, (0.0, 0.0, 0.0), pybullet.LINK_FRAME
-    engine_step, change = pybullet.setPhysicsEngineParameter, pybullet.changeDynamics
-
-    t, h = 0.0, 0.0
+    law, start, loaded = BearingLaw.of(scene.bearings), scene.start, scene.bearings is not None
+    pace = _pace(scene, units, largest, accuracy)
+    limit, fitted = limits(scene.duration, largest, _jumps(scene, units, accuracy))
+    prepare, advance, fallen = _preparation(assembly, scene, units, largest), pybullet.stepSimulation, 0.5 * math.pi
+    client, body, turn, on_base = assembly.client, assembly.body, assembly.tilt, assembly.base is not None
+    read, read_both, joints = pybullet.getJointState, pybullet.getJointStates, (turn, assembly.base)
+    scale, count, spring = units.length, law.count, law.count * law.kb * units.length
+    constants = law.law, *law.constants
+    t, h, interval, ended = 0.0, 0.0, 1.0, "too many steps"
     tilt, rate, x, v = start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity
-    z = law.start(length * x)
-    force, committed = spring * x + count * z, x
+    z = law.start(scale * x)
+    force = spring * x + count * z
     rows = array("d", (t, h, tilt, rate, x, v, z, force, *(placement(scene) if places else ())))
-    keep, step, side, width = rows.extend, largest, tilt > 0, len(rows)
-    interval, gained, risen, last_scale, used = 1.0, 0.0, 0.0, -1.0, 0
-    few, many = iterations(scene, 1), iterations(scene, 2)
-    sweeps = few, min(many, max(few, LANDING_ITERATIONS)), many  # in FLIGHT, at an IMPACT, at REST
-    pushed, held, added = 0.0, 0.0, 0.0
+    end, side, width, keep = scene.duration - ROUNDING * largest, tilt > 0, len(rows), rows.extend
+    for _ in range(row_limit(scene.duration, largest)):
+        right = tilt > 0
+        jumped, side = right != side, right
+        step, purpose = pace(tilt, rate, jumped, interval)
+        if t + step >= limit:
+            step, limit = fitted(t, step)
+        interval = prepare(t, step, purpose, h, v, force)
+        advance(client)
+        if on_base:
+            before = x
+            (tilt, rate, _, _), (x, v, _, _) = read_both(body, joints, client)
+            if loaded:
+                z = hysteretic_force(z, scale * (x - before), *constants)
+                force = spring * x + count * z
+        else:
+            tilt, rate, _, _ = read(body, turn, client)
+        t, h = t + step, step
+        keep((t, h, tilt, rate, x, v, z, force))
+        if places:
+            keep(_place(assembly))
+        if not -fallen < tilt < fallen:
+            ended = "overturned" if math.isfinite(tilt) and math.isfinite(rate) else "not finite"
+            break
+        if t >= end:
+            ended = "done"
+            break
+    return _in_si(rows, width, units), ended
+
+
+def _pace(scene, units, largest, accuracy):
+    """Length and purpose of a step as `engines.pace` has them, in units of time; without accuracy all are `largest`."""
+    model = RockingModel.of(scene)
     # Both corners count as loaded where the higher one is within what a step of free fall covers. With the few
     # iterations for one corner the slow onset of a slender block (.036) gained 1.5 times its tilt.
-    standing = 2 * paces.least_pull(model) * g * largest * largest / (2 * scene.block.half_width)
+    standing = 2 * least_pull(model) * model.g * largest * largest / (2 * scene.block.half_width)
     if accuracy is None:
-        pace = paces.fixed(model, largest, standing)
-    else:
-        sharpest = VISCOUS * accuracy * model.M / damping if damping else math.inf
-        pace = paces.impact_aware(
-            model,
-            rate,
-            largest,
-            accuracy,
-            approach=APPROACH,
-            smallest=SMALLEST_STEP,
-            sharpest=sharpest,
-            standing=standing,
-            overlong=True,
-            cruise=True,
-        )
-    end -= 1e-9 * largest  # the steps' sum may miss the duration by rounding
-    gate = end + 2e-9 * largest
-    jumps = iter([time / clock for time in scene.motion.jumps] if scene.motion and accuracy is not None else ())
-    jump = next(jumps, math.inf)
-    ended, base_mass = "done", scene.base.mass if on_base else 0.0
-    for _ in range(row_limit):
-        if t >= end:
-            break
-        jumped = (tilt > 0) != side
-        side = tilt > 0
-        wanted, purpose = pace(tilt, rate, jumped, interval)
-        if t + wanted >= jump:
-            if t >= jump:
-                jump = next(jumps, math.inf)
-            wanted = paces.aligned(wanted, jump - t)
-        if t + wanted > gate:
-            wanted = scene.duration - t
+        return fixed(model, largest, standing)
+    damping = _damping(model.bearing, units)
+    sharpest = VISCOUS * accuracy * model.M / damping if damping else math.inf
+    rule = StepRule(largest, SMALLEST_STEP, accuracy, APPROACH, sharpest, standing, overlong=True, cruise=True)
+    return impact_aware(model, scene.start.tilt_rate, rule)
+
+
+def _jumps(scene, units, accuracy):
+    """Times of the ground's jumps [unit of time] that the steps are to meet: none where they are all the same."""
+    return [time / units.time for time in scene.motion.jumps] if scene.motion and accuracy is not None else []
+
+
+def _damping(law, units):
+    """Viscous constant of all bearings [kg over the unit of time]."""
+    return law.count * law.damping * units.length / units.time
+
+
+def _preparation(assembly, scene, units, largest):
+    """A function (t, step, purpose, h, v, force) that sets a step, its iterations and its loads, after a step of h.
+
+    It returns the time between the velocities before and after the step [unit of time].
+    """
+    client, body, base, model = assembly.client, assembly.body, assembly.base, RockingModel.of(scene)
+    law, g, length, clock = model.bearing, model.g, units.length, units.time
+    damping, mass, loaded = _damping(law, units), driven_mass(model), scene.bearings is not None
+    heavier = length * leapfrog_stiffness(law, units.time * largest, mass)
+    base_mass, ground = scene.base.mass if scene.base else 0.0, ground_velocity(scene.motion)
+    upright = ground_velocity(scene.motion and scene.motion.vertical)
+    # A force on the base's link is the same as one on its joint, and the call costs half as much.
+    drive, middle, frame = pybullet.applyExternalForce, (0.0, 0.0, 0.0), pybullet.LINK_FRAME
+    set_gravity, change, set_engine = pybullet.setGravity, pybullet.changeDynamics, pybullet.setPhysicsEngineParameter
+    few, many = iterations(scene, 1), iterations(scene, 2)
+    sweeps = few, min(many, max(few, LANDING_ITERATIONS)), many  # in FLIGHT, at an IMPACT, at REST
+    last = used = 0
+    gained, risen, pushed, last_scale, held, added = 0.0, 0.0, 0.0, -1.0, 0.0, 0.0
+
+    def prepare(t, step, purpose, h, v, force):
+        nonlocal last, used, gained, risen, pushed, last_scale, held, added
         needed = sweeps[purpose]
-        if wanted != step or needed != used:
-            step, used = wanted, needed
-            engine_step(fixedTimeStep=step, physicsClientId=client, numSolverIterations=needed)
-        scale = 1.0 if step == h else 0.5 * (step + h) / step
+        if step != last or needed != used:
+            last, used = step, needed
+            set_engine(fixedTimeStep=step, physicsClientId=client, numSolverIterations=needed)
+        if step == h:
+            scale, interval = 1.0, step
+        else:
+            interval = 0.5 * (step + h)
+            scale = interval / step
         if ground is not None:
             reached = ground(clock * (t + 0.5 * step)) / clock
             pushed, pull = (gained - reached) / step, -g * scale
@@ -151,7 +169,6 @@ def run(
         elif scale != last_scale:
             set_gravity(0.0, 0.0, -g * scale, client)
             last_scale = scale
-        interval = step if scale == 1.0 else 0.5 * (step + h)
         if damping or heavier:
             if interval != held:
                 held, added = interval, added_mass(damping, interval, mass) + heavier * interval * interval
@@ -159,41 +176,22 @@ def run(
             drive(body, base, (-(force + damping * v) * scale - added * pushed, 0.0, 0.0), middle, frame, client)
         elif loaded:
             drive(body, base, (-force * scale, 0.0, 0.0), middle, frame, client)
-        step_simulation(client)
-        if on_base:
-            (tilt, rate, _, _), (x, v, _, _) = read_both(body, joints, client)
-            if loaded:
-                z = hysteretic_force(z, length * (x - committed), *constants)
-                committed = x
-                force = spring * x + count * z
-        else:
-            tilt, rate, _, _ = read(body, turn, client)
-        t, h = t + step, step
-        if places:
-            (across, across_rate, _, _), (up, up_rate, _, _) = read_both(body, centre, client)
-            keep((t, h, tilt, rate, x, v, z, force, across, up, across_rate, up_rate))
-        else:
-            keep((t, h, tilt, rate, x, v, z, force))
-        if not -limit < tilt < limit:
-            ended = "overturned" if math.isfinite(tilt) and math.isfinite(rate) else "not finite"
-            break
-    else:
-        ended = "done" if t >= end else "too many steps"
-    speed = units.length / units.time
-    sizes = (
-        units.time,
-        units.time,
-        1,
-        1 / units.time,
-        units.length,
-        speed,
-        1,
-        1,
-        units.length,
-        units.length,
-        speed,
-        speed,
-    )
+        return interval
+
+    return prepare
+
+
+def _place(assembly):
+    """x, z, x', z' of the block's centre."""
+    joints = assembly.slide, assembly.lift
+    (x, vx, _, _), (z, vz, _, _) = pybullet.getJointStates(assembly.body, joints, assembly.client)
+    return x, z, vx, vz
+
+
+def _in_si(rows, width, units):
+    """Rows in SI, shape (steps + 1, width)."""
+    time, length = units.time, units.length
+    speed = length / time
     table = np.frombuffer(rows).reshape(-1, width)
-    table *= sizes[:width]
-    return table, ended
+    table *= (time, time, 1, 1 / time, length, speed, 1, 1, length, length, speed, speed)[:width]
+    return table

@@ -8,7 +8,7 @@ import pytest
 from analytic import Block, PulseMotion, Scene, Start, simulate
 from analytic.rocking import RockingModel
 from engines import get_engine
-from engines.pace import FLIGHT, GROWTH, IMPACT, REST, SETTLING, aligned, fixed, impact_aware
+from engines.pace import FLIGHT, GROWTH, IMPACT, REST, SETTLING, StepRule, aligned, fixed, impact_aware, limits
 
 SCENE = Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=0.2), start=Start(tilt=0.12), duration=2.0)
 MODEL = RockingModel.of(SCENE)
@@ -31,7 +31,23 @@ def ridden(pace, seconds=2.0):
 
 
 def aware(accuracy, **options):
-    return impact_aware(MODEL, 0.0, LARGEST, accuracy, approach=0.3, smallest=SMALLEST, **options)
+    return impact_aware(MODEL, 0.0, StepRule(LARGEST, SMALLEST, accuracy, approach=0.3, **options))
+
+
+@pytest.mark.parametrize("step", [0.29, 0.31, 1.7e-3])
+def test_steps_meet_the_jumps_between_two_kicks_and_end_with_the_run(step):
+    jumps, t, kicks, lengths = [1.0, 1.25, 2.0], 0.0, [], [0.0]
+    limit, fitted = limits(3.0, step, jumps)
+    while t < 3.0 - 1e-9 * step:
+        h = step
+        if t + h >= limit:
+            h, limit = fitted(t, h)
+        kicks.append((t - 0.5 * lengths[-1], t + 0.5 * h))  # the kick at t acts over these
+        lengths.append(h)
+        t += h
+    assert t == pytest.approx(3.0, abs=1e-9 * step) and max(lengths) <= step * (1 + 1e-9)
+    for jump in jumps:
+        assert min(abs(edge - jump) for kick in kicks for edge in kick) < 1e-3 * step
 
 
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-5])

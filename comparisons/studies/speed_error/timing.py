@@ -112,26 +112,14 @@ def peer_response(scene: Scene, *, name: str, tolerance: float) -> Response:
     begin = time.process_time()
     state, impacts = run()
     cpu = time.process_time() - begin
-    nan = math.nan
-    end = State(scene.duration, float(state[0]), float(state[1]) if len(state) > 1 else nan, 0.0, 0.0, 0.0)
-    return Response(
+    rate = float(state[1]) if len(state) > 1 else math.nan
+    end = State(scene.duration, float(state[0]), rate, 0.0, 0.0, 0.0)
+    return Response.unmeasured(
         engine=name,
         variant="",
         outcome="rocks",
-        overturning_time=None,
-        unstable_time=None,
-        peak_tilt=nan,
-        peak_tilt_ratio=nan,
-        peak_base_displacement=nan,
-        peak_base_acceleration=nan,
-        impacts=(),
-        uplifts=(),
-        rests=(),
-        friction_demand=nan,
-        min_normal_ratio=nan,
         end=end,
         cpu_seconds=cpu,
-        steps=0,
         settings={"tolerance": tolerance, "impacts": impacts},
         versions={},
     )

@@ -105,7 +105,7 @@ def test_state_that_is_not_finite_fails(monkeypatch):
 
 
 def test_run_that_does_not_advance_is_given_up(monkeypatch):
-    monkeypatch.setattr(adapter, "row_limit", lambda duration, largest: 300)
+    monkeypatch.setattr(stepping, "row_limit", lambda duration, largest: 300)
     response = simulate(scene(0.2, start=Start(tilt=0.1)))
     assert response.outcome == "failed"
     assert response.failure.reason == "too many steps"
