@@ -44,7 +44,6 @@ def find_events(
     counts, missed = strong_swings(model, trace, swings), []
     land, before, v_before = to_contact(scene, trace, swings, 1)
     lift, after, v_after = to_contact(scene, trace, swings, -1)
-    edge = trace.contact_tilt
     impacts, uplifts, rests = [], [], []
     for i in range(n):
         first, last = swings.first[i], swings.last[i]
@@ -54,16 +53,7 @@ def find_events(
             break  # the trace ends in flight
         following = swings.first[i + 1] if i + 1 < n else None
         if following is not None:
-            slack = 2 * max(trace.time[last + 1] - trace.time[last], trace.time[following] - trace.time[following - 1])
-            slack += edge / abs(before[i]) + edge / abs(after[i + 1])
-            # A compliant contact's hop after an impact shifts the lift carried back, not the time in contact.
-            contact = min(lift[i + 1] - land[i], trace.time[following] - trace.time[last])
-            crossed = swings.side[i + 1] == -swings.side[i] and contact <= slack  # False for NaN
-            if crossed or (
-                swings.side[i + 1] == -swings.side[i]
-                and following == last + 1
-                and np.isfinite(before[i] + after[i + 1])
-            ):
+            if _passes(trace, swings, i, lift[i + 1] - land[i], before[i], after[i + 1]):
                 impacts.append(
                     Impact(float(land[i]), float(before[i]), float(after[i + 1]), float(v_after[i + 1] - v_before[i]))
                 )
@@ -77,7 +67,7 @@ def find_events(
             if turned:
                 missed.append(float(trace.time[last]))
             continue  # still chattering, below resolution
-        strong = pull > 0 and abs(before[i]) > LANDING * math.sqrt(2 * pull * edge)
+        strong = pull > 0 and abs(before[i]) > LANDING * math.sqrt(2 * pull * trace.contact_tilt)
         if strong:
             k = min(int(np.searchsorted(trace.time, landing)) + 1, len(trace.time) - 1)
             impacts.append(Impact(landing, float(before[i]), 0.0, float(trace.base_velocity[k] - v_before[i])))
@@ -91,6 +81,22 @@ def find_events(
             rests.append(min(limit, uplift))
             uplifts.append(uplift)
     return tuple(impacts), tuple(uplifts), tuple(float(rest) for rest in rests), tuple(missed)
+
+
+def _passes(trace: Trace, swings: Swings, i: int, apart: float, before: float, after: float) -> bool:
+    """Whether swing i goes through contact into the next one, on the other side, without coming to rest between.
+
+    apart: from landing to lift [s]; before, after: tilt rates there [rad/s].
+    """
+    if swings.side[i + 1] != -swings.side[i]:
+        return False
+    time, last, following = trace.time, swings.last[i], swings.first[i + 1]
+    if following == last + 1 and np.isfinite(before + after):
+        return True
+    slack = 2 * max(time[last + 1] - time[last], time[following] - time[following - 1])
+    slack += trace.contact_tilt / abs(before) + trace.contact_tilt / abs(after)
+    # A compliant contact's hop after an impact shifts the lift carried back, not the time in contact.
+    return min(apart, time[following] - time[last]) <= slack  # False for NaN
 
 
 def strong_swings(model: ArrayModel, trace: Trace, swings: Swings) -> np.ndarray:

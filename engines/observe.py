@@ -51,12 +51,12 @@ def observe(
     trace : Trace
         Accepted steps from the start on; a step past overturning is used to find its time, what follows is not.
     history : bool
-        Keep the history, on the motion's own grid for a sampled motion, else on 2000 equal intervals.
+        Keep it, on the motion's own grid for a sampled motion, else on 2000 equal intervals.
     failure : Failure or None
-        The engine's own failure: the outcome is "failed", and the last finite state is filled in.
+        The engine's own: the outcome is "failed", and the last finite state is filled in.
     ended : str or None
-        "overturned" where the adapter stopped the run at overturning: if the last step lies before
-        |tilt| = pi/2, the block is taken to fall on at the model's acceleration.
+        "overturned" where the adapter stopped the run: if the last step lies before |tilt| = pi/2, the block is taken
+        to fall on at the model's acceleration.
     warnings : iterable of str
         Sentences of the engine, as of `engines.verified.outside`; those of the motion's record, and where the run is
         outside the model (`analytic.decision.model_warnings`), are added.
@@ -66,30 +66,26 @@ def observe(
     Returns
     -------
     Response
-        stands: |tilt| never exceeded ``trace.contact_tilt``. A trace with non-finite states, or one that ends
-        before ``scene.duration`` for no stated reason, is "failed"; so is what `_judged` finds.
+        stands: |tilt| never exceeded ``trace.contact_tilt``. A trace with states that are not finite is
+        "failed", and so is what `_judged` finds.
 
-    An impact is reported where the swings before and after it are both resolved, that is exceed contact_tilt;
-    its rates and base velocities are carried to tilt = 0 by the model's equations of flight. Where no such
-    swing follows, the block came to rest: at the limit of the model's impacts after the last landing.
-    Friction demand and normal force follow from the states and the model's accelerations.
+    An impact is reported where the swings before and after it are both resolved, that is exceed contact_tilt; its rates
+    and base velocities are carried to tilt = 0 by the model's equations of flight. Where no such swing follows, the
+    block came to rest: at the limit of the model's impacts after the last landing. Friction demand and normal force
+    follow from the states and the model's accelerations.
     """
     finite, failure = finite_part(trace, failure)
     if finite is None:
         return failed_response(scene, failure, warnings=warnings, **run)
     trace, overturning_time = upto_overturning(scene, finite, ended)
     end = last_state(trace)
-    if overturning_time is None:
-        failure = failure or ended_early(scene, trace, end)
     seen, missed, lifted = _measured(scene, trace, overturning_time)
     failure, warnings = _judged(scene, trace, seen, missed, failure, warnings)
-    if failure is not None and failure.last_state is None:
-        failure = replace(failure, last_state=end)
-    standing = "rocks" if lifted else "stands"
+    upright = "rocks" if lifted else "stands"
     response = Response(
-        outcome="failed" if failure else standing if overturning_time is None else "overturns",
+        outcome="failed" if failure else upright if overturning_time is None else "overturns",
         end=end,
-        failure=failure,
+        failure=failure and replace(failure, last_state=failure.last_state or end),
         warnings=_warnings(scene, warnings),
         history=_history(scene, trace) if history else None,
         scene=scene.name,
@@ -126,13 +122,16 @@ def _judged(
 ) -> tuple[Failure | None, Iterable[str]]:
     """(failure or None, warnings) of a run: its own failure first, then what its numbers say of it.
 
-    That is a block off its place (`check_place`), a gain of energy (`check_energy`), an impact that gives energy, that
-    cannot be resolved or that the steps leap over (`check_impacts`), a measure that is not finite, a motion that is
-    not the bearings' (`check_impulse`; of a first script a warning).
+    That is an end before the scene's duration, a block off its place (`check_place`), a gain of energy
+    (`check_energy`), an impact that gives energy, that cannot be resolved or that the steps leap over
+    (`check_impacts`), a measure that is not finite, a motion that is not the bearings' (`check_impulse`; of a first
+    script a warning).
     """
+    falls = seen["overturning_time"] is not None
     failure = (
         failure
-        or check_place(scene, trace, seen["overturning_time"] is not None)
+        or (None if falls else ended_early(scene, trace))
+        or check_place(scene, trace, falls)
         or check_energy(scene, trace)
         or check_impacts(scene, trace, seen["impacts"], missed)
         or _check_finite(seen)

@@ -16,7 +16,7 @@ from ..observe import observe
 from ..pace import FLAT
 from . import first_script as script
 from .adapter import versions
-from .scene import BREAKING_THRESHOLD, FRICTION, iterations
+from .scene import BREAKING_THRESHOLD, FRICTION, iterations, without_losses
 
 # contactERP of a box on a slab: penetration decays at this rate per second whatever the step. A fixed share of .08 per
 # step leaves the base velocity jump 2 to 5 % off at every step.
@@ -61,16 +61,4 @@ def _undo_defaults(client, scene, body, slab, step):
         physicsClientId=client,
     )
     for part, link in ((body, -1), (slab, -1), *(((slab, 0),) if scene.base else ())):
-        pybullet.changeDynamics(part, link, linearDamping=0.0, angularDamping=0.0, physicsClientId=client)
-        pybullet.changeDynamics(
-            part,
-            link,
-            lateralFriction=FRICTION,
-            rollingFriction=0.0,
-            spinningFriction=0.0,
-            restitution=0.0,
-            jointDamping=0.0,
-            physicsClientId=client,
-        )
-    if scene.base:
-        pybullet.setJointMotorControl2(slab, 0, pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client)
+        without_losses(client, part, link, FRICTION)

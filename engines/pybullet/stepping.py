@@ -51,14 +51,11 @@ def run(
     largest : float
         Longest step [unit of time]; the only one where `accuracy` is None.
     accuracy : float or None
-        Share of its speed at the impact that the block may gain in one step there.
+        As of `engines.pace.StepRule`.
     places : bool
         Read the block's centre, too; a step costs up to a tenth more.
 
-    Returns
-    -------
-    rows, ended
-        As `engines.mujoco.stepping.run`, in SI.
+    Returns (rows, ended) as `engines.mujoco.stepping.run`, in SI.
     """
     law, start, loaded = BearingLaw.of(scene.bearings), scene.start, scene.bearings is not None
     pace = _pace(scene, units, largest, accuracy)
