@@ -108,7 +108,7 @@ def number_of(workers: int | None) -> int:
     most, number = max(MOST_WORKERS, os.cpu_count()), os.cpu_count() if workers is None else workers  # type: ignore[type-var]  # no system hides its cores
     if not 1 <= number <= most:  # type: ignore[operator]  # as above
         raise SettingError(f"{workers} worker processes: give 1 to {most}")
-    return number  # type: ignore[return-value]
+    return number  # type: ignore[return-value]  # as above
 
 
 class Processes(_Closing):

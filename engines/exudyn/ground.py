@@ -53,7 +53,7 @@ def segments(motion: Motion, duration: float) -> tuple[tuple[float, ...], tuple[
     inside = [pair for pair in pairs if pair[0] < duration]
     after = pairs[len(inside)][1] if len(inside) < len(pairs) else [0.0, 0.0, 0.0]
     ends, loads = zip(*inside, (duration, after), strict=True)  # type: ignore[assignment]  # tuples of them
-    return ends, loads  # type: ignore[return-value]
+    return ends, loads  # type: ignore[return-value]  # as above
 
 
 class Ground:

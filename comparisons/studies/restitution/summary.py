@@ -339,7 +339,7 @@ def damped_error(scene: Scene, damping: float) -> np.ndarray:
         up = solve_ivp(fall, (0, 30), (1e-12, -e * down.y[1, -1]), events=peak, rtol=1e-9, atol=1e-12)
         tilt = up.y[0, -1]
     energies = np.array(energies)  # type: ignore[assignment]  # the list, as an array
-    return np.sqrt(energies[1:] / energies[:-1]) - e  # type: ignore[operator]
+    return np.sqrt(energies[1:] / energies[:-1]) - e  # type: ignore[operator]  # as above
 
 
 def friction_needed(scene: Scene) -> float:
