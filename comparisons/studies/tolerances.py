@@ -42,17 +42,19 @@ def problems(result: Result) -> list[str]:
 def section(result: Result) -> Section:
     """The table as a section of the report."""
     broken = [row for row in result.rows if not row["holds"]]
-    text = (
-        f"{len(result.rows)} tolerances, each the assertion of a test; a bound is at most twice the worst measured "
-        "when it was set, but for round-off. First scripts are held to a band: their errors are known, and must "
-        "not vanish unnoticed.",
-        "All of them hold." if not broken else f"{len(broken)} of them do not hold.",
-        *(
-            f"{engine} states no tolerances, so none is measured."
-            for engine in result.settings["engines"]
-            if not any(row["engine"] == engine for row in result.rows)
-        ),
-    )
+    text = [
+        f"{engine} states no tolerances, so none is measured."
+        for engine in result.settings["engines"]
+        if not any(row["engine"] == engine for row in result.rows)
+    ]
+    if result.rows:
+        text = [
+            f"{len(result.rows)} tolerances, each the assertion of a test; a bound is at most twice the worst measured "
+            "when it was set, but for round-off. First scripts are held to a band: their errors are known, and must "
+            "not vanish unnoticed.",
+            "All of them hold." if not broken else f"{len(broken)} of them do not hold.",
+            *text,
+        ]
     rows = [
         [
             f"{row['engine']}, {row['variant']}: {row['quantity']}",
@@ -68,7 +70,7 @@ def section(result: Result) -> Section:
     ]
     return Section(
         "Agreement tolerances",
-        text,
+        tuple(text),
         (
             Table(
                 "Tolerances and what is measured",

@@ -61,7 +61,7 @@ def maps(result: Result, measure: str, label: str) -> Figure:
     knobs = result.settings["knobs"]
     gammas = result.settings["slendernesses"]
     ratios = [ratio for ratio in result.settings["ratios"] if measure == "rms" or ratio is not None]
-    columns = 3
+    columns = min(3, len(knobs))
     lines = -(-len(knobs) // columns)
     figure = Figure(figsize=(WIDTH, 0.9 + (0.5 + 0.22 * len(gammas)) * lines), layout="constrained")
     axes = figure.subplots(lines, columns, sharex=True, sharey=True, squeeze=False)

@@ -226,7 +226,12 @@ def _damping_words(result, rows):
 
 
 def _equation_words(result):
-    sizes = [row for row in select(result, "experiment", experiment="size") if row["jump_8"] is not None]
+    deciding = [(knob["engine"], knob["variant"]) for knob in result.settings["knobs"] if not knob["applies_impact"]]
+    sizes = [
+        row
+        for row in select(result, "experiment", experiment="size")
+        if row["jump_8"] is not None and (row["engine"], row["variant"]) in deciding
+    ]
     if sizes:
         right, wrong = (max(row[key] for row in sizes) for key in ("jump_8", "jump_8_printed"))
         yield (
