@@ -110,9 +110,10 @@ def _motion(result):
 
 
 def _histories(result):
+    solvers = dict.fromkeys(row["solver"] for row in result.rows)
     return (
         f"The Caryatid paper: Figs 4 and 6 under {result.settings['motion']['label']}",
-        ["Tilt and displacement over time, analytic model and engines over each other."],
+        [f"Tilt and displacement over time, over each other: {', '.join(solvers)}."],
         [],
     )
 
