@@ -95,8 +95,10 @@ def _passes(trace: Trace, swings: Swings, i: int, apart: float, before: float, a
         return True
     slack = 2 * max(time[last + 1] - time[last], time[following] - time[following - 1])
     slack += trace.contact_tilt / abs(before) + trace.contact_tilt / abs(after)
-    # A compliant contact's hop after an impact shifts the lift carried back, not the time in contact.
-    return min(apart, time[following] - time[last]) <= slack  # False for NaN
+    contact = time[following] - time[last]
+    # A compliant contact's hop after an impact shifts the lift carried back, not the time in contact. A lift long
+    # before the landing says nothing: the block came to rest, and what lifted it again hides how fast it set out.
+    return min(apart, contact) <= slack and apart >= -(contact + slack)  # False for NaN
 
 
 def strong_swings(model: ArrayModel, trace: Trace, swings: Swings) -> np.ndarray:

@@ -261,6 +261,24 @@ def test_a_slow_onset_is_that_of_the_model():
     )
 
 
+def test_a_block_that_lands_flat_and_is_thrown_up_again_loses_all_its_speed():
+    """Eq. (7) below 0: it lands on both corners; its base, set off by the impact, lifts it again 1 ms later."""
+    given = AnyScene(
+        block=Block(mass=0.005537850677, radius=5.524552367, slenderness=0.9707119242, corner_inertia=0.18950932405),
+        base=Base(mass=0.01012025917),
+        bearings=Bearings(count=4, ka=18.07114119, kb=6.055830422, alpha=40.25874966, damping=0.23719541108),
+        start=Start(tilt=-0.1993206787437),
+        duration=0.75,
+    )
+    assert restitution(given) < 0
+    response, model = simulate(given), exact(given)
+    assert len(model.impacts) == len(response.impacts) == 2
+    for found, expected in zip(response.impacts, model.impacts, strict=True):
+        assert found.time == pytest.approx(expected.time, rel=1e-3)
+        assert found.rate_before == pytest.approx(expected.rate_before, rel=1e-2)
+        assert found.rate_after == expected.rate_after == 0.0
+
+
 def test_a_given_friction_is_the_coefficient():
     """A push of .3 g for .05 s at a coefficient of .2: v = (.3 - .2) g t, then back to rest at .2 g: 1.839 mm."""
     given = scene(0.45, motion=PulseMotion("rectangular", 0.3 * 9.81, math.pi / 0.05), duration=0.3, friction=0.2)
