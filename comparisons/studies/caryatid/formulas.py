@@ -30,7 +30,7 @@ def formulas() -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
     arrays = {**_loops(law), **_misprint_12(law), **_misprint_8(scene), **_amplitudes(scene)}
     jump = arrays["reversal/right"][0] - arrays["reversal/printed"][0]
     rows = [value.row() for value in _table(scene)]
-    rows += _misprints(scene, law, jump) + _equations(scene, law, arrays, jump)
+    rows += _misprints(scene, law, jump) + _block_equations(scene) + _bearing_equations(scene, law, arrays, jump)
     return rows, arrays
 
 
@@ -75,25 +75,33 @@ def _misprint_8(scene):
     arrays = {"impact/slenderness": SLENDERNESSES, "impact/radius": RADII}
     for name, scenes in (("slenderness", by_slenderness), ("radius", by_radius)):
         for form, length in (("right", base_jump_length), ("printed", base_jump_length_as_printed)):
-            arrays[f"impact/{form} by {name}"] = np.array([momentum_after(one, length(one)) for one in scenes])
+            arrays[f"impact/{form} by {name}"] = np.array([momentum_after(scene, length(scene)) for scene in scenes])
     return arrays
 
 
 def _amplitudes(scene):
     """Secant period and damping in both definitions over the amplitude."""
-    found = [properties(scene.bearings, scene.total_mass, float(amplitude)) for amplitude in AMPLITUDES]
+    at = [properties(scene.bearings, scene.total_mass, float(amplitude)) for amplitude in AMPLITUDES]
     return {
         "amplitude/x": AMPLITUDES,
-        "amplitude/period": np.array([one.period for one in found]),
-        "amplitude/damping 2 pi": np.array([one.damping_paper for one in found]),
-        "amplitude/damping 4 pi": np.array([one.damping_equivalent for one in found]),
+        "amplitude/period": np.array([bearings.period for bearings in at]),
+        "amplitude/damping 2 pi": np.array([bearings.damping_paper for bearings in at]),
+        "amplitude/damping 4 pi": np.array([bearings.damping_equivalent for bearings in at]),
     }
 
 
 def _table(scene):
     """Every number of the paper that needs no motion."""
-    got = properties(scene.bearings, scene.total_mass, paper.X_MAX)
-    designed = design_bearings(scene.total_mass, paper.PERIOD, paper.DAMPING, paper.X_MAX, count=paper.COUNT)
+    return [
+        *_block_values(scene),
+        *_target_values(scene),
+        *_bearing_values(scene),
+        Value("Figs 1, 2", "what they show", "not at hand", "not drawn", NOT_REPRODUCIBLE, "neither known here"),
+    ]
+
+
+def _block_values(scene):
+    """What the text says of block and base."""
     radius = 3 * scene.gravity / (4 * paper.OMEGA_R**2)  # (1) with J_O = 4/3 m R^2
     return [
         Value("text", "mass of the Caryatid m [kg]", paper.MASS, scene.block.mass, GIVEN),
@@ -122,6 +130,13 @@ def _table(scene):
             DERIVED,
             "chosen; the interval that fits the paper's claims is with each motion",
         ),
+    ]
+
+
+def _target_values(scene):
+    """Table 1(a)."""
+    got = properties(scene.bearings, scene.total_mass, paper.X_MAX)
+    return [
         judged(
             "Table 1(a)",
             "period T_bi [s]",
@@ -147,12 +162,18 @@ def _table(scene):
             CORRECTED,
             "the usual equivalent viscous damping: half of what is printed",
         ),
+    ]
+
+
+def _bearing_values(scene):
+    """Table 1(b), beside what follows from Table 1(a)."""
+    designed = design_bearings(scene.total_mass, paper.PERIOD, paper.DAMPING, paper.X_MAX, count=paper.COUNT)
+    return [
         Value("Table 1(b)", "number of bearings n_d [-]", float(paper.COUNT), float(scene.bearings.count), GIVEN),
         judged("Table 1(b)", "k_a [N/m]", paper.KA, designed.ka, 50.0, "designed from Table 1(a) with k_a/k_b = 10"),
         judged("Table 1(b)", "k_b [N/m]", paper.KB, designed.kb, 5.0, "designed from Table 1(a) with k_a/k_b = 10"),
         judged("Table 1(b)", "α [-]", paper.ALPHA, designed.alpha, 0.005, "designed from Table 1(a)"),
         Value("Table 1(b)", "δ_k [N/m]", paper.DELTA_K, scene.bearings.delta_k, GIVEN),
-        Value("Figs 1, 2", "what they show", "not at hand", "not drawn", NOT_REPRODUCIBLE, "neither known here"),
     ]
 
 
@@ -240,41 +261,40 @@ def _impact_by_balances(scene, rate):
     return np.linalg.solve(balances, [m * h * rate, (about + m * (h * h - b * b)) * rate])
 
 
-def _equations(scene, law, arrays, jump):
-    model, run = RockingModel.of(scene), _rocking_run()
-    rate = -0.7
+def _equation(number, what, status, check, value):
+    return {"part": "equation", "number": number, "what": what, "status": status, "check": check, "value": value}
+
+
+def _block_equations(scene):
+    """Eqs (1) to (8), each by a number that it must give."""
+    run, rate = _rocking_run(), -0.7
     spin, base = _impact_by_balances(scene, rate)
-    after, corrected = model.impact(rate)
+    _, corrected = RockingModel.of(scene).impact(rate)
     ledger = abs(run.energy.imbalance / run.energy.input)
-    literal = np.abs(arrays["reversal/literal"] - arrays["reversal/right"]).max() / law.f0
-
-    def equation(number, what, status, check, value):
-        return {"part": "equation", "number": number, "what": what, "status": status, "check": check, "value": value}
-
     return [
-        equation("(1)", "rocking frequency", REPRODUCED, "ω_r [rad/s], 2.60 printed", scene.rocking_frequency),
-        equation(
+        _equation("(1)", "rocking frequency", REPRODUCED, "ω_r [rad/s], 2.60 printed", scene.rocking_frequency),
+        _equation(
             "(2)",
             "full contact on the bearings",
             REPRODUCED,
             "momentum balance over a run in full contact, over its largest impulse [-]",
             _momentum_residual(),
         ),
-        equation(
+        _equation(
             "(3)–(6)",
             "rocking on the base, re-derived",
             REPRODUCED,
             f"imbalance of the energy over the input, {run.impact_count} impacts [-]",
             ledger,
         ),
-        equation(
+        _equation(
             "(7)",
             "restitution e_φ",
             REPRODUCED,
             "difference from the momentum balances [-]",
             abs(restitution(scene) - spin / rate),
         ),
-        equation(
+        _equation(
             "(8)",
             "jump of the base velocity",
             CORRECTED,
@@ -282,37 +302,44 @@ def _equations(scene, law, arrays, jump):
             f"{base_jump_length_as_printed(scene) / base_jump_length(scene) - 1:.3%} off",
             abs(corrected / base - 1),
         ),
-        equation(
+    ]
+
+
+def _bearing_equations(scene, law, arrays, jump):
+    """Eqs (9) to (14), Fig. 3 and Table 1, likewise."""
+    literal = np.abs(arrays["reversal/literal"] - arrays["reversal/right"]).max() / law.f0
+    return [
+        _equation(
             "(9)–(11)",
             "bearing force and its history x_j",
             REPRODUCED,
             "literal x_j form against the stable form, over f₀ [-] (literal is NaN beyond 1.33 m of travel)",
             float(literal),
         ),
-        equation(
+        _equation(
             "(12)",
             "unloading branch",
             CORRECTED,
             f"force jump at a reversal over 2 f₀, corrected [-]; printed form: {jump / (2 * law.f0):.4f}",
             _continuity(law),
         ),
-        equation("(13)", "x₀ from k_a, k_b, α, δ_k", REPRODUCED, "2 x₀ [m]", 2 * law.x0),
-        equation("(14)", "f₀ from k_a, k_b, α, x₀", REPRODUCED, "f₀ of one bearing [N]", law.f0),
-        equation(
+        _equation("(13)", "x₀ from k_a, k_b, α, δ_k", REPRODUCED, "2 x₀ [m]", 2 * law.x0),
+        _equation("(14)", "f₀ from k_a, k_b, α, x₀", REPRODUCED, "f₀ of one bearing [N]", law.f0),
+        _equation(
             "Fig. 3",
             "bearing law with its curves and reversal points",
             REPRODUCED,
             "W_D of one bearing at 0.30 m [J]",
             steady_cycle(law, paper.X_MAX)[0],
         ),
-        equation(
+        _equation(
             "Table 1(a)",
             "design targets",
             REPRODUCED,
             "T_bi as secant period at x_max [s]",
             properties(scene.bearings, scene.total_mass, paper.X_MAX).period,
         ),
-        equation(
+        _equation(
             "Table 1(b)",
             "bearings",
             REPRODUCED,

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...showing.plots import marker, style
+from .rows import rows_of
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
@@ -25,44 +26,57 @@ def draw_maps(result: Result) -> Figure:
     s = result.settings
     figure = Figure(figsize=(4.3 * len(s["shapes"]) + 0.6, 3.9 * len(s["grounds"]) + 0.9), layout="constrained")
     axes = figure.subplots(len(s["grounds"]), len(s["shapes"]), squeeze=False, sharex=True, sharey=True)
-    points = result.arrays["points"]
     for i, ground in enumerate(s["grounds"]):
         for j, shape in enumerate(s["shapes"]):
-            axis = axes[i, j]
-            impacts = result.arrays[f"{ground}/{shape}"]
-            mode = np.where(impacts < 0, 0, np.minimum(impacts, 2) + 1)
-            axis.pcolormesh(
-                result.arrays["frequency"],
-                result.arrays["amplitude"],
-                mode,
-                vmin=-0.5,
-                vmax=3.5,
-                cmap=ListedColormap(MODES),
-                shading="nearest",
-                rasterized=True,
-            )
-            for place, engine in enumerate(_engines(result)):
-                rows = _found(result, engine, ground=ground, shape=shape)
-                axis.plot(
-                    [row["frequency"] for row in rows],
-                    [row["amplitude"] * (1 + row["shift"]) for row in rows],
-                    marker(engine),
-                    color=style(engine)["color"],
-                    markersize=max(6.5 - 2 * place, 2.0),
-                    markerfacecolor="none",
-                    markeredgewidth=1.3,
-                )
-            here = (points[:, 0] == i) & (points[:, 1] == j) & (points[:, 7] == 1)
-            wrong = here & (points[:, 6] >= 0) & (points[:, 5] != points[:, 6])
-            axis.plot(points[here, 3], points[here, 4], ".", color="0.35", markersize=2.5)
-            axis.plot(points[wrong, 3], points[wrong, 4], "x", color="#D55E00", markersize=9, markeredgewidth=2)
-            axis.set(yscale="log", title=f"{ground}, {shape}")
-            axis.set_yticks([0.5, 1, 2, 5, 10, 20], ["0.5", "1", "2", "5", "10", "20"])
-            axis.minorticks_off()
+            _draw_map(axes[i, j], result, (i, ground), (j, shape))
     for axis in axes[:, 0]:
         axis.set_ylabel("amplitude / (g tan γ) [-]")
     for axis in axes[-1]:
         axis.set_xlabel("pulse frequency / $ω_r$ [-]")
+    figure.legend(
+        handles=_map_legend(result),
+        loc="outside lower center",
+        ncols=4 if len(s["shapes"]) > 1 else 2,
+        fontsize="small",
+    )
+    return figure
+
+
+def _draw_map(axis, result, ground, shape):
+    """One pulse on one ground, each as (index, name)."""
+    impacts, points = result.arrays[f"{ground[1]}/{shape[1]}"], result.arrays["points"]
+    axis.pcolormesh(
+        result.arrays["frequency"],
+        result.arrays["amplitude"],
+        np.where(impacts < 0, 0, np.minimum(impacts, 2) + 1),
+        vmin=-0.5,
+        vmax=3.5,
+        cmap=ListedColormap(MODES),
+        shading="nearest",
+        rasterized=True,
+    )
+    for place, engine in enumerate(_engines(result)):
+        rows = _shifted(result, engine, ground=ground[1], shape=shape[1])
+        axis.plot(
+            [row["frequency"] for row in rows],
+            [row["amplitude"] * (1 + row["shift"]) for row in rows],
+            marker(engine),
+            color=style(engine)["color"],
+            markersize=max(6.5 - 2 * place, 2.0),
+            markerfacecolor="none",
+            markeredgewidth=1.3,
+        )
+    here = (points[:, 0] == ground[0]) & (points[:, 1] == shape[0]) & (points[:, 7] == 1)
+    wrong = here & (points[:, 6] >= 0) & (points[:, 5] != points[:, 6])
+    axis.plot(points[here, 3], points[here, 4], ".", color="0.35", markersize=2.5)
+    axis.plot(points[wrong, 3], points[wrong, 4], "x", color="#D55E00", markersize=9, markeredgewidth=2)
+    axis.set(yscale="log", title=f"{ground[1]}, {shape[1]}")
+    axis.set_yticks([0.5, 1, 2, 5, 10, 20], ["0.5", "1", "2", "5", "10", "20"])
+    axis.minorticks_off()
+
+
+def _map_legend(result):
+    """Handles of all that the maps show."""
     names = ("stands", "overturns without impact", "overturns after one impact", "overturns after more impacts")
     handles: list[Any] = [
         Patch(facecolor=colour, edgecolor="0.5", label=f"analytic: {name}")
@@ -84,8 +98,7 @@ def draw_maps(result: Result) -> Figure:
         Line2D([], [], marker=".", color="0.35", linestyle="none", label="scanned with all engines"),
         Line2D([], [], marker="x", color="#D55E00", linestyle="none", label="scanned, outcomes differ"),
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=4 if len(s["shapes"]) > 1 else 2, fontsize="small")
-    return figure
+    return handles
 
 
 def draw_shifts(result: Result) -> Figure:
@@ -100,7 +113,7 @@ def draw_shifts(result: Result) -> Figure:
         engines = _engines(result)
         for place, engine in enumerate(engines):
             for rises in (True, False):
-                rows = _found(result, engine, ground=ground, rises=rises)
+                rows = _shifted(result, engine, ground=ground, rises=rises)
                 beside = 0.24 * (place - 0.5 * (len(engines) - 1))
                 axis.errorbar(
                     [row["frequency"] + beside for row in rows],
@@ -172,8 +185,8 @@ def draw_knobs(result: Result) -> Figure:
 def knob_curves(result: Result) -> dict[tuple[str, str], dict[float, list[dict[str, Any]]]]:
     """{(solver, knob): {value: rows}} of the settings tried, the default ones taken from the same boundaries."""
     curves = {}
-    keys = {(row["ground"], row["shape"], row["frequency"]) for row in _rows(result, "knob")}
-    for row in _rows(result, "knob"):
+    keys = {(row["ground"], row["shape"], row["frequency"]) for row in rows_of(result, "knob")}
+    for row in rows_of(result, "knob"):
         ((knob, value),) = row["settings"].items()
         if row["solver"] not in result.settings["first_scripts"]:
             curves.setdefault((row["solver"], knob), {}).setdefault(value, []).append(row)
@@ -182,7 +195,7 @@ def knob_curves(result: Result) -> dict[tuple[str, str], dict[float, list[dict[s
         if default is not None:
             curves[solver, knob][default] = [
                 row
-                for row in _rows(result, "shift", solver=solver)
+                for row in rows_of(result, "shift", solver=solver)
                 if (row["ground"], row["shape"], row["frequency"]) in keys
             ]
     return curves
@@ -193,16 +206,10 @@ def _engines(result):
     return [solver.partition(",")[0] for solver in result.settings["solvers"]]
 
 
-def _found(result, engine, **wanted):
+def _shifted(result, engine, **wanted):
     """The boundaries that an engine found."""
     return [
         row
-        for row in _rows(result, "shift", **wanted)
+        for row in rows_of(result, "shift", **wanted)
         if row["solver"].partition(",")[0] == engine and row["shift"] is not None
-    ]
-
-
-def _rows(result, part, **wanted):
-    return [
-        row for row in result.rows if row["part"] == part and all(row[key] == value for key, value in wanted.items())
     ]

@@ -21,7 +21,7 @@ from comparisons.studies.caryatid.paper import CORRECTED, NOT_REPRODUCIBLE, REPR
 from comparisons.studies.caryatid.runs import FREE, ISOLATED, caryatid, oscillator, slender_block
 from comparisons.studies.caryatid.sections import section
 from comparisons.studies.caryatid.slenderness import _intervals, _overlap, claims, uplift_slenderness
-from comparisons.studies.caryatid.study import is_papers_motion
+from comparisons.studies.caryatid.values import is_papers_motion
 from comparisons.studies.caryatid.variations import (
     BOTH,
     NEITHER,
