@@ -1,1 +1,1 @@
-"""``rocking bench analytic``: the kernel against other solvers, and the figures it promises."""
+"""``rocking bench``: what solvers cost at what error; the kernel against others here, the engines in `engines`."""

@@ -3,13 +3,12 @@
 import json
 from collections.abc import Callable
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
-from analytic.errors import SettingError
 from analytic.records import read_record
 from analytic.synthetic import synthetic_motion
 
+from ..running.files import make_folder
 from ..running.provenance import machine, write_result
 from . import figures, peers
 from .problems import block_problems, record_problems
@@ -51,58 +50,40 @@ def bench_analytic(
         The record cannot be read, or the folder cannot be made: before anything runs.
     """
     motion = read_record(record) if record else synthetic_motion()
-    output = Path(output)
-    try:
-        output.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise SettingError(f"--output {output.name}: no folder can be made there ({error.strerror})") from error
+    output = make_folder(output)
     rounds = QUICK_ROUNDS if quick else ROUNDS
     blocks, records = block_problems(), record_problems(motion)
     entries = [entry for problem in blocks for entry in block_entries(problem, quick)]
     entries += [entry for problem in records for entry in record_entries(problem, quick)]
     advance("work-precision")
     measure(entries, rounds)
-    found = figures.ratios(entries, blocks, records)
+    measured = figures.ratios(entries, blocks, records)
     advance("independent solutions")
-    found += [figures.agreement(problem) for problem in records]
+    measured += [figures.agreement(problem) for problem in records]
     advance("throughput")
-    found += figures.costs(blocks, records, motion, rounds)
+    measured += figures.costs(blocks, records, motion, rounds)
     faulty = []
     if random_scenes:
         advance(f"{random_scenes} random scenes")
         faulty = check_random_scenes(random_scenes, SEED)
-        found.append(
-            figures.Figure(
-                f"{random_scenes} random valid scenes: with NaN, hang, failure or energy gain",
-                float(len(faulty)),
-                "",
-                "at most",
-                0,
-                f"seed {SEED}",
-            )
-        )
+        what = f"{random_scenes} random valid scenes: with NaN, hang, failure or energy gain"
+        measured.append(figures.Figure(what, float(len(faulty)), "", "at most", 0, f"seed {SEED}"))
         if faulty:
             (output / "random-scenes.json").write_text(json.dumps(faulty, indent=1))
-    rows = [entry.row() for entry in entries]
-    settings = {
-        "quick": quick,
-        "rounds": rounds,
-        "motion": motion.label,
-        "random_scenes": random_scenes,
-        "peers": peer_versions(),
-    }
-    write_result(
-        output / "bench-analytic.json",
-        "bench analytic",
-        settings,
-        [figure.row() for figure in found] + rows,
-        modules=MODULES,
-        seed=SEED if random_scenes else None,
-    )
+    rows, asked = [entry.row() for entry in entries], {"quick": quick, "rounds": rounds, "motion": motion.label}
+    settings = {**asked, "random_scenes": random_scenes, "peers": peer_versions()}
+    _write(output, settings, [figure.row() for figure in measured], rows)
+    return measured, rows, faulty
+
+
+def _write(output, settings, measured, rows):
+    """The result file, and the plot of the solvers' rows."""
     from .plot import draw  # matplotlib takes its time
 
-    draw(rows, machine(), output / "bench-analytic.png")
-    return found, rows, faulty
+    seed = SEED if settings["random_scenes"] else None
+    path = output / "bench-analytic.json"
+    write_result(path, "bench analytic", settings, measured + rows, modules=MODULES, seed=seed)
+    draw(rows, machine(), path.with_suffix(".png"))
 
 
 def peer_versions() -> dict[str, str]:

@@ -57,16 +57,19 @@ class Figure:
 
 def ratios(entries: Sequence[Entry], blocks: Sequence[Problem], records: Sequence[Problem]) -> list[Figure]:
     """Figures of the work-precision study: CPU time of others over the kernel's at equal error."""
-    found = []
-    for problem in blocks:
-        found.append(_ratio(entries, problem, is_scipy, "best scipy", 1e-9, "at least", 300))
-    for problem in blocks:
-        found.append(_ratio(entries, problem, lambda name: name == "heyoka", "heyoka", 1e-12, "at least", 1))
-    for problem in records:
-        found.append(
-            _ratio(entries, problem, lambda name: name.startswith("DOP853"), "scipy DOP853", 1e-8, "at least", 300)
-        )
-    return found
+    return [
+        *(_ratio(entries, problem, is_scipy, "best scipy", 1e-9, "at least", 300) for problem in blocks),
+        *(_ratio(entries, problem, _is_heyoka, "heyoka", 1e-12, "at least", 1) for problem in blocks),
+        *(_ratio(entries, problem, _is_dop853, "scipy DOP853", 1e-8, "at least", 300) for problem in records),
+    ]
+
+
+def _is_heyoka(solver):
+    return solver == "heyoka"
+
+
+def _is_dop853(solver):
+    return solver.startswith("DOP853")
 
 
 def _ratio(entries, problem, belongs, name, error, sense, limit):
@@ -111,63 +114,42 @@ def agreement(problem: Problem) -> Figure:
 
 def costs(blocks: Sequence[Problem], records: Sequence[Problem], motion: Motion, rounds: int) -> list[Figure]:
     """Figures of throughput and start-up."""
-    seconds: Any  # a number, then one per round
-    found = []
-    for problem in blocks:
-        seconds = statistics.median(throughput.batch_cost(problem, rounds, 1e-14))
-        found.append(
-            Figure(
-                f"{problem.name}: CPU of the kernel per run in a compiled loop, tolerance 1e-14",
-                seconds * 1e6,
-                "us",
-                None,
-                None,
-                "no Python between the runs",
-            )
-        )
-    standing = records[0]
-    found.append(
-        Figure(
-            "isolated Caryatid without rocking: CPU per record sample, default tolerance",
-            statistics.median(throughput.sample_cost(standing, rounds)) * 1e9,
-            "ns",
-            "at most",
-            250,
-            standing.scene.motion.label,
-        )
-    )
-    seconds, share = throughput.map_cost(max(2, rounds // 3))
-    found.append(
-        Figure(
-            "one-sine overturning map 100 x 100: CPU per run and core",
-            statistics.median(seconds) * 1e6,
-            "us",
-            "at most",
-            10,
-            f"{share:.0%} overturn",
-        )
-    )
-    seconds, share = throughput.spectrum_cost(motion, max(2, rounds // 3))
-    found.append(
-        Figure(
-            "rocking spectrum of 500 periods on 2 cores: elapsed time",
-            statistics.median(seconds),
-            "s",
-            "at most",
-            1,
-            f"{motion.label}, slenderness 0.28, {share:.0%} overturn",
-        )
-    )
-    seconds, parts, cpu = throughput.start_up(max(3, rounds // 3))
+    return [
+        *(_loop_cost(problem, rounds) for problem in blocks),
+        _sample_cost(records[0], rounds),
+        _map_cost(max(2, rounds // 3)),
+        _spectrum_cost(motion, max(2, rounds // 3)),
+        _start_up(max(3, rounds // 3)),
+    ]
+
+
+def _loop_cost(problem, rounds):
+    title = f"{problem.name}: CPU of the kernel per run in a compiled loop, tolerance 1e-14"
+    seconds = statistics.median(throughput.batch_cost(problem, rounds, 1e-14))
+    return Figure(title, seconds * 1e6, "us", None, None, "no Python between the runs")
+
+
+def _sample_cost(standing, rounds):
+    title = "isolated Caryatid without rocking: CPU per record sample, default tolerance"
+    seconds = statistics.median(throughput.sample_cost(standing, rounds))
+    return Figure(title, seconds * 1e9, "ns", "at most", 250, standing.scene.motion.label)
+
+
+def _map_cost(rounds):
+    title = "one-sine overturning map 100 x 100: CPU per run and core"
+    seconds, share = throughput.map_cost(rounds)
+    return Figure(title, statistics.median(seconds) * 1e6, "us", "at most", 10, f"{share:.0%} overturn")
+
+
+def _spectrum_cost(motion, rounds):
+    title = "rocking spectrum of 500 periods on 2 cores: elapsed time"
+    seconds, share = throughput.spectrum_cost(motion, rounds)
+    how = f"{motion.label}, slenderness 0.28, {share:.0%} overturn"
+    return Figure(title, statistics.median(seconds), "s", "at most", 1, how)
+
+
+def _start_up(rounds):
+    title = "a process that runs one scene with the cached kernel: least elapsed time"
+    seconds, parts, cpu = throughput.start_up(rounds)
     shares = ", ".join(f"{name} {value:.2f}" for name, value in parts.items())
-    found.append(
-        Figure(
-            "a process that runs one scene with the cached kernel: least elapsed time",
-            min(seconds),
-            "s",
-            "at most",
-            1.5,
-            f"CPU {cpu:.2f} s; medians: {shares}",
-        )
-    )
-    return found
+    return Figure(title, min(seconds), "s", "at most", 1.5, f"CPU {cpu:.2f} s; medians: {shares}")

@@ -130,17 +130,11 @@ def contact_run(problem: Problem, method: str, rtol: float) -> Callable[[], tupl
     scene, model, law = problem.scene, RockingModel.of(problem.scene), BearingLaw.of(problem.scene.bearings)
     if not isinstance(scene.motion, SampledMotion):
         raise ValueError(f"{scene.name}: needs a sampled motion")
-    samples, dt, over, duration = scene.motion.samples.tolist(), scene.motion.dt, scene.motion.end, scene.duration
+    samples, dt, duration = scene.motion.samples.tolist(), scene.motion.dt, scene.duration
+    ground = _ground(scene.motion)
     count, kb, dk, alpha, d0, f0, M = law.count, law.kb, law.dk, law.alpha, law.d0, law.f0, model.M
     threshold, length, power = model.uplift_acceleration, model.R * model.gamma, 1 - law.alpha
-    last = len(samples) - 2
     atol = rtol * np.array([length, length * scene.rocking_frequency])
-
-    def ground(t):
-        if t > over:
-            return 0.0
-        i = min(int(t / dt), last)
-        return samples[i] + (samples[i + 1] - samples[i]) * (t / dt - i)
 
     def run():
         t, y, z_c, direction = 0.0, (0.0, 0.0), 0.0, 0.0
@@ -185,3 +179,17 @@ def contact_run(problem: Problem, method: str, rtol: float) -> Callable[[], tupl
         return np.array([0.0, 0.0, *y]), 0
 
     return run
+
+
+def _ground(motion):
+    """The ground's acceleration [m/s2] as a function of one time [s], without arrays."""
+    samples, dt, over = motion.samples.tolist(), motion.dt, motion.end
+    last = len(samples) - 2
+
+    def ground(t):
+        if t > over:
+            return 0.0
+        i = min(int(t / dt), last)
+        return samples[i] + (samples[i + 1] - samples[i]) * (t / dt - i)
+
+    return ground

@@ -64,8 +64,8 @@ def engines(
 
     from rich.console import Console
 
-    from ..bench.engine_bench import bench_engines, examine
-    from ..bench.engine_tables import cause_table, class_table, off_table
+    from ..bench.engines.run import bench_engines, examine
+    from ..bench.engines.tables import cause_table, class_table, off_table
     from ..bench.random_scenes import describe
     from ..running.provenance import json_ready
 
@@ -78,7 +78,7 @@ def engines(
         print("verdict", json.dumps(json_ready(row), indent=1))
         raise typer.Exit(row["class"] == "off and silent")
     rows = bench_engines(engine, output, scenes=scenes, seed=seed, workers=workers, time_limit=time_limit)
-    from ..bench.engine_figure import draw  # matplotlib takes its time
+    from ..bench.engines.figure import draw  # matplotlib takes its time
 
     draw(rows, f"{engine}: {scenes} random scenes", f"{output}/bench-engines-{engine}.png")
     console.print(class_table(rows, f"{engine}, {scenes} random scenes, seed {seed}"))

@@ -23,7 +23,7 @@ from ..running.solving import (
 )
 
 if TYPE_CHECKING:
-    from ..measuring.horizon import Horizon
+    pass
 
 
 def command(
@@ -41,10 +41,7 @@ def command(
 
     An engine that fails costs its own row. Status 1: the analytic model failed.
     """
-    from analytic.errors import EngineNotInstalled
     from analytic.scene_file import load_scene
-    from engines import ENGINES
-    from engines.guard import alone
 
     from ..running.files import check_writable, write_all
 
@@ -53,49 +50,18 @@ def command(
     for name in engine or ():
         check_solver(name)
     what = load_scene(scene)
-    names = [ANALYTIC, *(name for name in dict.fromkeys(engine or ENGINES) if name != ANALYTIC)]
-    responses = []
-    for number, name in enumerate(names, 1):
-        try:
-            responses.append(
-                simulate(
-                    what,
-                    name,
-                    history=True,
-                    time_limit=time_limit,
-                    words=f"{what.name}: {name} ({number} of {len(names)})",
-                )
-            )
-        except EngineNotInstalled:
-            if engine:  # asked for by name
-                raise
-    horizons: dict[str, Horizon] = {}
-    if not responses[0].failure:
-        horizons, failure = alone(
-            _horizons, what, responses, time_limit=time_limit, meanwhile=spinner(f"{what.name}: sensitivity horizons")
-        )
-        if failure:
-            horizons = {}
-            say(f"no sensitivity horizons: {failure.reason}. {readable(failure.message.partition(chr(10))[0])}")
-    horizon = min((found.horizon for found in horizons.values() if found.parts), default=None)
+    responses = _responses(what, engine, time_limit)
+    horizons = {} if responses[0].failure else _sensitivity(what, responses, time_limit)
+    horizon = min((each.horizon for each in horizons.values() if each.parts), default=None)
     results: dict[str, str | Callable[[Path], object]] = {}
     if json_file:
-        content = {
-            "scene": what.name,
-            "sensitivity_horizon": horizon,
-            "sensitivity": {
-                name: {"perturbation": found.perturbation, "horizon": found.horizon if found.parts else None}
-                for name, found in horizons.items()
-            },
-            "responses": [response.to_json() for response in responses],
-        }
-        results[json_file] = json.dumps(content, indent=2, allow_nan=False) + "\n"
+        results[json_file] = json.dumps(_content(what, responses, horizons, horizon), indent=2, allow_nan=False) + "\n"
     drawn = [response for response in responses if response.history] if plot else []
-    if drawn:
+    if plot and drawn:
         from ..showing.plots import draw_histories, save
 
         figure = draw_histories(what, drawn, horizon)
-        results[plot] = lambda path: save(figure, path)  # type: ignore[index]  # else nothing is drawn
+        results[plot] = lambda path: save(figure, path)
     elif plot:
         say("there is no history to draw")
     problem = write_all(results)
@@ -108,6 +74,48 @@ def command(
         raise problem
     if responses[0].failure:
         raise typer.Exit(1)
+
+
+def _responses(scene, asked, time_limit):
+    """Of the analytic model and the engines asked for, by default all: one that is not installed only if named."""
+    from analytic.errors import EngineNotInstalled
+    from engines import ENGINES
+
+    names = [ANALYTIC, *(name for name in dict.fromkeys(asked or ENGINES) if name != ANALYTIC)]
+    responses = []
+    for number, name in enumerate(names, 1):
+        words = f"{scene.name}: {name} ({number} of {len(names)})"
+        try:
+            responses.append(simulate(scene, name, history=True, time_limit=time_limit, words=words))
+        except EngineNotInstalled:
+            if asked:
+                raise
+    return responses
+
+
+def _sensitivity(scene, responses, time_limit):
+    """`_horizons` in a process of its own; none where that does not end, which is said."""
+    from engines.guard import alone
+
+    words = spinner(f"{scene.name}: sensitivity horizons")
+    horizons, failure = alone(_horizons, scene, responses, time_limit=time_limit, meanwhile=words)
+    if not failure:
+        return horizons
+    say(f"no sensitivity horizons: {failure.reason}. {readable(failure.message.partition(chr(10))[0])}")
+    return {}
+
+
+def _content(scene, responses, horizons, horizon):
+    """What the JSON file holds."""
+    return {
+        "scene": scene.name,
+        "sensitivity_horizon": horizon,
+        "sensitivity": {
+            name: {"perturbation": each.perturbation, "horizon": each.horizon if each.parts else None}
+            for name, each in horizons.items()
+        },
+        "responses": [response.to_json() for response in responses],
+    }
 
 
 def _horizons(scene, responses):

@@ -20,25 +20,25 @@ from .measures import state_restitution
 if TYPE_CHECKING:
     from analytic import Response, Scene
 
-# Relative changes of the twins where no solver is asked for; a good engine's are 1e-5 to 1e-3 (`perturbation_of`).
+# Relative changes of the copies where no solver is asked for; a good engine's are 1e-5 to 1e-3 (`perturbation_of`).
 PERTURBATION = 1e-4
 # Sizes that a solver's perturbation is given: from the least on, in these steps, to the most.
 LEAST, LADDER, MOST = 1e-6, 2.0, 0.5
-# Twins further apart than this share of the slenderness no longer show the same motion.
+# Copies further apart than this share of the slenderness no longer show the same motion.
 SPREAD = 0.01
 # Share of SPREAD at which a solver's own distance from the model is taken as the measure of its errors: early enough
 # to foretell where it reaches SPREAD, and above what sampling its history costs.
 EARLY = 0.1
-# Sampling of the twins: periods 2 pi/omega_r contain this many samples, so that no part of a swing is overlooked.
+# Sampling of the copies: periods 2 pi/omega_r contain this many samples, so that no part of a swing is overlooked.
 SAMPLES_PER_PERIOD = 1000
 
 
 @dataclass(frozen=True, eq=False)
 class Horizon:
-    """The sensitivity horizon [s], the last time before a twin parts or the run's end; and the spread it comes from.
+    """The sensitivity horizon [s], the last time before a copy parts or the run's end; and the spread it comes from.
 
-    perturbation: relative change of the twins [-]. time [s] and spread, arrays of shape (n,): the largest |tilt of a
-    twin - tilt of the scene| / slenderness up to each time. Twins are told apart by name in `twins`: the time [s] at
+    perturbation: relative change of the copies [-]. time [s] and spread, arrays of shape (n,): the largest |tilt of a
+    copy - tilt of the scene| / slenderness up to each time. Copies are told apart by name in `copies`: the time [s] at
     which each parted, or None.
     """
 
@@ -46,29 +46,29 @@ class Horizon:
     perturbation: float
     time: np.ndarray
     spread: np.ndarray
-    twins: dict
+    copies: dict
 
     @property
     def parts(self) -> bool:
-        """Whether a twin parts before the run ends."""
-        return any(time is not None for time in self.twins.values())
+        """Whether a copy parts before the run ends."""
+        return any(time is not None for time in self.copies.values())
 
 
-def twin_scenes(scene: Scene, perturbation: float = PERTURBATION) -> dict[str, Scene]:
+def changed_copies(scene: Scene, perturbation: float = PERTURBATION) -> dict[str, Scene]:
     """Scenes next to `scene`, by name: restitution, and motion amplitude and start, changed by +-perturbation."""
-    twins = {}
+    copies = {}
     e = max(restitution(scene), 0.0) if scene.block.restitution is None else scene.block.restitution
     start = scene.start
     for sign, word in ((1, "up"), (-1, "down")):
         factor = 1 + sign * perturbation
         if 0 < e * factor <= 1:
-            twins[f"restitution {word}"] = scene.with_(block={"restitution": e * factor})
+            copies[f"restitution {word}"] = scene.with_(block={"restitution": e * factor})
         if scene.motion is not None:
-            twins[f"motion {word}"] = scene.with_(motion=scene.motion.scaled(factor))
+            copies[f"motion {word}"] = scene.with_(motion=scene.motion.scaled(factor))
         changed = {name: getattr(start, name) * factor for name in type(start).model_fields}
         if changed != start.model_dump():
-            twins[f"start {word}"] = scene.with_(start=changed)
-    return twins
+            copies[f"start {word}"] = scene.with_(start=changed)
+    return copies
 
 
 def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION, spread: float = SPREAD) -> Horizon:
@@ -80,7 +80,7 @@ def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION, spr
     perturbation : float
         Relative change of restitution, motion amplitude and start, above 0 and below 1.
     spread : float
-        Share of the slenderness by which a twin's tilt must differ to count as parted.
+        Share of the slenderness by which a copy's tilt must differ to count as parted.
 
     Returns
     -------
@@ -98,8 +98,8 @@ def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION, spr
     base = simulate(scene, output_step=step).history
     largest = np.zeros(len(base.time))
     parted = {}
-    for name, twin in twin_scenes(scene, perturbation).items():
-        other = simulate(twin, output_step=step).history
+    for name, copy in changed_copies(scene, perturbation).items():
+        other = simulate(copy, output_step=step).history
         # Where one has overturned and stopped, it keeps its last tilt.
         tilt = np.interp(base.time, other.time, other.tilt)
         apart = np.abs(tilt - base.tilt) / scene.block.slenderness
@@ -113,9 +113,9 @@ def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION, spr
 
 
 def perturbation_of(scene: Scene, response: Response, reference: Response) -> float:
-    """Size of the relative change of `twin_scenes` that moves the model as far as a solver's errors move the solver.
+    """Size of the relative change of `changed_copies` that moves the model as far as a solver's errors move the solver.
 
-    Measured in the run: from `restitution_error` on, `LADDER` times as large until the twins are as far off the model
+    Measured in the run: from `restitution_error` on, `LADDER` times as large until the copies are as far off the model
     as the solver's tilt is where it is first off by `EARLY` of `SPREAD`. That holds whatever moves the block:
     compliance, steps, times of uplift, lost impacts.
 

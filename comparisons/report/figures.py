@@ -62,7 +62,7 @@ def histories(
             worst[solver] = np.abs(apart / scale).max()
     horizon = result.settings["scenes"][name]["horizon"]
     ends = [result.arrays[f"{name}/{solver}/time"][-1] for solver in solvers]
-    # twins of a block that overturns part as it falls: nothing to mark
+    # copies of a block that overturns part as it falls: nothing to mark
     parts = horizon is not None and horizon < 0.99 * max(ends)
     for axis in (above, below):
         axis.axhline(0, color="0.85", linewidth=0.8, zorder=0)

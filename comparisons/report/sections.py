@@ -51,74 +51,81 @@ def _pooled(rows, measure):
 
 def caryatid_sections(result: Result) -> list[Section]:
     """Scene, ground motion, free-standing and isolated Caryatid."""
+    return [_setting_section(result), _outcome_section(result), _history_section(result)]
+
+
+def _setting_section(result):
     scenes = result.settings["scenes"]
-    rigid, isolated = scenes
+    return Section(
+        "The scenes and the ground motion",
+        (
+            "The Caryatid as a rigid block, once on rigid ground and once on a base carried by lead-rubber "
+            "bearings (Table 1 of the paper). The slenderness is not printed in the paper; 0.28 rad reproduces "
+            "its claims under the record it used (Duzce 1999). Under another motion they need not hold.",
+        ),
+        (_parameters(scenes),),
+        (draw_scenes(list(scenes.values())), figures.ground_motion(result)),
+    )
+
+
+def _outcome_section(result):
+    scenes, motion = result.settings["scenes"], result.settings["motion"]["label"]
     failed = tuple(
         (f"{row['solver']} on {row['scene']}: {row['failure']['reason']}", row["failure"].get("message", ""))
         for row in result.rows
         if row["failure"]
     )
-    motion = result.settings["motion"]["label"]
+    return Section(
+        "Outcomes",
+        (
+            f"Each solver on the same scenes under {motion}. A block that never lifts “stands”, one that lifts "
+            "and stays upright “rocks”; it “overturns” at |φ| = 90°. |H|/N, horizontal over normal force under "
+            "the block, is the friction coefficient needed not to slide; where the normal force N falls to 0 the "
+            "block would jump. The model allows neither. Both are taken over the run, but for the fall of a "
+            "block that overturns.",
+            "A run goes on until its outcome is decided: until nothing that may still come can make the block "
+            "overturn or keep it from it. One that ended earlier is “undecided”, with what it was so far. A "
+            "warning names what lies outside the range in which a solver was verified, outside what the model "
+            "describes, or is odd about the record; the outcome beside it is then to be doubted.",
+            "Impact times and tilt graphs are compared up to the end, or up to the solver's sensitivity horizon "
+            "where that comes first: beyond it a change of restitution, motion and start as small as the "
+            "solver's own errors makes another motion, so that a difference says no more about it. The distance "
+            "of two tilt graphs (Hausdorff) is how far a point of one can lie from the other, time in units of 2 "
+            "π/ω_r and tilt in units of γ.",
+        ),
+        tuple(
+            table
+            for name in scenes
+            for table in (
+                _outcomes(result, name),
+                *_warnings(scenes[name]["name"], warned(result, name)),
+                *_agreement(result, name),
+            )
+        ),
+        evidence=failed,
+    )
+
+
+def _history_section(result):
+    scenes = result.settings["scenes"]
+    rigid, isolated = scenes
     gamma = scenes[isolated]["block"]["slenderness"]
-    return [
-        Section(
-            "The scenes and the ground motion",
-            (
-                "The Caryatid as a rigid block, once on rigid ground and once on a base carried by lead-rubber "
-                "bearings (Table 1 of the paper). The slenderness is not printed in the paper; 0.28 rad reproduces "
-                "its claims under the record it used (Duzce 1999). Under another motion they need not hold.",
-            ),
-            (_parameters(scenes),),
-            (draw_scenes(list(scenes.values())), figures.ground_motion(result)),
+    return Section(
+        "Histories and hysteresis",
+        (
+            "Upper axes: all solvers over each other; lower axes: by how much they differ from the analytic "
+            "model. The bearings' damping of 30 % in Table 1(a) of the paper is W_D/(2 π E_s), with W_D the "
+            "energy of a loop and E_s the elastic energy at its peak; the usual equivalent viscous damping, "
+            "W_D/(4 π E_s), is half of it.",
         ),
-        Section(
-            "Outcomes",
-            (
-                f"Each solver on the same scenes under {motion}. A block that never lifts “stands”, one that lifts "
-                "and stays upright “rocks”; it “overturns” at |φ| = 90°. |H|/N, horizontal over normal force under "
-                "the block, is the friction coefficient needed not to slide; where the normal force N falls to 0 the "
-                "block would jump. The model allows neither. Both are taken over the run, but for the fall of a "
-                "block that overturns.",
-                "A run goes on until its outcome is decided: until nothing that may still come can make the block "
-                "overturn or keep it from it. One that ended earlier is “undecided”, with what it was so far. A "
-                "warning names what lies outside the range in which a solver was verified, outside what the model "
-                "describes, or is odd about the record; the outcome beside it is then to be doubted.",
-                "Impact times and tilt graphs are compared up to the end, or up to the solver's sensitivity horizon "
-                "where that comes first: beyond it a change of restitution, motion and start as small as the "
-                "solver's own errors makes another motion, so that a difference says no more about it. The distance "
-                "of two tilt graphs (Hausdorff) is how far a point of one can lie from the other, time in units of 2 "
-                "π/ω_r and tilt in units of γ.",
-            ),
-            tuple(
-                table
-                for name in scenes
-                for table in (
-                    _outcomes(result, name),
-                    *_warnings(scenes[name]["name"], warned(result, name)),
-                    *_agreement(result, name),
-                )
-            ),
-            evidence=failed,
+        (),
+        (
+            figures.histories(result, rigid, "tilt", "tilt φ/γ [-]", scenes[rigid]["block"]["slenderness"]),
+            figures.histories(result, isolated, "base_displacement", "base displacement x [m]"),
+            figures.histories(result, isolated, "tilt", "tilt φ/γ [-]", gamma, _tilt_limits(result, isolated, gamma)),
+            figures.loops(result, isolated),
         ),
-        Section(
-            "Histories and hysteresis",
-            (
-                "Upper axes: all solvers over each other; lower axes: by how much they differ from the analytic "
-                "model. The bearings' damping of 30 % in Table 1(a) of the paper is W_D/(2 π E_s), with W_D the "
-                "energy of a loop and E_s the elastic energy at its peak; the usual equivalent viscous damping, "
-                "W_D/(4 π E_s), is half of it.",
-            ),
-            (),
-            (
-                figures.histories(result, rigid, "tilt", "tilt φ/γ [-]", scenes[rigid]["block"]["slenderness"]),
-                figures.histories(result, isolated, "base_displacement", "base displacement x [m]"),
-                figures.histories(
-                    result, isolated, "tilt", "tilt φ/γ [-]", gamma, _tilt_limits(result, isolated, gamma)
-                ),
-                figures.loops(result, isolated),
-            ),
-        ),
-    ]
+    )
 
 
 def _tilt_limits(result, name, gamma):
@@ -252,8 +259,32 @@ def _agreement(result, name):
 
 def restitution_sections(result: Result) -> list[Section]:
     """Restitution against eq. (7), and error beside cost."""
+    return [_impact_section(result), _cost_section(result)]
+
+
+def _impact_section(result):
     starts = ", ".join(f"{start:g}" for start in result.settings["starts"])
     few = ", ".join(f"{start:g}" for start in result.settings["variant_starts"])
+    return Section(
+        "Restitution per impact",
+        (
+            f"Free rocking for {result.settings['seconds']:g} s, released from rest at φ/γ = {starts} (variants "
+            f"that are not the default: {few}), on rigid ground and on a base of "
+            f"{result.settings['bases']['sliding base']['mass']:g} kg that slides without friction. The engines "
+            f"are given no restitution{_applied(result)}: it follows from their contact. It is measured as φ̇⁺/φ̇⁻, "
+            "the tilt rate after over that before the impact, from the states in clean flight, carried to the "
+            "impact by the model's equations, for every "
+            f"impact at least {100 * result.settings['slowest_impact']:g} % as fast as the run's fastest.",
+            "The variants of an engine are ways to set it up: as well as is known here (best), with care but at a "
+            "known cost in error or generality (expert), as a first user would (first script). The table “What "
+            "each engine decides by itself” says which is which.",
+        ),
+        tuple(_restitution_table(result, ground) for ground in result.settings["bases"]),
+        (figures.restitution(result),),
+    )
+
+
+def _cost_section(result):
     groups = variant_groups(result)
     rows = [
         [
@@ -269,61 +300,42 @@ def restitution_sections(result: Result) -> list[Section]:
         ]
         for group in groups
     ]
-    return [
-        Section(
-            "Restitution per impact",
-            (
-                f"Free rocking for {result.settings['seconds']:g} s, released from rest at φ/γ = {starts} (variants "
-                f"that are not the default: {few}), on rigid ground and on a base of "
-                f"{result.settings['bases']['sliding base']['mass']:g} kg that slides without friction. The engines "
-                f"are given no restitution{_applied(result)}: it follows from their contact. It is measured as φ̇⁺/φ̇⁻, "
-                "the tilt rate after over that before the impact, from the states in clean flight, carried to the "
-                "impact by the model's equations, for every "
-                f"impact at least {100 * result.settings['slowest_impact']:g} % as fast as the run's fastest.",
-                "The variants of an engine are ways to set it up: as well as is known here (best), with care but at a "
-                "known cost in error or generality (expert), as a first user would (first script). The table “What "
-                "each engine decides by itself” says which is which.",
-            ),
-            tuple(_restitution_table(result, ground) for ground in result.settings["bases"]),
-            (figures.restitution(result),),
+    return Section(
+        "Error beside cost",
+        (
+            "Error and CPU time of the very same runs. Impact times are held against the closed form (elliptic "
+            "integrals) on rigid ground, so the analytic model is on trial there as well. CPU time is that of the "
+            "simulation alone: no import, no compilation, no building of the scene.",
+            f"Restitution may be trusted if its error, root mean square, is at most {TRUSTED:g} and no run "
+            f"failed; at most {USABLE:g} it is usable where a per cent does not matter.",
         ),
-        Section(
-            "Error beside cost",
-            (
-                "Error and CPU time of the very same runs. Impact times are held against the closed form (elliptic "
-                "integrals) on rigid ground, so the analytic model is on trial there as well. CPU time is that of the "
-                "simulation alone: no import, no compilation, no building of the scene.",
-                f"Restitution may be trusted if its error, root mean square, is at most {TRUSTED:g} and no run "
-                f"failed; at most {USABLE:g} it is usable where a per cent does not matter.",
-            ),
-            (
-                Table(
-                    "Error beside cost, all grounds and slendernesses together",
-                    (
-                        "solver",
-                        "restitution",
-                        "impacts [-]",
-                        "restitution error, rms [-]",
-                        "restitution error, worst [-]",
-                        "base velocity jump, relative error, rms [-]",
-                        "impact times, relative error, rms [-]",
-                        "CPU time per simulated second [s/s]",
-                        "failed runs [-]",
-                    ),
-                    rows,
+        (
+            Table(
+                "Error beside cost, all grounds and slendernesses together",
+                (
+                    "solver",
+                    "restitution",
+                    "impacts [-]",
+                    "restitution error, rms [-]",
+                    "restitution error, worst [-]",
+                    "base velocity jump, relative error, rms [-]",
+                    "impact times, relative error, rms [-]",
+                    "CPU time per simulated second [s/s]",
+                    "failed runs [-]",
                 ),
-                *_warnings(
-                    "Free rocking",
-                    {
-                        warning: [group["name"] for group in groups if warning in group["warnings"]]
-                        for group in groups
-                        for warning in group["warnings"]
-                    },
-                ),
+                rows,
             ),
-            (figures.error_and_cost(groups),),
+            *_warnings(
+                "Free rocking",
+                {
+                    warning: [group["name"] for group in groups if warning in group["warnings"]]
+                    for group in groups
+                    for warning in group["warnings"]
+                },
+            ),
         ),
-    ]
+        (figures.error_and_cost(groups),),
+    )
 
 
 def _applied(result):

@@ -44,6 +44,22 @@ def check_writable(paths: Iterable[str | None], picture: str | None = None, inpu
         taken[place] = "is given for two results"
 
 
+def make_folder(folder: str | PathLike[str]) -> Path:
+    """The folder of ``--output``, made if it does not exist.
+
+    Raises
+    ------
+    SettingError
+        It cannot be made.
+    """
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise SettingError(f"--output {folder.name}: no folder can be made there ({error.strerror})") from error
+    return folder
+
+
 def check_folder(output: str | PathLike[str], option: str = "--output") -> None:
     """Raise `SettingError` if `output`, the folder to write to, is a file or cannot be written; it need not exist."""
     mode = _mode(output, f"{option} {output}")

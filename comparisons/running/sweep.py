@@ -80,8 +80,7 @@ def run_sweep(
         Seconds a run may take; beyond, its row is "failed". A row that failed so is run again when the
         limit is raised, and so is one whose worker was killed from outside.
     measure : callable or None
-        Module-level function, (`Case`, `Response`) -> dict of JSON values; runs in the worker, and only on
-        responses that have not failed.
+        Module-level, (`Case`, `Response`) -> dict of JSON values; runs in the worker, on responses that did not fail.
     executor : Executor or None
         Where to run, to share workers between sweeps; it stays open.
     progress : bool

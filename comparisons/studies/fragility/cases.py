@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from ...running.study import Ask, Plan
 
-TWIN = 1e-4  # relative change of the restitution: the model's own sensitivity
+CHANGE = 1e-4  # relative change of the restitution: the model's own sensitivity
 REFERENCE, SENSITIVITY = "analytic", "analytic, restitution + 1e-4"
 FAILED = -1
 
@@ -110,7 +110,7 @@ def plan(ask: Ask, scenes: Mapping[str, Any] | None = None, motions: int | None 
             "motions": count,
             "seeds": [0, count - 1],
             "motion": "synthetic duzce-like, scaled",
-            "twin": TWIN,
+            "change": CHANGE,
             "friction": low_frictions(solvers),
             "solvers": [REFERENCE, *(solver_name(*one) for one in solvers)],
         }
@@ -148,7 +148,7 @@ def _cases(scene, solver, variant, shakings, factors):
 
 
 def _analytic(scene, shakings, factors):
-    """Outcomes of the model and of its perturbed twin, CPU seconds per run, and how many runs end undecided."""
+    """Outcomes of the model and of its perturbed copy, CPU seconds per run, and how many runs end undecided."""
     say("analytic model")
     shape = len(factors), len(shakings)
     scenes = [scene.with_(motion=shaking.scaled(factor)) for factor in factors for shaking in shakings]
@@ -156,10 +156,10 @@ def _analytic(scene, shakings, factors):
     began = time.process_time()
     outcomes = simulate_many(scenes)
     cost = (time.process_time() - began) / len(scenes)
-    restitution = RockingModel.of(scene).restitution * (1 + TWIN)
-    twin = simulate_many([one.with_(block={"restitution": restitution}) for one in scenes])
+    restitution = RockingModel.of(scene).restitution * (1 + CHANGE)
+    copy = simulate_many([one.with_(block={"restitution": restitution}) for one in scenes])
     found = {}
-    for label, values in ((REFERENCE, outcomes), (SENSITIVITY, twin)):
+    for label, values in ((REFERENCE, outcomes), (SENSITIVITY, copy)):
         found[label] = np.where(values.failed, FAILED, values.overturns).astype(np.int8).reshape(shape)
     checks = {"runs": len(scenes), "undecided": int((~outcomes.decided).sum())}
     return found, {REFERENCE: cost}, checks

@@ -22,7 +22,7 @@ READING = (
     "“equal”: each answer says how large a difference would have been found."
 )
 REFERENCE = "analytic"
-TWIN_STYLE = {"color": "#56B4E9", "linestyle": (0, (1, 1)), "linewidth": 1.2}
+PERTURBED_STYLE = {"color": "#56B4E9", "linestyle": (0, (1, 1)), "linewidth": 1.2}
 FIRST_STYLE = {"linestyle": (0, (4, 1, 1, 1)), "linewidth": 1.2}
 
 
@@ -201,13 +201,13 @@ def _checks(result):
     )
     return (
         f"Runs of the analytic model whose outcome was not decided at their end: {undecided} of {runs}. "
-        f"Runs that failed: {failed}. “{_twin(result)}” is the analytic "
-        f"model with its restitution changed by 1 part in {1 / result.settings['twin']:.0f}: disagreements as many "
+        f"Runs that failed: {failed}. “{_perturbed(result)}” is the analytic "
+        f"model with its restitution changed by 1 part in {1 / result.settings['change']:.0f}: disagreements as many "
         "as it has with itself are nothing to blame an engine for." + unfitted
     )
 
 
-def _twin(result):
+def _perturbed(result):
     return next((row["solver"] for row in _part(result, "fit") if row["solver"].startswith("analytic, ")), "")
 
 
@@ -307,7 +307,7 @@ def _style(label):
     if "," not in label:
         return style(label)
     engine = label.partition(",")[0]
-    return TWIN_STYLE if engine == REFERENCE else {**style(engine), **FIRST_STYLE}
+    return PERTURBED_STYLE if engine == REFERENCE else {**style(engine), **FIRST_STYLE}
 
 
 def _part(result, part, **wanted):

@@ -80,8 +80,13 @@ def _found(grid, rows):
     entries += [_experiment(key, _Pool(members)) for key, members in experiments.items() if key[0] != "phase"]
     found, arrays = _phases(phases)
     entries += found + _flight_damping(pooled) + _failures(rows)
+    return Found(_settings(grid, engines), [_short(entry) for entry in entries], arrays)
+
+
+def _settings(grid, engines):
+    """What was asked, for the result file."""
     scenes = {(ratio, gamma): free_scene(gamma, ratio, 0.6) for ratio in grid.ratios for gamma in grid.slendernesses}
-    settings = {
+    return {
         "slendernesses": grid.slendernesses,
         "ratios": grid.ratios,
         "starts": grid.starts,
@@ -123,7 +128,6 @@ def _found(grid, rows):
             scale: free_scene(EXPERIMENT_SLENDERNESS, 1.0, 0.6, scale).block.half_height for scale in SCALES
         },
     }
-    return Found(settings, [_short(entry) for entry in entries], arrays)
 
 
 class _Pool:

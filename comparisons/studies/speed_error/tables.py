@@ -165,24 +165,18 @@ def _beside(result, row, model, needed):
 
 def law_cost(result: Result) -> dict[tuple[str, str], tuple[float, float, float]]:
     """{(scene, family): median over equal knob values of CPU time Bouc-Wen / algebraic, lowest, highest}."""
-    found = {}
+    timed: dict[tuple[str, str, float], float] = {}
+    for row in ladder(result):
+        if "cpu_seconds" in row:
+            timed.setdefault((row["family"], row["scene"], row["value"]), row["cpu_seconds"])
+    ratios: dict[tuple[str, str], list[float]] = {}
     for row in ladder(result):
         if row["law"] == "bouc-wen" and "cpu_seconds" in row:
             family = row["family"].removesuffix(", Bouc-Wen")
-            twin = next(
-                (
-                    one
-                    for one in ladder(result)
-                    if one["family"] == family
-                    and one["scene"] == row["scene"]
-                    and one["value"] == row["value"]
-                    and "cpu_seconds" in one
-                ),
-                None,
-            )
-            if twin:
-                found.setdefault((row["scene"], family), []).append(row["cpu_seconds"] / twin["cpu_seconds"])
-    return {key: (statistics.median(ratios), min(ratios), max(ratios)) for key, ratios in found.items()}
+            algebraic = timed.get((family, row["scene"], row["value"]))
+            if algebraic:
+                ratios.setdefault((row["scene"], family), []).append(row["cpu_seconds"] / algebraic)
+    return {key: (statistics.median(group), min(group), max(group)) for key, group in ratios.items()}
 
 
 def growths(result: Result) -> dict[tuple[str, str], dict[str, Any]]:

@@ -14,11 +14,11 @@ from comparisons.measuring.horizon import (
     LADDER,
     LEAST,
     SPREAD,
+    changed_copies,
     perturbation_of,
     restitution_error,
     sensitivity_horizon,
     solver_horizon,
-    twin_scenes,
 )
 from engines import get_engine
 
@@ -54,15 +54,15 @@ def test_long_shaking_parts_and_sooner_for_larger_perturbations():
 def test_the_horizon_is_where_the_spread_crosses_its_bound():
     horizon = sensitivity_horizon(long_shaking())
     first = np.flatnonzero(horizon.spread > SPREAD)[0]
-    assert horizon.time[first - 1] == horizon.horizon == min(t for t in horizon.twins.values() if t is not None)
+    assert horizon.time[first - 1] == horizon.horizon == min(t for t in horizon.copies.values() if t is not None)
     assert horizon.parts and horizon.spread[first - 1] <= SPREAD
 
 
-def test_an_independent_twin_parts_at_the_horizon():
+def test_an_independent_copy_parts_at_the_horizon():
     scene = long_shaking()
     horizon = sensitivity_horizon(scene)
-    twin = scene.with_(motion=scene.motion.scaled(1.0001))
-    one, other = (simulate(s, output_step=1e-3).history for s in (scene, twin))
+    copy = scene.with_(motion=scene.motion.scaled(1.0001))
+    one, other = (simulate(s, output_step=1e-3).history for s in (scene, copy))
     n = min(len(one.time), len(other.time))
     apart = np.abs(one.tilt[:n] - other.tilt[:n]) / 0.2
     before = one.time[:n] < horizon.horizon - 0.05
@@ -81,11 +81,11 @@ def test_no_rocking_no_horizon():
     assert horizon.horizon == 5.0 and horizon.spread[-1] == 0.0
 
 
-def test_every_twin_differs_and_nothing_that_is_zero_is_scaled():
+def test_every_copy_differs_and_nothing_that_is_zero_is_scaled():
     scene = long_shaking()
-    twins = twin_scenes(scene)
-    assert set(twins) == {"restitution up", "restitution down", "motion up", "motion down"}
-    assert len({twin.digest() for twin in twins.values()} | {scene.digest()}) == 5
+    copies = changed_copies(scene)
+    assert set(copies) == {"restitution up", "restitution down", "motion up", "motion down"}
+    assert len({copy.digest() for copy in copies.values()} | {scene.digest()}) == 5
     with pytest.raises(ValueError, match="perturbation = 0"):
         sensitivity_horizon(scene, perturbation=0)
 
@@ -168,7 +168,7 @@ def assert_no_engine_parts_before_its_own_horizon(engine, scenes):
         response = get_engine(engine).simulate(scene)
         own = solver_horizon(scene, response, reference)
         distance = largest_distance(scene, response, reference, own.horizon)
-        # By the spread: 1.2 for the sampling of the twins, whose tilt changes fast at an impact.
+        # By the spread: 1.2 for the sampling of the copies, whose tilt changes fast at an impact.
         assert distance < 1.2 * SPREAD, f"{scene.name}: {distance:.3g} by {own.horizon:.3g} s, {own.perturbation:.2g}"
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from rich.markup import escape
 from rich.table import Table
 
-from .engine_verdicts import CLASSES
+from .verdicts import CLASSES
 
 TELLING = 3  # quantities shown for a cause: those in which its scenes lie furthest from the others
 
@@ -48,20 +48,20 @@ def cause_table(rows: Sequence[Mapping[str, Any]]) -> Table:
             if row["class"] == name:
                 for cause in causes(row):
                     members.setdefault(cause, []).append(row)
-        for cause, found in sorted(members.items(), key=lambda item: -len(item[1])):
-            examples = ", ".join(str(row["index"]) for row in found[:4])
-            core = sum(row["place"]["core"] for row in found)
-            table.add_row(name, escape(cause), str(len(found)), str(core), examples, where(found, rows))
+        for cause, group in sorted(members.items(), key=lambda item: -len(item[1])):
+            examples = ", ".join(str(row["index"]) for row in group[:4])
+            core = sum(row["place"]["core"] for row in group)
+            table.add_row(name, escape(cause), str(len(group)), str(core), examples, where(group, rows))
     return table
 
 
-def where(found: Sequence[Mapping[str, Any]], rows: Sequence[Mapping[str, Any]]) -> str:
-    """In words: the quantities in which the rows found lie furthest from all rows, with their range there."""
+def where(group: Sequence[Mapping[str, Any]], rows: Sequence[Mapping[str, Any]]) -> str:
+    """In words: the quantities in which a group of rows lies furthest from all rows, with their range there."""
     words = []
     for name in rows[0]["place"]:
         every = np.array([row["place"].get(name) for row in rows if _number(row["place"].get(name))])
-        own = np.array([row["place"].get(name) for row in found if _number(row["place"].get(name))])
-        if len(own) and 2 * len(own) >= len(found):
+        own = np.array([row["place"].get(name) for row in group if _number(row["place"].get(name))])
+        if len(own) and 2 * len(own) >= len(group):
             rank = np.mean(np.searchsorted(np.sort(every), own) / len(every))
             low, high = np.quantile(own, [0.1, 0.9])
             words.append((abs(rank - 0.5), f"{name} {low:.2g} to {high:.2g}"))
@@ -77,16 +77,16 @@ def off_table(rows: Sequence[Mapping[str, Any]]) -> Table:
     table = Table("index", "found", "outcome", "expected", "notes", "place", title="Off and silent")
     for row in rows:
         if row["class"] == "off and silent":
-            found = ", ".join(
-                f"{one['quantity']} {one['error']:.3g}"
-                if isinstance(one["error"], float)
-                else f"{one['quantity']} {one['error']}"
-                for one in row["findings"]
+            findings = ", ".join(
+                f"{finding['quantity']} {finding['error']:.3g}"
+                if isinstance(finding["error"], float)
+                else f"{finding['quantity']} {finding['error']}"
+                for finding in row["findings"]
             )
             spot = ", ".join(
                 f"{name} {value:.3g}" if _number(value) else f"{value}"
                 for name, value in row["place"].items()
                 if value is not None and name != "mass"
             )
-            table.add_row(str(row["index"]), found, row["outcome"], row["expected"], ", ".join(row["notes"]), spot)
+            table.add_row(str(row["index"]), findings, row["outcome"], row["expected"], ", ".join(row["notes"]), spot)
     return table

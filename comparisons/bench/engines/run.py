@@ -2,7 +2,7 @@
 
     rows = bench_engines("exudyn", "bench-engines", scenes=2000, seed=1, workers=2)
 
-A row a scene: its class (`engine_verdicts.CLASSES`), what was found, the warnings, and where in the box it lies. All
+A row a scene: its class (`verdicts.CLASSES`), what was found, the warnings, and where in the box it lies. All
 runs are kept in the folder (reference.jsonl: analytic model, ENGINE.jsonl: engine): what is there and whose code has
 not changed is not run again, so that a broken-off bench goes on, and a mended engine costs the engine's runs alone.
 `examine` runs one scene again.
@@ -17,30 +17,30 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from analytic.errors import SettingError
 from engines import get_engine
 
-from ..running.provenance import write_result
-from ..running.sweep import Case, Processes, Store, run_sweep
-from .engine_verdicts import (
-    boundary_twins,
+from ...running.files import make_folder
+from ...running.provenance import write_result
+from ...running.sweep import Case, Processes, Store, run_sweep
+from ..random_scenes import describe
+from .kept import keep
+from .verdicts import (
+    boundary_copies,
     findings,
     judge,
-    near_twins,
+    near_copies,
     peak_errors,
     range_warnings,
     restitution_error,
     rule,
     span,
 )
-from .kept import keep
-from .random_scenes import describe
 from .wide_box import place, wide_scene
 
 if TYPE_CHECKING:
     from analytic import Scene
 
-    from ..running.sweep import Row
+    from ...running.sweep import Row
 
 KERNEL_SECONDS = 30.0  # beyond, there is nothing to compare with: bases that shake 1e6 times a run
 
@@ -71,17 +71,11 @@ def bench_engines(
 
     Raises
     ------
-    KeyError, EngineNotInstalled
-        As `get_engine`.
-    SettingError
-        The folder cannot be made.
+    KeyError, EngineNotInstalled, SettingError
+        As `get_engine` and `make_folder`.
     """
     get_engine(engine)
-    output = Path(output)
-    try:
-        output.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise SettingError(f"--output {output.name}: no folder can be made there ({error.strerror})") from error
+    output = make_folder(output)
     ensemble = [wide_scene(seed, index) for index in range(scenes)]
     with (
         Store(output / "reference.jsonl") as reference,
@@ -101,22 +95,20 @@ def bench_engines(
         row["index"] = index
         if row["class"] == "off and silent":
             row["scene"] = describe(scene)
-    settings = {
-        "engine": engine,
-        "versions": get_engine(engine).versions(),
-        "scenes": scenes,
-        "time_limit": time_limit,
-        "variant": get_engine(engine).default_variant,
-    }
+    _write(output, rows, engine, seed, {"scenes": scenes, "time_limit": time_limit})
+    return rows
+
+
+def _write(output, rows, engine, seed, asked):
+    known = get_engine(engine)
     write_result(
         output / f"bench-engines-{engine}.json",
         "bench engines",
-        settings,
+        {"engine": engine, "versions": known.versions(), **asked, "variant": known.default_variant},
         rows,
-        modules=("comparisons.bench.engine_bench", "analytic.kernel", get_engine(engine).adapter),
+        modules=("comparisons.bench.engines.run", "analytic.kernel", known.adapter),
         seed=seed,
     )
-    return rows
 
 
 def judged(
@@ -137,11 +129,11 @@ def judged(
     doubtful = [
         k for k, run in runs.items() if not run.failed and findings(ensemble[k], models[k].values, run.values, spans[k])
     ]
-    families = [{**near_twins(ensemble[k]), **boundary_twins(ensemble[k])} for k in doubtful]
-    found = iter(
-        model_runs([Case(twin) for family in families for twin in family.values()], "twins of doubtful scenes")
+    families = [{**near_copies(ensemble[k]), **boundary_copies(ensemble[k])} for k in doubtful]
+    again = iter(
+        model_runs([Case(copy) for family in families for copy in family.values()], "copies of doubtful scenes")
     )
-    twins = {k: {name: next(found) for name in family} for k, family in zip(doubtful, families, strict=True)}
+    copies = {k: {name: next(again) for name in family} for k, family in zip(doubtful, families, strict=True)}
     rows = []
     for k, (scene, model) in enumerate(zip(ensemble, models, strict=True)):
         run, off, notes, cause = runs.get(k), [], [], reasons[k]
@@ -150,8 +142,8 @@ def judged(
         elif run.failed:
             word, cause = "failed and said", run.failure["reason"]
         else:
-            sound = {name: twin.values for name, twin in twins.get(k, {}).items() if not twin.failed}
-            small = {name: sound.pop(name) for name in near_twins(scene) if name in sound}
+            sound = {name: copy.values for name, copy in copies.get(k, {}).items() if not copy.failed}
+            small = {name: sound.pop(name) for name in near_copies(scene) if name in sound}
             off, notes = judge(scene, model.values, run.values, small, sound, spans[k])
             word = _WORDS[bool(off), bool(range_warnings(model.values, run.values))]
         rows.append(_row(scene, model, run, word, cause, off, notes, spans[k]))

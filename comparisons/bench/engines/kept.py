@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from analytic import Response
 
-    from ..running.cases import Case
+    from ...running.cases import Case
 
 RESOLVED = 0.1  # share of the run's largest rate from which on an impact counts
 GRID, MOST_IMPACTS = 50, 400  # points of the growing peaks, impacts kept

@@ -20,7 +20,7 @@ Three things are no fault of the engine, and each excuses as little as can be. *
 has N <= 0 or a friction demand above FRICTION at the contact. *Ill-conditioned* is a peak that the analytic
 model itself changes by more than PEAK for relative changes of 1e-4 of start, amplitude or restitution: it is
 compared up to the time where that begins. *Near a boundary* is an outcome that the model changes for a change of 1 % of
-start, amplitude or slenderness: it does not count, and peaks do only up to the time where those of the twins with
+start, amplitude or slenderness: it does not count, and peaks do only up to the time where those of the copies with
 another outcome part by more than APART.
 """
 
@@ -35,7 +35,7 @@ import numpy as np
 
 from analytic.rocking import RockingModel, restitution
 
-from ..measuring.horizon import twin_scenes
+from ...measuring.horizon import changed_copies
 from .kept import GRID, RESOLVED
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 RESTITUTION, PEAK, APART = 1e-2, 0.02, 0.2
 LEAST_TILT, LEAST_DISPLACEMENT, LEAST_SWING = 1e-4, 1e-5, 1e-3
 FRICTION = 5.0  # of every engine's default, where the scene names none
-SMALL, BOUNDARY = 1e-4, 1e-2  # relative changes of the twins
+SMALL, BOUNDARY = 1e-4, 1e-2  # relative changes of the copies
 CLASSES = ("right", "right but warned", "off and warned", "failed and said", "off and silent", "left out")
 
 
@@ -58,23 +58,23 @@ def _cause(sentence):
     return re.split(r"-?\d", sentence)[0]
 
 
-def near_twins(scene: Scene) -> dict[str, Scene]:
-    """{name: scene} of the twins that tell how well the peaks are determined."""
-    return {f"{name}, {SMALL:g}": twin for name, twin in twin_scenes(scene, SMALL).items()}
+def near_copies(scene: Scene) -> dict[str, Scene]:
+    """{name: scene} of the copies that tell how well the peaks are determined."""
+    return {f"{name}, {SMALL:g}": copy for name, copy in changed_copies(scene, SMALL).items()}
 
 
-def boundary_twins(scene: Scene) -> dict[str, Scene]:
-    """{name: scene} of the twins that tell whether another outcome is near."""
-    twins = {}
+def boundary_copies(scene: Scene) -> dict[str, Scene]:
+    """{name: scene} of the copies that tell whether another outcome is near."""
+    copies = {}
     for sign, word in ((1, "up"), (-1, "down")):
         factor = 1 + sign * BOUNDARY
-        twins[f"slenderness {word}"] = scene.with_(block={"slenderness": scene.block.slenderness * factor})
+        copies[f"slenderness {word}"] = scene.with_(block={"slenderness": scene.block.slenderness * factor})
         if scene.motion is not None:
-            twins[f"motion {word}"] = scene.with_(motion=scene.motion.scaled(factor))
+            copies[f"motion {word}"] = scene.with_(motion=scene.motion.scaled(factor))
         changed = {name: value * factor for name, value in scene.start.model_dump().items()}
         if changed != scene.start.model_dump():
-            twins[f"start {word}"] = scene.with_(start=changed)
-    return twins
+            copies[f"start {word}"] = scene.with_(start=changed)
+    return copies
 
 
 def rule(scene: Scene, model: Mapping[str, Any]) -> str | None:
@@ -103,18 +103,18 @@ def findings(
 
     determined: time [s] up to which impacts are compared one by one.
     """
-    found: list[dict[str, Any]] = []
+    wrong: list[dict[str, Any]] = []
     if _other(scene, model, run):
-        found.append({"quantity": "outcome", "error": f"{run['outcome']}, not {model['outcome']}", "limit": None})
+        wrong.append({"quantity": "outcome", "error": f"{run['outcome']}, not {model['outcome']}", "limit": None})
     for name, error in peak_errors(scene, model, run, until).items():
         if not error <= PEAK:  # not: NaN
-            found.append({"quantity": name, "error": error, "limit": PEAK})
+            wrong.append({"quantity": name, "error": error, "limit": PEAK})
     error = restitution_error(scene, run, until)
     if not error <= RESTITUTION:
-        found.append({"quantity": "restitution", "error": error, "limit": RESTITUTION})
+        wrong.append({"quantity": "restitution", "error": error, "limit": RESTITUTION})
     if lost := lost_impacts(scene, model, run, min(until, determined)):
-        found.append({"quantity": "lost impact", "error": len(lost), "limit": 0})
-    return found
+        wrong.append({"quantity": "lost impact", "error": len(lost), "limit": 0})
+    return wrong
 
 
 def _outcome(scene, kept):
@@ -202,14 +202,14 @@ def lost_impacts(
     return lost
 
 
-def parting(scene: Scene, model: Mapping[str, Any], twins: Iterable[Mapping[str, Any]], share: float) -> float:
-    """Time [s] up to which no twin's peaks part from the model's by more than a share; inf where none ever does."""
+def parting(scene: Scene, model: Mapping[str, Any], copies: Iterable[Mapping[str, Any]], share: float) -> float:
+    """Time [s] up to which no copy's peaks part from the model's by more than a share; inf where none ever does."""
     first = math.inf
-    for twin in twins:
-        if twin["outcome"] == "failed":
+    for copy in copies:
+        if copy["outcome"] == "failed":
             continue
         for name, floor in least(scene).items():
-            other, own = (np.maximum([*kept[f"{name}s"], kept[name]], floor) for kept in (twin, model))
+            other, own = (np.maximum([*kept[f"{name}s"], kept[name]], floor) for kept in (copy, model))
             beyond = np.flatnonzero(np.abs(other / own - 1) > share)
             if len(beyond) and beyond[0] < GRID:
                 first = min(first, beyond[0] * scene.duration / GRID)
@@ -226,29 +226,29 @@ def judge(
     large: Mapping[str, Mapping[str, Any]],
     until: float = math.inf,
 ) -> tuple[list[dict[str, Any]], list[str]]:
-    """(findings, notes) of a run; small, large: kept values of the near and the boundary twins, until: as `findings`.
+    """(findings, notes) of a run; small, large: kept values of the near and the boundary copies, until: as `findings`.
 
     notes: "ill-conditioned" or "near a boundary" where these took something from the comparison.
     """
     if not findings(scene, model, run, until):
         return [], []
     determined = min(
-        (time for twin in small.values() for time in lost_impacts(scene, model, twin, until)), default=math.inf
+        (time for copy in small.values() for time in lost_impacts(scene, model, copy, until)), default=math.inf
     )
-    found = findings(scene, model, run, until, determined)
-    if not found:
-        return found, ["ill-conditioned"]
+    wrong = findings(scene, model, run, until, determined)
+    if not wrong:
+        return wrong, ["ill-conditioned"]
     notes, apart = [], parting(scene, model, small.values(), PEAK)
-    others = [twin for twin in [*small.values(), *large.values()] if _other(scene, twin, model)]
-    if others and any(finding["quantity"] == "outcome" for finding in found):
+    others = [copy for copy in [*small.values(), *large.values()] if _other(scene, copy, model)]
+    if others and any(finding["quantity"] == "outcome" for finding in wrong):
         notes, apart = ["near a boundary"], min(apart, parting(scene, model, others, APART))
     elif apart < until:
         notes = ["ill-conditioned"]
     until = min(until, apart)
     if notes:
-        found = [
+        wrong = [
             finding
             for finding in findings(scene, model, run, until, determined)
             if finding["quantity"] != "outcome" or "near a boundary" not in notes
         ]
-    return found, notes
+    return wrong, notes

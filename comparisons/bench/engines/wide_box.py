@@ -78,7 +78,7 @@ def place(scene: Scene) -> dict[str, Any]:
     frequency: of the base on its bearings, sqrt(n_d k_a/m_b), and damping: n_d c/m_b, both over omega_r.
     """
     block, base, bearings, omega = scene.block, scene.base, scene.bearings, scene.rocking_frequency
-    found = {
+    spot = {
         "slenderness": block.slenderness,
         "inertia": block.inertia / (block.mass * block.radius**2),
         "radius": block.radius,
@@ -93,8 +93,8 @@ def place(scene: Scene) -> dict[str, Any]:
         "core": is_core(scene),
     }
     if scene.motion is not None:
-        found["amplitude"] = abs(scene.motion.amplitude) / (scene.gravity * math.tan(block.slenderness))
-    return found
+        spot["amplitude"] = abs(scene.motion.amplitude) / (scene.gravity * math.tan(block.slenderness))
+    return spot
 
 
 def _log(rng, low, high):

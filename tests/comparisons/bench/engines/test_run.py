@@ -10,19 +10,19 @@ import pytest
 
 from analytic import Base, Block, PulseMotion, Scene, Start, simulate
 from analytic.rocking import restitution
-from comparisons.bench import engine_tables, engine_verdicts, wide_box
-from comparisons.bench.engine_bench import bench_engines, examine, judged
-from comparisons.bench.engine_figure import draw
-from comparisons.bench.engine_verdicts import (
-    boundary_twins,
+from comparisons.bench.engines import tables, verdicts, wide_box
+from comparisons.bench.engines.figure import draw
+from comparisons.bench.engines.kept import keep
+from comparisons.bench.engines.run import bench_engines, examine, judged
+from comparisons.bench.engines.verdicts import (
+    boundary_copies,
     findings,
     judge,
     lost_impacts,
-    near_twins,
+    near_copies,
     range_warnings,
     rule,
 )
-from comparisons.bench.kept import keep
 from comparisons.running.cases import Case
 from comparisons.running.provenance import json_ready
 from comparisons.running.sweep import Row
@@ -37,8 +37,8 @@ def kept(scene, **options):
 
 
 def verdict(scene, run):
-    twins = [{name: kept(twin) for name, twin in family(scene).items()} for family in (near_twins, boundary_twins)]
-    return judge(scene, kept(scene), run, *twins)
+    copies = [{name: kept(copy) for name, copy in family(scene).items()} for family in (near_copies, boundary_copies)]
+    return judge(scene, kept(scene), run, *copies)
 
 
 def quantities(found):
@@ -117,7 +117,7 @@ def test_peaks_count_from_their_least_value_on(name, scale):
     run = kept(FREE)
     for factor, expected in ((1.019, set()), (1.021, {name}), (0.979, {name})):
         assert quantities(findings(FREE, run, {**run, name: factor * run[name]})) == expected
-    least = engine_verdicts.least(FREE)[name]
+    least = verdicts.least(FREE)[name]
     still = {**run, name: 0.0}
     for value, expected in ((0.99 * least, set()), (1.019 * least, set()), (1.021 * least, {name})):
         assert quantities(findings(FREE, still, {**run, name: value})) - {"outcome"} == expected
@@ -252,7 +252,7 @@ def test_bench_from_scenes_to_figure(tmp_path):
     again = bench_engines("pybullet", tmp_path, scenes=3, seed=10, workers=1, progress=False)
     assert json.dumps(rows) == json.dumps(again)  # nothing was run twice: CPU seconds are the same
     assert [row["index"] for row in rows] == list(range(3))
-    assert {row["class"] for row in rows} <= set(engine_verdicts.CLASSES)
+    assert {row["class"] for row in rows} <= set(verdicts.CLASSES)
     right = next(row["index"] for row in rows if row["class"] == "right")
     assert examine("pybullet", right, seed=10)[3]["class"] == "right"
     stored = json.loads((tmp_path / "bench-engines-pybullet.json").read_text())
@@ -283,13 +283,13 @@ def test_tables_count_every_scene_and_name_every_cause():
         {"class": "failed and said", "cause": "no result within the time limit of 60 s"},
     ]
     rows = [{**common, **change, "index": k} for k, change in enumerate(changes)]
-    assert [engine_tables.causes(row) for row in rows[1:]] == [
+    assert [tables.causes(row) for row in rows[1:]] == [
         ["warned: radius R [m]"],
         ["off: tilt"],
         ["N <= 0"],
         ["no result within the time limit of # s"],
     ]
-    table = engine_tables.class_table(rows, "five")
+    table = tables.class_table(rows, "five")
     assert list(table.columns[1].cells)[:6] == ["1", "1", "0", "1", "1", "1"]
     assert list(table.columns[2].cells)[0] == "25.0%"  # of the four that are not left out
-    assert engine_tables.cause_table(rows).row_count == 4 and engine_tables.off_table(rows).row_count == 1
+    assert tables.cause_table(rows).row_count == 4 and tables.off_table(rows).row_count == 1
