@@ -1,10 +1,13 @@
 """``rocking new``: a scene file for one's own block."""
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+
+from ..running.record_options import Channel, Column, Step, Units
 
 
 def command(
@@ -27,7 +30,10 @@ def command(
     record: Annotated[
         str | None, typer.Option(metavar="FILE", help="Ground motion; without it the synthetic one.")
     ] = None,
-    units: Annotated[str | None, typer.Option(help="Of a record that does not say: m/s2, cm/s2 or g.")] = None,
+    units: Units = None,
+    dt: Step = None,
+    column: Column = None,
+    channel: Channel = None,
     tilt: Annotated[float | None, typer.Option(help="Released from this tilt [rad], without a motion.")] = None,
     friction: Annotated[float | None, typer.Option(help="Coefficient between the block and what it stands on.")] = None,
 ) -> None:
@@ -54,7 +60,7 @@ def command(
         bearings = _bearings(block.mass + base_mass, count, (period, damping, xmax), (ka, kb, alpha))
     elif any(value is not None for value in (period, xmax, ka, kb, alpha)):
         raise SettingError("bearings carry a base: give its mass with --base-mass")
-    motion = _motion(file, record, units, tilt)
+    motion = _motion(file, record, tilt, {"units": units, "dt": dt, "column": column, "channel": channel})
     text = scene_text(
         name or Path(file).stem,
         block,
@@ -126,22 +132,23 @@ def _bearings(carried: float, count: int, design: tuple, constants: tuple) -> An
     return design_bearings(carried, period, damping, xmax, count=count, definition="equivalent")
 
 
-def _motion(file: str, record: str | None, units: str | None, tilt: float | None) -> dict[str, str] | None:
-    """The table [motion]; a record is named as seen from the scene file."""
+def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str, Any]) -> dict[str, Any] | None:
+    """The table [motion]; a record is named as seen from the scene file. `said`: what it does not say itself."""
     from analytic.errors import SettingError
     from analytic.records import read_record
 
     if record is not None and tilt is not None:
         raise SettingError("give --record or --tilt, not both")
-    if units is not None and record is None:
-        raise SettingError(f"--units {units}: belongs to a record; give --record FILE")
+    said = {name: value for name, value in said.items() if value is not None}
+    if record is None and said:
+        raise SettingError(f"--{min(said)} {said[min(said)]}: belongs to a record; give --record FILE")
     if tilt is not None:
         return None
     if record is None:
         return {"synthetic": "duzce-like"}
-    read_record(record, units)  # one that cannot be read is said by its own name
+    read_record(record, **said)  # one that cannot be read is said by its own name
     place = os.path.relpath(record, Path(file).resolve().parent)
-    return {"record": place} | ({"units": units} if units else {})
+    return {"record": place, **said}
 
 
 def _write_and_tell(file: str, text: str) -> None:

@@ -49,22 +49,28 @@ def parse_settings(pairs: Iterable[str]) -> dict[str, Any]:
     return settings
 
 
-def ground_motion(record: str | PathLike[str] | None = None, units: str | None = None) -> SampledMotion:
-    """The motion in the file `record`, or the shipped synthetic one without it; `units` of a record in two columns.
+def ground_motion(record: str | PathLike[str] | None = None, **said: Any) -> SampledMotion:
+    """The motion in the file `record`, or the shipped synthetic one without it.
+
+    said : units, dt, column, channel
+        What the file does not say itself (see `analytic.records.read_record`); None: nothing.
 
     Raises
     ------
     SettingError
-        Units without a record.
+        Something is said of a record, and there is none.
     SceneError
         The record cannot be read.
     """
     from analytic import synthetic_motion
     from analytic.records import read_record
 
-    if units and not record:
-        raise SettingError(f"--units {units}: belongs to a record; give --record FILE")
-    return read_record(record, units) if record else synthetic_motion()
+    if record:
+        return read_record(record, **said)
+    for name, value in said.items():
+        if value is not None:
+            raise SettingError(f"--{name} {value}: belongs to a record; give --record FILE")
+    return synthetic_motion()
 
 
 def simulate(

@@ -11,6 +11,7 @@ from analytic import SampledMotion
 from analytic.design import properties
 from engines import available_engines
 
+from ...running.record_options import Channel, Column, Step, Units
 from ...running.solving import ground_motion
 from ...running.study import Ask, Found, Plan, say
 from . import paper
@@ -27,10 +28,18 @@ Record = Annotated[
     str | None,
     typer.Option(metavar="FILE", help="The Duzce record, or another. Default: the shipped synthetic motion."),
 ]
-Units = Annotated[str | None, typer.Option(help="Of a record that does not say: m/s2, cm/s2 or g.")]
 
 
-def plan(ask: Ask, motion: SampledMotion | None = None, *, record: Record = None, units: Units = None) -> Plan:
+def plan(
+    ask: Ask,
+    motion: SampledMotion | None = None,
+    *,
+    record: Record = None,
+    units: Units = None,
+    dt: Step = None,
+    column: Column = None,
+    channel: Channel = None,
+) -> Plan:
     """The plan of the study, an answer for each part.
 
     Parameters
@@ -38,10 +47,12 @@ def plan(ask: Ask, motion: SampledMotion | None = None, *, record: Record = None
     ask : Ask
     motion : SampledMotion or None
         None: the one in the file `record`.
-    record, units : str or None
-        A ground motion's file and its units; None: the shipped synthetic motion.
+    record : str or None
+        A ground motion's file; None: the shipped synthetic motion.
+    units, dt, column, channel
+        What that file does not say itself.
     """
-    motion = motion or ground_motion(record, units)
+    motion = motion or ground_motion(record, units=units, dt=dt, column=column, channel=channel)
     say(f"ground motion: {motion.label}")
     described = {
         "motion": {"label": motion.label, "peak_time": motion.peak_time, "dt": motion.dt, "end": motion.end},
@@ -113,8 +124,9 @@ def _analytic(rows, motion, quick):
 
 
 def _slug(motion):
-    """A file's name for the motion: of a record its own, without the ending."""
-    name = "synthetic" if motion.label.startswith("synthetic") else Path(motion.label).stem
+    """A file's name for the motion: of a record its own, without the ending, and the channel or column."""
+    file, more = re.match(r"([^,(]*)(.*)", motion.label).groups()
+    name = "synthetic" if motion.label.startswith("synthetic") else Path(file.strip()).stem + more
     return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
 
 

@@ -1,0 +1,67 @@
+"""``rocking record``: what a record file holds, as it is read here."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..running.record_options import Channel, Column, Step, Units
+
+
+def command(
+    file: Annotated[str, typer.Argument(help="Record of ground acceleration; or gzip or zip of one.")],
+    units: Units = None,
+    dt: Step = None,
+    column: Column = None,
+    channel: Channel = None,
+    plot: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw acceleration and response spectrum (.png, .svg or .pdf).")
+    ] = None,
+    to: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write two columns, time [s] and acceleration [m/s2].")
+    ] = None,
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write what was read; - prints it.")
+    ] = None,
+) -> None:
+    """Show what is read of a record: format, channels, units, step, samples, duration, peak, and what is odd.
+
+    Known are PEER AT2, ESM/DYNA 1.2, CSMIP volume 2, COSMOS, K-NET and KiK-net, USGS SMC, columns of numbers and lists
+    of values. Example: rocking record station.v2 --channel Up --plot up.png --to up.txt
+    """
+    from analytic.errors import SettingError
+    from analytic.records import read_channels
+    from analytic.records.written import two_columns
+
+    from ..running.files import check_writable, write_all
+    from ..showing.records import channel_words, described, draw_channels, print_channels
+
+    check_writable([json_file, to], picture=plot, inputs=[file])
+    name = Path(file).name
+    channels = read_channels(file, units, dt=dt, column=column, channel=channel)
+    if to and len(channels) > 1:
+        choice = ", ".join(channel_words(one) for one in channels)
+        raise SettingError(f"--to {to}: takes one channel; add --channel, one of {choice}")
+    results: dict[str, str | Callable] = {}
+    if json_file:
+        content = {
+            "schema": "rocking record 1",
+            "file": name,
+            "format": channels[0].format,
+            "channels": [described(one) for one in channels],
+        }
+        results[json_file] = json.dumps(content, indent=2, allow_nan=False) + "\n"
+    if to:
+        results[to] = two_columns(channels[0].motion)
+    if plot:
+        from ..showing.plots import save
+
+        figure = draw_channels(name, channels)
+        results[plot] = lambda path: save(figure, path)
+    problem = write_all(results)
+    if json_file != "-" and to != "-":
+        print_channels(name, channels)
+    if problem:
+        raise problem
