@@ -48,13 +48,13 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     """
     begins = [index for index, line in enumerate(lines) if FIRST.match(line[:HEADER_WIDTH])]
     return tuple(
-        _channel(lines[:end], begin, order)
+        _channel(lines, begin, end, order)
         for order, (begin, end) in enumerate(zip(begins, [*begins[1:], len(lines)], strict=True), 1)
     )
 
 
-def _channel(lines: Sequence[str], begin: int, order: int) -> Content:
-    """The `Content` of the channel from the line of index `begin` to the end; `order` counts the channels."""
+def _channel(lines: Sequence[str], begin: int, end: int, order: int) -> Content:
+    """The `Content` of the channel whose lines go from index `begin` up to `end`; `order` counts the channels."""
     at = begin + int(FIRST.match(lines[begin][:HEADER_WIDTH])[1])  # type: ignore[index]  # it begins the channel
     chosen = next(
         (match for match in map(CHANNEL.match, (line[:HEADER_WIDTH] for line in lines[begin:at])) if match), None
@@ -67,13 +67,13 @@ def _channel(lines: Sequence[str], begin: int, order: int) -> Content:
     where = f"line {at + 1}"
     if data[2].lower() != "acceleration" or integers(MEASURED) not in (ACCELERATION, UNKNOWN):
         raise SceneError(where, data[0].strip(), "not an acceleration", REMEDY)
-    unit, layout = _unit(data, at), stated_layout(lines[at])
+    unit, layout = _unit(data, at), stated_layout(lines[at][:HEADER_WIDTH])
     if layout is None:
         raise SceneError(where, lines[at].strip(), "names no Fortran format of decimals, as (8F10.5)", REMEDY)
     values, behind = fixed_values(lines, at + 1, int(data[1]), layout)
-    if behind < len(lines) and not (END.match(lines[behind]) or DATA.match(lines[behind])):
+    if behind < end and not (END.match(lines[behind]) or DATA.match(lines[behind][:HEADER_WIDTH])):
         raise SceneError(where, int(data[1]), "more numbers follow than these", DAMAGED)
-    if not any(END.match(line) for line in lines[behind:]):
+    if not any(END.match(line) for line in lines[behind:end]):
         raise SceneError(where, None, "no line End-of-data follows", DAMAGED)
     stated = reals(PEAK)
     return Content(

@@ -56,7 +56,7 @@ def _channel(lines: Sequence[str], begin: int, end: int) -> Content:
     found = None if data is None else DATA.match(lines[data])
     if data is None or found is None or found[2].lower() != "accel":
         raise SceneError(where, None, f"no line N points of accel data follows for channel {named[1]}", REMEDY)
-    values, behind = fixed_values(lines, data + 1, int(found[1]), stated_layout(lines[data]) or LAYOUT)
+    values, behind = fixed_values(lines, data + 1, int(found[1]), stated_layout(lines[data][:HEADER_WIDTH]) or LAYOUT)
     if behind < end and not (DATA.match(lines[behind]) or lines[behind].startswith(END)):
         raise SceneError(f"line {data + 1}", int(found[1]), "more numbers follow than these", DAMAGED)
     if not any(line.startswith(END) for line in lines[behind:end]):

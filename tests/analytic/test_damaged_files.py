@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import strict_records
 import strict_scenes
-from mutated_files import cases, records, scenes
+from mutated_files import cases, cosmos, records, scenes
 
 from analytic import SceneError, load_scene
 from analytic.errors import FILE_LENGTH, KEY_LENGTH, TEXT_LENGTH, VALUE_LENGTH
@@ -115,7 +115,7 @@ def test_undamaged_scenes_are_judged_the_same(tmp_path, name, text):
 
 
 def test_damaged_files(tmp_path):
-    counts, wrong = count_judgements(tmp_path, 1500, seed=0)
+    counts, wrong = count_judgements(tmp_path, 1800, seed=0)
     assert not wrong
     for kind in ("record", "scene"):  # the damage is neither all fatal nor all harmless
         assert counts[kind, "same"] > 50 and counts[kind, "both refuse"] > 150
@@ -187,6 +187,32 @@ def test_no_text_takes_more_than_one_pass(tmp_path, top, text):
     with pytest.raises(SceneError) as caught:
         read_record(path, "g")
     assert time.process_time() - begin < HANG
+    assert len(str(caught.value)) < LONGEST_MESSAGE
+
+
+COSMOS = cosmos([0.1, -0.2] * 8)
+OBSERVATORIES = {
+    "csmip channel": "Corrected accelerogram chan 1:" + " x" * 500_000,
+    "csmip count": "Corrected accelerogram chan 1: Up\n 9 points of accel data equally spaced at " + "." * 1_000_000,
+    "csmip channels": "Corrected accelerogram chan 1: Up\n" * 50_000,
+    "cosmos units": COSMOS.replace("acceleration pts,", "acceleration pts," + " units =" * 100_000),
+    "cosmos parts": COSMOS.replace("End-of-data", "9 velocity pts," + " units =" * 100_000),
+    "cosmos channels": COSMOS * 1_000,
+    "knet scale": "Origin Time 0\nScale Factor " + " " * 1_000_000 + "\nMemo.\n" + "1 " * 500_000,
+    "smc": "2 CORRECTED ACCELEROGRAM\n" + "*\n" * 10 + "1 " * 500_000,
+    "step": "# " + "dt " * 300_000 + "\n" + "dt = " * 300_000 + "\n1\n2\n",
+    "list": "1 " * 500_000 + "\n2\n",
+}
+
+
+@pytest.mark.parametrize("text", OBSERVATORIES.values(), ids=OBSERVATORIES)
+def test_no_text_of_an_observatory_takes_more_than_one_pass(tmp_path, text):
+    path = tmp_path / "long.txt"
+    path.write_text(text)
+    begin = time.process_time()
+    with pytest.raises(SceneError) as caught:
+        read_record(path, "g", dt=0.01)
+    assert time.process_time() - begin < 2 * HANG
     assert len(str(caught.value)) < LONGEST_MESSAGE
 
 
