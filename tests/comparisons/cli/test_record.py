@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import random
 
 import numpy as np
 import pytest
@@ -88,6 +89,52 @@ def test_what_the_file_does_not_say_is_asked_for_and_taken(capfd, tmp_path):
     channel = json.loads(out)["channels"][0]
     assert status == 0 and channel["peak"] == pytest.approx(1.5 * G)
     assert (channel["units"], channel["units_from"], channel["dt"]) == ("g", "units", 0.02)
+
+
+WORDS = (
+    "--units",
+    "g",
+    "furlong",
+    "--dt",
+    "0.01",
+    "-1",
+    "nan",
+    "--column",
+    "2",
+    "0",
+    "--channel",
+    "Up",
+    "9" * 5000,
+    "$x$",
+)
+WORDS += (
+    "--plot",
+    "x.png",
+    "x.gif",
+    "--to",
+    "x.txt",
+    "-",
+    "\0",
+    "a" * 300,
+    "/dev/full",
+    "--json",
+    "[/b]",
+    "\udcff",
+    "",
+)
+
+
+def test_no_combination_of_words_ends_in_a_traceback(capfd, tmp_path, monkeypatch, three_channels):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("comparisons.showing.records.spectrum", lambda motion: 0 * PERIODS)  # words are under test here
+    draw, seen = random.Random(1), set()
+    for _ in range(120):
+        arguments = draw.choices(WORDS, k=draw.randrange(5))
+        status, out, err = call(capfd, "record", draw.choice([three_channels, "none", __file__]), *arguments)
+        assert status in (0, 1, 2) and "Traceback" not in out + err and len(err) < 3000, arguments
+        assert status == 0 or err, arguments
+        seen.add(status)
+    assert seen >= {0, 2}
 
 
 @pytest.mark.parametrize("command", ["report", "new"])
