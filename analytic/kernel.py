@@ -37,7 +37,7 @@ PATIENCE = 1000
 ELASTIC_REST_RATE = 1e-4
 # Steps shorter than this fraction of the time are below its rounding.
 ROUNDING = 4e-16
-# Acceleration this close to the threshold at uplift: the onset is of third order, phi'' = 0.
+# Acceleration this close to the threshold at uplift, over g tan(gamma): the onset is of third order, phi'' = 0.
 ONSET = 1e-9
 
 
@@ -178,7 +178,7 @@ def _march(par, ground, vertical, options, P, work, impacts, uplifts, rests, his
                 totals,
                 work,
             )
-            idle = idle + 1 if h <= 0 else 0
+            idle = idle + 1 if t + h <= t else 0
             if idle > PATIENCE:
                 status = L.STUCK
                 break
@@ -199,7 +199,7 @@ def _march(par, ground, vertical, options, P, work, impacts, uplifts, rests, his
             if found == L.UPLIFT:
                 onset = value(P[L.ABSOLUTE if par.on_base else L.GROUND], used, h)
                 mode, s, tilt, rate = L.ROCKING, -math.copysign(1.0, onset), 0.0, 0.0
-                fresh = abs(onset) < gravity_at(par, vertical, P, highest, h) * inclination * (1 + ONSET)
+                fresh = abs(onset) < (gravity_at(par, vertical, P, highest, h) + ONSET * par.g) * inclination
                 if totals[L.UPLIFTS] < uplifts.shape[0]:
                     uplifts[int(totals[L.UPLIFTS])] = t
                 totals[L.UPLIFTS] += 1
