@@ -92,7 +92,7 @@ class Bearings(_Part):
     algebraic: the hysteretic law of eqs (9)-(14). linear: f = ka x; kb, alpha and delta_k are not used.
     bouc-wen: an ODE-state law matched to the f0, ka and kb of the algebraic one. bilinear: ka up to the yield force
     F_y [N], kb after it; its characteristic strength is Q_d = F_y (1 - kb/ka). damping [N s/m] adds a viscous force to
-    any of them.
+    any of them. x_max [m]: the displacement they are built for; nothing stops them there, but a peak beyond it is said.
     """
 
     law: Literal[*NUMBERS] = "algebraic"  # type: ignore[valid-type]  # the names in `LAWS`
@@ -103,6 +103,7 @@ class Bearings(_Part):
     delta_k: Annotated[float, Field(gt=0, le=MOST)] = 1e-20
     yield_force: Positive | None = None
     damping: NotNegative = 0.0
+    x_max: Positive | None = None
 
     @model_validator(mode="after")
     def _law_is_complete(self) -> Self:
@@ -206,6 +207,8 @@ class Scene(_Part):
         """Content of the scene as a hash: scenes that simulate alike have equal digests (the name is left out)."""
         content = self.model_dump(mode="python", exclude={"name", "motion"})
         content["motion"] = self.motion.digest() if self.motion else None
-        if self.bearings and self.bearings.yield_force is None:  # the digests that stored results carry
-            del content["bearings"]["yield_force"]
+        if self.bearings:  # the digests that stored results carry
+            for name in ("yield_force", "x_max"):
+                if content["bearings"][name] is None:
+                    del content["bearings"][name]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

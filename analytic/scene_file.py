@@ -33,6 +33,7 @@ KEY_UNITS = {
     "bearings.delta_k": "N/m",
     "bearings.yield_force": "N",
     "bearings.damping": "N s/m",
+    "bearings.x_max": "m",
     "motion.amplitude": "m/s2",
     "motion.frequency": "rad/s",
     "motion.start": "s",

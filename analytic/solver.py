@@ -15,6 +15,7 @@ from .bearing import BearingLaw
 from .decision import longest_duration, model_warnings, shortest_duration
 from .errors import SettingError
 from .layout import Ground, Options, Vertical
+from .limits import limit_warnings
 from .motion import RICKER_PERIODS, SampledMotion
 from .polynomial import MAX_ORDER
 from .response import Energy, Failure, History, Impact, Response, State
@@ -261,6 +262,7 @@ def _response(
 def _warnings(scene: Scene, totals: np.ndarray, velocity: float) -> tuple[str, ...]:
     found = list(getattr(scene.motion, "warnings", ()))
     found += model_warnings(scene, float(totals[layout.FRICTION]), float(totals[layout.NORMAL]))
+    found += limit_warnings(scene, float(totals[layout.PEAK_X]))
     if scene.base is not None and scene.bearings is None and velocity != 0:
         found.append(
             f"the base slides on at {velocity:.3g} m/s with no bearing to stop it: its displacement has no "

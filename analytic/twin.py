@@ -24,6 +24,7 @@ from scipy.optimize import brentq
 from .decision import is_decided, model_warnings, until_decided
 from .errors import SettingError
 from .extremes import Extremes
+from .limits import limit_warnings
 from .motion import PulseMotion, SampledMotion
 from .response import Energy, Failure, Impact, Response, State
 from .rocking import RockingModel
@@ -482,5 +483,6 @@ class _Run:
             energy=self.ledger() if self.energy else None,
             history=extremes.history(),
             versions={"python": platform.python_version(), "numpy": np.__version__, "scipy": scipy.__version__},
-            warnings=model_warnings(self.scene, extremes.friction, extremes.normal),
+            warnings=model_warnings(self.scene, extremes.friction, extremes.normal)
+            + limit_warnings(self.scene, extremes.x),
         )

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from analytic.decision import is_decided, model_warnings
+from analytic.limits import limit_warnings
 from analytic.motion import SampledMotion
 from analytic.response import Failure, History, Response
 
@@ -143,7 +144,8 @@ def _judged(
         return failure, warnings
     if failure:
         warnings = (*warnings, f"{failure.reason}: {failure.message}")
-    return None, (*warnings, *model_warnings(scene, seen["friction_demand"], seen["min_normal_ratio"]))
+    beyond = limit_warnings(scene, seen["peak_base_displacement"])
+    return None, (*warnings, *model_warnings(scene, seen["friction_demand"], seen["min_normal_ratio"]), *beyond)
 
 
 def failed_response(scene: Scene, failure: Failure | None, *, warnings: Iterable[str] = (), **run: Any) -> Response:

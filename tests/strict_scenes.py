@@ -64,6 +64,7 @@ KEYS = {
         "delta_k": _positive,
         "yield_force": _positive,
         "damping": _not_negative,
+        "x_max": _positive,
     },
     "motion": {
         "pulse": _one_of(*PULSES),
@@ -72,6 +73,9 @@ KEYS = {
         "start": _not_negative,
         "synthetic": _one_of("duzce-like"),
         "seed": _whole(0, 2**64 - 1),
+        "vertical_ratio": _any,
+        "vertical_phase": _any,
+        "vertical_seed": _whole(0, 2**64 - 1),
         "scale": _any,
     },
     "start": {"tilt": _angle, "tilt_rate": _any, "base_displacement": _any, "base_velocity": _any},
@@ -226,3 +230,9 @@ def _check(tables):
             raise Refused("pulse")
         if "synthetic" in motion and {"amplitude", "frequency", "start"} & set(motion):
             raise Refused("synthetic")
+        if "vertical_phase" in motion and "pulse" not in motion or "vertical_seed" in motion and "pulse" in motion:
+            raise Refused("vertical of another motion")
+        if {"vertical_phase", "vertical_seed"} & set(motion) and "vertical_ratio" not in motion:
+            raise Refused("no vertical ratio")
+        if motion.get("vertical_ratio") and motion.get("vertical_phase") and motion["pulse"] in PULSES[3:]:
+            raise Refused("phase")

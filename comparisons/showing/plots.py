@@ -96,6 +96,9 @@ def draw_histories(scene: Scene, responses: Sequence[Response], horizon: float |
 def _draw_ground(axis, motion, end):
     times = np.arange(0, end, motion.dt) if hasattr(motion, "dt") else np.linspace(0, end, 4001)
     axis.plot(times, motion.acceleration(times), color="0.35", linewidth=0.8)
+    if motion.vertical is not None:
+        axis.plot(times, motion.vertical.acceleration(times), color="0.65", linewidth=0.6, zorder=1, label="vertical")
+        axis.legend(fontsize="small", loc="best")
     axis.set_ylabel("ground\nacceleration [m/s²]")
     axis.set_title(readable(motion.label, TITLE_CHARACTERS), fontsize="small", parse_math=False)
 

@@ -1,0 +1,43 @@
+"""What bearings are built for, and how a run beyond it is said."""
+
+import pytest
+
+from analytic import Base, Bearings, Block, PulseMotion, Scene, Start, simulate
+from analytic.twin import simulate_twin
+from engines import get_engine
+
+BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, x_max=0.05)
+SCENE = Scene(
+    block=Block(mass=3172.05, radius=1.0884, slenderness=0.28),
+    base=Base(mass=212.0),
+    bearings=BEARINGS,
+    motion=PulseMotion("one-sine", 2.0, 8.0),
+    duration=1.0,
+)
+SOLVERS = {"kernel": simulate, "twin": simulate_twin, "mujoco": lambda scene: get_engine("mujoco").simulate(scene)}
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_base_beyond_its_bearings_limit_is_said(solver):
+    response = SOLVERS[solver](SCENE)
+    assert response.peak_base_displacement > 0.05
+    words = f"the base moves by {response.peak_base_displacement:.3g} m, beyond the x_max = 0.05 m of its bearings"
+    assert any(text.startswith(words) for text in response.warnings)
+
+
+@pytest.mark.parametrize("x_max", [None, 1.0])
+def test_within_it_nothing_is_said_and_nothing_changes(x_max):
+    response = simulate(SCENE.with_(bearings={"x_max": x_max}), history=False)
+    assert not response.warnings
+    assert response.end == simulate(SCENE, history=False).end
+
+
+def test_the_digest_of_a_scene_without_it_is_as_before():
+    without = SCENE.with_(bearings={"x_max": None})
+    assert without.digest() != SCENE.digest()
+    assert without.digest() == SCENE.with_(bearings=Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)).digest()
+
+
+def test_the_start_counts():
+    scene = SCENE.with_(motion=None, start=Start(base_displacement=0.06))
+    assert any("beyond the x_max" in text for text in simulate(scene).warnings)
