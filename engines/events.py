@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 # A landing after which the block stays in flat contact counts as an impact with rate 0 after it where the rate
 # before it is this many times the rate that leads to the edge of contact; a weaker one is the tail of a chatter.
 LANDING = 10.0
+# Share of a rate that may come from the time between a landing and a lift that should be one.
+SURE = 0.1
 # Impacts count as ones that no engine may miss from this share of the largest tilt rate on, and from CLEAR times the
 # rate that leads to the edge of contact: coarse steps step over the smaller ones at the end of a chatter.
 STRONG, CLEAR = 0.2, 3.0
@@ -53,7 +55,7 @@ def find_events(
             break  # the trace ends in flight
         following = swings.first[i + 1] if i + 1 < n else None
         if following is not None:
-            if _passes(trace, swings, i, lift[i + 1] - land[i], before[i], after[i + 1]):
+            if _passes(trace, swings, i, lift[i + 1] - land[i], before[i], after[i + 1], _pull(model)):
                 impacts.append(
                     Impact(float(land[i]), float(before[i]), float(after[i + 1]), float(v_after[i + 1] - v_before[i]))
                 )
@@ -83,10 +85,10 @@ def find_events(
     return tuple(impacts), tuple(uplifts), tuple(float(rest) for rest in rests), tuple(missed)
 
 
-def _passes(trace: Trace, swings: Swings, i: int, apart: float, before: float, after: float) -> bool:
+def _passes(trace: Trace, swings: Swings, i: int, apart: float, before: float, after: float, pull: float) -> bool:
     """Whether swing i goes through contact into the next one, on the other side, without coming to rest between.
 
-    apart: from landing to lift [s]; before, after: tilt rates there [rad/s].
+    apart: from landing to lift [s]; before, after: tilt rates there [rad/s]; pull: see `_pull`.
     """
     if swings.side[i + 1] != -swings.side[i]:
         return False
@@ -95,10 +97,12 @@ def _passes(trace: Trace, swings: Swings, i: int, apart: float, before: float, a
         return True
     slack = 2 * max(time[last + 1] - time[last], time[following] - time[following - 1])
     slack += trace.contact_tilt / abs(before) + trace.contact_tilt / abs(after)
-    contact = time[following] - time[last]
-    # A compliant contact's hop after an impact shifts the lift carried back, not the time in contact. A lift long
-    # before the landing says nothing: the block came to rest, and what lifted it again hides how fast it set out.
-    return min(apart, contact) <= slack and apart >= -(contact + slack)  # False for NaN
+    # A compliant contact's hop after an impact shifts the lift carried back, not the time in contact. A lift so long
+    # before the landing that gravity would have changed its rate says nothing: the block came to rest, and what lifted
+    # it again hides how fast it set out.
+    if not -apart * pull <= SURE * abs(after):
+        return False
+    return min(apart, time[following] - time[last]) <= slack  # False for NaN
 
 
 def strong_swings(model: ArrayModel, trace: Trace, swings: Swings) -> np.ndarray:

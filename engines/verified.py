@@ -19,7 +19,7 @@ class Range:
 
     slenderness [rad]; inertia: J_O/(m R^2); base_mass: m_b/m; radius R [m]; stiffness: step omega_b [-] with omega_b^2
     = n_d k_a/m_b, the fastest vibration of the base on its bearings; damping: step n_d c/m_b [-], c the viscous
-    constant of a bearing; decay: n_d c/m_b over omega_r [-], how fast a kicked base stops: beyond some 1e4 to 1e5 it
+    constant of a bearing; decay: n_d c/m_b over omega_r [-], how fast a kicked base stops: beyond some 3e3 to 1e5 it
     has stopped before the tilt rate after an impact can be read; tilt: peak tilt over slenderness.
     """
 

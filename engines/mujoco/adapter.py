@@ -114,7 +114,7 @@ VARIANTS = {
             base_mass=(1e-5, 100.0),
             radius=(1e-3, 30.0),
             stiffness=(0.0, 0.5),
-            decay=(0.0, 1e4),
+            decay=(0.0, 3e3),
         ),
     ),
     "fixed-step": Variant(

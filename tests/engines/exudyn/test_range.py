@@ -263,3 +263,16 @@ def test_stiff_bearings_under_a_small_start_lose_no_impact():
     assert [impact.time for impact in response.impacts] == pytest.approx(
         [impact.time for impact in reference.impacts], rel=1e-2
     )
+
+
+@pytest.mark.parametrize("factor", [1.0, 6.0])
+def test_a_damper_as_fast_as_the_corner_does_not_take_part_in_the_impact(factor):
+    """A base of .07 blocks that its dampers stop at .96 and 5.8 times the corner's frequency: e was off by .0117."""
+    scene = released(
+        0.5,
+        block(0.35804, 1.2302, 0.070854, 0.068356),
+        Base(mass=0.0049944),
+        impacts=1,
+        bearings=Bearings(law="linear", count=4, ka=1250.35, damping=38.147 * factor),
+    )
+    assert restitution_error(scene) < 2e-3
