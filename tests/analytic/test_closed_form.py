@@ -2,6 +2,7 @@ import math
 
 import numpy as np
 import pytest
+from literature import A_IMPACTS
 from scipy.optimize import brentq
 from scipy.special import ellipk, ellipkinc
 
@@ -10,18 +11,6 @@ from analytic.motion import PulseMotion, SampledMotion
 
 # Problem A: released at rest from 0.9 gamma, Housner's restitution; times of a high-precision solution.
 A = (2.60, 0.25, 1 - 1.5 * math.sin(0.25) ** 2, 0.9 * 0.25)  # omega_r, slenderness, restitution, tilt
-A_IMPACTS = (
-    1.15178330918313354,
-    2.30267614352356326,
-    3.19766787312214604,
-    3.94143279745026066,
-    4.57814095444687863,
-    5.1324813494596925,
-    5.62035297828485788,
-    6.05292315538590213,
-    6.43851120325872555,
-    6.78358291790019776,
-)
 A_REST = {1e-4: (82, 10.0465490762726), 1e-6: (129, 10.0496394097305), 1e-8: (177, 10.0496728814269)}
 
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from bearing_laws import to_law
+from literature import A_IMPACTS, ONE_SINE
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, SettingError, Start, simulate
 from analytic.bearing import BearingLaw
@@ -21,18 +22,6 @@ CARYATID = Block(mass=3172.05, radius=1.0884, slenderness=0.28)
 LRB = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 PROBLEM_A = Scene(block=SLENDER, start=Start(tilt=0.9 * 0.25), duration=12.0)
 PROBLEM_B = Scene(block=SLENDER, motion=PulseMotion("one-sine", 1.2 * G * math.tan(0.25), 2 * P), duration=12.0)
-A_IMPACTS = [
-    1.15178330918313354,
-    2.30267614352356326,
-    3.19766787312214604,
-    3.94143279745026066,
-    4.57814095444687863,
-    5.1324813494596925,
-    5.62035297828485788,
-    6.05292315538590213,
-    6.43851120325872555,
-    6.78358291790019776,
-]
 
 
 def shaken(seed=3, dt=0.01, duration=6.0, peak=4.0):
@@ -107,14 +96,7 @@ class TestOverturning:
     """One-sine pulse, p = 2.14, slenderness 0.25, e = 0.9: the boundaries are given to five decimals."""
 
     SCENE = Scene(block=Block(mass=1.0, radius=3 * G / (4 * 2.14**2), slenderness=0.25, restitution=0.9), duration=30.0)
-    BOUNDARIES = {
-        2: (1.25090, 2.37418, 2.40806),
-        3: (1.43539, 3.60487, 3.74275),
-        4: (1.84430, 5.07937, 5.43676),
-        5: (3.03234, 6.74302, 7.49300),
-        6: (4.91994, 8.50817, 9.91798),
-        8: (15.90490,),
-    }
+    BOUNDARIES = ONE_SINE
 
     def overturns(self, ratio, amplitude):
         pulse = PulseMotion("one-sine", amplitude * G * 0.25, ratio * 2.14)

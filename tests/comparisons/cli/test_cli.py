@@ -38,20 +38,6 @@ NEEDED = {
 }
 
 
-@pytest.fixture
-def rocking(capfd):
-    """Runs ``rocking ARGUMENTS`` in this process; returns (exit status, standard output, standard error)."""
-
-    def call(*arguments):
-        capfd.readouterr()
-        with pytest.raises(SystemExit) as end:
-            cli.main([str(argument) for argument in arguments])
-        out, err = capfd.readouterr()
-        return end.value.code or 0, out, err
-
-    return call
-
-
 def test_run_writes_json_csv_and_plot(rocking, tmp_path):
     files = [tmp_path / name for name in ("r.json", "r.csv", "r.png")]
     status, out, _ = rocking("run", "free-rocking-isolated", "--json", files[0], "--csv", files[1], "--plot", files[2])

@@ -4,8 +4,6 @@ import json
 
 import pytest
 
-from comparisons import cli
-
 RELEASED = """
 friction = 0.3
 [block]
@@ -27,17 +25,9 @@ def scene_file(tmp_path):
     return write
 
 
-def call(capfd, *arguments):
-    capfd.readouterr()
-    with pytest.raises(SystemExit) as end:
-        cli.main([str(argument) for argument in arguments])
-    out, err = capfd.readouterr()
-    return end.value.code or 0, out, err
-
-
-def test_margin_names_the_nearest_flip_and_draws_it(capfd, tmp_path, scene_file):
+def test_margin_names_the_nearest_flip_and_draws_it(rocking, tmp_path, scene_file):
     picture, file = tmp_path / "margin.png", tmp_path / "margin.json"
-    status, out, _ = call(capfd, "margin", scene_file(0.26), "--plot", picture, "--json", file)
+    status, out, _ = rocking("margin", scene_file(0.26), "--plot", picture, "--json", file)
     assert status == 0
     assert "Nearest flip: slenderness -7.14 %, the block then overturns" in " ".join(out.split())
     assert picture.read_bytes().startswith(b"\x89PNG")
@@ -49,12 +39,12 @@ def test_margin_names_the_nearest_flip_and_draws_it(capfd, tmp_path, scene_file)
     assert content["contact"]["friction"] == 0.3 and 0 < content["contact"]["friction_demand"] < 0.3
 
 
-def test_margin_says_when_nothing_flips_the_verdict(capfd, scene_file):
-    status, out, _ = call(capfd, "margin", scene_file(0.01), "--span", "5")
+def test_margin_says_when_nothing_flips_the_verdict(rocking, scene_file):
+    status, out, _ = rocking("margin", scene_file(0.01), "--span", "5")
     assert status == 0
     assert "No change of up to 5 % of any one quantity flips the verdict" in " ".join(out.split())
 
 
-def test_a_span_out_of_range_is_one_message(capfd):
-    status, _, err = call(capfd, "margin", "free-rocking-rigid", "--span", "200")
+def test_a_span_out_of_range_is_one_message(rocking):
+    status, _, err = rocking("margin", "free-rocking-rigid", "--span", "200")
     assert status == 2 and "span = 2.0" in err and "below 1" in err

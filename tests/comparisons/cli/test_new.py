@@ -3,22 +3,13 @@
 import pytest
 
 from analytic import load_scene
-from comparisons import cli
 
 BUST = ("--height", "1.9", "--width", "0.55", "--material", "marble")
 
 
-def call(capfd, *arguments):
-    capfd.readouterr()
-    with pytest.raises(SystemExit) as end:
-        cli.main([str(argument) for argument in arguments])
-    out, err = capfd.readouterr()
-    return end.value.code or 0, out, err
-
-
-def test_new_writes_a_scene_and_says_what_follows(capfd, tmp_path):
+def test_new_writes_a_scene_and_says_what_follows(rocking, tmp_path):
     file = tmp_path / "bust.toml"
-    status, out, _ = call(capfd, "new", file, *BUST, "--base-mass", 400, "--period", 2.5, "--xmax", 0.2)
+    status, out, _ = rocking("new", file, *BUST, "--base-mass", 400, "--period", 2.5, "--xmax", 0.2)
     assert status == 0
     scene = load_scene(file)
     assert scene.block.mass == pytest.approx(2700 * 1.9 * 0.55**2, rel=1e-5)
@@ -27,11 +18,11 @@ def test_new_writes_a_scene_and_says_what_follows(capfd, tmp_path):
         assert words in out
 
 
-def test_new_names_a_record_as_seen_from_the_scene(capfd, tmp_path):
+def test_new_names_a_record_as_seen_from_the_scene(rocking, tmp_path):
     (tmp_path / "records").mkdir()
     record = tmp_path / "records" / "own.csv"
     record.write_text("time [s];acc [m/s2]\n0,00;0,1\n0,01;0,4\n0,02;-0,2\n")
-    status, _, _ = call(capfd, "new", tmp_path / "bust.toml", *BUST, "--record", record)
+    status, _, _ = rocking("new", tmp_path / "bust.toml", *BUST, "--record", record)
     assert status == 0
     assert 'record = "records/own.csv"' in (tmp_path / "bust.toml").read_text()
     assert load_scene(tmp_path / "bust.toml").motion.samples[1] == pytest.approx(0.4)
@@ -49,15 +40,15 @@ def test_new_names_a_record_as_seen_from_the_scene(capfd, tmp_path):
         ((*BUST, "--units", "g"), "--record"),
     ],
 )
-def test_what_makes_no_scene_is_one_message_and_no_file(capfd, tmp_path, arguments, words):
+def test_what_makes_no_scene_is_one_message_and_no_file(rocking, tmp_path, arguments, words):
     file = tmp_path / "bust.toml"
-    status, _, err = call(capfd, "new", file, *arguments)
+    status, _, err = rocking("new", file, *arguments)
     assert status == 2 and words in err and len(err.splitlines()) == 1
     assert not file.exists()
 
 
-def test_new_overwrites_nothing(capfd, tmp_path):
+def test_new_overwrites_nothing(rocking, tmp_path):
     file = tmp_path / "bust.toml"
     file.write_text("mine")
-    status, _, err = call(capfd, "new", file, *BUST)
+    status, _, err = rocking("new", file, *BUST)
     assert status == 2 and "exists" in err and file.read_text() == "mine"

@@ -17,7 +17,6 @@ import psutil
 import pytest
 from bad_scenes import SCENE
 
-from comparisons import cli
 from comparisons.running.files import check_writable
 from comparisons.running.readable import readable
 from comparisons.running.store import Store
@@ -36,18 +35,6 @@ ODD_NAMES = (
     "x" * 5000,
     "",
 )
-
-
-@pytest.fixture
-def rocking(capfd):
-    def call(*arguments):
-        capfd.readouterr()
-        with pytest.raises(SystemExit) as end:
-            cli.main([str(argument) for argument in arguments])
-        out, err = capfd.readouterr()
-        return end.value.code or 0, out, err
-
-    return call
 
 
 def started(*arguments, **options):

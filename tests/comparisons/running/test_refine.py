@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from literature import ONE_SINE
 
 from analytic import Block, PulseMotion, Scene, simulate
 from comparisons.running.refine import boundaries, drive
@@ -120,17 +121,6 @@ def test_what_cannot_be_searched_is_an_error():
             boundaries(*wrong)
     with pytest.raises(ValueError, match="0 outcomes were sent for 2 points"):
         drive([boundaries(0.0, 1.0, 2, 0.1)], lambda batch: [])
-
-
-# One-sine overturning, p = 2.14 rad/s, gamma 0.25, e = 0.9, nonlinear: amplitude over g gamma
-ONE_SINE = {
-    2: (1.25090, 2.37418, 2.40806),
-    3: (1.43539, 3.60487, 3.74275),
-    4: (1.84430, 5.07937, 5.43676),
-    5: (3.03234, 6.74302, 7.49300),
-    6: (4.91994, 8.50817, 9.91798),
-    8: (15.90490,),
-}
 
 
 def test_the_rocking_block_s_boundaries_and_safe_gap():

@@ -7,11 +7,13 @@ import pytest
 
 mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed: pip install 'rocking[mujoco]'")
 
+from released import impact_errors, scene  # noqa: E402
+
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Start  # noqa: E402
 from analytic import Scene as AnyScene  # noqa: E402
 from analytic import simulate as exact  # noqa: E402
 from analytic.bearing import BearingLaw  # noqa: E402
-from analytic.rocking import RockingModel, restitution  # noqa: E402
+from analytic.rocking import restitution  # noqa: E402
 from engines import get_engine  # noqa: E402
 from engines.contract import Mismatch  # noqa: E402
 from engines.mujoco import adapter, stepping  # noqa: E402
@@ -21,31 +23,6 @@ simulate = get_engine("mujoco").simulate
 BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 
 
-def scene(slenderness, base=None, duration=2.0, **parts):
-    return AnyScene(
-        block=Block(mass=3172.05, radius=1.0884, slenderness=slenderness),
-        base=Base(mass=base) if base else None,
-        duration=duration,
-        **parts,
-    )
-
-
-def impact_errors(slenderness, base, starts=8, **settings):
-    """Root mean squares of the errors of e (absolute) and of the base velocity jump (relative), 3 impacts a start."""
-    errors, jumps = [], []
-    for share in np.linspace(0.3, 0.8, starts):
-        given = scene(slenderness, base, 2.5, start=Start(tilt=share * slenderness))
-        response = simulate(given, history=False, **settings)
-        assert response.outcome == "rocks", response.failure
-        model = RockingModel.of(given)
-        assert len(response.impacts) >= 2
-        for impact in response.impacts[:3]:
-            errors.append(impact.rate_after / impact.rate_before - restitution(given))
-            if base:
-                jumps.append(impact.base_velocity_jump / model.impact(impact.rate_before)[1] - 1)
-    return np.sqrt(np.mean(np.square(errors))), np.sqrt(np.mean(np.square(jumps or [0.0])))
-
-
 def swing_peaks(response, slenderness):
     tilt = response.history.tilt
     swings = np.split(np.abs(tilt), np.flatnonzero(np.diff(np.sign(tilt))) + 1)
@@ -53,12 +30,12 @@ def swing_peaks(response, slenderness):
 
 
 def test_fixed_step_is_first_order():
-    errors = [impact_errors(0.2, None, 4, variant="fixed-step", step=step)[0] for step in (1.6e-3, 2e-4)]
+    errors = [impact_errors(simulate, 0.2, None, 4, 2.5, variant="fixed-step", step=step)[0] for step in (1.6e-3, 2e-4)]
     assert 4 < errors[0] / errors[1] < 16  # 8 but for the phase of the steps
 
 
 def test_accuracy_knob_means_error_of_restitution():
-    errors = [impact_errors(0.45, 212.0, 4, accuracy=accuracy)[0] for accuracy in (1e-4, 5e-6)]
+    errors = [impact_errors(simulate, 0.45, 212.0, 4, 2.5, accuracy=accuracy)[0] for accuracy in (1e-4, 5e-6)]
     assert 1e-4 < errors[0] < 1e-3 and errors[1] < 1e-4
 
 

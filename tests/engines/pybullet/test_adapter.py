@@ -7,10 +7,12 @@ import pytest
 
 pytest.importorskip("pybullet", reason="pybullet is not installed (its wheels end at CPython 3.11)")
 
+from released import impact_errors, scene  # noqa: E402
+
 from analytic import Base, Bearings, Block, PulseMotion, Start  # noqa: E402
 from analytic import Scene as AnyScene  # noqa: E402
 from analytic import simulate as exact  # noqa: E402
-from analytic.rocking import RockingModel, restitution  # noqa: E402
+from analytic.rocking import restitution  # noqa: E402
 from engines import get_engine  # noqa: E402
 from engines.ground_velocity import ground_velocity  # noqa: E402
 from engines.pybullet import adapter, stepping  # noqa: E402
@@ -20,34 +22,8 @@ simulate = get_engine("pybullet").simulate
 BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 
 
-def scene(slenderness, base=None, duration=2.0, **parts):
-    return AnyScene(
-        block=Block(mass=3172.05, radius=1.0884, slenderness=slenderness),
-        base=Base(mass=base) if base else None,
-        duration=duration,
-        **parts,
-    )
-
-
-def impact_errors(slenderness, base, **settings):
-    """Errors of e (absolute) and of the base velocity jump (relative): 8 starts, 3 impacts each."""
-    errors, jumps, cpu, simulated = [], [], 0.0, 0.0
-    for share in np.linspace(0.3, 0.8, 8):
-        given = scene(slenderness, base, 3.0, start=Start(tilt=share * slenderness))
-        response = simulate(given, history=False, **settings)
-        assert response.outcome == "rocks", response.failure
-        model = RockingModel.of(given)
-        assert len(response.impacts) >= 2
-        for impact in response.impacts[:3]:
-            errors.append(impact.rate_after / impact.rate_before - restitution(given))
-            if base:
-                jumps.append(impact.base_velocity_jump / model.impact(impact.rate_before)[1] - 1)
-        cpu, simulated = cpu + response.cpu_seconds, simulated + given.duration
-    return np.sqrt(np.mean(np.square(errors))), np.sqrt(np.mean(np.square(jumps or [0.0]))), cpu / simulated
-
-
 def test_default_is_ten_times_cheaper_than_fixed_step_at_no_larger_error():
-    e_aware, _, cpu_aware = impact_errors(0.2, 212.0)
+    e_aware, _, cpu_aware = impact_errors(simulate, 0.2, 212.0)
     given = scene(0.2, 212.0, 0.6, start=Start(tilt=0.06))
     fixed = simulate(given, variant="fixed-step", step=2e-5, history=False)
     e_fixed = abs(fixed.impacts[0].rate_after / fixed.impacts[0].rate_before - restitution(given))
@@ -56,13 +32,13 @@ def test_default_is_ten_times_cheaper_than_fixed_step_at_no_larger_error():
 
 
 def test_fixed_step_is_first_order():
-    errors = [impact_errors(0.45, None, variant="fixed-step", step=step)[0] for step in (1.6e-3, 4e-4)]
+    errors = [impact_errors(simulate, 0.45, None, variant="fixed-step", step=step)[0] for step in (1.6e-3, 4e-4)]
     assert 2.5 < errors[0] / errors[1] < 6.5  # 4 but for the phase of the steps
 
 
 @pytest.mark.parametrize("accuracy, error", [(4e-5, 2e-4), (1e-5, 5e-5), (2.5e-6, 1.25e-5)])
 def test_accuracy_knob_means_error_of_restitution(accuracy, error):
-    assert impact_errors(0.3, None, accuracy=accuracy)[0] < error
+    assert impact_errors(simulate, 0.3, None, accuracy=accuracy)[0] < error
 
 
 @pytest.mark.parametrize("step", [1 / 240, 1 / 1000, 1 / 4000])
