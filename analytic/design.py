@@ -129,33 +129,9 @@ def design_bearings(
         A target is out of range or cannot be met; the message says how far it can go.
     """
     targets = {"mass": mass, "period": period, "damping": damping, "x_max": x_max, "delta_k": delta_k}
-    for name, number in targets.items():
-        if not (math.isfinite(number) and number > 0):
-            raise SettingError(f"{name} = {number!r}: give a finite number above 0")
-    if not (math.isfinite(stiffness_ratio) and stiffness_ratio > 1):
-        raise SettingError(f"stiffness_ratio = {stiffness_ratio!r}: ka/kb must be above 1")
-    if count < 1:
-        raise SettingError(f"count = {count!r}: give at least one bearing")
-    if definition not in DEFINITIONS:
-        raise SettingError(f"definition = {definition!r}: choose one of {', '.join(DEFINITIONS)}")
+    _check(targets, count, stiffness_ratio, definition)
     divisor, secant = DEFINITIONS[definition], mass * (2 * math.pi / period) ** 2 / count
-    turn, least = _feasible(damping, divisor, secant, x_max, stiffness_ratio)
-    if least >= 0:
-        # damping -> 0 can always be met: f0 -> 0 leaves the ratio term alone
-        most = brentq(lambda d: _feasible(d, divisor, secant, x_max, stiffness_ratio)[1], 1e-9, damping)
-        raise SettingError(
-            f"damping = {damping:.4g} ({definition} definition) cannot be met at x_max = {x_max:.4g} m "
-            f"with ka/kb = {stiffness_ratio:.4g}: the most is {most:.4g}; lower it, "
-            "or raise stiffness_ratio"
-        )
-    loss = damping * divisor * 0.5 * secant * x_max**2
-    if _mismatch(STEEPEST, loss, secant, x_max, stiffness_ratio)[0] < 0:
-        raise SettingError(
-            f"damping = {damping:.4g} is so small that alpha would exceed {STEEPEST:g}; "
-            "raise it, or lower stiffness_ratio"
-        )
-    alpha = brentq(lambda a: _mismatch(a, loss, secant, x_max, stiffness_ratio)[0], turn, STEEPEST, xtol=1e-12)
-    f0 = _mismatch(alpha, loss, secant, x_max, stiffness_ratio)[1]
+    alpha, f0 = _exponent(damping, definition, divisor, secant, x_max, stiffness_ratio)
     kb = secant - f0 / x_max
     bearings = Bearings(count=count, ka=stiffness_ratio * kb, kb=kb, alpha=alpha, delta_k=delta_k)
     got = properties(bearings, mass, x_max)
@@ -167,3 +143,37 @@ def design_bearings(
             "raise x_max or stiffness_ratio"
         )
     return bearings
+
+
+def _check(targets, count, stiffness_ratio, definition):
+    """Refuse what is out of range."""
+    for name, number in targets.items():
+        if not (math.isfinite(number) and number > 0):
+            raise SettingError(f"{name} = {number!r}: give a finite number above 0")
+    if not (math.isfinite(stiffness_ratio) and stiffness_ratio > 1):
+        raise SettingError(f"stiffness_ratio = {stiffness_ratio!r}: ka/kb must be above 1")
+    if count < 1:
+        raise SettingError(f"count = {count!r}: give at least one bearing")
+    if definition not in DEFINITIONS:
+        raise SettingError(f"definition = {definition!r}: choose one of {', '.join(DEFINITIONS)}")
+
+
+def _exponent(damping, definition, divisor, secant, x_max, ratio):
+    """(alpha, f0 [N]) that give the damping at x_max with the ratio of stiffnesses, or a refusal that says how far."""
+    turn, least = _feasible(damping, divisor, secant, x_max, ratio)
+    if least >= 0:
+        # damping -> 0 can always be met: f0 -> 0 leaves the ratio term alone
+        most = brentq(lambda d: _feasible(d, divisor, secant, x_max, ratio)[1], 1e-9, damping)
+        raise SettingError(
+            f"damping = {damping:.4g} ({definition} definition) cannot be met at x_max = {x_max:.4g} m "
+            f"with ka/kb = {ratio:.4g}: the most is {most:.4g}; lower it, "
+            "or raise stiffness_ratio"
+        )
+    loss = damping * divisor * 0.5 * secant * x_max**2
+    if _mismatch(STEEPEST, loss, secant, x_max, ratio)[0] < 0:
+        raise SettingError(
+            f"damping = {damping:.4g} is so small that alpha would exceed {STEEPEST:g}; "
+            "raise it, or lower stiffness_ratio"
+        )
+    alpha = brentq(lambda a: _mismatch(a, loss, secant, x_max, ratio)[0], turn, STEEPEST, xtol=1e-12)
+    return alpha, _mismatch(alpha, loss, secant, x_max, ratio)[1]

@@ -159,12 +159,7 @@ def simulate(
     SettingError
         A setting is out of range.
     """
-    motion = scene.motion
-    if output_step is None:
-        span = shortest_duration(scene) if scene.duration is None else scene.duration
-        output_step = motion.dt if isinstance(motion, SampledMotion) else span / HISTORY_POINTS
-    if output_step <= 0 or not math.isfinite(output_step):
-        raise SettingError(f"output_step = {output_step!r}: give a time above 0 [s]")
+    output_step = _output_step(scene, output_step)
     settings = {"tolerance": tolerance, "rest_rate": rest_rate, "order": ORDER, "short_order": SHORT_ORDER}
     chosen = options(
         tolerance,
@@ -173,7 +168,7 @@ def simulate(
         decide=scene.duration is None,
         shortest=shortest_duration(scene) if scene.duration is None else 0.0,
     )
-    par, shaking, totals = parameters(scene), ground(motion), np.zeros(layout.TOTALS)
+    par, shaking, totals = parameters(scene), ground(scene.motion), np.zeros(layout.TOTALS)
     _warm(shaking.vertical is not None)
     begin = time.process_time()
     result = kernel.run(par, shaking, chosen, totals)
@@ -187,6 +182,16 @@ def simulate(
         kernel.run(later, shaking, options(tolerance, rest_rate=rest_rate), totals)
         response = replace(response, outcome="overturns", overturning_time=float(totals[layout.TIME]))
     return response
+
+
+def _output_step(scene, asked):
+    """Interval of the history [s]; by default that of the motion's samples, or a share of the (shortest) duration."""
+    if asked is None:
+        span = shortest_duration(scene) if scene.duration is None else scene.duration
+        asked = scene.motion.dt if isinstance(scene.motion, SampledMotion) else span / HISTORY_POINTS
+    if asked <= 0 or not math.isfinite(asked):
+        raise SettingError(f"output_step = {asked!r}: give a time above 0 [s]")
+    return asked
 
 
 @functools.cache

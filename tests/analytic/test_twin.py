@@ -221,7 +221,7 @@ def test_overturning_and_unstable_point():
 
 
 def test_restitution_of_one_fails_instead_of_bouncing_for_ever(monkeypatch):
-    monkeypatch.setattr("analytic.twin.IMPACT_LIMIT", 100)
+    monkeypatch.setattr("analytic.twin.run.IMPACT_LIMIT", 100)
     block = problem_a().block.model_copy(update={"restitution": 1.0})
     run = simulate_twin(problem_a().with_(block=block, start=Start(tilt=1e-9)))
     assert run.outcome == "failed" and "pile up" in run.failure.reason
@@ -240,7 +240,7 @@ def test_event_that_scipy_cannot_find_is_a_failure_with_scipys_words(monkeypatch
 
     scene = Scene(block=SLENDER, base=Base(mass=212.0), bearings=LRB, start=Start(tilt=0.1), duration=3.0)
     whole = simulate_twin(scene, method="LSODA", rtol=1e-8)
-    monkeypatch.setattr("analytic.twin.solve_ivp", third_call_raises)
+    monkeypatch.setattr("analytic.twin.run.solve_ivp", third_call_raises)
     run = simulate_twin(scene, method="LSODA", rtol=1e-8)
     assert len(calls) == 3 and whole.outcome == "rocks"
     assert run.outcome == "failed" and run.failure.reason == "scipy could not find an event"

@@ -61,7 +61,7 @@ MUTATIONS = {
         "'failed' == 'stands'",
     ),
     "twin: nobody counts its impacts": Mutation(
-        "analytic.twin",
+        "analytic.twin.run",
         "if self.stalled > STALL_LIMIT or len(self.impacts) > IMPACT_LIMIT:",
         "if False:",
         "tests/analytic/test_twin.py::test_restitution_of_one_fails_instead_of_bouncing_for_ever",

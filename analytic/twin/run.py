@@ -1,19 +1,10 @@
-"""The readable twin: the equations of rocking.py in plain scipy `solve_ivp` with events, slow and clear.
-
-An implementation of its own, kept apart from the compiled kernel to check it and to stand for what a careful user
-would write. One stretch of smooth motion is one call of `solve_ivp`: it ends at the next corner of the ground
-motion, at an impact, an uplift, a reversal of the base (where the bearing's history is fixed), a corner of the
-bearing's law or at overturning.
-"""
+"""A run of the second implementation: stretches of smooth motion, and the events between them."""
 
 from __future__ import annotations
 
-import functools
 import math
 import platform
-import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,148 +12,43 @@ import scipy
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from .decision import is_decided, model_warnings, until_decided
-from .errors import SettingError
-from .extremes import Extremes
-from .limits import limit_warnings
-from .motion import PulseMotion, SampledMotion
-from .response import Energy, Failure, Impact, Response, State
-from .rocking import RockingModel
-from .segments import shared_segments
+from ..decision import model_warnings
+from ..extremes import Extremes
+from ..limits import limit_warnings
+from ..motion import PulseMotion, SampledMotion
+from ..response import Energy, Failure, Impact, Response
+from ..segments import shared_segments
+from .equations import Equations
 
 if TYPE_CHECKING:
-    from .scene import Scene
-    from .types import GroundFunction
+    from ..scene import Scene
+    from ..types import GroundFunction
 
-METHODS = ("DOP853", "RK45", "LSODA", "Radau")
 IMPACT_LIMIT = 50_000  # more in one run means impacts that never accumulate (restitution of 1)
 STALL_LIMIT = 50  # events in a row without progress in time
 STAND_POINTS = 33  # of a segment, at which a block that stands is looked at under two motions
 REST_HORIZON = 0.1  # a block rests only if its impacts end within this share of 1/omega_r
 
 
-def simulate_twin(
-    scene: Scene,
-    *,
-    method: str = "DOP853",
-    rtol: float = 1e-10,
-    atol: float | None = None,
-    history: bool = True,
-    energy: bool = True,
-    max_step: float | None = None,
-    rest_rate: float = 1e-8,
-) -> Response:
-    """Simulate a scene with scipy.
-
-    Parameters
-    ----------
-    scene : Scene
-    method : str
-        One of `METHODS`.
-    rtol : float
-        Relative tolerance of `solve_ivp`.
-    atol : float, optional
-        Absolute tolerance as a share of each state's scale (slenderness, R times slenderness, omega_r times
-        these, f0); default rtol.
-    history, energy : bool
-        Whether to keep the states at every step, and to integrate the energy ledger with them.
-    max_step : float, optional
-        Longest step [s]; default the least of half a sampling interval and, on bearings, half of 1/omega at ka.
-    rest_rate : float
-        Impacts count as accumulated when |phi'+| < rest_rate omega_r and the block is held down. It then rests.
-
-    Returns
-    -------
-    Response
-        engine "twin". Extremes of forces and accelerations are those at the steps; peaks of tilt and
-        displacement are located as events.
-
-    Raises
-    ------
-    SettingError
-        The method is unknown or a tolerance is not positive.
-    """
-    if method not in METHODS:
-        raise SettingError(f"method {method!r} is unknown: choose one of {', '.join(METHODS)}")
-    for name, value in (("rtol", rtol), ("atol", atol), ("max_step", max_step), ("rest_rate", rest_rate)):
-        if value is not None and not (value > 0 and math.isfinite(value)):
-            raise SettingError(f"{name} = {value!r} is not positive: give a finite value above 0")
-    if scene.duration is None:
-        return until_decided(
-            functools.partial(
-                simulate_twin,
-                method=method,
-                rtol=rtol,
-                atol=atol,
-                history=history,
-                energy=energy,
-                max_step=max_step,
-                rest_rate=rest_rate,
-            ),
-            scene,
-        )
-    run = _Run(
-        scene,
-        {
-            "method": method,
-            "rtol": rtol,
-            "atol": rtol if atol is None else atol,
-            "max_step": max_step,
-            "rest_rate": rest_rate,
-        },
-        history,
-        energy,
-    )
-    run.model.bearing.hysteretic(0.0, 1e-6)  # compiled before the clock starts
-    started = time.process_time()
-    failure = run.go()
-    response = run.response(time.process_time() - started, failure)
-    return replace(response, decided=is_decided(scene, response))
-
-
-class _Run:
-    """One run: the state y = [tilt, rate], on a base x, v and z if integrated, then the ledger's quadratures."""
+class Run(Equations):
+    """One run: where it stands, what has happened, and what is kept of it."""
 
     def __init__(self, scene: Scene, settings: Mapping[str, Any], history: bool, energy: bool) -> None:
-        self.scene, self.settings, self.energy = scene, settings, energy
-        self.model = model = RockingModel.of(scene)
-        self.law, self.omega_r = model.bearing, scene.rocking_frequency
-        start, length = scene.start, model.R * model.gamma
-        y, scale = [start.tilt, start.tilt_rate], [model.gamma, model.gamma * self.omega_r]
-        self.x_c, self.z_c = start.base_displacement, self.law.start(start.base_displacement)
-        self.max_step = math.inf
-        if model.on_base:
-            y += [start.base_displacement, start.base_velocity]
-            scale += [length, length * self.omega_r]
-            stiffness = self.law.count * (self.law.kb + self.law.dk)
-            if stiffness > 0:
-                self.max_step = 0.5 * math.sqrt(model.M / stiffness)
-            if self.law.unit.branch:
-                y.append(self.z_c)
-                scale.append(self.law.f0)
-        if energy:
-            extra = 3 if model.on_base else 1
-            y += [0.0] * extra
-            scale += [model.m * model.g * length * model.gamma] * extra
+        super().__init__(scene, energy)
+        self.settings, start = settings, scene.start
         if isinstance(scene.motion, SampledMotion):  # two steps a sample: a whole one can hide a hop
             self.max_step = min(self.max_step, 0.5 * scene.motion.dt)
         self.max_step = settings["max_step"] or self.max_step
-        self.atol = settings["atol"] * np.array(scale)
-        self.y, self.t = np.array(y), 0.0
-        # side of the corner the block rocks about; 0 is full contact
-        self.side = math.copysign(1.0, start.tilt or start.tilt_rate) if start.tilt or start.tilt_rate else 0.0
+        self.atol = settings["atol"] * self.scale
         self.lifted = 0.0 if start.tilt == 0 else -1.0  # when tilt was last 0
         self.turned, self.corner = -1.0, math.inf  # when the base last stood still; the bearing's next corner, z [N]
         self.flight: float | None = None  # a guess of the next step [s]
-        self.overturning: float | None
-        self.unstable: float | None
-        self.rocked, self.overturning, self.unstable = self.side != 0, None, None
-        if abs(start.tilt) >= model.gamma:
-            self.unstable = 0.0
-        self.impacts: list[Impact]
-        self.uplifts: list[float]
-        self.rests: list[float]
-        self.impacts, self.uplifts, self.rests = [], [], []
+        self.overturning: float | None = None
+        self.unstable: float | None = 0.0 if abs(start.tilt) >= self.model.gamma else None
+        self.rocked = self.side != 0
+        self.impacts: list[Impact] = []
+        self.uplifts: list[float] = []
+        self.rests: list[float] = []
         self.steps, self.stalled, self.impact_loss = 0, 0, 0.0
         self.extremes = Extremes(start.tilt, start.base_displacement, history)
         self.stored = self.energies()
@@ -195,12 +81,6 @@ class _Run:
             if not self.model.on_base:
                 return self.stand(end, ground)  # type: ignore[func-returns-value]  # None: no failure
         return self.integrate(end, ground)
-
-    def contact_acceleration(self, y: np.ndarray, ground: float) -> float:
-        """Absolute acceleration of the base in full contact [m/s2], eq. (2)."""
-        if not self.model.on_base:
-            return ground
-        return self.model.contact_acceleration(self.bearing_force(y))
 
     def lift(self, acceleration: float) -> None:
         """Uplift: the block tips against the acceleration; tilt, rate (and phi'') are 0, so that decides the side."""
@@ -371,60 +251,6 @@ class _Run:
                 self.rests.append(float(self.t + remaining))
         self.impact_loss += kinetic - self.energies()[0]
 
-    # the equations
-
-    def derivative(self, ground: GroundFunction, direction: float) -> Callable[[float, np.ndarray], np.ndarray]:
-        model, law, side, energy, vertical = self.model, self.law, self.side, self.energy, self.vertical
-        branch = law.unit.branch and law.unit.branch(self.hysteretic_force(self.y), direction, law)
-        if not model.on_base:
-
-            def block_alone(t, y):
-                a, up, rate = ground(t), vertical(t), y[1]
-                slope = (rate, model.accelerations(side, y[0], rate, a, 0.0, up)[0])
-                if not energy:
-                    return slope
-                c, n = model.lever(side, y[0])
-                return (*slope, -model.m * (a * c + up * n) * rate)
-
-            return block_alone
-
-        def block_on_base(t, y):
-            a, up, (tilt, rate, x, v) = ground(t), vertical(t), y[:4].tolist()
-            z = self.hysteretic_force(y)
-            force = law.force(x, z, v)
-            if side:
-                spin, push = model.accelerations(side, tilt, rate, a, force, up)
-            else:
-                spin, push = 0.0, model.contact_acceleration(force) - a
-            slope = [rate, spin, v, push]
-            if branch:
-                slope.append(branch(z, v))
-            if energy:
-                c, n = model.lever(side, tilt) if side else (0.0, 0.0)
-                work = -a * (model.M * v + model.m * c * rate) - up * model.m * n * rate
-                slope += [work, law.count * z * v, law.count * law.damping * v * v]
-            return slope
-
-        return block_on_base
-
-    def hysteretic_force(self, y: np.ndarray) -> float:
-        """z of one bearing [N]: the state, or exact from the last reversal."""
-        return float(y[4]) if self.law.unit.branch else self.law.hysteretic(self.z_c, float(y[2]) - self.x_c)
-
-    def bearing_force(self, y: np.ndarray) -> float:
-        return self.law.force(float(y[2]), self.hysteretic_force(y), float(y[3])) if self.model.on_base else 0.0
-
-    def fix_history(self) -> None:
-        """The bearing's memory is the point it turned at."""
-        if self.model.on_base:
-            self.z_c, self.x_c = self.hysteretic_force(self.y), float(self.y[2])
-
-    def energies(self) -> tuple[float, float]:
-        """(kinetic, potential) [J], see `RockingModel`."""
-        model, (tilt, rate, *base) = self.model, self.y[:4].tolist()
-        x, v = base if model.on_base else (0.0, 0.0)
-        return model.kinetic_energy(self.side, tilt, rate, v), model.potential_energy(self.side, tilt, x)
-
     # what is kept
 
     def record(self, t: float, y: np.ndarray, ground: float) -> None:
@@ -443,10 +269,6 @@ class _Run:
         self.extremes.step(
             (t, tilt, rate, x, v, force, ground), absolute, horizontal / weight, normal / weight, model.gamma
         )
-
-    def state(self) -> State:
-        x, v = (float(self.y[2]), float(self.y[3])) if self.model.on_base else (0.0, 0.0)
-        return State(self.t, float(self.y[0]), float(self.y[1]), x, v, self.bearing_force(self.y))
 
     def ledger(self) -> Energy:
         kinetic, potential = (now - then for now, then in zip(self.energies(), self.stored, strict=True))
