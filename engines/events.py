@@ -150,7 +150,7 @@ def straddled(scene: Scene, trace: Trace) -> np.ndarray:
 
 def check_impacts(scene: Scene, trace: Trace, impacts: Sequence[Impact], missed: Sequence[float]) -> Failure | None:
     """A `Failure` where an impact gave energy or was not resolved, else None; `missed` as of `find_events`."""
-    least = _least_speed(ArrayModel.of(scene), trace, max((abs(one.rate_before) for one in impacts), default=0.0))
+    least = _least_speed(ArrayModel.of(scene), trace, max((abs(each.rate_before) for each in impacts), default=0.0))
     for impact in impacts:
         before, after = abs(impact.rate_before), abs(impact.rate_after)
         if before >= least and not after <= MOST_RESTITUTION * before:  # not: NaN

@@ -26,20 +26,20 @@ def find_engines(taken: Collection[str]) -> tuple[dict[str, Engine], dict[str, E
     taken : collection of str
         Names that are given away.
     """
-    found: dict[str, Engine] = {}
+    engines: dict[str, Engine] = {}
     broken: dict[str, EngineBroken] = {}
     for entry in sorted(entry_points(group=GROUP), key=lambda entry: (entry.name, _distribution(entry))):
         origin = f"engine {entry.name!r}, declared as {entry.value} by the distribution {_distribution(entry)}"
         try:
-            engine = _resolve(entry, origin, (*RESERVED, *taken, *found))
+            engine = _resolve(entry, origin, (*RESERVED, *taken, *engines))
         except EngineBroken as error:
             key = entry.name
-            if key in (*RESERVED, *taken, *found, *broken):
+            if key in (*RESERVED, *taken, *engines, *broken):
                 key = f"{entry.name} of {_distribution(entry)}"
             broken[key] = error
         else:
-            found[engine.name] = engine
-    return found, broken
+            engines[engine.name] = engine
+    return engines, broken
 
 
 def _resolve(entry: EntryPoint, origin: str, taken: Collection[str]) -> Engine:

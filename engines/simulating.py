@@ -69,12 +69,12 @@ def _once(engine: Engine, scene: Scene, name: str, chosen: Any, history: bool) -
 
 def _warnings(variant: Variant, scene: Scene, run: Run) -> tuple[str, ...]:
     """What is said of every run of a variant, what of this one is outside its verified range, what the adapter says."""
-    found: tuple[str, ...]
-    found, peak = (), None
+    beyond: tuple[str, ...]
+    beyond, peak = (), None
     if run.trace is not None:
         tilt = np.abs(run.trace.tilt)
         lifted = float(tilt.max(initial=0.0, where=np.isfinite(tilt)))
         peak = lifted if lifted > run.trace.contact_tilt else None
     if variant.verified is not None and run.step is not None:
-        found = outside(scene, variant.verified, step=run.step, peak_tilt=peak)
-    return (*variant.caveats, *found, *run.warnings)
+        beyond = outside(scene, variant.verified, step=run.step, peak_tilt=peak)
+    return (*variant.caveats, *beyond, *run.warnings)

@@ -62,21 +62,21 @@ def _limits(low: float, high: float) -> str:
 def quantities(scene: Scene, step: float, peak_tilt: float | None = None) -> dict[str, float]:
     """{name: value} of the quantities of `Range` that a scene has, at a step [s]; peak_tilt [rad]."""
     block = scene.block
-    found = {
+    values = {
         "slenderness": block.slenderness,
         "inertia": block.inertia / (block.mass * block.radius**2),
         "radius": block.radius,
     }
     if scene.base is not None:
-        found["base_mass"] = scene.base.mass / block.mass
+        values["base_mass"] = scene.base.mass / block.mass
     if scene.bearings is not None:
         bearings = scene.bearings
-        found["stiffness"] = step * math.sqrt(bearings.count * bearings.ka / scene.base.mass)  # type: ignore[union-attr]  # bearings have a base
+        values["stiffness"] = step * math.sqrt(bearings.count * bearings.ka / scene.base.mass)  # type: ignore[union-attr]  # bearings have a base
         rate = bearings.count * bearings.damping / scene.base.mass  # type: ignore[union-attr]  # as above
-        found["damping"], found["decay"] = step * rate, rate / scene.rocking_frequency
+        values["damping"], values["decay"] = step * rate, rate / scene.rocking_frequency
     if peak_tilt:
-        found["tilt"] = peak_tilt / block.slenderness
-    return found
+        values["tilt"] = peak_tilt / block.slenderness
+    return values
 
 
 def outside(scene: Scene, verified: Range | None, *, step: float, peak_tilt: float | None = None) -> tuple[str, ...]:

@@ -124,9 +124,9 @@ def _start(rng, block, omega, base):
 def faults(scene: Scene) -> dict[str, Any]:
     """What is wrong with the kernel's run of `scene`: a dict of findings, empty for a sound one."""
     response = simulate(scene, history=False)
-    found: dict[str, Any] = {}
+    wrong: dict[str, Any] = {}
     if response.failure:
-        found["failure"] = response.failure.reason
+        wrong["failure"] = response.failure.reason
     numbers = [
         response.peak_tilt,
         response.peak_base_displacement,
@@ -140,17 +140,17 @@ def faults(scene: Scene) -> dict[str, Any]:
     ledger = response.energy
     terms = [ledger.kinetic, ledger.potential, ledger.input, ledger.hysteretic, ledger.viscous, ledger.impact_loss]
     if not np.isfinite(numbers + terms).all():
-        found["not finite"] = numbers + terms
-        return found
+        wrong["not finite"] = numbers + terms
+        return wrong
     scale = max(_energy_scale(scene, response), *map(abs, terms))
     if abs(ledger.imbalance) > IMBALANCE_LIMIT * scale:
-        found["energy imbalance"] = abs(ledger.imbalance) / scale
+        wrong["energy imbalance"] = abs(ledger.imbalance) / scale
     least = least_impact_loss(scene, response.impacts)
     if least < -LOSS_ROUND_OFF:
-        found["an impact adds energy"] = least
+        wrong["an impact adds energy"] = least
     if response.end.time < scene.duration * (1 - 1e-12) and response.outcome not in ("overturns", "failed"):
-        found["ended early"] = response.end.time
-    return found
+        wrong["ended early"] = response.end.time
+    return wrong
 
 
 def _energy_scale(scene, response):
@@ -193,12 +193,12 @@ def least_impact_loss(scene: Scene, impacts: Sequence[Impact]) -> float:
 
 
 def _check(seed, indices):
-    found = []
+    faulty = []
     for index in indices:
         wrong = faults(random_scene(seed, index))
         if wrong:
-            found.append({"index": index, "found": wrong})
-    return found
+            faulty.append({"index": index, "found": wrong})
+    return faulty
 
 
 def check_random_scenes(
@@ -212,29 +212,29 @@ def check_random_scenes(
         One per faulty scene, by index: what was found and the scene itself, JSON-ready.
     """
     _check(seed, range(1))  # the kernel compiled or loaded before workers start
-    found = []
+    faulty = []
     with ProcessPool(workers) as pool:
         chunks = [range(k, min(k + CHUNK, count)) for k in range(0, count, CHUNK)]
         futures = [pool.schedule(_check, (seed, chunk), timeout=CHUNK_SECONDS) for chunk in chunks]
         for chunk, future in zip(chunks, futures, strict=True):
             try:
-                found += future.result()
+                faulty += future.result()
             except (TimeoutError, ProcessExpired):
-                found += _one_by_one(pool, seed, chunk)
+                faulty += _one_by_one(pool, seed, chunk)
             advance(len(chunk))
-    return [{**row, "scene": describe(random_scene(seed, row["index"]))} for row in found]
+    return [{**row, "scene": describe(random_scene(seed, row["index"]))} for row in faulty]
 
 
 def _one_by_one(pool, seed, chunk):
-    found = []
+    faulty = []
     for index in chunk:
         try:
-            found += pool.schedule(_check, (seed, [index]), timeout=SCENE_SECONDS).result()
+            faulty += pool.schedule(_check, (seed, [index]), timeout=SCENE_SECONDS).result()
         except TimeoutError:
-            found.append({"index": index, "found": {"hang": f"no end within {SCENE_SECONDS:g} s"}})
+            faulty.append({"index": index, "found": {"hang": f"no end within {SCENE_SECONDS:g} s"}})
         except ProcessExpired as error:
-            found.append({"index": index, "found": {"crash": f"exit code {error.exitcode}"}})
-    return found
+            faulty.append({"index": index, "found": {"crash": f"exit code {error.exitcode}"}})
+    return faulty
 
 
 def describe(scene: Scene) -> dict[str, Any]:

@@ -42,10 +42,10 @@ def solver_table(rows: Sequence[Mapping[str, Any]]) -> Table:
     return table
 
 
-def figure_table(found: Iterable[Figure]) -> Table:
+def figure_table(figures: Iterable[Figure]) -> Table:
     """The figures beside what was asked for."""
     table = Table("figure", "measured", "asked for", "met", "how", title="Figures")
-    for figure in found:
+    for figure in figures:
         value = "-" if figure.value is None else f"{figure.value:.3g} {figure.unit}"
         asked = "-" if figure.limit is None else f"{figure.sense} {figure.limit:g} {figure.unit}"
         table.add_row(figure.name, value, asked, {True: "yes", False: "no", None: "-"}[figure.met], figure.how)

@@ -109,22 +109,22 @@ def block_entries(problem: Problem, quick: bool) -> list[Entry]:
 
 def record_entries(problem: Problem, quick: bool) -> list[Entry]:
     """Kernel and scipy on a problem under a record: the readable twin, and a lean set-up where nothing rocks."""
-    found = [
+    entries = [
         Entry(problem, KERNEL, tolerance, kernel_run(problem, tolerance))
         for tolerance in (QUICK if quick else ON_RECORD)[KERNEL]
     ]
     for method, tolerances in (TWIN_QUICK if quick else TWIN).items():
-        found += [
+        entries += [
             Entry(problem, f"{method}, stop at samples", tolerance, twin_run(problem, method, tolerance))
             for tolerance in tolerances
         ]
     if problem.impacts == 0:
         for method in METHODS[:2] if quick else METHODS:
-            found += [
+            entries += [
                 Entry(problem, method, tolerance, contact_run(problem, method, tolerance))
                 for tolerance in ON_RECORD[method][: 1 if quick else None]
             ]
-    return found
+    return entries
 
 
 def measure(entries: Sequence[Entry], rounds: int, advance: Callable[[], Any] = lambda: None) -> None:

@@ -33,7 +33,7 @@ def command(
     check_writable([json_file], picture=plot, inputs=[scene])
     what = load_scene(scene)
     with spinner(f"{what.name}: margins") as tell:
-        found = margins(
+        nearest = margins(
             what, span=span / 100, step=span / 100 / 400, progress=lambda name: tell(f"{what.name}: {name}")
         )
         contact = contact_margins(what)
@@ -42,14 +42,14 @@ def command(
         content = {
             "schema": "rocking margin 1",
             "scene": what.name,
-            "outcome": found[0].outcome,
+            "outcome": nearest[0].outcome,
             "span": span / 100,
             "margins": [
                 {
                     **dataclasses.asdict(margin),
                     **{name: getattr(margin, name) for name in ("down", "up", "nearest", "leaves_model")},
                 }
-                for margin in found
+                for margin in nearest
             ],
             "contact": dataclasses.asdict(contact),
         }
@@ -58,12 +58,12 @@ def command(
         from ..showing.margins import draw_margins
         from ..showing.plots import save
 
-        figure = draw_margins(what, found)
+        figure = draw_margins(what, nearest)
         results[plot] = lambda path: save(figure, path)
     problem = write_all(results)
     if json_file != "-":
         from ..showing.margins import print_margins
 
-        print_margins(what, found, contact, span)
+        print_margins(what, nearest, contact, span)
     if problem:
         raise problem

@@ -133,10 +133,10 @@ def impact_times(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -
     for pairs in _free_responses(engine, variant, scenes, runs).values():
         for scene, response in pairs:
             wanted = [impact.time for impact in simulate(scene, history=False).impacts[:IMPACTS]]
-            found = [impact.time for impact in response.impacts[:IMPACTS]]
-            if len(found) < len(wanted):
-                raise Unmeasurable(f"{engine}, {variant}: {len(found)} impacts, the model has {len(wanted)}")
-            worst = max(worst, *np.abs(np.subtract(found, wanted)))
+            times = [impact.time for impact in response.impacts[:IMPACTS]]
+            if len(times) < len(wanted):
+                raise Unmeasurable(f"{engine}, {variant}: {len(times)} impacts, the model has {len(wanted)}")
+            worst = max(worst, *np.abs(np.subtract(times, wanted)))
     return float(worst)
 
 

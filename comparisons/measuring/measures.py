@@ -225,7 +225,7 @@ def compare(scene: Scene, response: Response, reference: Response, *, until: flo
     rates = np.abs(_rates(reference)[:, 0])
     kept = np.array([impact.time <= until for impact in reference.impacts], dtype=bool)
     kept &= rates >= 0.01 * rates.max(initial=0.0)
-    found = errors[kept & np.isfinite(errors)]
+    known = errors[kept & np.isfinite(errors)]
     distance = None
     if response.history is not None and reference.history is not None:
         distance = graph_distance(
@@ -240,8 +240,8 @@ def compare(scene: Scene, response: Response, reference: Response, *, until: flo
         overturning_time_error=overturning,
         peak_tilt_error=(response.peak_tilt - reference.peak_tilt) / scene.block.slenderness,
         peak_displacement_error=displacement,
-        impact_time_error=float(np.sqrt(np.mean(found**2))) if len(found) else None,
-        lost_impacts=int(kept.sum() - len(found)),
+        impact_time_error=float(np.sqrt(np.mean(known**2))) if len(known) else None,
+        lost_impacts=int(kept.sum() - len(known)),
         graph_distance=distance,
         until=until,
     )

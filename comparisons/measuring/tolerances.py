@@ -108,26 +108,26 @@ def _table():
     table = []
     for engine in ENGINES.values():
         for variant, bounds in engine.bounds().items():
-            for one in bounds:
-                if one.quantity not in QUANTITIES:
+            for bound in bounds:
+                if bound.quantity not in QUANTITIES:
                     raise SettingError(
-                        f"{engine.origin or engine.name}: {one.quantity!r} is no quantity of the "
+                        f"{engine.origin or engine.name}: {bound.quantity!r} is no quantity of the "
                         f"tolerance table; choose among {', '.join(QUANTITIES)}"
                     )
-                measure, unit = QUANTITIES[one.quantity]
+                measure, unit = QUANTITIES[bound.quantity]
                 table.append(
                     Tolerance(
-                        one.quantity,
+                        bound.quantity,
                         measure,
                         engine.name,
                         variant,
-                        one.scenes,
-                        one.bound,
+                        bound.scenes,
+                        bound.bound,
                         unit,
-                        one.measured,
-                        one.source,
-                        one.least,
-                        round_off=one.source == ROUNDING,
+                        bound.measured,
+                        bound.source,
+                        bound.least,
+                        round_off=bound.source == ROUNDING,
                     )
                 )
     return tuple(table)
@@ -160,10 +160,10 @@ def measure_all(rows: Iterable[Tolerance] = TABLE) -> list[dict[str, Any]]:
     runs: dict[Any, Any] = {}
     results = []
     for row in rows:
-        found, failure = None, None
+        value, failure = None, None
         try:
-            found = row.found(runs)
+            value = row.found(runs)
         except agreement.Unmeasurable as error:
             failure = str(error)
-        results.append(row.result(found, failure))
+        results.append(row.result(value, failure))
     return results

@@ -197,12 +197,12 @@ def _span(scene):
 
 def warned(result: Result, name: str) -> dict[str, list[str]]:
     """{warning: the solvers whose runs of a scene carry it}."""
-    found = {}
+    carried = {}
     for row in result.rows:
         if row["scene"] == name:
             for warning in row.get("warnings", ()):
-                found.setdefault(warning, []).append(row["solver"])
-    return found
+                carried.setdefault(warning, []).append(row["solver"])
+    return carried
 
 
 def _warnings(name, found):
@@ -230,24 +230,27 @@ def _agreement(result, name):
     if not rows:
         return ()
     scene = result.settings["scenes"][name]
-    found = [row["agreement"] for row in rows]
+    agreements = [row["agreement"] for row in rows]
     measures = [
-        ["same outcome", *("yes" if one["same_outcome"] else "no" for one in found)],
-        ["overturning time [s]", *(number(one["overturning_time_error"], 2) for one in found)],
-        ["peak |φ|/γ [-]", *(number(one["peak_tilt_error"], 2) for one in found)],
+        ["same outcome", *("yes" if agreement["same_outcome"] else "no" for agreement in agreements)],
+        ["overturning time [s]", *(number(agreement["overturning_time_error"], 2) for agreement in agreements)],
+        ["peak |φ|/γ [-]", *(number(agreement["peak_tilt_error"], 2) for agreement in agreements)],
         [
             "size of its errors: change of the model that does as much [-]",
             *(number(row["perturbation"], 2) for row in rows),
         ],
-        ["up to its own sensitivity horizon [s]:", *(number(one["until"], 4) for one in found)],
-        ["impact times, rms [s]", *(number(one["impact_time_error"], 2) for one in found)],
-        ["lost impacts [-]", *(str(one["lost_impacts"]) for one in found)],
-        ["distance of the tilt graphs [-]", *(number(one["graph_distance"], 2) for one in found)],
+        ["up to its own sensitivity horizon [s]:", *(number(agreement["until"], 4) for agreement in agreements)],
+        ["impact times, rms [s]", *(number(agreement["impact_time_error"], 2) for agreement in agreements)],
+        ["lost impacts [-]", *(str(agreement["lost_impacts"]) for agreement in agreements)],
+        ["distance of the tilt graphs [-]", *(number(agreement["graph_distance"], 2) for agreement in agreements)],
     ]
     if scene["base"]:
         work = next(row["bearing_work"] for row in result.rows if row["scene"] == name and row["solver"] == "analytic")
         measures += [
-            ["peak base displacement [%]", *(number(100 * one["peak_displacement_error"], 2) for one in found)],
+            [
+                "peak base displacement [%]",
+                *(number(100 * agreement["peak_displacement_error"], 2) for agreement in agreements),
+            ],
             ["work of the bearings [%]", *(number(100 * (row["bearing_work"] / work - 1), 2) for row in rows)],
         ]
     return (
@@ -356,8 +359,10 @@ def _restitution_table(result, ground):
     formula = {row["slenderness"]: row["restitution"] for row in rows}
     table = [["eq. (7) itself [-]", *(f"{formula[gamma]:.6f}" for gamma in gammas)]]
     for solver, variant in dict.fromkeys((row["solver"], row["variant"]) for row in rows):
-        found = {row["slenderness"]: row["rms"] for row in rows if (row["solver"], row["variant"]) == (solver, variant)}
-        table.append([f"{solver}, {variant}", *(number(found.get(gamma), 2) for gamma in gammas)])
+        errors = {
+            row["slenderness"]: row["rms"] for row in rows if (row["solver"], row["variant"]) == (solver, variant)
+        }
+        table.append([f"{solver}, {variant}", *(number(errors.get(gamma), 2) for gamma in gammas)])
     return Table(
         f"Error of restitution on {'a ' if ground == 'sliding base' else ''}{ground}, root mean square [-]",
         ("solver", *(f"γ = {gamma:g} rad" for gamma in gammas)),

@@ -73,11 +73,11 @@ def outcomes(rows: Sequence[Mapping[str, Any]]) -> str:
 
 def _warnings(rows):
     """The warnings of a scene's runs, each once; the table beside the outcomes says whose they are."""
-    found = list(dict.fromkeys(warning for row in rows for warning in row.get("warnings", ())))
-    if not found:
+    warnings = list(dict.fromkeys(warning for row in rows for warning in row.get("warnings", ())))
+    if not warnings:
         return ""
-    more = f"; {len(found) - MOST_WARNINGS} more in the table of warnings" if len(found) > MOST_WARNINGS else ""
-    return f" Warning: {'; '.join(text.rstrip('.') for text in found[:MOST_WARNINGS])}{more}."
+    more = f"; {len(warnings) - MOST_WARNINGS} more in the table of warnings" if len(warnings) > MOST_WARNINGS else ""
+    return f" Warning: {'; '.join(text.rstrip('.') for text in warnings[:MOST_WARNINGS])}{more}."
 
 
 def _times(rows):

@@ -33,13 +33,13 @@ def write_page(folder: str | PathLike[str], studies: Path = RESULTS) -> Path:
         lstrip_blocks=True,
     )
     sections = [*caryatid_sections(caryatid), *restitution_sections(free)]
-    found = study_sections(studies)
+    stored = study_sections(studies)
     html = environment.get_template("page.html").render(
         motion=caryatid.settings["motion"]["label"],
         summary=summary(caryatid, variant_groups(free)),
-        verdicts=[verdict for section in found for verdict in section.verdicts],
+        verdicts=[verdict for section in stored for verdict in section.verdicts],
         sections=sections,
-        studies=found,
+        studies=stored,
         provenance=_provenance(caryatid, free),
         ages=[f"{name} is {text}" for name, text in ((CARYATID, age(caryatid)), (FREE_ROCKING, age(free))) if text],
         files=[CARYATID, CARYATID.replace(".json", ".npz"), FREE_ROCKING, FREE_ROCKING.replace(".json", ".npz")],
@@ -51,23 +51,23 @@ def write_page(folder: str | PathLike[str], studies: Path = RESULTS) -> Path:
 
 def _provenance(caryatid, free):
     """Versions, machine and settings: how to obtain the same numbers."""
-    found = caryatid.provenance
-    machine = found["machine"]
+    origin = caryatid.provenance
+    machine = origin["machine"]
     commit = (
         "outside a checkout"
-        if found["commit"] is None
-        else found["commit"][:12] + (", with uncommitted changes" if found["dirty"] else "")
+        if origin["commit"] is None
+        else origin["commit"][:12] + (", with uncommitted changes" if origin["dirty"] else "")
     )
     rows = [
-        ["computed", found["time"]],
+        ["computed", origin["time"]],
         ["commit", commit],
         ["processor", machine["processor"]],
         ["cores (physical, logical)", f"{machine['cores']}, {machine['logical_cores']}"],
         ["memory [GiB]", str(machine["memory_gib"])],
         ["system", machine["system"]],
-        ["Python", found["python"]],
+        ["Python", origin["python"]],
     ]
-    rows += [[name, found["packages"].get(name) or "not installed"] for name in PACKAGES]
+    rows += [[name, origin["packages"].get(name) or "not installed"] for name in PACKAGES]
     settings = {}
     for row in [*caryatid.rows, *free.rows]:
         if row.get("settings") is not None:

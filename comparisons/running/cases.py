@@ -104,13 +104,13 @@ def module_of(name: str) -> str:
 def versions(name: str) -> dict[str, str | None]:
     """Versions of Python and of the packages that the solver `name` rests on."""
     packages = ["numpy", "scipy", "numba"] + ([ENGINES[name].package] if name in ENGINES else [])
-    found: dict[str, str | None] = {"python": platform.python_version()}
+    installed: dict[str, str | None] = {"python": platform.python_version()}
     for package in packages:
         try:
-            found[package] = version(package)
+            installed[package] = version(package)
         except PackageNotFoundError:
-            found[package] = None
-    return found
+            installed[package] = None
+    return installed
 
 
 def name_of(function: Callable[..., Any] | None) -> str | None:

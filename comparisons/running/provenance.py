@@ -69,8 +69,8 @@ def machine() -> dict[str, Any]:
     """Processor model, cores (physical and logical), memory [GiB], operating system."""
     model = platform.processor()
     if Path("/proc/cpuinfo").exists():
-        found = re.search(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
-        model = found.group(1) if found else model
+        named = re.search(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
+        model = named.group(1) if named else model
     return {
         "processor": model or platform.machine(),
         "cores": psutil.cpu_count(logical=False),

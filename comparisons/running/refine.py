@@ -135,12 +135,12 @@ def _boundaries(low, high, scan, tolerance, near):
     yield from learn([point for i in close for point in np.linspace(edges[i], edges[i + 1], near + 1)[1:-1].tolist()])
     edges = sorted(known)
     waiting = [(a, b) for a, b in zip(edges, edges[1:], strict=False) if known[a] != known[b]]
-    found = []
+    narrow = []
     while waiting:
         halves = [(a, 0.5 * (a + b), b) for a, b in waiting]
         wide = [(a, middle, b) for a, middle, b in halves if b - a > tolerance and a < middle < b]
-        found += [(a, b) for a, middle, b in halves if not (b - a > tolerance and a < middle < b)]
+        narrow += [(a, b) for a, middle, b in halves if not (b - a > tolerance and a < middle < b)]
         yield from learn([middle for _, middle, _ in wide])
         waiting = [(c, d) for a, middle, b in wide for c, d in ((a, middle), (middle, b)) if known[c] != known[d]]
-    transitions = tuple(Transition(a, b, known[a], known[b]) for a, b in sorted(found))
+    transitions = tuple(Transition(a, b, known[a], known[b]) for a, b in sorted(narrow))
     return Column(transitions, len(known))

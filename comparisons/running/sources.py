@@ -56,14 +56,14 @@ def digest_of(digests: Mapping[str, str]) -> str:
 
 def digests_of_all(packages: Iterable[str]) -> set[str]:
     """Digests of every source file of some packages or modules, as a set: what the code holds, wherever it lies."""
-    found: set[str] = set()
+    digests: set[str] = set()
     for package in packages:
         file = _file(package)
         if file is None:
             continue
         inside = file.parent.rglob("*.py") if file.name == "__init__.py" else [file]
-        found.update(_read(package, str(one), one.stat().st_mtime_ns)[0] for one in inside)
-    return found
+        digests.update(_read(package, str(path), path.stat().st_mtime_ns)[0] for path in inside)
+    return digests
 
 
 def _file(name):

@@ -98,11 +98,11 @@ def run(scene: Scene, variant: str, settings: CompliantCorners | SwitchedJoints 
     Mismatch
         exudyn holds other values than the scene asks for; nothing was run.
     """
-    found = _MODULES[variant].run(scene, settings)
-    if found.trace is None:
-        failure = replace(found.failure or Failure("the run ended before its first step"), last_state=_start(scene))
-        return replace(found, failure=failure, steps=max(found.steps, 0))
-    return replace(found, failure=found.failure or _fault(scene, found), step=float(np.diff(found.trace.time).max()))
+    ran = _MODULES[variant].run(scene, settings)
+    if ran.trace is None:
+        failure = replace(ran.failure or Failure("the run ended before its first step"), last_state=_start(scene))
+        return replace(ran, failure=failure, steps=max(ran.steps, 0))
+    return replace(ran, failure=ran.failure or _fault(scene, ran), step=float(np.diff(ran.trace.time).max()))
 
 
 def _fault(scene: Scene, run: Run) -> Failure | None:

@@ -262,14 +262,14 @@ def assemble(scene: Scene, settings: CompliantCorners) -> tuple[Model, float]:
 def run(scene: Scene, settings: CompliantCorners) -> Run:
     """Step a scene with compliant corners; small swings under a motion are stepped again, see `SMALL`."""
     share = start_share(scene)
-    found = _run(scene, scaled(scene, settings, share))
-    if share < 1 or found.trace is None or found.failure is not None:
-        return found
-    peak = float(np.nanmax(np.abs(found.trace.tilt)))
-    if not found.trace.contact_tilt < peak < SMALL * scene.block.slenderness:
-        return found
+    first = _run(scene, scaled(scene, settings, share))
+    if share < 1 or first.trace is None or first.failure is not None:
+        return first
+    peak = float(np.nanmax(np.abs(first.trace.tilt)))
+    if not first.trace.contact_tilt < peak < SMALL * scene.block.slenderness:
+        return first
     again = _run(scene, scaled(scene, settings, max(LEAST_SHARE, peak / scene.block.slenderness / MEASURED_START)))
-    return replace(again, cpu_seconds=found.cpu_seconds + again.cpu_seconds, steps=found.steps + again.steps)
+    return replace(again, cpu_seconds=first.cpu_seconds + again.cpu_seconds, steps=first.steps + again.steps)
 
 
 def _run(scene: Scene, settings: CompliantCorners) -> Run:
@@ -289,8 +289,8 @@ def _run(scene: Scene, settings: CompliantCorners) -> Run:
         RELAX * math.sqrt(scene.block.mass / settings.stiffness),
         MOST_RELAX * math.sqrt(scene.block.radius / scene.gravity),
     )
-    found = step_through(model, solver, exu.DynamicSolverType.DOPRI5, 2 * contact_tilt, settings.longest_step, settle)
-    return replace(found, warnings=(*found.warnings, *_unresolved(scene, settings)))
+    ran = step_through(model, solver, exu.DynamicSolverType.DOPRI5, 2 * contact_tilt, settings.longest_step, settle)
+    return replace(ran, warnings=(*ran.warnings, *_unresolved(scene, settings)))
 
 
 def _decay(scene: Scene) -> float:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def section(result: Result) -> Section:
     """The `Section` of one result file of the study."""
-    figures = tuple(figure_of(one.figure, one.alt, one.caption) for one in drawings(result).values())
+    figures = tuple(figure_of(drawing.figure, drawing.alt, drawing.caption) for drawing in drawings(result).values())
     part = {"paper": _paper, "motion": _motion, "histories": _histories}[result.settings["part"]]
     title, text, tables = part(result)
     return Section(title, tuple(text), tuple(tables), figures)

@@ -50,17 +50,17 @@ def claims(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], d
         f"vulnerable below T_r = {paper.VULNERABLE_PERIOD:g} ± {paper.VULNERABLE_ABOUT:g} s": (vulnerable, scan, near),
         "isolated does not rock": (lambda points: ~run(isolated, points).lifted, 141, TOLERANCE),
     }
-    rows, found = [], []
+    rows, claimed = [], []
     for claim, (holds, points, tolerance) in tests.items():
         (column,) = drive(
             [boundaries(LOW, HIGH, points, tolerance)],
             lambda batch, holds=holds: list(map(bool, holds([point for _, point in batch]))),  # type: ignore[misc]  # of a round's batch, see `drive`
         )
         intervals = _intervals(column.transitions, bool(holds([LOW])[0]))
-        found.append(intervals)
+        claimed.append(intervals)
         rows.append({"part": "claim", "claim": claim, "intervals": intervals, "evaluations": column.evaluations})
-    together = found[0]
-    for intervals in found[1:]:
+    together = claimed[0]
+    for intervals in claimed[1:]:
         together = _overlap(together, intervals)
     rows.append({"part": "claim", "claim": "all three", "intervals": together, "evaluations": None})
     own = free.block.slenderness

@@ -95,7 +95,7 @@ def _analytic(rows, motion, quick):
     arrays = spectra(motion, quick)
     isolated = caryatid(ISOLATED, motion).with_(duration=motion.end)
     analytic = {row["scene"]: row for row in rows if row["part"] == "run" and row["solver"] == "analytic"}
-    found = equivalent_oscillators(
+    answers = equivalent_oscillators(
         motion,
         properties(isolated.bearings, isolated.total_mass, paper.X_MAX),
         analytic[ISOLATED]["peak_base_displacement"],
@@ -107,16 +107,16 @@ def _analytic(rows, motion, quick):
     ):
         say(words)
         here, more = part()
-        found, arrays = found + here, arrays | more
+        answers, arrays = answers + here, arrays | more
     arrays |= _impact_friction(motion)
     say("algebraic against Bouc-Wen")
-    found += cost_rows(motion, quick)
+    answers += cost_rows(motion, quick)
     arrays = {
         name: values.astype(np.float32) if values.dtype == np.float64 else values for name, values in arrays.items()
     }
     least = uplift_slenderness(motion)
     return (
-        found + [value.row() for value in motion_values(rows + found, motion, least)],
+        answers + [value.row() for value in motion_values(rows + answers, motion, least)],
         arrays,
         least,
         isolated.block.slenderness,

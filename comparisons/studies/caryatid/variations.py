@@ -45,7 +45,7 @@ def benefit(
 
     The displacement is NaN where the isolated block overturns: runs end when that is certain.
     """
-    found = {}
+    kept = {}
     scaled = [motion.scaled(float(factor)) for factor in intensities]
     shape = len(slendernesses), len(intensities)
     for name in (FREE, ISOLATED):
@@ -55,10 +55,10 @@ def benefit(
             for gamma in slendernesses
             for shaking in scaled
         ]
-        found[name] = simulate_many(scenes)
-    if any(outcomes.failed.any() for outcomes in found.values()):
+        kept[name] = simulate_many(scenes)
+    if any(outcomes.failed.any() for outcomes in kept.values()):
         raise RuntimeError("the analytic model failed on a scene of the map; report it with its slenderness")
-    overturns = {name: outcomes.overturns.reshape(shape) for name, outcomes in found.items()}
+    overturns = {name: outcomes.overturns.reshape(shape) for name, outcomes in kept.items()}
     category = np.select(
         [
             ~overturns[FREE] & ~overturns[ISOLATED],
@@ -68,7 +68,7 @@ def benefit(
         [BOTH, ONLY_ISOLATED, ONLY_FREE],
         NEITHER,
     )
-    isolated = found[ISOLATED]
+    isolated = kept[ISOLATED]
     displacement = np.where(overturns[ISOLATED], np.nan, isolated.peak_base_displacement.reshape(shape))
     return category.astype(np.uint8), isolated.lifted.reshape(shape), displacement.astype(np.float32)
 

@@ -112,7 +112,7 @@ def plan(ask: Ask, scenes: Mapping[str, Any] | None = None, motions: int | None 
             "motion": "synthetic duzce-like, scaled",
             "change": CHANGE,
             "friction": low_frictions(solvers),
-            "solvers": [REFERENCE, *(solver_name(*one) for one in solvers)],
+            "solvers": [REFERENCE, *(solver_name(*pair) for pair in solvers)],
         }
         answer = Found(settings, list(rows), dict(arrays), seed=settings["seeds"])
         yield answer

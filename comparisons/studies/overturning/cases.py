@@ -97,34 +97,34 @@ def plan(ask: Ask) -> Plan:
     shapes = SHAPES[:1] if quick else SHAPES
     frequencies = (2.0, 4.0) if quick else FREQUENCIES
     arrays = _maps(grounds, shapes, quick)
-    found = {}
+    boundaries = {}
     for ground, scene in grounds.items():
         for shape in shapes:
             say(f"analytic boundaries: {ground}, {shape}")
-            found[ground, shape] = dict(zip(frequencies, edges(scene, shape, frequencies), strict=True))
+            boundaries[ground, shape] = dict(zip(frequencies, edges(scene, shape, frequencies), strict=True))
     rows = [
         {"part": "edge", "ground": ground, **vars(edge)}
-        for (ground, _), columns in found.items()
+        for (ground, _), columns in boundaries.items()
         for column in columns.values()
         for edge in column
     ]
     log = _Log(engines, grounds)
     for engine in engines:
-        yield from log.scan(engine, found, SCAN[::4] if quick else SCAN)
-    rows += yield from _search(log, found, engines, "shift", LADDER, TOLERANCE)
+        yield from log.scan(engine, boundaries, SCAN[::4] if quick else SCAN)
+    rows += yield from _search(log, boundaries, engines, "shift", LADDER, TOLERANCE)
     pulled = {
         key: {frequency: [edge for edge in column if edge.min_normal < 0] for frequency, column in columns.items()}
-        for key, columns in found.items()
+        for key, columns in boundaries.items()
     }
     rows += yield from _search(log, pulled, held_of(ask.engines), "held", LADDER, TOLERANCE)
-    arrays["points"], judged = judge(log.points, log.engines, grounds, shapes, found)
+    arrays["points"], judged = judge(log.points, log.engines, grounds, shapes, boundaries)
     rows += judged
     settings = _settings(ask, grounds, shapes, frequencies)
     yield Found(settings, rows + log.failures, arrays)
     chosen = {
         (ground, "one-sine"): {
             f: column
-            for f, column in found[ground, "one-sine"].items()
+            for f, column in boundaries[ground, "one-sine"].items()
             if f in KNOB_FREQUENCIES[: 1 if quick else None]
         }
         for ground in grounds
@@ -161,16 +161,16 @@ def _settings(ask, grounds, shapes, frequencies):
         "band": BAND,
         "tolerance": TOLERANCE,
         "knob_tolerance": KNOB_TOLERANCE,
-        "solvers": [solver_name(*one) for one in defaults_of(ask.engines)],
-        "held": {solver_name(*one[:2]): label_of(one) for one in held_of(ask.engines)},
+        "solvers": [solver_name(*asked) for asked in defaults_of(ask.engines)],
+        "held": {solver_name(*asked[:2]): label_of(asked) for asked in held_of(ask.engines)},
         "knobs": [
             [solver, variant, knob]
             for solver, variant, knob, _ in (TIME_STEPPING, *ladders_of(ask.engines), *first_scripts_of(ask.engines))
         ],
         "default_knobs": {
-            solver_name(*one): get_engine(one[0]).variants[one[1]].default for one in defaults_of(ask.engines)
+            solver_name(*asked): get_engine(asked[0]).variants[asked[1]].default for asked in defaults_of(ask.engines)
         },
-        "first_scripts": [solver_name(*one[:2]) for one in first_scripts_of(ask.engines)],
+        "first_scripts": [solver_name(*asked[:2]) for asked in first_scripts_of(ask.engines)],
         "friction": {
             solver_name(solver, variant): friction
             for solver, variant, *_ in first_scripts_of(ask.engines)

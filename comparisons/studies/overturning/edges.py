@@ -79,32 +79,37 @@ def edges(scene: Scene, shape: str, frequencies: Sequence[float]) -> list[list[E
 
     columns = drive([boundaries(math.log(LOWEST), math.log(HIGHEST), SCAN, TOLERANCE) for _ in frequencies], evaluate)
     return [
-        _edges(scene, shape, frequency, [one for one in column.transitions if -1 in (one.before, one.after)])
+        _edges(
+            scene,
+            shape,
+            frequency,
+            [transition for transition in column.transitions if -1 in (transition.before, transition.after)],
+        )
         for frequency, column in zip(frequencies, columns, strict=True)
     ]
 
 
 def _edges(scene, shape, frequency, transitions):
-    amplitudes = [math.exp(one.position) for one in transitions]
+    amplitudes = [math.exp(transition.position) for transition in transitions]
     middles = [math.sqrt(a * b) for a, b in zip(amplitudes, amplitudes[1:], strict=False)]
-    found = []
+    crossings = []
     limits = [LOWEST, *middles, 1.5 * HIGHEST]
-    for k, (one, amplitude) in enumerate(zip(transitions, amplitudes, strict=True)):
-        rises = one.before == -1
+    for k, (transition, amplitude) in enumerate(zip(transitions, amplitudes, strict=True)):
+        rises = transition.before == -1
         beside = amplitude * (1 + BESIDE if rises else 1 - BESIDE)
-        found.append(
+        crossings.append(
             Edge(
                 shape,
                 frequency,
                 amplitude,
                 rises,
-                int(one.after if rises else one.before),
+                int(transition.after if rises else transition.before),
                 limits[k],
                 limits[k + 1],
                 least_normal(scene, pulse(scene, shape, frequency, beside)),
             )
         )
-    return found
+    return crossings
 
 
 def least_normal(scene: Scene, motion: Motion) -> float:

@@ -177,7 +177,7 @@ def pulled_table(result: Result) -> Table:
     for edge in rows_of(result, "edge"):
         if edge["min_normal"] < 0:
             key = {name: edge[name] for name in ("ground", "shape", "frequency", "amplitude")}
-            found = [
+            shifted = [
                 *(rows_of(result, "shift", solver=solver, **key)[0] for solver in s["solvers"]),
                 *(rows_of(result, "held", solver=solver, **key)[0] for solver in s["held"]),
             ]
@@ -186,7 +186,7 @@ def pulled_table(result: Result) -> Table:
                     f"{edge['ground']}, {edge['shape']}, {edge['frequency']:g}",
                     number(edge["amplitude"], 6),
                     number(edge["min_normal"], 2),
-                    *("not found" if row["shift"] is None else number(100 * row["shift"], 2) for row in found),
+                    *("not found" if row["shift"] is None else number(100 * row["shift"], 2) for row in shifted),
                 ]
             )
     return Table(

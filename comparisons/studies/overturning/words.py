@@ -41,14 +41,14 @@ def asked(result: Result) -> str:
 def trust(result: Result, solver: str) -> str:
     """May I trust it for overturning?"""
     rows = [row for row in rows_of(result, "shift", solver=solver) if least_normal_of(result, row) >= 0]
-    found = [row for row in rows if row["shift"] is not None]
+    shifted = [row for row in rows if row["shift"] is not None]
     outside = rows_of(result, "confusion", region="outside", solver=solver)
     wrong, size = sum(row["only_a"] + row["only_b"] for row in outside), sum(size_of(row) for row in outside)
     yes = _all_within(rows) and not wrong
-    largest = f", shifted by {percent(max(abs(row['shift']) for row in found))} at most" if found else ""
+    largest = f", shifted by {percent(max(abs(row['shift']) for row in shifted))} at most" if shifted else ""
     return (
         f"{solver} {'may' if yes else 'is not to'} be trusted for overturning at its default setting, as long as "
-        f"the block stays pressed on its base in the analytic model: {len(found)} of {len(rows)} boundaries found"
+        f"the block stays pressed on its base in the analytic model: {len(shifted)} of {len(rows)} boundaries found"
         f"{largest}; further than {percent(result.settings['band'], 1)} from them {wrong} of {size} outcomes "
         "differ."
     )
@@ -56,14 +56,14 @@ def trust(result: Result, solver: str) -> str:
 
 def verdict(result: Result, solver: str) -> str:
     rows = rows_of(result, "shift", solver=solver)
-    found = [row for row in rows if row["shift"] is not None]
+    shifted = [row for row in rows if row["shift"] is not None]
     gaps = sum(not row["rises"] for row in rows)
-    seen = sum(not row["rises"] for row in found)
-    if not found:
+    seen = sum(not row["rises"] for row in shifted)
+    if not shifted:
         return f"{solver}: none of {len(rows)} boundaries found."
     return (
-        f"{solver}: of all {len(rows)} boundaries {len(found)} found, among them {seen} of {gaps} beginnings of a "
-        f"safe gap. {_within(rows)}, the median shift is {percent(median([abs(row['shift']) for row in found]))}."
+        f"{solver}: of all {len(rows)} boundaries {len(shifted)} found, among them {seen} of {gaps} beginnings of a "
+        f"safe gap. {_within(rows)}, the median shift is {percent(median([abs(row['shift']) for row in shifted]))}."
     )
 
 
@@ -80,11 +80,11 @@ def pulled(result: Result) -> Iterator[str]:
     )
     for solver, label in result.settings["held"].items():
         held = rows_of(result, "held", solver=solver)
-        found = [abs(row["shift"]) for row in held if row["shift"] is not None]
-        if found:
+        shifts = [abs(row["shift"]) for row in held if row["shift"] is not None]
+        if shifts:
             text += (
-                f" With the corner held by the adapter ({label}) the same scenes give {len(found)} of these "
-                f"{len(held)} boundaries, shifted by {percent(max(found), 1)} at most"
+                f" With the corner held by the adapter ({label}) the same scenes give {len(shifts)} of these "
+                f"{len(held)} boundaries, shifted by {percent(max(shifts), 1)} at most"
             )
             text += ": it is the contact that moves them, not the integration." if _all_within(held) else "."
     yield text
@@ -96,8 +96,8 @@ def _all_within(rows):
 
 def _within(rows):
     """Whether all boundaries were found within the limit, and the largest shift."""
-    found = [row for row in rows if row["shift"] is not None]
-    worst = max(found, key=lambda row: abs(row["shift"]))
+    shifted = [row for row in rows if row["shift"] is not None]
+    worst = max(shifted, key=lambda row: abs(row["shift"]))
     return (
         f"{'All boundaries lie' if _all_within(rows) else 'Not all boundaries lie'} within {LIMIT:g} % of the "
         f"analytic ones; the largest shift is {percent(worst['shift'])} (± {percent(worst['half_width'], 1)}: "
@@ -142,8 +142,8 @@ def first_script(result: Result, solver: str) -> str | None:
     rows = rows_of(result, "knob", solver=solver)
     if not rows:
         return None
-    found = [row["shift"] for row in rows if row["shift"] is not None]
-    span = f"those found are shifted by {percent(min(found))} to {percent(max(found))}" if found else ""
+    shifts = [row["shift"] for row in rows if row["shift"] is not None]
+    span = f"those found are shifted by {percent(min(shifts))} to {percent(max(shifts))}" if shifts else ""
     reasons = {}
     for row in rows:
         if row["shift"] is None:
@@ -151,7 +151,7 @@ def first_script(result: Result, solver: str) -> str | None:
             reasons[key] = reasons.get(key, 0) + 1
     lost = "; ".join(f"{ground}: {why} ({count})" for (ground, why), count in reasons.items())
     text = (
-        f"First script, {solver}: {len(found)} of {len(rows)} boundaries found"
+        f"First script, {solver}: {len(shifts)} of {len(rows)} boundaries found"
         + (f"; {span}" if span else "")
         + (f". Not found, within 30 % or half-way to the next boundary: {lost}." if lost else ".")
     )

@@ -116,12 +116,12 @@ def experiments_of(engines: Sequence[str]) -> list[tuple[str, str, str, str, tup
 
 def fixed_steps_of(engines: Sequence[str]) -> list[tuple[str, str]]:
     """(engine, variant) of those that decide the impact, with care, at one step."""
-    found = []
+    fixed = []
     for engine, variant in variants_of(engines):
         kind = get_engine(engine).variants[variant]
         if kind.rung == "expert" and kind.knob == "step" and not kind.takes_restitution:
-            found.append((engine, variant))
-    return found
+            fixed.append((engine, variant))
+    return fixed
 
 
 def experiment_cases(grid: Grid, engines: Sequence[str]) -> list[Case]:

@@ -97,19 +97,19 @@ def _setting(knob):
 def _trust(result, knob):
     """May I trust it, at which setting and cost?"""
     rows = select(result, "summary", scope="all", engine=knob["engine"], variant=knob["variant"])
-    found = [row for row in rows if row["rms"] is not None]
+    measured = [row for row in rows if row["rms"] is not None]
     name = f"{knob['engine']}, {knob['variant']} ({_setting(knob)})"
     if knob["applies_impact"]:
         name += ", whose adapter applies eqs (7) and (8) itself,"
     failed, runs = sum(row["failed"] for row in rows), sum(row["runs"] for row in rows)
-    if not found:
+    if not measured:
         return f"{name}: no run succeeded" if runs else ""
-    worst = max(row["rms"] for row in found)
-    cost = max(row["cpu_per_second"] for row in found)
+    worst = max(row["rms"] for row in measured)
+    cost = max(row["cpu_per_second"] for row in measured)
     errors = ", ".join(
         f"{number(row['rms'], 2)} on {'a ' if row['ground'] == 'sliding base' else ''}{row['ground']} "
         f"(worst impact {number(row['worst'], 2)})"
-        for row in found
+        for row in measured
     )
     return (
         f"{name} {trust(worst, failed)} for restitution: error {errors}, at {number(cost, 2)} s of CPU time per "
@@ -121,11 +121,11 @@ def _verdict(result, knob):
     """The same, and all else that is known of a variant."""
     words = _trust(result, knob)
     rows = select(result, "summary", scope="all", engine=knob["engine"], variant=knob["variant"])
-    found = [row for row in rows if row["rms"] is not None]
+    measured = [row for row in rows if row["rms"] is not None]
     failed, runs = sum(row["failed"] for row in rows), sum(row["runs"] for row in rows)
-    if not found:
+    if not measured:
         return words and words + "."
-    jumps = [row["jump_rms"] for row in found if row["jump_rms"] is not None]
+    jumps = [row["jump_rms"] for row in measured if row["jump_rms"] is not None]
     words += f"; base velocity jump off by {percent(max(jumps))}." if jumps else "."
     orders = [row for row in select(result, "order", engine=knob["engine"], variant=knob["variant"]) if row["order"]]
     if orders:

@@ -106,8 +106,8 @@ def _settings(grid, engines):
         ],
         "default_variants": {engine: get_engine(engine).default_variant for engine in engines},
         "experiments": [
-            dict(zip(("experiment", "engine", "variant", "setting"), one[:4], strict=True))
-            for one in experiments_of(engines)
+            dict(zip(("experiment", "engine", "variant", "setting"), experiment[:4], strict=True))
+            for experiment in experiments_of(engines)
         ],
         "experiment_slenderness": EXPERIMENT_SLENDERNESS,
         "friction_needed": {
@@ -229,12 +229,12 @@ def _summaries(pooled, engines, grid):
             if everywhere:
                 entries.append({"part": "summary", "scope": "all", **given, "value": default, **_measures(everywhere)})
             ladder = [
-                {"part": "summary", "scope": "ladder", **given, "value": value, **_measures(found)}
+                {"part": "summary", "scope": "ladder", **given, "value": value, **_measures(points)}
                 for value in values
-                if (found := pools(value, grid.ladder))
+                if (points := pools(value, grid.ladder))
             ]
-            found = [(row["value"], row["rms"]) for row in ladder if row["rms"]]
-            order = np.polyfit(*np.log(np.transpose(found)), 1)[0] if len(found) > 1 else None  # type: ignore[call-overload]  # of x and y
+            points = [(row["value"], row["rms"]) for row in ladder if row["rms"]]
+            order = np.polyfit(*np.log(np.transpose(points)), 1)[0] if len(points) > 1 else None  # type: ignore[call-overload]  # of x and y
             entries += [*ladder, {"part": "order", **given, "order": order and float(order)}]
     return entries
 
@@ -359,11 +359,11 @@ def friction_needed(scene: Scene) -> float:
 
 def _failures(rows):
     """Each distinct reason of failure with its count, one message and where it first happened."""
-    found = {}
+    failed = {}
     for row in rows:
         if row.failed:
             key = (row.case.solver, row.case.variant, row.failure["reason"])
-            found.setdefault(key, []).append(row)
+            failed.setdefault(key, []).append(row)
     return [
         {
             "part": "failure",
@@ -375,7 +375,7 @@ def _failures(rows):
             "tag": members[0].case.tag,
             "last_state": members[0].failure.get("last_state"),
         }
-        for key, members in found.items()
+        for key, members in failed.items()
     ]
 
 

@@ -74,17 +74,22 @@ def draw_pareto(result: Result, x: str = "cpu", y: str = PRINCIPAL) -> Figure:
 
 def _looks(families):
     """{family: line keywords}."""
-    counts, found = {}, {}
+    counts, styles = {}, {}
     for family in dict.fromkeys(families):
         base, other_law, _ = family.partition(", Bouc-Wen")
         if other_law:
-            found[family] = {**found[base], "linestyle": (0, (3, 2)), "markersize": 4}
+            styles[family] = {**styles[base], "linestyle": (0, (3, 2)), "markersize": 4}
             continue
         kind = family.replace(",", "").split()[0]
         colour = ENGINES[kind].colour if kind in ENGINES else COLOURS.get(kind, PEER_COLOUR)
         number = counts[colour] = counts.get(colour, -1) + 1
-        found[family] = {"color": colour, "marker": MARKERS[number % len(MARKERS)], "linestyle": "-", "markersize": 5.5}
-    return found
+        styles[family] = {
+            "color": colour,
+            "marker": MARKERS[number % len(MARKERS)],
+            "linestyle": "-",
+            "markersize": 5.5,
+        }
+    return styles
 
 
 def _panel(axis, result, scene, x, y, looks):

@@ -65,17 +65,17 @@ def points(trials: Sequence[Trial], engines: Sequence[str], quick: bool) -> list
     pick = 1 if quick else 0
     by_name = {trial.name: trial.scene for trial in trials}
     stands, boundary = by_name["isolated-standing"], by_name["near-overturning"]
-    found = [
+    asked = [
         Point("duration", value, "kernel", lasting(stands, value), "analytic")
         for value in SPAN["duration"]["analytic"][pick]
     ]
     for engine in engines:
-        found += [
+        asked += [
             Point("duration", value, f"{engine}, default", lasting(stands, value), engine)
             for value in SPAN["duration"]["engine"][pick]
         ]
-    found += [Point("samples", value, "kernel", sampled(stands, value), "analytic") for value in SPAN["samples"][pick]]
-    return found + [
+    asked += [Point("samples", value, "kernel", sampled(stands, value), "analytic") for value in SPAN["samples"][pick]]
+    return asked + [
         Point("runs", value, "kernel, batch", boundary, "analytic", count=value) for value in SPAN["runs"][pick]
     ]
 

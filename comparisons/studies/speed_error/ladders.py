@@ -99,22 +99,22 @@ def refined(ladder: Sequence[float]) -> list[float]:
 def entries(trials: Sequence[Trial], engines: Sequence[str], quick: bool) -> list[Entry]:
     """All entries, ordered so that solvers alternate."""
     pick = 1 if quick else 0
-    found = []
+    groups = []
     for trial in trials:
         here = _analytic(trial, pick) + _engines(trial, engines, pick)
         if trial.name in TRANSPARENT:
             here += _peers(trial, pick)
         if trial.name in SAMPLED:
             here += _bouc_wen(trial, pick)
-        found.append(here + _extras(trial, engines, pick))
-    return [entry for group in found for entry in _alternating(group)]
+        groups.append(here + _extras(trial, engines, pick))
+    return [entry for group in groups for entry in _alternating(group)]
 
 
 def _analytic(trial, pick):
-    found = [Entry(trial, "kernel", "analytic", "tolerance", value) for value in KERNEL[pick]]
-    found += [Entry(trial, "time-stepping", "time-stepping", "step", value) for value in STEPPING[pick]]
+    entries = [Entry(trial, "kernel", "analytic", "tolerance", value) for value in KERNEL[pick]]
+    entries += [Entry(trial, "time-stepping", "time-stepping", "step", value) for value in STEPPING[pick]]
     ladders = TWIN_SAMPLED if trial.name in SAMPLED else TWIN
-    return found + [
+    return entries + [
         Entry(trial, f"scipy {method}", "twin", "rtol", value, settings={**TWIN_SETTINGS, "method": method})
         for method, ladder in ladders.items()
         for value in ladder[pick]
@@ -122,13 +122,13 @@ def _analytic(trial, pick):
 
 
 def _engines(trial, engines, pick):
-    found = []
+    ladder = []
     for name in engines:
-        for variant, one in get_engine(name).variants.items():
-            knob = one.knob
-            values = dict.fromkeys((one.ladder[0], one.default)) if pick else refined(one.ladder)
-            found += [Entry(trial, f"{name}, {variant}", name, knob, value, variant=variant) for value in values]
-    return found
+        for variant, kind in get_engine(name).variants.items():
+            knob = kind.knob
+            values = dict.fromkeys((kind.ladder[0], kind.default)) if pick else refined(kind.ladder)
+            ladder += [Entry(trial, f"{name}, {variant}", name, knob, value, variant=variant) for value in values]
+    return ladder
 
 
 def applied_impacts(engines: Sequence[str]) -> dict[str, str]:
@@ -151,12 +151,12 @@ def _peers(trial, pick):
 
 def _bouc_wen(trial, pick):
     law = trial.with_law("bouc-wen")
-    found = [Entry(law, "kernel, Bouc-Wen", "analytic", "tolerance", value, law="bouc-wen") for value in KERNEL[pick]]
-    found += [
+    ladder = [Entry(law, "kernel, Bouc-Wen", "analytic", "tolerance", value, law="bouc-wen") for value in KERNEL[pick]]
+    ladder += [
         Entry(law, "time-stepping, Bouc-Wen", "time-stepping", "step", value, law="bouc-wen")
         for value in STEPPING[pick]
     ]
-    return found + [
+    return ladder + [
         Entry(
             law,
             "scipy DOP853, Bouc-Wen",
@@ -172,24 +172,24 @@ def _bouc_wen(trial, pick):
 
 def _extras(trial, engines, pick):
     """The same scene with more than it needs."""
-    found = []
+    ladder = []
     if trial.name in TRANSPARENT:
         ways = [(SPRINGS, models.on_stiff_springs)]
         if trial.scene.motion is None:  # a free base does not feel the ground's motion
             ways.append((HEAVY_BASE, models.on_heavy_base))
-        found += [
+        ladder += [
             Entry(trial, "kernel", "analytic", "tolerance", value, model=model, scene_of=change)
             for model, change in ways
             for value in powers(-8, -12)[pick:]
         ]
     for name in engines if trial.scene.bearings is None else ():
-        found += [
+        ladder += [
             Entry(trial, f"{name}, {variant}", kind.free_block, "step", value, model=FREE_3D)
             for variant, kind in get_engine(name).variants.items()
             if kind.free_block
             for value in FREE_3D_STEPS[pick]
         ]
-    return found
+    return ladder
 
 
 def _alternating(group):

@@ -44,25 +44,25 @@ def errors(trial: Trial, values: Mapping[str, Any], shifts: Sequence[float | Non
         Relative position of the boundary against the reference's, one per run of the search. A solver without a
         boundary nearby has no error "boundary_shift".
     """
-    found = {}
+    errors = {}
     impacts = SimpleNamespace(impacts=[Impact(**impact) for impact in values["impacts"]])
     if values.get("knows_impacts", True):
-        found["lost_impacts"] = _lost(impacts, trial.reference)
+        errors["lost_impacts"] = _lost(impacts, trial.reference)
         if "restitution" in trial.measures:
-            found["restitution"] = _restitution_error(trial.scene, impacts)
+            errors["restitution"] = _restitution_error(trial.scene, impacts)
         if "impact_time" in trial.measures:
-            found["impact_time"] = _impact_time_error(impacts, trial.reference)
+            errors["impact_time"] = _impact_time_error(impacts, trial.reference)
     gamma = trial.scene.block.slenderness
     if "peak_tilt" in trial.measures and values["peak_tilt"] is not None:
-        found["peak_tilt"] = abs(values["peak_tilt"] - trial.reference.peak_tilt) / gamma
+        errors["peak_tilt"] = abs(values["peak_tilt"] - trial.reference.peak_tilt) / gamma
     if "peak_displacement" in trial.measures and values["peak_base_displacement"] is not None:
-        found["peak_displacement"] = abs(values["peak_base_displacement"] / trial.reference.peak_base_displacement - 1)
+        errors["peak_displacement"] = abs(values["peak_base_displacement"] / trial.reference.peak_base_displacement - 1)
     end = values["end"]
     if "end_tilt" in trial.measures and abs(end["time"] - trial.scene.duration) < 1e-9:
-        found["end_tilt"] = abs(abs(end["tilt"]) - abs(trial.reference.end.tilt)) / gamma
+        errors["end_tilt"] = abs(abs(end["tilt"]) - abs(trial.reference.end.tilt)) / gamma
     if shifts and abs(shifts[-1] - shifts[-2]) < STRAY:
-        found["boundary_shift"] = float(np.sqrt(np.mean(np.square(shifts[-LAST:]))))
-    return {name: value for name, value in found.items() if value is not None}
+        errors["boundary_shift"] = float(np.sqrt(np.mean(np.square(shifts[-LAST:]))))
+    return {name: value for name, value in errors.items() if value is not None}
 
 
 def _strong(reference):
@@ -78,15 +78,15 @@ def _lost(impacts, reference):
 
 
 def _impact_time_error(impacts, reference):
-    found = impact_time_errors(impacts, reference)[_strong(reference)]
-    found = found[np.isfinite(found)]
-    return float(np.sqrt(np.mean(found**2))) if len(found) else None
+    errors = impact_time_errors(impacts, reference)[_strong(reference)]
+    errors = errors[np.isfinite(errors)]
+    return float(np.sqrt(np.mean(errors**2))) if len(errors) else None
 
 
 def _restitution_error(scene, impacts):
     """Root mean square of e - eq. (7) over the impacts fast enough; under a motion e is that of the states."""
     if scene.motion is None and scene.bearings is None:
-        found = rate_restitution(impacts) - restitution(scene)
+        errors = rate_restitution(impacts) - restitution(scene)
     else:
-        found = state_restitution(SimpleNamespace(impacts=strong_impacts(impacts))) - restitution(scene)  # type: ignore[arg-type]  # its impacts are all that is read
-    return rms(found) if len(found) else None
+        errors = state_restitution(SimpleNamespace(impacts=strong_impacts(impacts))) - restitution(scene)  # type: ignore[arg-type]  # its impacts are all that is read
+    return rms(errors) if len(errors) else None

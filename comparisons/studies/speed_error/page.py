@@ -70,7 +70,7 @@ def section(result: Result) -> Section:
 def paragraphs(result: Result) -> list[str]:
     """Plain words with computed numbers, list of str."""
     settings = result.settings
-    found = [
+    text = [
         "Every solver runs a ladder of its accuracy knob on five scenes. Error and CPU time come from the same "
         f"runs: {settings['rounds']} fresh processes one after the other, in each every solver has its turn after "
         "a warm-up; CPU times are medians (of the simulation alone: no import, no compilation, no building of "
@@ -78,17 +78,17 @@ def paragraphs(result: Result) -> list[str]:
         "at least cost; those that decide the impact themselves come first."
     ]
     for scene, about in settings["scenes"].items():
-        found.append(_scene_words(result, scene, about))
+        text.append(_scene_words(result, scene, about))
     if settings["changed_while_running"]:
-        found.append(
+        text.append(
             "While the study ran, this code was edited; the numbers are those of the code before: "
             + ", ".join(settings["changed_while_running"])
             + "."
         )
-    found += _failure_words(result) + _extra_words(result) + _law_words(result) + _growth_words(result)
+    text += _failure_words(result) + _extra_words(result) + _law_words(result) + _growth_words(result)
     tie, pairs, changed = ranking_stability(result)
     broken = unrepeatable(result)
-    found.append(
+    text.append(
         f"Repetition: the errors of {len(ladder(result)) - len(broken)} of {len(ladder(result))} settings are "
         "the same bit for bit in every round"
         + ("" if not broken else " (not: " + ", ".join(sorted({row["family"] for row in broken})) + ")")
@@ -104,7 +104,7 @@ def paragraphs(result: Result) -> list[str]:
         )
         + ". Solvers nearer than that share a rank: the same setting differs as much between its own rounds."
     )
-    return found
+    return text
 
 
 def _scene_words(result, scene, about):
@@ -166,12 +166,12 @@ def _counted(result, rows, among):
 
 
 def _extra_words(result):
-    found = extras(result)
-    if not found:
+    models = extras(result)
+    if not models:
         return []
     words = []
-    for model in dict.fromkeys(row["model"] for row in found):
-        ratios = [row["cost_ratio"] for row in found if row["model"] == model]
+    for model in dict.fromkeys(row["model"] for row in models):
+        ratios = [row["cost_ratio"] for row in models if row["model"] == model]
         low, high = number(min(ratios), 2), number(max(ratios), 2)
         words.append(f"{model}: {low if low == high else f'{low} to {high}'} times the CPU time of what is needed")
     return [
@@ -198,9 +198,9 @@ def _law_words(result):
 
 
 def _growth_words(result):
-    found = growths(result)
+    grown = growths(result)
     words = []
-    for (against, family), series in found.items():
+    for (against, family), series in grown.items():
         if "exponent" in series:
             words.append(
                 f"{family} against {against}: {number(series['exponent'], 3)} ± "
@@ -208,7 +208,7 @@ def _growth_words(result):
             )
     if not words:
         return []
-    memory = found.get(("duration", "kernel"))
+    memory = grown.get(("duration", "kernel"))
     text = "CPU time grows as a power of – " + "; ".join(words) + "."
     if memory:
         traced, value = memory["traced_bytes"], memory["value"]
@@ -222,8 +222,8 @@ def _growth_words(result):
 
 def tables(result: Result) -> list[Table]:
     """Cost at an error for every scene; observed orders; what the scene needs; cost per second and per step."""
-    found = [_cost_table(result, scene, about) for scene, about in result.settings["scenes"].items()]
-    return [*found, _order_table(result), _extra_table(result), _unit_table(result)]
+    costs = [_cost_table(result, scene, about) for scene, about in result.settings["scenes"].items()]
+    return [*costs, _order_table(result), _extra_table(result), _unit_table(result)]
 
 
 def _cost_table(result, scene, about):
@@ -249,10 +249,10 @@ def _order_table(result):
     by_scene = [orders(result, scene, "value") for scene in scenes]
     rows = []
     for family in dict.fromkeys(row["family"] for row in ladder(result)):
-        found = [by_family.get(family) for by_family in by_scene]
-        if any(found):
+        fits = [by_family.get(family) for by_family in by_scene]
+        if any(fits):
             rows.append(
-                [family, *("–" if one is None else f"{one[0]:.2f} ± {one[1]:.2f}".replace("-", "−") for one in found)]
+                [family, *("–" if fit is None else f"{fit[0]:.2f} ± {fit[1]:.2f}".replace("-", "−") for fit in fits)]
             )
     return Table(
         "Observed order q: error ~ knob^q, ± standard error; the knob is a step, a tolerance, a contact "

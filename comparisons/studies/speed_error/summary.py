@@ -56,10 +56,10 @@ def plan(
         )
         for index, row in zip(taking_part, done, strict=True):
             measured[index].append(row)
-    rows = [_row(entry, found) for entry, found in zip(chosen, measured, strict=True)]
+    rows = [_row(entry, timings) for entry, timings in zip(chosen, measured, strict=True)]
     seconds = np.full((len(rows), rounds), np.nan)
-    for line, found in zip(seconds, measured, strict=True):
-        line[: len(found)] = [one.cost.get("cpu_seconds", np.nan) for one in found]
+    for line, timings in zip(seconds, measured, strict=True):
+        line[: len(timings)] = [row.cost.get("cpu_seconds", np.nan) for row in timings]
     if grow:
         rows += yield from _growth(scenes, ask, rounds)
     settings = {
@@ -77,9 +77,9 @@ def _slow(row):
     return row.cost.get("cpu_seconds", 0.0) > SLOW
 
 
-def _row(entry, found):
+def _row(entry, timings):
     """JSON-ready row of an entry from its rounds."""
-    first = found[0]
+    first = timings[0]
     values, trial = first.values, entry.trial
     row = {
         "table": "ladder",
@@ -93,12 +93,12 @@ def _row(entry, found):
         "value": entry.value,
         "outcome": values.get("outcome"),
         "failure": _evidence(first.failure),
-        "timings": len(found),
+        "timings": len(timings),
         "errors": {},
         "lost_impacts": None,
-        "repeatable": len({_bits(one.values) for one in found}) == 1,
+        "repeatable": len({_bits(timing.values) for timing in timings}) == 1,
     }
-    seconds = [one.cost["cpu_seconds"] for one in found if one.cost.get("cpu_seconds")]
+    seconds = [timing.cost["cpu_seconds"] for timing in timings if timing.cost.get("cpu_seconds")]
     if first.failure or not seconds:
         return row
     shifts = values["boundary_shifts"]
@@ -135,21 +135,21 @@ def _growth(scenes, ask, rounds):
     """Rows of growth: each measurement in a process of its own, so that none finds memory another has left."""
     rows = []
     for place in growth.points(scenes, ask.engines, ask.quick):
-        found = []
+        turns = []
         for turn in range(min(FEW, rounds)):
-            found += yield Batch([place.case(turn)], growth.grown, f"growth against {place.against}", alone=True)
-        sound = [one for one in found if not one.failed]
+            turns += yield Batch([place.case(turn)], growth.grown, f"growth against {place.against}", alone=True)
+        sound = [each for each in turns if not each.failed]
         row = {
             "table": "growth",
             "family": place.family,
             "against": place.against,
             "value": place.value,
-            "failure": _evidence(found[0].failure),
+            "failure": _evidence(turns[0].failure),
         }
         if sound:
-            row["cpu_seconds"] = statistics.median(one.cost["cpu_seconds"] for one in sound)
+            row["cpu_seconds"] = statistics.median(each.cost["cpu_seconds"] for each in sound)
             for name in ("traced_bytes", "resident_bytes"):
-                known = [one.values[name] for one in sound if one.values[name] is not None]
+                known = [each.values[name] for each in sound if each.values[name] is not None]
                 row[name] = statistics.median(known) if known else None
         rows.append(row)
     return rows
@@ -157,12 +157,12 @@ def _growth(scenes, ask, rounds):
 
 def _laws(scenes):
     """What another bearing law changes in the scenes themselves: peak displacement and tilt, relative."""
-    found = {}
+    effects = {}
     for trial in scenes:
         if trial.scene.bearings:
             other = trial.with_law("bouc-wen").reference
-            found[trial.name] = {
+            effects[trial.name] = {
                 "peak_displacement": other.peak_base_displacement / trial.reference.peak_base_displacement - 1,
                 "peak_tilt": other.peak_tilt / trial.reference.peak_tilt - 1 if trial.reference.peak_tilt else None,
             }
-    return found
+    return effects

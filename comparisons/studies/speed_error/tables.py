@@ -49,8 +49,8 @@ def cost_at_error(
     measure = measure or principal(result, scene)
     best = {}
     for index, row in enumerate(ladder(result)):
-        found = error(row, measure)
-        if row["scene"] != scene or row["model"] != NEEDED or found is None or found > level:
+        off = error(row, measure)
+        if row["scene"] != scene or row["model"] != NEEDED or off is None or off > level:
             continue
         cost = row["cpu_seconds"] if seconds is None else seconds[index]
         if np.isfinite(cost) and (row["family"] not in best or cost < best[row["family"]][0]):
@@ -63,7 +63,7 @@ def orders(result: Result, scene: str, axis: str = "value") -> dict[str, tuple[f
 
     Errors at rounding and runs that lost impacts are left out; three points or more.
     """
-    measure, found = principal(result, scene), {}
+    measure, fits = principal(result, scene), {}
     for family in dict.fromkeys(row["family"] for row in ladder(result)):
         rows = [
             row
@@ -75,8 +75,8 @@ def orders(result: Result, scene: str, axis: str = "value") -> dict[str, tuple[f
             and row.get(axis)
         ]
         if len(rows) >= 3:
-            found[family] = *fit([row[axis] for row in rows], [error(row, measure) for row in rows]), len(rows)
-    return found
+            fits[family] = *fit([row[axis] for row in rows], [error(row, measure) for row in rows]), len(rows)
+    return fits
 
 
 def ranking_stability(result: Result) -> tuple[float, int, list[tuple[str, float, str, str]]]:
@@ -121,17 +121,17 @@ def extras(result: Result) -> list[dict[str, Any]]:
 
     List of dicts: scene, model, family, value, cost_ratio, error, needed_error.
     """
-    rows, found = ladder(result), []
+    rows, compared = ladder(result), []
     for row in rows:
         if row["model"] == NEEDED:
             continue
-        found += _beside(result, row, row["model"], _same(rows, row))
+        compared += _beside(result, row, row["model"], _same(rows, row))
     for family, integrated in result.settings["applied_impacts"].items():
         for row in rows:  # contact is integrated though the block never lifts, beside the adapter's own
             if row["scene"] == "isolated-standing" and row["family"] == integrated != family:
                 given = cost_at_error(result, row["scene"], error(row, principal(result, row["scene"])) or 0.0)
-                found += _beside(result, row, FULL_CONTACT, given.get(family))
-    return found
+                compared += _beside(result, row, FULL_CONTACT, given.get(family))
+    return compared
 
 
 def _same(rows, row):
@@ -187,7 +187,7 @@ def growths(result: Result) -> dict[tuple[str, str], dict[str, Any]]:
     for row in result.rows:
         if row["table"] == "growth" and not row["failure"]:
             series.setdefault((row["against"], row["family"]), []).append(row)
-    found = {}
+    grown = {}
     for key, rows in series.items():
         entry = {
             name: [row[name] for row in rows] for name in ("value", "cpu_seconds", "traced_bytes", "resident_bytes")
@@ -196,8 +196,8 @@ def growths(result: Result) -> dict[tuple[str, str], dict[str, Any]]:
             entry["exponent"], entry["exponent_error"] = fit(entry["value"], entry["cpu_seconds"])  # type: ignore[assignment]  # beside the lists
             (x0, x1), (y0, y1) = entry["value"][-2:], entry["cpu_seconds"][-2:]
             entry["last_exponent"] = float(np.log(y1 / y0) / np.log(x1 / x0))  # type: ignore[assignment]  # as above
-        found[key] = entry
-    return found
+        grown[key] = entry
+    return grown
 
 
 def unrepeatable(result: Result) -> list[dict[str, Any]]:

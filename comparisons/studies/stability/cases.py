@@ -56,10 +56,10 @@ def _times(seconds, dt=0.01):
 def hard_cases() -> dict[str, HardCase]:
     """Name -> `HardCase`, in the order of the report."""
     cases = [*_rest(), *_uplift(), *_overturning(), *_proportions(), *_bearings(), *_steps(), *_records()]
-    found = {case.name: case for case in cases}
-    if len(found) != len(cases):
+    by_name = {case.name: case for case in cases}
+    if len(by_name) != len(cases):
         raise ValueError("two hard cases share a name")
-    return found
+    return by_name
 
 
 def _rest():
