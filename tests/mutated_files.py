@@ -4,7 +4,6 @@ import math
 import random
 
 VALUES = [0.001, -0.123, -0.456, 0.25, -1.5, 0.0, 0.75, 0.031, -0.2, 0.11, 0.4, -0.33]
-
 SMOOTH = [math.sin(0.3 * i) * math.exp(-0.02 * i) for i in range(46)]
 
 

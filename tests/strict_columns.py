@@ -9,46 +9,12 @@ OTHER_TIMES = ("us", "µs", "usec", "ns", "min", "minute", "minutes", "h", "hour
 
 def columns(lines, known, column):
     """(bounds of the step or None, samples, factor) of columns; `known`: the user says the step."""
-    header, rows = [], []
-    for line in lines:
-        text = line.strip()
-        if text[:1] in ("#", "%", "!") or text[:2] == "//":
-            header += [] if rows else [text]
-        elif text:
-            word = ""
-            for sign in text.lower().lstrip("+-"):
-                if not (sign.isalnum() or sign == "_"):
-                    break
-                word += sign
-            if rows or text[0] in "-+.,;" + DIGITS or word in ("nan", "inf", "infinity"):
-                rows.append(text.split("#")[0].strip())
-            else:
-                header.append(text)
+    header, rows = _header_and_rows(lines)
     everything = "\n".join(rows)
     first = next((line for line in lines if line.strip()), "").lower()
     if not rows or "uncorrected accelerogram" in first[:200]:
         raise Refused("format")
-    semicolons, commas = ";" in everything, "," in everything
-    spaced = any(
-        row[0] == ","
-        or row[-1] == ","
-        or any(sign == "," and (row[i - 1] in " \t" or row[i + 1 : i + 2] in (" ", "\t")) for i, sign in enumerate(row))
-        for row in rows
-        if row
-    )
-    by, decimal = None, "."
-    if semicolons:
-        by, decimal = ";", "," if commas else "."
-    elif commas and (
-        spaced or (any(len(row.split()) < 2 for row in rows) and 2 * sum("." in row for row in rows) >= len(rows))
-    ):
-        by = ","
-    elif commas and all(len(row.split()) > 1 for row in rows):
-        decimal = ","
-    elif commas:
-        raise Refused("comma")
-    if decimal == "," and "." in everything:
-        raise Refused("points and commas")
+    by, decimal = _separators(rows, everything)
     table = []
     for row in rows:
         row = row.replace(",", ".") if decimal == "," else row
@@ -88,6 +54,52 @@ def columns(lines, known, column):
             raise Refused("two steps")
         step = stated, stated
     return step, samples, unit_of(header, len(header) - 1)
+
+
+def _header_and_rows(lines):
+    """Lines before the first that begins with a number, and those from it on without comments."""
+    header, rows = [], []
+    for line in lines:
+        text = line.strip()
+        if text[:1] in ("#", "%", "!") or text[:2] == "//":
+            header += [] if rows else [text]
+        elif text:
+            word = ""
+            for sign in text.lower().lstrip("+-"):
+                if not (sign.isalnum() or sign == "_"):
+                    break
+                word += sign
+            if rows or text[0] in "-+.,;" + DIGITS or word in ("nan", "inf", "infinity"):
+                rows.append(text.split("#")[0].strip())
+            else:
+                header.append(text)
+    return header, rows
+
+
+def _separators(rows, everything):
+    """(what parts the columns, None for blanks; the sign of decimals)."""
+    semicolons, commas = ";" in everything, "," in everything
+    spaced = any(
+        row[0] == ","
+        or row[-1] == ","
+        or any(sign == "," and (row[i - 1] in " \t" or row[i + 1 : i + 2] in (" ", "\t")) for i, sign in enumerate(row))
+        for row in rows
+        if row
+    )
+    by, decimal = None, "."
+    if semicolons:
+        by, decimal = ";", "," if commas else "."
+    elif commas and (
+        spaced or (any(len(row.split()) < 2 for row in rows) and 2 * sum("." in row for row in rows) >= len(rows))
+    ):
+        by = ","
+    elif commas and all(len(row.split()) > 1 for row in rows):
+        decimal = ","
+    elif commas:
+        raise Refused("comma")
+    if decimal == "," and "." in everything:
+        raise Refused("points and commas")
+    return by, decimal
 
 
 def _chosen(table, column, timed):

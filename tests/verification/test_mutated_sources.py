@@ -32,7 +32,7 @@ class Mutation:
     words: str = "AssertionError"
 
 
-RANGE, CONTRACT = "tests/engines/exudyn/test_range.py", "tests/engines/test_contract.py"
+RANGE, PHYSICS = "tests/engines/exudyn/test_range.py", "tests/engines/test_physics.py"
 MUTATIONS = {
     "exudyn: a corner is drawn back to where it stood": Mutation(
         "engines.exudyn.corners",
@@ -57,7 +57,7 @@ MUTATIONS = {
         "engines.exudyn.ground",
         "            self.at += 1\n            self._enter()\n",
         "            self._enter()\n",
-        f"{CONTRACT}::test_isolated_caryatid[synthetic-exudyn-compliant-corners]",
+        f"{PHYSICS}::test_isolated_caryatid[synthetic-exudyn-compliant-corners]",
         "'failed' == 'stands'",
     ),
     "twin: nobody counts its impacts": Mutation(

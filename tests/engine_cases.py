@@ -1,0 +1,65 @@
+"""Engines and variants as parameters of tests, and the scenes that they are tried on."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from bearing_laws import bearings_of
+
+from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene
+from analytic.errors import EngineNotInstalled
+from engines import ENGINES, get_engine
+
+BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
+PULSE = PulseMotion("one-sine", 6.0, 4.0)
+RECORD = Path(__file__).parents[2] / "shared" / "records" / "RSN1605_DUZCE_DZC270.AT2"
+
+# Held to the analytic model beside the default variants.
+ALSO_ACCURATE = {("exudyn", "switched-joints")}
+
+
+def cases(keep):
+    """A pytest parameter (engine, variant) for each that `keep` takes; one that is skipped for an absent engine."""
+    for name in ENGINES:
+        try:
+            engine = get_engine(name)
+        except EngineNotInstalled as error:
+            yield pytest.param(name, None, marks=pytest.mark.skip(reason=str(error)))
+            continue
+        for variant in engine.variants:
+            if keep(name, variant, engine.default_variant):
+                yield pytest.param(name, variant)
+
+
+every_variant = pytest.mark.parametrize("engine, variant", list(cases(lambda *case: True)))
+default_variant = pytest.mark.parametrize(
+    "engine, variant", list(cases(lambda name, variant, default: variant == default))
+)
+accurate_variant = pytest.mark.parametrize(
+    "engine, variant",
+    list(cases(lambda name, variant, default: variant == default or (name, variant) in ALSO_ACCURATE)),
+)
+
+
+def scene(slenderness, base=None, duration=2.0, **parts):
+    return Scene(
+        block=Block(mass=3172.05, radius=1.0884, slenderness=slenderness),
+        name="contract",
+        base=Base(mass=base) if base else None,
+        duration=duration,
+        **parts,
+    )
+
+
+def simulate(engine, variant, given, **settings):
+    return get_engine(engine).simulate(given, variant=variant, **settings)
+
+
+def bearings(law, damping):
+    return bearings_of(law, count=4, damping=damping)
+
+
+def shaking(peak, duration=6.0):
+    instants = 0.01 * np.arange(round(100 * duration) + 1)
+    level = np.sin(8 * instants) + 0.5 * np.sin(26 * instants)
+    return SampledMotion(0.01, level / np.abs(level).max() * peak)
