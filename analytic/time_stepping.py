@@ -10,7 +10,7 @@ import math
 import platform
 import time
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numba
 import numpy as np
@@ -54,39 +54,39 @@ def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -
         return until_decided(lambda cut: simulate_time_stepping(cut, step=step, history=history), scene)
     model, start, law = RockingModel.of(scene), scene.start, RockingModel.of(scene).bearing
     count = math.ceil(scene.duration / step * (1 - 1e-12))
-    block = (
-        model.m,
-        model.M,
-        model.J,
-        model.R,
-        model.gamma,
-        model.g,
-        model.on_base,
-        model.restitution,
-        model.mass_share,
-    )
+    block = (model.m, model.M, model.J, model.R, model.gamma, model.g, model.on_base)
+    impact = model.restitution, model.mass_share * model.R * math.cos(model.gamma)
     bearing = (law.law, law.count, law.kb, law.dk, law.alpha, law.d0, law.f0, law.damping)
     y = (start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity, law.start(start.base_displacement))
-    _march(step, np.zeros(1), np.zeros(1), y, block, bearing, np.empty((0, 6)))  # compiled before the clock starts
+    nothing = np.zeros(1)
+    _march(step, nothing, nothing, y, block, impact, bearing, np.empty((0, 6)))  # compiled before the clock starts
     started = time.process_time()
     times = step * np.arange(count + 1)
     ground = np.zeros(count + 1) if scene.motion is None else scene.motion.acceleration(times)
     gravity = np.full(count + 1, model.g) + vertical_acceleration(scene.motion, times)
     rows = np.empty((count + 1 if history else 0, 6))
-    taken, over, impacts, uplifts, rests, unstable, extremes, end = _march(
-        step, ground, gravity, y, block, bearing, rows
-    )
-    seconds = time.process_time() - started
+    marched = _march(step, ground, gravity, y, block, impact, bearing, rows)
+    response = _response(scene, step, marched, time.process_time() - started)
+    if history:
+        taken = response.steps
+        kept = History(*rows[: taken + 1].T, ground[: taken + 1])  # type: ignore[call-arg]  # six columns and the ground's
+        response = replace(response, history=kept)
+    return replace(response, decided=is_decided(scene, response))
+
+
+def _response(scene, step, marched, seconds):
+    """The `Response` of what `_march` returns, without history."""
+    taken, over, impacts, uplifts, rests, unstable, extremes, end = marched
     peak_tilt, peak_x, peak_acceleration, friction, normal = extremes
-    rocked = start.tilt != 0 or start.tilt_rate != 0 or len(uplifts) > 0
-    response = Response(
+    rocked = scene.start.tilt != 0 or scene.start.tilt_rate != 0 or len(uplifts) > 0
+    return Response(
         engine="time-stepping",
         variant="semi-implicit Euler",
         outcome="overturns" if over else "rocks" if rocked else "stands",
         overturning_time=taken * step if over else None,
         unstable_time=None if unstable < 0 else unstable,
         peak_tilt=peak_tilt,
-        peak_tilt_ratio=peak_tilt / model.gamma,
+        peak_tilt_ratio=peak_tilt / scene.block.slenderness,
         peak_base_displacement=peak_x,
         peak_base_acceleration=peak_acceleration,
         impacts=tuple(Impact(*impact) for impact in impacts),
@@ -100,29 +100,32 @@ def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -
         settings={"step": step},
         versions={"python": platform.python_version(), "numpy": np.__version__, "numba": numba.__version__},
         scene=scene.name,
-        history=History(*rows[: taken + 1].T, ground[: taken + 1]) if history else None,  # type: ignore[call-arg]  # six columns and the ground's
     )
-    return replace(response, decided=is_decided(scene, response))
 
 
 @njit(cache=True, nogil=True)
-def _march(
-    h: float,
-    ground: np.ndarray,
-    gravity: np.ndarray,
-    y: tuple[float, ...],
-    block: tuple[float, ...],
-    bearing: tuple[Any, ...],
-    rows: np.ndarray,
-) -> tuple[Any, ...]:
-    """All steps, under a_g and g + a_v [m/s2] at each.
+def _rocking(side, tilt, rate, a, g, force, block):
+    """(phi'', absolute acceleration of the base, forces at the corner) while the block rocks, (3)-(6)."""
+    m, M, J, R, gamma, _, on_base = block
+    c, n = R * math.cos(side * gamma - tilt), R * math.sin(side * gamma - tilt)
+    spin, absolute = -m * (c * a + g * n) / J, a
+    if on_base:
+        push, moment = -m * n * rate * rate - force, -m * g * n
+        determinant = M * J - (m * c) ** 2
+        spin, absolute = (M * moment - m * c * push) / determinant, (J * push - m * c * moment) / determinant
+    return spin, absolute, m * (absolute + c * spin + n * rate * rate), m * (g + n * spin - c * rate * rate)
+
+
+@njit(cache=True, nogil=True)
+def _march(h, ground, gravity, y, block, impact, bearing, rows):
+    """All steps, under a_g and g + a_v [m/s2] at each. impact: restitution and the length of eq. (8) [m].
 
     Returns (steps taken, overturned?, impacts, uplifts, rests, unstable time or -1, extremes, end).
     """
-    m, M, J, R, gamma, standard, on_base, e, share = block
+    m, M, _, _, gamma, standard, on_base = block
     law, count, kb, dk, alpha, d0, f0, damping = bearing
     tilt, rate, x, v, z = y
-    slope, arm = math.tan(gamma), share * R * math.cos(gamma)
+    slope, (e, arm) = math.tan(gamma), impact
     side = math.copysign(1.0, tilt if tilt != 0 else rate) if tilt != 0 or rate != 0 else 0.0
     impacts, uplifts, rests = [(0.0, 0.0, 0.0, 0.0)], [0.0], [0.0]
     impacts.pop(), uplifts.pop(), rests.pop()
@@ -144,16 +147,8 @@ def _march(
             side = -math.copysign(1.0, absolute)
             uplifts.append(t)
         spin, horizontal, vertical = 0.0, m * absolute, m * g
-        if side != 0:  # (3)-(6)
-            c, n = R * math.cos(side * gamma - tilt), R * math.sin(side * gamma - tilt)
-            if on_base:
-                push, moment = -m * n * rate * rate - force, -m * g * n
-                determinant = M * J - (m * c) ** 2
-                spin, absolute = (M * moment - m * c * push) / determinant, (J * push - m * c * moment) / determinant
-            else:
-                spin = -m * (c * a + g * n) / J
-            horizontal = m * (absolute + c * spin + n * rate * rate)
-            vertical = m * (g + n * spin - c * rate * rate)
+        if side != 0:
+            spin, absolute, horizontal, vertical = _rocking(side, tilt, rate, a, g, force, block)
         peak_a = max(peak_a, abs(absolute))
         friction = max(friction, abs(horizontal) / vertical if vertical > 0 else math.inf)
         normal = min(normal, vertical / (m * standard))
@@ -175,13 +170,5 @@ def _march(
                 v += arm * rate
                 tilt, rate, side = 0.0, 0.0, 0.0
                 rests.append(t + h)
-    return (
-        taken,
-        over,
-        impacts,
-        uplifts,
-        rests,
-        unstable,
-        (peak_tilt, peak_x, peak_a, friction, normal),
-        (tilt, rate, x, v, force),
-    )
+    extremes, end = (peak_tilt, peak_x, peak_a, friction, normal), (tilt, rate, x, v, force)
+    return taken, over, impacts, uplifts, rests, unstable, extremes, end

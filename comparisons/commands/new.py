@@ -61,15 +61,11 @@ def command(
     elif any(value is not None for value in (period, xmax, ka, kb, alpha)):
         raise SettingError("bearings carry a base: give its mass with --base-mass")
     motion = _motion(file, record, tilt, {"units": units, "dt": dt, "column": column, "channel": channel})
+    base = None if base_mass is None else Base(mass=base_mass)
+    about = f"A block {height:g} m high and {width:g} m wide along the motion; rocking run {Path(file).name}"
+    name = name or Path(file).stem
     text = scene_text(
-        name or Path(file).stem,
-        block,
-        base=None if base_mass is None else Base(mass=base_mass),
-        bearings=bearings,
-        motion=motion,
-        tilt=tilt,
-        friction=friction,
-        about=(f"A block {height:g} m high and {width:g} m wide along the motion; rocking run {Path(file).name}",),
+        name, block, base=base, bearings=bearings, motion=motion, tilt=tilt, friction=friction, about=(about,)
     )
     _write_and_tell(file, text)
 
