@@ -1,7 +1,7 @@
 """scipy's `solve_ivp` with events, set up by someone who wants it fast.
 
 No classes, floats instead of arrays in the right-hand side, the smallest set of events, a first step taken from the
-length of the coming hop. The readable set-up, the one to learn from, is analytic/twin.py.
+length of the coming hop. The readable set-up, the one to learn from, is `analytic.twin`.
 """
 
 from __future__ import annotations

@@ -158,20 +158,8 @@ def _rk4(dt, samples, divisions, mass, law, count, kb, dk, alpha, d0, f0):
 
 def _fixed_step(scene, divisions):
     law, motion = BearingLaw.of(scene.bearings), scene.motion
-    return _timed(
-        _rk4,
-        motion.dt,
-        motion.samples,
-        divisions,
-        scene.total_mass,
-        law.law,
-        law.count,
-        law.kb,
-        law.dk,
-        law.alpha,
-        law.d0,
-        law.f0,
-    )
+    properties = law.law, law.count, law.kb, law.dk, law.alpha, law.d0, law.f0
+    return _timed(_rk4, motion.dt, motion.samples, divisions, scene.total_mass, *properties)
 
 
 def _references(scenes):

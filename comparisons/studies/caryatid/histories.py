@@ -16,15 +16,7 @@ def free_standing(result: Result) -> Drawing:
     """Fig. 4: the motion, and the free-standing Caryatid."""
     figure, (above, below) = axes_of(2, 1, height=4.4, sharex=True)
     _ground(above, result)
-    for row in result.rows:
-        key = f"{FREE}/{row['solver']}/"
-        if row["scene"] == FREE and key + "time" in result.arrays:
-            below.plot(
-                result.arrays[key + "time"],
-                result.arrays[key + "tilt"] / result.settings["slenderness"],
-                label=row["solver"],
-                **style(row["solver"]),
-            )
+    _draw(below, result, FREE, "tilt", result.settings["slenderness"])
     for level in (-1, 1):
         below.axhline(level, color="0.6", linewidth=0.8, linestyle=":")
     ends = [row["end"]["time"] for row in result.rows if row["scene"] == FREE and row["end"]]
@@ -40,16 +32,8 @@ def free_standing(result: Result) -> Drawing:
 def isolated(result: Result) -> Drawing:
     """Fig. 6: tilt and displacement of the isolated Caryatid."""
     figure, (above, below) = axes_of(2, 1, height=4.4, sharex=True)
-    for row in result.rows:
-        key = f"{ISOLATED}/{row['solver']}/"
-        if row["scene"] == ISOLATED and key + "time" in result.arrays:
-            above.plot(
-                result.arrays[key + "time"],
-                result.arrays[key + "tilt"] / result.settings["slenderness"],
-                label=row["solver"],
-                **style(row["solver"]),
-            )
-            below.plot(result.arrays[key + "time"], result.arrays[key + "base_displacement"], **style(row["solver"]))
+    _draw(above, result, ISOLATED, "tilt", result.settings["slenderness"])
+    _draw(below, result, ISOLATED, "base_displacement")
     for level in (-1, 1):
         below.axhline(level * result.settings["x_max"], color="0.6", linewidth=0.8, linestyle=":")
     above.set(ylabel="tilt φ / γ [-]", ylim=(-0.05, 0.05))
@@ -60,6 +44,15 @@ def isolated(result: Result) -> Drawing:
         "Tilt at zero and base displacement over time, all solvers over each other.",
         f"Fig. 6, {result.settings['motion']['label']}: the isolated Caryatid does not rock; dotted: x_max.",
     )
+
+
+def _draw(axis, result, scene, column, unit=1.0):
+    """A column of the histories of one scene over time, in every solver, in that unit."""
+    for row in result.rows:
+        key = f"{scene}/{row['solver']}/"
+        if row["scene"] == scene and key + "time" in result.arrays:
+            values = result.arrays[key + column] / unit
+            axis.plot(result.arrays[key + "time"], values, label=row["solver"], **style(row["solver"]))
 
 
 def _ground(axis, result):
