@@ -67,7 +67,13 @@ def simulate_twin(
     SettingError
         The method is unknown or a tolerance is not positive.
     """
-    settings = {"method": method, "rtol": rtol, "atol": atol, "max_step": max_step, "rest_rate": rest_rate}
+    settings: dict[str, Any] = {
+        "method": method,
+        "rtol": rtol,
+        "atol": atol,
+        "max_step": max_step,
+        "rest_rate": rest_rate,
+    }
     _check(settings)
     if scene.duration is None:
         return until_decided(functools.partial(simulate_twin, history=history, energy=energy, **settings), scene)
