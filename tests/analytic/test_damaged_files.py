@@ -17,7 +17,7 @@ from analytic import SceneError, load_scene
 from analytic.errors import FILE_LENGTH, KEY_LENGTH, TEXT_LENGTH, VALUE_LENGTH
 from analytic.records import read_record
 
-CORPUS = Path(__file__).parent / "corpus"
+CORPUS = Path(__file__).parent / "fixtures"
 LONGEST_MESSAGE = FILE_LENGTH + KEY_LENGTH + VALUE_LENGTH + 2 * TEXT_LENGTH + 200  # characters
 HANG = 2.0  # s of CPU time
 DEFAULTS = {

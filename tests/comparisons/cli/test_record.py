@@ -11,16 +11,7 @@ from mutated_files import VALUES, cosmos, csmip, knet
 from analytic import SampledMotion
 from analytic.records import G, read_record
 from analytic.records.written import two_columns
-from comparisons import cli
 from comparisons.showing.records import DAMPING, PERIODS, spectrum
-
-
-def call(capfd, *arguments):
-    capfd.readouterr()
-    with pytest.raises(SystemExit) as end:
-        cli.main([str(argument) for argument in arguments])
-    out, err = capfd.readouterr()
-    return end.value.code or 0, out, err
 
 
 @pytest.fixture
@@ -30,9 +21,9 @@ def three_channels(tmp_path):
     return path
 
 
-def test_every_channel_is_shown_drawn_and_written(capfd, tmp_path, three_channels):
+def test_every_channel_is_shown_drawn_and_written(rocking, tmp_path, three_channels):
     picture, file = tmp_path / "record.png", tmp_path / "record.json"
-    status, out, _ = call(capfd, "record", three_channels, "--plot", picture, "--json", file)
+    status, out, _ = rocking("record", three_channels, "--plot", picture, "--json", file)
     assert status == 0 and "made-up.v2: CSMIP volume 2" in out and picture.stat().st_size > 10_000
     rows = [line.split() for line in out.splitlines() if "(" in line]
     assert [row[:3] for row in rows] == [["1", "(90", "Deg)"], ["2", "(Up)", "cm/sec2"], ["3", "(H1)", "cm/sec2"]]
@@ -48,16 +39,16 @@ def test_every_channel_is_shown_drawn_and_written(capfd, tmp_path, three_channel
     assert (up["peak"], up["peak_time"], up["duration"]) == pytest.approx((3.0, 0.02, 0.055))
 
 
-def test_one_channel_is_written_as_columns_that_are_read_back(capfd, tmp_path, three_channels):
+def test_one_channel_is_written_as_columns_that_are_read_back(rocking, tmp_path, three_channels):
     file = tmp_path / "up.txt"
-    status, out, _ = call(capfd, "record", three_channels, "--channel", "up", "--to", file)
+    status, out, _ = rocking("record", three_channels, "--channel", "up", "--to", file)
     assert status == 0 and "2 (Up)" in out and "1 (90" not in out
     motion, wanted = read_record(file), read_record(three_channels, channel=2)
     assert motion.digest() == wanted.digest()
 
 
-def test_to_takes_one_channel(capfd, tmp_path, three_channels):
-    status, _, err = call(capfd, "record", three_channels, "--to", tmp_path / "x.txt")
+def test_to_takes_one_channel(rocking, tmp_path, three_channels):
+    status, _, err = rocking("record", three_channels, "--to", tmp_path / "x.txt")
     assert status == 2 and "takes one channel; add --channel, one of 1 (90 Deg), 2 (Up), 3 (H1)" in err
     assert not (tmp_path / "x.txt").exists()
 
@@ -72,20 +63,20 @@ def test_columns_are_read_back_bit_for_bit(tmp_path, dt):
     np.testing.assert_array_equal(motion.samples, samples)
 
 
-def test_what_was_done_and_what_is_odd_are_said(capfd, tmp_path):
+def test_what_was_done_and_what_is_odd_are_said(rocking, tmp_path):
     path = tmp_path / "small.EW.gz"
     path.write_bytes(gzip.compress(knet([5, -3, 8, 1, -12, 4]).encode()))
-    status, out, _ = call(capfd, "record", path)
+    status, out, _ = rocking("record", path)
     assert status == 0 and "K-NET" in out and "E-W" in out
     assert "Mean removed." in out and "is below 1e-4 g: check the unit" in out.replace("\n", " ")
 
 
-def test_what_the_file_does_not_say_is_asked_for_and_taken(capfd, tmp_path):
+def test_what_the_file_does_not_say_is_asked_for_and_taken(rocking, tmp_path):
     path = tmp_path / "channels.csv"
     path.write_text("".join(f"{a};{-a};1\n" for a in VALUES))
-    status, _, err = call(capfd, "record", path, "--units", "g", "--column", "2")
+    status, _, err = rocking("record", path, "--units", "g", "--column", "2")
     assert status == 2 and "one column" not in err and "sampling is not uniform" in err
-    status, out, _ = call(capfd, "record", path, "--units", "g", "--column", "2", "--dt", "0.02", "--json", "-")
+    status, out, _ = rocking("record", path, "--units", "g", "--column", "2", "--dt", "0.02", "--json", "-")
     channel = json.loads(out)["channels"][0]
     assert status == 0 and channel["peak"] == pytest.approx(1.5 * G)
     assert (channel["units"], channel["units_from"], channel["dt"]) == ("g", "units", 0.02)
@@ -124,13 +115,13 @@ WORDS += (
 )
 
 
-def test_no_combination_of_words_ends_in_a_traceback(capfd, tmp_path, monkeypatch, three_channels):
+def test_no_combination_of_words_ends_in_a_traceback(rocking, tmp_path, monkeypatch, three_channels):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("comparisons.showing.records.spectrum", lambda motion: 0 * PERIODS)  # words are under test here
     draw, seen = random.Random(1), set()
     for _ in range(120):
         arguments = draw.choices(WORDS, k=draw.randrange(5))
-        status, out, err = call(capfd, "record", draw.choice([three_channels, "none", __file__]), *arguments)
+        status, out, err = rocking("record", draw.choice([three_channels, "none", __file__]), *arguments)
         assert status in (0, 1, 2) and "Traceback" not in out + err and len(err) < 3000, arguments
         assert status == 0 or err, arguments
         seen.add(status)
@@ -138,19 +129,19 @@ def test_no_combination_of_words_ends_in_a_traceback(capfd, tmp_path, monkeypatc
 
 
 @pytest.mark.parametrize("command", ["report", "new"])
-def test_other_commands_ask_for_the_channel_too(capfd, tmp_path, command):
+def test_other_commands_ask_for_the_channel_too(rocking, tmp_path, command):
     record = tmp_path / "record.v2c"
     record.write_text(cosmos(VALUES))
     scene = [tmp_path / "scene.toml", "--height", "2", "--width", "0.5", "--mass", "900"] if command == "new" else []
-    status, _, err = call(capfd, command, *scene, "--record", record)
+    status, _, err = rocking(command, *scene, "--record", record)
     assert status == 2 and "motion.channel: missing; the file holds channels 1 (340 deg) or 2 (Up)" in err
     if command == "new":
-        assert call(capfd, command, *scene, "--record", record, "--channel", "Up")[0] == 0
+        assert rocking(command, *scene, "--record", record, "--channel", "Up")[0] == 0
         assert 'channel = "Up"' in scene[0].read_text()
 
 
-def test_options_of_a_record_ask_for_one(capfd):
-    status, _, err = call(capfd, "report", "--channel", "Up")
+def test_options_of_a_record_ask_for_one(rocking):
+    status, _, err = rocking("report", "--channel", "Up")
     assert status == 2 and "--channel Up: belongs to a record; give --record FILE" in err
 
 
