@@ -26,9 +26,9 @@ def command(
     Example: rocking verify --engine exudyn
     """
     from analytic.errors import SettingError
-    from comparisons.measuring.tolerances import rows
     from engines import get_engine, installed_engines
 
+    from ..measuring.tolerances import rows
     from ..running.files import check_writable, write_text
 
     check_time_limit(time_limit)
