@@ -1,0 +1,37 @@
+"""JavaScript of the pages, run as a test needs it: in Node where it is present, else in a Chromium by Playwright."""
+
+import importlib.util
+import json
+import shutil
+import subprocess
+
+import pytest
+
+NEEDED = "needs Node, or Playwright (pip install playwright) and a Chromium"
+
+
+def chromium():
+    """Path of a Chromium that Playwright can drive, or None."""
+    if importlib.util.find_spec("playwright") is None:
+        return None
+    return shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+
+
+def evaluate(source, expression, data=None):
+    """Value of a JavaScript `expression` after the scripts `source`, with `data` as DATA; skips without an engine."""
+    script = f"{source}\nconst DATA = {json.dumps(data)};\n"
+    if node := shutil.which("node"):
+        print_it = f"process.stdout.write(JSON.stringify({expression}));"
+        run = subprocess.run([node, "-"], input=script + print_it, capture_output=True, text=True, timeout=120)
+        assert run.returncode == 0, run.stderr
+        return json.loads(run.stdout)
+    if not (path := chromium()):
+        pytest.skip(NEEDED)
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as play:
+        browser = play.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        page = browser.new_page()
+        value = page.evaluate(f"() => {{ {script} return {expression}; }}")
+        browser.close()
+    return value
