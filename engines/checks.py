@@ -133,12 +133,17 @@ def energy_gain(scene: Scene, trace: Trace) -> float:
     kinetic energy where that is more. NaN where the energy overflows. Steps within ``trace.settle`` after a
     crossing of tilt = 0 are left out.
     """
-    trace = _settled(trace)
-    with np.errstate(over="ignore", invalid="ignore"):  # a state that exploded has no balance: NaN
-        balance, kinetic = energy_balance(scene, trace)
     block = scene.block
+    level = low = rise = 0.0
     unit = block.mass * scene.gravity * block.radius * (1 - math.cos(block.slenderness))
-    return float((balance - np.minimum.accumulate(balance)).max() / max(unit, kinetic.max()))
+    with np.errstate(over="ignore", invalid="ignore"):  # a state that exploded has no balance: NaN
+        for piece in trace.pieces(_settled(trace)):
+            balance, kinetic = energy_balance(scene, piece)
+            balance = level + balance
+            lowest = np.minimum(low, np.minimum.accumulate(balance))
+            rise, unit = np.maximum(rise, (balance - lowest).max()), np.maximum(unit, kinetic.max())
+            level, low = balance[-1], lowest[-1]
+    return float(rise / unit)
 
 
 def check_energy(scene: Scene, trace: Trace) -> Failure | None:
@@ -152,8 +157,8 @@ def check_energy(scene: Scene, trace: Trace) -> Failure | None:
     )
 
 
-def _settled(trace: Trace) -> Trace:
-    """The steps of a trace outside the relaxation of a compliant contact after each crossing of tilt = 0.
+def _settled(trace: Trace) -> np.ndarray:
+    """Indices of the steps outside the relaxation of a compliant contact after each crossing of tilt = 0.
 
     There the block does not pivot about its corner, and the energy of a pivoting block does not describe it.
     """
@@ -161,4 +166,4 @@ def _settled(trace: Trace) -> Trace:
     last = np.searchsorted(crossings, trace.time, side="right") - 1
     since = trace.time - np.concatenate(([-math.inf], crossings))[last + 1]
     steps = np.flatnonzero(since >= trace.settle)
-    return trace.at(steps) if len(steps) >= 2 else trace
+    return steps if len(steps) >= 2 else np.arange(len(trace.time))

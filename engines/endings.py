@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 
 def finite_part(trace: Trace, failure: Failure | None) -> tuple[Trace | None, Failure | None]:
     """(the steps before the first non-finite one or None, the failure with its last finite state)."""
-    finite: np.ndarray = np.isfinite([getattr(trace, name) for name in Trace.COLUMNS]).all(axis=0)  # type: ignore[assignment]  # of all columns at once
+    finite = np.isfinite(trace.time)
+    for name in Trace.COLUMNS[1:]:
+        finite &= np.isfinite(getattr(trace, name))
     if trace.centre is not None:
         finite &= np.isfinite(trace.centre).all(axis=1)
     count = len(finite) if finite.all() else int(np.argmin(finite))

@@ -133,16 +133,23 @@ def straddled(scene: Scene, trace: Trace) -> np.ndarray:
     By the model's restitution and the acceleration at the step; where what is left of the speed counts.
     """
     model = ArrayModel.of(scene)
+    flight = np.abs(trace.tilt[:-1]) > trace.contact_tilt
+    if not flight.any():
+        return np.empty(0)
+    least = _least_speed(model, trace, _speeds(model, trace)[:-1][flight].max())
+    return np.concatenate([_straddling(scene, model, piece, least) for piece in trace.pieces()])
+
+
+def _straddling(scene: Scene, model: ArrayModel, trace: Trace, least: float) -> np.ndarray:
+    """`straddled`, of impacts from |tilt rate| `least` [rad/s] on."""
     k = np.flatnonzero(np.abs(trace.tilt[:-1]) > trace.contact_tilt)
-    if not len(k):
-        return k
     side, step = np.sign(trace.tilt[k]), np.diff(trace.time)[k]
     ground = scene.motion.acceleration(trace.time[k]) if scene.motion else np.zeros(len(k))
     up = vertical_acceleration(scene.motion, trace.time[k])
     gain = side * model.accelerations(side, trace.tilt[k], trace.tilt_rate[k], ground, trace.bearing_force[k], up)[0]
     p, q = np.abs(trace.tilt[k]), side * trace.tilt_rate[k]
     speed = np.sqrt(np.maximum(q * q - 2 * gain * p, 0.0))
-    falls = (gain < 0) & (model.restitution * speed >= _least_speed(model, trace, _speeds(model, trace)[k].max()))
+    falls = (gain < 0) & (model.restitution * speed >= least)
     with np.errstate(divide="ignore", invalid="ignore"):
         needed = (q + speed + 2 * model.restitution * speed) / -gain
     return trace.time[k[falls & (step > needed)]]
@@ -214,6 +221,22 @@ def contact_measures(scene: Scene, trace: Trace, falls: bool = False) -> tuple[f
 
     Where the block `falls`, the first two end at the last step below the slenderness.
     """
+    count, begin = len(trace.time), 0
+    if falls and (below := np.flatnonzero(np.abs(trace.tilt) <= scene.block.slenderness)).size:
+        count = int(below[-1]) + 2
+    demands, normals, peaks = [], [], []
+    for piece in trace.pieces():
+        demand, normal, absolute = _at_contact(scene, piece)
+        if begin < count:
+            demands.append(demand[: count - begin].max())
+            normals.append(normal[: count - begin].min())
+        peaks.append(np.abs(absolute).max())
+        begin += len(demand) - 1
+    return float(np.max(demands)), float(np.min(normals)), float(np.max(peaks))
+
+
+def _at_contact(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(|H|/N, N/(m g), absolute base acceleration [m/s2]) at the steps."""
     model = ArrayModel.of(scene)
     level = _contact_acceleration(model, scene, trace)
     vertical = vertical_acceleration(scene.motion, trace.time)
@@ -232,7 +255,4 @@ def contact_measures(scene: Scene, trace: Trace, falls: bool = False) -> tuple[f
         H, N = model.contact_forces(side, tilt, rate, tilting, absolute[flight], up)
         demand[flight] = np.where(N > 0, np.abs(H) / np.where(N > 0, N, 1.0), np.inf)
         normal[flight] = N / (model.m * model.g)
-    held = slice(None)
-    if falls and (below := np.flatnonzero(np.abs(trace.tilt) <= scene.block.slenderness)).size:
-        held = slice(0, int(below[-1]) + 2)
-    return float(demand[held].max()), float(normal[held].min()), float(np.abs(absolute).max())
+    return demand, normal, absolute

@@ -22,7 +22,6 @@ from analytic.errors import EngineNotInstalled, SceneError, SettingError
 from analytic.response import Failure
 
 from . import get_engine
-from .observe import failed_response
 
 if TYPE_CHECKING:
     from analytic import Response, Scene
@@ -84,6 +83,8 @@ def guarded(
     response, failure = alone(run, engine_name, scene, settings, time_limit=time_limit)
     if failure is None:
         return response
+    from .observe import failed_response  # half a second at every start, for runs that fail
+
     return failed_response(
         scene,
         failure,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from array import array
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -58,7 +59,7 @@ def missing_impulse(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray]
     """
     law = bearing_impulse(scene, trace)
     velocity = ground_velocity(scene.motion)
-    ground = np.array([velocity(t) for t in trace.time.tolist()]) if velocity else 0.0
+    ground = np.fromiter(map(velocity, array("d", trace.time.tobytes())), float, len(trace.time)) if velocity else 0.0
     left = momentum(scene, trace) + law + scene.total_mass * ground
     return left - left[0], law
 

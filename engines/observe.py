@@ -198,7 +198,17 @@ def _history(scene: Scene, trace: Trace) -> History:
         time = np.append(time, end)
     linear = {name: np.interp(time, trace.time, getattr(trace, name)) for name in Trace.COLUMNS[1:]}
     for value, rate in (("tilt", "tilt_rate"), ("base_displacement", "base_velocity")):
-        cubic = CubicHermiteSpline(trace.time, getattr(trace, value), getattr(trace, rate))
-        linear[value] = cubic(time)
+        linear[value] = _cubic(trace, value, rate, time)
     ground = scene.motion.acceleration(time) if scene.motion else np.zeros(len(time))
     return History(time=time, ground_acceleration=ground, **linear)
+
+
+def _cubic(trace: Trace, value: str, rate: str, time: np.ndarray) -> np.ndarray:
+    """A column of the trace at other times, increasing ones within it, by the cubics through its steps."""
+    values = np.empty_like(time)
+    for piece in trace.pieces():
+        begin = np.searchsorted(time, piece.time[0])
+        end = np.searchsorted(time, piece.time[-1], side="right") if piece.time[-1] < trace.time[-1] else None
+        cubic = CubicHermiteSpline(piece.time, getattr(piece, value), getattr(piece, rate))
+        values[begin:end] = cubic(time[begin:end])
+    return values

@@ -8,7 +8,7 @@ after the impact backward to it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -29,6 +29,8 @@ RK_STEPS, CORRECTIONS = 4, 3
 PACE, MOST_STEPS = 0.5, 256
 # Backward in time viscous damping grows: by more than e to this power it would carry nothing but the steps' errors.
 GROWTH = 1.0
+# Steps measured at a time: a long run costs the memory of its steps, not that of a dozen arrays derived from them.
+PIECE = 100_000
 
 
 class ArrayModel(RockingModel):
@@ -107,6 +109,12 @@ class Trace:
             centre=None if self.centre is None else self.centre[steps],
             **{name: getattr(self, name)[steps] for name in self.COLUMNS},
         )
+
+    def pieces(self, steps: np.ndarray | None = None) -> Iterator[Trace]:
+        """The steps, or those of an array of indices, in pieces of `PIECE`; each begins with the last one's last."""
+        for begin in range(0, len(self.time if steps is None else steps) - 1, PIECE):
+            part = slice(begin, begin + PIECE + 1)
+            yield self.at(part if steps is None else steps[part])
 
     def upto(self, count: int) -> Trace:
         """The first `count` steps."""

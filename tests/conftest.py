@@ -1,6 +1,8 @@
 """What all tests share."""
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 from hypothesis import settings
@@ -11,8 +13,21 @@ settings.load_profile("ci" if os.environ.get("CI") else "default")
 
 PROJECT = Path(__file__).parents[1]
 
+# The kernel is compiled without and with vertical motion, and once more over batches: two parts of like length.
+SCENE = """
+from analytic import PulseMotion, load_scene, simulate, simulate_many
+scene = load_scene("caryatid-rigid").with_(motion=PulseMotion("one-sine", 1.0, 60.0), duration=0.1)
+"""
+COMPILED = (
+    SCENE + "simulate(scene), simulate_many([scene])",
+    SCENE + "simulate(scene.with_(motion=PulseMotion('one-sine', 1.0, 60.0, vertical=scene.motion)))",
+)
 
-def pytest_configure():
-    """New processes that tests start find the project too, wherever pytest was started."""
+
+def pytest_configure(config):
+    """New processes that tests start find the project too, and workers the kernel, which each would compile."""
     others = os.environ.get("PYTHONPATH")
     os.environ["PYTHONPATH"] = os.pathsep.join([str(PROJECT), *([others] if others else [])])
+    if getattr(config.option, "numprocesses", None) and not hasattr(config, "workerinput"):
+        for compiling in [subprocess.Popen([sys.executable, "-c", part], cwd=PROJECT) for part in COMPILED]:
+            compiling.wait()

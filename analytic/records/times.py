@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from decimal import Decimal
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from ..errors import SceneError
 from .numbers import NUMBER, number
@@ -143,6 +142,8 @@ def _fit(times: np.ndarray, unit: np.ndarray, step: float) -> float | None:
         """By how much a line of slope h misses the intervals time +- unit/2; convex in h."""
         off = times - h * count
         return (off - unit / 2).max() - (off + unit / 2).min()
+
+    from scipy.optimize import minimize_scalar  # half a second at every start, for this alone
 
     reach = 2 * unit.max() / (len(times) - 1)
     best = minimize_scalar(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -40,20 +41,18 @@ def ground_load(motion: Motion) -> Callable[[Any, Any], Any]:
     return pulse
 
 
-def segments(motion: Motion, duration: float) -> tuple[tuple[float, ...], tuple[list[float], ...]]:
-    """(ends, loads): end times [s] of the smooth segments up to `duration`, and the load vector in each."""
+def segments(motion: Motion, duration: float) -> tuple[array[float], np.ndarray]:
+    """(ends, loads): end times [s] of the n smooth segments up to `duration`; their load vectors, shape (n, 3)."""
     if isinstance(motion, SampledMotion):
         slope = np.diff(motion.samples) / motion.dt
         start = np.arange(len(slope)) * motion.dt
-        ends = list(start + motion.dt)
-        loads = list(zip((motion.samples[:-1] - slope * start).tolist(), slope.tolist(), strict=True))
+        ends, loads = start + motion.dt, np.column_stack([motion.samples[:-1] - slope * start, slope, 0 * slope])
     else:
-        ends, loads = [motion.start, motion.end], [(0.0, 0.0), (motion.amplitude, 0.0)]
-    pairs = [(float(end), [a, b, 0.0]) for end, (a, b) in zip(ends, loads, strict=True) if end > 0]
-    inside = [pair for pair in pairs if pair[0] < duration]
-    after = pairs[len(inside)][1] if len(inside) < len(pairs) else [0.0, 0.0, 0.0]
-    ends, loads = zip(*inside, (duration, after), strict=True)  # type: ignore[assignment]  # tuples of them
-    return ends, loads  # type: ignore[return-value]  # as above
+        ends, loads = np.array([motion.start, motion.end]), np.array([[0.0, 0.0, 0.0], [motion.amplitude, 0.0, 0.0]])
+    loads, ends = loads[ends > 0], ends[ends > 0]
+    inside = int(np.searchsorted(ends, duration))
+    still = np.zeros((1, 3))  # after the motion
+    return array("d", [*ends[:inside], duration]), np.concatenate([loads, still])[: inside + 1]
 
 
 class Ground:
@@ -73,7 +72,7 @@ class Ground:
     def _enter(self):
         self.end = self.ends[self.at]
         for number, vectors in self.loads:
-            self.mbs.SetLoadParameter(number, "loadVector", vectors[self.at])
+            self.mbs.SetLoadParameter(number, "loadVector", vectors[self.at].tolist())
 
     def first_step(self, step: float) -> float:
         """The first step [s]: `step`, but inside the first segment."""

@@ -7,7 +7,7 @@ import signal
 import threading
 import time
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -142,8 +142,8 @@ def step_through(
             "the run took too many steps",
             f"{limit} steps reached t = {steps.times[-1]:.9g} s of {scene.duration:.9g} s",
         )
-    q, v = np.split(np.array(steps.states).reshape(-1, 8 if scene.base else 6), 2, axis=1)
-    trace = make_trace(scene, np.array(steps.times), q, v, steps.forces, model.bearing, contact_tilt, settle)
+    q, v = np.split(np.asarray(steps.states).reshape(-1, 8 if scene.base else 6), 2, axis=1)
+    trace = make_trace(scene, np.asarray(steps.times), q, v, steps.forces, model.bearing, contact_tilt, settle)
     ended = "overturned" if trace is not None and abs(trace.tilt[-1]) >= OVERTURNED else None
     return Run(trace, len(steps.times) - 1, cpu, failure, ended)
 
@@ -219,7 +219,7 @@ def make_trace(
     t: np.ndarray,
     q: np.ndarray,
     v: np.ndarray,
-    z: Sequence[float],
+    z: array[float],
     bearing: Bearing | None,
     contact_tilt: float,
     settle: float,
@@ -230,6 +230,6 @@ def make_trace(
     if len(t) < 2:
         return None
     x, speed = (q[:, 3], v[:, 3]) if scene.base else (np.zeros_like(t), np.zeros_like(t))
-    force = bearing.law.force(x, np.array(z), speed) if bearing else np.zeros_like(t)
+    force = bearing.law.force(x, np.asarray(z), speed) if bearing else np.zeros_like(t)
     centre = np.column_stack([q[:, :2], v[:, :2]])
     return Trace(t, -q[:, 2], -v[:, 2], x, speed, force, contact_tilt, settle, centre)

@@ -267,12 +267,16 @@ def run_small(folder, near):
     return read_result(path)
 
 
+ON_ONE_WORKER = pytest.mark.xdist_group("speed-error study")  # the small study is run once
+
+
 @pytest.fixture(scope="module")
 def studied(tmp_path_factory, near):
     folder = tmp_path_factory.mktemp("speed-error")
     return folder, [run_small(folder / name, near) for name in ("first", "second")]
 
 
+@ON_ONE_WORKER
 def test_repeating_the_study_gives_the_same_errors_bit_for_bit(studied):
     _, (first, second) = studied
     assert first.rows and all(row["repeatable"] for row in first.rows)
@@ -280,6 +284,7 @@ def test_repeating_the_study_gives_the_same_errors_bit_for_bit(studied):
     assert all(row["timings"] == 2 for row in first.rows)
 
 
+@ON_ONE_WORKER
 def test_the_study_resumes(studied, near):
     folder, (first, _) = studied
     store = folder / "first" / RUNS
@@ -291,6 +296,7 @@ def test_the_study_resumes(studied, near):
     assert [row["cpu_seconds"] for row in again.rows] == [row["cpu_seconds"] for row in first.rows]
 
 
+@ON_ONE_WORKER
 def test_the_section_speaks_in_numbers_and_draws(studied):
     _, (result, _) = studied
     page = section(result)
@@ -321,6 +327,7 @@ def test_the_section_speaks_in_numbers_and_draws(studied):
     assert "exponent 1.000" in draw_growth(nothing[0]).axes[0].get_legend().get_texts()[0].get_text()
 
 
+@ON_ONE_WORKER
 @pytest.mark.parametrize("x, y", [("cpu", "error"), ("step", "boundary-shift"), ("cpu-per-second", "restitution")])
 def test_axes_are_at_choice(studied, x, y):
     _, (result, _) = studied
@@ -335,6 +342,7 @@ def test_unknown_axes_are_refused():
         check_axes("speed")
 
 
+@ON_ONE_WORKER
 def test_replot_draws_from_a_result_file(studied, tmp_path, capsys):
     folder, _ = studied
     with pytest.raises(SystemExit) as left:
