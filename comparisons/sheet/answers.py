@@ -1,0 +1,100 @@
+"""A file of answers, read; and the exact ones with what they may be off by."""
+
+from __future__ import annotations
+
+import csv
+import math
+from os import PathLike
+from pathlib import Path
+
+from analytic.errors import SceneError
+
+from .observed import Value, solved
+from .pages import COLUMNS
+from .problems import PROBLEMS, Problem
+from .variants import TIGHTEST, Fault, FaultyRun
+
+LOOSER = 1e-14  # tolerance of the run beside the tightest one
+WORDS = ("stands", "rocks", "overturns")
+
+
+def read_answers(path: str | PathLike[str]) -> dict[str, dict[str, Value]]:
+    """{problem: {quantity: value}} of a file of answers; what is not answered is not in it.
+
+    Raises
+    ------
+    SceneError
+        A line is not (scene, quantity, value), or names what the sheet does not ask; says file, line and remedy.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise SceneError("answers", str(path), "no text in UTF-8", "save it as CSV in UTF-8") from error
+    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip() and line[0] != "#"]
+    rows = [
+        (number, [cell.strip() for cell in row])
+        for (number, _), row in zip(lines, csv.reader(line for _, line in lines), strict=True)
+    ]
+    if not rows or rows[0][1] != list(COLUMNS):
+        found = ",".join(rows[0][1]) if rows else ""
+        raise SceneError("answers", found, f"{path}: not the head {','.join(COLUMNS)}", "begin with that line")
+    asked = {problem.name: {one.name: one for one in problem.quantities} for problem in PROBLEMS}
+    given: dict[str, dict[str, Value]] = {}
+    for number, row in rows[1:]:
+        place = f"{path}, line {number}"
+        if len(row) != len(COLUMNS):
+            raise SceneError("answers", ",".join(row), f"{place}: not three columns", "write scene,quantity,value")
+        name, quantity, value = row
+        if name not in asked:
+            raise SceneError("scene", name, f"{place}: no scene of the sheet", f"choose one of {', '.join(asked)}")
+        if quantity not in asked[name]:
+            raise SceneError("quantity", quantity, f"{place}: not asked of {name}", f"see {name}.md")
+        if quantity in given.setdefault(name, {}):
+            raise SceneError("quantity", quantity, f"{place}: answered twice", "remove one")
+        if value:
+            given[name][quantity] = _value(asked[name][quantity].kind, value, place)
+    return {name: values for name, values in given.items() if values}
+
+
+def _value(kind, text, place):
+    if kind == "outcome":
+        if text not in WORDS:
+            raise SceneError("value", text, f"{place}: no outcome", f"write one of {', '.join(WORDS)}")
+        return text
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise SceneError("value", text, f"{place}: not a finite number", "write one with a decimal point, or nothing")
+    return value
+
+
+def exact(problem: Problem) -> dict[str, Value]:
+    """The answers to a problem."""
+    return solved(problem)
+
+
+def error(problem: Problem, given: dict[str, Value], right: dict[str, Value]) -> dict[str, float]:
+    """{quantity: error over its scale} of the answers given; of a word 0, or 1 where it is another."""
+    return {
+        one.name: float(given[one.name] != right[one.name])
+        if one.kind == "outcome"
+        else abs(float(given[one.name]) - float(right[one.name])) / problem.scale(one)
+        for one in problem.quantities
+        if one.name in given
+    }
+
+
+def own_error(problem: Problem) -> float:
+    """What the exact answers may be off by: the largest difference, over the scales, from a run of the model at a
+    looser tolerance and from one of the second implementation."""
+    right, worst = exact(problem), 0.0
+    second = FaultyRun.observed(problem, Fault(), TIGHTEST)
+    if second is None:
+        raise ArithmeticError(f"{problem.name}: the second implementation fails")
+    for other in (solved(problem, tolerance=LOOSER), second.answers(problem)):
+        worst = max(worst, *error(problem, other, right).values())
+        if other.keys() != right.keys():
+            raise ArithmeticError(f"{problem.name}: two solutions do not show the same")
+    return worst

@@ -1,0 +1,234 @@
+"""The scenes of the sheet, and what is asked of each."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, synthetic_motion
+
+VERSION = 1  # of the scenes and quantities: answers to another sheet are answers to other questions
+RECORD_SAMPLES = 1601  # of the synthetic motion: its first 8 s
+DAMPING = 0.15  # of the linear bearings, as a share of critical damping
+PERIOD = 2.0  # s, of the linear bearings under block and base
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One number, or word, that is asked for.
+
+    kind: "time", "angle", "rate", "length", "speed", "force" or "outcome". source: what of a run it is: an attribute
+    of an `Impact`, of a `State`, or of `observed.Observed`. index: which impact, uplift or rest, from 1 on, or
+    the time [s] of the state.
+    """
+
+    name: str
+    kind: str
+    words: str
+    source: str
+    index: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """One page of the sheet; `scene` has a duration, up to which its quantities are asked."""
+
+    name: str
+    title: str
+    story: str
+    scene: Scene
+    quantities: tuple[Quantity, ...]
+
+    @property
+    def times(self) -> tuple[float, ...]:
+        """Times [s] at which a state is asked for, in order."""
+        return tuple(sorted({one.index for one in self.quantities if one.source in STATE}))
+
+    def scale(self, quantity: Quantity) -> float:
+        """What an error of a quantity is divided by, in its unit; `statement.SCALES` says the same in symbols."""
+        block, omega = self.scene.block, self.scene.rocking_frequency
+        return {
+            "time": 1 / omega,
+            "angle": block.slenderness,
+            "rate": block.slenderness * omega,
+            "length": block.radius * block.slenderness,
+            "speed": block.radius * block.slenderness * omega,
+            "force": self.scene.total_mass * self.scene.gravity * block.slenderness,
+            "outcome": 1.0,
+        }[quantity.kind]
+
+
+IMPACT = {
+    "time": ("impact_time", "time", "time of impact {k}"),
+    "rate_before": ("rate_before", "rate", "φ′ just before impact {k}"),
+    "rate_after": ("rate_after", "rate", "φ′ just after impact {k}"),
+    "base_velocity_jump": ("base_velocity_jump", "speed", "x′ just after impact {k} less x′ just before it"),
+}
+STATE = {
+    "tilt": ("tilt", "angle", "φ at t = {t:g} s"),
+    "tilt_rate": ("tilt_rate", "rate", "φ′ at t = {t:g} s"),
+    "base_displacement": ("displacement", "length", "x at t = {t:g} s"),
+    "bearing_force": ("force", "force", "force F of all bearings together at t = {t:g} s"),
+}
+OTHERS = {
+    "outcome": Quantity(
+        "outcome", "outcome", "stands (φ stays 0), rocks, or overturns (|φ| reaches π/2 within the duration)", "outcome"
+    ),
+    "peak_tilt": Quantity("peak_tilt", "angle", "largest |φ| within the duration", "peak_tilt"),
+    "peak_displacement": Quantity(
+        "peak_displacement", "length", "largest |x| within the duration", "peak_base_displacement"
+    ),
+    "uplift": Quantity("uplift_time", "time", "time at which the block first lifts", "uplifts", 1),
+    "rest": Quantity(
+        "rest_time", "time", "limit of the times of the impacts of the first free rocking: it then rests", "rests", 1
+    ),
+    "overturning": Quantity("overturning_time", "time", "time at which |φ| = π/2", "overturning_time"),
+}
+
+
+def impacts(count: int, *sources: str) -> list[Quantity]:
+    """The first impacts, each by these of `IMPACT`."""
+    found = []
+    for k in range(1, count + 1):
+        for source in sources:
+            name, kind, words = IMPACT[source]
+            found.append(Quantity(f"{name}_{k}", kind, words.format(k=k), source, k))
+    return found
+
+
+def states(times: Sequence[float], *sources: str) -> list[Quantity]:
+    """The state at these times [s], each by these of `STATE`."""
+    return [
+        Quantity(f"{STATE[source][0]}_at_{t:g}", STATE[source][1], STATE[source][2].format(t=t), source, t)
+        for t in times
+        for source in sources
+    ]
+
+
+def _block(slenderness: float) -> Block:
+    return Block(mass=1000.0, radius=1.2, slenderness=slenderness)
+
+
+def record() -> SampledMotion:
+    """The ground motion of the problem "record": the first 8 s of the synthetic one."""
+    motion = synthetic_motion()
+    return SampledMotion(motion.dt, motion.samples[:RECORD_SAMPLES], "record.csv")
+
+
+def _problems() -> tuple[Problem, ...]:
+    base = Base(mass=300.0)
+    rubber = Bearings(count=4, ka=2.4e4, kb=2.4e3, alpha=40.0)
+    omega = 2 * math.pi / PERIOD
+    springs = Bearings(law="linear", count=4, ka=1300 * omega**2 / 4, damping=2 * DAMPING * omega * 1300 / 4)
+    word = OTHERS["outcome"]
+    return (
+        Problem(
+            "free-rigid",
+            "Free rocking on rigid ground",
+            "The block is tilted, let go from rest, and rocks on rigid ground that does not move.",
+            Scene(block=_block(0.25), start=Start(tilt=0.2), duration=4.0),
+            (word, *impacts(3, "time", "rate_before", "rate_after"), *states((1.5, 2.5, 4.0), "tilt", "tilt_rate")),
+        ),
+        Problem(
+            "free-sliding",
+            "Free rocking on a base that slides",
+            "The block is tilted and let go from rest. Its base slides on the ground without friction; the ground does "
+            "not move.",
+            Scene(block=_block(0.2), base=base, start=Start(tilt=0.15), duration=4.0),
+            (
+                word,
+                *impacts(3, "time", "rate_before", "rate_after", "base_velocity_jump"),
+                *states((1.0, 2.0), "tilt", "base_displacement"),
+            ),
+        ),
+        Problem(
+            "isolated-standing",
+            "A block that stands on bearings",
+            "Block and base start at rest on hysteretic bearings. The ground moves by one sine, and the block is too "
+            "stocky to lift.",
+            Scene(
+                block=_block(0.35), base=base, bearings=rubber, motion=PulseMotion("one-sine", -3.0, 6.0), duration=4.0
+            ),
+            (
+                word,
+                OTHERS["peak_displacement"],
+                *states((0.75, 1.25, 1.5, 2.0, 2.25), "base_displacement", "bearing_force"),
+            ),
+        ),
+        Problem(
+            "isolated-rocking",
+            "A block that rocks on bearings",
+            "Block and base start at rest on hysteretic bearings. The ground moves by one sine, and the block lifts.",
+            Scene(
+                block=_block(0.17), base=base, bearings=rubber, motion=PulseMotion("one-sine", -3.0, 8.0), duration=4.0
+            ),
+            (
+                word,
+                OTHERS["uplift"],
+                *impacts(2, "time", "rate_before", "rate_after", "base_velocity_jump"),
+                OTHERS["peak_tilt"],
+                OTHERS["peak_displacement"],
+                *states((0.5, 1.25), "tilt", "base_displacement", "bearing_force"),
+            ),
+        ),
+        *(_pulse(name, words, amplitude) for name, words, amplitude in PULSES),
+        Problem(
+            "record",
+            "A recorded motion, linear bearings with a damper",
+            "Block and base start at rest on linear springs with viscous dampers. The ground acceleration is that of "
+            "the file inputs/record.csv, linear between its samples.",
+            Scene(block=_block(0.18), base=base, bearings=springs, motion=record(), duration=6.0),
+            (
+                word,
+                OTHERS["uplift"],
+                *impacts(1, "time", "rate_before", "rate_after", "base_velocity_jump"),
+                OTHERS["peak_displacement"],
+                *states((3.0, 4.0, 5.0, 6.0), "tilt", "base_displacement", "bearing_force"),
+            ),
+        ),
+        Problem(
+            "hard",
+            "Rest, and uplift again",
+            "The block is tilted and let go on rigid ground. Ever faster and weaker impacts bring it to rest in finite "
+            "time, after infinitely many of them. From t = 2 s on the ground moves by one sine, and it lifts again.",
+            Scene(
+                block=_block(0.45),
+                start=Start(tilt=0.1),
+                motion=PulseMotion("one-sine", 6.0, 6.5, start=2.0),
+                duration=6.0,
+            ),
+            (
+                word,
+                *impacts(3, "time"),
+                OTHERS["rest"],
+                OTHERS["uplift"],
+                OTHERS["peak_tilt"],
+                *states((2.4, 3.0), "tilt", "tilt_rate"),
+            ),
+        ),
+    )
+
+
+PULSES = (("pulse-below", "overturning is near", 3.14), ("pulse-above", "the amplitude is 5 % larger", 3.3))
+
+
+def _pulse(name, words, amplitude):
+    """The two sides of the amplitude 3.21708 m/s2, beyond which the block overturns after one impact."""
+    below = name == "pulse-below"
+    return Problem(
+        name,
+        f"One sine, {words}",
+        "The block stands on rigid ground, which moves by one sine.",
+        Scene(block=_block(0.25), motion=PulseMotion("one-sine", amplitude, 6.0), duration=4.0),
+        (
+            OTHERS["outcome"],
+            OTHERS["uplift"],
+            *impacts(1, "time", "rate_before", "rate_after"),
+            OTHERS["peak_tilt" if below else "overturning"],
+            *states((0.5, 1.0, 2.0), "tilt"),
+        ),
+    )
+
+
+PROBLEMS = _problems()

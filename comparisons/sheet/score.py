@@ -1,0 +1,171 @@
+"""Answers scored: how far off, in which place beside the solvers measured here, and what probably went wrong.
+
+A mistake is named only where what it would answer has been computed and all answers of the scene lie within `MATCHING`
+of it, while no other mistake's do. Else the cause is unknown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from ..report.studies import RESULTS
+from ..running.provenance import ResultError, read_result
+from ..showing.wording import TRUSTED
+from .answers import error, exact
+from .faults import MISTAKES
+from .problems import PROBLEMS, VERSION
+
+if TYPE_CHECKING:
+    from .observed import Value
+    from .problems import Problem
+
+MATCHING = 1e-5  # largest error of answers against those of the mistake they come from
+WRONG = 1e-3  # error from which a cause is looked for: far beyond what `MATCHING` allows for
+TELLING = 2  # numbers at least that must be wrong before a cause is named
+STORED = "sheet.json"
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class SceneScore(_Model):
+    """One scene's answers: error over the scales, the largest and of each; place beside the stored solvers (None where
+    not all was answered, or nothing is stored); cause: name of the mistake behind a wrong answer, None if unknown."""
+
+    scene: str
+    error: float
+    worst: str
+    errors: dict[str, float]
+    missing: list[str]
+    rank: int | None
+    of: int
+    right: bool
+    cause: str | None
+    advice: str | None
+
+
+class Score(_Model):
+    """A file's scores. stored: where the solvers beside it come from; cause: the one mistake that explains all that is
+    wrong, if there is one."""
+
+    schema_: str = Field(default="rocking score 1", serialization_alias="schema")
+    sheet: int = VERSION
+    scenes: list[SceneScore]
+    unanswered: list[str]
+    cause: str | None
+    passed: bool
+    stored: str
+
+
+def score(given: Mapping[str, Mapping[str, Value]], tell: Callable[[str], object] = lambda name: None) -> Score:
+    """The `Score` of answers as `answers.read_answers` gives them; `tell` is called with each scene's name.
+
+    >>> from comparisons.sheet.answers import exact
+    >>> from comparisons.sheet.problems import PROBLEMS
+    >>> found = score({"free-rigid": exact(PROBLEMS[0])})
+    >>> found.passed, found.scenes[0].cause
+    (True, None)
+    """
+    problems = [problem for problem in PROBLEMS if problem.name in given]
+    right, errors = {}, {}
+    for problem in problems:
+        tell(problem.name)
+        right[problem.name] = exact(problem)
+        errors[problem.name] = error(problem, dict(given[problem.name]), right[problem.name])
+    causes, whole = _causes(problems, given, errors)
+    table, stored = stored_errors()
+    scenes = [
+        _scene_score(problem, errors[problem.name], causes.get(problem.name), table.get(problem.name, []))
+        for problem in problems
+    ]
+    return Score(
+        scenes=scenes,
+        unanswered=[problem.name for problem in PROBLEMS if problem.name not in given],
+        cause=whole,
+        passed=bool(scenes) and all(one.right for one in scenes),
+        stored=stored,
+    )
+
+
+def stored_errors() -> tuple[dict[str, list[tuple[float, str]]], str]:
+    """({scene: [(error, solver)] from the least on}, where they come from in words)."""
+    try:
+        result = read_result(RESULTS / STORED)
+    except ResultError as problem:
+        return {}, f"no stored solvers ({problem})"
+    table: dict[str, list[tuple[float, str]]] = {}
+    for row in result.rows:
+        if row["error"] is not None:
+            table.setdefault(row["scene"], []).append((row["error"], f"{row['solver']}, {row['variant']}"))
+    when = f"{STORED}, computed on {result.provenance['time'][:10]}"
+    return {name: sorted(rows) for name, rows in table.items()}, when
+
+
+def _scene_score(problem, errors, cause, stored):
+    missing = [one.name for one in problem.quantities if one.name not in errors]
+    worst = max(errors, key=errors.get)
+    place = None if missing or not stored else 1 + sum(found < errors[worst] for found, _ in stored)
+    return SceneScore(
+        scene=problem.name,
+        error=errors[worst],
+        worst=worst,
+        errors=errors,
+        missing=missing,
+        rank=place,
+        of=len(stored) + 1,
+        right=errors[worst] <= TRUSTED,
+        cause=cause and cause.name,
+        advice=cause and cause.words,
+    )
+
+
+def _causes(problems, given, errors):
+    """({scene: `Mistake`} of wrong scenes whose cause is known, name of the one behind all that is wrong or None)."""
+    wrong = [problem for problem in problems if _is_wrong(problem, errors[problem.name])]
+    verdicts = {
+        mistake.name: {problem.name: _verdict(mistake, problem, given[problem.name]) for problem in wrong}
+        for mistake in MISTAKES
+    }
+    by_name = {mistake.name: mistake for mistake in MISTAKES}
+    sound = [problem for problem in problems if problem not in wrong]
+    whole = [
+        name
+        for name, found in verdicts.items()
+        if True in found.values()
+        and False not in found.values()
+        and not any(_verdict(by_name[name], problem, given[problem.name]) is False for problem in sound)
+    ]
+    if len(whole) == 1:
+        (name,) = whole
+        return {scene: by_name[name] for scene, found in verdicts[name].items() if found}, name
+    causes = {}
+    for problem in wrong:
+        matching = [name for name, found in verdicts.items() if found[problem.name]]
+        if len(matching) == 1:
+            causes[problem.name] = by_name[matching[0]]
+    return causes, None
+
+
+def _is_wrong(problem, errors):
+    numbers = [one.name for one in problem.quantities if one.kind != "outcome" and one.name in errors]
+    return sum(errors[name] > WRONG for name in numbers) >= TELLING
+
+
+def _verdict(mistake, problem, given):
+    """Whether a mistake explains the answers of a scene; None where it is not known what it would answer, or where it
+    would answer all of that right."""
+    forms = [form for form in mistake.answers(problem, given) if form]
+    found = [_matches(problem, given, form) for form in forms]
+    if any(found):
+        return True
+    return False if forms else None
+
+
+def _matches(problem: Problem, given: Mapping[str, Any], form: Mapping[str, Any]) -> bool:
+    if any(name not in form for name in given):
+        return False
+    return max(error(problem, dict(given), dict(form)).values()) <= MATCHING

@@ -1,0 +1,165 @@
+"""The second implementation with a fault built in: small variants, one for each mistake that changes an equation."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from analytic.bearing import BearingLaw
+from analytic.response import State
+from analytic.rocking import RockingModel
+from analytic.twin.run import Run
+
+from .observed import Observed, Value
+
+if TYPE_CHECKING:
+    from analytic.types import GroundFunction
+
+    from .problems import Problem
+
+TOLERANCE = 1e-10  # of the variants: far below what an answer must match them by
+REVERSALS = 200  # of the base in one run: more are a fault's chatter, which has no solution
+TIGHTEST = 1e-13  # of the estimate of the answers' own error
+
+
+class Lossless(RockingModel):
+    """No impact at all: the block passes to its other corner as if nothing had happened."""
+
+    def impact(self, rate: Any) -> tuple[Any, Any]:
+        return rate, 0.0 * rate
+
+
+class Printed8(RockingModel):
+    """Eq. (8) as printed: a factor R cos(gamma) too many."""
+
+    def impact(self, rate: Any) -> tuple[Any, Any]:
+        after, jump = super().impact(rate)
+        return after, jump * self.R * math.cos(self.gamma)
+
+
+class Printed12(BearingLaw):
+    """Eq. (12) as printed: unloading with the bracket 1 + x - x_j + 2 x0 of loading, x_j being right."""
+
+    def hysteretic(self, z: float, dx: float) -> float:
+        if dx >= 0:
+            return super().hysteretic(z, dx)
+        full, power = 1 + 2 * self.x0, 1 - self.alpha
+        mark = max(self.d0, self.d0 + power * (-z - self.f0) / self.dk) ** (1 / power)  # 1 - x_c + x_j + 2 x0
+        bracket = 2 * full - mark + dx
+        return -(self.dk * (bracket**power - self.d0) / power + self.f0)
+
+
+def _as(kind, thing):
+    """A frozen dataclass as one of its subclasses."""
+    return kind(**{field.name: getattr(thing, field.name) for field in fields(thing)})
+
+
+@dataclass(frozen=True)
+class Fault:
+    """What is wrong in a run.
+
+    lost: numbers of the impacts that do nothing, from 1 on. seen: whether these are noticed all the same. model: in
+    place of the equations, a subclass of `RockingModel`. inertia: factor on J_O in the equation of motion, and with
+    `restitution` in eq. (7). unloading: eq. (12) as printed. step [s]: impacts happen at its next multiple, and with
+    `smeared` the step that holds one is a Runge-Kutta step of fourth order across it, each stage on its own side.
+    """
+
+    lost: tuple[int, ...] = ()
+    seen: bool = True
+    model: type[RockingModel] | None = None
+    inertia: float = 1.0
+    restitution: bool = True
+    unloading: bool = False
+    step: float | None = None
+    smeared: bool = False
+
+
+class FaultyRun(Run):
+    """A run of the second implementation with a `Fault`."""
+
+    def __init__(self, problem: Problem, fault: Fault, tolerance: float) -> None:
+        settings = {"method": "DOP853", "rtol": tolerance, "atol": tolerance, "max_step": None, "rest_rate": 1e-8}
+        super().__init__(problem.scene, settings, history=False, energy=False)
+        self.fault, model = fault, self.model
+        if fault.unloading:
+            self.law = _as(Printed12, self.law)
+            model = replace(model, bearing=self.law)
+        if fault.inertia != 1:
+            inertia = fault.inertia * model.J
+            e = 1 - 2 * model.m * (model.R * math.sin(model.gamma)) ** 2 / inertia  # (7), on rigid ground
+            model = replace(model, J=inertia, restitution=max(e, 0.0) if fault.restitution else model.restitution)
+        self.model = self.right = model if fault.model is None else _as(fault.model, model)
+        self.lossless, self.reversals = _as(Lossless, model), 0
+
+    @classmethod
+    def observed(cls, problem: Problem, fault: Fault, tolerance: float = TOLERANCE) -> Observed | None:
+        """What the run shows; None where it fails."""
+        run, end = cls(problem, fault, tolerance), float(problem.scene.duration or 0.0)
+        states: dict[float, State] = {}
+        for t in (*problem.times, end):
+            run.scene = problem.scene.with_(duration=t)
+            with np.errstate(all="ignore"):
+                if run.go():
+                    return None
+            if run.overturning is not None:
+                break
+            states[t] = run.state()
+        return run.shown(states)
+
+    def shown(self, states: dict[float, State]) -> Observed:
+        """The run so far as `Observed`."""
+        response = self.response(0.0, None)
+        hidden = () if self.fault.seen else self.fault.lost
+        impacts = [impact for k, impact in enumerate(self.impacts, 1) if k not in hidden]
+        names = "outcome", "uplifts", "rests", "peak_tilt", "peak_base_displacement", "overturning_time"
+        return Observed(impacts=impacts, states=states, **{name: getattr(response, name) for name in names})
+
+    def at_reversal(self, ground: float) -> None:
+        self.reversals += 1
+        if self.reversals > REVERSALS:
+            raise ArithmeticError(f"the base turns back and forth at t = {self.t!r} s")
+        super().at_reversal(ground)
+
+    def at_impact(self, ground: float) -> None:
+        self.model = self.lossless if len(self.impacts) + 1 in self.fault.lost else self.right
+        tilt = self._late() if self.fault.step else 0.0
+        super().at_impact(ground)
+        if self.side:
+            self.y[0] = tilt
+
+    def _late(self) -> float:
+        """Go on to the end of the step in which the impact is noticed; returns the tilt there."""
+        step, t = self.fault.step or math.inf, self.t
+        before = math.floor(t / step) * step
+        start = self._stepped(t, before, self.y, smeared=False)
+        self.t = before + step
+        self.y = self._stepped(before, self.t, start, smeared=self.fault.smeared)
+        return float(self.y[0])
+
+    def _stepped(self, begin: float, end: float, y: np.ndarray, smeared: bool) -> np.ndarray:
+        """The state after one Runge-Kutta step of fourth order; smeared: each stage on the side its tilt says."""
+        h, own = end - begin, self.side
+        ground: GroundFunction = self.scene.motion.acceleration if self.scene.motion else (lambda t: 0.0)
+
+        def slope(t, y):
+            self.side = math.copysign(1.0, y[0]) if smeared else own
+            return np.array(self.derivative(ground, 0.0)(t, y))
+
+        a = slope(begin, y)
+        b = slope(begin + h / 2, y + h / 2 * a)
+        c = slope(begin + h / 2, y + h / 2 * b)
+        d = slope(end, y + h * c)
+        self.side = own
+        return y + h / 6 * (a + 2 * b + 2 * c + d)
+
+
+def with_fault(problem: Problem, fault: Fault) -> dict[str, Value] | None:
+    """The answers of a run with a fault; None where it comes to no end."""
+    try:
+        found = FaultyRun.observed(problem, fault)
+    except (ArithmeticError, ValueError):  # what a fault makes of the equations need not have a solution
+        return None
+    return None if found is None else found.answers(problem)

@@ -1,0 +1,152 @@
+"""The problem sheet and its score, by a solver that knows nothing of this project (`tests/sheet_solver.py`)."""
+
+import csv
+import io
+import math
+import re
+
+import pytest
+from sheet_solver import solve
+
+from analytic.errors import SceneError
+from comparisons.sheet.answers import own_error, read_answers
+from comparisons.sheet.faults import MISTAKES
+from comparisons.sheet.pages import markdown, write_sheet
+from comparisons.sheet.problems import PROBLEMS
+from comparisons.sheet.score import score
+
+BY_NAME = {problem.name: problem for problem in PROBLEMS}
+NAMES = {mistake.name for mistake in MISTAKES}
+TURN = 180 / math.pi
+
+
+@pytest.fixture(scope="module")
+def sheet(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sheet")
+    write_sheet(folder)
+    return folder
+
+
+def answers(sheet, names, told=lambda quantity, value: value, **fault):
+    """What the independent solver answers, with a fault, or with its answers told otherwise."""
+    given = {}
+    for name in names:
+        problem = BY_NAME[name]
+        found = solve(name, problem.times, record=sheet / "inputs" / "record.csv", **fault)
+        given[name] = {one.name: told(one, found[one.name]) for one in problem.quantities if one.name in found}
+    return given
+
+
+def factor(kinds, by):
+    return lambda quantity, value: value * by if quantity.kind in kinds else value
+
+
+def test_an_independent_solver_passes_with_the_pages_alone(sheet):
+    found = score(answers(sheet, [name for name in BY_NAME if name != "isolated-rocking"]))
+    assert found.passed and found.unanswered == ["isolated-rocking"]
+    assert max(one.error for one in found.scenes) < 1e-8
+    assert not any(one.missing or one.cause for one in found.scenes)
+
+
+@pytest.mark.parametrize("name", ["free-rigid", "free-sliding", "isolated-standing", "isolated-rocking", "hard"])
+def test_exact_answers_are_exact_to_1e_10(name):
+    assert own_error(BY_NAME[name]) < 1e-10
+
+
+SPOILT = {
+    "impact lost": ("impact lost", ("free-rigid",), {"lost": 2}),
+    "end of the step": ("restitution off by the step", ("free-rigid",), {"late": "held"}),
+    "end of the step, side by stage": ("restitution off by the step", ("free-sliding",), {"late": "smeared"}),
+    "eq. (8)": ("eq. (8) as printed", ("free-sliding", "free-rigid"), {"printed8": True}),
+    "eq. (12)": ("eq. (12) as printed", ("isolated-standing",), {"printed12": True}),
+    "half the damping": ("wrong damping definition", ("record",), {"c": 0.5}),
+    "tilts in degrees": ("degrees for radians", ("free-rigid",), {"told": factor(("angle", "rate"), TURN)}),
+    "motion in g": ("g for m/s2", ("pulse-below", "isolated-standing"), {"A": 1 / 9.81}),
+    "motion the other way": ("sign of the ground motion", ("isolated-standing",), {"A": -1}),
+    "one bearing": ("force per bearing for all", ("isolated-standing",), {"n": 0.25}),
+    "centre": ("inertia about the centre", ("free-rigid",), {"J": 0.25}),
+}
+
+
+@pytest.mark.parametrize("kind", SPOILT)
+def test_a_spoilt_code_is_told_what_is_wrong(sheet, kind):
+    cause, names, fault = SPOILT[kind]
+    found = score(answers(sheet, names, **fault))
+    assert found.cause == cause and not found.passed
+    assert {one.cause for one in found.scenes} == {cause} | {None for one in found.scenes if one.right}
+
+
+def test_what_two_mistakes_explain_is_unknown(sheet):
+    found = score(answers(sheet, ("pulse-below",), A=-1))  # or the sign of the tilt: this page alone cannot tell
+    assert not found.passed and found.cause is None and found.scenes[0].cause is None
+
+
+TOLD = {
+    "late by 10 ms": lambda one, value: value + 0.01 if one.kind == "time" else value,
+    "gon": factor(("angle", "rate"), 200 / math.pi),
+    "kN and mm": lambda one, value: value * {"force": 1e-3, "length": 1e3, "speed": 1e3}.get(one.kind, 1),
+    "two digits": lambda one, value: value if one.kind == "outcome" else float(f"{value:.1e}"),
+    "tilt doubled": factor(("angle",), 2.0),
+}
+CHANGED = [
+    {"e": 1.01},
+    {"e": 0.97},
+    {"g": 0.9},
+    {"R": 1.02},
+    {"mb": 1.5},
+    {"mb": 0.01},
+    {"gamma": 1.03},
+    {"phi0": 0.95},
+    {"J": 0.75},
+    {"J": 1.1},
+    {"A": 0.8},
+    {"A": 2.0},
+    {"w": 1.05},
+    {"kb": 1.2},
+    {"ka": 0.5},
+    {"alpha": 1.1},
+    {"n": 0.75},
+    {"printed8": True, "e": 1.02},
+    {"late": "held", "J": 1.02},
+    {"lost": 1, "R": 0.97},
+]
+
+
+@pytest.mark.slow
+def test_other_faults_are_never_given_a_wrong_name(sheet):
+    names = ("free-rigid", "free-sliding", "isolated-standing", "pulse-below")
+    found = [score(answers(sheet, names, **fault)) for fault in CHANGED]
+    found += [score(answers(sheet, names, told=told)) for told in TOLD.values()]
+    assert sum(not one.passed for one in found) >= 24  # two digits are too few in any case
+    assert {one.cause for one in found} == {None}
+    assert {scene.cause for one in found for scene in one.scenes} == {None}
+
+
+def test_pages_say_nothing_of_our_code(sheet):
+    for problem in PROBLEMS:
+        text = markdown(problem)
+        assert not re.search(
+            r"python|kernel|exudyn|analytic|comparisons|rocking (sheet|score|run)", text, re.IGNORECASE
+        )
+        for one in problem.quantities:
+            assert f"| {one.name} |" in text and f">{one.name}<" in (sheet / f"{problem.name}.html").read_text()
+    rows = list(csv.reader(io.StringIO((sheet / "inputs" / "record.csv").read_text())))
+    assert [float(row[1]) for row in rows[1:]] == BY_NAME["record"].scene.motion.samples.tolist()
+
+
+@pytest.mark.parametrize(
+    "line, words",
+    [
+        ("free-rigid,impact_time_1,0,9", "line 2: not three columns"),
+        ("free,outcome,rocks", "line 2: no scene of the sheet"),
+        ("hard,weight,3", "line 2: not asked of hard"),
+        ("hard,rest_time,1.6 s", "line 2: not a finite number"),
+        ("hard,outcome,falls", "line 2: no outcome"),
+        ("hard,outcome,rocks\nhard,outcome,rocks", "line 3: answered twice"),
+    ],
+)
+def test_answers_that_cannot_be_read_are_one_message(tmp_path, line, words):
+    file = tmp_path / "answers.csv"
+    file.write_text(f"scene,quantity,value\n{line}\n")
+    with pytest.raises(SceneError, match=words):
+        read_answers(file)
