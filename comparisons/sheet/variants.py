@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from .problems import Problem
 
 TOLERANCE = 1e-10  # of the variants: far below what an answer must match them by
+LONGEST = 0.05  # s, of a step: events are found on its interpolant, which is less exact than its end
 REVERSALS = 200  # of the base in one run: more are a fault's chatter, which has no solution
 TIGHTEST = 1e-13  # of the estimate of the answers' own error
 
@@ -83,6 +84,7 @@ class FaultyRun(Run):
     def __init__(self, problem: Problem, fault: Fault, tolerance: float) -> None:
         settings = {"method": "DOP853", "rtol": tolerance, "atol": tolerance, "max_step": None, "rest_rate": 1e-8}
         super().__init__(problem.scene, settings, history=False, energy=False)
+        self.max_step = min(self.max_step, LONGEST)
         self.fault, model = fault, self.model
         if fault.unloading:
             self.law = _as(Printed12, self.law)

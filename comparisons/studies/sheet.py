@@ -84,9 +84,9 @@ def section(result: Result) -> Section:
         "The problem sheet",
         (
             f"{len(scenes)} scenes stated as equations and numbers, for codes that are not ours (rocking sheet, "
-            "rocking score), solved by the engines at their default settings. Error: the largest of a scene's answers, "
-            "over the scale of each. The exact answers' own is the largest difference to another tolerance and to a second "
-            "implementation.",
+            "rocking score), solved by the engines at their default settings. Error: the largest of a scene's "
+            "answers, over the scale of each. The exact answers' own is the largest difference to another tolerance "
+            "and to a second implementation.",
         ),
         (Table("Largest error of a scene's answers [-]", ("solver", *scenes), [*rows, exact_row]),),
     )

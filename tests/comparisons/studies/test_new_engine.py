@@ -19,6 +19,7 @@ from comparisons.running.executors import Serial
 from comparisons.running.provenance import read_result, write_result
 from comparisons.running.study import Ask
 from comparisons.running.sweep import Row, run_sweep
+from comparisons.sheet.problems import PROBLEMS
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.caryatid.runs import simulations
 from comparisons.studies.overturning import cases as overturning
@@ -141,6 +142,14 @@ def test_the_study_of_the_paper_runs_and_shows_it(crude, tmp_path):
     assert len(rows_with(section)) >= 6 and "crude, isolated: stands" in section.text[0] and drawn(section)
 
 
+def test_the_problem_sheet_runs_and_shows_it(crude, monkeypatch, tmp_path):
+    monkeypatch.setattr("comparisons.studies.sheet.PROBLEMS", PROBLEMS[:1])
+    study = get_study("sheet")
+    found = answered(study.plan(ASK), modelled)[-1]
+    assert found.rows[0]["error"] < 1e-5  # the model in its place: what interpolation leaves
+    assert rows_with(shown(study, found, tmp_path))
+
+
 def test_the_tolerances_say_that_it_states_none(crude, tmp_path):
     study = get_study("tolerances")
     (found,) = answered(study.plan(ASK), None)
@@ -156,4 +165,4 @@ def test_the_growth_of_cost_and_the_report_run_it(crude):
 
 
 def test_every_study_of_this_project_is_covered():
-    assert set(BUILT_IN) == {*SHORT, "overturning", "caryatid", "tolerances"}
+    assert set(BUILT_IN) == {*SHORT, "overturning", "caryatid", "tolerances", "sheet"}
