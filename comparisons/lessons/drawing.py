@@ -1,0 +1,93 @@
+"""Figures of the lessons: drawn once with stand-ins for colours, which a page replaces by its own, light or dark."""
+
+from __future__ import annotations
+
+import io
+import re
+from typing import TYPE_CHECKING, Any
+
+import matplotlib
+from matplotlib.figure import Figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+INK, SOFT, GRID, PANEL = "#1c1b19", "#5f5b54", "#e4e0d8", "#fffffe"
+MODEL, OTHER, THIRD = "#0072b2", "#d55e00", "#00795c"  # told apart by colour-blind readers, and by their dashes
+STONE = "#e9e0cb"
+# Outcomes in maps: stands, rocks, overturns after impacts, overturns without one.
+OUTCOMES = ("#d9d5cc", "#56b4e9", "#f0a500", "#c23b00")
+VARIABLES = {
+    INK: "ink", SOFT: "soft", GRID: "grid", PANEL: "panel", MODEL: "model", OTHER: "ghost", THIRD: "third",
+    STONE: "stone", OUTCOMES[0]: "stands",
+}  # fmt: skip
+STYLE: dict[str, Any] = {
+    "font.family": "sans-serif",
+    "font.size": 11,
+    "axes.edgecolor": SOFT,
+    "axes.labelcolor": INK,
+    "axes.facecolor": "none",
+    "figure.facecolor": "none",
+    "text.color": INK,
+    "xtick.color": SOFT,
+    "ytick.color": SOFT,
+    "axes.grid": True,
+    "grid.color": GRID,
+    "grid.linewidth": 0.8,
+    "axes.axisbelow": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.unicode_minus": True,
+    "lines.linewidth": 1.9,
+    "legend.frameon": False,
+    "legend.fontsize": 10,
+    "legend.labelcolor": INK,
+    "svg.fonttype": "none",
+    "path.simplify_threshold": 0.3,
+}
+WIDTH, HEIGHT = 6.2, 4.6  # inch: lettering stays readable on a phone
+WIDE = (9.6, 5.4)  # inch, 16:9, of the figures for slides
+LICENCE = "rocking lessons, MIT licence"
+
+
+def canvas(rows: int = 1, heights: tuple[float, ...] = (1,), columns: int = 1, **more: Any) -> tuple[Figure, Any]:
+    """(figure, its axes as of `Figure.subplots`) in the lessons' style."""
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(WIDTH, HEIGHT))
+        axes = figure.subplots(rows, columns, height_ratios=heights, **more)
+        figure.subplots_adjust(left=0.125, right=0.975, top=0.965, bottom=0.125, hspace=0.42, wspace=0.12)
+    return figure, axes
+
+
+def legend(axes: Axes, **more: Any) -> None:
+    """A legend in the lessons' style."""
+    with matplotlib.rc_context(STYLE):
+        axes.legend(**more)
+
+
+def svg(figure: Figure, name: str) -> str:
+    """The figure as an inline SVG element in the colours of its page; `name` keeps its parts' names apart."""
+    file = io.BytesIO()
+    with matplotlib.rc_context({**STYLE, "svg.hashsalt": name}):
+        figure.savefig(file, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
+    text = file.getvalue().decode()
+    text = text[text.index("<svg") :]
+    text = re.sub(r"<metadata>.*?</metadata>\s*", "", text, flags=re.DOTALL)
+    text = re.sub(r'<svg [^>]*?viewBox="([^"]+)"[^>]*>', r'<svg viewBox="\1" aria-hidden="true">', text, count=1)
+    text = re.sub(r"(\d+\.\d{2})\d+", r"\1", text)  # a hundredth of a point is enough
+    text = re.sub(r"\s*\n\s*", " ", text)
+    for colour, variable in VARIABLES.items():
+        text = text.replace(colour, f"var(--{variable})")
+    return text
+
+
+def download(figure: Figure, kind: str) -> bytes:
+    """The figure for slides, 16:9, with its licence line: "svg", or "png" of 1920 by 1080 pixels."""
+    figure.set_size_inches(*WIDE)
+    figure.subplots_adjust(left=0.085, right=0.98, bottom=0.13)
+    mark = figure.text(0.985, 0.012, LICENCE, ha="right", color=SOFT, fontsize=7)
+    file = io.BytesIO()
+    with matplotlib.rc_context({**STYLE, "svg.hashsalt": "download"}):
+        figure.savefig(file, format=kind, dpi=200, facecolor="white", metadata={"Date": None} if kind == "svg" else {})
+    mark.remove()
+    return file.getvalue()

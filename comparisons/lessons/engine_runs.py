@@ -1,0 +1,94 @@
+"""Every installed engine, in every variant, on one small scene: a block let go on rigid ground, to its second impact.
+
+Which engines there are is asked of `engines`; without any the lessons run on the model's own fixed-step integrator.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+
+from analytic import Scene, Start, simulate
+from analytic.caryatid import caryatid_block
+from analytic.time_stepping import simulate_time_stepping
+from engines import ENGINES, get_engine, installed_engines
+
+SLENDERNESS, START = 0.28, 0.6  # rad, tilt over slenderness
+SCENE = Scene(block=caryatid_block(SLENDERNESS), start=Start(tilt=START * SLENDERNESS), duration=1.5)
+FIRST = 1.0  # s: the first impact is over, and the second far
+OWN = "fixed steps"  # the model's own integrator
+OWN_STEPS = (0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4)  # s
+ROUNDS = 3  # the least CPU time of so many
+
+
+@dataclass(frozen=True)
+class EngineRun:
+    """One run: who, with which knob; error: of the tilt rate after the first impact, relative, None without one; cpu [s]."""
+
+    solver: str
+    variant: str
+    rung: str
+    knob: str
+    value: float
+    default: bool
+    error: float | None
+    cpu: float
+
+    @property
+    def name(self) -> str:
+        return f"{self.solver}, {self.variant}" if self.variant else self.solver
+
+
+def first_rate(response) -> float | None:
+    """Tilt rate after the first impact [rad/s], None where there is none."""
+    hits = [impact for impact in response.impacts if impact.time < FIRST]
+    return hits[0].rate_after if hits else None
+
+
+@functools.cache
+def exact_rate() -> float:
+    rate = first_rate(simulate(SCENE, history=False))
+    assert rate is not None  # the model strikes
+    return rate
+
+
+def _error(response):
+    rate = first_rate(response)
+    return None if rate is None else abs(rate / exact_rate() - 1)
+
+
+@functools.cache
+def own_runs() -> tuple[EngineRun, ...]:
+    """Of the model's fixed-step integrator."""
+    found = []
+    for step in OWN_STEPS:
+        runs = [simulate_time_stepping(SCENE, step=step, history=False) for _ in range(ROUNDS)]
+        cpu = min(run.cpu_seconds for run in runs)
+        found.append(EngineRun(OWN, "", "", "step", step, step == 1e-3, _error(runs[0]), cpu))
+    return tuple(found)
+
+
+@functools.cache
+def engine_runs() -> tuple[EngineRun, ...]:
+    """Of every installed engine: each variant through the ladder of its accuracy knob."""
+    found = []
+    for name in installed_engines():
+        engine = get_engine(name)
+        for variant, kind in engine.variants.items():
+            for value in kind.ladder:
+                response = engine.simulate(SCENE, variant=variant, history=False, **{kind.knob: value})  # type: ignore[arg-type]  # a number
+                error = None if response.outcome == "failed" else _error(response)
+                found.append(
+                    EngineRun(
+                        name, variant, kind.rung, kind.knob, value, value == kind.default, error, response.cpu_seconds
+                    )
+                )
+    return tuple(found)
+
+
+def colour_of(run: EngineRun) -> str | None:
+    return ENGINES[run.solver].colour if run.solver in ENGINES else None
+
+
+def marker_of(run: EngineRun) -> str:
+    return ENGINES[run.solver].marker if run.solver in ENGINES else "o"

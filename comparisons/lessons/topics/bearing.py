@@ -1,0 +1,164 @@
+"""Lesson 3: a lead-rubber bearing."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from analytic.bearing import BearingLaw
+from analytic.caryatid import BASE, BEARINGS, MASS
+from analytic.design import BearingProperties, properties
+
+from ..drawing import MODEL, OTHER, THIRD, canvas, legend
+from ..lesson import Control, Equation, Exercise, Lesson, View
+
+LAW = BearingLaw.of(BEARINGS)
+CARRIED, X_MAX = MASS + BASE.mass, 0.30  # kg, m
+AMPLITUDES = np.linspace(0.02, 0.4, 77)
+
+
+def at(amplitude: float) -> BearingProperties:
+    """What the bearings give at an amplitude [m]."""
+    return properties(BEARINGS, CARRIED, amplitude)
+
+
+def loop(amplitude: float) -> tuple[np.ndarray, np.ndarray]:
+    """(x [m], force [N]) of one bearing: from rest to +amplitude, back, and forth again."""
+    turn = np.linspace(amplitude, -amplitude, 160)
+    x = np.concatenate([np.linspace(0, amplitude, 80), turn, turn[::-1]])
+    return x, LAW.kb * x + LAW.path(x)
+
+
+def view(amplitude: float) -> View:
+    """The loop of one bearing at an amplitude [m], and damping by two definitions."""
+    x, force = loop(amplitude)
+    here = at(amplitude)
+    figure, (cycle, damping) = canvas(2, (1.35, 1))
+    cycle.plot(x, force / 1e3, color=MODEL)
+    cycle.fill(x[80:], force[80:] / 1e3, color=MODEL, alpha=0.13, linewidth=0)
+    reach = np.array([-amplitude, amplitude])
+    cycle.plot(reach, here.secant_stiffness * reach / 1e3, "--", color=OTHER, linewidth=1.4, label="secant stiffness")
+    cycle.set(xlim=(-0.42, 0.42), ylim=(-3.7, 3.7), xlabel="displacement x [m]", ylabel="force [kN]")
+    legend(cycle, loc="upper left")
+    known = [at(value) for value in AMPLITUDES]
+    damping.plot(AMPLITUDES, [100 * p.damping_paper for p in known], color=MODEL, label="W_D / 2πE, Table 1(a)")
+    damping.plot(AMPLITUDES, [100 * p.damping_equivalent for p in known], "--", color=OTHER, label="W_D / 4πE, usual")
+    damping.plot([amplitude] * 2, [100 * here.damping_paper, 100 * here.damping_equivalent], "o", color=THIRD)
+    damping.set(xlim=(0, 0.42), ylim=(0, 90), xlabel="amplitude [m]", ylabel="damping [%]")
+    legend(damping, loc="upper right")
+    return View(
+        figure,
+        {
+            "energy of a cycle": (here.cycle_loss, "J"),
+            "period": (here.period, "s"),
+            "damping, Table 1(a)": (100 * here.damping_paper, "%"),
+            "damping, usual": (100 * here.damping_equivalent, "%"),
+        },
+        f"Moved to and fro by {amplitude:.2f} m, one bearing takes {here.cycle_loss:.0f} J a cycle.",
+    )
+
+
+def cycle_energy() -> float:
+    """W_D of one bearing at 0.30 m [J]: the loop's area, by trapezia."""
+    turn = X_MAX * np.cos(np.linspace(0, 2 * np.pi, 20001))
+    x = np.concatenate([[0.0], turn])
+    force = LAW.kb * x + LAW.path(x)
+    return float(np.trapezoid(force[1:], x[1:]))
+
+
+def secant_period() -> float:
+    """[s] at x_max."""
+    return at(X_MAX).period
+
+
+def usual_damping() -> float:
+    """Equivalent viscous damping at x_max [%]."""
+    return 100 * at(X_MAX).damping_equivalent
+
+
+def misprinted_jump() -> float:
+    """By how much the force of eq. (12) as printed jumps at a reversal from 0.20 m [N].
+
+    Its bracket grows, 1 + (x - x_j) + 2 x0, where it must shrink, and x_j is chosen so that the right form is
+    continuous: both brackets are D_c at the reversal, so the jump is that of the printed law's history, 2 f0.
+    """
+    z = LAW.start(0.20)
+    return 2 * min(abs(z), LAW.f0)
+
+
+LESSON = Lesson(
+    3,
+    "bearing",
+    "A lead-rubber bearing",
+    "Four bearings of rubber with a core of lead carry the statue’s base. How soft are they, how much energy do they "
+    "take, "
+    "and what does “30 % damping” mean?",
+    (
+        "read stiffness and energy off a hysteresis loop",
+        "tell the two definitions of equivalent damping apart",
+        "check a printed formula by a property it must have",
+    ),
+    "work of a force, harmonic oscillator",
+    12,
+    (
+        Equation(
+            r"f = k_b x + (k_a - k_b) \frac{(1 + x - x_j + 2 x_0)^{1-\alpha} - D_0}{1 - \alpha} + f_0",
+            "9, 11",
+            "Loading: stiff at first (the lead is elastic), then soft (the rubber alone). $x_j$ remembers the last "
+            "reversal.",
+        ),
+        Equation(
+            r"W_D = 4 f_0 X - \frac{2 (k_a - k_b)}{(\alpha - 1)(\alpha - 2)}",
+            "",
+            "Energy of a cycle of amplitude X, where the loop reaches its limit curves.",
+        ),
+        Equation(
+            r"\xi = \frac{W_D}{4 \pi E_s}, \quad E_s = \frac{1}{2} k_{sec} X^2",
+            "",
+            "The usual equivalent damping; Table 1(a) divides by half as much.",
+        ),
+    ),
+    (Control("amplitude", tuple(round(0.02 * k, 2) for k in range(1, 21)), 0.3, "m"),),
+    view,
+    "Move the amplitude. The shaded area is the energy of one cycle.",
+    (
+        "*Stiffness and damping belong to an amplitude.* The same bearing is stiff and damps much at 0.05 m, soft and "
+        "damps "
+        "little at 0.40 m: a spring and a dashpot cannot stand for both.",
+        "*Two definitions, a factor of two.* The 30 % of Table 1(a) are $W_D/(2 \\pi E_s)$. Whoever designs for 30 % "
+        "in "
+        "the usual sense builds other bearings.",
+        "*Eq. (12) is misprinted.* With its bracket as printed the force jumps at every reversal. A property that "
+        "must hold "
+        "(force is continuous) finds it; a plot of one loop might not.",
+        "*The 1 in the bracket is a metre.* The law is not free of units: put in millimetres, it is another law.",
+    ),
+    (
+        Exercise(
+            "How much energy does one bearing take in a cycle of 0.30 m? Add up trapezia under the loop.",
+            cycle_energy,
+            "J",
+            "The closed form beside (9) gives the same.",
+            4,
+        ),
+        Exercise(
+            "Which period has the statue on its base ($3384$ kg) at 0.30 m?",
+            secant_period,
+            "s",
+            "$2 \\pi \\sqrt{M X/F(X)}$ with the force of all four.",
+        ),
+        Exercise(
+            "How much is “30 %” in the usual definition?",
+            usual_damping,
+            "%",
+            "Half of it: $4 \\pi E_s$ in place of $2 \\pi E_s$.",
+        ),
+        Exercise(
+            "At a reversal from 0.20 m: by how much would the force jump, if the hysteretic part changed its sign "
+            "there?",
+            misprinted_jump,
+            "N",
+            "$2 f_0$, once the loop is on its limit curve: this is what the misprint of (12) does.",
+        ),
+    ),
+    "motion=synthetic&base=true",
+)

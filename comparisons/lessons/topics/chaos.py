@@ -1,0 +1,159 @@
+"""Lesson 6: two blocks a hair apart."""
+
+from __future__ import annotations
+
+import functools
+import math
+
+import numpy as np
+
+from analytic import SampledMotion, Scene, simulate, simulate_many
+from analytic.caryatid import caryatid_block
+
+from ..computing import G
+from ..drawing import MODEL, OTHER, SOFT, canvas, legend
+from ..lesson import Control, Equation, Exercise, Lesson, View
+
+SLENDERNESS, RESTITUTION, DURATION = 0.28, 0.98, 30.0  # rad, -, s
+APART = 0.1  # of the slenderness: what counts as parted
+EXPONENTS = tuple(float(k) for k in range(-12, -1))
+STEP = 0.01  # s
+CROWD = 200
+
+
+@functools.cache
+def scene() -> Scene:
+    """A nearly elastic block under two sines whose periods never meet."""
+    times = np.arange(0, DURATION + STEP / 2, STEP)
+    sines = 0.5 * np.sin(11.7 * times) + 0.5 * np.sin(1.618 * 11.7 * times + 1)  # a golden section apart
+    motion = SampledMotion(STEP, 4 * G * math.tan(SLENDERNESS) * sines, "two sines")
+    return Scene(block=caryatid_block(SLENDERNESS), motion=motion, duration=DURATION).with_(
+        block={"restitution": RESTITUTION}
+    )
+
+
+@functools.cache
+def tilt_of(exponent: float | None) -> np.ndarray:
+    """Tilt over slenderness every `STEP`, of the block or, with an exponent k, of one whose e is 1 + 10^k times it."""
+    e = RESTITUTION * (1 + (0.0 if exponent is None else 10.0**exponent))
+    history = simulate(scene().with_(block={"restitution": e}), output_step=STEP).history
+    assert history is not None  # it was asked for
+    times = np.arange(0, DURATION + STEP / 2, STEP)
+    return np.interp(times, history.time, history.tilt) / SLENDERNESS
+
+
+def horizon(exponent: float) -> float:
+    """Time [s] at which the two have parted by `APART`; the whole run where they never do."""
+    apart = np.flatnonzero(np.abs(tilt_of(exponent) - tilt_of(None)) > APART)
+    return float(apart[0] * STEP) if len(apart) else DURATION
+
+
+def view(exponent: float) -> View:
+    """Both tilts, and their distance; exponent: of the relative difference in restitution."""
+    times = np.arange(0, DURATION + STEP / 2, STEP)
+    one, other, end = tilt_of(None), tilt_of(exponent), horizon(exponent)
+    figure, (tilt, distance) = canvas(2, (1, 1), sharex=True)
+    tilt.plot(times, one, color=MODEL, linewidth=1.3, label=f"e = {RESTITUTION}")
+    tilt.plot(times, other, "--", color=OTHER, linewidth=1.2, label=f"e = {RESTITUTION} (1 + 10^{exponent:.0f})")
+    tilt.axvline(end, color=SOFT, linewidth=1)
+    tilt.set(ylim=(-1.5, 2.0), ylabel="tilt φ / γ", xlim=(0, DURATION))
+    legend(tilt, loc="upper left", ncols=2)
+    distance.semilogy(times, np.maximum(np.abs(one - other), 1e-16), color=MODEL, linewidth=0.9)
+    distance.axhline(APART, color=SOFT, linewidth=0.9, linestyle=(0, (4, 4)))
+    distance.axvline(end, color=SOFT, linewidth=1)
+    distance.set(ylim=(1e-15, 10), ylabel="distance / γ", xlabel="time [s]", yticks=[1e-15, 1e-10, 1e-5, 1])
+    last = "overturns" if abs(other[-1]) > 2 else "rocks"
+    return View(
+        figure,
+        {
+            "horizon": (end, "s"),
+            "the first block": ("overturns" if abs(one[-1]) > 2 else "rocks", ""),
+            "the second block": (last, ""),
+        },
+        f"Two blocks that differ by 10^{exponent:.0f} in their restitution part after {end:.1f} s; the second {last}.",
+    )
+
+
+def growth() -> float:
+    """Rate [1/s] at which a small distance grows: slope of its logarithm against the horizon, over all exponents."""
+    ends = np.array([horizon(k) for k in EXPONENTS])
+    logs = np.log(10.0) * np.array(EXPONENTS)
+    inside = ends < DURATION
+    return float(-np.polyfit(ends[inside], logs[inside], 1)[0])
+
+
+def hair_for_twenty_seconds() -> float:
+    """Horizon [s] that double precision, 1e-16, allows by that growth."""
+    return float(np.log(APART / 1e-16) / growth())
+
+
+def crowd(scatter: float) -> float:
+    """Share [%] of `CROWD` blocks that overturn, whose e are spread by +-scatter."""
+    values = RESTITUTION * (1 + scatter * np.linspace(-1, 1, CROWD))
+    outcomes = simulate_many([scene().with_(block={"restitution": min(float(e), 1.0)}) for e in values], workers=1)
+    return 100 * float(outcomes.overturns.mean())
+
+
+def share_that_falls() -> float:
+    """Of blocks whose restitution is known to 1 % [%]."""
+    return crowd(0.01)
+
+
+LESSON = Lesson(
+    6,
+    "chaos",
+    "Two blocks a hair apart",
+    "Two blocks differ in the twelfth digit of their restitution. For how long do they move alike?",
+    (
+        "tell a wrong result from a sensitive one",
+        "estimate a sensitivity horizon, and know that it is a property of the scene",
+        "compare crowds where single runs mean nothing",
+    ),
+    "lesson 2; logarithms",
+    10,
+    (
+        Equation(
+            r"|\Delta \phi(t)| \approx |\Delta \phi(0)| \exp(\lambda t)",
+            "",
+            "On average: between impacts neighbours part as unstable pendulums do, and each impact turns a distance "
+            "in time "
+            "into one in rate.",
+        ),
+    ),
+    (Control("difference in restitution, power of ten", EXPONENTS, -6.0, "", 0),),
+    view,
+    "Move the difference between the two. Every factor of a thousand buys a few seconds, no more.",
+    (
+        "*A hundred times smaller error does not give a hundred times longer agreement.* It adds a constant: some "
+        "seconds.",
+        "*Two good solvers disagree after the horizon, and both are right.* Compare them point by point before it, "
+        "and as "
+        "crowds after it.",
+        "*A single verdict under a long record is one draw.* Give the share of a crowd, with its interval.",
+        "*Do not mistake an error for chaos.* Chaos needs time: who is off at the second impact is wrong.",
+    ),
+    (
+        Exercise(
+            "At which rate does a small distance grow? Fit the horizon against the logarithm of the difference.",
+            growth,
+            "per second",
+            "A straight line through the horizons of all powers of ten.",
+            2,
+        ),
+        Exercise(
+            "How far can double precision, $10^{-16}$, take you by that rate?",
+            hair_for_twenty_seconds,
+            "s",
+            "$\\ln(0.1/10^{-16})$ over the rate. No solver gets further in this number format.",
+            2,
+        ),
+        Exercise(
+            "Restitution is known to 1 %. What share of 200 such blocks overturns?",
+            share_that_falls,
+            "%",
+            "This number is stable, though no single verdict is.",
+            2,
+        ),
+    ),
+    "motion=synthetic&slenderness=0.2",
+)

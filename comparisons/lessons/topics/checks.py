@@ -1,0 +1,201 @@
+"""Lesson 8: how to check a simulation."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+
+from analytic import Response, Scene, Start, simulate
+from analytic.caryatid import BASE, caryatid_block
+from analytic.closed_form import free_rocking
+from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
+from analytic.time_stepping import simulate_time_stepping
+from analytic.twin import simulate_twin
+
+from ..drawing import MODEL, SOFT, canvas
+from ..lesson import Control, Equation, Exercise, Lesson, View
+
+SLENDERNESS, START, DURATION = 0.28, 0.6, 2.5  # rad, tilt over slenderness, s
+SOLVERS = ("event-driven", "fixed steps")
+LEVELS = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+FLOOR = 1e-17  # what is exact is drawn here
+
+
+def scene(side: float = 1.0) -> Scene:
+    """The Caryatid let go on rigid ground, to the one side or the other."""
+    start = Start(tilt=side * START * SLENDERNESS)
+    return Scene(block=caryatid_block(SLENDERNESS), start=start, duration=DURATION)
+
+
+def run(solver: str, level: float, side: float = 1.0) -> Response:
+    """level: tolerance 10^-2 level of the one, step 0.02 / 2^level [s] of the other."""
+    if solver == SOLVERS[0]:
+        return simulate(scene(side), tolerance=10.0 ** (-2 * level))
+    return simulate_time_stepping(scene(side), step=0.02 / 2**level)
+
+
+@functools.cache
+def second() -> float:
+    """Time of the second impact [s] in the second implementation: the same equations, scipy’s integrator."""
+    return simulate_twin(scene(), history=False, energy=False).impacts[1].time
+
+
+def energy_defect(response: Response) -> float:
+    """|energy at the end + what the impacts took - energy at the start| / energy at the start."""
+    model, end, start = RockingModel.of(scene()), response.end, scene().start
+
+    def energy(tilt, rate):
+        side = float(np.sign(tilt or rate))
+        return model.kinetic_energy(side, tilt, rate, 0.0) + model.potential_energy(side, tilt, 0.0)
+
+    lost = sum(0.5 * model.J * (hit.rate_before**2 - hit.rate_after**2) for hit in response.impacts)
+    first = energy(start.tilt, start.tilt_rate)
+    return abs(energy(end.tilt, end.tilt_rate) + lost - first) / first
+
+
+@functools.cache
+def checks(solver: str, level: float) -> dict[str, float]:
+    """Relative defect by check."""
+    response, finer, mirrored = run(solver, level), run(solver, level + 1), run(solver, level, -1.0)
+    block = scene()
+    known = free_rocking(block.rocking_frequency, SLENDERNESS, restitution(block), START * SLENDERNESS, 2).times[1]
+    time = response.impacts[1].time
+    return {
+        "closed form": abs(time / known - 1),
+        "finer setting": abs(time / finer.impacts[1].time - 1),
+        "energy": energy_defect(response),
+        "mirror": abs(response.end.tilt + mirrored.end.tilt) / SLENDERNESS,
+        "second program": abs(time / second() - 1),
+    }
+
+
+def view(solver: str, level: float) -> View:
+    """The five defects as bars."""
+    found = checks(solver, level)
+    figure, axis = canvas()
+    figure.subplots_adjust(left=0.24)
+    names = list(found)[::-1]
+    sizes = [max(found[name], FLOOR) for name in names]
+    axis.barh(names, sizes, left=0, color=MODEL, height=0.55)
+    for place, (name, size) in enumerate(zip(names, sizes, strict=True)):
+        axis.text(size * 2, place, "exact" if found[name] == 0 else f"{size:.0e}", va="center", color=SOFT)
+    axis.set(xscale="log", xlim=(FLOOR / 3, 30), xlabel="relative defect")
+    axis.grid(axis="y", visible=False)
+    setting = f"tolerance 1e-{2 * level:.0f}" if solver == SOLVERS[0] else f"step {20 / 2**level:.3g} ms"
+    return View(
+        figure,
+        {"setting": (setting, ""), **{name: (value, "") for name, value in found.items()}},
+        f"Five checks of {solver}, {setting}: the largest defect is {max(found.values()):.1e}.",
+    )
+
+
+def misprint_defect() -> float:
+    """Horizontal momentum [%] that eq. (8) as printed loses or gains at an impact, of that before it."""
+    on_base = Scene(block=caryatid_block(SLENDERNESS), base=BASE)
+    block, w = on_base.block, -0.8
+    lever = block.mass * block.half_height
+    before = lever * w
+    after = lever * restitution(on_base) * w - on_base.total_mass * base_jump_length_as_printed(on_base) * w
+    return 100 * abs(after / before - 1)
+
+
+def misprint_factor() -> float:
+    """By how many per cent e_x as printed is too long: what a trajectory would have to show."""
+    on_base = Scene(block=caryatid_block(SLENDERNESS), base=BASE)
+    return 100 * (base_jump_length_as_printed(on_base) / base_jump_length(on_base) - 1)
+
+
+def observed_order() -> float:
+    """Of the fixed steps: halvings of the step against the defect of the closed form."""
+    levels = np.array([3.0, 4.0, 5.0, 6.0, 7.0, 8.0])
+    block = scene()
+    known = free_rocking(block.rocking_frequency, SLENDERNESS, restitution(block), START * SLENDERNESS, 1)
+    rate = known.rates_after[0]
+    steps = 0.02 / 2**levels
+    # the envelope over neighbouring steps: where the impact falls within its step is chance
+    errors = [
+        max(
+            abs(
+                abs(simulate_time_stepping(scene(), step=step * (1 + 0.01 * k), history=False).impacts[0].rate_after)
+                / rate
+                - 1
+            )
+            for k in range(12)
+        )
+        for step in steps
+    ]
+    return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
+
+
+def mirror_defect() -> float:
+    """|tilt + tilt of the mirrored run| at the end of the event-driven run [rad]."""
+    return abs(run(SOLVERS[0], 6.0).end.tilt + run(SOLVERS[0], 6.0, -1.0).end.tilt)
+
+
+LESSON = Lesson(
+    8,
+    "checks",
+    "How to check a simulation",
+    "The curve looks right. How would you notice if it were not?",
+    (
+        "name five checks, and what each of them can see",
+        "measure an order of convergence",
+        "find a misprint by a law it breaks",
+    ),
+    "lessons 2 and 5",
+    10,
+    (
+        Equation(
+            r"\cos(\gamma - |\phi_1|) - \cos \gamma = e_{\phi}^2 \left( \cos(\gamma - |\phi_0|) - \cos \gamma \right)",
+            "",
+            "Closed form: the peaks of free rocking, from energy and (7).",
+        ),
+        Equation(
+            r"e_x = \frac{2 R^3 \sin^2 \gamma \cos \gamma \, m \tilde{m}}{R^2 \cos^2 \gamma \, m \tilde{m} - J_O}",
+            "8",
+            "As it should read, a length; the paper prints $R^4$ and $\\cos^2$ above, a length squared.",
+        ),
+    ),
+    (Control("solver", SOLVERS, "fixed steps"), Control("accuracy", LEVELS, 2.0, "", 0)),
+    view,
+    "Choose a solver, then make it finer. Bars are relative defects, on a logarithmic axis.",
+    (
+        "*Each check is blind to something.* Energy does not see a shifted time; the mirror sees only what treats the "
+        "two "
+        "sides unlike; a second program shares the errors of the equations it was given.",
+        "*A finer setting checks the solver, not the model.* It converges just as well to wrong equations.",
+        "*Trajectories hide small misprints.* (8) as printed changes the base’s jump by a few per cent; no plot shows "
+        "that, "
+        "momentum does at once.",
+        "*A check that cannot fail checks nothing.* Break the model on purpose, and see which check turns red.",
+    ),
+    (
+        Exercise(
+            "How much momentum does (8) as printed make out of nothing, per cent of that before the impact?",
+            misprint_defect,
+            "%",
+            "$m h \\dot{\\phi} + (m + m_b) \\dot{x}$ before and after.",
+        ),
+        Exercise(
+            "And by how many per cent is its length too long?",
+            misprint_factor,
+            "%",
+            "The factor too many is $R \\cos \\gamma$ in metres.",
+        ),
+        Exercise(
+            "Of which order are the fixed steps, measured against the closed form?",
+            observed_order,
+            "",
+            "Halve the step six times, take the worst of neighbouring steps, fit a line.",
+            2,
+        ),
+        Exercise(
+            "By how much does the event-driven run to the left differ from the mirror of that to the right?",
+            mirror_defect,
+            "rad",
+            "Every operation is the same but for signs, which floating point keeps.",
+        ),
+    ),
+    "motion=release&tilt=0.6&base=true",
+)

@@ -1,0 +1,201 @@
+"""Lesson 7: speed against error."""
+
+from __future__ import annotations
+
+import functools
+
+from analytic import simulate
+
+from ...showing.parts import Table, number
+from ..drawing import INK, MODEL, OTHER, SOFT, canvas, legend
+from ..engine_runs import (
+    OWN_STEPS,
+    ROUNDS,
+    SCENE,
+    EngineRun,
+    colour_of,
+    engine_runs,
+    exact_rate,
+    first_rate,
+    marker_of,
+    own_runs,
+)
+from ..lesson import Control, Equation, Exercise, Lesson, View
+
+TARGET = 0.01  # error asked for
+TOLERANCES = (1e-2, 1e-4, 1e-6, 1e-9)  # of the event-driven model
+FLOOR = 1e-12  # smaller errors are drawn here
+
+
+@functools.cache
+def model_runs() -> tuple[EngineRun, ...]:
+    """The event-driven model at several tolerances."""
+    found = []
+    for tolerance in TOLERANCES:
+        runs = [simulate(SCENE, history=False, tolerance=tolerance) for _ in range(ROUNDS)]
+        rate = first_rate(runs[0])
+        assert rate is not None  # it strikes
+        cpu = min(run.cpu_seconds for run in runs)
+        error = abs(rate / exact_rate() - 1)
+        found.append(EngineRun("event-driven", "", "", "tolerance", tolerance, tolerance == 1e-9, error, cpu))
+    return tuple(found)
+
+
+def trusted(runs: tuple[EngineRun, ...], target: float) -> dict[str, EngineRun]:
+    """The cheapest run of each solver whose error, and that of every finer setting, is below the target."""
+    ladders: dict[str, list[EngineRun]] = {}
+    for run in runs:  # in the order of the ladder, coarse to fine
+        ladders.setdefault(run.name, []).append(run)
+    best = {}
+    for name, ladder in ladders.items():
+        passing: list[EngineRun] = []
+        for run in reversed(ladder):
+            if run.error is None or run.error >= target:
+                break
+            passing.append(run)
+        if passing:
+            best[name] = min(passing, key=lambda run: run.cpu)
+    return best
+
+
+def everything() -> tuple[EngineRun, ...]:
+    return (*model_runs(), *own_runs(), *engine_runs())
+
+
+def view(step: float) -> View:
+    """Error against CPU time; step [ms] of the fixed-step integrator."""
+    figure, axis = canvas()
+    ladders: dict[str, list[EngineRun]] = {}
+    for run in everything():
+        ladders.setdefault(run.name, []).append(run)
+    for name, ladder in ladders.items():
+        own = ladder[0].solver == own_runs()[0].solver
+        colour = MODEL if own else INK if ladder[0].solver == "event-driven" else colour_of(ladder[0])
+        known = [run for run in ladder if run.error is not None]
+        first = ladder[0].rung == "first script"
+        axis.loglog(
+            [max(100 * (run.error or 0), 100 * FLOOR) for run in known],
+            [max(1e3 * run.cpu, 1e-3) for run in known],
+            marker=marker_of(ladder[0]),
+            linestyle=":" if first else "-",
+            color=colour,
+            linewidth=1.2,
+            markersize=5,
+            markerfacecolor="none" if first else colour,
+            label=name,
+        )
+    axis.axvline(100 * TARGET, color=SOFT, linewidth=1, linestyle=(0, (4, 4)))
+    here = next(run for run in own_runs() if abs(1e3 * run.value - step) < 1e-9)
+    assert here.error is not None  # the integrator strikes at each of its steps
+    axis.loglog(100 * here.error, 1e3 * here.cpu, "o", color=OTHER, markersize=10, zorder=5)
+    axis.set(xlabel="error of the rate after the first impact [%]", ylabel="CPU time [ms]", xlim=(60, 50 * 100 * FLOOR))
+    legend(axis, loc="upper left", fontsize=7.5, ncols=2)
+    axis.set_ylim(axis.get_ylim()[0], axis.get_ylim()[1] * 40)
+    best = trusted(everything(), TARGET)
+    cheapest = min(best.values(), key=lambda run: run.cpu)
+    return View(
+        figure,
+        {
+            "error at this step": (100 * here.error, "%"),
+            "CPU time": (1e3 * here.cpu, "ms"),
+            "cheapest below 1 %": (f"{cheapest.name}, {cheapest.knob} {cheapest.value:g}", ""),
+        },
+        f"Fixed steps of {step:g} ms err by {100 * here.error:.3f} %.",
+    )
+
+
+def table() -> Table:
+    """The cheapest trusted setting of each solver below 1 %."""
+    best = trusted(everything(), TARGET)
+    rows = [
+        [run.name, f"{run.knob} = {run.value:g}", number(100 * (run.error or 0), 2), number(1e3 * run.cpu, 2)]
+        for run in sorted(best.values(), key=lambda run: run.cpu)
+    ]
+    return Table(
+        "The cheapest setting of each solver that errs below 1 %, and whose finer settings do too (this machine)",
+        ("solver", "setting", "error [%]", "CPU time [ms]"),
+        rows,
+    )
+
+
+def coarsest_step() -> float:
+    """Of the fixed-step integrator's steps: the largest [ms] below 1 % with all finer ones."""
+    best = [run for run in own_runs() if run.error is not None]
+    passing = []
+    for run in reversed(best):
+        if run.error is None or run.error >= TARGET:
+            break
+        passing.append(run.value)
+    return 1e3 * max(passing)
+
+
+def event_driven_share() -> float:
+    """How many fixed steps cost as much as the whole event-driven run, at 1 % [runs of the model per fixed-step "
+    "run]."""
+    model = min(run.cpu for run in model_runs())
+    steps = trusted(own_runs(), TARGET)
+    return next(iter(steps.values())).cpu / model
+
+
+def passing_solvers() -> float:
+    """Number of solvers, variants apart, that reach 1 % and keep it."""
+    return float(len(trusted(everything(), TARGET)))
+
+
+LESSON = Lesson(
+    7,
+    "cost",
+    "Speed against error",
+    "How accurate must it be, and what does that cost? Find the setting at which an engine errs below 1 %, then the "
+    "cheapest solver.",
+    (
+        "draw and read a work-precision diagram",
+        "choose a setting by a rule that luck cannot meet",
+        "compare solvers at equal error, not at equal step",
+    ),
+    "lesson 5",
+    10,
+    (
+        Equation(
+            r"\text{cost} \propto \frac{1}{\Delta t}, \quad \text{error} \propto \Delta t^p",
+            "",
+            "Equal steps: a tenth of the error costs ten times the time where p is 1, as with impacts at the steps’ "
+            "ends.",
+        ),
+    ),
+    (Control("step of the fixed-step integrator", tuple(1e3 * step for step in OWN_STEPS), 1.0, "ms", 1),),
+    view,
+    "Better is to the right and down. Move the step along its line. Dotted lines: what a first script does.",
+    (
+        "*Equal step is no fair race.* One engine needs ten times the steps of another for the same error.",
+        "*A lucky point is no setting.* Take the coarsest setting below the target whose *finer ones are below it "
+        "too*.",
+        "*Some lines never get there.* Their error is that of another contact law: no step buys it off.",
+        "*Times are this machine’s.* Ratios travel better; measure again on yours (`rocking study speed-error`).",
+    ),
+    (
+        Exercise(
+            "Which is the largest of the fixed steps that errs below 1 %, with all finer ones?",
+            coarsest_step,
+            "ms",
+            "From the finest upwards, stop at the first above 1 %.",
+            2,
+        ),
+        Exercise(
+            "How many runs of the event-driven model does one run of the fixed steps at 1 % cost?",
+            event_driven_share,
+            "runs",
+            "The ratio of the two CPU times, the least of several runs each.",
+            2,
+        ),
+        Exercise(
+            "How many of the solvers here, variants counted apart, reach 1 % and keep it?",
+            passing_solvers,
+            "",
+            "Count the rows of the table.",
+            0,
+        ),
+    ),
+    "motion=release&tilt=0.6&engine=straddling&step=5",
+    table,
+)

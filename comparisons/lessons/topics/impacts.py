@@ -1,0 +1,157 @@
+"""Lesson 2: why impacts lose speed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from analytic import Block, Scene, Start, simulate
+from analytic.caryatid import BASE, MASS, RADIUS, caryatid_block
+from analytic.rocking import RockingModel, restitution
+
+from ..computing import edge, history_until
+from ..drawing import MODEL, OTHER, SOFT, canvas, legend
+from ..lesson import Control, Equation, Exercise, Lesson, View
+
+START, WINDOW = 0.8, 8.0  # tilt over slenderness, s
+CURVE = np.linspace(0.02, 1.2, 80)
+
+
+def let_go(slenderness: float) -> Scene:
+    """The Caryatid's mass and radius, tilted to 0.8 of its slenderness and let go on rigid ground."""
+    return Scene(block=Block(mass=MASS, radius=RADIUS, slenderness=slenderness), start=Start(tilt=START * slenderness))
+
+
+def restitution_of(slenderness: float, on_base: bool = False) -> float:
+    """e_phi of eq. (7), on rigid ground or on the Caryatid's base."""
+    return restitution(Scene(block=caryatid_block(slenderness), base=BASE if on_base else None))
+
+
+def view(slenderness: float) -> View:
+    """Tilt after letting go, and restitution over slenderness."""
+    scene = let_go(slenderness)
+    response = history_until(scene, WINDOW)
+    impact, e = response.impacts[0], restitution_of(slenderness)
+    figure, (tilt, curve) = canvas(2, (1.1, 1))
+    assert response.history is not None  # it was asked for
+    tilt.plot(response.history.time, response.history.tilt / slenderness, color=MODEL)
+    times = [hit.time for hit in response.impacts if hit.time < WINDOW]
+    tilt.plot(times, np.zeros(len(times)), "o", color=OTHER, markersize=4)
+    tilt.set(xlim=(0, WINDOW), ylim=(-1, 1), xlabel="time [s]", ylabel="tilt φ / γ")
+    curve.plot(CURVE, [restitution_of(g) for g in CURVE], color=MODEL, label="rigid ground")
+    curve.plot(CURVE, [restitution_of(g, True) for g in CURVE], "--", color=OTHER, label="on a base of 212 kg")
+    curve.plot(slenderness, e, "o", color=MODEL, markersize=8)
+    curve.axhline(0, color=SOFT, linewidth=0.9)
+    curve.set(xlim=(0, 1.2), ylim=(-0.5, 1.05), xlabel="slenderness γ [rad]", ylabel="restitution e")
+    legend(curve, loc="upper right")
+    return View(
+        figure,
+        {
+            "rate after / before, simulated": (impact.rate_after / impact.rate_before, ""),
+            "e of eq. (7)": (e, ""),
+            "energy lost in one impact": (100 * (1 - e * e), "%"),
+        },
+        f"Let go from 0.8 of its slenderness {slenderness:.2f}, the block loses {100 * (1 - e * e):.0f} % of its "
+        f"energy "
+        "at each impact.",
+    )
+
+
+def worked_number() -> float:
+    """e of the Caryatid on rigid ground, from one impact of a run."""
+    impact = simulate(let_go(0.28), history=False).impacts[0]
+    return impact.rate_after / impact.rate_before
+
+
+def swings_to_a_tenth() -> float:
+    """Impacts until the swings of the Caryatid are below a tenth of its slenderness."""
+    response = simulate(let_go(0.28))
+    assert response.history is not None  # it was asked for
+    times, tilt = response.history.time, np.abs(response.history.tilt)
+    last = times[np.flatnonzero(tilt > 0.1 * 0.28)[-1]]
+    return float(sum(impact.time < last for impact in response.impacts)) + 1
+
+
+def no_rocking_on() -> float:
+    """Slenderness [rad] from which the block lands flat on rigid ground."""
+    return edge(lambda gamma: restitution_of(gamma) <= 0, 0.5, 1.4)
+
+
+def momentum_on_the_base() -> float:
+    """Jump of the base's velocity [m/s] when the Caryatid strikes its base at 1 rad/s."""
+    return float(RockingModel.of(Scene(block=caryatid_block(0.28), base=BASE)).impact(1.0)[1])
+
+
+LESSON = Lesson(
+    2,
+    "impacts",
+    "Why impacts lose speed",
+    "A rocking block hits the ground with its other corner. Nothing is said of stone or mortar, and yet it is known "
+    "how "
+    "much speed is left. From where?",
+    (
+        "derive the restitution from momentum about the new corner",
+        "say what it depends on, and what it does not",
+        "check an impact of a simulation by hand",
+    ),
+    "angular momentum, moment of inertia",
+    12,
+    (
+        Equation(
+            r"e_{\phi} = \frac{\dot{\phi}^+}{\dot{\phi}^-} = 1 - \frac{2 m b^2}{J_O - m \tilde{m} h^2}",
+            "7",
+            "Momentum about the new corner is kept while the impulse acts there; on rigid ground the mass share is 0.",
+        ),
+        Equation(
+            r"e_{\phi} = 1 - \frac{3}{2} \sin^2 \gamma",
+            "7",
+            "For a rectangle on rigid ground: the shape alone decides.",
+        ),
+    ),
+    (Control("slenderness γ", tuple(round(0.02 * k, 2) for k in range(4, 30)), 0.28, "rad"),),
+    view,
+    "Move the slenderness. Dots are impacts; below, the restitution of every block.",
+    (
+        "*Restitution is no material constant here.* A table that lists 0.6 for stone on stone speaks of balls. Two "
+        "corners "
+        "of one rigid body have no freedom left for it.",
+        "*Mass and size drop out.* If your simulation’s restitution changes with the mass, something else decides: a "
+        "soft "
+        "contact, a step, a solver that stopped early.",
+        "*Stocky blocks do not rock on.* Where (7) is not above zero, the block lands flat; code that goes on with a "
+        "negative e swings the block through the floor.",
+        "*An impact is not free of the base.* On a light base less rate is left, and the base is pushed: eq. (8).",
+    ),
+    (
+        Exercise(
+            "What is e of the Caryatid ($\\gamma = 0.28$) on rigid ground? Let it go, and divide the rates of one "
+            "impact.",
+            worked_number,
+            "",
+            "$1 - 1.5 \\sin^2 0.28$.",
+        ),
+        Exercise(
+            "Let go from $0.8\\,\\gamma$: after how many impacts are its swings below $0.1\\,\\gamma$?",
+            swings_to_a_tenth,
+            "impacts",
+            "Each impact leaves $e^2$ of the energy, $\\cos(\\gamma - |\\phi|) - \\cos \\gamma$ at a peak.",
+            0,
+        ),
+        Exercise(
+            "From which slenderness on does a rectangle land flat?", no_rocking_on, "rad", "$\\sin^2 \\gamma = 2/3$."
+        ),
+        Exercise(
+            "The Caryatid strikes its base of 212 kg at 1 rad/s. By how much does the base’s velocity jump?",
+            momentum_on_the_base,
+            "m/s",
+            "Horizontal momentum: $\\tilde{m} h (1 - e_{\\phi}) \\dot{\\phi}^-$, eq. (8) as it should read.",
+        ),
+    ),
+    "motion=release&tilt=0.8",
+)
+
+
+def flat_landing() -> float:
+    """The same slenderness in closed form [rad]."""
+    return math.asin(math.sqrt(2 / 3))

@@ -1,0 +1,165 @@
+"""Lesson 1: when does a block tip?"""
+
+from __future__ import annotations
+
+import functools
+import math
+
+import numpy as np
+from matplotlib.colors import ListedColormap
+
+from analytic import Block, Outcomes, PulseMotion, Scene, overturning_map, simulate
+from analytic.caryatid import MASS, RADIUS, caryatid_block
+from analytic.rocking import RockingModel
+
+from ..computing import G, edge, history_until, overturns
+from ..drawing import INK, MODEL, OUTCOMES, PANEL, SOFT, canvas
+from ..lesson import Control, Equation, Exercise, Lesson, View
+
+SLENDERNESS, PERIOD = 0.28, 0.8  # rad, s
+PERIODS, AMPLITUDES = np.linspace(0.2, 2.0, 61), np.linspace(0.02, 1.5, 50)  # s, g
+WINDOW = 6.0  # s
+
+
+def pulse_scene(amplitude: float, period: float = PERIOD, slenderness: float = SLENDERNESS, size: float = 1.0) -> Scene:
+    """The Caryatid, `size` times as large, under one sine; amplitude [g], period [s]."""
+    motion = PulseMotion("one-sine", amplitude * G, 2 * math.pi / period)
+    return Scene(block=Block(mass=MASS, radius=size * RADIUS, slenderness=slenderness), motion=motion)
+
+
+@functools.cache
+def overturning() -> Outcomes:
+    """Outcomes over `AMPLITUDES` and `PERIODS`."""
+    scene = Scene(block=caryatid_block(SLENDERNESS))
+    unit = math.tan(SLENDERNESS)
+    return overturning_map(scene, "one-sine", 2 * math.pi / PERIODS / scene.rocking_frequency, AMPLITUDES / unit)
+
+
+def kinds(outcomes: Outcomes) -> np.ndarray:
+    """0 stands, 1 rocks, 2 overturns after impacts, 3 overturns without one."""
+    falls = np.where(outcomes.impacts > 0, 2, 3)
+    return np.where(outcomes.overturns, falls, np.where(outcomes.lifted, 1, 0))
+
+
+def view(amplitude: float) -> View:
+    """Tilt over time, and the place on the overturning map; amplitude [g]."""
+    scene = pulse_scene(amplitude)
+    response, decided = history_until(scene, WINDOW), simulate(scene, history=False)
+    figure, (tilt, field) = canvas(2, (1, 1.25))
+    assert response.history is not None  # it was asked for
+    tilt.plot(response.history.time, response.history.tilt / SLENDERNESS, color=MODEL)
+    for level in (-1, 1):
+        tilt.axhline(level, color=SOFT, linewidth=0.9, linestyle=(0, (4, 4)))
+    tilt.set(xlim=(0, WINDOW), ylim=(-1.5, 1.5), ylabel="tilt φ / γ", xlabel="time [s]")
+    edges = [np.append(v - (v[1] - v[0]) / 2, v[-1] + (v[1] - v[0]) / 2) for v in (PERIODS, AMPLITUDES)]
+    field.imshow(
+        kinds(overturning()),
+        origin="lower",
+        aspect="auto",
+        extent=(edges[0][0], edges[0][-1], edges[1][0], edges[1][-1]),
+        cmap=ListedColormap(OUTCOMES),
+        vmin=-0.5,
+        vmax=3.5,
+        interpolation="nearest",
+    )
+    field.grid(False)
+    field.plot(PERIOD, amplitude, "o", markersize=11, markerfacecolor="none", markeredgecolor=PANEL, markeredgewidth=4)
+    field.plot(PERIOD, amplitude, "o", markersize=11, markerfacecolor="none", markeredgecolor=INK, markeredgewidth=1.8)
+    field.set(xlabel="period of the pulse [s]", ylabel="amplitude [g]")
+    for x, y, words in (
+        (1.45, 0.12, "stands"),
+        (0.3, 0.9, "rocks"),
+        (1.3, 1.0, "overturns at once"),
+        (0.7, 0.7, "after impacts"),
+    ):
+        field.text(x, y, words, color="white" if "once" in words else "#1c1b1a", ha="center")
+    return View(
+        figure,
+        {
+            "outcome": (decided.outcome, ""),
+            "peak tilt / γ": (decided.peak_tilt_ratio, ""),
+            "impacts in 6 s": (len(response.impacts), ""),
+        },
+        f"Under a sine of {amplitude:.2f} g and {PERIOD:g} s the block {decided.outcome}.",
+    )
+
+
+def lifting_acceleration() -> float:
+    """Of a block 2 m high and 0.6 m wide [g]."""
+    block = Block(mass=1.0, radius=math.hypot(1.0, 0.3), slenderness=math.atan2(0.3, 1.0))
+    return RockingModel.of(Scene(block=block)).uplift_acceleration / G
+
+
+def first_fall() -> float:
+    """Least amplitude [g] at which the sine of 0.8 s overturns the Caryatid."""
+    return edge(lambda amplitude: overturns(pulse_scene(amplitude)), 0.3, 0.5)
+
+
+def size_that_survives() -> float:
+    """How many times larger the block must be to survive 0.5 g and 0.8 s."""
+    return edge(lambda size: overturns(pulse_scene(0.5, size=size)), 1.0, 3.0)
+
+
+LESSON = Lesson(
+    1,
+    "tipping",
+    "When does a block tip?",
+    "A block stands on the ground, the ground accelerates. When does the block lift, and when does it fall? Are the "
+    "two "
+    "the same question?",
+    (
+        "tell uplift from overturning",
+        "compute the acceleration that lifts a block from its width and height",
+        "read an overturning map, with its island of safety",
+    ),
+    "moment of a force, Newton’s second law",
+    12,
+    (
+        Equation(
+            r"|a_g| > g \tan \gamma = g \frac{b}{h}",
+            "",
+            "Uplift: the moment of inertia forces about a corner exceeds that of the weight. Size does not matter.",
+        ),
+        Equation(
+            r"J_O \ddot{\phi} + m g R \sin(s \gamma - \phi) + m R \cos(s \gamma - \phi) \, a_g = 0",
+            "4",
+            "Rocking about the corner of side s = sgn φ, on rigid ground. Size matters: R stands against time squared.",
+        ),
+    ),
+    (Control("amplitude", tuple(round(0.05 * k, 2) for k in range(4, 31)), 0.4, "g"),),
+    view,
+    "Move the amplitude of a sine of 0.8 s. The ring shows where you are among all sines.",
+    (
+        "*Lifting is not falling.* Between the two lies the whole blue region: a block that rocks comes back, and "
+        "loses "
+        "speed at every impact.",
+        "*More is not always worse.* Along a vertical line of the map the block may fall, survive, and fall again: a "
+        "search "
+        "by halving, which takes a single edge for granted, returns one of the edges and says nothing of the others.",
+        "*A static check misses the size.* Two blocks of one shape lift at the same acceleration; the larger one "
+        "survives "
+        "what the smaller does not.",
+    ),
+    (
+        Exercise(
+            "A block is 2 m high and 0.6 m wide. Which ground acceleration lifts it?",
+            lifting_acceleration,
+            "g",
+            "$\\tan \\gamma = b/h$, half the width over half the height.",
+        ),
+        Exercise(
+            "Which sine of 0.8 s is the weakest that overturns the Caryatid ($\\gamma = 0.28$, $R = 1.09$ m)?",
+            first_fall,
+            "g",
+            "Halve the amplitude between one that falls and one that does not; it lies well above the $0.288\\,g$ "
+            "that lift.",
+        ),
+        Exercise(
+            "How many times larger must the same shape be to survive 0.5 g of 0.8 s?",
+            size_that_survives,
+            "times",
+            "The same halving, over R. The acceleration that lifts it has not changed.",
+        ),
+    ),
+    "motion=pulse&period=0.8&amplitude=0.4",
+)
