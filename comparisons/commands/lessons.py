@@ -7,22 +7,48 @@ import typer
 app = typer.Typer(
     add_completion=False,
     rich_markup_mode=None,
-    no_args_is_help=True,
-    help="Teaching material: a page that lets one play with the rocking block.",
+    help="Teaching material: eight lessons as notebooks, and as pages that need no network.",
 )
 
 
-@app.callback()
-def _about():
-    """Teaching material: a page that lets one play with the rocking block."""
+@app.callback(invoke_without_command=True)
+def _listed(context: typer.Context):
+    """Eight lessons on the rocking block; without a command they are listed."""
+    if context.invoked_subcommand is not None:
+        return
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    from ..lessons.topics import lessons
+
+    table = Table("name", "lesson", "minutes", "needs", box=box.SIMPLE)
+    for lesson in lessons():
+        table.add_row(lesson.name, f"{lesson.number}. {lesson.title}", str(lesson.minutes), lesson.needs)
+    console = Console(highlight=False)
+    console.print(table)
+    console.print("rocking lessons open NAME: as a notebook;  rocking lessons export: pages to open by double click")
+
+
+@app.command(name="open")
+def open_(
+    name: Annotated[str, typer.Argument(help="Lesson: see rocking lessons.")],
+    edit: Annotated[bool, typer.Option("--edit", help="Show and change the code.")] = False,
+) -> None:
+    """Open a lesson as a notebook in the browser; it works on a copy of its own. Ctrl-C ends it."""
+    from ..lessons.opening import open_notebook
+
+    raise typer.Exit(open_notebook(name, edit=edit))
 
 
 @app.command()
 def export(output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the pages.")] = "lessons") -> None:
-    """Write pages that open by double click, without a network: the playground."""
+    """Write the pages: playground, lessons, derivation, teacher's page with figures. They open by double click."""
     from ..lessons.export import export_pages
     from ..running.files import check_folder, make_folder
+    from ..running.solving import say, stdout_to_stderr
 
     check_folder(output)
-    for path in export_pages(make_folder(output)):
-        print(path)
+    with stdout_to_stderr():  # engines greet on standard output
+        paths = export_pages(make_folder(output), tell=say)
+    print(next(path for path in paths if path.name == "index.html"))

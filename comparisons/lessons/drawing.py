@@ -21,7 +21,7 @@ VARIABLES = {
     INK: "ink", SOFT: "soft", GRID: "grid", PANEL: "panel", MODEL: "model", OTHER: "ghost", THIRD: "third",
     STONE: "stone", OUTCOMES[0]: "stands",
 }  # fmt: skip
-STYLE: dict[str, Any] = {
+STYLE: Any = {  # keys of matplotlib, a type of its own
     "font.family": "sans-serif",
     "font.size": 11,
     "axes.edgecolor": SOFT,
@@ -84,7 +84,7 @@ def svg(figure: Figure, name: str) -> str:
 def download(figure: Figure, kind: str) -> bytes:
     """The figure for slides, 16:9, with its licence line: "svg", or "png" of 1920 by 1080 pixels."""
     figure.set_size_inches(*WIDE)
-    figure.subplots_adjust(left=0.085, right=0.98, bottom=0.13)
+    figure.subplots_adjust(left=figure.subplotpars.left * WIDTH / WIDE[0], bottom=0.13)
     mark = figure.text(0.985, 0.012, LICENCE, ha="right", color=SOFT, fontsize=7)
     file = io.BytesIO()
     with matplotlib.rc_context({**STYLE, "svg.hashsalt": "download"}):

@@ -8,7 +8,7 @@ from __future__ import annotations
 import functools
 from dataclasses import dataclass
 
-from analytic import Scene, Start, simulate
+from analytic import Response, Scene, Start, simulate
 from analytic.caryatid import caryatid_block
 from analytic.time_stepping import simulate_time_stepping
 from engines import ENGINES, get_engine, installed_engines
@@ -23,7 +23,7 @@ ROUNDS = 3  # the least CPU time of so many
 
 @dataclass(frozen=True)
 class EngineRun:
-    """One run: who, with which knob; error: of the tilt rate after the first impact, relative, None without one; cpu [s]."""
+    """One run: who, with which knob; error: of the tilt rate after the first impact, None without one; cpu [s]."""
 
     solver: str
     variant: str
@@ -39,7 +39,7 @@ class EngineRun:
         return f"{self.solver}, {self.variant}" if self.variant else self.solver
 
 
-def first_rate(response) -> float | None:
+def first_rate(response: Response) -> float | None:
     """Tilt rate after the first impact [rad/s], None where there is none."""
     hits = [impact for impact in response.impacts if impact.time < FIRST]
     return hits[0].rate_after if hits else None

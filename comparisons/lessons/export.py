@@ -2,14 +2,92 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Callable, Sequence
 from os import PathLike
 from pathlib import Path
 
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from . import diagrams
+from .drawing import LICENCE, download, svg
+from .lesson import Lesson, View
+from .mathml import mathml, prose
+from .notebook import answer, code_of, written
 from .playground import PAGE, playground_page
+from .topics import NAMES, lesson
+
+FOLDER = Path(__file__).parent / "pages"
+OTHERS = (("index.html", "Lessons"), ("derivations.html", "Derivation"), ("teacher.html", "For teachers"))
 
 
-def export_pages(folder: str | PathLike[str]) -> list[Path]:
-    """Write the pages into `folder`, which exists; returns their paths."""
-    path = Path(folder) / PAGE
-    path.write_text(playground_page(), encoding="utf-8")
-    return [path]
+def export_pages(
+    folder: str | PathLike[str], names: Sequence[str] = NAMES, tell: Callable[[str], object] = lambda words: None
+) -> list[Path]:
+    """Write playground, lessons, derivation and teacher's page into `folder`, which exists; returns their paths.
+
+    names : the lessons whose pages are made. tell : is told what is under way.
+    """
+    folder, environment = Path(folder), _environment()
+    written_files: list[Path] = []
+
+    def keep(name: str, content: str | bytes) -> None:
+        path = folder / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(content.encode() if isinstance(content, str) else content)
+        written_files.append(path)
+
+    chosen = [lesson(name) for name in names]
+    keep(PAGE, playground_page(OTHERS))
+    keep("index.html", environment.get_template("index.html").render(lessons=chosen))
+    drawings = {name: Markup(getattr(diagrams, name)()) for name in ("rocking", "impact", "isolated")}
+    keep("derivations.html", environment.get_template("derivations.html").render(**drawings))
+    exercises, firsts = [], []
+    for one in chosen:
+        tell(f"lesson {one.number}: {one.title}")
+        exercises.append([(exercise, answer(exercise)) for exercise in one.exercises])
+        keep(f"lesson-{one.number}.html", _lesson_page(environment, one, chosen, exercises[-1]))
+        first = one.first()
+        firsts.append(first.says)
+        for kind in ("svg", "png"):
+            keep(f"figures/lesson-{one.number}.{kind}", download(first.figure, kind))
+    page = environment.get_template("teacher.html")
+    keep("teacher.html", page.render(lessons=chosen, exercises=exercises, firsts=firsts, licence=LICENCE))
+    return written_files
+
+
+def _environment() -> Environment:
+    environment = Environment(
+        loader=FileSystemLoader(FOLDER), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.filters["prose"] = lambda text: Markup(prose(text))
+    environment.filters["math"] = lambda tex: Markup(mathml(tex, display=True))
+    environment.globals["style"] = Markup((FOLDER / "pages.css").read_text(encoding="utf-8"))
+    return environment
+
+
+def _lesson_page(environment: Environment, one: Lesson, chosen: list[Lesson], exercises: list) -> str:
+    titles = {other.number: other.title for other in chosen}
+    views = [_view_parts(one.view(*values), f"{one.name}-{k}") for k, values in enumerate(one.places())]
+    return environment.get_template("lesson.html").render(
+        lesson=one,
+        count=len(NAMES),
+        before=titles.get(one.number - 1),
+        after=titles.get(one.number + 1),
+        code=code_of(one),
+        exercises=exercises,
+        table=one.table() if one.table else None,
+        texts=json.dumps([[control.text(value) for value in control.values] for control in one.controls]),
+        views=views,
+        script=Markup((FOLDER / "lesson.js").read_text(encoding="utf-8")),
+    )
+
+
+def _view_parts(view: View, name: str) -> dict:
+    """What the template shows of a view: picture, numbers as (label, value in full, text), and the sentence."""
+    numbers = [
+        (label, value if isinstance(value, str) else repr(float(value)), written(value, unit))
+        for label, (value, unit) in view.numbers.items()
+    ]
+    return {"svg": Markup(svg(view.figure, name)), "numbers": numbers, "says": view.says}

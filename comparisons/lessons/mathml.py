@@ -37,7 +37,7 @@ def mathml(tex: str, display: bool = False) -> str:
 
 def _row(tokens, closing, tex):
     """(MathML of the tokens up to `closing`, tokens after it)."""
-    parts = []
+    parts: list[str] = []
     while tokens:
         if tokens[0] == closing:
             return "".join(parts), tokens[1:]

@@ -1,0 +1,29 @@
+"""The lessons, one module each: its content as a `lesson.Lesson` called LESSON, and what it computes."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..lesson import Lesson
+
+NAMES = ("tipping", "impacts", "bearing", "caryatid", "corner", "chaos", "cost", "checks")  # in their order
+
+
+def lesson(name: str) -> Lesson:
+    """The lesson called `name`.
+
+    Raises
+    ------
+    KeyError
+        There is none; the message lists them.
+    """
+    if name not in NAMES:
+        raise KeyError(f"unknown lesson {name!r}: choose one of {', '.join(NAMES)}")
+    return import_module(f"{__name__}.{name}").LESSON
+
+
+def lessons() -> tuple[Lesson, ...]:
+    """All lessons in their order."""
+    return tuple(lesson(name) for name in NAMES)

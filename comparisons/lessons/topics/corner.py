@@ -46,23 +46,18 @@ def view(step: float) -> View:
     history = run.history
     assert history is not None  # it was asked for
     landed = int(np.argmax(history.tilt <= 0))
-    figure, axes = canvas(2, (1, 1.5), columns=4)
-    # the state in which the ground is already passed, before the impact is applied, is never shown by an engine
-    through = history.tilt[landed - 1] + 1e-3 * step * history.tilt_rate[landed - 1]
+    figure, (above, errors) = canvas(2, (1, 1.5))
     frames = [
         (history.tilt[landed - 2], "a step before"),
         (history.tilt[landed - 1], "the last above"),
-        (min(through, history.tilt[landed]), "in the ground"),
+        (history.tilt[landed], "in the ground"),
         (history.tilt[min(landed + 2, len(history.tilt) - 1)], "two steps on"),
     ]
-    for axis, (tilt, words) in zip(axes[0], frames, strict=True):
-        _frame(axis, tilt, words)
-    for axis in axes[1][1:]:
-        axis.remove()
-    errors = figure.add_subplot(2, 1, 2)
-    axes[1][0].remove()
-    figure.subplots_adjust(hspace=0.25)
-    errors.set_position((0.125, 0.125, 0.85, 0.44))
+    for place, (tilt, words) in enumerate(frames):
+        _frame(above, 4.0 * place, tilt, words, old_corner=place == 2)
+    above.axhline(0, color=SOFT, linewidth=1.4)
+    above.set(xlim=(-1.7, 13.7), ylim=(-1.3, 2.0), aspect="equal")
+    above.axis("off")
     errors.loglog(1e3 * SCAN, 100 * scanned(), color=MODEL, linewidth=1.2, label="every step")
     guide = 100 * np.nanmax(scanned()) * SCAN / SCAN[-1]
     errors.loglog(1e3 * SCAN, guide, "--", color=SOFT, linewidth=1, label="first order")
@@ -76,27 +71,26 @@ def view(step: float) -> View:
         {
             "impact shifted by": (shift, "ms"),
             "error of the rate after it": (here, "%"),
-            "depth of the corner": (1e3 * 2 * RADIUS * math.sin(SLENDERNESS) * abs(min(frames[2][0], 0)), "mm"),
+            "depth of the corner": (1e3 * 2 * RADIUS * math.sin(SLENDERNESS) * abs(frames[2][0]), "mm"),
         },
-        f"With steps of {step:g} ms the impact is shifted by {shift:+.2f} ms, and the rate after it is off by {here:.3f} "
-        f"%.",
+        f"With steps of {step:g} ms the impact is shifted by {shift:+.2f} ms, the rate after it is off by {here:.3f} %.",
     )
 
 
-def _frame(axis, tilt, words):
-    """The foot of the block, its angle exaggerated, over the ground."""
-    angle, b = EXAGGERATED * tilt, 1.0
-    right = np.array([b, 0.0]) if tilt > 0 else np.array([b, -2 * b * math.sin(-angle)])
-    left = np.array([-b, 2 * b * math.sin(angle)]) if tilt > 0 else np.array([-b, 0.0])
-    if "ground" in words:  # it still turns about the old corner
-        right, left = np.array([b, 0.0]), np.array([-b, 2 * b * math.sin(angle)])
-    up = np.array([-(right - left)[1], (right - left)[0]]) * 0.55
-    corners = np.array([left, right, right + up, left + up])
-    axis.fill(*corners.T, facecolor=STONE, edgecolor=MODEL, linewidth=1.6)
-    axis.axhline(0, color=SOFT, linewidth=1.4)
-    axis.set(xlim=(-1.7, 1.7), ylim=(-0.75, 1.6), aspect="equal")
-    axis.axis("off")
-    axis.text(0, -0.95, words, ha="center", fontsize=9.5, color=SOFT, clip_on=False)
+def _frame(axis, middle, tilt, words, old_corner):
+    """The foot of the block, its angle exaggerated; old_corner: it still turns about the corner it comes from."""
+    angle, b, height = EXAGGERATED * tilt, 1.0, 1.15
+    pivot = b if (tilt > 0) != old_corner or tilt > 0 else -b
+    turned = [
+        (
+            pivot + (u - pivot) * math.cos(angle) + w * math.sin(angle),
+            -(u - pivot) * math.sin(angle) + w * math.cos(angle),
+        )
+        for u, w in ((-b, 0.0), (b, 0.0), (b, height), (-b, height))
+    ]
+    corners = np.array(turned)
+    axis.fill(middle + corners[:, 0], corners[:, 1], facecolor=STONE, edgecolor=MODEL, linewidth=1.6)
+    axis.text(middle, -1.15, words, ha="center", fontsize=10, color=SOFT)
 
 
 def engines_table() -> Table:

@@ -89,8 +89,9 @@ def view(step: float) -> View:
     assert here.error is not None  # the integrator strikes at each of its steps
     axis.loglog(100 * here.error, 1e3 * here.cpu, "o", color=OTHER, markersize=10, zorder=5)
     axis.set(xlabel="error of the rate after the first impact [%]", ylabel="CPU time [ms]", xlim=(60, 50 * 100 * FLOOR))
-    legend(axis, loc="upper left", fontsize=7.5, ncols=2)
-    axis.set_ylim(axis.get_ylim()[0], axis.get_ylim()[1] * 40)
+    figure.set_figheight(6.4)
+    legend(axis, loc="upper left", fontsize=9, ncols=2)
+    axis.set_ylim(axis.get_ylim()[0], axis.get_ylim()[1] * 200)
     best = trusted(everything(), TARGET)
     cheapest = min(best.values(), key=lambda run: run.cpu)
     return View(

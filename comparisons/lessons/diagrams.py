@@ -1,0 +1,138 @@
+"""Free-body diagrams of the derivation, drawn to their angles: inline SVG in the page's colours."""
+
+from __future__ import annotations
+
+import math
+from html import escape
+
+GAMMA, PHI, R = 0.36, 0.17, 118.0  # rad, rad, pixels: stockier than a statue, to be read
+ARROW = 46.0  # length of a force
+
+
+class Drawing:
+    """Parts of an SVG of a given size; y counts upward from the floor."""
+
+    def __init__(self, width: float, height: float, floor: float, says: str) -> None:
+        self.width, self.height, self.floor, self.says = width, height, floor, says
+        self.parts: list[str] = []
+
+    def at(self, x: float, y: float) -> tuple[float, float]:
+        return round(x, 1), round(self.floor - y, 1)
+
+    def polygon(self, points: list[tuple[float, float]], kind: str) -> None:
+        places = " ".join("{},{}".format(*self.at(*point)) for point in points)
+        self.parts.append(f'<polygon class="{kind}" points="{places}"/>')
+
+    def line(self, start: tuple[float, float], end: tuple[float, float], kind: str = "line") -> None:
+        (x0, y0), (x1, y1) = self.at(*start), self.at(*end)
+        self.parts.append(f'<line class="{kind}" x1="{x0}" y1="{y0}" x2="{x1}" y2="{y1}"/>')
+
+    def arrow(self, start: tuple[float, float], by: tuple[float, float], label: str, aside=(8.0, 0.0)) -> None:
+        end = start[0] + by[0], start[1] + by[1]
+        length = math.hypot(*by)
+        u, v = by[0] / length, by[1] / length
+        back = end[0] - 9 * u, end[1] - 9 * v
+        self.line(start, back, "force")
+        self.polygon([end, (back[0] - 4.5 * v, back[1] + 4.5 * u), (back[0] + 4.5 * v, back[1] - 4.5 * u)], "tip")
+        self.text((end[0] + aside[0], end[1] + aside[1]), label, "f")
+
+    def text(self, place: tuple[float, float], words: str, kind: str = "") -> None:
+        x, y = self.at(*place)
+        base, _, below = words.partition("_")
+        sub = f'<tspan dy="4" font-size="11">{escape(below)}</tspan>' if below else ""
+        self.parts.append(f'<text class="{kind}" x="{x}" y="{y}">{escape(base)}{sub}</text>')
+
+    def dot(self, place: tuple[float, float]) -> None:
+        x, y = self.at(*place)
+        self.parts.append(f'<circle cx="{x}" cy="{y}" r="3.5" fill="var(--ink)"/>')
+
+    def arc(self, middle: tuple[float, float], radius: float, begin: float, end: float) -> None:
+        """From the angle `begin` to `end`, both from the vertical, clockwise [rad]."""
+        ends = [(middle[0] + radius * math.sin(a), middle[1] + radius * math.cos(a)) for a in (begin, end)]
+        (x0, y0), (x1, y1) = self.at(*ends[0]), self.at(*ends[1])
+        self.parts.append(f'<path class="line" d="M{x0} {y0}A{radius} {radius} 0 0 {int(end > begin)} {x1} {y1}"/>')
+
+    def svg(self) -> str:
+        body = "".join(self.parts)
+        return (
+            f'<svg viewBox="0 0 {self.width:g} {self.height:g}" role="img" aria-label="{escape(self.says)}" '
+            f'stroke-width="1.6">{body}</svg>'
+        )
+
+
+def _block(drawing: Drawing, corner: tuple[float, float], tilt: float) -> tuple[float, float]:
+    """The block, turned clockwise by `tilt` about its right corner; returns its centre."""
+    b, h = R * math.sin(GAMMA), R * math.cos(GAMMA)
+
+    def turned(u, w):
+        dx = u - b
+        return corner[0] + dx * math.cos(tilt) + w * math.sin(tilt), corner[1] - dx * math.sin(tilt) + w * math.cos(tilt)
+
+    drawing.polygon([turned(*point) for point in ((-b, 0), (b, 0), (b, 2 * h), (-b, 2 * h))], "stone")
+    centre = turned(0, h)
+    drawing.dot(centre)
+    return centre
+
+
+def rocking() -> str:
+    """The block about its right corner, with all that acts on it."""
+    drawing = Drawing(400, 330, 285, "A block tilted about its right corner: weight, inertia force and the corner’s forces")
+    corner = (220.0, 0.0)
+    drawing.line((30, 0), (370, 0))
+    centre = _block(drawing, corner, PHI)
+    drawing.line(corner, centre, "thin")
+    drawing.line(corner, (corner[0], 175), "thin")
+    drawing.arc(corner, 96, 0, PHI - GAMMA)
+    drawing.text((corner[0] - 24, 103), "γ − φ")
+    drawing.text(((corner[0] + centre[0]) / 2 - 20, centre[1] / 2 - 2), "R")
+    drawing.arrow(centre, (0, -ARROW), "mg", (6, 4))
+    drawing.arrow(centre, (-ARROW, 0), "m a_g", (-34, 8))
+    drawing.arrow((corner[0] + 26, -32), (0, 30), "N", (6, -16))
+    drawing.arrow((corner[0] + 46, 0), (-42, 0), "H", (46, 7))
+    drawing.text((corner[0] + 4, -18), "O")
+    return drawing.svg()
+
+
+def impact() -> str:
+    """The instant of impact: the old corner leaves, the impulse acts at the new one."""
+    drawing = Drawing(400, 330, 275, "The block upright at the impact: the impulse acts at the new corner on the left")
+    b, h = R * math.sin(GAMMA), R * math.cos(GAMMA)
+    corner = (200 + b, 0.0)
+    drawing.line((30, 0), (370, 0))
+    centre = _block(drawing, corner, 0.0)
+    new = (200 - b, 0.0)
+    drawing.line(new, centre, "thin")
+    drawing.arrow((new[0], -48), (0, 44), "P_N", (8, -24))
+    drawing.arrow((new[0] - 52, 0), (48, 0), "P_H", (-48, 8))
+    drawing.text((new[0] + 6, 8), "O′")
+    drawing.text((corner[0] + 6, 8), "O")
+    # the centre's velocity before: about the old corner
+    u = R * 0.42
+    drawing.arrow(centre, (-u * math.cos(GAMMA), -u * math.sin(GAMMA)), "R ω_−", (-30, -16))
+    drawing.line((200, -10), (corner[0], -10), "thin")
+    drawing.text(((200 + corner[0]) / 2 - 3, -26), "b")
+    drawing.line((corner[0] + 34, 0), (corner[0] + 34, h), "thin")
+    drawing.text((corner[0] + 40, h / 2), "h")
+    return drawing.svg()
+
+
+def isolated() -> str:
+    """The block on its base: what passes between them, and the bearings' force."""
+    drawing = Drawing(400, 370, 330, "The block on a base that moves by x; the bearings push back")
+    slab = 62.0
+    for left in (112, 262):
+        for layer in range(4):
+            kind = "steel" if layer % 2 else "stone"
+            x = left + 4.0 * layer
+            drawing.polygon([(x, 9.0 * layer), (x + 30, 9.0 * layer), (x + 30, 9.0 * layer + 9), (x, 9.0 * layer + 9)], kind)
+    drawing.line((30, 0), (370, 0))
+    drawing.polygon([(104, 36), (312, 36), (312, slab), (104, slab)], "steel")
+    corner = (232.0, slab)
+    centre = _block(drawing, corner, PHI)
+    drawing.line(corner, centre, "thin")
+    drawing.arrow(centre, (0, -ARROW), "mg", (6, 4))
+    drawing.arrow((104, 48), (-54, 0), "n_d f", (-12, 12))
+    drawing.arrow((312, 48), (40, 0), "x", (5, -5))
+    drawing.text((286, 45), "m_b")
+    drawing.text((corner[0] + 6, slab + 6), "O")
+    return drawing.svg()

@@ -1,0 +1,103 @@
+"""What the notebooks show, made of a `Lesson`; `mo` is the module marimo, which only they import."""
+
+from __future__ import annotations
+
+import ast
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from ..showing.parts import number
+from .drawing import svg
+from .lesson import Exercise, Lesson, View
+
+FOLDER = Path(__file__).parent / "notebooks"
+# Stand-ins of `drawing` in a notebook, light or dark.
+COLOURS = (
+    "--ink: currentColor; --soft: #8a867e; --grid: #88888844; --panel: #ffffff; --model: #2b8fd0; --ghost: #e0701a; "
+    "--third: #1a9a78; --stone: #c9bea3; --stands: #c4c0b7"
+)
+
+
+def notebook_file(lesson: Lesson) -> Path:
+    """The notebook of a lesson."""
+    return FOLDER / f"{lesson.name}.py"
+
+
+def code_of(lesson: Lesson) -> str:
+    """The few lines of a lesson: the cell `code` of its notebook.
+
+    Raises
+    ------
+    ValueError
+        The notebook has no such cell.
+    """
+    source = notebook_file(lesson).read_text(encoding="utf-8")
+    for node in ast.parse(source).body:
+        if isinstance(node, ast.FunctionDef) and node.name == "code":
+            kept = [part for part in node.body if not isinstance(part, ast.Return)]
+            lines = source.splitlines()[kept[0].lineno - 1 : kept[-1].end_lineno]
+            return textwrap.dedent("\n".join(lines))
+    raise ValueError(f"{notebook_file(lesson)}: no cell called code")
+
+
+def written(value: float | str, unit: str = "", digits: int = 4) -> str:
+    """A number with its unit, or a word; digits 0: a whole number."""
+    if isinstance(value, str):
+        return value
+    text = str(value) if isinstance(value, int) else f"{value:.0f}" if digits == 0 else number(float(value), digits)
+    return f"{text} {unit}".rstrip()
+
+
+def answer(exercise: Exercise) -> str:
+    """The answer to an exercise, computed now."""
+    return written(exercise.compute(), exercise.unit, exercise.digits)
+
+
+def opening(lesson: Lesson) -> str:
+    """Title, question and equations as Markdown."""
+    parts = [f"# {lesson.number}. {lesson.title}", lesson.question]
+    for equation in lesson.equations:
+        place = "".join(rf" \qquad ({part})" for part in equation.number.split(", ") if part)
+        parts += [f"$${equation.tex}{place}$$", equation.says]
+    return "\n\n".join([*parts, f"**Look.** {lesson.look}"])
+
+
+def controls(lesson: Lesson, mo: Any) -> Any:
+    """The controls as marimo's elements, an array whose value is what `Lesson.view` takes."""
+    made = []
+    for control in lesson.controls:
+        if control.in_words:
+            made.append(mo.ui.radio(list(control.values), value=control.start, label=control.label, inline=True))
+        else:
+            label = f"{control.label} [{control.unit}]" if control.unit else control.label
+            made.append(mo.ui.slider(steps=list(control.values), value=control.start, label=label, show_value=True))
+    return mo.ui.array(made)
+
+
+def shown(view: View, mo: Any) -> Any:
+    """A view as picture and numbers."""
+    numbers = [mo.stat(written(value, unit), label=label) for label, (value, unit) in view.numbers.items()]
+    picture = (
+        f'<div style="{COLOURS}; max-width: 46rem" role="img" aria-label="{view.says}">{svg(view.figure, "n")}</div>'
+    )
+    return mo.vstack([mo.Html(picture), mo.hstack(numbers, justify="start", wrap=True)])
+
+
+def place(lesson: Lesson, values: Sequence[float | str], mo: Any) -> Any:
+    """What the lesson shows at these values of its controls."""
+    return shown(lesson.view(*values), mo)
+
+
+def closing(lesson: Lesson, mo: Any) -> Any:
+    """What goes wrong, and the exercises with their answers folded away."""
+    wrong = "\n".join(f"- {text}" for text in lesson.wrong)
+    folded = {exercise.question: mo.md(f"**{answer(exercise)}** – {exercise.because}") for exercise in lesson.exercises}
+    parts = [mo.md(f"## What goes wrong\n\n{wrong}\n\n## Exercises"), mo.accordion(folded)]
+    if lesson.table:
+        table = lesson.table()
+        parts.append(
+            mo.ui.table([dict(zip(table.columns, row, strict=True)) for row in table.rows], label=table.caption)
+        )
+    return mo.vstack(parts)

@@ -1,0 +1,36 @@
+"""A lesson's notebook in the browser, by marimo."""
+
+from __future__ import annotations
+
+import importlib.util
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from analytic.errors import SettingError
+
+from .notebook import notebook_file
+from .topics import lesson
+
+INSTALL = "pip install marimo, or this project with .[lessons]"
+
+
+def open_notebook(name: str, *, edit: bool = False) -> int:
+    """Open the notebook of a lesson, a copy of it; returns marimo's status when it ends.
+
+    Raises
+    ------
+    SettingError
+        There is no such lesson, or marimo is not installed.
+    """
+    try:
+        file = notebook_file(lesson(name))
+    except KeyError as error:
+        raise SettingError(str(error.args[0])) from None
+    if importlib.util.find_spec("marimo") is None:
+        raise SettingError(f"notebooks need the package marimo: {INSTALL}; rocking lessons export writes pages without it")
+    with tempfile.TemporaryDirectory(prefix="rocking-lesson-") as folder:
+        copy = Path(shutil.copy(file, folder))
+        return subprocess.call([sys.executable, "-m", "marimo", "edit" if edit else "run", str(copy)])
