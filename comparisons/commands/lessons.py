@@ -12,7 +12,7 @@ app = typer.Typer(
 
 
 @app.callback(invoke_without_command=True)
-def _listed(context: typer.Context):
+def _listed(context: typer.Context) -> None:
     """Eight lessons on the rocking block; without a command they are listed."""
     if context.invoked_subcommand is not None:
         return

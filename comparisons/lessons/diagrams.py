@@ -27,7 +27,9 @@ class Drawing:
         (x0, y0), (x1, y1) = self.at(*start), self.at(*end)
         self.parts.append(f'<line class="{kind}" x1="{x0}" y1="{y0}" x2="{x1}" y2="{y1}"/>')
 
-    def arrow(self, start: tuple[float, float], by: tuple[float, float], label: str, aside=(8.0, 0.0)) -> None:
+    def arrow(
+        self, start: tuple[float, float], by: tuple[float, float], label: str, aside: tuple[float, float]
+    ) -> None:
         end = start[0] + by[0], start[1] + by[1]
         length = math.hypot(*by)
         u, v = by[0] / length, by[1] / length
@@ -39,7 +41,12 @@ class Drawing:
     def text(self, place: tuple[float, float], words: str, kind: str = "") -> None:
         x, y = self.at(*place)
         base, _, below = words.partition("_")
-        sub = f'<tspan dy="4" font-size="11">{escape(below)}</tspan>' if below else ""
+        below, _, rest = below.partition(" ")
+        sub = (
+            f'<tspan dy="4" font-size="11">{escape(below)}</tspan><tspan dy="-4"> {escape(rest)}</tspan>'
+            if below
+            else ""
+        )
         self.parts.append(f'<text class="{kind}" x="{x}" y="{y}">{escape(base)}{sub}</text>')
 
     def dot(self, place: tuple[float, float]) -> None:
@@ -66,7 +73,9 @@ def _block(drawing: Drawing, corner: tuple[float, float], tilt: float) -> tuple[
 
     def turned(u, w):
         dx = u - b
-        return corner[0] + dx * math.cos(tilt) + w * math.sin(tilt), corner[1] - dx * math.sin(tilt) + w * math.cos(tilt)
+        return corner[0] + dx * math.cos(tilt) + w * math.sin(tilt), corner[1] - dx * math.sin(tilt) + w * math.cos(
+            tilt
+        )
 
     drawing.polygon([turned(*point) for point in ((-b, 0), (b, 0), (b, 2 * h), (-b, 2 * h))], "stone")
     centre = turned(0, h)
@@ -76,16 +85,18 @@ def _block(drawing: Drawing, corner: tuple[float, float], tilt: float) -> tuple[
 
 def rocking() -> str:
     """The block about its right corner, with all that acts on it."""
-    drawing = Drawing(400, 330, 285, "A block tilted about its right corner: weight, inertia force and the corner’s forces")
+    drawing = Drawing(
+        400, 330, 285, "A block tilted about its right corner: weight, inertia force and the corner’s forces"
+    )
     corner = (220.0, 0.0)
     drawing.line((30, 0), (370, 0))
     centre = _block(drawing, corner, PHI)
     drawing.line(corner, centre, "thin")
     drawing.line(corner, (corner[0], 175), "thin")
     drawing.arc(corner, 96, 0, PHI - GAMMA)
-    drawing.text((corner[0] - 24, 103), "γ − φ")
-    drawing.text(((corner[0] + centre[0]) / 2 - 20, centre[1] / 2 - 2), "R")
-    drawing.arrow(centre, (0, -ARROW), "mg", (6, 4))
+    drawing.text((corner[0] + 7, 90), "γ − φ")
+    drawing.text((corner[0] - 24, 40), "R")
+    drawing.arrow(centre, (0, -ARROW), "mg", (-26, 4))
     drawing.arrow(centre, (-ARROW, 0), "m a_g", (-34, 8))
     drawing.arrow((corner[0] + 26, -32), (0, 30), "N", (6, -16))
     drawing.arrow((corner[0] + 46, 0), (-42, 0), "H", (46, 7))
@@ -124,7 +135,9 @@ def isolated() -> str:
         for layer in range(4):
             kind = "steel" if layer % 2 else "stone"
             x = left + 4.0 * layer
-            drawing.polygon([(x, 9.0 * layer), (x + 30, 9.0 * layer), (x + 30, 9.0 * layer + 9), (x, 9.0 * layer + 9)], kind)
+            drawing.polygon(
+                [(x, 9.0 * layer), (x + 30, 9.0 * layer), (x + 30, 9.0 * layer + 9), (x, 9.0 * layer + 9)], kind
+            )
     drawing.line((30, 0), (370, 0))
     drawing.polygon([(104, 36), (312, 36), (312, slab), (104, slab)], "steel")
     corner = (232.0, slab)

@@ -45,7 +45,7 @@ STYLE: Any = {  # keys of matplotlib, a type of its own
     "svg.fonttype": "none",
     "path.simplify_threshold": 0.3,
 }
-WIDTH, HEIGHT = 6.2, 4.6  # inch: lettering stays readable on a phone
+WIDTH, HEIGHT = 5.4, 4.4  # inch: lettering stays readable on a phone
 WIDE = (9.6, 5.4)  # inch, 16:9, of the figures for slides
 LICENCE = "rocking lessons, MIT licence"
 
@@ -55,7 +55,7 @@ def canvas(rows: int = 1, heights: tuple[float, ...] = (1,), columns: int = 1, *
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(WIDTH, HEIGHT))
         axes = figure.subplots(rows, columns, height_ratios=heights, **more)
-        figure.subplots_adjust(left=0.125, right=0.975, top=0.965, bottom=0.125, hspace=0.42, wspace=0.12)
+        figure.subplots_adjust(left=0.14, right=0.97, top=0.965, bottom=0.125, hspace=0.42, wspace=0.12)
     return figure, axes
 
 

@@ -23,11 +23,11 @@ OTHERS = (("index.html", "Lessons"), ("derivations.html", "Derivation"), ("teach
 
 
 def export_pages(
-    folder: str | PathLike[str], names: Sequence[str] = NAMES, tell: Callable[[str], object] = lambda words: None
+    folder: str | PathLike[str], names: Sequence[str] | None = None, tell: Callable[[str], object] | None = None
 ) -> list[Path]:
     """Write playground, lessons, derivation and teacher's page into `folder`, which exists; returns their paths.
 
-    names : the lessons whose pages are made. tell : is told what is under way.
+    names : the lessons whose pages are made, all without it. tell : is told what is under way.
     """
     folder, environment = Path(folder), _environment()
     written_files: list[Path] = []
@@ -38,14 +38,15 @@ def export_pages(
         path.write_bytes(content.encode() if isinstance(content, str) else content)
         written_files.append(path)
 
-    chosen = [lesson(name) for name in names]
+    chosen = [lesson(name) for name in names or NAMES]
     keep(PAGE, playground_page(OTHERS))
     keep("index.html", environment.get_template("index.html").render(lessons=chosen))
     drawings = {name: Markup(getattr(diagrams, name)()) for name in ("rocking", "impact", "isolated")}
     keep("derivations.html", environment.get_template("derivations.html").render(**drawings))
     exercises, firsts = [], []
     for one in chosen:
-        tell(f"lesson {one.number}: {one.title}")
+        if tell:
+            tell(f"lesson {one.number}: {one.title}")
         exercises.append([(exercise, answer(exercise)) for exercise in one.exercises])
         keep(f"lesson-{one.number}.html", _lesson_page(environment, one, chosen, exercises[-1]))
         first = one.first()
@@ -59,7 +60,11 @@ def export_pages(
 
 def _environment() -> Environment:
     environment = Environment(
-        loader=FileSystemLoader(FOLDER), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+        loader=FileSystemLoader(FOLDER),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
     )
     environment.filters["prose"] = lambda text: Markup(prose(text))
     environment.filters["math"] = lambda tex: Markup(mathml(tex, display=True))

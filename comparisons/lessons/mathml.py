@@ -14,8 +14,13 @@ OPERATORS = {
     "oint": "∮", "infty": "∞", "ll": "≪", "sum": "∑", "Rightarrow": "⇒", "propto": "∝", "lt": "<", "gt": ">",
 }  # fmt: skip
 FUNCTIONS = {"sin", "cos", "tan", "ln", "log", "exp", "sgn", "max", "min"}
-ACCENTS = {"dot": "˙", "ddot": "¨", "tilde": "~", "bar": "¯"}
+ACCENTS = {
+    "dot": ".",
+    "ddot": "..",
+    "tilde": "~",
+}  # full stops: fonts without mathematics draw them clear of the letter
 SPACES = {",": "0.17em", ";": "0.28em", "quad": "1em", "qquad": "2em", "!": "-0.1em"}
+THIN = "<mspace width='0.17em'/>"
 TOKEN = re.compile(r"\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|\s+|.", re.DOTALL)
 
 
@@ -28,9 +33,7 @@ def mathml(tex: str, display: bool = False) -> str:
         A command that is not known here, or braces that do not match.
     """
     tokens = [token for token in TOKEN.findall(tex) if not token.isspace()]
-    body, rest = _row(tokens, None, tex)
-    if rest:
-        raise ValueError(f"{tex!r}: a brace too many")
+    body, _ = _row(tokens, None, tex)
     block = ' display="block"' if display else ""
     return f"<math{block}>{body}</math>"
 
@@ -38,6 +41,7 @@ def mathml(tex: str, display: bool = False) -> str:
 def _row(tokens, closing, tex):
     """(MathML of the tokens up to `closing`, tokens after it)."""
     parts: list[str] = []
+    function = False
     while tokens:
         if tokens[0] == closing:
             return "".join(parts), tokens[1:]
@@ -54,6 +58,11 @@ def _row(tokens, closing, tex):
             else:
                 parts.append(f"<msup>{base}{scripts['^']}</msup>")
             continue
+        if function and tokens[0] not in ("(", "\\left"):
+            parts.append(THIN)  # between a function, or its power, and its argument
+        function = tokens[0][1:] in FUNCTIONS
+        if function and parts and not parts[-1].startswith("<mo"):
+            parts.append(THIN)
         part, tokens = _one(tokens, tex)
         parts.append(part)
     if closing:
@@ -66,6 +75,8 @@ def _one(tokens, tex):
     if not tokens:
         raise ValueError(f"{tex!r}: something is missing at the end")
     token, rest = tokens[0], tokens[1:]
+    if token == "}":
+        raise ValueError(f"{tex!r}: a brace too many")
     if token == "{":
         body, rest = _row(rest, "}", tex)
         return f"<mrow>{body}</mrow>", rest
@@ -77,14 +88,14 @@ def _one(tokens, tex):
     if name in OPERATORS:
         return f"<mo>{escape(OPERATORS[name])}</mo>", rest
     if name in FUNCTIONS:
-        return f"<mi>{name}</mi><mspace width='0.1em'/>", rest
+        return f"<mi>{name}</mi>", rest
     if name in SPACES:
         return f"<mspace width='{SPACES[name]}'/>", rest
     if name in ("left", "right"):
-        return f"<mo>{escape(rest[0])}</mo>", rest[1:]
+        return _letter(rest[0]), rest[1:]
     if name in ACCENTS:
         body, rest = _one(rest, tex)
-        return f"<mover accent='true'>{body}<mo>{ACCENTS[name]}</mo></mover>", rest
+        return f"<mover>{body}<mo>{ACCENTS[name]}</mo></mover>", rest
     if name == "sqrt":
         body, rest = _one(rest, tex)
         return f"<msqrt>{body}</msqrt>", rest
@@ -103,6 +114,8 @@ def _letter(token):
         return f"<mn>{token}</mn>"
     if token.isalpha():
         return f"<mi>{token}</mi>"
+    if token in "|()[]":
+        return f"<mo stretchy='false' lspace='0' rspace='0'>{token}</mo>"
     return f"<mo>{escape({'-': '−', chr(39): '′', '*': '·'}.get(token, token))}</mo>"
 
 

@@ -30,7 +30,9 @@ def open_notebook(name: str, *, edit: bool = False) -> int:
     except KeyError as error:
         raise SettingError(str(error.args[0])) from None
     if importlib.util.find_spec("marimo") is None:
-        raise SettingError(f"notebooks need the package marimo: {INSTALL}; rocking lessons export writes pages without it")
+        raise SettingError(
+            f"notebooks need the package marimo: {INSTALL}; rocking lessons export writes pages without it"
+        )
     with tempfile.TemporaryDirectory(prefix="rocking-lesson-") as folder:
         copy = Path(shutil.copy(file, folder))
         return subprocess.call([sys.executable, "-m", "marimo", "edit" if edit else "run", str(copy)])

@@ -46,7 +46,7 @@ def view(step: float) -> View:
     history = run.history
     assert history is not None  # it was asked for
     landed = int(np.argmax(history.tilt <= 0))
-    figure, (above, errors) = canvas(2, (1, 1.5))
+    figure, (above, errors) = canvas(2, (0.7, 1.5))
     frames = [
         (history.tilt[landed - 2], "a step before"),
         (history.tilt[landed - 1], "the last above"),
@@ -58,6 +58,7 @@ def view(step: float) -> View:
     above.axhline(0, color=SOFT, linewidth=1.4)
     above.set(xlim=(-1.7, 13.7), ylim=(-1.3, 2.0), aspect="equal")
     above.axis("off")
+    above.set_position((0.02, 0.68, 0.96, 0.3))
     errors.loglog(1e3 * SCAN, 100 * scanned(), color=MODEL, linewidth=1.2, label="every step")
     guide = 100 * np.nanmax(scanned()) * SCAN / SCAN[-1]
     errors.loglog(1e3 * SCAN, guide, "--", color=SOFT, linewidth=1, label="first order")
@@ -73,7 +74,7 @@ def view(step: float) -> View:
             "error of the rate after it": (here, "%"),
             "depth of the corner": (1e3 * 2 * RADIUS * math.sin(SLENDERNESS) * abs(frames[2][0]), "mm"),
         },
-        f"With steps of {step:g} ms the impact is shifted by {shift:+.2f} ms, the rate after it is off by {here:.3f} %.",
+        f"With steps of {step:g} ms the impact is shifted by {shift:+.2f} ms, and the rate is off by {here:.3f} %.",
     )
 
 
@@ -168,7 +169,7 @@ LESSON = Lesson(
         "*Softness is another error.* An engine without an impact law lets the corner sink in; the playground shows "
         "how much "
         "energy that costs at which static sink.",
-        "*A small step is no cure for a wrong law.* The table below has engines whose error does not fall with the "
+        "*A small step is no cure for a wrong law.* The table above has engines whose error does not fall with the "
         "step: "
         "they solve another contact.",
     ),

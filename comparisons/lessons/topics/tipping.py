@@ -123,7 +123,7 @@ LESSON = Lesson(
         Equation(
             r"J_O \ddot{\phi} + m g R \sin(s \gamma - \phi) + m R \cos(s \gamma - \phi) \, a_g = 0",
             "4",
-            "Rocking about the corner of side s = sgn φ, on rigid ground. Size matters: R stands against time squared.",
+            "Rocking about a corner; $s$ is the sign of the tilt. Size matters: $J_O$ grows as $R^2$, moments as $R$.",
         ),
     ),
     (Control("amplitude", tuple(round(0.05 * k, 2) for k in range(4, 31)), 0.4, "g"),),

@@ -1,17 +1,37 @@
-"""``rocking lessons``: the pages are written, and lead to nothing outside them."""
+"""``rocking lessons``: listed, opened, and written as pages that lead to nothing outside them."""
 
 import re
 
+import pytest
 
-def test_pages_lead_to_nothing_outside(rocking, tmp_path):
-    status, out, _ = rocking("lessons", "export", "--output", tmp_path / "pages")
+from comparisons.lessons import export
+from comparisons.lessons.topics import lessons
+
+
+def test_without_a_command_they_are_listed(rocking):
+    status, out, _ = rocking("lessons")
     assert status == 0
-    written = out.split()
-    assert len(written) == len(list((tmp_path / "pages").iterdir()))
-    for file in (tmp_path / "pages").glob("*.html"):
-        leads = re.findall(r"""(?:src|href)=["']?([^"'\s>]+)""", file.read_text(encoding="utf-8"))
+    assert all(lesson.name in out for lesson in lessons())
+
+
+def test_an_unknown_lesson_is_refused(rocking):
+    status, _, err = rocking("lessons", "open", "tipping-over")
+    assert status == 2 and "choose one of tipping" in err.replace("\n", " ")
+
+
+@pytest.mark.parametrize("names", [["bearing"], pytest.param(None, marks=pytest.mark.slow)])
+def test_pages_lead_to_nothing_outside(rocking, tmp_path, monkeypatch, names):
+    if names:
+        monkeypatch.setattr(export, "NAMES", names)
+        monkeypatch.setattr(export, "_lesson_page", lambda *parts: "<!DOCTYPE html><title>left out</title>")
+    status, out, _ = rocking("lessons", "export", "--output", tmp_path / "pages")
+    assert status == 0 and out.strip() == str(tmp_path / "pages" / "index.html")
+    found = list((tmp_path / "pages").glob("*.html"))
+    assert len(found) == 4 + len(names or lessons())
+    for file in found:
+        leads = re.findall(r"""(?:src|href)=["']([^"']+)""", file.read_text(encoding="utf-8"))
         beside = [lead.split("#")[0] for lead in leads if not lead.startswith(("data:", "#"))]
-        assert all((tmp_path / "pages" / lead).exists() for lead in beside)
+        assert [lead for lead in beside if not (tmp_path / "pages" / lead).exists()] == []
 
 
 def test_a_file_in_place_of_the_folder_is_refused(rocking, tmp_path):
