@@ -16,11 +16,12 @@ def mendable() -> tuple[type[Exception], ...]:
     """The errors a user can mend: told without a traceback."""
     from analytic.errors import EngineNotInstalled, SceneError, SettingError
 
+    from ..running.cluster import ClusterError
     from ..running.files import PlaceError
     from ..running.provenance import ResultError
     from ..running.store import StoreError
 
-    return SceneError, SettingError, EngineNotInstalled, PlaceError, ResultError, StoreError
+    return SceneError, SettingError, EngineNotInstalled, PlaceError, ResultError, StoreError, ClusterError
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from typer.core import TyperGroup
 
+from analytic.errors import SettingError
+
 from ..studies import StudyBroken, draw, get_study, study_names
 
 if TYPE_CHECKING:
@@ -26,9 +28,18 @@ Output = Annotated[
 ]
 Engines = Annotated[
     list[str] | None,
-    typer.Option("--engine", help="Engine to compare, more than one by repetition; all installed without it."),
+    typer.Option(
+        "--engine", help="Engine to compare, more than one by repetition; without it all that the study wants."
+    ),
 ]
 Workers = Annotated[int | None, typer.Option(min=1, help="Worker processes; one per core without it.")]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ADDRESS",
+        help="Dask scheduler whose workers do the runs, HOST:PORT, or local:N. What is timed is done here.",
+    ),
+]
 Replot = Annotated[str | None, typer.Option(metavar="FILE", help="Run nothing, draw only, from this result file.")]
 
 
@@ -45,7 +56,7 @@ def command_of(study: Study) -> Callable[..., None]:
     """A function that Typer makes the study's command of."""
     drawing = {parameter.name for parameter in _options(study.figures)}
 
-    def command(quick=False, output=None, engine=None, workers=None, replot=None, **options):
+    def command(quick=False, output=None, engine=None, workers=None, scheduler=None, replot=None, **options):
         from ..running.files import check_folder
         from ..running.provenance import read_result
         from ..running.study import compute
@@ -57,7 +68,10 @@ def command_of(study: Study) -> Callable[..., None]:
             return _tell(draw(study, replot, output, **shown))
         given = {name: value for name, value in options.items() if name not in drawing}
         problems = []
-        for path in compute(study, folder, engines=engine or None, quick=quick, workers=workers, **given):
+        if scheduler is not None and workers is not None:
+            raise SettingError("--workers: are those of --scheduler; give one of the two")
+        place = dict(workers=workers, scheduler=scheduler)
+        for path in compute(study, folder, engines=engine or None, quick=quick, **place, **given):
             _tell([path, *draw(study, path, **shown)])
             result = read_result(path)
             for paragraph in study.section(result).text:
@@ -75,6 +89,7 @@ def command_of(study: Study) -> Callable[..., None]:
         option("output", Output, None),
         option("engine", Engines, None),
         option("workers", Workers, None),
+        option("scheduler", Scheduler, None),
         option("replot", Replot, None),
         *_options(study.plan),
         *_options(study.figures),

@@ -25,7 +25,7 @@ from analytic.errors import SettingError
 from engines import ENGINES, get_engine, installed_engines
 
 from .cases import Case, module_of
-from .executors import Processes, number_of
+from .executors import Processes, number_of, workers_at
 from .files import check_folder
 from .provenance import Result, write_result
 from .solving import stdout_to_stderr
@@ -85,8 +85,8 @@ class Study:
     name: on the command line, of its files, and the kind of its result. question: one line, the command's help.
     plan: ``(ask, **options)`` -> generator, see above. figures: ``(result, **options)`` -> {suffix: Figure}. section:
     result -> `comparisons.showing.parts.Section`. problems: result -> sentences that end the command with status 1.
-    Keyword-only parameters of plan and figures, annotated as Typer
-    wants them, become options of the command.
+    all_engines: whether all that are installed take part where none is asked for. Keyword-only parameters of plan and
+    figures, annotated as Typer wants them, become options of the command.
     """
 
     name: str
@@ -95,6 +95,7 @@ class Study:
     figures: Callable[..., dict]
     section: Callable[[Result], Any]
     problems: Callable[[Result], list] = lambda result: []
+    all_engines: bool = True
 
 
 def compute(
@@ -104,6 +105,7 @@ def compute(
     engines: Iterable[str] | None = None,
     quick: bool = False,
     workers: int | None = None,
+    scheduler: str | None = None,
     progress: bool = True,
     **options: Any,
 ) -> list[Path]:
@@ -115,11 +117,13 @@ def compute(
     folder : path
         Made if it does not exist. Runs already found there are not repeated.
     engines : iterable of str or None
-        Those to compare; None: all that are installed.
+        Those to compare; None: all that are installed, or none (`Study.all_engines`).
     quick : bool
         A first look.
     workers : int or None
         Worker processes; None: one per core.
+    scheduler : str or None
+        Address of a Dask scheduler whose workers do the runs, or "local:N". What is timed is done here all the same.
     progress : bool
         Show it on standard error.
     **options
@@ -128,9 +132,11 @@ def compute(
     Raises
     ------
     SettingError
-        `folder` is a file, the number of workers is out of range, or an engine has no such name.
+        `folder` is a file, the number of workers is out of range, no scheduler answers, or an engine has no such name.
     EngineNotInstalled
         As `engines.get_engine`.
+    ClusterError
+        As `comparisons.running.cluster`.
     StoreError
         Another study is writing there.
     ResultError
@@ -143,8 +149,8 @@ def compute(
         stack.enter_context(stdout_to_stderr())  # engines greet on standard output
         store = stack.enter_context(Store(folder / RUNS))
         stack.callback(_leave_nothing_empty, folder)
-        ask = _asked(engines, quick)  # loads engines: after what is wrong with the place was found
-        pool = stack.enter_context(Processes(workers, ("analytic", *ask.engines)))
+        ask = _asked(study, engines, quick)  # loads engines: after what is wrong with the place was found
+        pool = stack.enter_context(workers_at(scheduler, workers, ("analytic", *ask.engines)))
         return _carry_out(study, study.plan(ask, **options), folder, ask, store, pool, progress)
 
 
@@ -177,14 +183,16 @@ def _carry_out(study, plan, folder, ask, store, pool, progress):
     return list(written)
 
 
-def _asked(engines, quick):
-    """The `Ask` for engines by name; None: all that are installed."""
+def _asked(study, engines, quick):
+    """The `Ask` for engines by name; None: all that are installed, if the study wants them."""
     for name in engines or ():
         try:
             get_engine(name)
         except KeyError as error:
             raise SettingError(error.args[0]) from None
-    return Ask(installed_engines() if engines is None else tuple(dict.fromkeys(engines)), quick)
+    if engines is None:
+        return Ask(installed_engines() if study.all_engines else (), quick)
+    return Ask(tuple(dict.fromkeys(engines)), quick)
 
 
 def say(text: str) -> None:

@@ -20,7 +20,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from .cases import Case, compile_kernels, name_of, solver
-from .executors import Done, Executor, Processes, Serial, Task
+from .executors import Done, Executor, Processes, Serial, Task, workers_at
 from .provenance import json_ready
 from .store import Store
 
@@ -63,6 +63,7 @@ def run_sweep(
     time_limit: float = 300.0,
     measure: Callable[[Case, Response], dict[str, Any]] | None = None,
     executor: Executor | None = None,
+    scheduler: str | None = None,
     progress: bool = True,
     label: str = "runs",
 ) -> list[Row]:
@@ -75,7 +76,7 @@ def run_sweep(
     store : path or Store
         JSONL file of rows, appended to as they arrive. Rows found there are not run again.
     workers : int or None
-        Worker processes; None takes one per core. Not used with `executor`.
+        Worker processes; None takes one per core. Not used with `executor` or `scheduler`.
     time_limit : float
         Seconds a run may take; beyond, its row is "failed". A row that failed so is run again when the
         limit is raised, and so is one whose worker was killed from outside.
@@ -83,6 +84,8 @@ def run_sweep(
         Module-level, (`Case`, `Response`) -> dict of JSON values; runs in the worker, on responses that did not fail.
     executor : Executor or None
         Where to run, to share workers between sweeps; it stays open.
+    scheduler : str or None
+        Address of a Dask scheduler, or "local:N"; see `comparisons.running.cluster`.
     progress : bool
         Show a bar with the remaining time on standard error.
 
@@ -92,6 +95,8 @@ def run_sweep(
         A solver that does not exist or is not installed: before anything runs.
     StoreError
         The store is in use or damaged.
+    ClusterError
+        The scheduler's workers differ from this process, or it is gone.
     """
     cases = list(cases)
     name_of(measure)  # a measure that cannot travel is an error now, not a failed row each
@@ -108,7 +113,7 @@ def run_sweep(
             bar = stack.enter_context(_bar(progress))
             line = bar.add_task(label, total=len(waiting))
             if executor is None:
-                executor = stack.enter_context(Processes(workers, names))
+                executor = stack.enter_context(workers_at(scheduler, workers, names))
             _run(waiting, store, executor, measure, time_limit, lambda count: bar.advance(line, count))
         rows = [store.get(key) for key in keys]
     return [

@@ -19,7 +19,17 @@ if TYPE_CHECKING:
 GROUP = "rocking.studies"
 PACKAGE = "comparisons.studies"
 # in the order of the report
-BUILT_IN = ("restitution", "overturning", "fragility", "speed-error", "stability", "caryatid", "tolerances", "sheet")
+BUILT_IN = (
+    "restitution",
+    "overturning",
+    "fragility",
+    "surface",
+    "speed-error",
+    "stability",
+    "caryatid",
+    "tolerances",
+    "sheet",
+)
 
 
 class StudyBroken(SettingError):

@@ -1,0 +1,111 @@
+"""The runs behind the fragility surface: slendernesses x synthetic motions x intensities.
+
+A case is a block under a motion; its measure runs all intensities and keeps a digit for each, so that a million runs
+are some ten thousand rows.
+"""
+
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+
+from analytic import Response, load_scene, simulate_many, synthetic_motion
+from analytic.synthetic import PEAK, G
+
+from ...measuring.statistics import fit_fragility, wilson
+from ...running.cases import Case
+from ...running.study import Ask, Batch, Found, Plan
+
+ANALYTIC = "analytic"
+# slendernesses [rad], peak ground accelerations [g], synthetic motions
+FULL = np.linspace(0.08, 0.45, 50), np.geomspace(0.1, 3.0, 40), 500
+QUICK = np.linspace(0.1, 0.4, 7), np.geomspace(0.1, 3.0, 16), 24
+STANDS, OVERTURNS, FAILED = "0", "1", "x"
+
+SCENE = "Scene whose block takes the slendernesses; shipped, or a file."
+Name = Annotated[str, typer.Option("--scene", metavar="SCENE", help=SCENE)]
+
+
+def measure(case: Case, response: Response) -> dict[str, Any]:
+    """A digit for each of the case's intensities; of an engine the run at the first one is `response`."""
+    scales = np.array(case.tag["intensities"]) / case.tag["intensities"][0]
+    if case.solver == ANALYTIC:
+        outcomes = simulate_many([case.scene] * len(scales), scales=scales, workers=1)
+        digits = np.where(outcomes.failed, FAILED, np.where(outcomes.overturns, OVERTURNS, STANDS)).tolist()
+        return {"outcomes": "".join(digits), "undecided": int((~outcomes.decided).sum())}
+    motion, responses = case.scene.motion, [response]
+    for scale in scales[1:]:
+        scene = case.scene.with_(motion=motion.scaled(float(scale)))
+        responses.append(Case(scene, case.solver, case.variant, case.settings).run())
+    digits = [{"failed": FAILED, "overturns": OVERTURNS}.get(each.outcome, STANDS) for each in responses]
+    return {"outcomes": "".join(digits), "undecided": sum(not each.decided for each in responses)}
+
+
+def plan(ask: Ask, grid: Any = None, *, scene: Name = "caryatid-rigid") -> Plan:
+    """The plan of the study.
+
+    Rows: a lognormal curve over the intensity for each solver and slenderness. Arrays ``<solver>/overturned`` and
+    ``<solver>/sound``: runs that overturned, and runs that did not fail, shape (slendernesses, intensities).
+
+    Parameters
+    ----------
+    ask : Ask
+    grid : (slendernesses, intensities, motions), optional
+        In place of `FULL` or `QUICK`.
+    scene : str
+    """
+    slendernesses, intensities, count = grid or (QUICK if ask.quick else FULL)
+    start = load_scene(scene).with_(motion=None, duration=None)
+    first = [synthetic_motion(seed=seed).scaled(float(intensities[0]) * G / PEAK) for seed in range(count)]
+    rows, arrays, checks = [], {}, {"runs": 0, "undecided": 0, "failed": 0}
+    for solver in (ANALYTIC, *ask.engines):
+        cases = [
+            Case(
+                start.with_(block={"slenderness": float(slenderness)}, motion=motion),
+                solver,
+                settings={"history": False},
+                tag={"intensities": [float(x) for x in intensities]},
+            )
+            for slenderness in slendernesses
+            for motion in first
+        ]
+        results = yield Batch(cases, measure, f"{solver}: {len(cases) * len(intensities)} runs")
+        digits = np.array([list(row.values.get("outcomes", FAILED * len(intensities))) for row in results])
+        digits = digits.reshape(len(slendernesses), count, len(intensities))
+        overturned, sound = (digits == OVERTURNS).sum(axis=1), (digits != FAILED).sum(axis=1)
+        arrays |= {f"{solver}/overturned": overturned, f"{solver}/sound": sound}
+        rows += [
+            {"solver": solver, "slenderness": float(slenderness), **_curve(intensities, fallen, size)}
+            for slenderness, fallen, size in zip(slendernesses, overturned, sound, strict=True)
+        ]
+        checks["runs"] += digits.size
+        checks["failed"] += int((digits == FAILED).sum())
+        checks["undecided"] += sum(row.values.get("undecided", 0) for row in results)
+    settings = {
+        "quick": ask.quick,
+        "scene": scene,
+        "slendernesses": [float(x) for x in slendernesses],
+        "intensities": [float(x) for x in intensities],
+        "motions": count,
+        "motion": "synthetic duzce-like, scaled",
+        "solvers": [ANALYTIC, *ask.engines],
+        **checks,
+    }
+    return Found(settings, rows, arrays, seed=[0, count - 1])
+
+
+def _curve(intensities, fallen, size):
+    """The lognormal curve through the counts, and the widest of their Wilson intervals."""
+    intervals = [wilson(int(k), int(n)) for k, n in zip(fallen, size, strict=True) if n]
+    widest = max((high - low for low, high in intervals), default=None)
+    try:
+        curve = fit_fragility(intensities, fallen, size)
+    except ValueError as error:
+        return {"median": None, "dispersion": None, "median_interval": None, "widest": widest, "reason": str(error)}
+    return {
+        "median": curve.median,
+        "dispersion": curve.dispersion,
+        "median_interval": list(curve.median_interval),
+        "widest": widest,
+        "reason": None,
+    }
