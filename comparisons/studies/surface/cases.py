@@ -12,7 +12,7 @@ import typer
 from analytic import Response, load_scene, simulate_many, synthetic_motion
 from analytic.synthetic import PEAK, G
 
-from ...measuring.statistics import fit_fragility, wilson
+from ...measuring.statistics import wilson
 from ...running.cases import Case
 from ...running.study import Ask, Batch, Found, Plan
 
@@ -44,8 +44,9 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
 def plan(ask: Ask, grid: Any = None, *, scene: Name = "caryatid-rigid") -> Plan:
     """The plan of the study.
 
-    Rows: a lognormal curve over the intensity for each solver and slenderness. Arrays ``<solver>/overturned`` and
-    ``<solver>/sound``: runs that overturned, and runs that did not fail, shape (slendernesses, intensities).
+    Rows: for each solver and slenderness the intensity that overturns half, see `_crossing`. Arrays
+    ``<solver>/overturned`` and ``<solver>/sound``: runs that overturned, and runs that did not fail, shape
+    (slendernesses, intensities).
 
     Parameters
     ----------
@@ -75,7 +76,7 @@ def plan(ask: Ask, grid: Any = None, *, scene: Name = "caryatid-rigid") -> Plan:
         overturned, sound = (digits == OVERTURNS).sum(axis=1), (digits != FAILED).sum(axis=1)
         arrays |= {f"{solver}/overturned": overturned, f"{solver}/sound": sound}
         rows += [
-            {"solver": solver, "slenderness": float(slenderness), **_curve(intensities, fallen, size)}
+            {"solver": solver, "slenderness": float(slenderness), **_crossing(intensities, fallen, size)}
             for slenderness, fallen, size in zip(slendernesses, overturned, sound, strict=True)
         ]
         checks["runs"] += digits.size
@@ -94,18 +95,26 @@ def plan(ask: Ask, grid: Any = None, *, scene: Name = "caryatid-rigid") -> Plan:
     return Found(settings, rows, arrays, seed=[0, count - 1])
 
 
-def _curve(intensities, fallen, size):
-    """The lognormal curve through the counts, and the widest of their Wilson intervals."""
-    intervals = [wilson(int(k), int(n)) for k, n in zip(fallen, size, strict=True) if n]
-    widest = max((high - low for low, high in intervals), default=None)
-    try:
-        curve = fit_fragility(intensities, fallen, size)
-    except ValueError as error:
-        return {"median": None, "dispersion": None, "median_interval": None, "widest": widest, "reason": str(error)}
+def _crossing(intensities, fallen, size):
+    """Where half of the motions overturn the block, and how far the share falls again above.
+
+    The first crossing of one half, between two intensities by their logarithm; its interval is where the upper and the
+    lower Wilson limits cross. No curve is fitted: scaling a motion up can save a block, and no lognormal one does that.
+    """
+    share = fallen / np.where(size > 0, size, 1)
+    low, high = np.transpose([wilson(int(k), int(n)) if n else (0.0, 1.0) for k, n in zip(fallen, size, strict=True)])
     return {
-        "median": curve.median,
-        "dispersion": curve.dispersion,
-        "median_interval": list(curve.median_interval),
-        "widest": widest,
-        "reason": None,
+        "half": _first(intensities, share),
+        "interval": [_first(intensities, high), _first(intensities, low)],
+        "falls_by": float((np.maximum.accumulate(share) - share).max()),
+        "widest": float((high - low).max()),
     }
+
+
+def _first(intensities, share):
+    """The intensity at which `share` first crosses one half, or None."""
+    above = np.flatnonzero(share >= 0.5)
+    if not len(above) or above[0] == 0:
+        return None
+    k = slice(above[0] - 1, above[0] + 1)
+    return float(np.exp(np.interp(0.5, share[k], np.log(intensities[k]))))

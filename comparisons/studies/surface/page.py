@@ -48,7 +48,7 @@ def draw(result: Result) -> Figure:
         axis.clabel(lines, fmt=lambda level: f"{100 * level:.0f} %", fontsize="small")
         axis.plot(x, np.tan(x), color="white", linestyle="--", linewidth=1.4)
         axis.annotate(
-            "uplift, g tan γ", (x[-1], np.tan(x[-1])), (-6, -12), textcoords="offset points", color="white", ha="right"
+            "uplift, g tan γ", (x[-1], np.tan(x[-1])), (-6, -22), textcoords="offset points", color="white", ha="right"
         )
         axis.set(title=f"{solver}, {s['scene']}", xlabel="slenderness γ [rad]", yscale="log")
         axis.set_yticks([0.1, 0.2, 0.5, 1, 2, 3], labels=["0.1", "0.2", "0.5", "1", "2", "3"])
@@ -58,23 +58,23 @@ def draw(result: Result) -> Figure:
     return figure
 
 
-def _fitted(result, solver):
-    return [row for row in result.rows if row["solver"] == solver and row["median"] is not None]
-
-
 def _answer(result):
-    """One sentence: from where to where the median goes."""
+    """From where to where the intensity goes that overturns half, and whether more is always worse."""
     solver = result.settings["solvers"][0]
-    rows = _fitted(result, solver)
-    if len(rows) < 2:
-        return f"{solver}: no curve could be fitted; add motions."
-    low, high = rows[0], rows[-1]
+    rows = [row for row in result.rows if row["solver"] == solver]
+    known = [row for row in rows if row["half"] is not None]
+    if len(known) < 2:
+        return f"{solver}: one half is crossed at fewer than two slendernesses; add intensities."
     words = [
-        f"at slenderness {number(row['slenderness'])} half of the motions overturn the block at "
-        f"{number(row['median'])} g, {number(row['median'] / np.tan(row['slenderness']))} times its uplift acceleration"
-        for row in (low, high)
+        f"at slenderness {number(row['slenderness'])} half of the motions overturn the block at {number(row['half'])} "
+        f"g, {number(row['half'] / np.tan(row['slenderness']))} times its uplift acceleration"
+        for row in (known[0], known[-1])
     ]
-    return f"{solver}: {words[0]}; {words[1]}."
+    worst = max(rows, key=lambda row: row["falls_by"])
+    return (
+        f"{solver}: {words[0]}; {words[1]}. A stronger motion is not always the worse one: at slenderness "
+        f"{number(worst['slenderness'])} the share falls again by {percent(worst['falls_by'])} on the way up."
+    )
 
 
 def _table(result):
@@ -83,29 +83,20 @@ def _table(result):
         rows = [row for row in result.rows if row["solver"] == solver]
         for k in np.unique(np.linspace(0, len(rows) - 1, min(SHOWN, len(rows))).astype(int)):
             row = rows[k]
-            low, high = row["median_interval"] or (None, None)
-            over = None if row["median"] is None else row["median"] / np.tan(row["slenderness"])
+            over = None if row["half"] is None else row["half"] / np.tan(row["slenderness"])
             shown.append(
                 (
                     solver,
                     number(row["slenderness"]),
-                    number(row["median"]),
-                    f"{number(low)} to {number(high)}",
+                    number(row["half"]),
+                    " to ".join(number(limit) for limit in row["interval"]),
                     number(over),
-                    number(row["dispersion"]),
+                    percent(row["falls_by"]),
                     percent(row["widest"]),
                 )
             )
     return Table(
-        "Lognormal curves over the peak ground acceleration; widest Wilson interval of a share",
-        (
-            "solver",
-            "slenderness [rad]",
-            "median [g]",
-            "95 % interval",
-            "over g tan γ [-]",
-            "dispersion [-]",
-            "widest interval",
-        ),
+        "Peak ground acceleration that overturns half, with its 95 % interval; widest Wilson interval of a share",
+        ("solver", "slenderness [rad]", "half at [g]", "interval [g]", "over g tan γ [-]", "falls again by", "widest"),
         shown,
     )

@@ -1,0 +1,68 @@
+"""The fragility surface: every count is one of single runs, by batches and by engines, and shown."""
+
+import numpy as np
+import pytest
+from answered import answered
+
+from analytic import load_scene, simulate, synthetic_motion
+from analytic.synthetic import PEAK, G
+from comparisons.running.provenance import read_result, write_result
+from comparisons.running.study import Ask
+from comparisons.running.sweep import Serial, run_sweep
+from comparisons.studies import get_study
+
+STUDY = get_study("surface")
+GRID = np.array([0.12, 0.3]), np.array([0.15, 0.4, 1.2]), 2
+
+
+pytestmark = pytest.mark.xdist_group("surface")  # its runs are made once
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    tmp_path = tmp_path_factory.mktemp("surface")
+
+    def run(batch):
+        return run_sweep(
+            batch.cases, store=tmp_path / "r.jsonl", measure=batch.measure, executor=Serial(), progress=False
+        )
+
+    # the second implementation in the place of an engine: a run at a time
+    return answered(STUDY.plan(Ask(("twin",)), GRID), run)[-1]
+
+
+def test_counts_are_those_of_single_runs(found):
+    slendernesses, intensities, count = GRID
+    scene = load_scene("caryatid-rigid").with_(duration=None)
+    for i, slenderness in enumerate(slendernesses):
+        for j, intensity in enumerate(intensities):
+            motions = [synthetic_motion(seed=seed).scaled(intensity * G / PEAK) for seed in range(count)]
+            fallen = sum(
+                simulate(scene.with_(block={"slenderness": slenderness}, motion=motion)).outcome == "overturns"
+                for motion in motions
+            )
+            for solver in ("analytic", "twin"):
+                assert found.arrays[f"{solver}/overturned"][i, j] == fallen
+                assert found.arrays[f"{solver}/sound"][i, j] == count
+    assert 0 < found.arrays["analytic/overturned"].sum() < found.arrays["analytic/sound"].sum()
+    assert found.settings["runs"] == 2 * 2 * 3 * 2 and found.settings["failed"] == found.settings["undecided"] == 0
+
+
+def test_half_lies_where_the_share_crosses_it_and_is_shown(found, tmp_path):
+    for row in found.rows:
+        share = found.arrays[f"{row['solver']}/overturned"][list(GRID[0]).index(row["slenderness"])] / GRID[2]
+        above = int(np.argmax(share >= 0.5))
+        assert GRID[1][above - 1] <= row["half"] <= GRID[1][above]
+        assert row["falls_by"] == pytest.approx(max(share[: k + 1].max() - share[k] for k in range(len(share))))
+    path = write_result(
+        tmp_path / "surface.json",
+        "surface",
+        {**found.settings, "changed_while_running": []},
+        found.rows,
+        found.arrays,
+        modules=["analytic"],
+    )
+    section = STUDY.section(read_result(path))
+    (table,) = section.tables
+    assert len(table.rows) == 4 and all(len(row) == len(table.columns) for row in table.rows)
+    assert "half of the motions overturn the block" in section.text[1] and section.figures[0].svg
