@@ -45,6 +45,11 @@ WORDS = {
 }
 
 
+def speaks_of_range(warning: str) -> bool:
+    """Whether a warning of a run says that it lies outside what its variant, or its settings, were verified for."""
+    return "verified" in warning
+
+
 def in_words(verified: Range | None) -> str:
     """The limits of a `Range`, or that there is none."""
     if verified is None:

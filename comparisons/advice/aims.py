@@ -1,0 +1,128 @@
+"""What a setting is chosen for: up to when a scene is run, and how far off a run is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from analytic import Scene, simulate
+from analytic.errors import SettingError
+from analytic.rocking import restitution
+from engines.verified import speaks_of_range
+
+from ..measuring.horizon import sensitivity_horizon
+from ..measuring.measures import impact_time_errors
+from ..measuring.restitution import impact_errors, rate_restitution, rms, strong_impacts
+
+if TYPE_CHECKING:
+    from analytic import Response
+
+    from ..running.cases import Case
+
+AIMS = ("restitution", "tilt", "displacement", "outcome")
+IMPACTS = 8  # strong ones of the model up to which a scene is run for its restitution
+AFTER = 0.25  # of a rocking period that a run goes on after them
+PERIODS = 1.0  # rocking periods beyond its peak up to which tilt or displacement is compared
+FACTORS = (0.95, 0.975, 1.025, 1.05)  # of start and motion together: the neighbours
+MORE_FACTORS = (0.9625, 0.9875, 1.0125, 1.0375)  # beside them where outcomes are counted
+SPARE = 2.0  # error asked for over the worst that a setting may show: neighbours not looked at pass, too
+
+
+def neighbours(scene: Scene, aim: str) -> dict[float, Scene]:
+    """{factor: the scene with its start and its motion times that}, the scene itself with 1 first.
+
+    Raises
+    ------
+    SettingError
+        Nothing moves: there is neither a start nor a motion.
+    """
+    if scene.motion is None and not any(scene.start.model_dump().values()):
+        raise SettingError(f"{scene.name}: nothing moves; give the scene a [start] or a [motion]")
+    found = {1.0: scene}
+    for factor in sorted(FACTORS + (MORE_FACTORS if aim == "outcome" else ())):
+        start = {name: factor * value for name, value in scene.start.model_dump().items()}
+        try:
+            found[factor] = scene.with_(start=start, motion=scene.motion and scene.motion.scaled(factor))
+        except ValueError:  # a tilt beyond pi/2
+            continue
+    return found
+
+
+def until(scene: Scene, aim: str) -> float:
+    """Time [s] up to which a scene is run and compared.
+
+    Raises
+    ------
+    SettingError
+        The scene does not show what is asked for.
+    """
+    reference = simulate(scene, history=False)
+    if aim == "displacement" and scene.base is None:
+        raise SettingError("--for displacement: the scene has no base; choose restitution, tilt or outcome")
+    if aim == "restitution":
+        strong = strong_impacts(reference)[:IMPACTS]
+        if not strong:
+            raise SettingError(
+                f"--for restitution: the block of {scene.name} never hits its base; choose displacement or outcome"
+            )
+        return float(min(reference.end.time, strong[-1].time + AFTER * 2 * np.pi / scene.rocking_frequency))
+    if aim == "tilt" and reference.outcome == "stands":
+        raise SettingError(f"--for tilt: the block of {scene.name} never lifts; choose displacement or outcome")
+    if aim == "outcome":
+        return reference.end.time
+    cut = scene.with_(duration=reference.end.time)
+    history = simulate(cut).history
+    column = np.abs(history.tilt if aim == "tilt" else history.base_displacement)  # type: ignore[union-attr]  # it has one
+    peak = float(history.time[column.argmax()])  # type: ignore[union-attr]  # as above
+    after = PERIODS * 2 * np.pi / scene.rocking_frequency
+    return min(sensitivity_horizon(cut).horizon, peak + after)
+
+
+@dataclass(frozen=True)
+class Measure:
+    """Measure of a run: its error in the sense of `aim`, and whether it says to be outside its verified range."""
+
+    aim: str
+
+    def __call__(self, case: Case, response: Response) -> dict[str, Any]:
+        reference = simulate(case.scene)
+        return {
+            "outcome": response.outcome,
+            "error": error(self.aim, case.scene, response, reference),
+            "outside": next((text for text in response.warnings if speaks_of_range(text)), None),
+            "simulated": response.end.time,
+        }
+
+
+def error(aim: str, scene: Scene, response: Response, reference: Response) -> float | None:
+    """How far off a run is; None where it does not show what is asked for."""
+    if aim == "outcome":
+        return float(response.outcome != reference.outcome)
+    if aim == "restitution":
+        return _restitution(scene, response, reference)
+    ours, theirs = response.history, reference.history
+    if ours is None or theirs is None:
+        return None
+    column, unit = "tilt", scene.block.slenderness
+    if aim == "displacement":
+        column, unit = "base_displacement", reference.peak_base_displacement
+    time = theirs.time[theirs.time <= ours.time[-1]]  # one that overturns ends there
+    apart = np.interp(time, ours.time, getattr(ours, column)) - getattr(theirs, column)[: len(time)]
+    return float(np.abs(apart).max() / unit)
+
+
+def _restitution(scene, response, reference):
+    if not reference.impacts:
+        return 0.0  # a neighbour that stands
+    if not response.impacts or np.isnan(impact_time_errors(response, reference)[0]):
+        return None
+    errors = [rms(impact_errors(scene, response)["state"])]
+    if scene.motion is None and scene.bearings is None:  # what a swing loses counts, too
+        rates = np.array([impact.rate_before for impact in strong_impacts(response)])
+        if (rates[:-1] * rates[1:] >= 0).any():
+            return None  # sides alternate: an impact was lost
+        swings = rate_restitution(response)
+        errors += [rms(swings - restitution(scene))] if len(swings) else []
+    return max(errors)

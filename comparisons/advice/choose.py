@@ -1,0 +1,229 @@
+"""Which setting of which engine meets an error on this very scene, and on its neighbours, at the least cost?
+
+Each variant's knob is run along its ladder on the scene; where that passes from some setting on to the finest, those
+settings are run on the neighbours, the cheapest first, until one passes. A setting passes if it and all finer ones do,
+everywhere, with `aims.SPARE` to spare and without a word of leaving their verified range: none passes by luck.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from analytic import Scene
+from analytic.errors import SettingError
+from engines import available_engines, get_engine
+from engines.verified import speaks_of_range
+
+from ..running.executors import Processes
+from .aims import AIMS, Measure, neighbours, until
+from .found import Choice, Ladder, Setting
+from .search import Runner, Search, problem, spare
+from .spared import cpu_seconds, spared
+
+if TYPE_CHECKING:
+    from engines.contract import Variant
+
+TIME_LIMIT = 60.0  # s, of one run
+
+
+def choose(
+    scene: Scene,
+    *,
+    error: float = 1e-3,
+    aim: str = "restitution",
+    engines: Iterable[str] | None = None,
+    time_limit: float = TIME_LIMIT,
+    progress: bool = False,
+    source: str = "scene.toml",
+) -> Choice:
+    """The `Choice` for a scene.
+
+    Its runs are made in processes of their own: a script calls it under ``if __name__ == "__main__":``.
+
+    Parameters
+    ----------
+    scene : Scene
+    error : float
+        Largest error asked for: of restitution (rms) [-]; of the tilt over the slenderness, or of the displacement over
+        its peak, at any time up to the sensitivity horizon; of outcomes the share of neighbours that differ.
+    aim : str
+        One of `aims.AIMS`.
+    engines : iterable of str or None
+        Those to try; None: all that are installed.
+    time_limit : float
+        Of one run [s]; a setting that takes longer does not pass.
+    progress : bool
+        Show a bar on standard error.
+    source : str
+        Name of the scene's file, for the command and the snippet.
+
+    Raises
+    ------
+    SettingError
+        The error or the aim is out of range, or the scene does not show what is asked for.
+    EngineNotInstalled
+
+    Examples
+    --------
+    >>> from analytic import load_scene
+    >>> found = choose(load_scene("free-rocking-rigid"), error=0.02, engines=["exudyn"])  # doctest: +SKIP
+    >>> found.chosen.engine, found.chosen.passes  # doctest: +SKIP
+    ('exudyn', True)
+    """
+    if aim not in AIMS:
+        raise SettingError(f"--for {aim}: choose one of {', '.join(AIMS)}")
+    if not 0 < error < 1:
+        raise SettingError(f"--error {error!r}: give a number above 0 and below 1")
+    family = neighbours(scene, aim)
+    spans = {1.0: until(scene, aim)}
+    family = {
+        factor: one if aim == "outcome" else one.with_(duration=_span(one, aim, spans, factor))
+        for factor, one in family.items()
+    }
+    names, missing = _asked(engines)
+    rungs = _rungs(names, scene)
+    solvers = ("analytic", *names)
+    with tempfile.TemporaryDirectory(prefix="choose-") as folder, Processes(None, solvers) as executor:
+        go = Runner(Path(folder), executor, Measure(aim), family, time_limit=time_limit, progress=progress)
+        go(rungs, [1.0], "the scene")
+        search = Search(go, error, aim, lambda rung: go.whole(scene, rung))
+        chosen, whole = search.cheapest(rungs)
+        if chosen and aim == "restitution" and get_engine(chosen[0]).variants[chosen[1]].takes_restitution:
+            search.cheapest([rung for rung in rungs if not get_engine(rung[0]).variants[rung[1]].takes_restitution])
+        kinds = _kinds(names, scene)
+        ladders = [_ladder(name, variant, kind, go.rows, error, aim, len(family)) for name, variant, kind in kinds]
+    settings = {(one.engine, one.variant, one.value): one for ladder in ladders for one in ladder.settings}
+    answer = settings[chosen] if chosen else None
+    best = None if chosen else _best(ladders)
+    return Choice(
+        scene=scene.name,
+        aim=aim,
+        error=error,
+        spare=spare(aim),
+        neighbours=list(family),
+        until=spans[1.0],
+        chosen=answer,
+        best=best,
+        cpu_seconds=whole,
+        analytic_cpu_seconds=cpu_seconds(scene),
+        command=answer and _command(answer, source),
+        snippet=answer and _snippet(answer, source),
+        ladders=ladders,
+        spared=spared(scene, family, error, answer or best, names),
+        missing=missing,
+    )
+
+
+def _span(scene, aim, spans, factor):
+    if factor not in spans:
+        try:
+            spans[factor] = until(scene, aim)
+        except SettingError:  # a neighbour that does not lift: as long as the scene itself
+            spans[factor] = spans[1.0]
+    return spans[factor]
+
+
+def _asked(engines):
+    if engines is None:
+        names, missing = available_engines()
+        return list(names), missing
+    for name in engines:
+        try:
+            get_engine(name)
+        except KeyError as error:
+            raise SettingError(error.args[0]) from None
+    return list(dict.fromkeys(engines)), {}
+
+
+def _kinds(names: Sequence[str], scene: Scene) -> list[tuple[str, str, Variant]]:
+    """(engine, variant, its record) of those that may be chosen: verified somewhere, and able to run the scene."""
+    return [
+        (name, variant, kind)
+        for name in names
+        for variant, kind in get_engine(name).variants.items()
+        if kind.verified is not None and (scene.block.restitution is None or kind.takes_restitution)
+    ]
+
+
+def _rungs(names, scene):
+    return [(name, variant, value) for name, variant, kind in _kinds(names, scene) for value in kind.ladder]
+
+
+def _ladder(name, variant, kind, runs, error, aim, size):
+    """The `Ladder` of a variant from what was run."""
+    settings = []
+    for value in kind.ladder:
+        rows = runs[name, variant, value]
+        found, why = problem(rows, error, aim)
+        if why is None and len(rows) < size:
+            why = "passes the scene; neighbours not run"
+        sound = [row for row in rows.values() if not row.failed]
+        spent = (
+            sum(row.cost["cpu_seconds"] for row in sound) / sum(row.values["simulated"] for row in sound)
+            if sound
+            else None
+        )
+        settings.append(
+            Setting(
+                engine=name,
+                variant=variant,
+                knob=kind.knob,
+                value=value,
+                default=value == kind.default,
+                runs=len(rows),
+                error=found,
+                cpu_per_second=spent,
+                passes=why is None,
+                why=why,
+            )
+        )
+    for k in range(len(settings) - 2, -1, -1):
+        if settings[k].passes and not settings[k + 1].passes:
+            settings[k] = settings[k].model_copy(update={"passes": False, "why": "a finer setting does not pass"})
+    return Ladder(
+        engine=name,
+        variant=variant,
+        rung=kind.rung,
+        applies_impact=kind.takes_restitution,
+        order=_order(settings) if aim != "outcome" else None,
+        settings=settings,
+    )
+
+
+def _order(settings):
+    """Slope of log error over log knob; None where fewer than three settings show one."""
+    shown = [(one.value, one.error) for one in settings if one.error]
+    if len(shown) < 3:
+        return None
+    knob, errors = np.log(np.array(shown)).T
+    return float(np.polyfit(knob, errors, 1)[0])
+
+
+def _best(ladders):
+    """The setting of least error that does not leave its range, None if all do."""
+    known = [one for ladder in ladders for one in ladder.settings if one.error is not None]
+    inside = [one for one in known if one.why is None or not speaks_of_range(one.why)]
+    return min(inside, key=lambda one: one.error, default=None)
+
+
+def _set(one):
+    return "" if one.default else f" --set {one.knob}={one.value:g}"
+
+
+def _command(one, source):
+    return f"rocking run {source} --engine {one.engine} --variant {one.variant}{_set(one)}"
+
+
+def _snippet(one, source):
+    value = "" if one.default else f", {one.knob}={one.value:g}"
+    return (
+        "from analytic import load_scene\n"
+        "from engines import get_engine\n\n"
+        f'response = get_engine("{one.engine}").simulate(load_scene("{source}"), variant="{one.variant}"{value})\n'
+        "print(response.verdict, response.peak_tilt_ratio, response.peak_base_displacement)\n"
+    )

@@ -1,0 +1,67 @@
+"""``rocking choose``: the cheapest setting that is good enough for one's own scene."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..running.solving import check_time_limit
+
+
+def command(
+    scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
+    error: Annotated[
+        float, typer.Option(help="Largest error; of outcomes the share of neighbours that differ.")
+    ] = 1e-3,
+    aim: Annotated[str, typer.Option("--for", help="restitution, tilt, displacement or outcome.")] = "restitution",
+    engine: Annotated[
+        list[str] | None, typer.Option(help="An engine to try; may be repeated. Default: all that are installed.")
+    ] = None,
+    plot: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw error over CPU time (.png, .svg or .pdf).")
+    ] = None,
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write the choice; - prints it.")
+    ] = None,
+    time_limit: Annotated[
+        float, typer.Option(metavar="SECONDS", help="A setting whose run takes longer does not pass.")
+    ] = 60.0,
+) -> None:
+    """Which setting of which engine is good enough for a scene, at what cost, and what need not be modelled.
+
+    The engines' settings are run on the scene and on neighbours of it, with start and motion scaled by up to 5 %, and
+    held against the analytic model; tilt and displacement up to the sensitivity horizon only. Status 1: none passes.
+    Example: rocking choose caryatid-isolated --for displacement --error 1e-3
+    """
+    from analytic.scene_file import load_scene
+
+    from ..advice import choose
+    from ..running.files import check_writable, write_all
+    from ..running.solving import stdout_to_stderr
+
+    check_time_limit(time_limit)
+    check_writable([json_file], picture=plot, inputs=[scene])
+    what = load_scene(scene)
+    with stdout_to_stderr():  # engines greet on standard output
+        choice = choose(
+            what, error=error, aim=aim, engines=engine or None, time_limit=time_limit, progress=True, source=scene
+        )
+    results: dict[str, str | Callable[[Path], object]] = {}
+    if json_file:
+        results[json_file] = json.dumps(choice.model_dump(by_alias=True), indent=2, allow_nan=False) + "\n"
+    if plot:
+        from ..showing.choices import draw_choice
+        from ..showing.plots import save
+
+        results[plot] = lambda path: save(draw_choice(choice), path)
+    problem = write_all(results)
+    if json_file != "-":
+        from ..showing.choices import print_choice
+
+        print_choice(choice)
+    if problem:
+        raise problem
+    if choice.chosen is None:
+        raise typer.Exit(1)
