@@ -28,7 +28,7 @@ def section(result: Result) -> Section:
         draw(result),
         "Probability of overturning as filled contours over slenderness and peak ground acceleration, one panel for "
         f"each of {', '.join(s['solvers'])}, with the line of uplift. {_answer(result)}",
-        "Share of the motions that overturn the block; black: 16, 50 and 84 %. Below the dashed line, peak ground "
+        "Share of the motions that overturn the block; lines: 16, 50 and 84 %. Below the dashed line, peak ground "
         "acceleration g tan γ, no block lifts.",
     )
     return Section("Fragility surface", (asked, _answer(result)), (_table(result),), (figure,))
@@ -44,13 +44,15 @@ def draw(result: Result) -> Figure:
         sound = result.arrays[f"{solver}/sound"]
         share = result.arrays[f"{solver}/overturned"] / np.where(sound > 0, sound, 1)
         filled = axis.contourf(x, y, share.T, LEVELS, cmap="cividis")
-        lines = axis.contour(x, y, share.T, [0.16, 0.5, 0.84], colors="black", linewidths=[0.8, 1.6, 0.8])
+        lines = axis.contour(
+            x, y, share.T, [0.16, 0.5, 0.84], colors=["white", "black", "black"], linewidths=[0.8, 1.6, 0.8]
+        )
         axis.clabel(lines, fmt=lambda level: f"{100 * level:.0f} %", fontsize="small")
         axis.plot(x, np.tan(x), color="white", linestyle="--", linewidth=1.4)
         axis.annotate(
-            "uplift, g tan γ", (x[-1], np.tan(x[-1])), (-6, -22), textcoords="offset points", color="white", ha="right"
+            "uplift, g tan γ", (x[-1], np.tan(x[-1])), (-6, -30), textcoords="offset points", color="white", ha="right"
         )
-        axis.set(title=f"{solver}, {s['scene']}", xlabel="slenderness γ [rad]", yscale="log")
+        axis.set(title=f"{solver}, {s['scene']}", xlabel="slenderness γ [rad]", yscale="log", ylim=(y[0], y[-1]))
         axis.set_yticks([0.1, 0.2, 0.5, 1, 2, 3], labels=["0.1", "0.2", "0.5", "1", "2", "3"])
         axis.minorticks_off()
     axes[0].set_ylabel("peak ground acceleration [g]")
