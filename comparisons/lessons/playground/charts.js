@@ -3,6 +3,7 @@
 const Charts = (() => {
   const styles = getComputedStyle(document.documentElement);
   const colour = (name) => styles.getPropertyValue(`--${name}`).trim();
+  const NEAR = 0.8; // pixels: points of a curve that are closer are left out
   const FONT = '12px system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
 
   // [context, width, height] in CSS pixels, cleared; the canvas follows its box and the screen's density.
@@ -76,10 +77,13 @@ const Charts = (() => {
     context.rect(box.left, box.top - 1, box.right - box.left, box.bottom - box.top + 2);
     context.clip();
     context.beginPath();
+    let [lastX, lastY] = [Infinity, Infinity];
     for (let i = 0; i < rows.length; i++) {
       const px = x(across(rows[i])), py = y(up(rows[i]));
+      if (Math.abs(px - lastX) + Math.abs(py - lastY) < NEAR && i < rows.length - 1) continue; // nobody sees it
       if (i) context.lineTo(px, py);
       else context.moveTo(px, py);
+      [lastX, lastY] = [px, py];
     }
     context.strokeStyle = stroke;
     context.lineWidth = width;

@@ -183,14 +183,21 @@ const Views = (() => {
     return frame;
   }
 
-  // The cells as an image, a pixel each.
-  function picture({ nx, ny, values }) {
+  // The cells as an image, a pixel each; kept until cells or colours change.
+  let kept = { cells: null, colours: "", canvas: null };
+  function picture(cells) {
+    const { nx, ny, values } = cells, fills = CELLS.map(colour), colours = fills.join();
+    if (kept.cells === cells && kept.colours === colours) return kept.canvas;
     const canvas = document.createElement("canvas"), context = canvas.getContext("2d");
     [canvas.width, canvas.height] = [nx, ny];
-    CELLS.forEach((name, kind) => {
-      context.fillStyle = colour(name);
-      for (let k = 0; k < nx * ny; k++) if (values[k] === kind) context.fillRect(k % nx, ny - 1 - Math.floor(k / nx), 1, 1);
-    });
+    const image = context.createImageData(nx, ny), parts = fills.map((hex) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16)));
+    for (let k = 0; k < nx * ny; k++) {
+      const pixel = 4 * ((ny - 1 - Math.floor(k / nx)) * nx + (k % nx));
+      image.data.set(parts[values[k]], pixel);
+      image.data[pixel + 3] = 255;
+    }
+    context.putImageData(image, 0, 0);
+    kept = { cells, colours, canvas };
     return canvas;
   }
 

@@ -117,7 +117,7 @@ LESSON = Lesson(
             "The usual equivalent damping; Table 1(a) divides by half as much.",
         ),
     ),
-    (Control("amplitude", tuple(round(0.02 * k, 2) for k in range(1, 21)), 0.3, "m"),),
+    (Control("amplitude", (0.02, 0.04, 0.06, 0.08, *(round(0.1 + 0.025 * k, 3) for k in range(13))), 0.3, "m"),),
     view,
     "Move the amplitude. The shaded area is the energy of one cycle.",
     (

@@ -10,6 +10,7 @@ import numpy as np
 from analytic import SampledMotion, Scene, simulate, simulate_many
 from analytic.caryatid import caryatid_block
 
+from ...showing.parts import MINUS_DIGITS
 from ..computing import G
 from ..drawing import MODEL, OTHER, SOFT, canvas, legend
 from ..lesson import Control, Equation, Exercise, Lesson, View
@@ -52,9 +53,11 @@ def view(exponent: float) -> View:
     """Both tilts, and their distance; exponent: of the relative difference in restitution."""
     times = np.arange(0, DURATION + STEP / 2, STEP)
     one, other, end = tilt_of(None), tilt_of(exponent), horizon(exponent)
+    power = "10" + f"{exponent:.0f}".translate(MINUS_DIGITS)
     figure, (tilt, distance) = canvas(2, (1, 1), sharex=True)
+    figure.subplots_adjust(hspace=0.12)
     tilt.plot(times, one, color=MODEL, linewidth=1.3, label=f"e = {RESTITUTION}")
-    tilt.plot(times, other, "--", color=OTHER, linewidth=1.2, label=f"e = {RESTITUTION} (1 + 10^{exponent:.0f})")
+    tilt.plot(times, other, "--", color=OTHER, linewidth=1.2, label=f"e = {RESTITUTION} (1 + {power})")
     tilt.axvline(end, color=SOFT, linewidth=1)
     tilt.set(ylim=(-1.5, 2.0), ylabel="tilt φ / γ", xlim=(0, DURATION))
     legend(tilt, loc="upper left", ncols=2)

@@ -74,7 +74,7 @@ def view(solver: str, level: float) -> View:
     """The five defects as bars."""
     found = checks(solver, level)
     figure, axis = canvas()
-    figure.subplots_adjust(left=0.24)
+    figure.subplots_adjust(left=0.29)
     names = list(found)[::-1]
     sizes = [max(found[name], FLOOR) for name in names]
     axis.barh(names, sizes, left=0, color=MODEL, height=0.55)

@@ -7,7 +7,7 @@ import functools
 from analytic import simulate
 
 from ...showing.parts import Table, number
-from ..drawing import INK, MODEL, OTHER, SOFT, canvas, legend
+from ..drawing import INK, OTHER, SOFT, THIRD, canvas, legend
 from ..engine_runs import (
     OWN_STEPS,
     ROUNDS,
@@ -70,7 +70,7 @@ def view(step: float) -> View:
         ladders.setdefault(run.name, []).append(run)
     for name, ladder in ladders.items():
         own = ladder[0].solver == own_runs()[0].solver
-        colour = MODEL if own else INK if ladder[0].solver == "event-driven" else colour_of(ladder[0])
+        colour = THIRD if own else INK if ladder[0].solver == "event-driven" else colour_of(ladder[0])
         known = [run for run in ladder if run.error is not None]
         first = ladder[0].rung == "first script"
         axis.loglog(

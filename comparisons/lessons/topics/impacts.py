@@ -109,7 +109,7 @@ LESSON = Lesson(
             "For a rectangle on rigid ground: the shape alone decides.",
         ),
     ),
-    (Control("slenderness γ", tuple(round(0.02 * k, 2) for k in range(4, 30)), 0.28, "rad"),),
+    (Control("slenderness γ", tuple(round(0.04 * k, 2) for k in range(2, 16)), 0.28, "rad"),),
     view,
     "Move the slenderness. Dots are impacts; below, the restitution of every block.",
     (

@@ -126,7 +126,11 @@ LESSON = Lesson(
             "Rocking about a corner; $s$ is the sign of the tilt. Size matters: $J_O$ grows as $R^2$, moments as $R$.",
         ),
     ),
-    (Control("amplitude", tuple(round(0.05 * k, 2) for k in range(4, 31)), 0.4, "g"),),
+    (
+        Control(
+            "amplitude", (0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, *(round(0.1 * k, 1) for k in range(6, 16))), 0.4, "g"
+        ),
+    ),
     view,
     "Move the amplitude of a sine of 0.8 s. The ring shows where you are among all sines.",
     (
