@@ -31,14 +31,11 @@ def _listed(context: typer.Context) -> None:
 
 
 @app.command(name="open")
-def open_(
-    name: Annotated[str, typer.Argument(help="Lesson: see rocking lessons.")],
-    edit: Annotated[bool, typer.Option("--edit", help="Show and change the code.")] = False,
-) -> None:
-    """Open a lesson as a notebook in the browser; it works on a copy of its own. Ctrl-C ends it."""
+def open_(name: Annotated[str, typer.Argument(help="Lesson: see rocking lessons.")]) -> None:
+    """Open a lesson as a notebook in the browser, a copy whose code one can change. Ctrl-C ends it."""
     from ..lessons.opening import open_notebook
 
-    raise typer.Exit(open_notebook(name, edit=edit))
+    raise typer.Exit(open_notebook(name))
 
 
 @app.command()

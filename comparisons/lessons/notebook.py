@@ -80,7 +80,7 @@ def shown(view: View, mo: Any) -> Any:
     """A view as picture and numbers."""
     numbers = [mo.stat(written(value, unit), label=label) for label, (value, unit) in view.numbers.items()]
     picture = (
-        f'<div style="{COLOURS}; max-width: 46rem" role="img" aria-label="{view.says}">{svg(view.figure, "n")}</div>'
+        f'<div style="{COLOURS}; max-width: 38rem" role="img" aria-label="{view.says}">{svg(view.figure, "n")}</div>'
     )
     return mo.vstack([mo.Html(picture), mo.hstack(numbers, justify="start", wrap=True)])
 

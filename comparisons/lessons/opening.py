@@ -14,10 +14,12 @@ from analytic.errors import SettingError
 from .notebook import notebook_file
 from .topics import lesson
 
+# Cells run when the notebook opens, which marimo does not do unasked.
+SETTINGS = "[tool.marimo.runtime]\nauto_instantiate = true\n"
 INSTALL = "pip install marimo, or this project with .[lessons]"
 
 
-def open_notebook(name: str, *, edit: bool = False) -> int:
+def open_notebook(name: str) -> int:
     """Open the notebook of a lesson, a copy of it; returns marimo's status when it ends.
 
     Raises
@@ -35,4 +37,5 @@ def open_notebook(name: str, *, edit: bool = False) -> int:
         )
     with tempfile.TemporaryDirectory(prefix="rocking-lesson-") as folder:
         copy = Path(shutil.copy(file, folder))
-        return subprocess.call([sys.executable, "-m", "marimo", "edit" if edit else "run", str(copy)])
+        copy.with_name("pyproject.toml").write_text(SETTINGS, encoding="utf-8")
+        return subprocess.call([sys.executable, "-m", "marimo", "edit", str(copy)])

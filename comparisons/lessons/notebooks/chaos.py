@@ -19,7 +19,7 @@ def _():
 @app.cell(hide_code=True)
 def _(LESSON, mo, notebook):
     controls = notebook.controls(LESSON, mo)
-    controls
+    mo.vstack(controls.elements)
     return (controls,)
 
 

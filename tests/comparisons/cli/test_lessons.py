@@ -1,10 +1,12 @@
 """``rocking lessons``: listed, opened, and written as pages that lead to nothing outside them."""
 
 import re
+from pathlib import Path
 
 import pytest
 
-from comparisons.lessons import export
+from comparisons.lessons import export, opening
+from comparisons.lessons.notebook import notebook_file
 from comparisons.lessons.topics import lessons
 
 
@@ -17,6 +19,28 @@ def test_without_a_command_they_are_listed(rocking):
 def test_an_unknown_lesson_is_refused(rocking):
     status, _, err = rocking("lessons", "open", "tipping-over")
     assert status == 2 and "choose one of tipping" in err.replace("\n", " ")
+
+
+def test_a_notebook_opens_as_a_copy(rocking, monkeypatch):
+    pytest.importorskip("marimo", reason="needs marimo: pip install marimo")
+    calls = []
+
+    def call(command):
+        copy = Path(command[-1])
+        calls.append((command[1:4], copy.read_text(), copy.with_name("pyproject.toml").read_text()))
+        return 0
+
+    monkeypatch.setattr(opening.subprocess, "call", call)
+    assert rocking("lessons", "open", "chaos")[0] == 0
+    (command, text, settings), original = calls[0], notebook_file(lessons()[5])
+    assert command == ["-m", "marimo", "edit"] and "auto_instantiate = true" in settings
+    assert text == original.read_text()
+
+
+def test_without_marimo_it_says_what_to_install(rocking, monkeypatch):
+    monkeypatch.setattr(opening.importlib.util, "find_spec", lambda name: None)
+    status, _, err = rocking("lessons", "open", "chaos")
+    assert status == 2 and "pip install marimo" in err
 
 
 @pytest.mark.parametrize("names", [["bearing"], pytest.param(None, marks=pytest.mark.slow)])
