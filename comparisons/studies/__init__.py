@@ -24,6 +24,7 @@ BUILT_IN = (
     "overturning",
     "fragility",
     "surface",
+    "matters",
     "speed-error",
     "stability",
     "caryatid",

@@ -38,6 +38,7 @@ MAPS = {"frequency": [2.0, 4.0], "amplitude": [1.0, 2.0], "rigid ground/one-sine
 SHORT = {
     "restitution": {"grid": Grid((0.2,), (None, CARYATID_BASE), (0.6,), ((0.2, None),), 4)},
     "fragility": {"scenes": {"free-standing": ("caryatid-rigid", {}, (0.6, 1.0))}, "motions": 2},
+    "matters": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (2, 1)},
     "stability": {"names": ("uplift 0.99", "critical pulse +0.01")},
     "speed-error": {"keep": lambda entry: entry.family.startswith(("crude", "kernel")), "grow": False, "repeats": 1},
 }
@@ -100,7 +101,7 @@ def test_a_study_runs_and_shows_it(crude, tmp_path, name):
     study, options = get_study(name), dict(SHORT[name])
     if name == "speed-error":
         options["scenes"] = [near_overturning()]
-    run = modelled if name == "fragility" else really(tmp_path)
+    run = modelled if name in ("fragility", "matters") else really(tmp_path)
     found = answered(study.plan(ASK, **options), run)[-1]
     section = shown(study, found, tmp_path)
     assert rows_with(section) and any("crude" in text for text in section.text)

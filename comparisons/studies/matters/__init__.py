@@ -1,0 +1,13 @@
+"""What matters more than the engine: how often does each uncertainty flip the verdict, the solver's among them?"""
+
+from ...running.study import Study
+from .cases import plan
+from .page import draw, section
+
+STUDY = Study(
+    "matters",
+    "What flips the verdict more often than the choice of the engine: the vertical motion, a per cent of slenderness?",
+    plan,
+    lambda result: {"": draw(result)},
+    section,
+)
