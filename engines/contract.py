@@ -154,8 +154,9 @@ class Engine:
         What must be importable.
     install : str
         How to install it.
-    colour, marker, dashes : str
-        In every figure.
+    colour, marker : str
+    dashes : str or tuple
+        In every figure; a line style of matplotlib, as (0, (6, 1)) if it is none of the named ones.
     adapter : str
         Name of the module with ``VARIANTS``, ``versions`` and ``run``.
     tolerances : str or None
@@ -171,7 +172,7 @@ class Engine:
     colour: str
     marker: str
     adapter: str
-    dashes: str = "-"
+    dashes: str | tuple[float, tuple[float, ...]] = "-"
     tolerances: str | None = None
     origin: str = ""
 

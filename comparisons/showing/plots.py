@@ -22,7 +22,7 @@ REFERENCE = ("#000000", "-", 2.4)
 DOTS, LINES = 1.8, 1.4
 TITLE_CHARACTERS = 100
 TILT_RANGE = (0.05, 2.0)  # least and greatest limit of a tilt axis, over slenderness
-SPARE = ("#009E73", (0, (5, 1)), 1.3)
+SPARE = ("#777777", (0, (5, 1)), 1.3)
 
 
 def marker(solver: str) -> str:

@@ -16,7 +16,12 @@ ROCKING = SCENES["isolated"].with_(duration=1.5)
 DRIVEN = ROCKING.with_(
     block={"slenderness": 0.15}, start={"tilt": 0.0}, motion=PulseMotion("one-sine", 3.0, 8.0), duration=2.5
 )
-ENGINES = {"exudyn": "compliant-corners", "pybullet": "impact-aware", "mujoco": "impact-aware"}
+ENGINES = {
+    "exudyn": "compliant-corners",
+    "pybullet": "impact-aware",
+    "mujoco": "impact-aware",
+    "pymunk": "impact-aware",
+}
 
 
 @pytest.mark.parametrize(
@@ -120,7 +125,21 @@ def mutate_mujoco(monkeypatch, gain, delay, step):
     monkeypatch.setattr(stepping.mujoco, "mj_step", changed)
 
 
-MUTATE = {"exudyn": mutate_exudyn, "pybullet": mutate_pybullet, "mujoco": mutate_mujoco}
+def mutate_pymunk(monkeypatch, gain, delay, step):
+    from engines.pymunk import stepping
+
+    load, told = stepping.Base.load, []
+
+    def changed(self, *given):
+        told.append(self.force)
+        believed, self.force = self.force, gain * told[max(len(told) - 1 - delay, 0)]
+        load(self, *given)
+        self.force = believed
+
+    monkeypatch.setattr(stepping.Base, "load", changed)
+
+
+MUTATE = {"exudyn": mutate_exudyn, "pybullet": mutate_pybullet, "mujoco": mutate_mujoco, "pymunk": mutate_pymunk}
 LARGEST_STEP = 1e-3  # s, of the delay in exudyn, whose steps are its own
 
 

@@ -30,7 +30,8 @@ from engines import get_engine
 from engines.checks import pivoting_centre
 
 # [rad] and [m]. Adaptive steps follow round-off: a hundred times their local tolerance.
-MIRROR, MIRROR_DEFAULT = {("exudyn", "compliant-corners"): 1e-5}, 1e-6
+# Ten iterations from left to right are not those from right to left: measured 4.7e-3.
+MIRROR, MIRROR_DEFAULT = {("exudyn", "compliant-corners"): 1e-5, ("pymunk", "first-script"): 9e-3}, 1e-6
 
 
 @every_variant
@@ -51,6 +52,10 @@ def test_mirrored_start_gives_the_mirrored_response(engine, variant, slenderness
 # A block that stands; overturning.
 
 
+# Left alone: peak tilt times R [m]. Of a contact with slop measured 5.9e-4.
+ALONE, ALONE_DEFAULT = {("pymunk", "first-script"): 1.2e-3}, 1e-5
+
+
 @every_variant
 @pytest.mark.parametrize("base", [None, 212.0])
 def test_block_left_alone_stands(engine, variant, base):
@@ -60,12 +65,15 @@ def test_block_left_alone_stands(engine, variant, base):
         return
     assert response.outcome == "stands", response.failure
     assert response.impacts == response.uplifts == response.rests == ()
-    assert response.peak_tilt * 1.0884 < 1e-5
+    assert response.peak_tilt * 1.0884 < ALONE.get((engine, variant), ALONE_DEFAULT)
 
 
 # Under shaking below uplift: peak tilt times R, and drift of the lower corner [m]. Contacts that sink: measured 8.7e-4
 # and 7.9e-4.
-LIFT, LIFT_DEFAULT = {("exudyn", "native-contact"): 1.7e-3, ("mujoco", "first-script"): 1.5e-3}, 1e-5
+LIFT, LIFT_DEFAULT = (
+    {("exudyn", "native-contact"): 1.7e-3, ("mujoco", "first-script"): 1.5e-3, ("pymunk", "first-script"): 1.2e-3},
+    1e-5,
+)
 
 
 @every_variant

@@ -36,7 +36,12 @@ def assert_caught(rows):
 # Impact law. What an engine does at an impact is its own: the model it is held against is changed instead, and in
 # switched-joints, where the adapter applies the law, the adapter.
 
-DEFAULTS = [("exudyn", "compliant-corners"), ("pybullet", "impact-aware"), ("mujoco", "impact-aware")]
+DEFAULTS = [
+    ("exudyn", "compliant-corners"),
+    ("pybullet", "impact-aware"),
+    ("mujoco", "impact-aware"),
+    ("pymunk", "impact-aware"),
+]
 
 
 @pytest.mark.parametrize("engine, variant", DEFAULTS)
@@ -169,8 +174,19 @@ def lag_mujoco(monkeypatch):
     monkeypatch.setattr(stepping, "BearingLaw", Lagging)
 
 
+def lag_pymunk(monkeypatch):
+    from engines.pymunk import stepping
+
+    class Lagging(BearingLaw):
+        @functools.cached_property
+        def hysteretic(self):
+            return late(super().hysteretic)
+
+    monkeypatch.setattr(stepping, "BearingLaw", Lagging)
+
+
 # exudyn is not among them: it commits inside a compiled call.
-@pytest.mark.parametrize("engine, lag", [("pybullet", lag_pybullet), ("mujoco", lag_mujoco)])
+@pytest.mark.parametrize("engine, lag", [("pybullet", lag_pybullet), ("mujoco", lag_mujoco), ("pymunk", lag_pymunk)])
 def test_a_bearing_force_that_lags_one_step_fails(monkeypatch, engine, lag):
     one = row("bearing force replayed", engine, "impact-aware", "isolated Caryatid, synthetic motion")
     lag(monkeypatch)
@@ -268,6 +284,10 @@ def test_the_share_of_a_penetration_that_bullet_takes_back_does_not_matter(monke
             "60 s of shaking below uplift, on bearings",
         ),
         ("mujoco", "fixed-step", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
+        ("pymunk", "impact-aware", {"accuracy": 1e-4}, "restitution, rms", "sliding base"),
+        ("pymunk", "impact-aware", {"accuracy": 1e-4}, "base velocity jump, rms", "sliding base"),
+        ("pymunk", "impact-aware", {"largest_step": 5e-3}, "impact times", "rigid ground"),
+        ("pymunk", "expert", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
     ],
 )
 def test_a_coarse_step_fails(monkeypatch, engine, variant, changes, quantity, scenes):

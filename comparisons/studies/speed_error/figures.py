@@ -17,7 +17,7 @@ from .measure import MEASURES
 from .tables import growths, ladder, principal
 
 # Okabe and Ito: kind of solver by colour, member of it by marker.
-COLOURS = {"kernel": "#000000", "scipy": "#56B4E9", "time-stepping": "#009E73"}
+COLOURS = {"kernel": "#000000", "scipy": "#56B4E9", "time-stepping": "#777777"}
 PEER_COLOUR = "#D55E00"
 MARKERS = "osD^vPX*"
 COSTS = {

@@ -1,0 +1,14 @@
+"""pymunk (Chipmunk, planar): ``get_engine("pymunk").simulate(scene, variant=...)``."""
+
+from ..contract import Engine
+
+ENGINE = Engine(
+    name="pymunk",
+    package="pymunk",
+    install="pip install 'rocking[pymunk]'",
+    adapter="engines.pymunk.adapter",
+    tolerances="engines.pymunk.tolerances",
+    colour="#009E73",
+    marker="v",
+    dashes=(0, (6, 1.5, 1, 1.5, 1, 1.5)),
+)
