@@ -238,43 +238,61 @@ const Model = (() => {
 
   const now = (par, st) => [st.t, st.tilt, st.rate, st.x, st.v, par.count * (par.kb * st.x + st.z)];
 
+  // Stretch of ground motion without a corner: between two samples, a pulse, or nothing.
+  function stretch(ground, segment, { duration, order, short }) {
+    if (ground.kind === Scene.SAMPLED && segment < ground.samples.length - 1) {
+      const a0 = ground.scale * ground.samples[segment];
+      const slope = (ground.scale * ground.samples[segment + 1] - a0) / ground.dt;
+      const kind = a0 || slope ? Scene.SAMPLED : Scene.QUIET;
+      return { kind, a0, slope, finish: Math.min((segment + 1) * ground.dt, duration), order: short };
+    }
+    const shaking = ground.kind === Scene.HARMONIC && segment === 0;
+    const finish = shaking ? Math.min(ground.end, duration) : duration;
+    return { kind: shaking ? ground.kind : Scene.QUIET, a0: shaking ? ground.scale : 0, slope: 0, finish, order };
+  }
+
+  // What an event at the end of a step does; keep() is called before and after an impact.
+  function happen(par, st, ground, used, step, keep, result) {
+    if (st.found === "uplift") {
+      const onset = value(par.onBase ? P.absolute : P.ground, used, step);
+      [st.s, st.tilt, st.rate] = [-sign(onset), 0, 0];
+      st.fresh = Math.abs(onset) < par.g * (1 + ONSET) * Math.tan(par.gamma);
+      result.uplifts.push(st.t);
+    } else if (st.found === "impact") {
+      const restRate = (par.e > NEARLY_ELASTIC ? ELASTIC_REST_RATE : REST_RATE) * Math.sqrt(par.p2);
+      keep();
+      land(par, st, Scene.acceleration(ground, st.t), restRate, result);
+      keep();
+    } else if (st.found === "overturning") {
+      st.tilt = st.s * 0.5 * Math.PI;
+      [result.peakTilt, result.overturning] = [0.5 * Math.PI, st.t];
+    }
+  }
+
+  const hasLifted = (par, result) => result.uplifts.length > 0 || par.tilt !== 0 || par.rate !== 0;
+
   // given: duration [s]; decide: end when the outcome is certain, but not before `shortest` [s]; outputStep [s]: rows
   // (t, tilt, rate, x, v, F) at its multiples, those after `shortest` left out where it is given; corners: rows before
   // and after each impact as well; tolerance; order, short: of the series, between samples.
   function simulate(par, ground, given) {
     const options = { tolerance: TOLERANCE, order: ORDER, short: SHORT_ORDER, shortest: 0, outputStep: 0, ...given };
-    const rows = options.outputStep > 0 ? [] : null;
+    const rows = options.outputStep > 0 ? [] : null, until = options.shortest || options.duration;
     const result = { rows, impacts: [], uplifts: [], rests: [], peakTilt: Math.abs(par.tilt), peakX: 0, steps: 0 };
     const st = { t: 0, tilt: par.tilt, rate: par.rate, x: 0, v: 0, z: 0, s: 0, direction: 0, turn: 0, mark: 1,
       fresh: false, refused: false, found: null, coming: 0 };
     if (st.tilt || st.rate) st.s = sign(st.tilt || st.rate);
-    const restRate = (par.e > NEARLY_ELASTIC ? ELASTIC_REST_RATE : REST_RATE) * Math.sqrt(par.p2);
-    const { short } = options, count = ground.samples ? ground.samples.length - 1 : 1;
-    const until = options.shortest || options.duration;
+    const keep = () => rows && options.corners && st.t <= until && rows.push(now(par, st));
+    const early = options.shortest * (1 - ROUNDING);
     let outcome = null, begin = 0, written = 0;
     for (let segment = 0; begin < options.duration && !outcome; segment++) {
-      let kind = Scene.QUIET, a0 = 0, slope = 0, finish = options.duration, order = options.order;
-      if (ground.kind === Scene.SAMPLED && segment < count) {
-        a0 = ground.scale * ground.samples[segment];
-        slope = (ground.scale * ground.samples[segment + 1] - a0) / ground.dt;
-        [finish, order] = [Math.min((segment + 1) * ground.dt, finish), short];
-        if (a0 || slope) kind = Scene.SAMPLED;
-      } else if (ground.kind === Scene.HARMONIC && segment === 0) {
-        [kind, a0, finish] = [ground.kind, ground.scale, Math.min(ground.end, finish)];
-      }
-      const after = kind === Scene.QUIET && begin >= ground.end;
-      const length = finish - begin;
-      let tau = 0;
-      while (tau < length && !outcome) {
+      const { kind, a0, slope, finish, order } = stretch(ground, segment, options), length = finish - begin;
+      const after = options.decide && kind === Scene.QUIET && begin >= ground.end;
+      for (let tau = 0; tau < length && !outcome; ) {
         st.t = begin + tau;
         let h = length - tau;
         if (h <= ROUNDING * finish) break;
-        const lifted = result.uplifts.length > 0 || par.tilt !== 0 || par.rate !== 0;
-        if (after && options.decide && st.t >= options.shortest * (1 - ROUNDING)) {
-          outcome = decision(par, st, lifted);
-          if (outcome) break;
-        }
-        if (after && options.decide && st.t < options.shortest * (1 - ROUNDING)) h = Math.min(h, options.shortest - st.t);
+        if (after && st.t < early) h = Math.min(h, options.shortest - st.t);
+        else if (after && (outcome = decision(par, st, hasLifted(par, result)))) break;
         st.found = null;
         const [used, allowed] = seriesOfStep(par, st, kind, a0 + slope * tau, slope, ground, options, order, h);
         if (st.fresh && st.s && !(st.s * P.phi[3] > 0)) { // only touched the threshold: the block stays down
@@ -292,26 +310,14 @@ const Model = (() => {
         if (step > 0) st.fresh = st.refused = false;
         tau = !found && step === length - tau ? length : tau + step;
         st.t = begin + tau;
-        if (found === "uplift") {
-          const onset = value(par.onBase ? P.absolute : P.ground, used, step);
-          [st.s, st.tilt, st.rate] = [-sign(onset), 0, 0];
-          st.fresh = Math.abs(onset) < par.g * (1 + ONSET) * Math.tan(par.gamma);
-          result.uplifts.push(st.t);
-        } else if (found === "impact") {
-          const kept = rows && options.corners && st.t <= until;
-          if (kept) rows.push(now(par, st));
-          land(par, st, Scene.acceleration(ground, st.t), restRate, result);
-          if (kept) rows.push(now(par, st));
-        } else if (found === "overturning") {
-          st.tilt = st.s * 0.5 * Math.PI;
-          [outcome, result.peakTilt, result.overturning] = ["overturns", 0.5 * Math.PI, st.t];
-        }
-        if (++result.steps > MOST_STEPS) outcome = "undecided";
+        happen(par, st, ground, used, step, keep, result);
+        if (found === "overturning") outcome = "overturns";
+        else if (++result.steps > MOST_STEPS) outcome = "undecided";
       }
       begin = finish;
     }
-    const lifted = result.uplifts.length > 0 || par.tilt !== 0 || par.rate !== 0;
-    if (outcome === null) outcome = begin >= ground.end ? decision(par, st, lifted) : null;
+    const lifted = hasLifted(par, result);
+    if (outcome === null && begin >= ground.end) outcome = decision(par, st, lifted);
     result.outcome = outcome ?? (lifted ? "rocks" : "stands");
     result.coming = st.coming; // impacts still to come before a certain fall
     result.end = now(par, st);
