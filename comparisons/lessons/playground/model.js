@@ -311,8 +311,8 @@ const Model = (() => {
         tau = !found && step === length - tau ? length : tau + step;
         st.t = begin + tau;
         happen(par, st, ground, used, step, keep, result);
+        if (++result.steps > MOST_STEPS) outcome = "undecided";
         if (found === "overturning") outcome = "overturns";
-        else if (++result.steps > MOST_STEPS) outcome = "undecided";
       }
       begin = finish;
     }
