@@ -7,6 +7,7 @@ import subprocess
 
 import pytest
 
+PATIENCE = 200_000  # ms, of a browser on a busy machine
 NEEDED = "needs Node, or Playwright (pip install playwright) and a Chromium"
 
 

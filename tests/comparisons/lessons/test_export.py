@@ -4,7 +4,7 @@ import dataclasses
 import math
 
 import pytest
-from javascript import NEEDED, chromium
+from javascript import NEEDED, PATIENCE, chromium
 
 from analytic import simulate
 from comparisons.lessons import export
@@ -29,6 +29,7 @@ def browser():
 def visit(browser, path, **context):
     """The page; it asks for nothing, has no error, and does not scroll sideways."""
     wrong, page = [], browser.new_context(reduced_motion="reduce", **context).new_page()
+    page.set_default_timeout(PATIENCE)
     page.on("request", lambda request: None if request.url.startswith(LOCAL) else wrong.append(request.url))
     page.on("pageerror", lambda error: wrong.append(str(error)))
     page.goto(path.as_uri())

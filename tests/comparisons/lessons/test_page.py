@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from javascript import NEEDED, chromium
+from javascript import NEEDED, PATIENCE, chromium
 
 from analytic import PulseMotion, load_scene, simulate
 from comparisons.lessons.playground import PAGE, playground_page
@@ -33,6 +33,7 @@ def opened(browser, tmp_path):
     def open_(hash_="", **context):
         contexts.append(browser.new_context(**{"reduced_motion": "reduce", **context}))
         page = contexts[-1].new_page()
+        page.set_default_timeout(PATIENCE)
         page.on("request", lambda request: None if request.url.startswith(LOCAL) else wrong.append(request.url))
         page.on("pageerror", lambda error: wrong.append(str(error)))
         page.goto((tmp_path / PAGE).as_uri() + hash_)
