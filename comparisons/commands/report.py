@@ -8,6 +8,12 @@ from ..running.record_options import Channel, Column, Step, Units
 
 
 def command(
+    scene: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[SCENE]...", help="Scene files, or names of shipped scenes. Default: the Caryatid pair."
+        ),
+    ] = None,
     record: Annotated[
         str | None,
         typer.Option(
@@ -19,18 +25,48 @@ def command(
     dt: Step = None,
     column: Column = None,
     channel: Channel = None,
+    engine: Annotated[
+        list[str] | None, typer.Option(help="An engine to compare; may be repeated. Default: all that are installed.")
+    ] = None,
+    variant: Annotated[
+        str | None, typer.Option(help="Of the one engine, for the scenes given; its default, if not given.")
+    ] = None,
     output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the page and its result files.")] = "report",
 ) -> None:
-    """All solvers on the Caryatid, free-standing and isolated: one HTML page and the result files it is made from."""
-    from ..report.study import make_results
+    """The page: scenes in every solver, how far they agree and at what cost, with the result files it is made from.
+
+    A record given with scenes takes the place of their motions. The stored studies follow as background.
+    Example: rocking report bust.toml --output bust
+    """
+    from analytic.errors import SettingError
+    from engines import get_engine
+
+    from ..report.own import load_scenes
+    from ..report.study import make_own_results, make_results
     from ..report.write import write_page
     from ..running.files import check_folder
-    from ..running.solving import ground_motion, say, stdout_to_stderr
+    from ..running.solving import ANALYTIC, check_solver, ground_motion, say, stdout_to_stderr
 
     check_folder(output)
-    motion = ground_motion(record, units=units, dt=dt, column=column, channel=channel)
-    say(f"ground motion: {motion.label}")
+    for name in engine or ():
+        check_solver(name)
+    engines = [name for name in engine if name != ANALYTIC] if engine else None
+    if variant is not None and (not scene or len(engines or ()) != 1):
+        raise SettingError(f"--variant {variant}: belongs to one engine and to scenes; name both")
+    if variant is not None and variant not in get_engine(engines[0]).variants:  # type: ignore[index]  # there is one
+        known = ", ".join(get_engine(engines[0]).variants)  # type: ignore[index]  # as above
+        raise SettingError(f"{engines[0]} has no variant {variant!r}: choose one of {known}")  # type: ignore[index]  # as above
+    said = {"units": units, "dt": dt, "column": column, "channel": channel}
+    if scene and not record and any(value is not None for value in said.values()):
+        ground_motion(record, **said)  # says what belongs to a record
+    motion = None if scene and not record else ground_motion(record, **said)
+    if motion is not None:
+        say(f"ground motion: {motion.label}")
     with stdout_to_stderr():  # engines greet on standard output
-        make_results(output, motion)
+        if scene:
+            variants = {engines[0]: variant} if engines and variant else {}
+            make_own_results(output, load_scenes(scene, motion), engines=engines, variants=variants)
+        else:
+            make_results(output, motion, engines=engines)  # type: ignore[arg-type]  # without scenes there is one
     say("the page")
     print(write_page(output))

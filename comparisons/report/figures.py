@@ -20,6 +20,7 @@ WIDTH = 5.4  # in: narrow, so that the words stay readable on a phone
 MARKERS = "osD^v"
 ZERO = 1e-16  # an error of 0 is drawn here: below double precision
 GROUND_LINES = {"rigid ground": "-", "sliding base": "--"}
+FILLED = {"rigid ground": "Filled: rigid ground", "sliding base": "Open: sliding base"}
 
 
 def ground_motion(result: Result) -> Picture:
@@ -118,7 +119,8 @@ def restitution(result: Result) -> Picture:
     """Measured restitution on the curve of eq. (7), and its error."""
     figure = Figure(figsize=(WIDTH, 6.2), layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True)
-    for ground, line in GROUND_LINES.items():
+    lines = {ground: line for ground, line in GROUND_LINES.items() if ground in result.settings["bases"]}
+    for ground, line in lines.items():
         above.plot(
             result.arrays["curve/slenderness"],
             result.arrays[f"curve/{ground}"],
@@ -130,7 +132,7 @@ def restitution(result: Result) -> Picture:
     solvers = list(dict.fromkeys(row["solver"] for row in defaults))
     for index, solver in enumerate(solvers):
         colour = style(solver)["color"]
-        for ground in GROUND_LINES:
+        for ground in lines:
             rows = [row for row in defaults if row["solver"] == solver and row["ground"] == ground]
             filled = colour if ground == "rigid ground" else "white"
             points = {"color": colour, "marker": marker(solver), "markerfacecolor": filled}
@@ -160,10 +162,9 @@ def restitution(result: Result) -> Picture:
         figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize=8)
     return figure_of(
         figure,
-        "Above, restitution falling with slenderness: curves of eq. (7) for rigid ground and for "
-        "a sliding base, with the measured values of each solver on them. Below, the root mean "
-        "square error of each engine on a logarithmic scale.",
-        "Restitution measured in free rocking against eq. (7). Filled: rigid ground; open: sliding base. "
+        f"Above, restitution falling with slenderness: curves of eq. (7) for {' and '.join(lines)}, with the measured "
+        "values of each solver on them. Below, the root mean square error of each engine on a logarithmic scale.",
+        f"Restitution measured in free rocking against eq. (7). {'; '.join(FILLED[name] for name in lines)}. "
         "Engines at their default variant and settings.",
     )
 

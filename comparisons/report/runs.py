@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from os import PathLike
 from pathlib import Path
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.integrate import trapezoid
 
-from analytic import load_scene
+from analytic import Base, Block, Scene, Start, load_scene
 from analytic.closed_form import free_rocking
 from analytic.response import History, Response
 from analytic.rocking import base_jump_length, restitution
@@ -25,10 +25,10 @@ from ..running.study import Batch, Found, say
 from .histories import ToFile, differences, response_of, thinned
 
 if TYPE_CHECKING:
-    from analytic import Scene
     from analytic.types import Motion
 
     from ..running.study import Ask, Plan
+    from ..running.sweep import Row
 
 CARYATID, FREE_ROCKING = "caryatid.json", "free-rocking.json"
 SCENES = ("caryatid-rigid", "caryatid-isolated")
@@ -60,9 +60,9 @@ def plan(
     limit = TIME_LIMIT + LIMIT_PER_SECOND * motion.end + LIMIT_PER_SAMPLE * len(motion.samples)
     say(f"the Caryatid in {', '.join(('the analytic model', *ask.engines))} (the first run on a machine compiles it)")
     rows = yield Batch(caryatid, ToFile(str(Path(histories).resolve())), "Caryatid", limit)
-    yield _caryatid(Path(histories), rows, scenes, motion)
+    yield scenes_found(Path(histories), rows, scenes, CARYATID)
     rows = yield Batch(free_rocking_cases(ask.engines, slendernesses), impacts_only, "free rocking", limit)
-    return _free_rocking(rows, ask.engines)
+    return free_rocking_found(rows, ask.engines)
 
 
 def caryatid_scenes(motion: Motion, duration: float | None = None) -> dict[str, Scene]:
@@ -70,9 +70,15 @@ def caryatid_scenes(motion: Motion, duration: float | None = None) -> dict[str, 
     return {name: load_scene(name).with_(motion=motion, duration=duration) for name in SCENES}
 
 
-def free_rocking_cases(engines: Sequence[str], slendernesses: Sequence[float]) -> list[Case]:
-    """Blocks of the Caryatid's mass and radius released from rest, in every solver and variant."""
-    block = load_scene(SCENES[0]).block
+def free_rocking_cases(
+    engines: Sequence[str],
+    slendernesses: Sequence[float],
+    block: Block | None = None,
+    bases: Mapping[str, Mapping[str, float] | None] = BASES,
+    seconds: float = FREE_SECONDS,
+) -> list[Case]:
+    """Blocks of the Caryatid's mass and radius, or as `block`, released from rest, in every solver and variant."""
+    block = block or load_scene(SCENES[0]).block
     solvers: list[tuple[str, str | None, tuple[float, ...]]] = [("analytic", None, STARTS)]
     for name in engines:
         engine = get_engine(name)
@@ -82,15 +88,15 @@ def free_rocking_cases(engines: Sequence[str], slendernesses: Sequence[float]) -
         ]
     cases = []
     for solver, variant, starts in solvers:
-        for ground, base in BASES.items():
+        for ground, base in bases.items():
             for slenderness in slendernesses:
                 for start in starts:
-                    scene = load_scene(SCENES[0]).with_(
-                        block={**block.model_dump(), "slenderness": slenderness},
-                        motion=None,
-                        base=base and load_scene(SCENES[1]).base.model_copy(update=base),
-                        start={"tilt": start * slenderness},
-                        duration=FREE_SECONDS,
+                    scene = Scene(
+                        name="free rocking",
+                        block=Block(**{**block.model_dump(), "slenderness": slenderness}),
+                        base=Base(**base) if base else None,
+                        start=Start(tilt=start * slenderness),
+                        duration=seconds,
                     )
                     tag = {"ground": ground, "slenderness": slenderness, "start": start}
                     cases.append(Case(scene, solver, variant, tag=tag))
@@ -102,11 +108,15 @@ def impacts_only(case: Case, response: Response) -> dict[str, Any]:
     return response.to_json()
 
 
-def _caryatid(folder, rows, scenes, motion):
-    """The answer of the Caryatid's runs; memory holds two histories at a time, one the analytic model's."""
-    shown = thinned(motion.samples)
-    arrays = {"motion/time": motion.dt * shown, "motion/acceleration": motion.samples[shown]}
-    described, entries = {}, []
+def scenes_found(folder: Path, rows: Sequence[Row], scenes: Mapping[str, Scene], file: str, **more: Any) -> Found:
+    """The answer of the scenes' runs; memory holds two histories at a time, one the analytic model's.
+
+    The motion described is the first scene's that has one; more: further settings.
+    """
+    motion = next((scene.motion for scene in scenes.values() if scene.motion is not None), None)
+    arrays = _drawn_motion(motion)
+    described: dict[str, Any] = {}
+    entries: list[dict[str, Any]] = []
     for name, scene in scenes.items():
         ours = [row for row in rows if row.case.tag["scene"] == name]
         reference = next(
@@ -114,13 +124,14 @@ def _caryatid(folder, rows, scenes, motion):
         )
         horizons = []
         for row in ours:
-            entry, drawn = _caryatid_entry(scene, row, reference, folder)
+            entry, drawn = _scene_entry(scene, row, reference, folder)
             entries.append({**entry, "scene": name})
             horizons += [entry["agreement"]["until"]] if "agreement" in entry else []
             arrays.update({f"{name}/{row.case.solver}/{column}": values for column, values in drawn.items()})
         described[name] = {
             "name": scene.name,
             "duration": scene.duration,
+            "motion": scene.motion and scene.motion.label,
             "gravity": scene.gravity,
             "block": scene.block.model_dump(),
             "base": scene.base and scene.base.model_dump(),
@@ -132,20 +143,33 @@ def _caryatid(folder, rows, scenes, motion):
             "horizon": min(horizons, default=None),
         }  # the earliest of a solver
     settings = {
-        "motion": {
+        "motion": motion
+        and {
             "label": motion.label,
             "peak": motion.peak,
             "peak_time": motion.peak_time,
-            "dt": motion.dt,
+            "dt": getattr(motion, "dt", None),
             "end": motion.end,
         },
         "scenes": described,
         "missing": available_engines()[1],
+        **more,
     }
-    return Found(settings, entries, arrays, name=Path(CARYATID).stem)
+    return Found(settings, entries, arrays, name=Path(file).stem)
 
 
-def _caryatid_entry(scene, row, reference, folder):
+def _drawn_motion(motion):
+    """Arrays of a motion to draw: a record's samples, thinned, or a pulse's from its formula."""
+    if motion is None:
+        return {}
+    if not hasattr(motion, "samples"):
+        time = np.linspace(0.0, 1.2 * motion.end, 1001)
+        return {"motion/time": time, "motion/acceleration": motion.acceleration(time)}
+    shown = thinned(motion.samples)
+    return {"motion/time": motion.dt * shown, "motion/acceleration": motion.samples[shown]}
+
+
+def _scene_entry(scene, row, reference, folder):
     """(what is told of one run, what is drawn of it); measured from all samples, drawn from `thinned` ones."""
     values = {key: value for key, value in row.values.items() if key != "history"}
     entry = {**values, "solver": row.case.solver, "failure": row.failure, **row.cost}
@@ -170,7 +194,9 @@ def _caryatid_entry(scene, row, reference, folder):
     return entry, drawn
 
 
-def _free_rocking(rows, engines):
+def free_rocking_found(
+    rows: Sequence[Row], engines: Sequence[str], bases: Mapping[str, Any] = BASES, seconds: float = FREE_SECONDS
+) -> Found:
     """The answer of the blocks let go."""
     groups = {}
     for row in rows:
@@ -178,7 +204,7 @@ def _free_rocking(rows, engines):
         groups.setdefault(key, []).append(row)
     entries = [_restitution_entry(*key, members) for key, members in groups.items()]  # type: ignore[call-arg]  # a key has the four before
     arrays = {"curve/slenderness": np.linspace(0.05, 0.5, 91)}
-    for ground in BASES:
+    for ground in bases:
         scene = next(row.case.scene for row in rows if row.case.tag["ground"] == ground)
         arrays[f"curve/{ground}"] = np.array(
             [
@@ -189,18 +215,23 @@ def _free_rocking(rows, engines):
     settings = {
         "starts": STARTS,
         "variant_starts": VARIANT_STARTS,
-        "seconds": FREE_SECONDS,
+        "seconds": seconds,
         "slowest_impact": SLOWEST_IMPACT,
-        "bases": BASES,
-        "variants": {
-            name: {
-                variant: {"rung": kind.rung, "decides": kind.decides, "applies_impact": kind.takes_restitution}
-                for variant, kind in get_engine(name).variants.items()
-            }
-            for name in engines
-        },
+        "bases": bases,
+        "variants": described_variants(engines),
     }
     return Found(settings, entries, arrays, name=Path(FREE_ROCKING).stem)
+
+
+def described_variants(engines: Sequence[str]) -> dict[str, dict[str, dict[str, Any]]]:
+    """{engine: {variant: its rung, who decides what, whether the adapter applies the impact}}."""
+    return {
+        name: {
+            variant: {"rung": kind.rung, "decides": kind.decides, "applies_impact": kind.takes_restitution}
+            for variant, kind in get_engine(name).variants.items()
+        }
+        for name in engines
+    }
 
 
 def _restitution_entry(solver, variant, ground, slenderness, members):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..showing.drawing import draw_scenes
@@ -51,7 +52,7 @@ def _pooled(rows, measure):
 
 def caryatid_sections(result: Result) -> list[Section]:
     """Scene, ground motion, free-standing and isolated Caryatid."""
-    return [_setting_section(result), _outcome_section(result), _history_section(result)]
+    return [_setting_section(result), outcome_section(result), _history_section(result)]
 
 
 def _setting_section(result):
@@ -63,13 +64,15 @@ def _setting_section(result):
             "bearings (Table 1 of the paper). The slenderness is not printed in the paper; 0.28 rad reproduces "
             "its claims under the record it used (Duzce 1999). Under another motion they need not hold.",
         ),
-        (_parameters(scenes),),
+        (parameters(scenes),),
         (draw_scenes(list(scenes.values())), figures.ground_motion(result)),
     )
 
 
-def _outcome_section(result):
-    scenes, motion = result.settings["scenes"], result.settings["motion"]["label"]
+def outcome_section(result: Result) -> Section:
+    """What each solver found, and how far it is from the analytic model."""
+    scenes = result.settings["scenes"]
+    motion = "; ".join(dict.fromkeys(filter(None, (scene["motion"] for scene in scenes.values())))) or "no motion"
     failed = tuple(
         (f"{row['solver']} on {row['scene']}: {row['failure']['reason']}", row["failure"].get("message", ""))
         for row in result.rows
@@ -122,19 +125,21 @@ def _history_section(result):
         (
             figures.histories(result, rigid, "tilt", "tilt φ/γ [-]", scenes[rigid]["block"]["slenderness"]),
             figures.histories(result, isolated, "base_displacement", "base displacement x [m]"),
-            figures.histories(result, isolated, "tilt", "tilt φ/γ [-]", gamma, _tilt_limits(result, isolated, gamma)),
+            figures.histories(result, isolated, "tilt", "tilt φ/γ [-]", gamma, tilt_limits(result, isolated, gamma)),
             figures.loops(result, isolated),
         ),
     )
 
 
-def _tilt_limits(result, name, gamma):
+def tilt_limits(result: Result, name: str, gamma: float) -> tuple[float | None, float | None]:
     """Contact noise of an engine is no tilt to look at: at least a hundredth of the slenderness up and down."""
     peaks = [row["peak_tilt"] for row in result.rows if row["scene"] == name and row.get("peak_tilt")]
     return (-0.01, 0.01) if max(peaks, default=0.0) < 0.01 * gamma else (None, None)
 
 
-def _parameters(scenes):
+def parameters(scenes: Mapping[str, Any]) -> Table:
+    """The numbers of the scenes, a column each; rows that none of them has are left out."""
+
     def rows():
         for label, pick in (
             ("mass of the block m [kg]", lambda scene: scene["block"]["mass"]),
@@ -148,8 +153,11 @@ def _parameters(scenes):
             ("k_b of each [N/m]", lambda scene: (scene["bearings"] or {}).get("kb")),
             ("α [-]", lambda scene: (scene["bearings"] or {}).get("alpha")),
             ("duration [s]", lambda scene: scene["duration"] or "until decided"),
+            ("ground motion", lambda scene: scene.get("motion")),
         ):
             values = [pick(scene) for scene in scenes.values()]
+            if all(value is None for value in values):
+                continue
             yield [
                 label,
                 *("–" if value is None else value if isinstance(value, str) else f"{value:.6g}" for value in values),
@@ -268,12 +276,16 @@ def restitution_sections(result: Result) -> list[Section]:
 def _impact_section(result):
     starts = ", ".join(f"{start:g}" for start in result.settings["starts"])
     few = ", ".join(f"{start:g}" for start in result.settings["variant_starts"])
+    grounds = {
+        "rigid ground": "on rigid ground",
+        "sliding base": "on a base of {mass:g} kg that slides without friction",
+    }
+    on = " and ".join(grounds[name].format(**(base or {})) for name, base in result.settings["bases"].items())
     return Section(
         "Restitution per impact",
         (
             f"Free rocking for {result.settings['seconds']:g} s, released from rest at φ/γ = {starts} (variants "
-            f"that are not the default: {few}), on rigid ground and on a base of "
-            f"{result.settings['bases']['sliding base']['mass']:g} kg that slides without friction. The engines "
+            f"that are not the default: {few}), {on}. The engines "
             f"are given no restitution{_applied(result)}: it follows from their contact. It is measured as φ̇⁺/φ̇⁻, "
             "the tilt rate after over that before the impact, from the states in clean flight, carried to the "
             "impact by the model's equations, for every "

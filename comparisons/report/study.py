@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..running.study import Study, compute
-from .runs import SLENDERNESSES, plan
+from . import own
+from .runs import CARYATID, FREE_ROCKING, SLENDERNESSES, plan
 from .sections import caryatid_sections
 
 if TYPE_CHECKING:
+    from analytic import Scene
     from analytic.types import Motion
 
 # Under a record of more samples one engine runs at a time: each needs some 100 bytes a step several times over.
@@ -22,12 +24,31 @@ UNFINISHED = "unfinished"  # folder of what a report that is broken off goes on 
 STUDY = Study("report", "The Caryatid and free rocking in every solver.", plan, lambda result: {}, caryatid_sections)
 
 
+OWN = Study("own", "One's own scenes in every solver.", own.plan, lambda result: {}, own.own_sections)
+
+
+def make_own_results(
+    folder: str | PathLike[str],
+    scenes: Mapping[str, Scene],
+    *,
+    engines: Sequence[str] | None = None,
+    variants: Mapping[str, str | None] | None = None,
+) -> None:
+    """Simulate what the report on one's own scenes shows, {name: scene}, and write its result files into `folder`.
+
+    engines: those to compare, all that are installed without it; variants: of those not taken as they come.
+    """
+    samples = max((len(getattr(scene.motion, "samples", ())) for scene in scenes.values()), default=0)
+    _make(folder, OWN, samples, engines, scenes=scenes, variants=dict(variants or {}))
+
+
 def make_results(
     folder: str | PathLike[str],
     motion: Motion,
     *,
     duration: float | None = None,
     slendernesses: Sequence[float] = SLENDERNESSES,
+    engines: Sequence[str] | None = None,
 ) -> None:
     """Simulate everything the report shows and write its result files into `folder`.
 
@@ -40,17 +61,22 @@ def make_results(
         Of the Caryatid's runs [s]; None: until their outcome is decided.
     slendernesses : sequence of float
         Of the free rocking blocks [rad].
+    engines : sequence of str or None
+        Those to compare; None: all that are installed.
     """
+    options = {"motion": motion, "duration": duration, "slendernesses": slendernesses}
+    _make(folder, STUDY, len(motion.samples), engines, **options)
+
+
+def _make(folder, study, samples, engines, **options):
+    """Compute a study of the report into `folder`, in place of what an earlier report left there."""
     unfinished = Path(folder) / UNFINISHED
-    for path in compute(
-        STUDY,
-        unfinished,
-        workers=None if len(motion.samples) <= SHORT_RECORD else 1,
-        motion=motion,
-        histories=unfinished,
-        duration=duration,
-        slendernesses=slendernesses,
-    ):
+    workers = None if samples <= SHORT_RECORD else 1
+    paths = compute(study, unfinished, engines=engines, workers=workers, histories=unfinished, **options)
+    for name in (CARYATID, FREE_ROCKING, own.SCENES_FILE):
+        for file in ((Path(folder) / name).with_suffix(".npz"), Path(folder) / name):
+            file.unlink(missing_ok=True)
+    for path in paths:
         for file in (path.with_suffix(".npz"), path):
             shutil.move(file, Path(folder) / file.name)
     shutil.rmtree(unfinished)  # complete: the next report measures its times afresh

@@ -7,12 +7,14 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from ..running.provenance import PACKAGES, age, read_result
 from ..showing.parts import Section, Table
+from .own import SCENES_FILE, own_sections
 from .runs import CARYATID, FREE_ROCKING
 from .sections import caryatid_sections, restitution_sections, variant_groups
 from .studies import RESULTS, study_sections
 from .summary import summary
 
 PAGE = "report.html"
+CARYATID_WORDS = "A rigid block (the Caryatid), free-standing and on lead-rubber bearings"
 
 
 def write_page(folder: str | PathLike[str], studies: Path = RESULTS) -> Path:
@@ -24,7 +26,10 @@ def write_page(folder: str | PathLike[str], studies: Path = RESULTS) -> Path:
         A result file of the report is missing or damaged.
     """
     folder = Path(folder)
-    caryatid, free = read_result(folder / CARYATID), read_result(folder / FREE_ROCKING)
+    own = (folder / SCENES_FILE).exists()
+    main = SCENES_FILE if own else CARYATID
+    scenes = read_result(folder / main)
+    free = read_result(folder / FREE_ROCKING) if not own or (folder / FREE_ROCKING).exists() else None
     environment = Environment(
         loader=PackageLoader(__package__, "."),
         autoescape=True,
@@ -32,26 +37,34 @@ def write_page(folder: str | PathLike[str], studies: Path = RESULTS) -> Path:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    sections = [*caryatid_sections(caryatid), *restitution_sections(free)]
+    sections = [*(own_sections if own else caryatid_sections)(scenes), *(restitution_sections(free) if free else ())]
+    read = {main: scenes} | ({FREE_ROCKING: free} if free else {})
     stored = study_sections(studies)
     html = environment.get_template("page.html").render(
-        motion=caryatid.settings["motion"]["label"],
-        summary=summary(caryatid, variant_groups(free)),
+        motion=scenes.settings["motion"]["label"] if scenes.settings["motion"] else "none",
+        own=own,
+        subject=_subject(scenes) if own else CARYATID_WORDS,
+        summary=summary(scenes, variant_groups(free) if free else []),
         verdicts=[verdict for section in stored for verdict in section.verdicts],
         sections=sections,
         studies=stored,
-        provenance=_provenance(caryatid, free),
-        ages=[f"{name} is {text}" for name, text in ((CARYATID, age(caryatid)), (FREE_ROCKING, age(free))) if text],
-        files=[CARYATID, CARYATID.replace(".json", ".npz"), FREE_ROCKING, FREE_ROCKING.replace(".json", ".npz")],
+        provenance=_provenance(scenes, free),
+        ages=[f"{name} is {text}" for name, text in ((name, age(result)) for name, result in read.items()) if text],
+        files=[file for name in read for file in (name, name.replace(".json", ".npz"))],
     )
     path = folder / PAGE
     path.write_text(html, encoding="utf-8")
     return path
 
 
-def _provenance(caryatid, free):
+def _subject(scenes):
+    """What the page is about, in words."""
+    return " and ".join(scene["name"] for scene in scenes.settings["scenes"].values())
+
+
+def _provenance(scenes, free):
     """Versions, machine and settings: how to obtain the same numbers."""
-    origin = caryatid.provenance
+    origin = scenes.provenance
     machine = origin["machine"]
     commit = (
         "outside a checkout"
@@ -69,7 +82,7 @@ def _provenance(caryatid, free):
     ]
     rows += [[name, origin["packages"].get(name) or "not installed"] for name in PACKAGES]
     settings = {}
-    for row in [*caryatid.rows, *free.rows]:
+    for row in [*scenes.rows, *(free.rows if free else ())]:
         if row.get("settings") is not None:
             settings[row["solver"], row["variant"]] = row["settings"]
     listed = [
@@ -78,7 +91,7 @@ def _provenance(caryatid, free):
     ]
     decides = [
         [f"{solver}, {variant}", kind["rung"], kind["decides"]]
-        for solver, variants in free.settings["variants"].items()
+        for solver, variants in (free or scenes).settings["variants"].items()
         for variant, kind in variants.items()
     ]
     return Section(
