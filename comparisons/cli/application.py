@@ -8,12 +8,21 @@ from typer.core import TyperGroup
 
 from .. import commands
 
+SHORT = 66  # characters of a command's line
+
 
 class _LazyGroup(TyperGroup):
     """A command ``rocking NAME`` is the module ``commands/NAME.py`` with a function ``command`` or a Typer ``app``."""
 
     def list_commands(self, ctx):
         return sorted(module.name for module in pkgutil.iter_modules(commands.__path__))
+
+    def format_commands(self, ctx, formatter):
+        """The commands by who asks for them."""
+        for title, names in commands.GROUPS.items():
+            with formatter.section(title):
+                found = [(name, self.get_command(ctx, name)) for name in names]
+                formatter.write_dl([(name, one.get_short_help_str(SHORT)) for name, one in found])
 
     def get_command(self, ctx, name):
         if name not in self.list_commands(ctx):

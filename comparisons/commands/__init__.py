@@ -2,3 +2,13 @@
 
 Heavy modules (engines, scipy, matplotlib) are imported inside the functions, so that ``rocking --help`` is quick.
 """
+
+# By who asks, in the order of ``rocking --help``; a command stands in one group.
+GROUPS = {
+    "To run and compare": ("run", "compare", "engines"),
+    "To read and learn": ("report", "lessons"),
+    "For advice on a scene": ("choose", "margin", "design"),
+    "For makers of engines and codes": ("verify", "sheet", "score"),
+    "For research": ("study", "bench"),
+    "Input": ("record", "new"),
+}

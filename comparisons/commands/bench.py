@@ -8,7 +8,7 @@ app = typer.Typer(
     add_completion=False,
     rich_markup_mode=None,
     no_args_is_help=True,
-    help="Measure what the solvers cost at what error.",
+    help="Measure what the solvers cost at what error.\n\nExample: rocking bench analytic --quick",
 )
 
 
@@ -27,7 +27,10 @@ def analytic(
     ] = None,
     output: Annotated[str, typer.Option(metavar="DIR", help="Where the results go.")] = "bench-analytic",
 ) -> None:
-    """Kernel against scipy and other solvers, and the figures it promises. Status 1: a random scene failed."""
+    """Kernel against scipy and other solvers, and the figures it promises. Status 1: a random scene failed.
+
+    Example: rocking bench analytic --quick
+    """
     from rich.console import Console
 
     from ..bench.analytic_bench import bench_analytic
@@ -59,7 +62,10 @@ def engines(
     index: Annotated[int | None, typer.Option(min=0, help="Run this scene alone and print it.")] = None,
     output: Annotated[str, typer.Option(metavar="DIR", help="Where runs and results go.")] = "bench-engines",
 ) -> None:
-    """An engine against the analytic model on random scenes of a wide box. Status 1: a run was off in silence."""
+    """An engine against the analytic model on random scenes of a wide box. Status 1: a run was off in silence.
+
+    Example: rocking bench engines --engine exudyn --scenes 200
+    """
     import json
 
     from rich.console import Console

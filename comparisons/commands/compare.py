@@ -40,6 +40,7 @@ def command(
     """Simulate one scene with the analytic model and the engines: outcomes, errors and CPU time side by side.
 
     An engine that fails costs its own row. Status 1: the analytic model failed.
+    Example: rocking compare free-rocking-rigid --plot compared.svg
     """
     from analytic.scene_file import load_scene
 
@@ -108,6 +109,7 @@ def _sensitivity(scene, responses, time_limit):
 def _content(scene, responses, horizons, horizon):
     """What the JSON file holds."""
     return {
+        "schema": "rocking compare 1",
         "scene": scene.name,
         "sensitivity_horizon": horizon,
         "sensitivity": {

@@ -19,7 +19,10 @@ def command(
         str | None, typer.Option("--json", metavar="FILE", help="Write the design; - prints it.")
     ] = None,
 ) -> None:
-    """Bearing constants for a target period, damping and displacement: Table 1(a) to Table 1(b), and back."""
+    """Bearing constants for a target period, damping and displacement: Table 1(a) to Table 1(b), and back.
+
+    Example: rocking design --period 2 --damping 0.30 --xmax 0.30
+    """
     from rich.console import Console
 
     from analytic.design import design_bearings, properties
@@ -30,7 +33,11 @@ def command(
     bearings = design_bearings(mass, period, damping, xmax, count=count, stiffness_ratio=ratio, definition=definition)
     back = properties(bearings, mass, xmax)
     if json_file:
-        content = {"bearings": bearings.model_dump(), "properties": dataclasses.asdict(back)}
+        content = {
+            "schema": "rocking design 1",
+            "bearings": bearings.model_dump(),
+            "properties": dataclasses.asdict(back),
+        }
         text = json.dumps(content, indent=2, allow_nan=False) + "\n"
         write_text(json_file, text)
     if json_file == "-":

@@ -2,7 +2,10 @@
 
 
 def command() -> None:
-    """List the engines: version, variants with rung and settings, where each is verified, and who decides what."""
+    """List the engines: version, variants with rung and settings, where each is verified, and who decides what.
+
+    Example: rocking engines
+    """
     from rich.console import Console
 
     from analytic.errors import EngineBroken, EngineNotInstalled

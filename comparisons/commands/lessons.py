@@ -7,7 +7,8 @@ import typer
 app = typer.Typer(
     add_completion=False,
     rich_markup_mode=None,
-    help="Teaching material: eight lessons as notebooks, and as pages that need no network.",
+    help="Teaching material: eight lessons as notebooks, and as pages that need no network.\n\n"
+    "Example: rocking lessons open corner",
 )
 
 

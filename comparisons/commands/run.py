@@ -33,7 +33,10 @@ def command(
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the history (.png, .svg or .pdf).")] = None,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", help=TIME_LIMIT_HELP)] = TIME_LIMIT,
 ) -> None:
-    """Simulate one scene. Status 1: the solver failed on it; 2: the scene, a setting or a place is wrong."""
+    """Simulate one scene. Status 1: the solver failed on it; 2: the scene, a setting or a place is wrong.
+
+    Example: rocking run caryatid-isolated --engine exudyn --plot isolated.svg
+    """
     from analytic.scene_file import load_scene
 
     from ..running.files import check_writable, write_all

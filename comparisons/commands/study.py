@@ -96,7 +96,7 @@ def command_of(study: Study) -> Callable[..., None]:
     ]
     command.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]  # Typer reads it there
     command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
-    command.__doc__ = study.question
+    command.__doc__ = f"{study.question}\n\nExample: rocking study {study.name} --quick"
     return command
 
 
@@ -136,4 +136,7 @@ app = typer.Typer(cls=_Studies, add_completion=False, rich_markup_mode=None, no_
 
 @app.callback()
 def _about():
-    """Compute one study's result file and figures; interrupted, it resumes where it stopped."""
+    """Compute one study's result file and figures; interrupted, it resumes where it stopped.
+
+    Example: rocking study restitution --quick
+    """

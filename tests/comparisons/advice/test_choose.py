@@ -1,6 +1,8 @@
 """What makes a setting pass, and what does not; the answers of runs are made up, but for one."""
 
 import dataclasses
+import doctest
+import importlib
 import math
 
 import pytest
@@ -134,6 +136,11 @@ def test_neighbours_are_run_of_hopeful_settings_only():
 def test_one_that_leaves_its_range_on_the_whole_scene_is_not_chosen():
     assert Made([GOOD, GOOD, GOOD]).chosen(whole=(0.1, "tilt is above 1, the limit of the range verified")) is None
     assert Made([GOOD, GOOD, GOOD]).chosen(whole=(None, None)) is None
+
+
+@pytest.mark.slow
+def test_the_docstrings_example_is_right():
+    assert doctest.testmod(importlib.import_module("comparisons.advice.choose")) == (0, 3)
 
 
 @pytest.mark.slow

@@ -1,6 +1,8 @@
 """The problem sheet and its score, by a solver that knows nothing of this project (`tests/sheet_solver.py`)."""
 
 import csv
+import doctest
+import importlib
 import io
 import math
 import re
@@ -128,6 +130,10 @@ def test_other_faults_are_never_given_a_wrong_name(sheet):
     assert sum(not one.passed for one in found) >= 24  # two digits are too few in any case
     assert {one.cause for one in found} == {None}
     assert {scene.cause for one in found for scene in one.scenes} == {None}
+
+
+def test_the_docstrings_example_is_right():
+    assert doctest.testmod(importlib.import_module("comparisons.sheet.score")) == (0, 4)
 
 
 def test_pages_say_nothing_of_our_code(sheet):
