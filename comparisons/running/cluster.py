@@ -30,7 +30,7 @@ from typing import Any
 from analytic.errors import SettingError
 
 from .cases import compile_kernels, module_of, versions
-from .executors import Done, Processes, Task, _Closing, number_of
+from .executors import Closing, Done, Processes, Task, number_of
 from .sources import PROJECT, source_digests
 
 LOCAL = "local:"
@@ -42,7 +42,7 @@ class ClusterError(RuntimeError):
     """A cluster that cannot do the runs, or no longer; says which part of it, and the remedy."""
 
 
-class Cluster(_Closing):
+class Cluster(Closing):
     """Runs on the workers of a Dask scheduler, or on ``local:N`` workers started here for the purpose.
 
     Parameters
@@ -196,7 +196,11 @@ def _check_same(theirs, mine):
         other = sorted(name for name in mine.keys() | state.keys() if mine.get(name) != state.get(name))
         if not other:
             continue
-        numbers = [f"{name} {state.get(name)} there, {mine.get(name)} here" for name in other if "." in str(mine[name])]
+        numbers = [
+            f"{name} {state.get(name)} there, {mine.get(name)} here"
+            for name in other
+            if "." in f"{state.get(name)}{mine.get(name)}"
+        ]
         what = ", ".join(numbers) or f"the code of {', '.join(other[:3])}{' and more' if len(other) > 3 else ''}"
         raise ClusterError(f"worker {worker} differs: {what}; install the same there, and start its worker again")
 

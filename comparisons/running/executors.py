@@ -76,7 +76,9 @@ class Executor(Protocol):
         """Stop working, drop what is under way."""
 
 
-class _Closing:
+class Closing:
+    """An executor that a `with` statement closes."""
+
     def __enter__(self) -> Self:
         return self
 
@@ -84,7 +86,7 @@ class _Closing:
         self.close()  # type: ignore[attr-defined]  # an executor's
 
 
-class Serial(_Closing):
+class Serial(Closing):
     """Runs in this process: for debugging. A crash or a hang of a solver is a crash or a hang of the sweep."""
 
     slots = 1
@@ -120,7 +122,7 @@ def workers_at(scheduler: str | None, workers: int | None, solvers: Iterable[str
     return Cluster(scheduler, solvers)
 
 
-class Processes(_Closing):
+class Processes(Closing):
     """Runs in `workers` processes (default: one per core), each with one numerical thread.
 
     Workers are forked from a server that has imported the `solvers`: one that crashed is replaced in

@@ -4,7 +4,8 @@ import math
 import os
 import time
 
-from analytic import Failure, Response, State
+from analytic import Block, Failure, Response, Scene, Start, State
+from comparisons.running.cases import Case
 
 
 def response(scene, *, peak=0.0, outcome="stands", failure=None, settings=None):
@@ -92,3 +93,13 @@ def tilt(case, response):
 
 def broken(case, response):
     return {"peak": {1, 2}}
+
+
+def scene(tilt):
+    return Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), start=Start(tilt=tilt), duration=1.0)
+
+
+def cases(solver="sound", count=10, **settings):
+    return [
+        Case(scene(round(0.01 * i, 6)), f"fake_solvers:{solver}", settings=settings, tag={"i": i}) for i in range(count)
+    ]

@@ -15,7 +15,7 @@ import pytest
 
 pytest.importorskip("distributed")
 
-from analytic import Block, Scene, SettingError, Start
+from analytic import SettingError
 from analytic.motion import PulseMotion
 from comparisons.running import cluster as module
 from comparisons.running.cluster import Cluster, ClusterError
@@ -29,22 +29,13 @@ pytestmark = pytest.mark.xdist_group("cluster")  # its two workers are started o
 
 sys.path.insert(0, str(HERE))  # and from there to the workers
 import fake_solvers  # noqa: E402
+from fake_solvers import cases, scene  # noqa: E402
 
 
 @pytest.fixture(scope="module")
 def local():
     with Cluster("local:2", ["fake_solvers:sound"]) as executor:
         yield executor
-
-
-def scene(tilt):
-    return Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), start=Start(tilt=tilt), duration=1.0)
-
-
-def cases(solver="sound", count=10, **settings):
-    return [
-        Case(scene(round(0.01 * i, 6)), f"fake_solvers:{solver}", settings=settings, tag={"i": i}) for i in range(count)
-    ]
 
 
 def sweep(which, store, **options):
@@ -125,6 +116,8 @@ def test_a_worker_with_other_code_or_versions_is_one_message_before_the_first_ru
     module._check_same({"tcp://a:1": dict(mine)}, mine)
     with pytest.raises(ClusterError, match=r"worker tcp://a:1 differs: numpy 1\.0\.0 there, [\d.]+ here; install"):
         module._check_same({"tcp://a:1": mine | {"numpy": "1.0.0"}}, mine)
+    with pytest.raises(ClusterError, match="differs: the code of analytic.newer; install"):
+        module._check_same({"tcp://a:1": mine | {"analytic.newer": "0"}}, mine)
     with pytest.raises(ClusterError, match="differs: the code of analytic.kernel; install"):
         module._check_same({"tcp://a:1": mine | {"analytic.kernel": "0"}}, mine)
 

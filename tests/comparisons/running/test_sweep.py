@@ -11,28 +11,20 @@ from pathlib import Path
 import psutil
 import pytest
 
-from analytic import Block, EngineNotInstalled, Scene, Start
+from analytic import EngineNotInstalled
 from comparisons.running.sweep import Case, Processes, Serial, Store, run_sweep
 
 HERE = Path(__file__).parent
 
 
-@pytest.fixture(autouse=True)
-def fakes(monkeypatch):
-    monkeypatch.syspath_prepend(str(HERE))
-    import fake_solvers
+sys.path.insert(0, str(HERE))  # and from there to the workers
+import fake_solvers  # noqa: E402
+from fake_solvers import cases, scene  # noqa: E402
 
+
+@pytest.fixture
+def fakes():
     return fake_solvers
-
-
-def scene(tilt):
-    return Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), start=Start(tilt=tilt), duration=1.0)
-
-
-def cases(solver="sound", count=10, **settings):
-    return [
-        Case(scene(round(0.01 * i, 6)), f"fake_solvers:{solver}", settings=settings, tag={"i": i}) for i in range(count)
-    ]
 
 
 def sweep(which, store, **options):
