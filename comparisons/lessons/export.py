@@ -7,9 +7,10 @@ from collections.abc import Callable, Sequence
 from os import PathLike
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment
 from markupsafe import Markup
 
+from ..showing.templates import templates
 from . import diagrams
 from .drawing import LICENCE, download, svg
 from .lesson import Lesson, View
@@ -59,13 +60,7 @@ def export_pages(
 
 
 def _environment() -> Environment:
-    environment = Environment(
-        loader=FileSystemLoader(FOLDER),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    environment = templates(FOLDER)
     environment.filters["prose"] = lambda text: Markup(prose(text))
     environment.filters["math"] = lambda tex: Markup(mathml(tex, display=True))
     environment.globals["style"] = Markup((FOLDER / "pages.css").read_text(encoding="utf-8"))

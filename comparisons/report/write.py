@@ -3,10 +3,9 @@
 from os import PathLike
 from pathlib import Path
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
-
 from ..running.provenance import PACKAGES, age, read_result
 from ..showing.parts import Section, Table
+from ..showing.templates import templates
 from .own import SCENES_FILE, own_sections
 from .runs import CARYATID, FREE_ROCKING
 from .sections import caryatid_sections, restitution_sections, variant_groups
@@ -30,13 +29,7 @@ def write_page(folder: str | PathLike[str], studies: Path = RESULTS) -> Path:
     main = SCENES_FILE if own else CARYATID
     scenes = read_result(folder / main)
     free = read_result(folder / FREE_ROCKING) if not own or (folder / FREE_ROCKING).exists() else None
-    environment = Environment(
-        loader=PackageLoader(__package__, "."),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    environment = templates(Path(__file__).parent)
     sections = [*(own_sections if own else caryatid_sections)(scenes), *(restitution_sections(free) if free else ())]
     read = {main: scenes} | ({FREE_ROCKING: free} if free else {})
     stored = study_sections(studies)

@@ -133,6 +133,27 @@ def check_solver(name: str) -> None:
         raise SettingError(f"unknown engine {name!r}: choose one of {', '.join(ENGINES)}, or {ANALYTIC}")
 
 
+def named_engines(names: Iterable[str]) -> tuple[str, ...]:
+    """The engines of these names, each once.
+
+    Raises
+    ------
+    SettingError
+        An engine has no such name; lists the known ones.
+    EngineNotInstalled
+        As `engines.get_engine`.
+    """
+    from engines import get_engine
+
+    names = tuple(dict.fromkeys(names))
+    for name in names:
+        try:
+            get_engine(name)
+        except KeyError as error:
+            raise SettingError(error.args[0]) from None
+    return names
+
+
 def check_time_limit(seconds: float) -> None:
     """Raise `SettingError` if a run cannot be given so many seconds."""
     from engines.guard import check_time_limit

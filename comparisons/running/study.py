@@ -21,14 +21,13 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from analytic.errors import SettingError
-from engines import ENGINES, get_engine, installed_engines
+from engines import ENGINES, installed_engines
 
 from .cases import Case, module_of
 from .executors import Processes, number_of, workers_at
 from .files import check_folder
 from .provenance import Result, write_result
-from .solving import stdout_to_stderr
+from .solving import named_engines, stdout_to_stderr
 from .sources import PROJECT, digests_of_all, source_digests
 from .store import Store
 from .sweep import Row, run_sweep
@@ -185,14 +184,9 @@ def _carry_out(study, plan, folder, ask, store, pool, progress):
 
 def _asked(study, engines, quick):
     """The `Ask` for engines by name; None: all that are installed, if the study wants them."""
-    for name in engines or ():
-        try:
-            get_engine(name)
-        except KeyError as error:
-            raise SettingError(error.args[0]) from None
     if engines is None:
         return Ask(installed_engines() if study.all_engines else (), quick)
-    return Ask(tuple(dict.fromkeys(engines)), quick)
+    return Ask(named_engines(engines), quick)
 
 
 def say(text: str) -> None:

@@ -11,10 +11,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from analytic import synthetic_motion
+
+from ...showing.templates import templates
 
 FOLDER = Path(__file__).parent
 # Of the equations, run in the page and in its workers; then those of the page alone.
@@ -31,13 +32,7 @@ def sources(names: tuple[str, ...] = SHARED) -> str:
 def playground_page(pages: Sequence[tuple[str, str]] = ()) -> str:
     """The page as HTML; pages: (file, title) of those it leads to, beside it."""
     motion = synthetic_motion()
-    environment = Environment(
-        loader=FileSystemLoader(FOLDER),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    environment = templates(FOLDER)
     samples = base64.b64encode(motion.samples.astype("<f8").tobytes()).decode()
     return environment.get_template("page.html").render(
         style=Markup((FOLDER / "style.css").read_text(encoding="utf-8")),
