@@ -10,7 +10,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from engines import available_engines, get_engine
 from engines.verified import speaks_of_range
 
 from ..running.executors import Processes
+from ..running.solving import named_engines
 from .aims import AIMS, Measure, neighbours, until
 from .found import Choice, Ladder, Setting
 from .search import Runner, Search, problem, spare
@@ -75,69 +76,63 @@ def choose(
     >>> found.chosen.passes, found.chosen.error < 0.01
     (True, True)
     """
-    if aim not in AIMS:
-        raise SettingError(f"--for {aim}: choose one of {', '.join(AIMS)}")
-    if not 0 < error < 1:
-        raise SettingError(f"--error {error!r}: give a number above 0 and below 1")
-    family = neighbours(scene, aim)
-    spans = {1.0: until(scene, aim)}
-    family = {
-        factor: one if aim == "outcome" else one.with_(duration=_span(one, aim, spans, factor))
-        for factor, one in family.items()
-    }
-    names, missing = _asked(engines)
-    rungs = _rungs(names, scene)
-    solvers = ("analytic", *names)
-    with tempfile.TemporaryDirectory(prefix="choose-") as folder, Processes(None, solvers) as executor:
-        go = Runner(Path(folder), executor, Measure(aim), family, time_limit=time_limit, progress=progress)
-        go(rungs, [1.0], "the scene")
-        search = Search(go, error, aim, lambda rung: go.whole(scene, rung))
-        chosen, whole = search.cheapest(rungs)
-        if chosen and aim == "restitution" and get_engine(chosen[0]).variants[chosen[1]].takes_restitution:
-            search.cheapest([rung for rung in rungs if not get_engine(rung[0]).variants[rung[1]].takes_restitution])
-        kinds = _kinds(names, scene)
-        ladders = [_ladder(name, variant, kind, go.rows, error, aim, len(family)) for name, variant, kind in kinds]
-    settings = {(one.engine, one.variant, one.value): one for ladder in ladders for one in ladder.settings}
-    answer = settings[chosen] if chosen else None
-    best = None if chosen else _best(ladders)
+    names, missing = _asked(error, aim, engines)
+    family, span = _family(scene, aim)
+    answer, best, whole, ladders = _searched(scene, family, names, error, aim, time_limit=time_limit, progress=progress)
+    asked: dict[str, Any] = {"aim": aim, "error": error, "spare": spare(aim), "neighbours": list(family), "until": span}
     return Choice(
         scene=scene.name,
-        aim=aim,
-        error=error,
-        spare=spare(aim),
-        neighbours=list(family),
-        until=spans[1.0],
+        **asked,
         chosen=answer,
         best=best,
         cpu_seconds=whole,
         analytic_cpu_seconds=cpu_seconds(scene),
-        command=answer and _command(answer, source),
-        snippet=answer and _snippet(answer, source),
+        **_instructions(answer, source),
         ladders=ladders,
         spared=spared(scene, family, error, answer or best, names),
         missing=missing,
     )
 
 
-def _span(scene, aim, spans, factor):
-    if factor not in spans:
+def _family(scene, aim):
+    """(scene and neighbours by their factor, as long as they are looked at; that time of the scene itself [s])."""
+    family, span = neighbours(scene, aim), until(scene, aim)
+
+    def cut(factor, one):
         try:
-            spans[factor] = until(scene, aim)
+            return one.with_(duration=span if factor == 1.0 else until(one, aim))
         except SettingError:  # a neighbour that does not lift: as long as the scene itself
-            spans[factor] = spans[1.0]
-    return spans[factor]
+            return one.with_(duration=span)
+
+    if aim != "outcome":
+        family = {factor: cut(factor, one) for factor, one in family.items()}
+    return family, span
 
 
-def _asked(engines):
+def _searched(scene, family, names, error, aim, **options):
+    """(setting chosen or None, the best of none, CPU seconds of the whole scene, ladders); options: of the sweeps."""
+    rungs, kinds = _rungs(names, scene), _kinds(names, scene)
+    with tempfile.TemporaryDirectory(prefix="choose-") as folder, Processes(None, ("analytic", *names)) as executor:
+        go = Runner(Path(folder), executor, Measure(aim), family, **options)
+        go(rungs, [1.0], "the scene")
+        search = Search(go, error, aim, lambda rung: go.whole(scene, rung))
+        chosen, whole = search.cheapest(rungs)
+        if chosen and aim == "restitution" and get_engine(chosen[0]).variants[chosen[1]].takes_restitution:
+            search.cheapest([rung for rung in rungs if not get_engine(rung[0]).variants[rung[1]].takes_restitution])
+        ladders = [_ladder(*kind, go.rows, error, aim, len(family)) for kind in kinds]
+    return *_answer(chosen, ladders), whole, ladders
+
+
+def _asked(error, aim, engines):
+    """(names of the engines to try, those missing); what cannot be asked for is an error."""
+    if aim not in AIMS:
+        raise SettingError(f"--for {aim}: choose one of {', '.join(AIMS)}")
+    if not 0 < error < 1:
+        raise SettingError(f"--error {error!r}: give a number above 0 and below 1")
     if engines is None:
         names, missing = available_engines()
         return list(names), missing
-    for name in engines:
-        try:
-            get_engine(name)
-        except KeyError as error:
-            raise SettingError(error.args[0]) from None
-    return list(dict.fromkeys(engines)), {}
+    return list(named_engines(engines)), {}
 
 
 def _kinds(names: Sequence[str], scene: Scene) -> list[tuple[str, str, Variant]]:
@@ -204,6 +199,12 @@ def _order(settings):
     return float(np.polyfit(knob, errors, 1)[0])
 
 
+def _answer(chosen, ladders):
+    """(the setting of the rung that was chosen or None, without one the best that was reached)."""
+    settings = {(one.engine, one.variant, one.value): one for ladder in ladders for one in ladder.settings}
+    return (settings[chosen], None) if chosen else (None, _best(ladders))
+
+
 def _best(ladders):
     """The setting of least error that does not leave its range, None if all do."""
     known = [one for ladder in ladders for one in ladder.settings if one.error is not None]
@@ -213,6 +214,11 @@ def _best(ladders):
 
 def _set(one):
     return "" if one.default else f" --set {one.knob}={one.value:g}"
+
+
+def _instructions(answer, source):
+    """The command and the Python lines that use the answer; None without one."""
+    return {"command": answer and _command(answer, source), "snippet": answer and _snippet(answer, source)}
 
 
 def _command(one, source):

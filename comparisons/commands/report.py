@@ -38,9 +38,6 @@ def command(
     A record given with scenes takes the place of their motions. The stored studies follow as background.
     Example: rocking report bust.toml --output bust
     """
-    from analytic.errors import SettingError
-    from engines import get_engine
-
     from ..report.own import load_scenes
     from ..report.study import make_own_results, make_results
     from ..report.write import write_page
@@ -51,11 +48,7 @@ def command(
     for name in engine or ():
         check_solver(name)
     engines = [name for name in engine if name != ANALYTIC] if engine else None
-    if variant is not None and (not scene or len(engines or ()) != 1):
-        raise SettingError(f"--variant {variant}: belongs to one engine and to scenes; name both")
-    if variant is not None and variant not in get_engine(engines[0]).variants:  # type: ignore[index]  # there is one
-        known = ", ".join(get_engine(engines[0]).variants)  # type: ignore[index]  # as above
-        raise SettingError(f"{engines[0]} has no variant {variant!r}: choose one of {known}")  # type: ignore[index]  # as above
+    variants = _variants(variant, engines or [], scene)
     said = {"units": units, "dt": dt, "column": column, "channel": channel}
     if scene and not record and any(value is not None for value in said.values()):
         ground_motion(record, **said)  # says what belongs to a record
@@ -64,9 +57,23 @@ def command(
         say(f"ground motion: {motion.label}")
     with stdout_to_stderr():  # engines greet on standard output
         if scene:
-            variants = {engines[0]: variant} if engines and variant else {}
             make_own_results(output, load_scenes(scene, motion), engines=engines, variants=variants)
         else:
             make_results(output, motion, engines=engines)  # type: ignore[arg-type]  # without scenes there is one
     say("the page")
     print(write_page(output))
+
+
+def _variants(variant, engines, scene):
+    """{engine: its variant} as asked for, checked."""
+    from analytic.errors import SettingError
+    from engines import get_engine
+
+    if variant is None:
+        return {}
+    if not scene or len(engines) != 1:
+        raise SettingError(f"--variant {variant}: belongs to one engine and to scenes; name both")
+    known = get_engine(engines[0]).variants
+    if variant not in known:
+        raise SettingError(f"{engines[0]} has no variant {variant!r}: choose one of {', '.join(known)}")
+    return {engines[0]: variant}

@@ -13,6 +13,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -99,27 +100,31 @@ def run_sweep(
         The scheduler's workers differ from this process, or it is gone.
     """
     cases = list(cases)
-    name_of(measure)  # a measure that cannot travel is an error now, not a failed row each
-    names = sorted({case.solver for case in cases})
-    for name in names:
-        solver(name)
-    keys = [case.key(measure) for case in cases]
+    names, keys = _checked(cases, measure)
     with ExitStack() as stack:
         if not isinstance(store, Store):
             store = stack.enter_context(Store(store))
         waiting = {key: case for key, case in zip(keys, cases, strict=True) if not _settled(store.get(key), time_limit)}
         if waiting:
             compile_kernels({case.solver for case in waiting.values()})
-            bar = stack.enter_context(_bar(progress))
-            line = bar.add_task(label, total=len(waiting))
+            advance = _bar(stack, progress, label, len(waiting))
             if executor is None:
                 executor = stack.enter_context(workers_at(scheduler, workers, names))
-            _run(waiting, store, executor, measure, time_limit, lambda count: bar.advance(line, count))
+            _run(waiting, store, executor, measure, time_limit, advance)
         rows = [store.get(key) for key in keys]
     return [
         Row(case, row["values"], row["failure"], row["cost"], key not in waiting)  # type: ignore[index]  # each was run, or found
         for case, key, row in zip(cases, keys, rows, strict=True)
     ]
+
+
+def _checked(cases, measure):
+    """(names of the solvers, keys of the cases); what cannot run is an error now, not a failed row each."""
+    name_of(measure)
+    names = sorted({case.solver for case in cases})
+    for name in names:
+        solver(name)
+    return names, [case.key(measure) for case in cases]
 
 
 def _run(waiting, store, executor, measure, time_limit, advance):
@@ -194,7 +199,8 @@ def _lost_line(key, lost):
     return json.dumps({"key": key, "values": {"outcome": "failed"}, "failure": json_ready(lost), "cost": {}})
 
 
-def _bar(shown):
+def _bar(stack, shown, label, total):
+    """A function that moves a bar on by a count; shown until `stack` ends."""
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -203,4 +209,5 @@ def _bar(shown):
         TextColumn("left"),
         TimeRemainingColumn(),
     )
-    return Progress(*columns, console=Console(stderr=True), disable=not shown, transient=False)
+    bar = stack.enter_context(Progress(*columns, console=Console(stderr=True), disable=not shown, transient=False))
+    return partial(bar.advance, bar.add_task(label, total=total))

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from analytic import Scene
     from analytic.rocking import RockingModel
 
+    from .scene import Assembly
+
 # Speed at which the lower corner may leave the ground and still counts as in contact, over that gained in free fall.
 LIFTING = 1e-3
 # Tilt rate below which a block on both corners is put level, over the rate of a swing that does not matter. Iterations
@@ -23,9 +25,26 @@ CALM = 1e-2
 class Block:
     """Where the block is: x and height of its centre in the ground's frame [m], tilt [rad]."""
 
-    __slots__ = ("R", "gamma", "m", "height", "sink", "lifting", "calm", "x", "up", "tilt", "side", "n", "c", "turned")
+    __slots__ = (
+        "R",
+        "gamma",
+        "m",
+        "height",
+        "sink",
+        "lifting",
+        "calm",
+        "x",
+        "up",
+        "tilt",
+        "side",
+        "n",
+        "c",
+        "turned",
+        "body",
+    )
 
-    def __init__(self, scene: Scene, model: RockingModel) -> None:
+    def __init__(self, assembly: Assembly, scene: Scene, model: RockingModel) -> None:
+        self.body = assembly.block
         self.R, self.gamma, self.m, self.height = model.R, model.gamma, model.m, scene.block.half_height
         self.sink, self.lifting = depth(scene), LIFTING * model.g
         self.calm = CALM * math.sqrt(2 * least_pull(model) * FLAT * model.gamma)
@@ -38,8 +57,16 @@ class Block:
         angle = self.side * self.gamma - self.tilt
         self.n, self.c = self.R * math.sin(angle), self.R * math.cos(angle)
 
-    def move(self, rate: float, vx: float, vz: float, step: float, interval: float, resting: bool) -> bool:
-        """Move by a step [s] at velocities that a kick of `interval` [s] left; True where the block is put level.
+    def load(self, call: float, across: float, up: float, rate: float, vx: float, vz: float) -> None:
+        """Load Chipmunk's body for a call of so many seconds that gains it velocities [m/s], from where it was."""
+        body, m = self.body, self.m
+        body.force = m * across / call, m * up / call
+        if self.turned:
+            body.torque = -self.lost_spin(rate) / call
+        body.position = self.x - vx * call, self.up - vz * call
+
+    def move(self, rate: float, vx: float, vz: float, step: float, interval: float, resting: bool) -> None:
+        """Move by a step [s] at velocities that a kick of `interval` [s] left; a calm block on both is put level.
 
         On a corner the centre moves on an arc: along its tangent the corner would lift out of contact in every step. A
         corner that landed too deep is raised to where it started, but not at rest, where the other would be lifted.
@@ -51,7 +78,8 @@ class Block:
             self.x += vx * step
             self.tilt, self.up = 0.0, self.height - self.sink
             self._lever()
-            return True
+            self.body.angle = 0.0
+            return
         self.tilt += turned
         self._lever()
         if free or flat:
@@ -64,7 +92,6 @@ class Block:
         if self.tilt * self.side < 0.0:
             self.side = -self.side
             self._lever()
-        return False
 
     def _higher(self) -> float:
         """Height of the higher corner [m]."""

@@ -55,11 +55,11 @@ def run(assembly: Assembly, scene: Scene, largest: float, accuracy: float | None
         Rows as `engines.leapfrog` has them, the start first; "done", "overturned", "not finite" or "too many steps".
     """
     space, body, model = assembly.space, assembly.block, RockingModel.of(scene)
-    block, base = Block(scene, model), Base(assembly, scene, model, largest)
+    block, base = Block(assembly, scene, model), Base(assembly, scene, model, largest)
     pace, push = _pace(model, scene, largest, accuracy), _pushes(scene)
     limit, fitted = limits(scene.duration, largest, scene.motion.jumps if scene.motion and accuracy else ())
     advance, on_base, sweeps, used = space.step, assembly.wheel is not None, assembly.sweeps, 0
-    m, height, fallen, close = model.m, block.height, 0.5 * math.pi, DEPTH * model.gamma
+    height, fallen, close = block.height, 0.5 * math.pi, DEPTH * model.gamma
     across, up, vx, vz = placement(scene)
     t, h, rate, tilt, interval, side = 0.0, 0.0, scene.start.tilt_rate, scene.start.tilt, 1.0, scene.start.tilt > 0
     rows = array("d", (t, h, tilt, rate, base.x, base.v, base.z, base.force, across, up, vx, vz))
@@ -78,20 +78,16 @@ def run(assembly: Assembly, scene: Scene, largest: float, accuracy: float | None
         # The kick, from the middle of the step before to the middle of this one; Chipmunk takes it for `call` seconds.
         call, interval = h or step, 0.5 * (h + step)
         across, up = push(t + 0.5 * step, interval)
-        body.force = m * across / call, m * up / call
-        if block.turned:
-            body.torque = -block.lost_spin(rate) / call
+        block.load(call, across, up, rate, vx, vz)
         if on_base:
             base.load(call, interval, across, block.lag(rate, step))
-        body.position = block.x - vx * call, block.up - vz * call
         if not h:
             body.angle = rate * call - tilt
         advance(call)
         rate, (vx, vz) = -body.angular_velocity, body.velocity
         if on_base:
             base.move(step)
-        if block.move(rate, vx, vz, step, interval, purpose == REST):
-            body.angle = 0.0
+        block.move(rate, vx, vz, step, interval, purpose == REST)
         t, h, tilt = t + step, step, block.tilt
         keep((t, h, tilt, rate, base.x, base.v, base.z, base.force, block.x, block.up - height, vx, vz))
         if not -fallen < tilt < fallen:

@@ -56,6 +56,7 @@ def plan(ask: Ask, scenes: dict[str, Any] | None = None, motions: tuple[int, int
     """
     scenes = scenes or SCENES
     count, of_engines = motions or (QUICK if ask.quick else FULL)
+    variants = {(name, variant): kind for name in ask.engines for variant, kind in get_engine(name).variants.items()}
     rows, described = [], {}
     for name, (shipped, slendernesses) in scenes.items():
         usual = load_scene(shipped).with_(motion=None, duration=None)
@@ -64,45 +65,47 @@ def plan(ask: Ask, scenes: dict[str, Any] | None = None, motions: tuple[int, int
             scene = usual.with_(block={"slenderness": slenderness})
             factors[slenderness] = _half(name, scene, min(count, 50))
             bases.append(_ensemble(scene, factors[slenderness], count))
-        changed = [
-            Case(scene, tag={"change": change, "seed": seed, "place": place}, settings={"history": False})
-            for place, ensemble in enumerate(bases)
-            for seed, base in enumerate(ensemble)
-            for change, scene in ((AS_IT_IS, base), *changes(base, seed))
-        ]
-        by_engines = [
-            Case(
-                base,
-                solver,
-                variant,
-                {"history": False},
-                {"change": solver_name(solver, variant), "seed": seed, "place": place},
-            )
-            for solver in ask.engines
-            for variant in get_engine(solver).variants
-            for place, ensemble in enumerate(bases)
-            for seed, base in enumerate(ensemble[:of_engines])
-        ]
-        results = yield Batch(changed, measure, f"{name}: changes")
-        results += yield Batch(by_engines, measure, f"{name}: engines")
-        rows += _rows(name, results)
+        changed = yield Batch(_changed(bases), measure, f"{name}: changes")
+        run = yield Batch(_by_engines(bases, variants, of_engines), measure, f"{name}: engines")
+        rows += _rows(name, changed + run)
         described[name] = {"scene": shipped, "slendernesses": list(slendernesses), "half": list(factors.values())}
-        rungs = {
-            solver_name(solver, variant): kind.rung
-            for solver in ask.engines
-            for variant, kind in get_engine(solver).variants.items()
-        }
         settings = {
             "quick": ask.quick,
             "scenes": dict(described),
             "motions": count,
             "motions_of_engines": of_engines,
             "spread": SPREAD,
-            "rungs": rungs,
+            "rungs": {solver_name(*pair): kind.rung for pair, kind in variants.items()},
         }
         answer = Found(settings, list(rows), seed=[0, count - 1])
         yield answer
     return answer
+
+
+def _changed(bases):
+    """Every scene as it is and changed in every way, in the analytic model; bases: an ensemble per slenderness."""
+    return [
+        Case(scene, tag={"change": change, "seed": seed, "place": place}, settings={"history": False})
+        for place, ensemble in enumerate(bases)
+        for seed, base in enumerate(ensemble)
+        for change, scene in ((AS_IT_IS, base), *changes(base, seed))
+    ]
+
+
+def _by_engines(bases, variants, count):
+    """The first scenes of every ensemble as they are, in every (engine, variant)."""
+    return [
+        Case(
+            base,
+            solver,
+            variant,
+            {"history": False},
+            {"change": solver_name(solver, variant), "seed": seed, "place": k},
+        )
+        for solver, variant in variants
+        for k, ensemble in enumerate(bases)
+        for seed, base in enumerate(ensemble[:count])
+    ]
 
 
 def _half(name, scene, count):
