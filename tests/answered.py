@@ -1,6 +1,14 @@
 """A study's plan, answered in this process: by real rows, or by rows of runs that are made up."""
 
 from comparisons.running.study import Batch, Found
+from comparisons.running.sweep import Serial, run_sweep
+
+
+def by_runs(folder):
+    """Answers batches by runs in this process, kept in a folder."""
+    return lambda batch: run_sweep(
+        batch.cases, store=folder / "runs.jsonl", measure=batch.measure, executor=Serial(), progress=False
+    )
 
 
 def answered(plan, run, most=None):

@@ -8,6 +8,7 @@ import subprocess
 import pytest
 
 PATIENCE = 200_000  # ms, of a browser on a busy machine
+LOCAL = ("file:", "blob:", "data:")
 NEEDED = "needs Node, or Playwright (pip install playwright) and a Chromium"
 
 
@@ -16,6 +17,15 @@ def chromium():
     if importlib.util.find_spec("playwright") is None:
         return None
     return shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+
+
+def quiet_page(context):
+    """(a page, list of what it does that it must not: requests that leave the machine, errors) in a browser context."""
+    page, wrong = context.new_page(), []
+    page.set_default_timeout(PATIENCE)
+    page.on("request", lambda request: None if request.url.startswith(LOCAL) else wrong.append(request.url))
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    return page, wrong
 
 
 def evaluate(source, expression, data=None):

@@ -4,34 +4,16 @@ import dataclasses
 import math
 
 import pytest
-from javascript import NEEDED, PATIENCE, chromium
+from javascript import quiet_page
 
 from analytic import simulate
 from comparisons.lessons import export
 from comparisons.lessons.topics import NAMES, impacts, lesson
 
-if chromium() is None:
-    pytest.skip(NEEDED, allow_module_level=True)
-
-from playwright.sync_api import sync_playwright  # noqa: E402 after the skip
-
-LOCAL = ("file:", "blob:", "data:")
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with sync_playwright() as play:
-        found = play.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
-        yield found
-        found.close()
-
 
 def visit(browser, path, **context):
     """The page; it asks for nothing, has no error, and does not scroll sideways."""
-    wrong, page = [], browser.new_context(reduced_motion="reduce", **context).new_page()
-    page.set_default_timeout(PATIENCE)
-    page.on("request", lambda request: None if request.url.startswith(LOCAL) else wrong.append(request.url))
-    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page, wrong = quiet_page(browser.new_context(reduced_motion="reduce", **context))
     page.goto(path.as_uri())
     assert wrong == []
     assert page.evaluate("document.documentElement.scrollWidth") <= page.viewport_size["width"]

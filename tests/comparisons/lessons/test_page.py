@@ -3,25 +3,10 @@
 import math
 
 import pytest
-from javascript import NEEDED, PATIENCE, chromium
+from javascript import quiet_page
 
 from analytic import PulseMotion, load_scene, simulate
 from comparisons.lessons.playground import PAGE, playground_page
-
-if chromium() is None:
-    pytest.skip(NEEDED, allow_module_level=True)
-
-from playwright.sync_api import sync_playwright  # noqa: E402 after the skip
-
-LOCAL = ("file:", "blob:", "data:")
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with sync_playwright() as play:
-        found = play.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
-        yield found
-        found.close()
 
 
 @pytest.fixture
@@ -32,17 +17,15 @@ def opened(browser, tmp_path):
 
     def open_(hash_="", **context):
         contexts.append(browser.new_context(**{"reduced_motion": "reduce", **context}))
-        page = contexts[-1].new_page()
-        page.set_default_timeout(PATIENCE)
-        page.on("request", lambda request: None if request.url.startswith(LOCAL) else wrong.append(request.url))
-        page.on("pageerror", lambda error: wrong.append(str(error)))
+        page, found = quiet_page(contexts[-1])
+        wrong.append(found)
         page.goto((tmp_path / PAGE).as_uri() + hash_)
         return page
 
     yield open_
     for context in contexts:
         context.close()
-    assert wrong == []
+    assert not any(wrong)
 
 
 def value(page, name):

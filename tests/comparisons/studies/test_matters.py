@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-from answered import answered
+from answered import answered, by_runs
 from scipy.stats import norm
 
 from analytic import load_scene, simulate, synthetic_motion
 from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel
 from comparisons.running.study import Ask
-from comparisons.running.sweep import Serial, run_sweep
 from comparisons.studies import get_study
 from comparisons.studies.matters.cases import SPREAD
 from comparisons.studies.matters.changes import changes
@@ -23,12 +22,7 @@ COUNT = 8
 def found(tmp_path_factory):
     folder = tmp_path_factory.mktemp("matters")
 
-    def run(batch):
-        return run_sweep(
-            batch.cases, store=folder / "r.jsonl", measure=batch.measure, executor=Serial(), progress=False
-        )
-
-    return answered(STUDY.plan(Ask(()), SCENES, (COUNT, 0)), run)[-1]
+    return answered(STUDY.plan(Ask(()), SCENES, (COUNT, 0)), by_runs(folder))[-1]
 
 
 def test_changes_are_of_the_size_their_names_say():

@@ -8,17 +8,16 @@ import importlib
 import sys
 
 import pytest
-from answered import answered
+from answered import answered, by_runs
 from installed_package import FAKE_ENGINE, install_fake_engine
 
 import engines
 from analytic import simulate, synthetic_motion
 from comparisons.report.runs import caryatid_scenes, free_rocking_cases
 from comparisons.report.studies import RESULTS
-from comparisons.running.executors import Serial
 from comparisons.running.provenance import read_result, write_result
 from comparisons.running.study import Ask
-from comparisons.running.sweep import Row, run_sweep
+from comparisons.running.sweep import Row
 from comparisons.sheet.problems import PROBLEMS
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.caryatid.runs import simulations
@@ -63,13 +62,6 @@ def crude(request, monkeypatch, tmp_path):
     del sys.modules["crude_engine"]
 
 
-def really(tmp_path):
-    """Answer batches by runs, in this process."""
-    return lambda batch: run_sweep(
-        batch.cases, store=tmp_path / "runs.jsonl", measure=batch.measure, executor=Serial(), progress=False
-    )
-
-
 def modelled(batch):
     """Answer batches by the analytic model in place of the fake, where its runs would take minutes."""
     rows = []
@@ -101,7 +93,7 @@ def test_a_study_runs_and_shows_it(crude, tmp_path, name):
     study, options = get_study(name), dict(SHORT[name])
     if name == "speed-error":
         options["scenes"] = [near_overturning()]
-    run = modelled if name in ("fragility", "matters") else really(tmp_path)
+    run = modelled if name in ("fragility", "matters") else by_runs(tmp_path)
     found = answered(study.plan(ASK, **options), run)[-1]
     section = shown(study, found, tmp_path)
     assert rows_with(section) and any("crude" in text for text in section.text)

@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
-from answered import answered
+from answered import answered, by_runs
 
 from analytic import load_scene, simulate, synthetic_motion
 from analytic.synthetic import PEAK, G
 from comparisons.running.provenance import read_result, write_result
 from comparisons.running.study import Ask
-from comparisons.running.sweep import Serial, run_sweep
 from comparisons.studies import get_study
 
 STUDY = get_study("surface")
@@ -20,15 +19,10 @@ pytestmark = pytest.mark.xdist_group("surface")  # its runs are made once
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
-    tmp_path = tmp_path_factory.mktemp("surface")
-
-    def run(batch):
-        return run_sweep(
-            batch.cases, store=tmp_path / "r.jsonl", measure=batch.measure, executor=Serial(), progress=False
-        )
+    folder = tmp_path_factory.mktemp("surface")
 
     # the second implementation in the place of an engine: a run at a time
-    return answered(STUDY.plan(Ask(("twin",)), GRID), run)[-1]
+    return answered(STUDY.plan(Ask(("twin",)), GRID), by_runs(folder))[-1]
 
 
 def test_counts_are_those_of_single_runs(found):
