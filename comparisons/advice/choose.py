@@ -86,10 +86,10 @@ def choose(
         chosen=answer,
         best=best,
         cpu_seconds=whole,
-        analytic_cpu_seconds=cpu_seconds(scene),
+        analytic_cpu_seconds=(own := cpu_seconds(scene)),
         **_instructions(answer, source),
         ladders=ladders,
-        spared=spared(scene, family, error, answer or best, names),
+        spared=spared(scene, family, error, answer or best, names, own),
         missing=missing,
     )
 

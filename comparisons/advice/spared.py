@@ -26,11 +26,11 @@ def cpu_seconds(scene: Scene) -> float:
 
 
 def spared(
-    scene: Scene, family: Mapping[float, Scene], error: float, found: Setting | None, engines: Iterable[str]
+    scene: Scene, family: Mapping[float, Scene], error: float, found: Setting | None, engines: Iterable[str], own: float
 ) -> list[Spared]:
-    """`Spared` of each part; family: the scene's neighbours; found: the setting chosen, or the best."""
+    """`Spared` of each part; family: the scene's neighbours; found: the setting chosen, or the best; own: `cpu_seconds`
+    of the scene."""
     runs = [simulate(one, history=False) for one in family.values()]
-    own = cpu_seconds(scene)
     engine = None if found is None or found.cpu_per_second is None else found.cpu_per_second * runs[0].end.time / own
     return [_rocking(runs, engine), _base(scene, own), _vertical(scene, runs[0], own, error), _space(scene, engines)]
 
