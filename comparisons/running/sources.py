@@ -17,7 +17,8 @@ def source_digests(modules: Iterable[str]) -> dict[str, str]:
     ----------
     modules : iterable of str
         Dotted names (``analytic``, ``engines.exudyn.adapter``). Imports are followed, inside functions too,
-        but only within `PROJECT` and the top-level packages of `modules` themselves.
+        but only within `PROJECT` and the top-level packages of `modules` themselves. A package that holds a module
+        is not followed for that: what a study's package imports to show a result says nothing of how it was found.
 
     Returns
     -------
@@ -44,8 +45,7 @@ def source_digests(modules: Iterable[str]) -> dict[str, str]:
             continue
         # The time stamp is part of the cache's key: a file edited meanwhile is read again.
         digests[name], imported = _read(name, str(file), file.stat().st_mtime_ns)
-        parents = [name.rpartition(".")[0]] if "." in name else []
-        waiting += [other for other in (*imported, *parents) if other.partition(".")[0] in within]
+        waiting += [other for other in imported if other.partition(".")[0] in within]
     return dict(sorted(digests.items()))
 
 

@@ -83,7 +83,9 @@ class Study:
 
     name: on the command line, of its files, and the kind of its result. question: one line, the command's help.
     plan: ``(ask, **options)`` -> generator, see above. figures: ``(result, **options)`` -> {suffix: Figure}. section:
-    result -> `comparisons.showing.parts.Section`. problems: result -> sentences that end the command with status 1.
+    result -> `comparisons.showing.parts.Section`, all that is known. finding: result -> `Section`, the answer in one
+    figure and one short table, for the report's first page; judgement: result -> `comparisons.showing.parts.Judgement`,
+    a column of its decision table. problems: result -> sentences that end the command with status 1.
     all_engines: whether all that are installed take part where none is asked for. Keyword-only parameters of plan and
     figures, annotated as Typer wants them, become options of the command.
     """
@@ -95,6 +97,8 @@ class Study:
     section: Callable[[Result], Any]
     problems: Callable[[Result], list] = lambda result: []
     all_engines: bool = True
+    finding: Callable[[Result], Any] | None = None
+    judgement: Callable[[Result], Any] | None = None
 
 
 def compute(
