@@ -17,7 +17,7 @@ from .plugins import find_engines
 if TYPE_CHECKING:
     from .contract import Engine
 
-BUILT_IN = ("exudyn", "pybullet", "mujoco", "pymunk")
+BUILT_IN = ("exudyn", "pybullet", "mujoco", "pymunk", "dart")
 # By name; imported so, not by statement, a result of one engine does not depend on the records of the others.
 ENGINES = {name: import_module(f"{__name__}.{name}").ENGINE for name in BUILT_IN}
 _found, BROKEN = find_engines(ENGINES)  # BROKEN: the errors of entries that hold no engine, by name

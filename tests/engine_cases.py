@@ -41,6 +41,12 @@ accurate_variant = pytest.mark.parametrize(
 )
 
 
+def needs(engine):
+    """Skip the test where the engine's package is not installed."""
+    record = ENGINES[engine]
+    pytest.importorskip(record.package, reason=f"{engine} is not installed: {record.install}")
+
+
 def scene(slenderness, base=None, duration=2.0, **parts):
     return Scene(
         block=Block(mass=3172.05, radius=1.0884, slenderness=slenderness),

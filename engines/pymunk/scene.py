@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import pymunk
 
+from ..pivoting import depth
 from ..placement import placement
 from ..readback import require
 from .impulses import iterations, settled
@@ -16,10 +17,6 @@ if TYPE_CHECKING:
     from analytic import Scene
 
 CORNER_RADIUS = 1e-6  # share of R: the block touches by a disc at each bottom corner
-# Depth of a pivoting or standing corner, in shares of gamma^2 R: round-off does not part it from the ground, and the
-# other one lands at a tilt of DEPTH/2 gamma, well below what counts as flat contact.
-DEPTH = 1e-7
-
 # The base, in shares of R: a wheel about a fixed centre this far below the block. Its rim moves on a straight line, but
 # for 1e-9 of its way, and meets a push with the base's mass, an upward one with none that counts. It always stands at
 # angle 0 where contacts are looked for: only its speed matters, as the rim is the same everywhere. A body on Chipmunk's
@@ -49,11 +46,6 @@ class Assembly:
 def size_scale(scene: Scene) -> float:
     """What times set for a block of `UNIT_RADIUS` are multiplied with: rocking goes with sqrt(R/g)."""
     return math.sqrt(scene.block.radius / UNIT_RADIUS)
-
-
-def depth(scene: Scene) -> float:
-    """Depth of a corner on the ground [m]."""
-    return DEPTH * scene.block.slenderness**2 * scene.block.radius
 
 
 def build(scene: Scene) -> Assembly:

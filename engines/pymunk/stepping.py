@@ -17,13 +17,13 @@ import numpy as np
 from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel
 
-from ..ground_velocity import ground_velocity
+from ..kicks import pushes
 from ..leapfrog import row_limit
 from ..pace import IMPACT, REST, ROUNDING, StepRule, fixed, impact_aware, least_pull, limits
+from ..pivoting import DEPTH, Block
 from ..placement import placement
 from ..vibration import VISCOUS, added_mass, driven_mass, leapfrog_stiffness
-from .moving import Block
-from .scene import DEPTH, size_scale
+from .scene import size_scale
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -55,8 +55,8 @@ def run(assembly: Assembly, scene: Scene, largest: float, accuracy: float | None
         Rows as `engines.leapfrog` has them, the start first; "done", "overturned", "not finite" or "too many steps".
     """
     space, body, model = assembly.space, assembly.block, RockingModel.of(scene)
-    block, base = Block(assembly, scene, model), Base(assembly, scene, model, largest)
-    pace, push = _pace(model, scene, largest, accuracy), _pushes(scene)
+    block, base = Block(scene, model), Base(assembly, scene, model, largest)
+    pace, push = _pace(model, scene, largest, accuracy), pushes(scene.motion, model.g)
     limit, fitted = limits(scene.duration, largest, scene.motion.jumps if scene.motion and accuracy else ())
     advance, on_base, sweeps, used = space.step, assembly.wheel is not None, assembly.sweeps, 0
     height, fallen, close = block.height, 0.5 * math.pi, DEPTH * model.gamma
@@ -78,7 +78,7 @@ def run(assembly: Assembly, scene: Scene, largest: float, accuracy: float | None
         # The kick, from the middle of the step before to the middle of this one; Chipmunk takes it for `call` seconds.
         call, interval = h or step, 0.5 * (h + step)
         across, up = push(t + 0.5 * step, interval)
-        block.load(call, across, up, rate, vx, vz)
+        _load(body, block, call, across, up, rate, vx, vz)
         if on_base:
             base.load(call, interval, across, block.lag(rate, step))
         if not h:
@@ -87,7 +87,8 @@ def run(assembly: Assembly, scene: Scene, largest: float, accuracy: float | None
         rate, (vx, vz) = -body.angular_velocity, body.velocity
         if on_base:
             base.move(step)
-        block.move(rate, vx, vz, step, interval, purpose == REST)
+        if block.move(rate, vx, vz, step, interval, purpose == REST):
+            body.angle = 0.0
         t, h, tilt = t + step, step, block.tilt
         keep((t, h, tilt, rate, base.x, base.v, base.z, base.force, block.x, block.up - height, vx, vz))
         if not -fallen < tilt < fallen:
@@ -99,22 +100,12 @@ def run(assembly: Assembly, scene: Scene, largest: float, accuracy: float | None
     return np.frombuffer(rows).reshape(-1, width), ended
 
 
-def _pushes(scene):
-    """A function (time [s], interval [s]) -> gain of velocity across and up [m/s] in the interval that ends there."""
-    ground, upright = ground_velocity(scene.motion), ground_velocity(scene.motion and scene.motion.vertical)
-    g, gained, risen = scene.gravity, 0.0, 0.0
-
-    def push(time, interval):
-        nonlocal gained, risen
-        if ground is None:
-            return 0.0, -g * interval
-        before, gained = gained, ground(time)
-        if upright is None:
-            return before - gained, -g * interval
-        below, risen = risen, upright(time)
-        return before - gained, below - risen - g * interval
-
-    return push
+def _load(body, block, call, across, up, rate, vx, vz):
+    """Load Chipmunk's body for a call of so many seconds that gains it velocities [m/s], from where the block was."""
+    body.force = block.m * across / call, block.m * up / call
+    if block.turned:
+        body.torque = -block.lost_spin(rate) / call
+    body.position = block.x - vx * call, block.up - vz * call
 
 
 def _pace(model, scene, largest, accuracy):

@@ -30,7 +30,9 @@ def broken(monkeypatch, tmp_path):
 
 
 def test_unknown_engine_is_told_with_the_known_ones():
-    with pytest.raises(KeyError, match="unknown engine 'simbody': choose one of exudyn, pybullet, mujoco, pymunk"):
+    with pytest.raises(
+        KeyError, match="unknown engine 'simbody': choose one of exudyn, pybullet, mujoco, pymunk, dart"
+    ):
         engines.get_engine("simbody")
 
 

@@ -1,10 +1,13 @@
 """The bearings' force as an engine really applied it: doubled, late or from another law, it is seen from outside."""
 
 import dataclasses
+import functools
+import importlib
 
 import numpy as np
 import pytest
 from bearing_laws import NAMES, to_law
+from engine_cases import needs
 from sampled_traces import SCENES, sampled, seen
 
 from analytic import PulseMotion, simulate
@@ -21,6 +24,7 @@ ENGINES = {
     "pybullet": "impact-aware",
     "mujoco": "impact-aware",
     "pymunk": "impact-aware",
+    "dart": "impact-aware",
 }
 
 
@@ -125,9 +129,9 @@ def mutate_mujoco(monkeypatch, gain, delay, step):
     monkeypatch.setattr(stepping.mujoco, "mj_step", changed)
 
 
-def mutate_pymunk(monkeypatch, gain, delay, step):
-    from engines.pymunk import stepping
-
+def mutate_base(engine, monkeypatch, gain, delay, step):
+    """The base is loaded with another force than the adapter believes."""
+    stepping = importlib.import_module(f"engines.{engine}.stepping")
     load, told = stepping.Base.load, []
 
     def changed(self, *given):
@@ -139,7 +143,13 @@ def mutate_pymunk(monkeypatch, gain, delay, step):
     monkeypatch.setattr(stepping.Base, "load", changed)
 
 
-MUTATE = {"exudyn": mutate_exudyn, "pybullet": mutate_pybullet, "mujoco": mutate_mujoco, "pymunk": mutate_pymunk}
+MUTATE = {
+    "exudyn": mutate_exudyn,
+    "pybullet": mutate_pybullet,
+    "mujoco": mutate_mujoco,
+    "pymunk": functools.partial(mutate_base, "pymunk"),
+    "dart": functools.partial(mutate_base, "dart"),
+}
 LARGEST_STEP = 1e-3  # s, of the delay in exudyn, whose steps are its own
 
 
@@ -150,7 +160,7 @@ def traced(engine, scene):
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_clean_run_of_an_engine_keeps_its_momentum(monkeypatch, engine):
-    pytest.importorskip(engine)
+    needs(engine)
     response, trace = traced(engine, DRIVEN)
     assert response.failure is None and len(response.impacts) >= 2
     assert impulse_error(DRIVEN, trace) < 4e-5
@@ -159,7 +169,7 @@ def test_a_clean_run_of_an_engine_keeps_its_momentum(monkeypatch, engine):
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("gain", [2.0, 0.5, 0.0])
 def test_a_doubled_halved_or_lost_force_inside_an_engine_is_a_failure(monkeypatch, engine, gain):
-    pytest.importorskip(engine)
+    needs(engine)
     MUTATE[engine](monkeypatch, gain, 0, LARGEST_STEP)
     response, trace = traced(engine, DRIVEN)
     assert response.outcome == "failed"  # by its energy, too, where the force is too small
@@ -170,7 +180,7 @@ def test_a_doubled_halved_or_lost_force_inside_an_engine_is_a_failure(monkeypatc
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("gain, delay", [(1.0, 1), (1.0, 2), (1.01, 0)])
 def test_a_force_late_by_a_step_or_off_by_a_hundredth_is_measured(monkeypatch, engine, gain, delay):
-    pytest.importorskip(engine)
+    needs(engine)
     MUTATE[engine](monkeypatch, gain, delay, LARGEST_STEP)
     _, trace = traced(engine, DRIVEN)
     assert impulse_error(DRIVEN, trace) > 4e-4  # ten times what a clean run shows

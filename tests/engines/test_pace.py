@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from engine_cases import needs
 
 from analytic import Block, PulseMotion, Scene, Start, simulate
 from analytic.rocking import RockingModel
@@ -107,11 +108,11 @@ def test_a_jump_that_is_gone_or_far_changes_no_step():
     assert aligned(1.0, -0.2) == aligned(1.0, 1.001) == aligned(1.0, math.inf) == aligned(1.0, 1e-4) == 1.0
 
 
-@pytest.mark.parametrize("engine", ["pybullet", "mujoco", "pymunk"])
+@pytest.mark.parametrize("engine", ["pybullet", "mujoco", "pymunk", "dart"])
 @pytest.mark.parametrize("shape", ["one-cosine", "rectangular"])
 def test_a_pulse_that_begins_with_a_jump_lifts_the_block_at_once(engine, shape):
     """Where a kick held the jump the block lifted a step late: .03 of the tilt five steps later."""
-    pytest.importorskip(engine)
+    needs(engine)
     pulse = PulseMotion(shape, 1.3 * 9.81 * math.tan(0.2), 6.0, 0.10037)
     scene = SCENE.with_(start=Start(), motion=pulse, duration=0.3)
     model, response = simulate(scene), get_engine(engine).simulate(scene)

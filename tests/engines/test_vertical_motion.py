@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from engine_cases import needs
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, simulate
 from analytic.decision import RIGID_BEARINGS
@@ -13,7 +14,7 @@ from engines.events import contact_measures
 from engines.ground_velocity import ground_velocity
 from engines.swings import Trace
 
-ENGINES = ["exudyn", "pybullet", "mujoco"]
+ENGINES = ["exudyn", "pybullet", "mujoco", "pymunk", "dart"]
 BLOCK = Block(mass=3172.05, radius=1.0884, slenderness=0.2)
 LRB = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 TIMES = np.arange(0, 4.001, 0.005)
@@ -46,6 +47,7 @@ def first_impacts(response):
 @pytest.mark.parametrize("scenes, base", [("rigid ground", None), ("sliding base", Base(mass=212.0))])
 @pytest.mark.parametrize("name", ENGINES)
 def test_impact_times_of_a_released_block(name, scenes, base):
+    needs(name)
     engine, scene = get_engine(name), RELEASED.with_(base=base)
     limit, wanted = bound(engine, "impact times", scenes), first_impacts(simulate(scene))
     found = engine.simulate(scene, history=False)
@@ -56,6 +58,7 @@ def test_impact_times_of_a_released_block(name, scenes, base):
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_peaks_on_bearings(name):
+    needs(name)
     engine, exact, level = get_engine(name), simulate(DRIVEN), simulate(without(DRIVEN))
     found = engine.simulate(DRIVEN, history=False)
     limit = bound(engine, "peak tilt", "rocking on bearings, one-sine")
@@ -69,6 +72,7 @@ def test_peaks_on_bearings(name):
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_every_variant_feels_it(name):
+    needs(name)
     engine, scenes = get_engine(name), [one.with_(duration=0.6) for one in (RELEASED, without(RELEASED))]
     wanted = np.subtract(*(first_impacts(simulate(scene))[0] for scene in scenes))
     for variant in engine.variants:
@@ -78,6 +82,7 @@ def test_every_variant_feels_it(name):
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_a_block_that_would_jump_is_said(name):
+    needs(name)
     up = SampledMotion(0.005, 12.0 * np.sin(9.0 * TIMES))
     scene = RELEASED.with_(motion=replace(HEAVING, vertical=up), start=Start(tilt=0.05), duration=1.0)
     found = get_engine(name).simulate(scene, history=False)

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from engine_cases import needs
 
 from analytic import simulate
 from analytic.bearing import BearingLaw
@@ -21,7 +22,7 @@ def row(quantity, engine, variant, scenes):
         for one in TABLE
         if (one.quantity, one.engine, one.variant, one.scenes) == (quantity, engine, variant, scenes)
     ]
-    pytest.importorskip(engine)
+    needs(engine)
     return found
 
 
@@ -41,6 +42,7 @@ DEFAULTS = [
     ("pybullet", "impact-aware"),
     ("mujoco", "impact-aware"),
     ("pymunk", "impact-aware"),
+    ("dart", "impact-aware"),
 ]
 
 
@@ -163,33 +165,20 @@ def lag_pybullet(monkeypatch):
     monkeypatch.setattr(stepping, "hysteretic_force", late(stepping.hysteretic_force))
 
 
-def lag_mujoco(monkeypatch):
-    from engines.mujoco import stepping
-
-    class Lagging(BearingLaw):
-        @functools.cached_property
-        def hysteretic(self):
-            return late(super().hysteretic)
-
-    monkeypatch.setattr(stepping, "BearingLaw", Lagging)
-
-
-def lag_pymunk(monkeypatch):
-    from engines.pymunk import stepping
-
-    class Lagging(BearingLaw):
-        @functools.cached_property
-        def hysteretic(self):
-            return late(super().hysteretic)
-
-    monkeypatch.setattr(stepping, "BearingLaw", Lagging)
+class Lagging(BearingLaw):
+    @functools.cached_property
+    def hysteretic(self):
+        return late(super().hysteretic)
 
 
 # exudyn is not among them: it commits inside a compiled call.
-@pytest.mark.parametrize("engine, lag", [("pybullet", lag_pybullet), ("mujoco", lag_mujoco), ("pymunk", lag_pymunk)])
-def test_a_bearing_force_that_lags_one_step_fails(monkeypatch, engine, lag):
+@pytest.mark.parametrize("engine", ["pybullet", "mujoco", "pymunk", "dart"])
+def test_a_bearing_force_that_lags_one_step_fails(monkeypatch, engine):
     one = row("bearing force replayed", engine, "impact-aware", "isolated Caryatid, synthetic motion")
-    lag(monkeypatch)
+    if engine == "pybullet":
+        lag_pybullet(monkeypatch)
+    else:
+        monkeypatch.setattr(f"engines.{engine}.stepping.BearingLaw", Lagging)
     with pytest.raises(agreement.Unmeasurable, match="not that of the bearings' force"):  # the run itself says so
         one.found()
 
@@ -288,6 +277,10 @@ def test_the_share_of_a_penetration_that_bullet_takes_back_does_not_matter(monke
         ("pymunk", "impact-aware", {"accuracy": 1e-4}, "base velocity jump, rms", "sliding base"),
         ("pymunk", "impact-aware", {"largest_step": 5e-3}, "impact times", "rigid ground"),
         ("pymunk", "expert", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
+        ("dart", "impact-aware", {"accuracy": 1e-4}, "restitution, rms", "sliding base"),
+        ("dart", "impact-aware", {"accuracy": 1e-4}, "base velocity jump, rms", "sliding base"),
+        ("dart", "impact-aware", {"largest_step": 1e-2}, "impact times", "rigid ground"),
+        ("dart", "expert", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
     ],
 )
 def test_a_coarse_step_fails(monkeypatch, engine, variant, changes, quantity, scenes):

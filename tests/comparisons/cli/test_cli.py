@@ -111,7 +111,10 @@ def test_no_such_scene(rocking, command):
 @pytest.mark.parametrize(
     "arguments, message",
     [
-        (["--engine", "ode"], "unknown engine 'ode': choose one of exudyn, pybullet, mujoco, pymunk, or analytic"),
+        (
+            ["--engine", "ode"],
+            "unknown engine 'ode': choose one of exudyn, pybullet, mujoco, pymunk, dart, or analytic",
+        ),
         (["--variant", "fast"], "the analytic model has no variant 'fast': leave --variant out"),
         (["--set", "tolerance"], "--set tolerance: write name=value"),
         (["--set", "tolerance=tight"], "tolerance = 'tight': give a number"),
@@ -244,7 +247,7 @@ def test_help_loads_no_engine_and_no_plots():
         "import sys; from comparisons import cli\n"
         "try: cli.main(['--help'])\n"
         "except SystemExit: pass\n"
-        "heavy = [m for m in ('exudyn', 'pybullet', 'mujoco', 'pymunk', 'matplotlib') if m in sys.modules]\n"
+        "heavy = [m for m in ('exudyn', 'pybullet', 'mujoco', 'pymunk', 'dartpy', 'matplotlib') if m in sys.modules]\n"
         "sys.exit(f'loaded: {heavy}' if heavy else 0)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from engine_cases import needs
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, simulate
 from analytic.records import read_record
@@ -162,7 +163,7 @@ def largest_distance(scene, response, reference, until):
 
 
 def assert_no_engine_parts_before_its_own_horizon(engine, scenes):
-    pytest.importorskip(engine)
+    needs(engine)
     for scene in scenes:
         reference = simulate(scene, output_step=2e-3)
         response = get_engine(engine).simulate(scene)
@@ -172,7 +173,7 @@ def assert_no_engine_parts_before_its_own_horizon(engine, scenes):
         assert distance < 1.2 * SPREAD, f"{scene.name}: {distance:.3g} by {own.horizon:.3g} s, {own.perturbation:.2g}"
 
 
-@pytest.mark.parametrize("engine", ["exudyn", "pybullet", "mujoco", "pymunk"])
+@pytest.mark.parametrize("engine", ["exudyn", "pybullet", "mujoco", "pymunk", "dart"])
 def test_no_engine_parts_before_its_own_horizon(engine):
     """Small rocking under long shaking, where exudyn's corners were off before the horizon of 1e-4."""
     scenes = [long_shaking(0.15, seed).with_(name=f"seed {seed}", duration=12.0) for seed in (3, 4)]

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from engine_cases import needs
 
 from analytic import Scene, simulate
 from analytic.bearing import BearingLaw
@@ -26,7 +27,7 @@ def test_bounds_are_no_looser_than_twice_the_measured_worst(row):
 
 @ROWS
 def test_rows_name_variants_and_scenes_that_exist(row):
-    pytest.importorskip(row.engine)
+    needs(row.engine)
     assert row.variant in get_engine(row.engine).variants
     if row.scenes not in agreement.FREE_ROCKING and row.measure is not agreement.boundary_shift:
         assert isinstance(agreement.named_scene(row.scenes), Scene)

@@ -1,20 +1,23 @@
-"""The block's way between two kicks of Chipmunk, which itself moves bodies straight on, along the tangent."""
+"""The block's way between two kicks, for engines whose own way is along the tangent: they move bodies straight on.
+
+Their contacts hold velocities where the kick is, at the step's beginning; leapfrog has them in its middle.
+"""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
 
-from ..pace import FLAT, least_pull
-from ..placement import placement
-from .scene import depth
+from .pace import FLAT, least_pull
+from .placement import placement
 
 if TYPE_CHECKING:
     from analytic import Scene
     from analytic.rocking import RockingModel
 
-    from .scene import Assembly
-
+# Depth of a pivoting or standing corner, in shares of gamma^2 R: round-off does not part it from the ground, and the
+# other one lands at a tilt of DEPTH/2 gamma, well below what counts as flat contact.
+DEPTH = 1e-7
 # Speed at which the lower corner may leave the ground and still counts as in contact, over that gained in free fall.
 LIFTING = 1e-3
 # Tilt rate below which a block on both corners is put level, over the rate of a swing that does not matter. Iterations
@@ -22,29 +25,17 @@ LIFTING = 1e-3
 CALM = 1e-2
 
 
+def depth(scene: Scene) -> float:
+    """Depth of a corner on the ground [m]."""
+    return DEPTH * scene.block.slenderness**2 * scene.block.radius
+
+
 class Block:
     """Where the block is: x and height of its centre in the ground's frame [m], tilt [rad]."""
 
-    __slots__ = (
-        "R",
-        "gamma",
-        "m",
-        "height",
-        "sink",
-        "lifting",
-        "calm",
-        "x",
-        "up",
-        "tilt",
-        "side",
-        "n",
-        "c",
-        "turned",
-        "body",
-    )
+    __slots__ = ("R", "gamma", "m", "height", "sink", "lifting", "calm", "x", "up", "tilt", "side", "n", "c", "turned")
 
-    def __init__(self, assembly: Assembly, scene: Scene, model: RockingModel) -> None:
-        self.body = assembly.block
+    def __init__(self, scene: Scene, model: RockingModel) -> None:
         self.R, self.gamma, self.m, self.height = model.R, model.gamma, model.m, scene.block.half_height
         self.sink, self.lifting = depth(scene), LIFTING * model.g
         self.calm = CALM * math.sqrt(2 * least_pull(model) * FLAT * model.gamma)
@@ -57,16 +48,8 @@ class Block:
         angle = self.side * self.gamma - self.tilt
         self.n, self.c = self.R * math.sin(angle), self.R * math.cos(angle)
 
-    def load(self, call: float, across: float, up: float, rate: float, vx: float, vz: float) -> None:
-        """Load Chipmunk's body for a call of so many seconds that gains it velocities [m/s], from where it was."""
-        body, m = self.body, self.m
-        body.force = m * across / call, m * up / call
-        if self.turned:
-            body.torque = -self.lost_spin(rate) / call
-        body.position = self.x - vx * call, self.up - vz * call
-
-    def move(self, rate: float, vx: float, vz: float, step: float, interval: float, resting: bool) -> None:
-        """Move by a step [s] at velocities that a kick of `interval` [s] left; a calm block on both is put level.
+    def move(self, rate: float, vx: float, vz: float, step: float, interval: float, resting: bool) -> bool:
+        """Move by a step [s] at velocities that a kick of `interval` [s] left; True where the block is put level.
 
         On a corner the centre moves on an arc: along its tangent the corner would lift out of contact in every step. A
         corner that landed too deep is raised to where it started, but not at rest, where the other would be lifted.
@@ -78,8 +61,7 @@ class Block:
             self.x += vx * step
             self.tilt, self.up = 0.0, self.height - self.sink
             self._lever()
-            self.body.angle = 0.0
-            return
+            return True
         self.tilt += turned
         self._lever()
         if free or flat:
@@ -92,6 +74,7 @@ class Block:
         if self.tilt * self.side < 0.0:
             self.side = -self.side
             self._lever()
+        return False
 
     def _higher(self) -> float:
         """Height of the higher corner [m]."""
@@ -100,14 +83,14 @@ class Block:
     def lost_spin(self, rate: float) -> float:
         """Angular momentum [N m s] that a kick takes from a block which the step before turned about its corner.
 
-        It arrives with the momentum of the angle before, which Chipmunk holds against the lever of the angle now.
+        It arrives with the momentum of the angle before, which the engine holds against the lever of the angle now.
         """
         return self.m * self.R * self.R * (1.0 - math.cos(self.turned)) * rate
 
     def lag(self, rate: float, step: float) -> float:
         """Horizontal momentum [N s] that the block has at the beginning of a step, less that in its middle.
 
-        Leapfrog's velocities belong to the middle, Chipmunk's contacts hold at the beginning.
+        Leapfrog's velocities belong to the middle, the engine's contacts hold at the beginning.
         """
         middle = self.side * self.gamma - self.tilt - 0.5 * rate * step
         return self.m * rate * (self.c - self.R * math.cos(middle))

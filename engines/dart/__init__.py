@@ -1,0 +1,14 @@
+"""DART: ``get_engine("dart").simulate(scene, variant=...)``."""
+
+from ..contract import Engine
+
+ENGINE = Engine(
+    name="dart",
+    package="dartpy",
+    install="pip install 'rocking[dart]'",
+    adapter="engines.dart.adapter",
+    tolerances="engines.dart.tolerances",
+    colour="#882255",
+    marker="P",
+    dashes=(0, (9, 3)),
+)
