@@ -1,11 +1,11 @@
 """DART's variants: its boxed LCP decides contact and impact, in double precision.
 
 Measured in free rocking, gamma .1 to .45, 3 starts and 3 impacts each; rms error of e, on rigid ground and with m_b =
-212 kg, CPU seconds a second; impact-aware at a largest step of 2 ms, its rows in the tolerance table at 1.5 ms:
+212 kg, CPU seconds a second:
 
-    impact-aware, accuracy 1e-3, 1e-4      6e-4; 9e-4, 6e-5; 9e-5
-    impact-aware, accuracy 1e-5            6e-6 (1.1e-5 at worst); 1.2e-5 (3.9e-5)    .02; .04
-    impact-aware, accuracy 1e-6            6e-7; 5e-6
+    impact-aware, accuracy 1e-3, 1e-4      6e-4; 9e-4, 6e-5; 1e-4
+    impact-aware, accuracy 1e-5            6e-6; 7e-6
+    impact-aware, accuracy 1e-6            6e-7 (9e-7 at worst); 4e-6 (1.7e-5)        .017; .028 (800 and 950 steps)
     expert, steps of 1 ms                  2.7e-3; 5e-3                               .05; .06
     expert, .2 ms                          5e-4; 1.1e-3                               .2; .3
     first-script, 5 ms, 1 ms, .2 ms        .024; .031, 4e-3; 8e-3, 7e-4; 1.2e-3       .02; .01, .04; .06, .2; .3
@@ -62,7 +62,7 @@ class ImpactAware:
     largest_step [s] is that of flight and rest for the Caryatid's R, and goes with sqrt(R/g).
     """
 
-    accuracy: float = 1e-5
+    accuracy: float = 1e-6
     largest_step: float = 1.5e-3
 
 
