@@ -31,17 +31,16 @@ def build(scene: Scene, tuned: bool) -> Assembly:
     world = dartpy.simulation.World()
     world.getConstraintSolver().setSplitImpulseEnabled(tuned)
     assembly = add_ground(world, scene, scene.friction)
-    _, body = assembly.block.createFreeJointAndBodyNodePair()
+    joint, body = assembly.block.createFreeJointAndBodyNodePair()
     inertia = np.eye(3) * block.centre_inertia
     body.setInertia(dynamics.Inertia(block.mass, [0.0, 0.0, 0.0], inertia))
     size = [2 * block.half_width, 2 * block.half_width, 2 * block.half_height]
     add_shape(body, dynamics.BoxShape(size), [0.0, 0.0, 0.0], scene.friction)
     x, z, vx, vz = placement(scene)
-    tilt, rate = scene.start.tilt, scene.start.tilt_rate
-    assembly.block.setPositions([0.0, tilt, 0.0, x, 0.0, z + block.half_height])
-    # A free joint's velocities are those of the body, along its own axes.
-    along, upright = vx * math.cos(tilt) - vz * math.sin(tilt), vx * math.sin(tilt) + vz * math.cos(tilt)
-    assembly.block.setVelocities([0.0, rate, 0.0, along, 0.0, upright])
+    assembly.block.setPositions([0.0, scene.start.tilt, 0.0, x, 0.0, z + block.half_height])
+    # By name: a free joint's generalised velocities are along the world's axes, not the body's.
+    joint.setLinearVelocity([vx, 0.0, vz])
+    joint.setAngularVelocity([0.0, scene.start.tilt_rate, 0.0])
     world.addSkeleton(assembly.block)
     return assembly
 
