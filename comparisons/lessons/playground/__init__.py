@@ -20,7 +20,7 @@ from ...showing.templates import templates
 FOLDER = Path(__file__).parent
 # Of the equations, run in the page and in its workers; then those of the page alone.
 SHARED = ("polynomial.js", "scene.js", "series.js", "model.js", "engines.js", "jobs.js")
-SCRIPTS = ("charts.js", "views.js", "page.js")
+SCRIPTS = ("charts.js", "views.js", "workers.js", "page.js")
 PAGE = "playground.html"
 
 

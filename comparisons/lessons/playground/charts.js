@@ -106,7 +106,7 @@ const Charts = (() => {
   function note({ context, box }, words) {
     context.fillStyle = colour("soft");
     context.textAlign = "center";
-    context.fillText(words, (box.left + box.right) / 2, (box.top + box.bottom) / 2);
+    context.fillText(words, (box.left + box.right) / 2, box.top + 0.3 * (box.bottom - box.top));
   }
 
   // State [t, tilt, rate, x, v, F] at time t; rows by time.
@@ -123,5 +123,18 @@ const Charts = (() => {
     return a.map((value, k) => value + u * (b[k] - value));
   }
 
-  return { fresh, axes, curve, dot, note, line, at, limit, colour, FONT };
+  // to([x, y]): where the canvas is touched, in its pixels, and on while the pointer is held down.
+  function drag(canvas, to) {
+    const tell = (event) => {
+      const box = canvas.getBoundingClientRect();
+      to([event.clientX - box.left, event.clientY - box.top]);
+    };
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      tell(event);
+    });
+    canvas.addEventListener("pointermove", (event) => canvas.hasPointerCapture(event.pointerId) && tell(event));
+  }
+
+  return { fresh, axes, curve, dot, note, line, at, limit, drag, colour, FONT };
 })();

@@ -14,7 +14,7 @@ const Jobs = (() => {
 
   function cell(scene, motion, samples) {
     const par = Scene.parameters(scene), ground = groundOf(motion, samples);
-    const options = { duration: longest(par, ground), decide: true, tolerance: 1e-7, order: 12, short: 5 };
+    const options = { duration: longest(par, ground), decide: true, tolerance: 1e-7, order: 12, short: 6 };
     const run = Model.simulate(par, ground, options);
     if (run.outcome === "overturns") return run.impacts.length + run.coming ? AFTER_IMPACTS : AT_ONCE;
     return run.outcome === "stands" ? STANDS : run.outcome === "rocks" ? ROCKS : OPEN;

@@ -39,10 +39,15 @@ const Model = (() => {
     return firstRoot(P.event, order, h);
   }
 
+  // Time of the step's first event [s], named in st.found; h without one.
   function firstEvent(par, st, order, h) {
+    st.found = null;
     if (!st.s) {
       const threshold = par.g * Math.tan(par.gamma), row = par.onBase ? P.absolute : P.ground;
-      if (Math.abs(row[0]) > threshold && !st.refused) return ["uplift", 0];
+      if (Math.abs(row[0]) > threshold && !st.refused) {
+        st.found = "uplift";
+        return 0;
+      }
       const root = findUplift(row, order, threshold, st.refused, h);
       if (root >= 0) [st.found, h] = ["uplift", root];
     } else {
@@ -56,7 +61,7 @@ const Model = (() => {
       const root = findFall(P.v, st.direction, 0, order, h);
       if (root > 0) [st.found, h] = ["reversal", root];
     }
-    return [st.found, h];
+    return h;
   }
 
   // --- impact and rest ------------------------------------------------------------------------------------------
@@ -144,19 +149,22 @@ const Model = (() => {
 
   // --- one run --------------------------------------------------------------------------------------------------
 
-  // Series of a step from the state; returns [order used, step allowed].
+  const factors = { over: 0, power: 0, slope: 0 }; // of the bearing's series
+
+  // Series of a step from the state, of order st.used; returns the step allowed.
   function seriesOfStep(par, st, kind, a0, slope, ground, options, order, h) {
     const u = ground.frequency * st.t, tolerance = options.tolerance;
     if (kind === Scene.HARMONIC) h = Math.min(h, 1 / ground.frequency);
-    const highest = Series.groundSeries(kind, a0, slope, ground.frequency, u, order), factors = {};
-    if (par.onBase) prepareBearing(par, st, highest, factors);
+    const highest = Series.groundSeries(kind, a0, slope, ground.frequency, u, order);
+    if (par.onBase) prepareBearing(par, st, highest);
+    st.used = order;
     if (!st.s) {
       if (!par.onBase) {
         for (let k = highest + 1; k <= order; k++) P.ground[k] = 0;
-        return [order, h];
+        return h;
       }
       Series.contact(par, order, highest, factors);
-      return [order, Series.allowedStep(P.F, order, tolerance, Series.allowedStep(P.v, order, tolerance, h))];
+      return Series.allowedStep(P.F, order, tolerance, Series.allowedStep(P.v, order, tolerance, h));
     }
     const angle = st.s * par.gamma - st.tilt;
     [P.phi[0], P.w[0], P.S[0], P.C[0]] = [st.tilt, st.rate, Math.sin(angle), Math.cos(angle)];
@@ -177,15 +185,18 @@ const Model = (() => {
       } else Series.rigid(par, used, highest);
       if (st.fresh) P.phi[2] = P.w[1] = 0; // the onset is of third order
       good = Series.allowedStep(P.w, used, tolerance, good);
-      if (used === order || good === reach) return [used, good];
+      st.used = used;
+      if (used === order || good === reach) return good;
       [used, reach] = [order, h]; // the hop was longer than it looked
     }
   }
 
   // Base and bearing at the start of a step; a new branch of the loop where the travel turns.
-  function prepareBearing(par, st, highest, factors) {
+  function prepareBearing(par, st, highest) {
     const force = par.count * (par.kb * st.x + st.z);
-    [P.x[0], P.v[0], P.F[0]] = [st.x, st.v, force];
+    P.x[0] = st.x;
+    P.v[0] = st.v;
+    P.F[0] = force;
     let moving = st.v === 0 ? 0 : sign(st.v);
     if (st.v === 0) {
       let absolute = -force / par.M; // (2)
@@ -199,10 +210,13 @@ const Model = (() => {
       moving = Math.sign(start);
     }
     if (moving && moving !== st.direction) {
-      [st.direction, st.turn, st.mark] = [moving, st.x, Scene.virtualTravel(par, moving, st.z)];
+      st.direction = moving;
+      st.turn = st.x;
+      st.mark = Scene.virtualTravel(par, moving, st.z);
+      st.power = Math.pow(st.mark, 1 - par.alpha);
     }
     const s = st.direction, travel = st.mark + s * (st.x - st.turn);
-    P.q[0] = s ? Math.pow(travel, 1 - par.alpha) : 0;
+    P.q[0] = s ? st.power : 0;
     factors.over = s / travel;
     factors.power = 2 - par.alpha;
     factors.slope = (s * par.dk) / (1 - par.alpha);
@@ -221,9 +235,13 @@ const Model = (() => {
       result.peakTilt = Math.max(result.peakTilt, Math.abs(tilt));
     }
     if (!par.onBase) return;
-    [st.x, st.v] = [value(P.x, order, h), st.found === "reversal" ? 0 : value(P.v, order, h)];
-    const s = st.direction, travel = st.mark + s * (st.x - st.turn);
-    if (s) st.z = s * ((par.dk * (Math.pow(travel, 1 - par.alpha) - par.d0)) / (1 - par.alpha) + par.f0); // (9), (11)
+    st.x = value(P.x, order, h);
+    st.v = st.found === "reversal" ? 0 : value(P.v, order, h);
+    const s = st.direction;
+    if (s) {
+      st.power = Math.pow(st.mark + s * (st.x - st.turn), 1 - par.alpha);
+      st.z = s * ((par.dk * (st.power - par.d0)) / (1 - par.alpha) + par.f0); // (9), (11)
+    }
     result.peakX = Math.max(result.peakX, Math.abs(st.x));
   }
 
@@ -278,8 +296,8 @@ const Model = (() => {
     const options = { tolerance: TOLERANCE, order: ORDER, short: SHORT_ORDER, shortest: 0, outputStep: 0, ...given };
     const rows = options.outputStep > 0 ? [] : null, until = options.shortest || options.duration;
     const result = { rows, impacts: [], uplifts: [], rests: [], peakTilt: Math.abs(par.tilt), peakX: 0, steps: 0 };
-    const st = { t: 0, tilt: par.tilt, rate: par.rate, x: 0, v: 0, z: 0, s: 0, direction: 0, turn: 0, mark: 1,
-      fresh: false, refused: false, found: null, coming: 0 };
+    const st = { t: 0, tilt: par.tilt, rate: par.rate, x: 0, v: 0, z: 0, s: 0, direction: 0, turn: 0, mark: 1, power: 0,
+      fresh: false, refused: false, found: null, used: 0, coming: 0 };
     if (st.tilt || st.rate) st.s = sign(st.tilt || st.rate);
     const keep = () => rows && options.corners && st.t <= until && rows.push(now(par, st));
     const early = options.shortest * (1 - ROUNDING);
@@ -293,19 +311,17 @@ const Model = (() => {
         if (h <= ROUNDING * finish) break;
         if (after && st.t < early) h = Math.min(h, options.shortest - st.t);
         else if (after && (outcome = decision(par, st, hasLifted(par, result)))) break;
-        st.found = null;
-        const [used, allowed] = seriesOfStep(par, st, kind, a0 + slope * tau, slope, ground, options, order, h);
+        const allowed = seriesOfStep(par, st, kind, a0 + slope * tau, slope, ground, options, order, h), { used } = st;
         if (st.fresh && st.s && !(st.s * P.phi[3] > 0)) { // only touched the threshold: the block stays down
           [st.s, st.fresh, st.refused] = [0, false, true];
           result.uplifts.pop();
           continue;
         }
-        const [found, step] = firstEvent(par, st, used, Math.min(h, allowed));
+        const step = firstEvent(par, st, used, Math.min(h, allowed)), { found } = st;
         while (rows && (step > 0 || st.t === 0) && written * options.outputStep <= Math.min(st.t + step, until)) {
           const at = options.outputStep * written++;
           write(par, st, rows, at, Math.min(Math.max(at - st.t, 0), step), used);
         }
-        st.found = found;
         advance(par, st, used, step, result);
         if (step > 0) st.fresh = st.refused = false;
         tau = !found && step === length - tau ? length : tau + step;

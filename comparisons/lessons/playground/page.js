@@ -39,9 +39,10 @@ const Playground = (() => {
     pulse: [[12, 8], [24, 16], [48, 32], [96, 64]], synthetic: [[6, 4], [12, 8], [24, 16], [48, 32]],
   };
   const BAND = 96; // cells asked for at once
+  const REST = 300; // ms without a change, after which the map is refined
 
   const state = { ...CARYATID }, $ = (id) => document.getElementById(id);
-  let par, ground, run, ghost = null, cells = null, time = 0, playing = false, mapRun = 0;
+  let par, ground, run, ghost = null, cells = null, time = 0, playing = false, mapRun = 0, changed = 0;
 
   function decode(element) {
     const bytes = Uint8Array.from(atob(element.textContent.trim()), (c) => c.charCodeAt(0));
@@ -68,23 +69,9 @@ const Playground = (() => {
     return [across("slenderness", 0.1, 0.5, "slenderness γ [rad]"), across("scale", 0, 2, "scale of the motion [–]")];
   }
 
-  // --- workers --------------------------------------------------------------------------------------------------
+  // --- what workers compute -------------------------------------------------------------------------------------
 
-  // A function from a job to the promise of its result: in a worker made of this page's own scripts, else here.
-  function worker() {
-    const waiting = [];
-    try {
-      const code = [...document.querySelectorAll("script[data-shared]")].map((script) => script.textContent).join("\n");
-      const tail = "let samples; onmessage = ({ data }) => { if (data.samples) samples = data.samples; else postMessage(Jobs.run(data, samples)); };";
-      const made = new Worker(URL.createObjectURL(new Blob([code, tail], { type: "text/javascript" })));
-      made.postMessage({ samples });
-      made.onmessage = ({ data }) => waiting.shift()(data);
-      return (job) => new Promise((done) => { waiting.push(done); made.postMessage(job); });
-    } catch {
-      return (job) => new Promise((done) => setTimeout(() => done(Jobs.run(job, samples))));
-    }
-  }
-  const askGhost = worker(), askMap = worker();
+  const askGhost = Workers.make(samples), askMap = Workers.make(samples);
   let ghostBusy = false, ghostDue = false, mapBusy = false;
 
   async function updateGhost() {
@@ -98,7 +85,7 @@ const Playground = (() => {
       const found = await askGhost(job);
       if (state.engine !== "none") {
         ghost = { ...found, shown: peakOf(found.rows) };
-        draw();
+        draw(IN_TIME);
       }
     }
     ghostBusy = false;
@@ -112,6 +99,7 @@ const Playground = (() => {
       done = mapRun;
       const axes = mapAxes();
       for (const [nx, ny] of axes ? STAGES[state.motion] : []) {
+        if (nx !== STAGES[state.motion][0][0] && !(await rested(done))) break;
         const values = spread(cells, nx, ny), rows = Math.max(1, Math.floor(BAND / nx));
         for (let from = 0; from < ny && done === mapRun; from += rows) {
           const job = { kind: "band", scene: scene(), motion: motion(), axes, nx, ny, from, to: Math.min(from + rows, ny) };
@@ -119,13 +107,20 @@ const Playground = (() => {
           if (done !== mapRun) break;
           values.set(found.cells, from * nx);
           cells = { nx, ny, values };
-          draw();
+          draw(["map"]);
         }
         if (done !== mapRun) break;
       }
     }
     mapBusy = false;
     document.body.dataset.map = "done";
+  }
+
+  // Whether nothing changes until REST is over: finer maps wait for a slider that rests, and leave it the processor.
+  async function rested(current) {
+    const wait = changed + REST - performance.now();
+    if (wait > 0) await new Promise((done) => setTimeout(done, wait));
+    return current === mapRun;
   }
 
   // The cells so far on a grid of another size; open where there are none.
@@ -144,6 +139,7 @@ const Playground = (() => {
 
   function update() {
     document.body.dataset.map = "";
+    changed = performance.now();
     par = Scene.parameters(scene());
     ground = Jobs.groundOf(motion(), samples);
     ground.peak = state.motion === "synthetic" ? samples.peak : ground.scale;
@@ -164,19 +160,24 @@ const Playground = (() => {
     return top > 0 ? run.rows.find((row) => Math.abs(row[1]) >= top)[0] : 0;
   }
 
+  // Only what differs: the same words again would cost a layout.
+  function write(element, words) {
+    if (element.textContent !== words) element.textContent = words;
+  }
+
   function tell() {
     const verdict = $("verdict");
-    verdict.textContent = OUTCOMES[run.outcome];
+    write(verdict, OUTCOMES[run.outcome]);
     verdict.dataset.outcome = run.outcome;
     const fact = (id, value, words) => {
-      $(id).textContent = words;
+      write($(id), words);
       $(id).dataset.value = value;
     };
     fact("peak", run.peakTilt, run.outcome === "overturns" ? "falls" : `${(run.peakTilt / par.gamma).toFixed(3)} γ`);
     fact("impacts", run.impacts.length, String(run.impacts.length));
     fact("e", par.e, par.e.toFixed(3));
     fact("displacement", run.peakX, par.onBase ? `${run.peakX.toFixed(3)} m` : "–");
-    $("uplift").textContent = `${(Math.tan(par.gamma)).toFixed(3)} g`;
+    write($("uplift"), `${Math.tan(par.gamma).toFixed(3)} g`);
     clearTimeout(tell.later);
     tell.later = setTimeout(() => {
       $("said").textContent = `The block ${OUTCOMES[run.outcome]}. Impacts: ${run.impacts.length}.`;
@@ -185,17 +186,34 @@ const Playground = (() => {
 
   function tellGhost() {
     const line = $("ghost-verdict");
-    line.hidden = !ghost;
+    if (line.hidden !== !ghost) line.hidden = !ghost;
     if (!ghost) return;
     const fell = ghost.overturned, wrong = fell !== (run.outcome === "overturns");
-    line.textContent = `engine: ${fell ? "overturns" : "does not overturn"}${wrong ? " – wrong" : ""}`;
+    write(line, `engine: ${fell ? "overturns" : "does not overturn"}${wrong ? " – wrong" : ""}`);
     line.dataset.wrong = wrong;
   }
 
   // --- pictures -------------------------------------------------------------------------------------------------
 
   let due = false, tiltFrame = null, mapFrame = null;
-  function draw() {
+  const VIEWS = {
+    block: (canvas) => {
+      const at = Scene.acceleration(ground, time) / (ground.peak || 1), ghostState = ghost && Charts.at(ghost.rows, time);
+      Views.block(canvas, { par, state: Charts.at(run.rows, time), ghost: ghostState, ground: at });
+    },
+    tilt: (canvas) => (tiltFrame = Views.tilt(canvas, { par, run, ghost, window: WINDOW[state.motion], ground, t: time })),
+    phase: (canvas) => Views.phase(canvas, { par, run, ghost, t: time }),
+    loop: (canvas) => par.onBase && Views.loop(canvas, { run, ghost, t: time }),
+    map: (canvas) => {
+      const axes = mapAxes();
+      if (axes) mapFrame = Views.map(canvas, { cells, axes, place: axes.map((axis) => state[axis.key]) });
+    },
+  };
+  const ALL = Object.keys(VIEWS), IN_TIME = ALL.filter((name) => name !== "map");
+  const waiting = new Set(), inSight = new Set(ALL); // to be painted; of these one that is out of sight waits
+
+  function draw(names = ALL) {
+    for (const name of names) waiting.add(name);
     if (due) return;
     due = true;
     requestAnimationFrame(() => {
@@ -205,21 +223,29 @@ const Playground = (() => {
   }
 
   function paint() {
-    const window = WINDOW[state.motion], at = Scene.acceleration(ground, time) / (ground.peak || 1);
-    const ghostState = ghost && Charts.at(ghost.rows, time);
-    Views.block($("block"), { par, state: Charts.at(run.rows, time), ghost: ghostState, ground: at });
-    tiltFrame = Views.tilt($("tilt"), { par, run, ghost, window, ground, t: time });
-    Views.phase($("phase"), { par, run, ghost, t: time });
-    if (par.onBase) Views.loop($("loop"), { run, ghost, t: time });
-    const axes = mapAxes();
-    if (axes) mapFrame = Views.map($("map"), { cells, axes, place: axes.map((axis) => state[axis.key]) });
-    $("clock").textContent = `${time.toFixed(2)} s`;
+    write($("clock"), `${time.toFixed(2)} s`);
     if (!playing) {
-      $("tilt").setAttribute("aria-valuemax", window);
+      $("tilt").setAttribute("aria-valuemax", WINDOW[state.motion]);
       $("tilt").setAttribute("aria-valuenow", time.toFixed(2));
       $("tilt").setAttribute("aria-valuetext", `${time.toFixed(2)} s`);
     }
     tellGhost();
+    for (const name of waiting) {
+      if (!inSight.has(name)) continue;
+      waiting.delete(name);
+      VIEWS[name]($(name));
+    }
+  }
+
+  function watchSight() {
+    const observer = new IntersectionObserver((entries) => {
+      for (const { target, isIntersecting } of entries) {
+        if (isIntersecting) inSight.add(target.id);
+        else inSight.delete(target.id);
+      }
+      if ([...waiting].some((name) => inSight.has(name))) draw([]);
+    }, { rootMargin: "100px" });
+    for (const name of ALL) observer.observe($(name));
   }
 
   let last = null;
@@ -229,6 +255,7 @@ const Playground = (() => {
     last = now;
     const end = Math.min(WINDOW[state.motion], run.overturning ? run.overturning + 1.5 : Infinity);
     if (time > end) time = 0;
+    for (const name of IN_TIME) waiting.add(name);
     paint();
     requestAnimationFrame(animate);
   }
@@ -238,7 +265,7 @@ const Playground = (() => {
     $("play").textContent = on ? "Pause" : "Play";
     $("play").setAttribute("aria-pressed", on);
     if (on) requestAnimationFrame(animate);
-    else paint();
+    else draw(IN_TIME);
   }
 
   // --- sliders and what else one can touch ----------------------------------------------------------------------
@@ -261,16 +288,16 @@ const Playground = (() => {
     for (const button of document.querySelectorAll("[data-preset]")) button.addEventListener("click", () => {
       set({ ...CARYATID, ...PRESETS[button.dataset.preset] });
       time = playing ? 0 : telling();
-      draw();
+      draw(IN_TIME);
     });
     $("play").addEventListener("click", () => play(!playing));
-    drag($("tilt"), ([px]) => {
+    Charts.drag($("tilt"), ([px]) => {
       const { left, right } = tiltFrame.box;
       time = Math.min(Math.max((px - left) / (right - left), 0), 1) * WINDOW[state.motion];
       if (playing) play(false);
-      else draw();
+      else draw(IN_TIME);
     });
-    drag($("map"), ([px, py]) => {
+    Charts.drag($("map"), ([px, py]) => {
       const { left, right, top, bottom } = mapFrame.box, clip = (u) => Math.min(Math.max(u, 0), 1);
       move([clip((px - left) / (right - left)), clip((bottom - py) / (bottom - top))]);
     });
@@ -286,10 +313,11 @@ const Playground = (() => {
       event.preventDefault();
       time = Math.min(Math.max(time + way * 0.05, 0), WINDOW[state.motion]);
       if (playing) play(false);
-      else draw();
+      else draw(IN_TIME);
     });
-    new ResizeObserver(draw).observe(document.querySelector("main"));
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
+    new ResizeObserver(() => draw()).observe(document.querySelector("main"));
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => draw());
+    watchSight();
     matchMedia("(prefers-reduced-motion: reduce)").addEventListener("change", (event) => event.matches && play(false));
   }
 
@@ -303,26 +331,15 @@ const Playground = (() => {
     set(change);
   }
 
-  function drag(canvas, to) {
-    const tell = (event) => {
-      const box = canvas.getBoundingClientRect();
-      to([event.clientX - box.left, event.clientY - box.top]);
-    };
-    canvas.addEventListener("pointerdown", (event) => {
-      canvas.setPointerCapture(event.pointerId);
-      tell(event);
-    });
-    canvas.addEventListener("pointermove", (event) => canvas.hasPointerCapture(event.pointerId) && tell(event));
-  }
-
   function show() {
     const e = Scene.parameters(scene()).e;
     for (const [key, { input, range, unit, digits }] of Object.entries(inputs)) {
       const value = key === "restitution" && state.momentum ? e : state[key];
-      input.value = range.from ? range.from(value) : value;
       const words = `${value.toFixed(digits)}${unit ? ` ${unit}` : ""}`;
+      if (input.ariaValueText === words) continue; // nothing written, no layout
+      input.value = range.from ? range.from(value) : value;
       $(`o-${key}`).textContent = words;
-      input.setAttribute("aria-valuetext", words);
+      input.ariaValueText = words;
     }
     inputs.restitution.input.disabled = state.momentum;
     $("momentum").checked = state.momentum;
@@ -330,7 +347,8 @@ const Playground = (() => {
     for (const box of document.querySelectorAll("input[type=radio]")) box.checked = state[box.name] === box.value;
     for (const part of document.querySelectorAll("[data-when]")) {
       const [key, values] = part.dataset.when.split("=");
-      part.hidden = !values.split(",").includes(String(state[key]));
+      const hidden = !values.split(",").includes(String(state[key]));
+      if (part.hidden !== hidden) part.hidden = hidden;
     }
   }
 
@@ -347,7 +365,7 @@ const Playground = (() => {
     remember.later = setTimeout(() => {
       const parts = Object.keys(state).filter((key) => state[key] !== CARYATID[key]).map((key) => `${key}=${state[key]}`);
       history.replaceState(null, "", parts.length ? `#${parts.join("&")}` : location.pathname);
-    }, 300);
+    }, 600);
   }
 
   function recall() {

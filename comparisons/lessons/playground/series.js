@@ -95,12 +95,22 @@ const Series = (() => {
     }
   }
 
+  function raised(h, order) { // faster than Math.pow
+    let power = 1;
+    for (let k = 0; k < order; k++) power *= h;
+    return power;
+  }
+
   // Largest step up to h whose last terms stay below tolerance times the size of f in the step.
   function allowedStep(f, order, tolerance, h) {
     const limit = tolerance * Math.max(Math.abs(f[0]) + Math.abs(f[1]) * h + Math.abs(f[2]) * h * h, NEGLIGIBLE);
-    const last = Math.abs(f[order]) * Math.pow(h, order);
-    if (last > limit) h *= 0.9 * Math.pow(limit / last, 1 / order);
-    const before = Math.abs(f[order - 1]) * Math.pow(h, order - 1);
+    let power = raised(h, order - 1);
+    const last = Math.abs(f[order]) * power * h;
+    if (last > limit) {
+      h *= 0.9 * Math.pow(limit / last, 1 / order);
+      power = raised(h, order - 1);
+    }
+    const before = Math.abs(f[order - 1]) * power;
     if (before > 4 * limit) h *= 0.9 * Math.pow((4 * limit) / before, 1 / (order - 1));
     return h;
   }

@@ -83,7 +83,8 @@ const Views = (() => {
 
   // Of the ground acceleration, as long as it is strong.
   function arrow(context, x, y, share) {
-    const length = Math.max(-1, Math.min(1, share)) * 90;
+    const words = x < 150 ? "ground" : "ground acceleration";
+    const length = Math.max(-1, Math.min(1, share)) * Math.min(90, x - context.measureText(words).width - 14);
     context.fillStyle = colour("soft");
     context.textAlign = "left";
     context.textBaseline = "middle";
@@ -96,7 +97,7 @@ const Views = (() => {
     context.lineTo(back, y - 5);
     context.lineTo(back, y + 5);
     context.fill();
-    context.fillText("ground acceleration", length > 0 ? Math.max(tip, x) + 8 : x + 8, y);
+    context.fillText(words, length > 0 ? Math.max(tip, x) + 8 : x + 8, y);
   }
 
   // --- charts ---------------------------------------------------------------------------------------------------

@@ -84,7 +84,7 @@ def view(step: float) -> View:
             markerfacecolor="none" if first else colour,
             label=name,
         )
-    axis.axvline(100 * TARGET, color=SOFT, linewidth=1, linestyle=(0, (4, 4)))
+    axis.axvline(100 * TARGET, 0, 0.74, color=SOFT, linewidth=1, linestyle=(0, (4, 4)))  # up to the legend
     here = next(run for run in own_runs() if abs(1e3 * run.value - step) < 1e-9)
     assert here.error is not None  # the integrator strikes at each of its steps
     axis.loglog(100 * here.error, 1e3 * here.cpu, "o", color=OTHER, markersize=10, zorder=5)

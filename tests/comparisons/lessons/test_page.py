@@ -108,3 +108,15 @@ def test_reduced_motion_stands_still(opened):
     page = opened(reduced_motion="no-preference")
     assert page.inner_text("#play") == "Pause"
     page.wait_for_function("parseFloat(document.getElementById('clock').textContent) > 0.1")
+
+
+def test_a_view_out_of_sight_is_painted_when_it_is_seen(opened):
+    page = opened("#amplitude=0.35", viewport={"width": 390, "height": 844})
+    picture = "document.getElementById('phase').toDataURL()"
+    page.wait_for_selector("body[data-map=done]")
+    before = page.evaluate(picture)
+    slide(page, "slenderness", 0.2)
+    page.wait_for_selector("body[data-map=done]")
+    assert page.evaluate(picture) == before  # nobody sees it: no time is spent on it
+    page.locator("#phase").scroll_into_view_if_needed()
+    page.wait_for_function(f"{picture} !== '{before}'")
