@@ -246,6 +246,7 @@ const Playground = (() => {
       if ([...waiting].some((name) => inSight.has(name))) draw([]);
     }, { rootMargin: "100px" });
     for (const name of ALL) observer.observe($(name));
+    addEventListener("beforeprint", () => ALL.forEach((name) => VIEWS[name]($(name))));
   }
 
   let last = null;
