@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from bearing_laws import bearings_of
 
-from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene
+import analytic
+from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start
 from analytic.errors import EngineNotInstalled
 from engines import ENGINES, get_engine
 
@@ -55,6 +56,14 @@ def scene(slenderness, base=None, duration=2.0, **parts):
         duration=duration,
         **parts,
     )
+
+
+def released(base, slenderness=0.2, tilt=0.5, rate=0.0):
+    """A block let go, until it is well into its second swing; tilt as a share of the slenderness, its rate [rad/s]."""
+    start = Start(tilt=tilt * slenderness, tilt_rate=rate)
+    given = scene(slenderness, duration=5.0, start=start).with_(base=base)
+    first, second, *_ = analytic.simulate(given, history=False).impacts
+    return given.with_(duration=first.time + 0.1 * (second.time - first.time))
 
 
 def simulate(engine, variant, given, **settings):

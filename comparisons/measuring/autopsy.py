@@ -1,0 +1,296 @@
+"""One impact as the contact's own story, read from where an engine's steps had the block.
+
+Newton's laws give the impulses that an engine must have used between two steps, whatever its solver calls them: of both
+corners upward and of both together along the ground. Momentum then splits the error of e into parts that add up to it.
+With L about the landing corner, which neither friction nor that corner's own impulse changes, s and r the speed of a
+corner on the ground the way the centre goes and away from the ground, mt = m/M (0 on rigid ground), J' = J_O - m mt h^2
+and w the rate before the impact:
+
+    J' w de = 2 b (impulse of the old corner, less what bears the block up to the landing)     parts `support`, `pull`
+              - m (h (1 - mt) s + b r), of the pivot after, and + of the pivot before          parts `slip`, `rebound`
+
+`pull` is what is negative of the old corner's impulses. What is left over is the bearings' and gravity's while the
+contact lasts, of second order. Two more stand beside the parts in the same unit. `flight`: the energy that the second
+half of the swing before gained, as a share of w. `shape`: what the strike does to e if it acts where the weight did
+just before, when the landing corner is in the air and should bear nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from analytic.motion import vertical_acceleration
+from analytic.rocking import restitution
+from engines.checks import energy_balance
+from engines.ground_velocity import ground_velocity
+from engines.swings import ArrayModel, find_swings, to_contact
+
+from .agreement import Unmeasurable
+
+if TYPE_CHECKING:
+    from analytic import Scene
+    from analytic.types import Motion
+    from engines.swings import Trace
+
+BESIDE = 3  # steps in flight that are shown on each side of the contact
+LEAST_STRIKE = 0.1  # of the impulse that turns the centre's fall into a rise
+
+
+@dataclass(frozen=True)
+class Contact:
+    """An impact of a trace with n steps around it; columns of two: landing corner, old corner.
+
+    Parameters
+    ----------
+    landing : float
+        When the flight before reaches tilt = 0 [s].
+    before, after : float
+        Tilt rates carried to tilt = 0 [rad/s].
+    error : float
+        after/before less eq. (7).
+    parts : dict
+        Of the error, see above: support, pull, slip, rebound; beside them flight and shape.
+    late : float
+        Error of e by a strike that is late, over the delay [1/s].
+    time : array, shape (n,)
+        From the landing [s].
+    tilt, energy : arrays, shape (n,)
+        [rad]; less work done and bearings' loss, over the kinetic energy before the impact, 1 at the first step.
+    height, sinking, slip : arrays, shape (n, 2)
+        Of the corners: above the ground [m], speed downward and along the base [m/s].
+    impulse : array, shape (n - 1, 2)
+        Upward [N s], between two steps.
+    friction : array, shape (n - 1,)
+        Of both corners, along the ground [N s].
+    strike : array, shape (n - 1,)
+        Share of the impact in the landing corner's impulse: without what bears the block after the landing; sum 1.
+    first, last : int
+        Indices of the last step in clean flight before the contact and the first one after it.
+    """
+
+    landing: float
+    before: float
+    after: float
+    error: float
+    parts: dict[str, float]
+    late: float
+    time: np.ndarray
+    tilt: np.ndarray
+    energy: np.ndarray
+    height: np.ndarray
+    sinking: np.ndarray
+    slip: np.ndarray
+    impulse: np.ndarray
+    friction: np.ndarray
+    strike: np.ndarray
+    first: int
+    last: int
+
+    @property
+    def step(self) -> float:
+        """Longest step while the landing corner is struck [s]."""
+        return float(np.diff(self.time)[self._struck].max())
+
+    @property
+    def phase(self) -> float:
+        """Error of e by a strike that is one of these steps late."""
+        return self.late * self.step
+
+    @property
+    def steps(self) -> int:
+        """Number of steps that carry nine tenths of the strike."""
+        return int(np.ptp(self._struck)) + 1
+
+    @property
+    def lasting(self) -> float:
+        """Time that the middle four fifths of the strike take [s]."""
+        begin, end = np.interp((0.1, 0.9), np.append(0.0, np.cumsum(self.strike)), self.time)
+        return float(end - begin)
+
+    @property
+    def deepest(self) -> float:
+        """How far a corner is below the ground at most [m]."""
+        return float(max(-self.height.min(), 0.0))
+
+    @property
+    def demand(self) -> float:
+        """|friction| over the upward impulse of the contact as a whole."""
+        window = slice(self.first, self.last)
+        return float(abs(self.friction[window].sum()) / abs(self.impulse[window].sum()))
+
+    @property
+    def _struck(self):
+        total = np.cumsum(self.strike)
+        return np.flatnonzero((total > 0.05) & (total - self.strike < 0.95))
+
+
+def contact_of(scene: Scene, trace: Trace, which: int = 0) -> Contact:
+    """The `Contact` of the impact number `which` of a trace.
+
+    Raises
+    ------
+    Unmeasurable
+        The trace does not hold where the block was, or has no such impact between two swings.
+    """
+    if trace.centre is None:
+        raise Unmeasurable("the trace does not hold where the block was: its corners cannot be told")
+    swings = find_swings(trace)
+    land, before, _ = to_contact(scene, trace, swings, 1)
+    _, after, _ = to_contact(scene, trace, swings, -1)
+    passed = np.flatnonzero((swings.side[1:] == -swings.side[:-1]) & np.isfinite(before[:-1] + after[1:]))
+    if which >= len(passed):
+        raise Unmeasurable(f"impact {which}: the trace has {len(passed)} between two swings")
+    k = passed[which]
+    begin = max(swings.last[k] - BESIDE, 0)
+    first, last = int(swings.last[k] - begin), int(swings.clean[k + 1] - begin)
+    seen, side = trace.at(slice(begin, begin + last + BESIDE + 1)), swings.side[k]
+    told = _corners(scene, seen, side) | _impulses(scene, seen, side)
+    landing, rates = float(land[k]), (float(before[k]), float(after[k + 1]))
+    normals, ahead = _normals(scene, seen, side, landing, rates), _ahead(seen.time, landing)
+    strike = told["impulse"][:, 0] - normals[1] * (np.diff(seen.time) - ahead)
+    strike[:first], strike[last:] = 0.0, 0.0
+    # The centre falls at b w before the impact and rises at e b w after it.
+    if not strike.sum() > LEAST_STRIKE * scene.block.mass * scene.block.half_width * abs(sum(rates)):
+        raise Unmeasurable(f"no corner is struck while the tilt is below {trace.contact_tilt:.3g}: elsewhere, or none")
+    unit = _inertia(scene) * rates[0] ** 2
+    # From the middle of the swing on: a start may settle on its contact.
+    middle = np.searchsorted(trace.time, 0.5 * (trace.time[swings.first[k]] + trace.time[swings.last[k]]))
+    falling = trace.at(slice(middle, swings.last[k] + 1))
+    return Contact(
+        landing,
+        *rates,
+        rates[1] / rates[0] - restitution(scene),
+        _parts(scene, told, rates[0], normals[0] * ahead[first:last].sum(), slice(first, last))
+        | {"flight": float(energy_balance(scene, falling)[0][-1]) / unit}
+        | {"shape": _airborne(told["impulse"][:first]) * _moved(scene, strike.sum(), rates[0])},
+        _moved(scene, normals[0], rates[0]),
+        seen.time - landing,
+        seen.tilt,
+        1.0 + energy_balance(scene, seen)[0] / (0.5 * unit),
+        strike=strike / strike.sum(),
+        first=first,
+        last=last,
+        **told,
+    )
+
+
+def frames(contact: Contact) -> dict[str, dict[str, object]]:
+    """The contact in four frames, each a dict of numbers and lists; times from the landing [s], heights [m].
+
+    straddle: times of the steps and both corners' heights, the step that is struck, error by one such step late;
+    penetration: heights over the whole contact, the deepest; rebound: the landing corner's speed away from the ground,
+    over that of its fall; energy: over the kinetic one before the impact, and e^2 of eq. (7), where it should end.
+    """
+    time, height = contact.time, contact.height
+    struck = int(contact.strike.argmax())
+    near = slice(max(struck - BESIDE, 0), struck + BESIDE + 2)
+    fall = float(contact.sinking[contact.first, 0])
+    corners = {"landing": height[:, 0].tolist(), "old": height[:, 1].tolist()}
+    return {
+        "straddle": {
+            "time": time[near].tolist(),
+            "landing": height[near, 0].tolist(),
+            "old": height[near, 1].tolist(),
+            "struck": time[struck : struck + 2].tolist(),
+            "phase": contact.phase,
+        },
+        "penetration": {"time": time.tolist(), **corners, "deepest": contact.deepest},
+        "rebound": {"time": time.tolist(), "speed": (-contact.sinking[:, 0] / fall).tolist()},
+        "energy": {
+            "time": time.tolist(),
+            "energy": contact.energy.tolist(),
+            "exact": (contact.after / contact.before - contact.error) ** 2,
+        },
+    }
+
+
+def _moved(scene: Scene, impulse: float, rate: float) -> float:
+    """Change of e by an impulse at the old corner [N s], or by one a second [N]."""
+    return float(2 * scene.block.half_width * impulse / (_inertia(scene) * abs(rate)))
+
+
+def _airborne(impulse: np.ndarray) -> float:
+    """Share of the landing corner in what bears the block in flight."""
+    landing, old = impulse.sum(axis=0)
+    return float(landing / (landing + old))
+
+
+def _corners(scene: Scene, trace: Trace, side: float) -> dict[str, Any]:
+    """Height, sinking and slip of the landing corner and of the old one, on `side`, as `Contact` has them."""
+    lever, drop = _levers(scene, trace.tilt, side)
+    _, z, vx, vz = np.asarray(trace.centre).T
+    height = z + scene.block.half_height + drop.T
+    slip = vx - trace.base_velocity + drop.T * trace.tilt_rate
+    return {"height": height.T, "sinking": (lever.T * trace.tilt_rate - vz).T, "slip": slip.T}
+
+
+def _levers(scene: Scene, tilt: np.ndarray, side: float) -> tuple[np.ndarray, np.ndarray]:
+    """(x, z) [m] of landing corner and old corner from the block's centre, shapes (n, 2)."""
+    b, h = scene.block.half_width, scene.block.half_height
+    across, cos, sin = np.array([-side * b, side * b]), np.cos(tilt)[:, None], np.sin(tilt)[:, None]
+    return across * cos - h * sin, -across * sin - h * cos
+
+
+def _impulses(scene: Scene, trace: Trace, side: float) -> dict[str, Any]:
+    """Impulses between the steps as `Contact` has them: from what linear and angular momentum gained."""
+    block, time, (_, _, across, up) = scene.block, trace.time, np.asarray(trace.centre).T
+    lever, drop = (0.5 * (each[1:] + each[:-1]) for each in _levers(scene, trace.tilt, side))
+    ground, upright = (_gained(part, time) for part in (scene.motion, scene.motion and scene.motion.vertical))
+    friction = block.mass * (np.diff(across) + ground)
+    upward = block.mass * (np.diff(up) + scene.gravity * np.diff(time) + upright)
+    spin = block.centre_inertia * np.diff(trace.tilt_rate)
+    # Both corners are at nearly the same height where both may be loaded: z H - x_a N_a - x_o N_o = spin, N_a + N_o = N
+    landing = (drop.mean(axis=1) * friction - lever[:, 1] * upward - spin) / (lever[:, 0] - lever[:, 1])
+    return {"impulse": np.column_stack([landing, upward - landing]), "friction": friction}
+
+
+def _gained(motion: Motion | None, time: np.ndarray) -> np.ndarray | float:
+    """Velocity [m/s] that the ground gains in each step."""
+    velocity = ground_velocity(motion)
+    return np.diff([velocity(t) for t in time.tolist()]) if velocity else 0.0
+
+
+def _normals(
+    scene: Scene, trace: Trace, side: float, landing: float, rates: tuple[float, float]
+) -> tuple[float, float]:
+    """What bears the pivoting block at tilt 0 [N], before the landing and after it, by eqs (3)-(6)."""
+    model, motion = ArrayModel.of(scene), scene.motion
+    ground, up = (motion.acceleration(landing), vertical_acceleration(motion, landing)) if motion else (0.0, 0.0)
+    force = float(np.interp(landing, trace.time, trace.bearing_force))
+
+    def normal(s, rate):
+        tilting, sliding = model.accelerations(s, 0.0, rate, ground, force, up)
+        return float(model.contact_forces(s, 0.0, rate, tilting, ground + sliding, up)[1])
+
+    return normal(side, rates[0]), normal(-side, rates[1])
+
+
+def _ahead(time: np.ndarray, landing: float) -> np.ndarray:
+    """How much of each step lies before the landing [s]."""
+    return np.clip(landing - time[:-1], 0.0, np.diff(time))
+
+
+def _inertia(scene: Scene) -> float:
+    """J' [kg m2], see above."""
+    block = scene.block
+    return block.inertia - block.mass * scene.mass_share * block.half_height**2
+
+
+def _parts(scene: Scene, told: dict[str, np.ndarray], rate: float, borne: float, window: slice) -> dict[str, float]:
+    """The parts of the error of e; borne: impulse [N s] that bears the block up to the landing."""
+    block, way = scene.block, math.copysign(1.0, rate)
+    old, scale = told["impulse"][window, 1], _inertia(scene) * abs(rate)
+    pulled = float(np.minimum(old, 0.0).sum())
+    ends = [(-1.0, window.start, 1), (1.0, window.stop, 0)]  # the pivot before, the pivot after
+    slipped = way * sum(sign * told["slip"][k, corner] for sign, k, corner in ends)
+    risen = -sum(sign * told["sinking"][k, corner] for sign, k, corner in ends)
+    return {
+        "support": _moved(scene, float(old.sum()) - pulled - borne, rate),
+        "pull": _moved(scene, pulled, rate),
+        "slip": float(-block.mass * block.half_height * (1 - scene.mass_share) * slipped / scale),
+        "rebound": float(-block.mass * block.half_width * risen / scale),
+    }

@@ -1,0 +1,104 @@
+"""Why an engine's restitution is off, from the story of one contact alone: no setting is looked at."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from engines import get_engine
+
+from .agreement import Unmeasurable
+from .autopsy import Contact, contact_of, frames
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+LEAST = 1e-3  # of e, or of the rate before: a smaller error has no cause worth a name
+CAUSES = {
+    "damping": "the block loses speed in flight: something is damped that nobody asked to be",
+    "shape": "a corner in the air bears weight: the contact is not where the block's corner is",
+    "gap": "the corner is struck more than a step before or after it is level with the pivot: a slop, margin or radius",
+    "iterations": "the impulse is spread over steps, pulls or slips as no contact does: the solver stops too early",
+    "adhesion": "the corner that should lift is pulled at, over many steps: the contact's damper acts outward, too",
+    "compliance": "the impulse takes many steps to grow and to fade, while the block turns on: the contact is soft",
+    "rebound": "the struck corner leaves the ground at once: a restitution, or a penetration taken back with a speed",
+    "friction": "a corner slides, friction and normal impulse being in one ratio: the friction is too small",
+    "step": "no part is larger than what the block gains in one step: the step straddles the impact",
+}
+# Steps in which a strike is seen. Solvers of velocities strike at once, which is seen in two, as velocities are those at
+# the steps' ends; not converged they take up to eight (Chipmunk, one iteration, started from the step before). A
+# compliant contact that is resolved takes a dozen and more.
+AT_ONCE, MANY = 2, 10
+SATURATED = 5.0  # largest friction over normal impulse of a sliding contact, over the strike's, in which it may turn
+STRADDLING = 2.0  # parts over what gravity gains in a step, up to which the step explains them: a strike is seen in two
+HALF = 0.5  # of the largest part, from which on a part or a reason of parts is named
+
+
+def cause_of(contact: Contact) -> str | None:
+    """One of `CAUSES`, or None where the error is below `LEAST`."""
+    parts = {name: abs(value) for name, value in contact.parts.items()}
+    flight, shape = parts.pop("flight"), parts.pop("shape")
+    if max(flight, abs(contact.error)) < LEAST:
+        return None
+    largest = max(parts.values())
+    if flight >= max(LEAST, largest, STRADDLING * contact.phase):
+        return "damping"
+    if shape >= HALF * max(parts["support"], parts["pull"], LEAST):
+        return "shape"
+    if largest <= STRADDLING * contact.phase:
+        return "step"
+    return _beyond_a_step(contact, max(parts, key=parts.__getitem__), parts["pull"] >= HALF * largest)
+
+
+def _beyond_a_step(contact, part, pulled):
+    """The cause of an error that one step does not explain, by its largest part."""
+    if contact.steps >= MANY:
+        return "adhesion" if pulled else "compliance"
+    if part == "slip":
+        return "friction" if _saturated(contact) else "iterations"
+    if pulled or contact.steps > AT_ONCE:
+        return "iterations"
+    return "gap" if part == "support" else "rebound"
+
+
+def _saturated(contact):
+    """Whether friction over normal impulse is nowhere larger than at the strike, as of a contact that slides."""
+    window = slice(contact.first, contact.last)
+    upward, strike = contact.impulse[window].sum(axis=1), contact.strike[window]
+    loaded = upward > 1e-3 * upward.max()
+    demand = np.abs(contact.friction[window][loaded]) / upward[loaded]
+    return bool(demand.max() <= SATURATED * np.average(demand, weights=np.maximum(strike[loaded], 0.0)))
+
+
+def diagnosis(engine: str, variant: str, scene: Scene, which: int = 0, **settings: Any) -> dict[str, object]:
+    """What the impact number `which` of a run tells, ready for JSON.
+
+    Returns
+    -------
+    dict
+        engine, variant, rung; where the impact can be told: error, cause and words (None below `LEAST`), parts, steps,
+        lasting [s], deepest [m], demand, lost (energy over the kinetic one before) and frames; else why_not.
+    """
+    record = get_engine(engine)
+    row: dict[str, object] = {"engine": engine, "variant": variant, "rung": record.variants[variant].rung}
+    _, trace = record.traced(scene, variant=variant, history=False, **settings)
+    try:
+        if trace is None:
+            raise Unmeasurable("the run has no steps")
+        contact = contact_of(scene, trace, which)
+    except Unmeasurable as error:
+        return row | {"why_not": str(error)}
+    cause = cause_of(contact)
+    return row | {
+        "error": contact.error,
+        "cause": cause,
+        "words": cause and CAUSES[cause],
+        "parts": contact.parts,
+        "steps": contact.steps,
+        "lasting": contact.lasting,
+        "deepest": contact.deepest,
+        "demand": contact.demand,
+        "lost": float(contact.energy[contact.first] - contact.energy[contact.last]),
+        "frames": frames(contact),
+    }

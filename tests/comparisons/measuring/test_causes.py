@@ -1,0 +1,168 @@
+"""Causes named from the trace of runs that are misconfigured in one way, at three sizes, and of clean ones."""
+
+import functools
+
+import numpy as np
+import pytest
+from engine_cases import needs, released
+from sampled_traces import BASE
+
+from analytic import Base, Bearings, Block, PulseMotion, Scene, Start, simulate
+from comparisons.measuring.autopsy import contact_of
+from comparisons.measuring.causes import CAUSES, LEAST, cause_of, diagnosis
+from engines import get_engine
+
+FINE = 5e-5  # s, at which a clean expert script of pymunk is off by less than LEAST
+
+
+def of_space(name):
+    """A setting of Chipmunk's space is changed."""
+    return lambda size: lambda space, body, scene: setattr(space, name, size)
+
+
+def elastic(size):
+    def change(space, body, scene):
+        for shape in space.shapes:
+            shape.elasticity = size
+
+    return change
+
+
+def box(narrower=0.0, longer=0.0):
+    """The contact's box is narrower than the block by a share, or its left bottom corner longer [m]."""
+
+    def change(space, body, scene):
+        import pymunk
+
+        (old,) = (shape for shape in space.shapes if shape.body is body)
+        b, h = scene.block.half_width * (1.0 - narrower), scene.block.half_height
+        new = pymunk.Poly(body, [(-b, -h - longer), (b, -h), (b, h), (-b, h)])
+        new.friction = old.friction
+        space.remove(old)
+        space.add(new)
+
+    return change
+
+
+# cause: (what makes pymunk's expert script go wrong at a size, three sizes). The last ones do not matter yet.
+SPOILT = {
+    "damping": (of_space("damping"), (0.5, 0.9, 0.9999)),
+    "iterations": (of_space("iterations"), (1, 2, 10)),
+    "rebound": (elastic, (0.5, 0.3, 0.05)),
+    "shape": (lambda size: box(narrower=size), (0.05, 0.02, 0.001)),
+    "gap": (lambda size: box(longer=size), (8e-5, 5e-5, 5e-6)),
+}
+# cause: (engine, variant, settings at a size, three sizes)
+SET = {
+    "step": ("pymunk", "expert", lambda size: {"step": size}, (8e-3, 4e-3, FINE)),
+    "compliance": ("exudyn", "compliant-corners", lambda size: {"stiffness": size}, (1e7, 1e8, 1e10)),
+    "adhesion": ("exudyn", "native-contact", lambda size: {"damping": size}, (4.0, 2.0, 1.0)),
+}
+GROUNDS = [pytest.param(None, id="rigid ground"), pytest.param(BASE, id="sliding base", marks=pytest.mark.slow)]
+
+
+def falling(base):
+    """A block on its way to the impact, as fast as if let go: what is spoilt there is seen soon."""
+    return released(base, tilt=0.1, rate=-0.4)
+
+
+def contact(engine, variant, scene, which=0, **settings):
+    needs(engine)
+    return contact_of(scene, get_engine(engine).traced(scene, variant=variant, history=False, **settings)[1], which)
+
+
+def named(found, cause):
+    """Whether the cause, and no other, is named from the size on at which it matters."""
+    matters = max(abs(found.error), abs(found.parts["flight"])) >= LEAST
+    assert cause_of(found) == (cause if matters else None), (found.error, found.parts, found.steps)
+    return matters
+
+
+# Iterations on a base: on rigid ground two of them throw the corner up within a step, as a restitution does.
+@pytest.mark.parametrize(
+    "cause, base",
+    [pytest.param("iterations", BASE, id="iterations-sliding base")]
+    + [
+        pytest.param(*(cause, *base.values), id=f"{cause}-{base.id}", marks=base.marks)
+        for cause in SPOILT
+        if cause != "iterations"
+        for base in GROUNDS
+    ],
+)
+def test_a_spoilt_script_is_seen_through(monkeypatch, cause, base):
+    needs("pymunk")
+    from engines.pymunk import script
+
+    spoil, sizes = SPOILT[cause]
+    scene = released(base) if cause == "damping" else falling(base)
+    build, matters = script.build, []
+
+    def spoilt(change, scene, tuned):
+        space, body, slab = build(scene, tuned)
+        change(space, body, scene)
+        return space, body, slab
+
+    for size in sizes:
+        monkeypatch.setattr(script, "build", functools.partial(spoilt, spoil(size)))
+        matters.append(named(contact("pymunk", "expert", scene, step=FINE), cause))
+    assert matters[0]
+
+
+@pytest.mark.parametrize("base", GROUNDS)
+@pytest.mark.parametrize("cause", SET)
+def test_a_wrong_setting_is_seen_through(cause, base):
+    engine, variant, settings, sizes = SET[cause]
+    assert named(contact(engine, variant, falling(base), **settings(sizes[0])), cause)
+    for size in sizes[1:]:
+        named(contact(engine, variant, falling(base), **settings(size)), cause)
+
+
+@pytest.mark.parametrize("base, coefficients", [(None, (0.1, 0.13, 0.3)), (BASE, (0.02, 0.025, 0.1))])
+def test_too_small_a_friction_is_seen_through(base, coefficients):
+    runs = (contact("pymunk", "expert", falling(base).with_(friction=mu), step=FINE) for mu in coefficients)
+    assert [named(run, "friction") for run in runs] == [True, True, False]
+
+
+def random_scenes(count, seed=15):
+    """Blocks of all sizes: let go on rigid ground, on a free base and on bearings, and shaken."""
+    rng = np.random.default_rng(seed)
+    while count:
+        slenderness, radius = rng.uniform(0.08, 0.45), rng.uniform(0.6, 4.0)
+        mass, tilt = 2460.0 * radius**3, rng.uniform(0.3, 0.8)
+        one = Block(mass=mass, radius=radius, slenderness=slenderness)
+        given = [
+            Scene(block=one, start=Start(tilt=tilt * slenderness)),
+            Scene(block=one, start=Start(tilt=tilt * slenderness), base=Base(mass=mass * rng.uniform(0.06, 1.0))),
+            Scene(block=one, motion=PulseMotion("one-sine", 1.5 * 9.81 * slenderness, 3.0 * np.sqrt(9.81 / radius))),
+            Scene(
+                block=one,
+                start=Start(tilt=tilt * slenderness),
+                base=Base(mass=0.07 * mass),
+                bearings=Bearings(count=4, ka=20.0 * mass, kb=2.0 * mass, alpha=44.69),
+            ),
+        ][count % 4].with_(duration=6.0)
+        exact = simulate(given, history=False)
+        if exact.outcome == "rocks" and len(exact.impacts) > 2:
+            count -= 1
+            yield given.with_(duration=0.6 * exact.impacts[1].time + 0.4 * exact.impacts[2].time)
+
+
+CLEAN = {"exudyn": "compliant-corners", "mujoco": "impact-aware", "pymunk": "impact-aware", "dart": "impact-aware"}
+
+
+@pytest.mark.parametrize("engine, variant", CLEAN.items())
+@pytest.mark.parametrize("count", [3, pytest.param(20, marks=pytest.mark.slow)])
+def test_no_clean_run_is_accused(engine, variant, count):
+    for scene in random_scenes(count):
+        for which in (0, 1):
+            found = contact(engine, variant, scene, which)
+            assert cause_of(found) is None, (scene, found.error, found.parts)
+
+
+def test_diagnosis_is_ready_for_a_page_or_says_why_not():
+    needs("pymunk")
+    told = diagnosis("pymunk", "expert", released(None), step=4e-3)
+    assert (told["rung"], told["cause"], told["words"]) == ("expert", "step", CAUSES["step"])
+    assert told["steps"] == 1 and told["deepest"] < 1e-3 and set(told["frames"]) >= {"straddle", "energy"}
+    silent = diagnosis("pymunk", "first-script", released(None))
+    assert "does not hold where the block was" in silent["why_not"]
