@@ -18,24 +18,23 @@ just before, when the landing corner is in the air and should bear nothing.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic.motion import vertical_acceleration
 from analytic.rocking import restitution
-from engines.checks import energy_balance
-from engines.ground_velocity import ground_velocity
-from engines.swings import ArrayModel, find_swings, to_contact
+from engines.checks import energy_balance, pivoting_centre
+from engines.swings import find_swings, to_contact
 
 from .agreement import Unmeasurable
+from .corners import corner_impulses, corner_motion, pivot_forces
 
 if TYPE_CHECKING:
     from analytic import Scene
-    from analytic.types import Motion
     from engines.swings import Trace
 
+PARTS = ("support", "pull", "slip", "rebound")  # of the error of e
 BESIDE = 3  # steps in flight that are shown on each side of the contact
 LEAST_STRIKE = 0.1  # of the impulse that turns the centre's fall into a rise
 
@@ -46,6 +45,8 @@ class Contact:
 
     Parameters
     ----------
+    placed : bool
+        The trace holds where the block was; else it is taken to pivot about its corners, and nothing is known of these.
     landing : float
         When the flight before reaches tilt = 0 [s].
     before, after : float
@@ -53,7 +54,8 @@ class Contact:
     error : float
         after/before less eq. (7).
     parts : dict
-        Of the error, see above: support, pull, slip, rebound; beside them flight and shape.
+        Of the error: support, pull, slip, rebound, see above; where the block is not `placed`, their sum as contact.
+        Beside them flight and, where it is placed, shape.
     late : float
         Error of e by a strike that is late, over the delay [1/s].
     time : array, shape (n,)
@@ -72,6 +74,7 @@ class Contact:
         Indices of the last step in clean flight before the contact and the first one after it.
     """
 
+    placed: bool
     landing: float
     before: float
     after: float
@@ -134,10 +137,11 @@ def contact_of(scene: Scene, trace: Trace, which: int = 0) -> Contact:
     Raises
     ------
     Unmeasurable
-        The trace does not hold where the block was, or has no such impact between two swings.
+        The trace has no such impact between two swings, or no corner is struck there.
     """
-    if trace.centre is None:
-        raise Unmeasurable("the trace does not hold where the block was: its corners cannot be told")
+    placed = trace.centre is not None
+    if not placed:
+        trace = replace(trace, centre=pivoting_centre(scene, trace))
     swings = find_swings(trace)
     land, before, _ = to_contact(scene, trace, swings, 1)
     _, after, _ = to_contact(scene, trace, swings, -1)
@@ -148,64 +152,80 @@ def contact_of(scene: Scene, trace: Trace, which: int = 0) -> Contact:
     begin = max(swings.last[k] - BESIDE, 0)
     first, last = int(swings.last[k] - begin), int(swings.clean[k + 1] - begin)
     seen, side = trace.at(slice(begin, begin + last + BESIDE + 1)), swings.side[k]
-    told = _corners(scene, seen, side) | _impulses(scene, seen, side)
+    told = corner_motion(scene, seen, side) | corner_impulses(scene, seen, side)
     landing, rates = float(land[k]), (float(before[k]), float(after[k + 1]))
-    normals, ahead = _normals(scene, seen, side, landing, rates), _ahead(seen.time, landing)
+    normals, ahead = pivot_forces(scene, seen, side, landing, rates), _ahead(seen.time, landing)
     strike = told["impulse"][:, 0] - normals[1] * (np.diff(seen.time) - ahead)
     strike[:first], strike[last:] = 0.0, 0.0
     # The centre falls at b w before the impact and rises at e b w after it.
     if not strike.sum() > LEAST_STRIKE * scene.block.mass * scene.block.half_width * abs(sum(rates)):
         raise Unmeasurable(f"no corner is struck while the tilt is below {trace.contact_tilt:.3g}: elsewhere, or none")
-    unit = _inertia(scene) * rates[0] ** 2
-    # From the middle of the swing on: a start may settle on its contact.
-    middle = np.searchsorted(trace.time, 0.5 * (trace.time[swings.first[k]] + trace.time[swings.last[k]]))
-    falling = trace.at(slice(middle, swings.last[k] + 1))
+    parts = _parts(scene, told, rates[0], normals[0] * ahead[first:last].sum(), slice(first, last))
+    parts["shape"] = _airborne(told["impulse"][:first]) * _moved(scene, strike.sum(), rates[0])
+    if not placed:
+        parts = {"contact": sum(parts[name] for name in PARTS)}
     return Contact(
+        placed,
         landing,
         *rates,
         rates[1] / rates[0] - restitution(scene),
-        _parts(scene, told, rates[0], normals[0] * ahead[first:last].sum(), slice(first, last))
-        | {"flight": float(energy_balance(scene, falling)[0][-1]) / unit}
-        | {"shape": _airborne(told["impulse"][:first]) * _moved(scene, strike.sum(), rates[0])},
+        parts | {"flight": _gained_in_flight(scene, trace, swings.first[k], swings.last[k], rates[0])},
         _moved(scene, normals[0], rates[0]),
         seen.time - landing,
         seen.tilt,
-        1.0 + energy_balance(scene, seen)[0] / (0.5 * unit),
+        1.0 + energy_balance(scene, seen)[0] / (0.5 * _inertia(scene) * rates[0] ** 2),
         strike=strike / strike.sum(),
         first=first,
         last=last,
-        **told,
+        height=told["height"],
+        sinking=told["sinking"],
+        slip=told["slip"],
+        impulse=told["impulse"],
+        friction=told["friction"],
     )
+
+
+def _gained_in_flight(scene: Scene, trace: Trace, first: int, last: int, rate: float) -> float:
+    """Energy gained in the second half of a swing, as a share of the rate at its end.
+
+    Not the first half: a start may settle on its contact. Of a weak impact in the middle of a strong motion it is the
+    share of what moves most, as the work of ground and bearings is known to a share of that.
+    """
+    middle = np.searchsorted(trace.time, 0.5 * (trace.time[first] + trace.time[last]))
+    balance, kinetic = energy_balance(scene, trace.at(slice(middle, last + 1)))
+    return float(balance[-1] / max(_inertia(scene) * rate**2, 2 * kinetic.max()))
 
 
 def frames(contact: Contact) -> dict[str, dict[str, object]]:
     """The contact in four frames, each a dict of numbers and lists; times from the landing [s], heights [m].
 
     straddle: times of the steps and both corners' heights, the step that is struck, error by one such step late;
-    penetration: heights over the whole contact, the deepest; rebound: the landing corner's speed away from the ground,
-    over that of its fall; energy: over the kinetic one before the impact, and e^2 of eq. (7), where it should end.
+    energy: over the kinetic one before the impact, and e^2 of eq. (7), where it should end. Where the block is placed
+    also penetration: heights over the whole contact, the deepest; and rebound: the landing corner's speed away from the
+    ground, over that of its fall.
     """
-    time, height = contact.time, contact.height
+    time, height = contact.time.tolist(), contact.height.T.tolist()
     struck = int(contact.strike.argmax())
     near = slice(max(struck - BESIDE, 0), struck + BESIDE + 2)
-    fall = float(contact.sinking[contact.first, 0])
-    corners = {"landing": height[:, 0].tolist(), "old": height[:, 1].tolist()}
-    return {
+    told: dict[str, dict[str, object]] = {
         "straddle": {
-            "time": time[near].tolist(),
-            "landing": height[near, 0].tolist(),
-            "old": height[near, 1].tolist(),
-            "struck": time[struck : struck + 2].tolist(),
+            "time": time[near],
+            "landing": height[0][near],
+            "old": height[1][near],
+            "struck": time[struck : struck + 2],
             "phase": contact.phase,
         },
-        "penetration": {"time": time.tolist(), **corners, "deepest": contact.deepest},
-        "rebound": {"time": time.tolist(), "speed": (-contact.sinking[:, 0] / fall).tolist()},
         "energy": {
-            "time": time.tolist(),
+            "time": time,
             "energy": contact.energy.tolist(),
             "exact": (contact.after / contact.before - contact.error) ** 2,
         },
     }
+    if contact.placed:
+        fall = contact.sinking[contact.first, 0]
+        told["penetration"] = {"time": time, "landing": height[0], "old": height[1], "deepest": contact.deepest}
+        told["rebound"] = {"time": time, "speed": (-contact.sinking[:, 0] / fall).tolist()}
+    return told
 
 
 def _moved(scene: Scene, impulse: float, rate: float) -> float:
@@ -217,56 +237,6 @@ def _airborne(impulse: np.ndarray) -> float:
     """Share of the landing corner in what bears the block in flight."""
     landing, old = impulse.sum(axis=0)
     return float(landing / (landing + old))
-
-
-def _corners(scene: Scene, trace: Trace, side: float) -> dict[str, Any]:
-    """Height, sinking and slip of the landing corner and of the old one, on `side`, as `Contact` has them."""
-    lever, drop = _levers(scene, trace.tilt, side)
-    _, z, vx, vz = np.asarray(trace.centre).T
-    height = z + scene.block.half_height + drop.T
-    slip = vx - trace.base_velocity + drop.T * trace.tilt_rate
-    return {"height": height.T, "sinking": (lever.T * trace.tilt_rate - vz).T, "slip": slip.T}
-
-
-def _levers(scene: Scene, tilt: np.ndarray, side: float) -> tuple[np.ndarray, np.ndarray]:
-    """(x, z) [m] of landing corner and old corner from the block's centre, shapes (n, 2)."""
-    b, h = scene.block.half_width, scene.block.half_height
-    across, cos, sin = np.array([-side * b, side * b]), np.cos(tilt)[:, None], np.sin(tilt)[:, None]
-    return across * cos - h * sin, -across * sin - h * cos
-
-
-def _impulses(scene: Scene, trace: Trace, side: float) -> dict[str, Any]:
-    """Impulses between the steps as `Contact` has them: from what linear and angular momentum gained."""
-    block, time, (_, _, across, up) = scene.block, trace.time, np.asarray(trace.centre).T
-    lever, drop = (0.5 * (each[1:] + each[:-1]) for each in _levers(scene, trace.tilt, side))
-    ground, upright = (_gained(part, time) for part in (scene.motion, scene.motion and scene.motion.vertical))
-    friction = block.mass * (np.diff(across) + ground)
-    upward = block.mass * (np.diff(up) + scene.gravity * np.diff(time) + upright)
-    spin = block.centre_inertia * np.diff(trace.tilt_rate)
-    # Both corners are at nearly the same height where both may be loaded: z H - x_a N_a - x_o N_o = spin, N_a + N_o = N
-    landing = (drop.mean(axis=1) * friction - lever[:, 1] * upward - spin) / (lever[:, 0] - lever[:, 1])
-    return {"impulse": np.column_stack([landing, upward - landing]), "friction": friction}
-
-
-def _gained(motion: Motion | None, time: np.ndarray) -> np.ndarray | float:
-    """Velocity [m/s] that the ground gains in each step."""
-    velocity = ground_velocity(motion)
-    return np.diff([velocity(t) for t in time.tolist()]) if velocity else 0.0
-
-
-def _normals(
-    scene: Scene, trace: Trace, side: float, landing: float, rates: tuple[float, float]
-) -> tuple[float, float]:
-    """What bears the pivoting block at tilt 0 [N], before the landing and after it, by eqs (3)-(6)."""
-    model, motion = ArrayModel.of(scene), scene.motion
-    ground, up = (motion.acceleration(landing), vertical_acceleration(motion, landing)) if motion else (0.0, 0.0)
-    force = float(np.interp(landing, trace.time, trace.bearing_force))
-
-    def normal(s, rate):
-        tilting, sliding = model.accelerations(s, 0.0, rate, ground, force, up)
-        return float(model.contact_forces(s, 0.0, rate, tilting, ground + sliding, up)[1])
-
-    return normal(side, rates[0]), normal(-side, rates[1])
 
 
 def _ahead(time: np.ndarray, landing: float) -> np.ndarray:

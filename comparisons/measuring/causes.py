@@ -24,10 +24,11 @@ CAUSES = {
     "compliance": "the impulse takes many steps to grow and to fade, while the block turns on: the contact is soft",
     "rebound": "the struck corner leaves the ground at once: a restitution, or a penetration taken back with a speed",
     "friction": "a corner slides, friction and normal impulse being in one ratio: the friction is too small",
+    "unseen": "the contact itself, and more than a step explains; the engine does not tell where the block was",
     "step": "no part is larger than what the block gains in one step: the step straddles the impact",
 }
-# Steps in which a strike is seen. Solvers of velocities strike at once, which is seen in two, as velocities are those at
-# the steps' ends; not converged they take up to eight (Chipmunk, one iteration, started from the step before). A
+# Steps in which a strike is seen. Solvers of velocities strike at once, which is seen in two, as velocities are those
+# of the steps' ends; not converged they take up to eight (Chipmunk, one iteration, started from the step before). A
 # compliant contact that is resolved takes a dozen and more.
 AT_ONCE, MANY = 2, 10
 SATURATED = 5.0  # largest friction over normal impulse of a sliding contact, over the strike's, in which it may turn
@@ -38,16 +39,18 @@ HALF = 0.5  # of the largest part, from which on a part or a reason of parts is 
 def cause_of(contact: Contact) -> str | None:
     """One of `CAUSES`, or None where the error is below `LEAST`."""
     parts = {name: abs(value) for name, value in contact.parts.items()}
-    flight, shape = parts.pop("flight"), parts.pop("shape")
+    flight, shape = parts.pop("flight"), parts.pop("shape", 0.0)
     if max(flight, abs(contact.error)) < LEAST:
         return None
     largest = max(parts.values())
     if flight >= max(LEAST, largest, STRADDLING * contact.phase):
         return "damping"
-    if shape >= HALF * max(parts["support"], parts["pull"], LEAST):
+    if contact.placed and shape >= HALF * max(parts["support"], parts["pull"], LEAST):
         return "shape"
     if largest <= STRADDLING * contact.phase:
         return "step"
+    if not contact.placed:
+        return "unseen"
     return _beyond_a_step(contact, max(parts, key=parts.__getitem__), parts["pull"] >= HALF * largest)
 
 
@@ -77,8 +80,9 @@ def diagnosis(engine: str, variant: str, scene: Scene, which: int = 0, **setting
     Returns
     -------
     dict
-        engine, variant, rung; where the impact can be told: error, cause and words (None below `LEAST`), parts, steps,
-        lasting [s], deepest [m], demand, lost (energy over the kinetic one before) and frames; else why_not.
+        engine, variant, rung; where the impact can be told: placed, error, cause and words (None below `LEAST`), parts,
+        steps, lasting [s], lost (energy over the kinetic one before), frames, and where the block is placed deepest [m]
+        and demand; else why_not.
     """
     record = get_engine(engine)
     row: dict[str, object] = {"engine": engine, "variant": variant, "rung": record.variants[variant].rung}
@@ -90,15 +94,15 @@ def diagnosis(engine: str, variant: str, scene: Scene, which: int = 0, **setting
     except Unmeasurable as error:
         return row | {"why_not": str(error)}
     cause = cause_of(contact)
-    return row | {
+    row |= {
+        "placed": contact.placed,
         "error": contact.error,
         "cause": cause,
         "words": cause and CAUSES[cause],
         "parts": contact.parts,
         "steps": contact.steps,
         "lasting": contact.lasting,
-        "deepest": contact.deepest,
-        "demand": contact.demand,
         "lost": float(contact.energy[contact.first] - contact.energy[contact.last]),
         "frames": frames(contact),
     }
+    return row | ({"deepest": contact.deepest, "demand": contact.demand} if contact.placed else {})

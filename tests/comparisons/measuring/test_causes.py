@@ -112,9 +112,9 @@ def test_a_spoilt_script_is_seen_through(monkeypatch, cause, base):
 @pytest.mark.parametrize("cause", SET)
 def test_a_wrong_setting_is_seen_through(cause, base):
     engine, variant, settings, sizes = SET[cause]
-    assert named(contact(engine, variant, falling(base), **settings(sizes[0])), cause)
-    for size in sizes[1:]:
-        named(contact(engine, variant, falling(base), **settings(size)), cause)
+    scene = released(base) if cause == "compliance" else falling(base)  # it has to settle
+    matters = [named(contact(engine, variant, scene, **settings(size)), cause) for size in sizes]
+    assert matters[0]
 
 
 @pytest.mark.parametrize("base, coefficients", [(None, (0.1, 0.13, 0.3)), (BASE, (0.02, 0.025, 0.1))])
@@ -151,7 +151,7 @@ CLEAN = {"exudyn": "compliant-corners", "mujoco": "impact-aware", "pymunk": "imp
 
 
 @pytest.mark.parametrize("engine, variant", CLEAN.items())
-@pytest.mark.parametrize("count", [3, pytest.param(20, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [2, pytest.param(20, marks=pytest.mark.slow)])
 def test_no_clean_run_is_accused(engine, variant, count):
     for scene in random_scenes(count):
         for which in (0, 1):
@@ -164,5 +164,6 @@ def test_diagnosis_is_ready_for_a_page_or_says_why_not():
     told = diagnosis("pymunk", "expert", released(None), step=4e-3)
     assert (told["rung"], told["cause"], told["words"]) == ("expert", "step", CAUSES["step"])
     assert told["steps"] == 1 and told["deepest"] < 1e-3 and set(told["frames"]) >= {"straddle", "energy"}
-    silent = diagnosis("pymunk", "first-script", released(None))
-    assert "does not hold where the block was" in silent["why_not"]
+    blind = diagnosis("pymunk", "first-script", released(BASE))
+    assert not blind["placed"] and blind["words"] == CAUSES["unseen"] and "deepest" not in blind
+    assert "has 0 between two swings" in diagnosis("pymunk", "expert", released(None).with_(duration=0.1))["why_not"]
