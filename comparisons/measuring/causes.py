@@ -28,7 +28,7 @@ CAUSES = {
     "step": "no part is larger than what the block gains in one step: the step straddles the impact",
 }
 # Steps in which a strike is seen. Solvers of velocities strike at once, which is seen in two, as velocities are those
-# of the steps' ends; not converged they take up to eight (Chipmunk, one iteration, started from the step before). A
+# of the steps' ends; not converged they take up to eight (one iteration, begun with the step before). A
 # compliant contact that is resolved takes a dozen and more.
 AT_ONCE, MANY = 2, 10
 SATURATED = 5.0  # largest friction over normal impulse of a sliding contact, over the strike's, in which it may turn
