@@ -45,19 +45,22 @@ def cause_of(contact: Contact) -> str | None:
     largest = max(parts.values())
     if flight >= max(LEAST, largest, STRADDLING * contact.phase):
         return "damping"
-    if contact.placed and shape >= HALF * max(parts["support"], parts["pull"], LEAST):
+    if contact.placed and shape >= HALF * max(largest, LEAST):
         return "shape"
+    part = max(parts, key=parts.__getitem__)
+    pulled = contact.placed and parts["pull"] >= HALF * largest
+    if contact.steps >= MANY:
+        slides = part == "slip" and _saturated(contact)
+        return "friction" if slides else "adhesion" if pulled else "compliance"
     if largest <= STRADDLING * contact.phase:
         return "step"
+    return _sudden(contact, part, pulled)
+
+
+def _sudden(contact, part, pulled):
+    """The cause of a sudden strike's error that one step does not explain, by its largest part."""
     if not contact.placed:
         return "unseen"
-    return _beyond_a_step(contact, max(parts, key=parts.__getitem__), parts["pull"] >= HALF * largest)
-
-
-def _beyond_a_step(contact, part, pulled):
-    """The cause of an error that one step does not explain, by its largest part."""
-    if contact.steps >= MANY:
-        return "adhesion" if pulled else "compliance"
     if part == "slip":
         return "friction" if _saturated(contact) else "iterations"
     if pulled or contact.steps > AT_ONCE:

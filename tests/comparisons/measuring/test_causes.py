@@ -117,9 +117,20 @@ def test_a_wrong_setting_is_seen_through(cause, base):
     assert matters[0]
 
 
+@pytest.mark.parametrize("step", [2e-3, 1e-3, 5e-4])
+def test_a_soft_contact_is_not_taken_for_a_coarse_step(step):
+    """Even where only the tilt is known: the strike lasts, however many steps that takes."""
+    found = contact("mujoco", "first-script", released(BASE), step=step)
+    assert not found.placed and found.lasting == pytest.approx(0.015, rel=0.1)
+    assert named(found, "compliance")
+
+
 @pytest.mark.parametrize("base, coefficients", [(None, (0.1, 0.13, 0.3)), (BASE, (0.02, 0.025, 0.1))])
-def test_too_small_a_friction_is_seen_through(base, coefficients):
-    runs = (contact("pymunk", "expert", falling(base).with_(friction=mu), step=FINE) for mu in coefficients)
+@pytest.mark.parametrize(
+    "engine, variant, settings", [("pymunk", "expert", {"step": FINE}), ("exudyn", "compliant-corners", {})]
+)
+def test_too_small_a_friction_is_seen_through(engine, variant, settings, base, coefficients):
+    runs = (contact(engine, variant, falling(base).with_(friction=mu), **settings) for mu in coefficients)
     assert [named(run, "friction") for run in runs] == [True, True, False]
 
 
