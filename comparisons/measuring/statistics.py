@@ -1,4 +1,4 @@
-"""Are two solvers' overturning outcomes different? Intervals, paired tests and fragility curves."""
+"""Are two solvers' overturning outcomes different? Intervals and paired tests."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.optimize import brentq, minimize
+from scipy.optimize import brentq
 from scipy.stats import binom, binomtest, norm
 
 if TYPE_CHECKING:
@@ -181,77 +181,3 @@ def compare(
         "differ": p_value <= level,
         "statement": statement,
     }
-
-
-@dataclass(frozen=True)
-class Fragility:
-    """Lognormal fragility P(x) = Phi(ln(x/median)/dispersion), with intervals at 95 %."""
-
-    median: float
-    dispersion: float
-    median_interval: tuple[float, float]
-    dispersion_interval: tuple[float, float]
-
-    def probability(self, intensity: npt.ArrayLike) -> Any:
-        """Probability of overturning at `intensity` (array or float, the unit of the fit)."""
-        return norm.cdf(np.log(np.asarray(intensity) / self.median) / self.dispersion)
-
-
-def fit_fragility(intensity: npt.ArrayLike, overturned: npt.ArrayLike, size: npt.ArrayLike) -> Fragility:
-    """Lognormal fragility by maximum likelihood, Baker (2015), doi:10.1193/021113EQS025M, eq. (11).
-
-    Parameters
-    ----------
-    intensity : array, shape (k,)
-        Intensity levels, above 0.
-    overturned, size : arrays, shape (k,)
-        Overturned and all motions at each level. Counts at the levels are taken as independent; where the
-        same motions are scaled to all levels the intervals are therefore only indicative.
-
-    Raises
-    ------
-    ValueError
-        The counts determine no rising curve: outcomes are separated, all alike, or fall with intensity.
-    """
-    intensity, overturned, size = (np.asarray(values, dtype=float) for values in (intensity, overturned, size))
-    if (intensity <= 0).any() or (overturned < 0).any() or (overturned > size).any():
-        raise ValueError("fragility needs intensities above 0 and 0 <= overturned <= size at every level")
-    falls, stands = intensity[overturned > 0], intensity[overturned < size]
-    if len(falls) == 0 or len(stands) == 0 or falls.min() >= stands.max():
-        raise ValueError(
-            "outcomes do not overlap: no motion stands above the lowest intensity that overturns one; "
-            "add intensities between, or motions"
-        )
-    log_intensity = np.log(intensity)
-    centre = log_intensity.mean()  # a and b then hardly depend on each other
-    design = np.column_stack([np.ones_like(log_intensity), log_intensity - centre])
-
-    def loss(ab):  # convex in (a, b) of P = Phi(a + b ln x)
-        z = design @ ab
-        return -(overturned @ norm.logcdf(z) + (size - overturned) @ norm.logsf(z))
-
-    def slope(ab):
-        z = design @ ab
-        return -design.T @ (overturned * _hazard(z) - (size - overturned) * _hazard(-z))
-
-    fit = minimize(loss, [0.0, 1.0], jac=slope, method="BFGS", options={"gtol": 1e-9 * size.sum()})
-    a, b = fit.x
-    if not fit.success and np.abs(slope(fit.x)).max() > 1e-6 * size.sum():
-        raise ValueError(f"the fragility fit did not converge: {fit.message}")
-    if b <= 0:
-        raise ValueError("overturning does not become likelier with intensity; a fragility curve makes no sense here")
-    z = design @ fit.x
-    information = design.T @ (design * (size * _hazard(z) * _hazard(-z))[:, None])
-    covariance = np.linalg.inv(information)
-    # ln(median) = centre - a/b and ln(dispersion) = -ln b, delta method
-    to_median = np.array([-1 / b, a / b**2])
-    width = 1.959963984540054 * np.sqrt([to_median @ covariance @ to_median, covariance[1, 1] / b**2])
-    centres = np.array([centre - a / b, -math.log(b)])
-    low, high = np.exp(centres - width), np.exp(centres + width)
-    median, dispersion = np.exp(centres)
-    return Fragility(float(median), float(dispersion), (float(low[0]), float(high[0])), (float(low[1]), float(high[1])))
-
-
-def _hazard(z):
-    """phi(z)/Phi(z), finite far into the lower tail."""
-    return np.exp(norm.logpdf(z) - norm.logcdf(z))

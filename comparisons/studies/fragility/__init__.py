@@ -1,13 +1,14 @@
-"""Fragility: how likely is overturning at an intensity, and does the answer depend on the solver?"""
+"""Fragility: how likely is a limit state at an intensity, in which measure, and does the answer hang on the solver?"""
 
 from ...running.study import Study
 from .cases import plan
-from .page import draw, section
+from .figures import draw_curves, draw_dispersions, draw_effects
+from .page import section
 
 STUDY = Study(
     "fragility",
-    "Probability of overturning over the intensity of synthetic motions, solver by solver.",
+    "Fragility over intensity: which measure tells most, does a lognormal curve fit, does the solver shift it?",
     plan,
-    lambda result: {"": draw(result)},
+    lambda result: {"": draw_curves(result), "measures": draw_dispersions(result), "solvers": draw_effects(result)},
     section,
 )

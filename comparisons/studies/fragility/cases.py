@@ -1,23 +1,21 @@
-"""The runs behind the fragility study: synthetic motions x intensities x solvers, and their statistics."""
+"""The runs behind the fragility study: a cloud of them in the analytic model, the first of it in every engine."""
 
 from __future__ import annotations
 
-import math
-import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from analytic import load_scene, simulate_many, synthetic_motion
 from analytic.rocking import RockingModel
-from analytic.synthetic import PEAK, G
 from engines import get_engine
 
-from ...measuring.statistics import compare, fit_fragility, holm, wilson
 from ...running.cases import Case
-from ...running.study import Batch, Found, say
+from ...running.study import Batch, Found
 from ...showing.wording import solver_name
+from .cloud import DAMPING, DRAWN, PEAKS, PERIOD, RADII, SCENES, STRETCH, X_MAX, Cloud, cloud
+from .effects import effects
+from .fits import fits
 
 if TYPE_CHECKING:
     from analytic import Response
@@ -25,16 +23,12 @@ if TYPE_CHECKING:
     from ...running.study import Ask, Plan
 
 CHANGE = 1e-4  # relative change of the restitution: the model's own sensitivity
-REFERENCE, SENSITIVITY = "analytic", "analytic, restitution + 1e-4"
-FAILED = -1
-
-# name: (shipped scene, change of its block, factors of the motions)
-FULL = {
-    "free-standing": ("caryatid-rigid", {}, (0.85, 0.9, 0.95, 1.0, 1.1, 1.3)),
-    "isolated": ("caryatid-isolated", {"slenderness": 0.15}, (0.5, 0.6, 0.7, 0.8, 1.0, 1.2)),
-}
-QUICK = {"free-standing": ("caryatid-rigid", {}, (0.9, 1.0, 1.3))}
-MOTIONS, QUICK_MOTIONS = 200, 16
+ANALYTIC, SENSITIVITY = "analytic", "analytic, restitution + 1e-4"
+NEAR = (1.2, 6.0)  # PGA/(g tan γ) of the runs that engines get: there verdicts are mixed
+TIME_LIMIT = 120.0  # s, of an engine's run; a stiff corner that hardly lifts may take more, and fails
+# runs: of the analytic model, of engines at their best, of first scripts (gross errors show in few)
+FULL, QUICK = (2000, 180, 40), (200, 6, 2)
+TILTS = (0.1, 0.5, 1.0)  # limit states of |tilt|/slenderness
 
 
 def solvers_of(engines: Sequence[str]) -> list[tuple[str, str | None]]:
@@ -61,169 +55,131 @@ def low_frictions(solvers: Iterable[tuple[str, str | None]]) -> dict[str, float]
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
     """What is kept of a run."""
-    return {"outcome": response.outcome}
+    return {
+        "overturns": response.outcome == "overturns",
+        "tilt": response.peak_tilt_ratio,
+        "displacement": response.peak_base_displacement,
+        "decided": response.decided,
+    }
 
 
-def plan(ask: Ask, scenes: Mapping[str, Any] | None = None, motions: int | None = None) -> Plan:
+def plan(ask: Ask, scenes: dict[str, Any] | None = None, runs: tuple[int, int, int] | None = None) -> Plan:
     """The plan of the study; an answer with one scene more each time.
 
-    Rows by "part": "curve" (probability of overturning of one solver at one intensity), "fit" (lognormal curve), "pair"
-    (a solver against the analytic model at one intensity), "check" and "failure". Arrays ``<scene>/<solver>``: int8,
-    shape (intensities, motions): 1 overturns, 0 does not, -1 failed.
+    Rows by "part": "fit" (see `fits`), "effect" (of a solver, see `effects`), "cost" (CPU seconds per run), "check" and
+    "failure". Arrays, float32: ``<scene>/<drawn>``, of all runs, with PGV and Sa; ``<scene>/<solver>/tilt`` and
+    ``/displacement`` of the first in ``<scene>/near`` (of the model all): NaN where a run failed, the tilt infinite
+    where it overturned.
 
     Parameters
     ----------
     ask : Ask
-    scenes, motions : dict and int, optional
-        In place of `FULL` or `QUICK`, and of the number of motions.
+    scenes, runs : dict and (int, int, int), optional
+        In place of `SCENES`, and of `FULL` or `QUICK`.
     """
-    scenes = scenes or (QUICK if ask.quick else FULL)
-    count = motions or (QUICK_MOTIONS if ask.quick else MOTIONS)
+    scenes = scenes or (dict(list(SCENES.items())[:1]) if ask.quick else SCENES)
+    counts = runs or (QUICK if ask.quick else FULL)
     solvers = solvers_of(ask.engines)
-    shakings = [synthetic_motion(seed=seed) for seed in range(count)]
-    rows, arrays, described = [], {}, {}
-    for name, (shipped, block, factors) in scenes.items():
-        scene = load_scene(shipped).with_(block=block, motion=None, duration=None)
-        intensities = [factor * PEAK / G for factor in factors]
-        described[name] = _described(shipped, scene, factors, intensities)
-        outcomes, costs, checks = _analytic(scene, shakings, factors)
-        rows.append({"part": "check", "scene": name, **checks})
-        for solver, variant in solvers:
-            label = solver_name(solver, variant)
-            cases = _cases(scene, solver, variant, shakings, factors)
-            results = yield Batch(cases, measure, f"{name}: {label}")
-            outcomes[label] = np.array(
-                [FAILED if row.failed else row.values["outcome"] == "overturns" for row in results], dtype=np.int8
-            ).reshape(len(factors), count)
-            seconds = [row.cost["cpu_seconds"] for row in results if row.cost]
-            costs[label] = float(np.sum(seconds)) / max(len(seconds), 1)
-            rows += [
-                {"part": "failure", "scene": name, "solver": label, **row.case.tag, **row.failure}
-                for row in results
-                if row.failed
-            ]
-        rows += _curves(name, outcomes, intensities, costs) + _pairs(name, outcomes, intensities)
-        arrays |= {f"{name}/{label}": values for label, values in outcomes.items()}
-        settings = {
-            "quick": ask.quick,
-            "scenes": described,
-            "motions": count,
-            "seeds": [0, count - 1],
-            "motion": "synthetic duzce-like, scaled",
-            "change": CHANGE,
-            "friction": low_frictions(solvers),
-            "solvers": [REFERENCE, *(solver_name(*pair) for pair in solvers)],
-        }
-        answer = Found(settings, list(rows), dict(arrays), seed=settings["seeds"])
+    rows, arrays = [], {}
+    for name, (shipped, slendernesses) in scenes.items():
+        drawn = cloud(shipped, slendernesses, counts[0])
+        near = drawn.near(*NEAR)[: counts[1]]
+        whole = yield Batch(_cases(enumerate(drawn.scenes), ANALYTIC), measure, f"{name}: analytic model")
+        states = states_of(drawn)
+        curves = fits(drawn.measures, states, values_of(whole))
+        rows += [{"scene": name, **row} for row in (*curves, _check(whole), *_costs(ANALYTIC, whole))]
+        arrays |= _kept(f"{name}/{ANALYTIC}", values_of(whole))
+        arrays |= {f"{name}/{key}": array.astype(np.float32) for key, array in _made_of(drawn).items()}
+        arrays[f"{name}/near"] = near
+        for label, cases in _compared(drawn, near, counts[2], solvers):
+            others = yield Batch(cases, measure, f"{name}: {label}", TIME_LIMIT)
+            few = near[: len(cases)]
+            pair = ({key: array[few] for key, array in values_of(whole).items()}, values_of(others))
+            found = effects(drawn.measures, few, states, pair, curves, label)
+            rows += [{"scene": name, **row} for row in (*found, *_costs(label, others), *_failures(label, others))]
+            arrays |= _kept(f"{name}/{label}", values_of(others))
+        answer = Found(_settings(ask, scenes, counts, solvers), list(rows), dict(arrays), seed=[0, counts[0] - 1])
         yield answer
     return answer
 
 
-def _described(shipped, scene, factors, intensities):
-    """A scene and its intensities [g], for the result file."""
-    return {
-        "scene": shipped,
-        "block": scene.block.model_dump(),
-        "base": scene.base.model_dump() if scene.base else None,
-        "bearings": scene.bearings.model_dump() if scene.bearings else None,
-        "tan_slenderness": math.tan(scene.block.slenderness),
-        "factors": list(factors),
-        "intensities": intensities,
+def states_of(drawn: Cloud) -> dict[str, tuple[str, float]]:
+    """Limit states {name: (value of a run, limit)}: exceeded where the value is above the limit."""
+    tilts = {f"|φ|/γ > {limit:g}": ("tilt", limit) for limit in TILTS}
+    states = {**tilts, "overturning": ("overturns", 0.5)}
+    if (bearings := drawn.scenes[0].bearings) is not None:
+        states[f"displacement > {bearings.x_max:g} m"] = ("displacement", bearings.x_max)
+    return states
+
+
+def values_of(results: Sequence[Any]) -> dict[str, np.ndarray]:
+    """{"overturns", "tilt", "displacement": (n,)} of rows; NaN where a run failed, the tilt infinite in overturning."""
+    found = {
+        key: np.array([np.nan if row.failed else row.values[key] for row in results], dtype=float)
+        for key in ("overturns", "tilt", "displacement")
     }
+    found["tilt"][found["overturns"] == 1] = np.inf
+    return found
 
 
-def _cases(scene, solver, variant, shakings, factors):
-    """The runs of a solver, all motions at the first factor first; tagged with factor and seed."""
+def _cases(scenes, solver, variant=None):
+    return [Case(scene, solver, variant, {"history": False}, {"seed": seed}) for seed, scene in scenes]
+
+
+def _compared(drawn, near, few, solvers):
+    """(label, cases) of the model with another restitution, then of every engine and its first scripts."""
+    chosen = [(int(seed), drawn.scenes[seed]) for seed in near]
+    yield SENSITIVITY, _cases([(seed, _more_elastic(scene)) for seed, scene in chosen], ANALYTIC)
+    for solver, variant in solvers:
+        yield solver_name(solver, variant), _cases(chosen if variant is None else chosen[:few], solver, variant)
+
+
+def _more_elastic(scene):
+    return scene.with_(block={"restitution": min(RockingModel.of(scene).restitution * (1 + CHANGE), 1.0)})
+
+
+def _made_of(drawn):
+    """What was drawn, and the measures that do not follow from it."""
+    return drawn.drawn | {name: drawn.measures[name] for name in ("PGV", "Sa")}
+
+
+def _kept(place, values):
+    return {f"{place}/{key}": values[key].astype(np.float32) for key in ("tilt", "displacement")}
+
+
+def _costs(label, results):
+    seconds = [row.cost["cpu_seconds"] for row in results if row.cost]
+    mean = float(np.mean(seconds)) if seconds else None
+    return [{"part": "cost", "solver": label, "runs": len(results), "cpu_per_run": mean}]
+
+
+def _check(results):
+    undecided = sum(not row.values["decided"] for row in results if not row.failed)
+    failed = sum(row.failed for row in results)
+    return {"part": "check", "solver": ANALYTIC, "runs": len(results), "undecided": undecided, "failed": failed}
+
+
+def _failures(label, results):
     return [
-        Case(
-            scene.with_(motion=shaking.scaled(factor)),
-            solver,
-            variant,
-            {"history": False},
-            {"factor": factor, "seed": seed},
-        )
-        for factor in factors
-        for seed, shaking in enumerate(shakings)
+        {"part": "failure", "solver": label, "seed": row.case.tag["seed"], **row.failure}
+        for row in results
+        if row.failed
     ]
 
 
-def _analytic(scene, shakings, factors):
-    """Outcomes of the model and of its perturbed copy, CPU seconds per run, and how many runs end undecided."""
-    say("analytic model")
-    shape = len(factors), len(shakings)
-    scenes = [scene.with_(motion=shaking.scaled(factor)) for factor in factors for shaking in shakings]
-    simulate_many(scenes[:1], workers=1)  # compiled or loaded before the clock starts
-    began = time.process_time()
-    outcomes = simulate_many(scenes)
-    cost = (time.process_time() - began) / len(scenes)
-    restitution = RockingModel.of(scene).restitution * (1 + CHANGE)
-    copy = simulate_many([one.with_(block={"restitution": restitution}) for one in scenes])
-    found = {}
-    for label, values in ((REFERENCE, outcomes), (SENSITIVITY, copy)):
-        found[label] = np.where(values.failed, FAILED, values.overturns).astype(np.int8).reshape(shape)
-    checks = {"runs": len(scenes), "undecided": int((~outcomes.decided).sum())}
-    return found, {REFERENCE: cost}, checks
-
-
-def _curves(name, found, intensities, costs):
-    """Probability of overturning with its Wilson interval at each intensity, and the lognormal fit."""
-    rows = []
-    for label, outcomes in found.items():
-        size = (outcomes != FAILED).sum(axis=1)
-        fallen = (outcomes == 1).sum(axis=1)
-        for intensity, k, n in zip(intensities, fallen.tolist(), size.tolist(), strict=True):
-            low, high = wilson(k, n) if n else (None, None)
-            rows.append(
-                {
-                    "part": "curve",
-                    "scene": name,
-                    "solver": label,
-                    "intensity": intensity,
-                    "overturned": k,
-                    "size": n,
-                    "failed": outcomes.shape[1] - n,
-                    "low": low,
-                    "high": high,
-                }
-            )
-        fit = {"part": "fit", "scene": name, "solver": label, "cpu_per_run": costs.get(label)}
-        try:
-            curve = fit_fragility(intensities, fallen, size)
-        except ValueError as error:
-            fit |= {"median": None, "reason": str(error)}
-        else:
-            fit |= {
-                "median": curve.median,
-                "dispersion": curve.dispersion,
-                "median_interval": list(curve.median_interval),
-                "dispersion_interval": list(curve.dispersion_interval),
-                "reason": None,
-            }
-        rows.append(fit)
-    return rows
-
-
-def _pairs(name, found, intensities):
-    """Each solver against the analytic model, motion by motion; p-values adjusted over the intensities."""
-    rows = []
-    reference = found[REFERENCE]
-    for label, outcomes in found.items():
-        if label == REFERENCE:
-            continue
-        group = []
-        for k, intensity in enumerate(intensities):
-            sound = (outcomes[k] != FAILED) & (reference[k] != FAILED)
-            row = {
-                "part": "pair",
-                "scene": name,
-                "solver": label,
-                "intensity": intensity,
-                "left_out": int((~sound).sum()),
-            }
-            if sound.any():
-                group.append(row | compare(reference[k][sound] == 1, outcomes[k][sound] == 1, (REFERENCE, label)))
-        adjusted = holm([row["p_value"] for row in group]) if group else []
-        for row, p_value in zip(group, adjusted, strict=True):
-            row["p_holm"] = float(p_value)
-        rows += group
-    return rows
+def _settings(ask, scenes, counts, solvers):
+    return {
+        "quick": ask.quick,
+        "scenes": {name: {"scene": shipped, "slendernesses": list(s)} for name, (shipped, s) in scenes.items()},
+        "runs": counts[0],
+        "runs_of_engines": counts[1],
+        "runs_of_first_scripts": counts[2],
+        "drawn": dict(zip(DRAWN, (list(STRETCH), list(RADII), None, list(PEAKS)), strict=True)),
+        "near": list(NEAR),
+        "period": PERIOD,
+        "damping": DAMPING,
+        "x_max": X_MAX,
+        "change": CHANGE,
+        "friction": low_frictions(solvers),
+        "solvers": [SENSITIVITY, *(solver_name(*pair) for pair in solvers)],
+    }

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from scipy.stats import norm
 
 from comparisons.measuring.statistics import (
     Confusion,
@@ -12,7 +11,6 @@ from comparisons.measuring.statistics import (
     compare,
     confusion,
     detectable_difference,
-    fit_fragility,
     holm,
     mcnemar,
     wilson,
@@ -125,54 +123,3 @@ def test_the_statement_says_it_plainly_with_its_numbers():
     assert different["both_overturn"] == 60 and different["kappa_interval"][0] < different["kappa"]
     few = compare(a[:3], a[:3])
     assert "no difference, however large, can be found" in few["statement"] and few["kappa"] is None
-
-
-# Bliss (1935), beetles killed by carbon disulphide; probit by maximum likelihood:
-# intercept -34.935 (s.e. 2.648), slope 19.728 (s.e. 1.487) per log10 dose (Dobson; Agresti)
-DOSE = np.array([1.6907, 1.7242, 1.7552, 1.7842, 1.8113, 1.8369, 1.8610, 1.8839])
-SIZE = np.array([59, 60, 62, 56, 63, 59, 62, 60])
-KILLED = np.array([6, 13, 18, 28, 52, 53, 61, 60])
-
-
-def test_fragility_of_bliss_1935():
-    fit = fit_fragility(np.exp(DOSE), KILLED, SIZE)
-    assert 1 / fit.dispersion == pytest.approx(19.728, abs=1e-3)
-    assert math.log(fit.median) / fit.dispersion == pytest.approx(34.935, abs=2e-3)
-    low, high = np.log(fit.dispersion_interval)
-    # published with the expected information; standard error of ln(slope) = 1.487/19.728
-    assert (high - low) / (2 * 1.959964) == pytest.approx(1.487 / 19.728, rel=2e-3)
-
-
-def test_fragility_finds_a_known_curve_and_its_interval_covers_it():
-    random = np.random.default_rng(3)
-    intensity = np.array([0.3, 0.5, 0.8, 1.0, 1.4, 2.0])
-    truth = norm.cdf(np.log(intensity / 0.9) / 0.4)
-    fits = [fit_fragility(intensity, random.binomial(200, truth), np.full(6, 200)) for _ in range(400)]
-    assert np.mean([fit.median for fit in fits]) == pytest.approx(0.9, rel=5e-3)
-    assert np.mean([fit.dispersion for fit in fits]) == pytest.approx(0.4, rel=2e-2)
-    for name, value in (("median_interval", 0.9), ("dispersion_interval", 0.4)):
-        covered = np.mean([getattr(fit, name)[0] <= value <= getattr(fit, name)[1] for fit in fits])
-        assert covered == pytest.approx(0.95, abs=0.035)  # 3 standard errors of 400 draws
-    assert fits[0].probability(fits[0].median) == pytest.approx(0.5)
-
-
-def test_fragility_does_not_depend_on_the_unit_of_intensity():
-    counts = ([1.0, 2.0, 4.0], [2, 9, 17], [20, 20, 20])
-    one, other = fit_fragility(*counts), fit_fragility(np.array(counts[0]) * 9.81, *counts[1:])
-    assert other.median == pytest.approx(9.81 * one.median, rel=1e-6)
-    assert other.dispersion == pytest.approx(one.dispersion, rel=1e-6)
-
-
-@pytest.mark.parametrize(
-    "overturned, said",
-    [
-        ([0, 0, 20], "do not overlap"),
-        ([0, 7, 20], "do not overlap"),
-        ([0, 0, 0], "do not overlap"),
-        ([20, 20, 20], "do not overlap"),
-        ([15, 10, 5], "does not become likelier"),
-    ],
-)
-def test_counts_that_determine_no_curve_are_an_error(overturned, said):
-    with pytest.raises(ValueError, match=said):
-        fit_fragility([1.0, 2.0, 3.0], overturned, [20, 20, 20])

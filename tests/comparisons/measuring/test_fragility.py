@@ -1,0 +1,127 @@
+"""Fragility against a published example, closed forms and simulation."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+from comparisons.measuring.fragility import draws, fit_fragility, goodness, interval, points, resampled
+from comparisons.measuring.statistics import wilson
+
+# Bliss (1935), beetles killed by carbon disulphide; probit by maximum likelihood:
+# intercept -34.935 (s.e. 2.648), slope 19.728 (s.e. 1.487) per log10 dose (Dobson; Agresti)
+DOSE = np.array([1.6907, 1.7242, 1.7552, 1.7842, 1.8113, 1.8369, 1.8610, 1.8839])
+SIZE = np.array([59, 60, 62, 56, 63, 59, 62, 60])
+KILLED = np.array([6, 13, 18, 28, 52, 53, 61, 60])
+
+
+def test_fragility_of_bliss_1935():
+    fit = fit_fragility(np.exp(DOSE), KILLED, SIZE)
+    assert 1 / fit.dispersion == pytest.approx(19.728, abs=1e-3)
+    assert math.log(fit.median) / fit.dispersion == pytest.approx(34.935, abs=2e-3)
+
+
+def test_bootstrap_has_the_published_standard_errors_of_bliss():
+    # every beetle is a run: as many as died, and as survived, at each dose
+    dose = np.repeat(np.exp(DOSE), SIZE)
+    killed = np.concatenate([np.arange(size) < dead for dead, size in zip(KILLED, SIZE, strict=True)])
+    medians, dispersions = resampled(dose, killed, draws(400, len(dose), seed=1))
+    assert np.std(1 / dispersions) == pytest.approx(1.487, rel=0.12)
+    # of the median by the delta method, from the expected information
+    p = norm.cdf(-34.935 + 19.728 * DOSE)
+    weight = SIZE * norm.pdf(-34.935 + 19.728 * DOSE) ** 2 / (p * (1 - p))
+    design = np.column_stack([np.ones(8), DOSE])
+    gradient = np.array([-1, -34.935 / 19.728]) / 19.728
+    variance = gradient @ np.linalg.inv(design.T @ (design * weight[:, None])) @ gradient
+    assert np.std(np.log(medians)) == pytest.approx(math.sqrt(variance), rel=0.12)
+    low, high = interval(math.exp(34.935 / 19.728), medians)
+    assert math.log(high / low) == pytest.approx(2 * 1.96 * math.sqrt(variance), rel=0.12)
+
+
+def test_fragility_does_not_depend_on_the_unit_of_intensity():
+    counts = ([1.0, 2.0, 4.0], [2, 9, 17], [20, 20, 20])
+    one, other = fit_fragility(*counts), fit_fragility(np.array(counts[0]) * 9.81, *counts[1:])
+    assert other.median == pytest.approx(9.81 * one.median, rel=1e-6)
+    assert other.dispersion == pytest.approx(one.dispersion, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "overturned, said",
+    [
+        ([0, 0, 20], "do not overlap"),
+        ([0, 7, 20], "do not overlap"),
+        ([0, 0, 0], "do not overlap"),
+        ([20, 20, 20], "do not overlap"),
+        ([15, 10, 5], "does not become likelier"),
+    ],
+)
+def test_counts_that_determine_no_curve_are_an_error(overturned, said):
+    with pytest.raises(ValueError, match=said):
+        fit_fragility([1.0, 2.0, 3.0], overturned, [20, 20, 20])
+
+
+def cloud(count, dispersion, seed, median=0.6):
+    """Independent runs: (intensities evenly over the logarithm, whether each exceeds a lognormal capacity)."""
+    random = np.random.Generator(np.random.PCG64(seed))
+    intensity = 0.06 * 100 ** random.random(count)
+    return intensity, intensity > median * np.exp(dispersion * random.standard_normal(count))
+
+
+def test_intervals_cover_a_known_curve_as_often_as_they_say():
+    covered = []
+    for seed in range(60):
+        intensity, exceeded = cloud(200, 0.4, seed)
+        curve = fit_fragility(intensity, exceeded)
+        medians, dispersions = resampled(intensity, exceeded, draws(40, 200, seed))
+        limits = (interval(curve.median, medians), 0.6), (interval(curve.dispersion, dispersions), 0.4)
+        covered.append([low <= truth <= high for (low, high), truth in limits])
+    assert np.mean(covered) == pytest.approx(0.95, abs=0.06)  # 3 standard errors of 120 intervals
+
+
+def test_a_measure_that_knows_less_is_less_efficient_by_what_it_does_not_know():
+    """Capacity known in x but for .3; y is x times what has a deviation of .4: its dispersion is that of both."""
+    x, exceeded = cloud(6000, 0.3, 1)
+    y = x * np.exp(0.4 * np.random.Generator(np.random.PCG64(2)).standard_normal(len(x)))
+    weights = draws(40, len(x))
+    (_, of_x), (_, of_y) = (resampled(measure, exceeded, weights) for measure in (x, y))
+    low, high = interval(fit_fragility(y, exceeded).dispersion / fit_fragility(x, exceeded).dispersion, of_y / of_x)
+    assert low < 0.5 / 0.3 < high and high / low < 1.3
+    assert fit_fragility(y, exceeded).median == pytest.approx(0.6, rel=0.05)
+
+
+def test_the_test_of_fit_rejects_a_true_curve_as_often_as_it_says_and_a_wrong_one_always():
+    p_values = []
+    for seed in range(300):
+        intensity, exceeded = cloud(400, 0.6, seed)
+        p_values.append(goodness(intensity, exceeded, fit_fragility(intensity, exceeded)))
+    assert np.mean(np.array(p_values) < 0.1) == pytest.approx(0.1, abs=0.055)  # 3 standard errors of 300
+    assert np.mean(p_values) == pytest.approx(0.5, abs=0.055)
+    intensity, exceeded = cloud(2000, 0.4, 1)
+    saved = (intensity > 0.9) & (np.arange(2000) % 4 == 0)  # scaling up saves every fourth
+    assert goodness(intensity, exceeded & ~saved, fit_fragility(intensity, exceeded & ~saved)) < 1e-6
+    assert goodness(intensity[:8], exceeded[:8], fit_fragility(intensity, exceeded)) is None
+
+
+def test_draws_are_samples_with_replacement_and_repeat():
+    weights = draws(400, 50, seed=3)
+    assert (weights.sum(axis=1) == 50).all() and (weights == draws(400, 50, seed=3)).all()
+    assert weights.mean() == 1 and weights.var() == pytest.approx(1 - 1 / 50, rel=0.05)  # multinomial
+
+
+def test_separated_samples_determine_no_curve():
+    intensity, exceeded = np.array([1.0, 2.0, 3.0, 4.0]), np.array([0, 1, 0, 1])
+    apart = np.array([[1, 1, 1, 1], [2, 0, 0, 2], [1, 0, 1, 2]])
+    medians, dispersions = resampled(intensity, exceeded, apart)
+    assert np.isnan(dispersions).tolist() == [False, True, True]
+    assert medians[0] == pytest.approx(fit_fragility(intensity, exceeded).median)
+    assert interval(1.0, dispersions) is None
+
+
+def test_points_are_shares_of_equally_many_runs():
+    intensity, exceeded = cloud(100, 0.4, 4)
+    found = points(intensity, exceeded, 7)
+    assert [point["size"] for point in found] == [15, 15, 14, 14, 14, 14, 14]
+    assert sum(point["share"] * point["size"] for point in found) == pytest.approx(exceeded.sum())
+    assert [point["intensity"] for point in found] == sorted(point["intensity"] for point in found)
+    assert (found[3]["low"], found[3]["high"]) == wilson(round(found[3]["share"] * 14), 14)
