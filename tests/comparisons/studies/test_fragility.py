@@ -19,7 +19,7 @@ from comparisons.studies.fragility.cloud import PERIOD, SCENES, cloud
 from comparisons.studies.fragility.page import section
 
 FREE = {"free-standing": SCENES["free-standing"]}
-RUNS = (240, 80, 10)
+RUNS = (300, 110, 10)
 ENGINES = Ask(("exudyn", "pybullet"))
 
 pytestmark = pytest.mark.xdist_group("fragility")  # its runs are made once
@@ -107,7 +107,9 @@ def test_a_solver_that_sees_weaker_motions_is_found_out(weaker):
     assert [row["state"] for row in rows] == ["|φ|/γ > 0.1", "|φ|/γ > 0.5", "|φ|/γ > 1", "overturning"]
     for row in rows:
         assert row["only_a"] > row["only_b"] and row["p_holm"] >= row["p_value"]
-    for row in rows[1:]:  # of the first too few runs lie where it begins
+    known = [row for row in rows if row["median_interval"]]  # else too few runs lie where the curve rises
+    assert len(known) >= 2
+    for row in known:
         low, high = row["median_interval"]
         assert low < 1 / 0.8 < high and row["median_shift"] > 1
     assert min(row["p_holm"] for row in rows) < 0.05
