@@ -50,6 +50,13 @@ def neighbours(scene: Scene, aim: str) -> dict[float, Scene]:
     return found
 
 
+def fitting(scene: Scene) -> str:
+    """The aim where none is named: restitution where the block hits, else its base's displacement, else the outcome."""
+    if strong_impacts(simulate(scene, history=False)):
+        return "restitution"
+    return "displacement" if scene.base else "outcome"
+
+
 def until(scene: Scene, aim: str) -> float:
     """Time [s] up to which a scene is run and compared.
 

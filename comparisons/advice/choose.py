@@ -21,7 +21,7 @@ from engines.verified import speaks_of_range
 
 from ..running.executors import Processes
 from ..running.solving import named_engines
-from .aims import AIMS, Measure, neighbours, until
+from .aims import AIMS, Measure, fitting, neighbours, until
 from .found import Choice, Ladder, Setting
 from .search import Runner, Search, problem, spare
 from .spared import cpu_seconds, spared
@@ -36,7 +36,7 @@ def choose(
     scene: Scene,
     *,
     error: float = 1e-3,
-    aim: str = "restitution",
+    aim: str | None = None,
     engines: Iterable[str] | None = None,
     time_limit: float = TIME_LIMIT,
     progress: bool = False,
@@ -52,8 +52,8 @@ def choose(
     error : float
         Largest error asked for: of restitution (rms) [-]; of the tilt over the slenderness, or of the displacement over
         its peak, at any time up to the sensitivity horizon; of outcomes the share of neighbours that differ.
-    aim : str
-        One of `aims.AIMS`.
+    aim : str or None
+        One of `aims.AIMS`; None: what the scene shows, see `aims.fitting`.
     engines : iterable of str or None
         Those to try; None: all that are installed.
     time_limit : float
@@ -77,6 +77,7 @@ def choose(
     (True, True)
     """
     names, missing = _asked(error, aim, engines)
+    aim = aim or fitting(scene)
     family, span = _family(scene, aim)
     answer, best, whole, ladders = _searched(scene, family, names, error, aim, time_limit=time_limit, progress=progress)
     asked: dict[str, Any] = {"aim": aim, "error": error, "spare": spare(aim), "neighbours": list(family), "until": span}
@@ -125,7 +126,7 @@ def _searched(scene, family, names, error, aim, **options):
 
 def _asked(error, aim, engines):
     """(names of the engines to try, those missing); what cannot be asked for is an error."""
-    if aim not in AIMS:
+    if aim not in (None, *AIMS):
         raise SettingError(f"--for {aim}: choose one of {', '.join(AIMS)}")
     if not 0 < error < 1:
         raise SettingError(f"--error {error!r}: give a number above 0 and below 1")

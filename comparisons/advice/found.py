@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
+
+from ..schemas.form import Form, Part
 
 
-class _Found(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class Setting(_Found):
+class Setting(Part):
     """One value of a variant's accuracy knob. error: the worst over the scene and its neighbours, of outcomes the share
     that differs; None where it cannot be told. why: in words, what keeps it from passing. cpu_per_second: CPU seconds
     for a simulated second."""
@@ -26,7 +24,7 @@ class Setting(_Found):
     why: str | None
 
 
-class Ladder(_Found):
+class Ladder(Part):
     """A variant's settings from coarse to fine. order: the error goes as the knob to this power, where that shows.
     applies_impact: the adapter, not the engine, applies eqs (7) and (8)."""
 
@@ -38,7 +36,7 @@ class Ladder(_Found):
     settings: list[Setting]
 
 
-class Spared(_Found):
+class Spared(Part):
     """A part of a model. needed: whether this scene asks for it; cost: times the CPU time that modelling it all the
     same takes, as measured on this scene; None where that was not measured."""
 
@@ -48,7 +46,7 @@ class Spared(_Found):
     cost: float | None
 
 
-class Choice(_Found):
+class Choice(Form):
     """The answer. chosen: the cheapest setting at which it and all finer ones pass; None where none does, and `best` is
     then the one of least error within its verified range. until: time [s] up to which histories were compared, or were
     run for their impacts. cpu_seconds: of the chosen setting on the whole scene; of the analytic model."""

@@ -1,6 +1,5 @@
 """``rocking choose``: the cheapest setting that is good enough for one's own scene."""
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
@@ -15,7 +14,14 @@ def command(
     error: Annotated[
         float, typer.Option(help="Largest error; of outcomes the share of neighbours that differ.")
     ] = 1e-3,
-    aim: Annotated[str, typer.Option("--for", help="restitution, tilt, displacement or outcome.")] = "restitution",
+    aim: Annotated[
+        str | None,
+        typer.Option(
+            "--for",
+            help="restitution, tilt, displacement or outcome. Default: restitution; where the block never hits, "
+            "displacement of its base.",
+        ),
+    ] = None,
     engine: Annotated[
         list[str] | None, typer.Option(help="An engine to try; may be repeated. Default: all that are installed.")
     ] = None,
@@ -38,19 +44,22 @@ def command(
     from analytic.scene_file import load_scene
 
     from ..advice import choose
+    from ..advice.aims import fitting
     from ..running.files import check_writable, write_all
-    from ..running.solving import stdout_to_stderr
+    from ..running.solving import say, stdout_to_stderr
 
     check_time_limit(time_limit)
     check_writable([json_file], picture=plot, inputs=[scene])
     what = load_scene(scene)
+    if aim is None and (aim := fitting(what)) != "restitution":
+        say(f"the block of {what.name} never hits what it stands on: there is no restitution; judged by its {aim}")
     with stdout_to_stderr():  # engines greet on standard output
         choice = choose(
             what, error=error, aim=aim, engines=engine or None, time_limit=time_limit, progress=True, source=scene
         )
     results: dict[str, str | Callable[[Path], object]] = {}
     if json_file:
-        results[json_file] = json.dumps(choice.model_dump(by_alias=True), indent=2, allow_nan=False) + "\n"
+        results[json_file] = choice.text()
     if plot:
         from ..showing.choices import draw_choice
         from ..showing.plots import save

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -56,7 +55,7 @@ def command(
     horizon = min((each.horizon for each in horizons.values() if each.parts), default=None)
     results: dict[str, str | Callable[[Path], object]] = {}
     if json_file:
-        results[json_file] = json.dumps(_content(what, responses, horizons, horizon), indent=2, allow_nan=False) + "\n"
+        results[json_file] = _form(what, responses, horizons, horizon).text()
     drawn = [response for response in responses if response.history] if plot else []
     if plot and drawn:
         from ..showing.plots import draw_histories, save
@@ -106,18 +105,19 @@ def _sensitivity(scene, responses, time_limit):
     return {}
 
 
-def _content(scene, responses, horizons, horizon):
+def _form(scene, responses, horizons, horizon):
     """What the JSON file holds."""
-    return {
-        "schema": "rocking compare 1",
-        "scene": scene.name,
-        "sensitivity_horizon": horizon,
-        "sensitivity": {
-            name: {"perturbation": each.perturbation, "horizon": each.horizon if each.parts else None}
+    from ..schemas.runs import Comparison, Run, Sensitivity
+
+    return Comparison(
+        scene=scene.name,
+        sensitivity_horizon=horizon,
+        sensitivity={
+            name: Sensitivity(perturbation=each.perturbation, horizon=each.horizon if each.parts else None)
             for name, each in horizons.items()
         },
-        "responses": [response.to_json() for response in responses],
-    }
+        responses=[Run(**response.to_json()) for response in responses],
+    )
 
 
 def _horizons(scene, responses):

@@ -36,6 +36,9 @@ def command(
     channel: Channel = None,
     tilt: Annotated[float | None, typer.Option(help="Released from this tilt [rad], without a motion.")] = None,
     friction: Annotated[float | None, typer.Option(help="Coefficient between the block and what it stands on.")] = None,
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write what follows from the scene; - prints it.")
+    ] = None,
 ) -> None:
     """Write a commented scene file, and print what follows from it. What is missing is asked for in a terminal.
 
@@ -47,7 +50,7 @@ def command(
 
     from ..running.files import check_writable
 
-    check_writable([file])
+    check_writable([file, json_file])
     if Path(file).exists():
         raise SettingError(f"{file}: exists; give another name, or remove it")
     height = _asked(height, "height", "Height of the block [m]")
@@ -67,7 +70,7 @@ def command(
     text = scene_text(
         name, block, base=base, bearings=bearings, motion=motion, tilt=tilt, friction=friction, about=(about,)
     )
-    _write_and_tell(file, text)
+    _write_and_tell(file, text, json_file)
 
 
 def _asked(value: float | None, option: str, question: str) -> float:
@@ -147,8 +150,8 @@ def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str
     return {"record": place, **said}
 
 
-def _write_and_tell(file: str, text: str) -> None:
-    """Write the file if it makes a scene, and print what follows from it."""
+def _write_and_tell(file: str, text: str, json_file: str | None) -> None:
+    """Write the file if it makes a scene, and print or write what follows from it."""
     import tempfile
 
     from rich import box
@@ -159,6 +162,7 @@ def _write_and_tell(file: str, text: str) -> None:
     from analytic.scene_file import load_scene
 
     from ..running.files import write_text
+    from ..schemas.inputs import Derived, New
 
     # read before it is kept: a record that cannot be read, say, leaves no file behind
     with tempfile.NamedTemporaryFile("w", suffix=".toml", dir=Path(file).resolve().parent, encoding="utf-8") as part:
@@ -166,7 +170,13 @@ def _write_and_tell(file: str, text: str) -> None:
         part.flush()
         scene = load_scene(part.name)
     write_text(file, text)
+    rows = derived(scene)
+    if json_file:
+        found = [Derived(name=label, value=value, unit=unit) for label, value, unit in rows]
+        write_text(json_file, New(file=file, scene=scene.name, derived=found).text())
+    if json_file == "-":
+        return
     table = Table(title=f"{file}: {scene.name}", box=box.SIMPLE, show_header=False)
-    for label, value, unit in derived(scene):
+    for label, value, unit in rows:
         table.add_row(label, f"{value:.5g}" + ("" if unit == "-" else f" {unit}"))
     Console(highlight=False).print(table)

@@ -1,6 +1,5 @@
 """``rocking record``: what a record file holds, as it is read here."""
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
@@ -36,6 +35,7 @@ def command(
     from analytic.records.written import two_columns
 
     from ..running.files import check_writable, write_all
+    from ..schemas.inputs import Record
     from ..showing.records import channel_words, described, draw_channels, print_channels
 
     check_writable([json_file, to], picture=plot, inputs=[file])
@@ -46,13 +46,8 @@ def command(
         raise SettingError(f"--to {to}: takes one channel; add --channel, one of {choice}")
     results: dict[str, str | Callable] = {}
     if json_file:
-        content = {
-            "schema": "rocking record 1",
-            "file": name,
-            "format": channels[0].format,
-            "channels": [described(one) for one in channels],
-        }
-        results[json_file] = json.dumps(content, indent=2, allow_nan=False) + "\n"
+        found = Record(file=name, format=channels[0].format, channels=[described(one) for one in channels])
+        results[json_file] = found.text()
     if to:
         results[to] = two_columns(channels[0].motion)
     if plot:

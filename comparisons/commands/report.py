@@ -1,10 +1,16 @@
 """``rocking report``: the main job."""
 
-from typing import Annotated
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..running.record_options import Channel, Column, Step, Units
+
+if TYPE_CHECKING:
+    from ..schemas.results import Report
 
 
 def command(
@@ -32,6 +38,9 @@ def command(
         str | None, typer.Option(help="Of the one engine, for the scenes given; its default, if not given.")
     ] = None,
     output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the page and its result files.")] = "report",
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write what the page shows of each run; - prints it.")
+    ] = None,
 ) -> None:
     """The page: scenes in every solver, how far they agree and at what cost, with the result files it is made from.
 
@@ -41,10 +50,11 @@ def command(
     from ..report.own import load_scenes
     from ..report.study import make_own_results, make_results
     from ..report.write import write_page
-    from ..running.files import check_folder
+    from ..running.files import check_folder, check_writable, write_text
     from ..running.solving import ANALYTIC, check_solver, ground_motion, say, stdout_to_stderr
 
     check_folder(output)
+    check_writable([json_file], inputs=[*(scene or ()), *([record] if record else ())])
     for name in engine or ():
         check_solver(name)
     engines = [name for name in engine if name != ANALYTIC] if engine else None
@@ -61,7 +71,28 @@ def command(
         else:
             make_results(output, motion, engines=engines)  # type: ignore[arg-type]  # without scenes there is one
     say("the page")
-    print(write_page(output))
+    page = write_page(output)
+    if json_file:
+        write_text(json_file, form(page).text())
+    if json_file != "-":
+        print(page)
+
+
+def form(page: Path) -> Report:
+    """What the JSON file holds of a page that lies beside its result files."""
+    from ..report.own import SCENES_FILE
+    from ..report.runs import CARYATID, FREE_ROCKING
+    from ..running.provenance import read_result
+    from ..schemas.results import Report, Reported
+
+    files = [page.with_name(name) for name in (SCENES_FILE, CARYATID, FREE_ROCKING) if page.with_name(name).exists()]
+    result = read_result(files[0])
+    rows = []
+    for row in result.rows:
+        found = {**(row.get("agreement") or {}), **row, "failure": row["failure"] and row["failure"]["reason"]}
+        found["warnings"] = row.get("warnings") or []
+        rows.append(Reported.model_validate({name: found.get(name) for name in Reported.model_fields}))
+    return Report(page=str(page), results=[str(file) for file in files], missing=result.settings["missing"], rows=rows)
 
 
 def _variants(variant, engines, scene):

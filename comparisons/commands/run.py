@@ -1,6 +1,5 @@
 """``rocking run``: one scene, one solver."""
 
-import json
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -40,6 +39,7 @@ def command(
     from analytic.scene_file import load_scene
 
     from ..running.files import check_writable, write_all
+    from ..schemas.runs import Run
 
     check_time_limit(time_limit)
     check_writable([json_file, csv], picture=plot, inputs=[scene])
@@ -56,7 +56,7 @@ def command(
     )
     results: dict[str, str | Callable[[Path], object]] = {}
     if json_file:
-        results[json_file] = json.dumps(response.to_json(), indent=2, allow_nan=False) + "\n"
+        results[json_file] = Run(**response.to_json()).text()
     if (csv or plot) and response.history is None:
         print("there is no history to write", file=sys.stderr)
         csv = plot = None

@@ -1,6 +1,5 @@
 """``rocking score``: answers to the problem sheet, held against the exact ones."""
 
-import json
 from typing import Annotated
 
 import typer
@@ -27,7 +26,7 @@ def command(
     with spinner("the sheet's scenes") as tell:
         found = score(given, tell)
     if json_file:
-        write_text(json_file, json.dumps(found.model_dump(by_alias=True), indent=2, allow_nan=False) + "\n")
+        write_text(json_file, found.text())
     if json_file != "-":
         _show(found)
     if not found.passed:

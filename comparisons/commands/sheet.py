@@ -5,15 +5,41 @@ from typing import Annotated
 import typer
 
 
-def command(output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the pages.")] = "sheet") -> None:
+def command(
+    output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the pages.")] = "sheet",
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write what is asked for; - prints it.")
+    ] = None,
+) -> None:
     """Write the problem sheet: eight scenes as equations and numbers, a page each in HTML and Markdown.
 
     With them go the input record and answers.csv, to be filled in and handed to rocking score.
     Example: rocking sheet --output problems
     """
-    from ..running.files import check_folder, make_folder
+    from ..running.files import check_folder, check_writable, make_folder, write_text
     from ..sheet.pages import write_sheet
 
     check_folder(output)
-    for path in write_sheet(make_folder(output)):
-        print(path)
+    check_writable([json_file])
+    paths = write_sheet(make_folder(output))
+    if json_file:
+        write_text(json_file, _form(paths).text())
+    if json_file != "-":
+        for path in paths:
+            print(path)
+
+
+def _form(paths):
+    """What the JSON file holds."""
+    from ..schemas.results import Asked, Problem, Sheet
+    from ..sheet.problems import PROBLEMS, VERSION
+    from ..sheet.statement import UNITS
+
+    problems = []
+    for problem in PROBLEMS:
+        asked = [
+            Asked(quantity=one.name, unit=UNITS[one.kind], meaning=one.words, scale=problem.scale(one))
+            for one in problem.quantities
+        ]
+        problems.append(Problem(scene=problem.name, title=problem.title, quantities=asked))
+    return Sheet(sheet=VERSION, files=[str(path) for path in paths], problems=problems)

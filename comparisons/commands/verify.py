@@ -1,6 +1,5 @@
 """``rocking verify``: do the engines installed here keep the tolerances of this study?"""
 
-import json
 from typing import Annotated, Any
 
 import typer
@@ -30,6 +29,7 @@ def command(
 
     from ..measuring.tolerances import rows
     from ..running.files import check_writable, write_text
+    from ..schemas.results import Tolerance, Verification
 
     check_time_limit(time_limit)
     check_writable([json_file])
@@ -39,12 +39,8 @@ def command(
     for name in dict.fromkeys(engine or installed_engines()):
         results += _verified(name, rows(name, variant), time_limit)
     if json_file:
-        content = {
-            "schema": "rocking verify 1",
-            "versions": {name: get_engine(name).versions() for name in {row["engine"] for row in results}},
-            "rows": results,
-        }
-        write_text(json_file, json.dumps(content, indent=2, allow_nan=False) + "\n")
+        versions = {name: get_engine(name).versions() for name in dict.fromkeys(row["engine"] for row in results)}
+        write_text(json_file, Verification(versions=versions, rows=[Tolerance(**row) for row in results]).text())
     if json_file != "-":
         _show(results)
     if not results or not all(row["holds"] for row in results):

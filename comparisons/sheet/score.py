@@ -9,10 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from ..report.studies import RESULTS
 from ..running.provenance import ResultError, read_result
+from ..schemas.form import Form, Part
 from ..showing.wording import TRUSTED
 from .answers import error, exact
 from .faults import MISTAKES
@@ -28,11 +29,7 @@ TELLING = 2  # numbers at least that must be wrong before a cause is named
 STORED = "sheet.json"
 
 
-class _Model(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class SceneScore(_Model):
+class SceneScore(Part):
     """One scene's answers: error over the scales, the largest and of each; place beside the stored solvers (None where
     not all was answered, or nothing is stored); cause: name of the mistake behind a wrong answer, None if unknown."""
 
@@ -48,7 +45,7 @@ class SceneScore(_Model):
     advice: str | None
 
 
-class Score(_Model):
+class Score(Form):
     """A file's scores. stored: where the solvers beside it come from; cause: the one mistake that explains all that is
     wrong, if there is one."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -16,6 +16,7 @@ from analytic.linear_oscillator import displacement_spectrum
 from analytic.records import G
 
 from ..running.readable import readable
+from ..schemas import inputs
 from .plots import TITLE_CHARACTERS
 
 if TYPE_CHECKING:
@@ -32,22 +33,22 @@ def channel_words(channel: Channel) -> str:
     return f"{number} ({direction})" if number and direction else number or direction
 
 
-def described(channel: Channel) -> dict[str, Any]:
+def described(channel: Channel) -> inputs.Channel:
     """What was read of a channel, as it stands in JSON; peak and step in SI units."""
     motion = channel.motion
-    return {
-        "channel": channel.number,
-        "direction": channel.direction,
-        "units": channel.unit.word,
-        "units_from": channel.unit.where,
-        "dt": motion.dt,
-        "samples": len(motion.samples),
-        "duration": motion.end,
-        "peak": motion.peak,
-        "peak_time": motion.peak_time,
-        "note": channel.note,
-        "warnings": list(motion.warnings),
-    }
+    return inputs.Channel(
+        channel=channel.number,
+        direction=channel.direction,
+        units=channel.unit.word,
+        units_from=channel.unit.where,
+        dt=motion.dt,
+        samples=len(motion.samples),
+        duration=motion.end,
+        peak=motion.peak,
+        peak_time=motion.peak_time,
+        note=channel.note,
+        warnings=list(motion.warnings),
+    )
 
 
 def print_channels(name: str, channels: Sequence[Channel]) -> None:

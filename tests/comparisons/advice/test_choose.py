@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-from analytic import PulseMotion, SampledMotion, load_scene, simulate
+from analytic import PulseMotion, SampledMotion, Start, load_scene, simulate
 from analytic.errors import SettingError
 from analytic.response import Impact
 from comparisons.advice import aims, choose
@@ -47,6 +47,13 @@ def test_restitution_is_looked_at_up_to_the_eighth_strong_impact():
         aims.until(STANDING, "restitution")
     with pytest.raises(SettingError, match="has no base"):
         aims.until(RIGID, "displacement")
+
+
+def test_a_block_that_never_hits_is_judged_by_what_it_shows():
+    assert aims.fitting(RIGID) == "restitution"
+    assert aims.fitting(STANDING) == "displacement"
+    weak = PulseMotion("one-sine", 0.5, 5.0)
+    assert aims.fitting(RIGID.with_(start=Start(), motion=weak)) == "outcome"
 
 
 def test_errors_are_those_of_the_aim():

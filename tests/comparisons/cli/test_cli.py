@@ -64,7 +64,8 @@ def test_run_writes_json_csv_and_plot(rocking, tmp_path):
 def test_json_to_standard_output_is_alone_there(rocking):
     status, out, _ = rocking("run", "caryatid-isolated", "--json", "-")
     assert status == 0
-    assert json.loads(out)["outcome"] == "stands"
+    found = json.loads(out)
+    assert found["outcome"] == "stands" and found["schema"] == "rocking run 1"
     assert out.startswith("{") and out.endswith("}\n")
 
 

@@ -1,5 +1,7 @@
 """``rocking new`` as a user calls it."""
 
+import json
+
 import pytest
 
 from analytic import load_scene
@@ -26,6 +28,15 @@ def test_new_names_a_record_as_seen_from_the_scene(rocking, tmp_path):
     assert status == 0
     assert 'record = "records/own.csv"' in (tmp_path / "bust.toml").read_text()
     assert load_scene(tmp_path / "bust.toml").motion.samples[1] == pytest.approx(0.4)
+
+
+def test_what_follows_as_json(rocking, tmp_path):
+    file = tmp_path / "bust.toml"
+    status, out, _ = rocking("new", file, *BUST, "--json", "-")
+    found = json.loads(out)
+    assert status == 0 and found["schema"] == "rocking new 1" and found["scene"] == "bust"
+    values = {row["name"]: row["value"] for row in found["derived"]}
+    assert values["mass"] == load_scene(file).block.mass
 
 
 @pytest.mark.parametrize(

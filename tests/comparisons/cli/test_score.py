@@ -19,7 +19,11 @@ def test_answers_are_scored_and_kept(rocking, tmp_path):
     assert status == 0 and "1 of 1 scenes answered within" in out
     content = json.loads((tmp_path / "score.json").read_text())
     assert content["schema"] == "rocking score 1" and content["scenes"][0]["scene"] == "free-rigid"
-    rocking("sheet", "--output", tmp_path / "sheet")
+    _, out, _ = rocking("sheet", "--output", tmp_path / "sheet", "--json", "-")
+    asked = json.loads(out)["problems"][0]["quantities"]
+    assert [(one["quantity"], one["scale"]) for one in asked] == [
+        (one.name, problem.scale(one)) for one in problem.quantities
+    ]
     assert file.read_text().startswith("# mine")  # no sheet overwrites answers
 
 

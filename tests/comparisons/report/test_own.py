@@ -1,5 +1,6 @@
 """The report on one's own scenes: it shows what they need, and nothing of the Caryatid."""
 
+import json
 import re
 from pathlib import Path
 
@@ -7,10 +8,11 @@ import pytest
 
 from analytic import load_scene, synthetic_motion
 from analytic.errors import SceneError
+from comparisons.commands.report import form
 from comparisons.report.own import SCENES_FILE, load_scenes
 from comparisons.report.runs import CARYATID, FREE_ROCKING
 from comparisons.report.study import make_own_results
-from comparisons.report.write import write_page
+from comparisons.report.write import PAGE, write_page
 from comparisons.running.provenance import read_result
 
 NO_STUDIES = Path(__file__).parent / "no such folder"
@@ -72,6 +74,9 @@ def test_one_that_rocks_gets_its_own_restitution_and_replaces_an_older_report(tm
     assert {(row["ground"], row["slenderness"]) for row in rows} == {("rigid ground", 0.3)}
     assert max(row["rms"] for row in rows) < 1e-9
     assert "Restitution per impact" in page and "sliding base" not in page
+    told = json.loads(form(folder / PAGE).text())
+    assert told["schema"] == "rocking report 1" and len(told["results"]) == 2
+    assert [(row["scene"], row["outcome"]) for row in told["rows"]] == [("bust", "stands"), ("released", "rocks")]
     assert "released: in analytic it rocks and stays upright" in page and "bust: in analytic it never lifts" in page
 
 

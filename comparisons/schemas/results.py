@@ -1,0 +1,92 @@
+"""What `rocking verify`, `rocking sheet` and `rocking report` write."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import Field
+
+from .form import Form, Part
+
+
+class Tolerance(Part):
+    """A row of the tolerance table. found: None where it could not be measured; failure: why, in words."""
+
+    quantity: str
+    engine: str
+    variant: str
+    scenes: str
+    least: float
+    bound: float
+    unit: str
+    measured: float | None
+    source: str
+    found: float | None
+    holds: bool
+    failure: str | None
+
+
+class Verification(Form):
+    """Engines held against the tolerance table. versions: {engine: its own}."""
+
+    schema_: str = Field(default="rocking verify 1", serialization_alias="schema")
+    versions: dict[str, Any]
+    rows: list[Tolerance]
+
+
+class Asked(Part):
+    """A quantity asked for; scale: by what its error is divided, in its unit; 1 for a word."""
+
+    quantity: str
+    unit: str
+    meaning: str
+    scale: float
+
+
+class Problem(Part):
+    """A page of the sheet."""
+
+    scene: str
+    title: str
+    quantities: list[Asked]
+
+
+class Sheet(Form):
+    """A problem sheet written. sheet: its version."""
+
+    schema_: str = Field(default="rocking sheet 1", serialization_alias="schema")
+    sheet: int
+    files: list[str]
+    problems: list[Problem]
+
+
+class Reported(Part):
+    """A scene in one solver, as the page shows it; null: not known, as where a run failed. Errors against the analytic
+    model: overturning_time_error [s], peak errors relative, impact_time_error [s]."""
+
+    scene: str
+    solver: str
+    variant: str | None
+    outcome: Literal["stands", "rocks", "overturns", "failed"]
+    decided: bool | None
+    peak_tilt_ratio: float | None
+    peak_base_displacement: float | None = Field(description="m")
+    impact_count: int | None
+    same_outcome: bool | None
+    overturning_time_error: float | None
+    peak_tilt_error: float | None
+    peak_displacement_error: float | None
+    impact_time_error: float | None
+    cpu_seconds: float | None
+    failure: str | None
+    warnings: list[str]
+
+
+class Report(Form):
+    """A page written, and the rows behind its first table. results: the result files it is made from."""
+
+    schema_: str = Field(default="rocking report 1", serialization_alias="schema")
+    page: str
+    results: list[str]
+    missing: dict[str, str]
+    rows: list[Reported]

@@ -1,0 +1,99 @@
+"""What `rocking run` and `rocking compare` write: responses without their histories. Null: not known, or none."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import Field
+
+from .form import Form, Part
+
+
+class Impact(Part):
+    """Time [s], tilt rate before and after [rad/s], jump of the base velocity [m/s]."""
+
+    time: float | None
+    rate_before: float | None
+    rate_after: float | None
+    base_velocity_jump: float | None
+
+
+class State(Part):
+    """Time [s], tilt [rad], its rate [rad/s], base displacement [m] and velocity [m/s], force of all bearings [N]."""
+
+    time: float | None
+    tilt: float | None
+    tilt_rate: float | None
+    base_displacement: float | None
+    base_velocity: float | None
+    bearing_force: float | None
+
+
+class Energy(Part):
+    """Energy ledger [J] in the ground's frame: changes, what went in, and what left."""
+
+    kinetic: float | None
+    potential: float | None
+    input: float | None
+    hysteretic: float | None
+    viscous: float | None
+    impact_loss: float | None
+
+
+class Failure(Part):
+    """Why a run failed: in plain words, the engine's own message, the last finite state."""
+
+    reason: str
+    message: str
+    last_state: State | None
+
+
+class _Values(Form):
+    engine: str
+    variant: str
+    scene: str
+    outcome: Literal["stands", "rocks", "overturns", "failed"]
+    decided: bool = Field(description="False: it ended before the outcome was certain.")
+    overturning_time: float | None = Field(description="s, |tilt| = pi/2")
+    unstable_time: float | None = Field(description="s, first |tilt| = slenderness; no proof of overturning")
+    peak_tilt: float | None = Field(description="rad")
+    peak_tilt_ratio: float | None = Field(description="peak tilt over slenderness")
+    peak_base_displacement: float | None = Field(description="m")
+    peak_base_acceleration: float | None = Field(description="m/s2, absolute")
+    impact_count: int
+    impacts: list[Impact]
+    uplifts: list[float] = Field(description="s")
+    rests: list[float] = Field(description="s, limit times of accumulating impacts")
+    friction_demand: float | None = Field(description="max |H|/N at the contact")
+    min_normal_ratio: float | None = Field(description="min N/(m g) at the contact")
+    end: State
+    cpu_seconds: float | None = Field(description="of the simulation alone")
+    steps: int
+    settings: dict[str, Any]
+    versions: dict[str, Any]
+    warnings: list[str]
+    failure: Failure | None
+    energy: Energy | None
+
+
+class Run(_Values):
+    """A scene in one solver."""
+
+    schema_: str = Field(default="rocking run 1", serialization_alias="schema")
+
+
+class Sensitivity(Part):
+    """Of a solver: the change of the start that was followed, and the time [s] up to which it stays small."""
+
+    perturbation: float | None
+    horizon: float | None
+
+
+class Comparison(Form):
+    """A scene in all solvers. sensitivity_horizon: time [s] up to which point-wise agreement is asked for."""
+
+    schema_: str = Field(default="rocking compare 1", serialization_alias="schema")
+    scene: str
+    sensitivity_horizon: float | None
+    sensitivity: dict[str, Sensitivity]
+    responses: list[Run]
