@@ -1,7 +1,6 @@
 """``rocking design``: bearings from target period, damping and displacement."""
 
 import dataclasses
-import json
 from typing import Annotated
 
 import typer
@@ -28,18 +27,14 @@ def command(
     from analytic.design import design_bearings, properties
 
     from ..running.files import check_writable, write_text
+    from ..schemas.advice import Constants, Design, Properties
 
     check_writable([json_file])
     bearings = design_bearings(mass, period, damping, xmax, count=count, stiffness_ratio=ratio, definition=definition)
     back = properties(bearings, mass, xmax)
     if json_file:
-        content = {
-            "schema": "rocking design 1",
-            "bearings": bearings.model_dump(),
-            "properties": dataclasses.asdict(back),
-        }
-        text = json.dumps(content, indent=2, allow_nan=False) + "\n"
-        write_text(json_file, text)
+        constants, given = Constants(**bearings.model_dump()), Properties(**dataclasses.asdict(back))
+        write_text(json_file, Design(bearings=constants, properties=given).text())
     if json_file == "-":
         return
     console = Console(highlight=False, soft_wrap=True)

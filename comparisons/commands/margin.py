@@ -1,7 +1,6 @@
 """``rocking margin``: how far the verdict on a scene is from its nearest flip."""
 
 import dataclasses
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
@@ -29,6 +28,7 @@ def command(
 
     from ..running.files import check_writable, write_all
     from ..running.solving import spinner
+    from ..schemas.advice import Contact, Margin, Margins
 
     check_writable([json_file], picture=plot, inputs=[scene])
     what = load_scene(scene)
@@ -39,21 +39,10 @@ def command(
         contact = contact_margins(what)
     results: dict[str, str | Callable[[Path], object]] = {}
     if json_file:
-        content = {
-            "schema": "rocking margin 1",
-            "scene": what.name,
-            "outcome": nearest[0].outcome,
-            "span": span / 100,
-            "margins": [
-                {
-                    **dataclasses.asdict(margin),
-                    **{name: getattr(margin, name) for name in ("down", "up", "nearest", "leaves_model")},
-                }
-                for margin in nearest
-            ],
-            "contact": dataclasses.asdict(contact),
-        }
-        results[json_file] = json.dumps(content, indent=2, allow_nan=False) + "\n"
+        found = [Margin.model_validate(margin, from_attributes=True) for margin in nearest]
+        spared = Contact(**dataclasses.asdict(contact))
+        form = Margins(scene=what.name, outcome=nearest[0].outcome, span=span / 100, margins=found, contact=spared)
+        results[json_file] = form.text()
     if plot:
         from ..showing.margins import draw_margins
         from ..showing.plots import save

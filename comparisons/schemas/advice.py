@@ -1,0 +1,83 @@
+"""What `rocking margin` and `rocking design` write."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from .form import Form, Part
+
+
+class Band(Part):
+    """Relative changes from low to high with one outcome; holds: the contact holds as the model has it."""
+
+    low: float
+    high: float
+    outcome: str
+    holds: bool
+
+
+class Margin(Part):
+    """Of one quantity, `value` as the scene has it. down, up: nearest change with another outcome; leaves_model:
+    nearest change at which the model no longer holds; null where there is none in the range scanned."""
+
+    quantity: str
+    value: float
+    unit: str
+    bands: list[Band]
+    down: float | None
+    up: float | None
+    nearest: float | None
+    leaves_model: float | None
+
+
+class Contact(Part):
+    """What the contact has to spare: min N/(m g), the demand max |H|/N, the scene's coefficient."""
+
+    least_normal: float
+    friction_demand: float
+    friction: float | None
+
+
+class Margins(Form):
+    """How far a scene's verdict is from its nearest flips. span: relative changes scanned, down and up."""
+
+    schema_: str = Field(default="rocking margin 1", serialization_alias="schema")
+    scene: str
+    outcome: str
+    span: float
+    margins: list[Margin]
+    contact: Contact
+
+
+class Constants(Part):
+    """Of one bearing, as a scene file has them."""
+
+    law: str
+    count: int
+    ka: float = Field(description="N/m")
+    kb: float | None = Field(description="N/m")
+    alpha: float | None
+    delta_k: float
+    yield_force: float | None = Field(description="N")
+    damping: float = Field(description="N s/m")
+    x_max: float | None = Field(description="m")
+
+
+class Properties(Part):
+    """What the constants give back at the design displacement."""
+
+    period: float = Field(description="s, of the secant")
+    period_kb: float = Field(description="s")
+    damping_paper: float = Field(description="W_D/(2 pi E_s)")
+    damping_equivalent: float = Field(description="W_D/(4 pi E_s)")
+    secant_stiffness: float = Field(description="N/m, of one bearing")
+    force: float = Field(description="N, of one bearing")
+    cycle_loss: float = Field(description="J, of one bearing")
+
+
+class Design(Form):
+    """Bearings designed."""
+
+    schema_: str = Field(default="rocking design 1", serialization_alias="schema")
+    bearings: Constants
+    properties: Properties
