@@ -10,11 +10,11 @@ from pathlib import Path
 from jinja2 import Environment
 from markupsafe import Markup
 
+from ..showing import diagrams
+from ..showing.mathml import mathml, prose
 from ..showing.templates import templates
-from . import diagrams
 from .drawing import LICENCE, download, svg
 from .lesson import Lesson, View
-from .mathml import mathml, prose
 from .notebook import answer, code_of, written
 from .playground import PAGE, playground_page
 from .topics import NAMES, lesson

@@ -16,6 +16,7 @@ from analytic.closed_form import free_rocking
 from analytic.response import History, Response
 from analytic.rocking import base_jump_length, restitution
 from engines import available_engines, get_engine
+from engines.verified import in_words
 
 from ..measuring.horizon import solver_horizon
 from ..measuring.measures import compare
@@ -224,10 +225,15 @@ def free_rocking_found(
 
 
 def described_variants(engines: Sequence[str]) -> dict[str, dict[str, dict[str, Any]]]:
-    """{engine: {variant: its rung, who decides what, whether the adapter applies the impact}}."""
+    """{engine: {variant: its rung, who decides what, whether the adapter applies the impact, verified range}}."""
     return {
         name: {
-            variant: {"rung": kind.rung, "decides": kind.decides, "applies_impact": kind.takes_restitution}
+            variant: {
+                "rung": kind.rung,
+                "decides": kind.decides,
+                "applies_impact": kind.takes_restitution,
+                "verified": in_words(kind.verified),
+            }
             for variant, kind in get_engine(name).variants.items()
         }
         for name in engines

@@ -1,32 +1,72 @@
-"""The studies' stored results as sections of the report."""
+"""The studies' stored results: what the report's first page takes of them, and their own pages."""
 
-from dataclasses import replace
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from ..running.provenance import PROJECT_FOLDER, ResultError, age, read_result
-from ..showing.parts import Section
+from ..showing.parts import Judgement, Section
 from ..studies import StudyBroken, get_study, study_names
+
+if TYPE_CHECKING:
+    from ..running.provenance import Result
 
 RESULTS = PROJECT_FOLDER / "comparisons" / "results"
 
 
-def study_sections(folder: Path = RESULTS) -> list[Section]:
-    """Sections of all result files ``<study>.json`` in `folder`, in the studies' order; see the package."""
+@dataclass(frozen=True)
+class Stored:
+    """One result file. section: all of it; finding: its answer for the first page; judgement: its column there.
+
+    origin: machine, versions, date and commit in one line.
+    """
+
+    name: str
+    section: Section
+    finding: Section | None = None
+    judgement: Judgement | None = None
+    origin: str = ""
+
+
+def stored_studies(folder: Path = RESULTS) -> list[Stored]:
+    """All result files ``<study>.json`` in `folder`, in the studies' order; one that cannot be shown says why."""
     order = study_names()
 
     def place(file):
         return (order.index(file.stem) if file.stem in order else len(order), file.stem)
 
-    return [_section(file) for file in sorted(folder.glob("*.json"), key=place)]
+    return [_stored(file) for file in sorted(folder.glob("*.json"), key=place)]
 
 
-def _section(file):
+def origin_of(result: Result) -> str:
+    """Machine, versions, date and commit, in one line."""
+    origin = result.provenance
+    packages = ", ".join(f"{name} {version}" for name, version in origin["packages"].items() if version)
+    return f"{origin['time'][:10]}, commit {commit_of(origin)}, {origin['machine']['processor']}, {packages}"
+
+
+def commit_of(origin: Mapping[str, Any]) -> str:
+    """The commit of a provenance, and whether there was more than that."""
+    if origin["commit"] is None:
+        return "outside a checkout"
+    return origin["commit"][:12] + (", with uncommitted changes" if origin["dirty"] else "")
+
+
+def _stored(file):
     try:
         result = read_result(file)
     except ResultError as error:
-        return Section(f"Study {file.stem}", (f"{file.name} cannot be shown: {error}",))
+        return Stored(file.stem, Section(f"Study {file.stem}", (f"{file.name} cannot be shown: {error}",)))
+    old, origin = age(result), origin_of(result)
     try:
-        section = get_study(result.kind).section(result)
+        study = get_study(result.kind)
+        section = study.section(result)
+        finding = study.finding and study.finding(result)
+        judgement = study.judgement and study.judgement(result)
     except (KeyError, StudyBroken) as error:
-        return Section(f"Study {result.kind}", (f"{file.name} cannot be shown: {error.args[0]}.",), age=age(result))
-    return replace(section, age=age(result))
+        words = f"{file.name} cannot be shown: {error.args[0]}."
+        return Stored(file.stem, Section(f"Study {result.kind}", (words,), age=old), origin=origin)
+    return Stored(file.stem, replace(section, age=old), finding and replace(finding, age=old), judgement, origin)

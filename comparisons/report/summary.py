@@ -15,31 +15,11 @@ MOST_WARNINGS = 3  # of a scene, at the top of the page
 
 
 def summary(caryatid: Result, groups: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Sentences, list of str: outcomes, agreement, restitution, cost."""
+    """Sentences, list of str: outcomes, engines that are missing, runs that failed."""
     sentences = []
     for name, scene in caryatid.settings["scenes"].items():
         rows = [row for row in caryatid.rows if row["scene"] == name]
         sentences.append(f"{scene['name']}: {outcomes(rows)}{_times(rows)}{_displacement(rows)}.{_warnings(rows)}")
-    reference = next((group for group in groups if group["solver"] == "analytic"), None)
-    for group in groups:
-        if group["default"] and group["solver"] != "analytic" and group["rms"] is not None:
-            sentences.append(
-                f"Restitution in {group['name']}: off the momentum formula, eq. (7), by {number(group['rms'], 2)} "
-                f"(root mean square over {group['impacts']} impacts; worst {number(group['worst'], 2)}), at "
-                f"{number(group['cpu_per_second'], 2)} s of CPU time per simulated second, "
-                f"{_ratio(group, reference)}."
-            )
-    others = [
-        f"{group['name']} {number(group['rms'], 2)} at {number(group['cpu_per_second'], 2)} s/s"
-        for group in groups
-        if not group["default"] and group["rms"] is not None
-    ]
-    if others:
-        sentences.append(
-            "Set up otherwise, restitution error (root mean square) at CPU time per simulated second: "
-            + "; ".join(others)
-            + "."
-        )
     for name, reason in caryatid.settings["missing"].items():
         sentences.append(f"Not in this report: {name}. {reason}.")
     failed = [
@@ -97,9 +77,3 @@ def _displacement(rows):
     if apart:
         text += " (" + ", ".join(f"{solver} off by {percent(value)}" for solver, value in apart.items()) + ")"
     return text
-
-
-def _ratio(group, reference):
-    if not (reference and reference["cpu_per_second"]):
-        return "the analytic model having no time to compare with"
-    return f"{number(group['cpu_per_second'] / reference['cpu_per_second'], 2)} times the analytic model's"

@@ -1,23 +1,66 @@
-"""The page: result files in, one HTML file out."""
+"""The pages: result files in, one page to read and one page for each study beside it out."""
 
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from markupsafe import Markup, escape
 
 from ..running.provenance import PACKAGES, age, read_result
-from ..showing.parts import Section, Table
+from ..showing import diagrams
+from ..showing.charts import REFERENCE, key_of
+from ..showing.mathml import mathml
+from ..showing.parts import Section, Table, number
 from ..showing.templates import templates
+from ..showing.wording import TRUSTED, USABLE
+from . import equations
+from .animation import animation
+from .answer import not_to_do, recommendation, rows_of
+from .earthquake import earthquake
 from .own import SCENES_FILE, own_sections
 from .runs import CARYATID, FREE_ROCKING
 from .sections import caryatid_sections, restitution_sections, variant_groups
-from .studies import RESULTS, study_sections
+from .studies import RESULTS, Stored, commit_of, origin_of, stored_studies
 from .summary import summary
 
-PAGE = "report.html"
-CARYATID_WORDS = "A rigid block (the Caryatid), free-standing and on lead-rubber bearings"
+if TYPE_CHECKING:
+    from ..running.provenance import Result
+
+PAGE, PAGES = "report.html", "pages"
+HERE = Path(__file__).parent
+# Short names of sections in the contents, by the study whose finding it is; studies of others follow.
+SHORT = {
+    "restitution": "One impact",
+    "overturning": "Many pulses",
+    "fragility": "Many earthquakes",
+    "matters": "What matters more",
+    "speed-error": "Cost against error",
+    "stability": "Where all fail",
+}
+
+
+@dataclass(frozen=True)
+class Part:
+    """A section of the page. short: its name in the contents; page: where all of its study stands."""
+
+    id: str
+    short: str
+    section: Section | None
+    origin: str = ""
+    page: str = ""
 
 
 def write_page(folder: str | PathLike[str], studies: Path = RESULTS) -> Path:
-    """Write ``report.html`` into `folder` from the result files there and those of the studies; returns its path.
+    """Write ``report.html`` into `folder`, and beside it ``pages/``, from result files there and of the studies.
+
+    Returns the path of the page.
 
     Raises
     ------
@@ -29,44 +72,178 @@ def write_page(folder: str | PathLike[str], studies: Path = RESULTS) -> Path:
     main = SCENES_FILE if own else CARYATID
     scenes = read_result(folder / main)
     free = read_result(folder / FREE_ROCKING) if not own or (folder / FREE_ROCKING).exists() else None
-    environment = templates(Path(__file__).parent)
-    sections = [*(own_sections if own else caryatid_sections)(scenes), *(restitution_sections(free) if free else ())]
     read = {main: scenes} | ({FREE_ROCKING: free} if free else {})
-    stored = study_sections(studies)
-    html = environment.get_template("page.html").render(
-        motion=scenes.settings["motion"]["label"] if scenes.settings["motion"] else "none",
-        own=own,
-        subject=_subject(scenes) if own else CARYATID_WORDS,
-        summary=summary(scenes, variant_groups(free) if free else []),
-        verdicts=[verdict for section in stored for verdict in section.verdicts],
-        sections=sections,
-        studies=stored,
-        provenance=_provenance(scenes, free),
-        ages=[f"{name} is {text}" for name, text in ((name, age(result)) for name, result in read.items()) if text],
-        files=[file for name in read for file in (name, name.replace(".json", ".npz"))],
-    )
+    stored = stored_studies(studies)
+    pages = [("runs", "The report’s own runs"), *((one.name, one.section.title) for one in stored)]
+    listed = [{"file": f"{PAGES}/{name}.html", "title": title} for name, title in pages]
+    environment = _environment()
     path = folder / PAGE
-    path.write_text(html, encoding="utf-8")
+    path.write_text(
+        environment.get_template("page.html").render(
+            **_answer(scenes, free, stored),
+            **_assets(),
+            motion=scenes.settings["motion"]["label"] if scenes.settings["motion"] else "no motion",
+            contents=_contents(scenes, stored),
+            equations=equations.EQUATIONS,
+            drawings=[Markup(getattr(diagrams, name)()) for name in ("rocking", "impact", "isolated")],
+            frames=[{"svg": Markup(frame.svg), "words": frame.words} for frame in equations.frames()],
+            glossary=equations.GLOSSARY,
+            references=equations.REFERENCES,
+            provenance=_provenance(scenes, free),
+            pages=listed,
+            ages=[f"{name} is {text}" for name, text in ((name, age(result)) for name, result in read.items()) if text],
+            files=[file for name in read for file in (name, name.replace(".json", ".npz"))],
+        ),
+        encoding="utf-8",
+    )
+    own_runs = [*(own_sections if own else caryatid_sections)(scenes), *(restitution_sections(free) if free else ())]
+    (folder / PAGES).mkdir(exist_ok=True)
+    for name, title, sections, origin in (
+        ("runs", "The report’s own runs", own_runs, origin_of(scenes)),
+        *((one.name, one.section.title, [one.section], one.origin) for one in stored),
+    ):
+        html = environment.get_template("detail.html").render(
+            title=title, sections=sections, origin=origin, pages=listed, home=PAGE, **_assets()
+        )
+        (folder / PAGES / f"{name}.html").write_text(html, encoding="utf-8")
     return path
 
 
-def _subject(scenes):
-    """What the page is about, in words."""
-    return " and ".join(scene["name"] for scene in scenes.settings["scenes"].values())
+def _environment():
+    environment = templates(HERE)
+    known = {re.sub(" [^ ]$", "", word): meaning for word, meaning in equations.GLOSSARY.items()}
+    words = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sorted(known, key=len, reverse=True)))
+
+    def glossed(text):
+        """The text, its first use of each word of the glossary explained."""
+        seen = set()
+
+        def explained(found):
+            if found[0] in seen:
+                return found[0]
+            seen.add(found[0])
+            return f'<abbr title="{escape(known[found[0]])}">{found[0]}</abbr>'
+
+        return Markup(words.sub(explained, str(escape(text))))
+
+    environment.filters |= {
+        "math": lambda tex: Markup(mathml(tex, display=True)),
+        "glossed": glossed,
+        "number": lambda value: number(value, 2),
+        "key": lambda who: Markup(key_of(who)),
+        "colour": colour_of,
+    }
+    return environment
 
 
-def _provenance(scenes, free):
+def colour_of(who: str) -> str:
+    """Colour of a solver, for a style."""
+    found = re.search("--c:([^;]+);", key_of(who))
+    assert found is not None  # every key has one
+    return found[1]
+
+
+def _assets() -> dict[str, Markup]:
+    return {
+        "style": Markup((HERE / "style.css").read_text(encoding="utf-8")),
+        "script": Markup((HERE / "page.js").read_text(encoding="utf-8")),
+        "animation": Markup((HERE / "animation.js").read_text(encoding="utf-8")),
+    }
+
+
+def _answer(scenes: Result, free: Result | None, stored: list[Stored]) -> dict[str, Any]:
+    """What the first screen shows."""
+    groups = variant_groups(free) if free else []
+    columns = [one.judgement for one in stored if one.judgement is not None]
+    decision = rows_of(free, groups, columns) if free else []
+    reference = next((group for group in groups if group["solver"] == REFERENCE), None)
+    return {
+        "recommendation": recommendation(decision, reference) if free else [],
+        "summary": summary(scenes, groups),
+        "not_to_do": not_to_do(decision),
+        "decision": decision,
+        "headings": ["restitution error, rms", *(column.heading for column in columns)],
+        "trusted": f"{TRUSTED:g}",
+        "usable": f"{USABLE:g}",
+        "decides": _decides(free or scenes),
+        "origin": origin_of(scenes),
+        "stage": _stage(scenes),
+    }
+
+
+def _stage(scenes: Result) -> Mapping[str, Any] | None:
+    """The animation with the frame that stands without a script."""
+    stage = animation(scenes)
+    if stage is None:
+        return None
+    data = json.dumps(stage, separators=(",", ":"), ensure_ascii=False).replace("<", "\\u003c")
+    frame = round(stage["still"] / stage["step"])
+    for scene in stage["scenes"]:
+        b, h = scene["size"]
+        falls = any(abs(tilt) > 1.0 for track in scene["tracks"] for tilt in track["tilt"])
+        scene["width"] = 2 * (max(b + 2 * h if falls else 0.0, b + 0.5) + scene["reach"] + 0.15)
+        scene["poses"] = [_pose(track, frame, b) for track in scene["tracks"]]
+        scene["skew"] = _skew(scene["poses"][0][0])
+    peak = max((abs(value) for value in stage["ground"]), default=0.0) or 1.0
+    path = "M" + "L".join(f"{k} {-value / peak:.3f}" for k, value in enumerate(stage["ground"]))
+    return {**stage, "data": Markup(data), "path": path, "at": frame}
+
+
+def _pose(track, frame, b):
+    """(displacement [m], angle [degrees], corner [m]) of a block at a frame."""
+    tilt = track["tilt"][min(frame, len(track["tilt"]) - 1)]
+    x = track["x"][min(frame, len(track["x"]) - 1)] if "x" in track else 0.0
+    return round(x, 4), round(math.degrees(tilt), 3), -b if tilt < 0 else b
+
+
+def _skew(x):
+    """Angle [degrees] of a bearing .2 m high."""
+    return round(-math.degrees(math.atan2(x, 0.2)), 3)
+
+
+def _contents(scenes: Result, stored: list[Stored]) -> list[Part]:
+    """The sections of the page in the order in which one reads them."""
+    setting = Section(
+        "The scene and its equations: a block that tips about its corners, and a base that gives",
+        (
+            "The block is rigid, planar and does not slide; each impact is over at once. Its base slides on bearings "
+            "whose force hangs on where they last turned back. The numbers are those of the paper’s equations.",
+        ),
+    )
+    parts = [Part("equations", "Scene and equations", setting)]
+    found = {one.name: one for one in stored if one.finding is not None}
+    own = Part("earthquake", "One earthquake", earthquake(scenes), origin_of(scenes), f"{PAGES}/runs.html")
+    order = [name for name in SHORT if name in found] + [name for name in found if name not in SHORT]
+    for name in order:
+        one = found[name]
+        anchor = "impact" if name == "restitution" else name
+        parts.append(Part(anchor, SHORT.get(name, one.section.title), one.finding, one.origin, f"{PAGES}/{name}.html"))
+        if name == "restitution":
+            parts.append(own)
+    if own not in parts:
+        parts.insert(1, own)
+    return [*parts, Part("method", "Method and words", None)]
+
+
+def _decides(result: Result) -> Table:
+    return Table(
+        "What each engine decides by itself",
+        ("engine, setting", "set up as", "what"),
+        [
+            [f"{solver}, {variant}", kind["rung"], kind["decides"]]
+            for solver, variants in result.settings.get("variants", {}).items()
+            for variant, kind in variants.items()
+        ],
+    )
+
+
+def _provenance(scenes: Result, free: Result | None) -> Section:
     """Versions, machine and settings: how to obtain the same numbers."""
     origin = scenes.provenance
     machine = origin["machine"]
-    commit = (
-        "outside a checkout"
-        if origin["commit"] is None
-        else origin["commit"][:12] + (", with uncommitted changes" if origin["dirty"] else "")
-    )
     rows = [
         ["computed", origin["time"]],
-        ["commit", commit],
+        ["commit", commit_of(origin)],
         ["processor", machine["processor"]],
         ["cores (physical, logical)", f"{machine['cores']}, {machine['logical_cores']}"],
         ["memory [GiB]", str(machine["memory_gib"])],
@@ -82,16 +259,10 @@ def _provenance(scenes, free):
         [f"{solver}, {variant}", ", ".join(f"{key} = {value}" for key, value in chosen.items())]
         for (solver, variant), chosen in settings.items()
     ]
-    decides = [
-        [f"{solver}, {variant}", kind["rung"], kind["decides"]]
-        for solver, variants in (free or scenes).settings["variants"].items()
-        for variant, kind in variants.items()
-    ]
     return Section(
         "Versions, machine, settings",
         (),
         (
-            Table("What each engine decides by itself", ("engine, variant", "set up as", "what"), decides),
             Table("Versions and machine", ("what", "value"), rows),
             Table("Settings of each solver and variant (SI units)", ("solver", "settings"), listed),
         ),

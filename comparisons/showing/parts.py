@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-import base64
 import io
 import math
+import re
 from dataclasses import dataclass
+from html import escape
 from typing import TYPE_CHECKING
 
 import matplotlib
+from markupsafe import Markup
 
 if TYPE_CHECKING:
     import matplotlib.figure
 
 MINUS_DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-# Glyphs as paths: the page looks alike where fonts differ. The salt makes equal figures equal bytes.
-SVG = {"svg.fonttype": "path", "svg.hashsalt": "rocking"}
+# Text as text, to search and to scale. The salt makes equal figures equal bytes; the caption keeps parts' names apart.
+SVG = {"svg.fonttype": "none"}
+SALT = "rocking"
+# Greys up to a lightness [0 to 255] take a colour of the page, light or dark.
+GREYS = ((110, "currentColor"), (190, "var(--soft)"), (245, "var(--grid)"), (255, "var(--paper)"))
 
 
 @dataclass(frozen=True)
@@ -31,18 +36,36 @@ class Table:
 class Figure:
     """svg: the picture. alt: what it shows, for those who cannot see it. caption: what to look at.
 
-    wide: it takes the whole width of the page.
+    wide: it takes the whole width of the page. solvers: those whose lines can be told apart and hidden.
     """
 
     svg: bytes
     alt: str
     caption: str
     wide: bool = False
+    solvers: tuple = ()
 
     @property
-    def source(self) -> str:
-        """The picture as a data URI."""
-        return "data:image/svg+xml;base64," + base64.b64encode(self.svg).decode()
+    def element(self) -> Markup:
+        """The picture as a part of a page."""
+        return Markup(self.svg.decode())
+
+
+@dataclass(frozen=True)
+class Mark:
+    """What a study says of one solver: in words, and as "good", "fair" or "bad"; note: what the words leave out."""
+
+    words: str
+    level: str
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """A study's column of the decision table. heading: with unit. marks: {(engine, variant): `Mark`}."""
+
+    heading: str
+    marks: dict
 
 
 @dataclass(frozen=True)
@@ -50,7 +73,7 @@ class Section:
     """title: heading. text: paragraphs, plain text. age: None, or how the result is older than the code.
 
     evidence: (heading, text) pairs, folded away: raw messages of runs that failed. verdicts: sentences, may I trust
-    it, for the top of the page.
+    it, for the top of the page. measured: paragraphs, folded: how the figures were obtained.
     """
 
     title: str
@@ -60,6 +83,7 @@ class Section:
     age: str | None = None
     evidence: tuple = ()
     verdicts: tuple = ()
+    measured: tuple = ()
 
 
 # Width [inch] from which a figure would be unreadable in half of the page.
@@ -67,11 +91,29 @@ WIDE = 7.0
 
 
 def figure_of(figure: matplotlib.figure.Figure, alt: str, caption: str) -> Figure:
-    """The `Figure` of a matplotlib figure."""
+    """The `Figure` of a matplotlib figure, in the colours of its page."""
     file = io.BytesIO()
-    with matplotlib.rc_context(SVG):  # type: ignore[arg-type]  # a few keys of them
-        figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
-    return Figure(file.getvalue(), alt, caption, wide=figure.get_size_inches()[0] > WIDE)
+    with matplotlib.rc_context({**SVG, "svg.hashsalt": SALT + caption}):  # type: ignore[arg-type]  # a few keys of them
+        figure.savefig(file, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
+    wide = figure.get_size_inches()[0] > WIDE
+    return Figure(_inline(file.getvalue().decode(), alt).encode(), alt, caption, wide)
+
+
+def _inline(text, alt):
+    """An SVG file of matplotlib as an element: no header, no names that nothing refers to, greys of the page."""
+    text = re.sub(r"<metadata>.*?</metadata>\s*", "", text[text.index("<svg") :], flags=re.DOTALL)
+    opening = f'<svg class="drawn" viewBox="\\1" role="img" aria-label="{escape(alt)}">'
+    text = re.sub(r'<svg [^>]*?viewBox="([^"]+)"[^>]*>', opening, text, count=1)
+    named = set(re.findall(r"#([\w.-]+)", text))
+    text = re.sub(r' id="([^"]+)"', lambda found: found[0] if found[1] in named else "", text)
+    text = re.sub(r"(\d+\.\d{2})\d+", r"\1", text)  # a hundredth of a point is enough
+    text = re.sub(r"#([0-9a-f]{2})\1\1\b", _grey, text)
+    return re.sub(r"\s*\n\s*", " ", text)
+
+
+def _grey(found):
+    lightness = int(found[1], 16)
+    return next(colour for most, colour in GREYS if lightness <= most)
 
 
 def number(value: float | None, digits: int = 3) -> str:

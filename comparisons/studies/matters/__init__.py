@@ -2,6 +2,7 @@
 
 from ...running.study import Study
 from .cases import plan
+from .finding import finding
 from .page import draw, section
 
 STUDY = Study(
@@ -10,4 +11,5 @@ STUDY = Study(
     plan,
     lambda result: {"": draw(result)},
     section,
+    finding=finding,
 )

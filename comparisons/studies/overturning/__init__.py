@@ -3,6 +3,7 @@
 from ...running.study import Study
 from .cases import plan
 from .figures import draw_knobs, draw_maps, draw_shifts
+from .finding import finding, judgement
 from .page import section
 
 
@@ -16,4 +17,6 @@ STUDY = Study(
     plan,
     _figures,
     section,
+    finding=finding,
+    judgement=judgement,
 )

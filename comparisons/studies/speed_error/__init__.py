@@ -2,6 +2,7 @@
 
 from ...running.study import Study
 from .figures import figures
+from .finding import finding
 from .page import section
 from .summary import plan
 
@@ -11,4 +12,5 @@ STUDY = Study(
     plan,
     figures,
     section,
+    finding=finding,
 )

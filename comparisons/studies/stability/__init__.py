@@ -1,6 +1,7 @@
 """Numerical stability: which solver survives which hard case, with evidence and cures."""
 
 from ...running.study import Study
+from .finding import finding, judgement
 from .page import draw, section
 from .verdicts import plan
 
@@ -10,4 +11,6 @@ STUDY = Study(
     plan,
     lambda result: {"": draw(result)},
     section,
+    finding=finding,
+    judgement=judgement,
 )

@@ -1,4 +1,4 @@
-"""The small part of TeX that the lessons use, as MathML: browsers draw that without a script."""
+"""The small part of TeX that the pages use, as MathML: browsers draw that without a script."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def _one(tokens, tex):
     if name == "text" and rest[:1] == ["{"] and "}" in rest:
         end = rest.index("}")
         return f"<mi mathvariant='normal'>{escape(''.join(rest[1:end]))}</mi>", rest[end + 1 :]
-    raise ValueError(f"{tex!r}: \\{name} is not among the commands that the lessons use")
+    raise ValueError(f"{tex!r}: \\{name} is not among the commands that the pages use")
 
 
 def _letter(token):

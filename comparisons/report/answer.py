@@ -1,0 +1,141 @@
+"""The first screen: one recommendation, the decision table, and what not to do; all from result files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ..showing.parts import Judgement, Mark, number
+from ..showing.wording import TRUSTED, USABLE
+
+if TYPE_CHECKING:
+    from ..running.provenance import Result
+
+# part: good in all that was tested, and something was not
+LEVELS = {"good": "✓ trust", "part": "✓ as far as tested", "fair": "~ with care", "bad": "✗ do not trust"}
+UNTESTED = Mark("not tested", "none")
+BEST = "best"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One way to set an engine up. marks: a `Mark` for each column; verdict: the worst of them.
+
+    limits: the range in which it is verified, in words; cpu: s of CPU time per simulated second, of the runs behind
+    its restitution.
+    """
+
+    engine: str
+    variant: str
+    rung: str
+    marks: tuple[Mark, ...]
+    verdict: Mark
+    cpu: float | None
+    limits: str
+    applies_impact: bool
+
+    @property
+    def command(self) -> str:
+        return f"rocking run SCENE --engine {self.engine} --variant {self.variant}"
+
+    @property
+    def snippet(self) -> str:
+        return f'get_engine("{self.engine}").simulate(scene, variant="{self.variant}")'
+
+
+def rows_of(free: Result, groups: Sequence[Mapping[str, Any]], columns: Sequence[Judgement]) -> list[Row]:
+    """Rows of the decision table: trusted ones first, the cheapest of equals first.
+
+    free: result of free rocking; groups: of `sections.variant_groups`.
+    """
+    rows = []
+    for group in groups:
+        if group["solver"] == "analytic":
+            continue
+        variant = group["name"].split(", ")[1]
+        kind = free.settings["variants"][group["solver"]][variant]
+        marks = (_restitution(group), *(one.marks.get((group["solver"], variant), UNTESTED) for one in columns))
+        rows.append(
+            Row(
+                group["solver"],
+                variant,
+                kind["rung"],
+                marks,
+                _verdict(marks),
+                group["cpu_per_second"],
+                kind.get("verified", ""),
+                kind["applies_impact"],
+            )
+        )
+    order = list(LEVELS)
+    return sorted(rows, key=lambda row: (order.index(row.verdict.level), row.cpu or 1e9))
+
+
+def _restitution(group):
+    failed = len(group["failures"])
+    if group["rms"] is None:
+        return Mark("none measured", "bad", f"{failed} runs failed")
+    level = "bad" if failed else "good" if group["rms"] <= TRUSTED else "fair" if group["rms"] <= USABLE else "bad"
+    words = number(group["rms"], 2) + (f", {failed} failed" if failed else "")
+    return Mark(words, level, f"worst impact {number(group['worst'], 2)}")
+
+
+def _verdict(marks):
+    level = max((mark.level if mark.level in LEVELS else "part" for mark in marks), key=list(LEVELS).index)
+    return Mark(LEVELS[level], level)
+
+
+def best_of(rows: Sequence[Row]) -> Row | None:
+    """The cheapest row that may be trusted and decides the impact itself; None where there is none."""
+    return next((row for row in rows if row.verdict.level in ("good", "part") and not row.applies_impact), None)
+
+
+def recommendation(rows: Sequence[Row], reference: Mapping[str, Any] | None) -> list[str]:
+    """What to use, with error, cost and where it stops being valid; list of str."""
+    words = [
+        "One rigid block, planar, on sharp corners: use the analytic model."
+        + (
+            f" It is exact to the closed forms and needs {number(reference['cpu_per_second'], 2)} s of CPU time per "
+            "simulated second."
+            if reference and reference["cpu_per_second"]
+            else ""
+        )
+    ]
+    row = best_of(rows)
+    if row is None:
+        words.append("More bodies or contacts: no engine that was run here may be trusted in all that was tested.")
+        return words
+    ratio = (
+        f", {number(row.cpu / reference['cpu_per_second'], 2)} times the model's"
+        if reference and reference["cpu_per_second"] and row.cpu
+        else ""
+    )
+    words.append(
+        f"More bodies or contacts: {row.engine} set as “{row.variant}”: restitution within {row.marks[0].words} at "
+        f"{number(row.cpu, 2)} s of CPU time per simulated second{ratio}."
+    )
+    if row.limits and row.limits != "anywhere":
+        words.append(f"It stops being verified outside {row.limits}; planar, no sliding, no jump.")
+    return words
+
+
+def not_to_do(rows: Sequence[Row]) -> list[str]:
+    """Three lines at most."""
+    first = [row for row in rows if row.rung == "first script" and row.marks[0].level != "none"]
+    lines = []
+    if first:
+        worst = max(first, key=lambda row: list(LEVELS).index(row.verdict.level))
+        bad = [row for row in first if row.verdict.level == "bad"]
+        lines.append(
+            f"Do not take an engine as it comes: {len(bad)} of {len(first)} first scripts fail (restitution off by "
+            f"{', '.join(f'{row.marks[0].words} in {row.engine}' for row in bad or [worst])})."
+        )
+    lines.append(
+        "Do not take a verdict for sure that lies nearer to its flip than what you do not know: rocking margin SCENE."
+    )
+    lines.append(
+        "Do not compare tilt point by point beyond the sensitivity horizon, nor trust a setting before all finer ones "
+        "agree with it."
+    )
+    return lines

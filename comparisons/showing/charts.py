@@ -1,0 +1,280 @@
+"""Charts of the page as inline SVG: text is text, colours are the page's, and a script can read values back.
+
+Solvers keep colour, dashes and marker everywhere (`engines.ENGINES`); a group of the class "who" with ``data-who`` can
+be hidden by its name. Sizes are in units of which `WIDTH` fill a phone: lettering of 13 is 11.6 px at 390 px.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from html import escape
+
+import numpy as np
+from matplotlib.ticker import LogLocator, MaxNLocator
+
+from engines import ENGINES
+
+from .parts import Figure
+
+WIDTH = 400
+LETTER = 13
+REFERENCE = "analytic"
+DASHES = {"-": "", "--": "7 4", ":": "2 3.5", "-.": "8 3 2 3"}
+SHAPES = {
+    "o": "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0z",
+    "s": "M-3.7-3.7h7.4v7.4h-7.4z",
+    "D": "M0-5L5 0 0 5-5 0z",
+    "^": "M0-5L4.6 3.6h-9.2z",
+    "v": "M0 5L4.6-3.6h-9.2z",
+    "P": "M-1.6-4.6h3.2v3h3v3.2h-3v3h-3.2v-3h-3v-3.2h3z",
+    "x": "M-4-4L4 4M4-4L-4 4",
+}
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+@dataclass(frozen=True)
+class Axis:
+    """label: with unit. low, high: ends. scale: "linear" or "log". ticks: (value, word) in place of those found."""
+
+    label: str
+    low: float
+    high: float
+    scale: str = "linear"
+    ticks: tuple[tuple[float, str], ...] | None = None
+
+    def share(self, values: Iterable[float]) -> np.ndarray:
+        """Where values lie between the ends, 0 to 1."""
+        one = np.log10 if self.scale == "log" else np.asarray
+        low, high = (float(one(end)) for end in (self.low, self.high))
+        with np.errstate(divide="ignore"):
+            return (one(np.asarray(values, dtype=float)) - low) / (high - low)
+
+    def marks(self) -> tuple[tuple[float, str], ...]:
+        """(value, word) of its ticks."""
+        if self.ticks is not None:
+            return self.ticks
+        if self.scale == "log":
+            found = LogLocator(numticks=7).tick_values(self.low, self.high)
+            words = [f"10{str(round(math.log10(value))).translate(SUPERSCRIPTS)}" for value in found]
+        else:
+            found = MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]).tick_values(self.low, self.high)
+            words = [f"{round(value, 12):g}".replace("-", "−") for value in found]
+        within = (-1e-9, 1 + 1e-9)
+        return tuple(
+            (float(v), w) for v, w in zip(found, words, strict=True) if within[0] <= self.share([v])[0] <= within[1]
+        )
+
+
+def log_axis(label: str, values: Iterable[float]) -> Axis:
+    """An axis of whole decades about positive values."""
+    found = [value for value in values if value and value > 0]
+    low, high = math.floor(math.log10(min(found))), math.ceil(math.log10(max(found)))
+    return Axis(label, 10.0**low, 10.0 ** max(high, low + 1), "log")
+
+
+class Chart:
+    """One panel; says: what it shows, for those who cannot see it."""
+
+    def __init__(
+        self, x: Axis, y: Axis, says: str, *, height: int = 270, left: int = 58, right: int = 14, title: str = ""
+    ) -> None:
+        self.x, self.y, self.says, self.title = x, y, says, title
+        self.left, self.right = left, WIDTH - right
+        self.top, self.bottom = 30 if title else 12, height - (46 if x.label else 28)
+        self.height, self.parts, self.over = height, list[str](), list[str]()
+        self.ends: list[tuple[float, str, str]] = []
+
+    def at(self, xs: Sequence[float] | np.ndarray, ys: Sequence[float] | np.ndarray) -> np.ndarray:
+        """Places, shape (points, 2), of values."""
+        across = self.left + self.x.share(xs) * (self.right - self.left)
+        return np.column_stack([across, self.bottom - self.y.share(ys) * (self.bottom - self.top)])
+
+    def line(
+        self, xs: Sequence[float] | np.ndarray, ys: Sequence[float] | np.ndarray, who: str = "", *, grey: bool = False
+    ) -> None:
+        """A line of one solver; points that are not finite part it."""
+        path, pen = [], False
+        last = None
+        for x, y in self.at(xs, ys):
+            if not (math.isfinite(x) and math.isfinite(y)):
+                pen = False
+                continue
+            place = (round(x, 1), round(y, 1))
+            if place != last:
+                path.append(f"{'L' if pen else 'M'}{place[0]:g} {place[1]:g}")
+            pen, last = True, place
+        self.parts.append(f'{_group(who, grey)}<path class="line" d="{"".join(path)}"/></g>')
+
+    def dots(
+        self,
+        xs: Sequence[float] | np.ndarray,
+        ys: Sequence[float] | np.ndarray,
+        who: str = "",
+        *,
+        filled: bool = True,
+        grey: bool = False,
+        says: Sequence[str] | None = None,
+        mark: str | None = None,
+    ) -> None:
+        """Marks of one solver; says: what each tells under the pointer."""
+        shape = SHAPES.get(mark or marker(who), SHAPES["o"])
+        kind = "dot" if filled else "dot open"
+        told = says or [""] * len(xs)
+        marks = [
+            f'<path class="{kind}" transform="translate({x:.1f} {y:.1f})" d="{shape}"{_told(words)}/>'
+            for (x, y), words in zip(self.at(xs, ys), told, strict=True)
+            if math.isfinite(x) and math.isfinite(y)
+        ]
+        self.over.append(f"{_group(who, grey)}{''.join(marks)}</g>")
+
+    def reach(self, xs: Sequence[float], ys: Sequence[float], lows: Sequence[float], highs: Sequence[float],
+              who: str = "", *, along: str = "y", grey: bool = False) -> None:  # fmt: skip
+        """Intervals from `lows` to `highs` along an axis."""
+        begins, ends = (self.at(xs, one) if along == "y" else self.at(one, ys) for one in (lows, highs))
+        path = "".join(f"M{a[0]:.1f} {a[1]:.1f}L{b[0]:.1f} {b[1]:.1f}" for a, b in zip(begins, ends, strict=True))
+        self.parts.append(f'{_group(who, grey)}<path class="reach" d="{path}"/></g>')
+
+    def area(self, xs: Sequence[float], ys: Sequence[float], kind: str = "band") -> None:
+        """A filled polygon; kind: its class."""
+        places = " ".join(f"{x:.1f},{y:.1f}" for x, y in self.at(xs, ys))
+        self.parts.insert(0, f'<polygon class="{kind}" points="{places}"/>')
+
+    def rule(self, value: float, along: str = "x", words: str = "") -> None:
+        """A dashed line across, where x or y has a value."""
+        if along == "x":
+            x = self.at([value], [self.y.low])[0][0]
+            self.parts.append(f'<path class="rule" d="M{x:.1f} {self.top}V{self.bottom}"/>')
+            self.over.append(f'<text x="{x + 4:.1f}" y="{self.top + 12}" class="soft">{escape(words)}</text>')
+        else:
+            y = self.at([self.x.low], [value])[0][1]
+            self.parts.append(f'<path class="rule" d="M{self.left} {y:.1f}H{self.right}"/>')
+            self.over.append(f'<text x="{self.left + 4}" y="{y - 4:.1f}" class="soft">{escape(words)}</text>')
+
+    def words(self, x: float, y: float, text: str, anchor: str = "start", kind: str = "") -> None:
+        """Text at a place in values."""
+        a, b = self.at([x], [y])[0]
+        self.over.append(
+            f'<text class="{kind}" x="{a:.1f}" y="{b + 4:.1f}" text-anchor="{anchor}">{escape(text)}</text>'
+        )
+
+    def label(self, y: float, text: str, who: str = "") -> None:
+        """Name of a line, in the right margin at the height where it ends."""
+        self.ends.append((float(self.at([self.x.low], [y])[0][1]), text, who))
+
+    def cell(self, x: float, y: float, kind: str, sign: str, says: str) -> None:
+        """A square of a matrix about (x, y), values one apart, of a class, with a sign in it."""
+        (x0, y0), (x1, y1) = self.at([x - 0.46, x + 0.46], [y - 0.44, y + 0.44])
+        self.parts.append(
+            f'<rect class="{kind}" x="{min(x0, x1):.1f}" y="{min(y0, y1):.1f}" width="{abs(x1 - x0):.1f}" '
+            f'height="{abs(y1 - y0):.1f}"{_told(says)}/>'
+        )
+        self.over.append(
+            f'<text class="sign {kind}" x="{(x0 + x1) / 2:.1f}" y="{(y0 + y1) / 2 + 4.5:.1f}" '
+            f'text-anchor="middle">{escape(sign)}</text>'
+        )
+
+    def svg(self) -> str:
+        """The element."""
+        inside = self.right - self.left, self.bottom - self.top
+        read = {"x": _read(self.x, self.left, self.right), "y": _read(self.y, self.bottom, self.top)}
+        title = f'<text class="title" x="{self.left}" y="17">{escape(self.title)}</text>' if self.title else ""
+        return (
+            f'<svg class="chart" viewBox="0 0 {WIDTH} {self.height}" role="img" aria-label="{escape(self.says)}" '
+            f"data-read='{escape(json.dumps(read, ensure_ascii=False))}'>{title}{self._axes()}"
+            f'<svg x="{self.left}" y="{self.top}" width="{inside[0]}" height="{inside[1]}" '
+            f'viewBox="{self.left} {self.top} {inside[0]} {inside[1]}">{"".join(self.parts)}</svg>'
+            f"{''.join(self.over)}{self._labels()}</svg>"
+        )
+
+    def _axes(self):
+        parts = [f'<path class="axis" d="M{self.left} {self.top}V{self.bottom}H{self.right}"/>']
+        for value, word in self.x.marks():
+            x = self.at([value], [self.y.low])[0][0]
+            parts.append(f'<path class="grid" d="M{x:.1f} {self.top}V{self.bottom}"/>')
+            parts.append(
+                f'<text class="soft" x="{x:.1f}" y="{self.bottom + 17}" text-anchor="middle">{escape(word)}</text>'
+            )
+        for value, word in self.y.marks():
+            y = self.at([self.x.low], [value])[0][1]
+            parts.append(f'<path class="grid" d="M{self.left} {y:.1f}H{self.right}"/>')
+            parts.append(
+                f'<text class="soft" x="{self.left - 6}" y="{y + 4.5:.1f}" text-anchor="end">{escape(word)}</text>'
+            )
+        middle = (self.left + self.right) / 2, (self.top + self.bottom) / 2
+        if self.x.label:
+            parts.append(
+                f'<text x="{middle[0]:g}" y="{self.height - 8}" text-anchor="middle">{escape(self.x.label)}</text>'
+            )
+        if self.y.label:
+            parts.append(
+                f'<text transform="translate(14 {middle[1]:g})rotate(-90)" text-anchor="middle">'
+                f"{escape(self.y.label)}</text>"
+            )
+        return "".join(parts)
+
+    def _labels(self):
+        """Names of lines, pushed apart."""
+        placed, last = [], -math.inf
+        for y, text, who in sorted(self.ends):
+            last = max(y, last + LETTER + 2)
+            placed.append((last, text, who))
+        over = max(0.0, (placed[-1][0] if placed else 0.0) - self.bottom)
+        return "".join(
+            f'{_group(who, False)}<text x="{self.right + 6}" y="{y - over + 4:.1f}">{escape(text)}</text></g>'
+            for y, text, who in placed
+        )
+
+
+def marker(who: str) -> str:
+    """Marker of a solver: the same in every figure."""
+    return ENGINES[who].marker if who in ENGINES else "o"
+
+
+def key_of(who: str) -> str:
+    """A small picture of a solver's line and marker, for a legend."""
+    shape = SHAPES.get(marker(who), SHAPES["o"])
+    mark = "" if who == REFERENCE else f'<path class="dot" transform="translate(16 7)" d="{shape}"/>'
+    return (
+        f'<svg class="chart mini" viewBox="0 0 32 14" aria-hidden="true">{_group(who, False)}'
+        f'<path class="line" d="M1 7H31"/>{mark}</g></svg>'
+    )
+
+
+def figure(charts: Sequence[Chart], caption: str, solvers: Iterable[str] = ()) -> Figure:
+    """The `Figure` of one or more panels; solvers: those in its legend."""
+    return Figure(
+        "".join(chart.svg() for chart in charts).encode(),
+        " ".join(chart.says for chart in charts),
+        caption,
+        wide=len(charts) > 1,
+        solvers=tuple(dict.fromkeys(solvers)),
+    )
+
+
+def _read(axis, begin, end):
+    """What a script needs to turn a place into a value."""
+    return {"label": axis.label, "low": axis.low, "high": axis.high, "log": axis.scale == "log", "at": [begin, end]}
+
+
+def _told(words):
+    return f' data-says="{escape(words)}"' if words else ""
+
+
+def _group(who, grey):
+    """The beginning of a group in a solver's colour and dashes."""
+    if not who:
+        return '<g class="who">'
+    colour, dashes = ("var(--ink)", "") if who not in ENGINES else (ENGINES[who].colour, _dashes(who))
+    if who not in ENGINES and who != REFERENCE:
+        colour = "var(--soft)"
+    if grey:
+        colour = "var(--faint)"
+    return f'<g class="who" data-who="{escape(who)}" style="--c:{colour};--d:{dashes or "none"}">'
+
+
+def _dashes(who):
+    dashes = ENGINES[who].dashes
+    return DASHES.get(dashes, "") if isinstance(dashes, str) else " ".join(f"{part:g}" for part in dashes[1])

@@ -1,0 +1,101 @@
+"""What the report shows of what matters more: one sentence, one ranked picture, one short table."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ...showing.charts import Axis, Chart, figure
+from ...showing.parts import Section, Table, percent
+from .page import ANALYTIC, BEST, _answer, _ranked, _rung, _said
+
+if TYPE_CHECKING:
+    from ...running.provenance import Result
+
+LEAST = 0.05  # per cent, where shares of none are drawn
+SHOWN = 14
+TICKS = ((0.05, "0"), (0.1, "0.1"), (1, "1"), (10, "10"), (100, "100"))
+
+
+def finding(result: Result) -> Section:
+    """The `Section` of the report about what flips verdicts."""
+    scenes = list(result.settings["scenes"])
+    first = [_changes(result, scene)[0] for scene in scenes]
+    engines = [row for scene in scenes for row in _ranked(result, scene) if _rung(result, row) == BEST]
+    title = f"What matters more than the engine: {_said(first[0])} of verdicts" + (
+        f", a good engine {percent(max(row['flips'] / row['runs'] for row in engines))} at most" if engines else ""
+    )
+    text = tuple(_answer(result, scene) for scene in scenes)
+    return Section(
+        title,
+        text,
+        tuple(_table(result, scene) for scene in scenes[:1]),
+        (figure([_panel(result, scene) for scene in scenes], _caption(), [row["solver"] for row in engines]),),
+        measured=(_how(result),),
+    )
+
+
+def _changes(result, scene):
+    return [row for row in _ranked(result, scene) if row["solver"] == ANALYTIC]
+
+
+def _shown(result, scene):
+    """The changes that flip most, and every engine."""
+    ranked = _ranked(result, scene)
+    return [row for row in ranked if row in _changes(result, scene)[:SHOWN] or row["solver"] != ANALYTIC]
+
+
+def _panel(result, scene):
+    rows = _shown(result, scene)
+    chart = Chart(
+        Axis("verdicts flipped [%]", LEAST, 100, "log", TICKS),
+        Axis("", len(rows) - 0.5, -0.5, ticks=tuple((k, _short(row["change"])) for k, row in enumerate(rows))),
+        f"{scene}: share of verdicts flipped by each change and engine, ranked. {_answer(result, scene)}",
+        left=196,
+        title=scene,
+        height=90 + 21 * len(rows),
+    )
+    for k, row in enumerate(rows):
+        who = "" if row["solver"] == ANALYTIC else row["solver"]
+        share, low, high = (max(100 * value, LEAST) for value in (row["flips"] / row["runs"], row["low"], row["high"]))
+        chart.reach([share], [k], [low], [high], who, along="x")
+        within = f"{percent(row['low'])} to {percent(row['high'])}"
+        says = f"{row['change']}: {row['flips']} of {row['runs']}, 95 % interval {within}"
+        chart.dots([share], [k], who, filled=not who or _rung(result, row) == BEST, says=[says])
+    return chart
+
+
+def _short(words):
+    return words.replace("of the horizontal", "of hor.").replace(" of its intensity", "")[:30]
+
+
+def _caption():
+    return (
+        "Share of verdicts that each change flips, with 95 % Wilson intervals. Ink: changes of the scene in the "
+        "analytic model; coloured: engines on the unchanged scene, filled at their best, open at other settings."
+    )
+
+
+def _table(result, scene):
+    return Table(
+        f"{scene}: verdicts flipped, and median change of peaks where the block stays upright",
+        ("change", "flipped", "95 % interval", "peak tilt"),
+        [
+            [
+                row["change"],
+                f"{row['flips']} of {row['runs']}",
+                f"{percent(row['low'])} to {percent(row['high'])}",
+                percent(row["tilt"]),
+            ]
+            for row in _shown(result, scene)
+        ],
+    )
+
+
+def _how(result):
+    s = result.settings
+    return (
+        f"{s['motions']} synthetic motions at {len(next(iter(s['scenes'].values()))['slendernesses'])} slendernesses, "
+        f"the first {s['motions_of_engines']} for the engines. Their factors lie lognormally, with a deviation of "
+        f"{s['spread']:g}, about the one that overturns half: near the boundary, where verdicts flip. The bearings are "
+        "taken as stiff vertically; real ones sway at 10 to 20 Hz, so that twice the vertical motion is run too."
+    )
