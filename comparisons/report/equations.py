@@ -89,8 +89,8 @@ REFERENCES = (
 )
 
 STEP, SLENDERNESS, START = 0.02, 0.28, 0.6  # s, rad, tilt over slenderness
-EXAGGERATED = 5  # angles of the four frames
-SIZE = 190, 150  # of a frame
+EXAGGERATED = 8  # angles of the four frames
+SIZE = 190, 112  # of a frame
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ def frames() -> tuple[Frame, ...]:
     rate = run.impacts[0].rate_after / exact.rate_after - 1
     late = 1e3 * (run.impacts[0].time - exact.time)
     words = (
-        f"1. The step straddles the impact: steps of {STEP * 1e3:g} ms see it {late:+.1f} ms off.",
+        f"1. The step straddles the impact: steps of {STEP * 1e3:g} ms see it {number(late, 2)} ms off.",
         f"2. The corner sinks in, here by {number(depth, 2)} mm, turning on about the old one.",
         "3. Pushed out again it may bounce or slide, which Housner's corner does not.",
         f"4. It turns on about the new corner at a rate off by {number(100 * rate, 2)} %: an error of the step.",
@@ -136,8 +136,8 @@ def _depth(block: Block, tilt: float) -> float:
 
 def _foot(tilt, corner, says, lift=0.0):
     """The foot of a block, its angle exaggerated, about its right (1) or left (-1) corner, `lift` above the ground."""
-    drawing = Drawing(*SIZE, 100, f"The foot of the block, {says}")
-    angle, b, height = EXAGGERATED * tilt, 55.0, 80.0
+    drawing = Drawing(*SIZE, 98, f"The foot of the block, {says}")
+    angle, b, height = EXAGGERATED * tilt, 50.0, 74.0
     pivot = corner * b
 
     def turned(u, w):

@@ -23,6 +23,7 @@ from engines import ENGINES
 
 from .sources import PROJECT, digests_of_all, source_digests
 
+NAMED = 3  # modules that a sentence on a stale result names
 SCHEMA = 1  # of the result files; raise it when a reader of the old ones would go wrong
 PROJECT_FOLDER = Path(__file__).parents[2]
 PACKAGES = ("numpy", "scipy", "numba", *(engine.package for engine in ENGINES.values()))
@@ -181,9 +182,10 @@ def age(result: Result) -> str | None:
         return None
     commit = result.provenance["commit"]
     origin = f"at commit {commit[:7]}" if commit else "outside a checkout"
+    others = f" and {len(changed) - NAMED} more" if len(changed) > NAMED else ""
     return (
         f"older than the code: computed on {result.provenance['time'][:10]} {origin}; since then changed: "
-        + ", ".join(changed)
+        f"{', '.join(changed[:NAMED])}{others}"
     )
 
 

@@ -5,8 +5,8 @@ import xml.etree.ElementTree as xml
 import pytest
 
 from comparisons.lessons.export import FOLDER, _environment
-from comparisons.showing.mathml import mathml, prose
 from comparisons.lessons.topics import lessons
+from comparisons.showing.mathml import mathml, prose
 
 CHILDREN = {"mfrac": 2, "msub": 2, "msup": 2, "msubsup": 3, "mover": 2}
 
