@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ..running.provenance import Result
 
 ANALYTIC = "analytic"
+G = 9.81  # m/s2
 TILT = 1.6  # limit of a tilt's axis, over slenderness
 SHOWN = 700  # samples of a line
 LEAST = 1e-9  # of a difference drawn
@@ -31,9 +32,11 @@ def earthquake(result: Result) -> Section:
         f"{scene['name']}: {outcomes([row for row in result.rows if row['scene'] == name])}"
         for name, scene in scenes.items()
     )
+    motion = result.settings["motion"]
+    under = f"Under {motion['label']}, peak {number(motion['peak'] / G)} g. " if motion else ""
     text = (
-        "Each solver runs until its outcome is decided. Tilt is compared up to the sensitivity horizon only: beyond it "
-        "a change as small as the solver's own errors makes another motion.",
+        f"{under}Each solver runs until its outcome is decided. Tilt is compared up to the sensitivity horizon only: "
+        "beyond it a change as small as the solver's own errors makes another motion.",
     )
     warnings = [
         [scenes[name]["name"], ", ".join(who), words] for name in scenes for words, who in warned(result, name).items()
@@ -136,7 +139,8 @@ def _table(result):
         engine = row["solver"] != ANALYTIC
         rows.append(
             [
-                f"{row['solver']}: {result.settings['scenes'][row['scene']]['name']}",
+                row["solver"],
+                result.settings["scenes"][row["scene"]]["name"],
                 row["verdict"],
                 number(row.get("overturning_time"), 5),
                 number(row.get("peak_tilt_ratio"), 3),
@@ -150,7 +154,8 @@ def _table(result):
     return Table(
         "Outcomes, and distance from the analytic model up to the sensitivity horizon",
         (
-            "solver, scene",
+            "solver",
+            "scene",
             "outcome",
             "overturns at [s]",
             "peak |φ|/γ [-]",

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
+from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +16,7 @@ from ..studies import StudyBroken, get_study, study_names
 if TYPE_CHECKING:
     from ..running.provenance import Result
 
+FEW = 4  # files, drawn here: new processes would take longer
 RESULTS = PROJECT_FOLDER / "comparisons" / "results"
 
 
@@ -38,7 +41,11 @@ def stored_studies(folder: Path = RESULTS) -> list[Stored]:
     def place(file):
         return (order.index(file.stem) if file.stem in order else len(order), file.stem)
 
-    return [_stored(file) for file in sorted(folder.glob("*.json"), key=place)]
+    files = sorted(folder.glob("*.json"), key=place)
+    if len(files) < FEW:
+        return [_stored(file) for file in files]
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as workers:
+        return list(workers.map(_stored, files))
 
 
 def origin_of(result: Result) -> str:

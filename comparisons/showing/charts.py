@@ -17,7 +17,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator
 
 from engines import ENGINES
 
-from .parts import Figure
+from .parts import Figure, power_of_ten
 
 WIDTH = 400
 LETTER = 13
@@ -32,7 +32,6 @@ SHAPES = {
     "P": "M-1.6-4.6h3.2v3h3v3.2h-3v3h-3.2v-3h-3v-3.2h3z",
     "x": "M-4-4L4 4M4-4L-4 4",
 }
-SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 @dataclass(frozen=True)
@@ -58,7 +57,7 @@ class Axis:
             return self.ticks
         if self.scale == "log":
             found = LogLocator(numticks=7).tick_values(self.low, self.high)
-            words = [f"10{str(round(math.log10(value))).translate(SUPERSCRIPTS)}" for value in found]
+            words = [power_of_ten(value) for value in found]
         else:
             found = MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]).tick_values(self.low, self.high)
             words = [f"{round(value, 12):g}".replace("-", "−") for value in found]
@@ -76,14 +75,23 @@ def log_axis(label: str, values: Iterable[float]) -> Axis:
 
 
 class Chart:
-    """One panel; says: what it shows, for those who cannot see it."""
+    """One panel; says: what it shows, for those who cannot see it. left, right, foot: room beside and below."""
 
     def __init__(
-        self, x: Axis, y: Axis, says: str, *, height: int = 270, left: int = 58, right: int = 14, title: str = ""
+        self,
+        x: Axis,
+        y: Axis,
+        says: str,
+        *,
+        height: int = 270,
+        left: int = 58,
+        right: int = 14,
+        foot: int | None = None,
+        title: str = "",
     ) -> None:
         self.x, self.y, self.says, self.title = x, y, says, title
         self.left, self.right = left, WIDTH - right
-        self.top, self.bottom = 30 if title else 12, height - (46 if x.label else 28)
+        self.top, self.bottom = 30 if title else 12, height - (foot or (46 if x.label else 28))
         self.height, self.parts, self.over = height, list[str](), list[str]()
         self.ends: list[tuple[float, str, str]] = []
 
@@ -191,11 +199,15 @@ class Chart:
 
     def _axes(self):
         parts = [f'<path class="axis" d="M{self.left} {self.top}V{self.bottom}H{self.right}"/>']
-        for value, word in self.x.marks():
+        marks = self.x.marks()
+        slanted = LETTER * 0.55 * sum(len(word) + 1 for _, word in marks) > self.right - self.left
+        for value, word in marks:
             x = self.at([value], [self.y.low])[0][0]
             parts.append(f'<path class="grid" d="M{x:.1f} {self.top}V{self.bottom}"/>')
+            anchor = 'y="0" text-anchor="middle"' if not slanted else 'transform="rotate(-35)" text-anchor="end"'
             parts.append(
-                f'<text class="soft" x="{x:.1f}" y="{self.bottom + 17}" text-anchor="middle">{escape(word)}</text>'
+                f'<g transform="translate({x:.1f} {self.bottom + 17})">'
+                f'<text class="soft" {anchor}>{escape(word)}</text></g>'
             )
         for value, word in self.y.marks():
             y = self.at([self.x.low], [value])[0][1]

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import matplotlib
 from markupsafe import Markup
+from matplotlib.ticker import FuncFormatter, LogFormatter, NullFormatter
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -92,11 +93,26 @@ WIDE = 7.0
 
 def figure_of(figure: matplotlib.figure.Figure, alt: str, caption: str) -> Figure:
     """The `Figure` of a matplotlib figure, in the colours of its page."""
+    _plain_powers(figure)
     file = io.BytesIO()
     with matplotlib.rc_context({**SVG, "svg.hashsalt": SALT + caption}):  # type: ignore[arg-type]  # a few keys of them
         figure.savefig(file, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
     wide = figure.get_size_inches()[0] > WIDE
     return Figure(_inline(file.getvalue().decode(), alt).encode(), alt, caption, wide)
+
+
+def _plain_powers(figure):
+    """Powers of ten of logarithmic axes as plain text: mathematics takes most of the time of drawing."""
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            if axis.get_scale() == "log" and isinstance(axis.get_major_formatter(), LogFormatter):
+                axis.set_major_formatter(FuncFormatter(lambda value, _: power_of_ten(value)))
+                axis.set_minor_formatter(NullFormatter())
+
+
+def power_of_ten(value: float) -> str:
+    """A power of ten in plain letters."""
+    return f"10{str(round(math.log10(value))).translate(MINUS_DIGITS)}" if value > 0 else "0"
 
 
 def _inline(text, alt):

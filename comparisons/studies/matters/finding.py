@@ -6,14 +6,24 @@ from typing import TYPE_CHECKING
 
 from ...showing.charts import Axis, Chart, figure
 from ...showing.parts import Section, Table, percent
-from .page import ANALYTIC, BEST, _answer, _ranked, _rung, _said
+from .page import ANALYTIC, BEST, _answer, _ranked, _rung
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
 
 LEAST = 0.05  # per cent, where shares of none are drawn
 SHOWN = 14
-TICKS = ((0.05, "0"), (0.1, "0.1"), (1, "1"), (10, "10"), (100, "100"))
+TICKS = ((0.05, "0"), (1, "1"), (10, "10"), (100, "100"))
+MOST = 27  # letters of a name in the figure
+SHORTER = {
+    "vertical motion, ": "vertical ",
+    " of the horizontal": " of horizontal",
+    "bearing stiffness ": "",
+    "bearing exponent ": "",
+    "time step of the record": "record's time step",
+    "off by 0.1 % of the peak": "off by 0.1 %",
+    " cut off after 95 % of its intensity": " cut off",
+}
 
 
 def finding(result: Result) -> Section:
@@ -21,7 +31,8 @@ def finding(result: Result) -> Section:
     scenes = list(result.settings["scenes"])
     first = [_changes(result, scene)[0] for scene in scenes]
     engines = [row for scene in scenes for row in _ranked(result, scene) if _rung(result, row) == BEST]
-    title = f"What matters more than the engine: {_said(first[0])} of verdicts" + (
+    flipped = percent(first[0]["flips"] / first[0]["runs"])
+    title = f"What matters more than the engine: {first[0]['change']} flips {flipped} of verdicts" + (
         f", a good engine {percent(max(row['flips'] / row['runs'] for row in engines))} at most" if engines else ""
     )
     text = tuple(_answer(result, scene) for scene in scenes)
@@ -65,7 +76,9 @@ def _panel(result, scene):
 
 
 def _short(words):
-    return words.replace("of the horizontal", "of hor.").replace(" of its intensity", "")[:30]
+    for long, short in SHORTER.items():
+        words = words.replace(long, short)
+    return words if len(words) <= MOST else words[: MOST - 1] + "…"
 
 
 def _caption():

@@ -41,7 +41,7 @@ def finding(result: Result) -> Section:
         ("solver", "right", "degraded", "failed", "cured by a finer setting"),
         [
             [
-                name,
+                name.replace("twin", "second implementation"),
                 *(
                     str(sum(cells[case, name][0]["verdict"] == verdict for case in cases))
                     for verdict in (RIGHT, DEGRADED, FAILED)
@@ -53,7 +53,7 @@ def finding(result: Result) -> Section:
     )
     caption = (
         "✓ right, ~ degraded, ≠ another outcome, ✗ failed; under the pointer: the measure farthest outside its "
-        "tolerance. Default variants, left to right: " + ", ".join(best) + "."
+        "tolerance. 2nd code: the independent second implementation; steps: plain time stepping of the equations."
     )
     return Section(
         title,
@@ -102,7 +102,8 @@ def _matrix(cells, cases, solvers):
         + ".",
         left=168,
         right=4,
-        height=40 + 19 * len(cases),
+        foot=58,
+        height=74 + 19 * len(cases),
     )
     for j, case in enumerate(cases):
         for i, name in enumerate(solvers):
@@ -114,7 +115,7 @@ def _matrix(cells, cases, solvers):
 
 
 def _short(name):
-    return {"analytic": "model", "twin": "2nd", "time-stepping": "step"}.get(name, name.split(",")[0][:5])
+    return {"twin": "2nd code", "time-stepping": "steps"}.get(name, name.split(",")[0])
 
 
 def _said(row, cure):

@@ -79,8 +79,9 @@ def test_a_study_of_another_package_gets_command_resumption_and_section(tmp_path
     status, _, err = rocking(tmp_path, "study", "swings", "--mass", "2", "--workers", "1")
     assert status == 0 and "2 runs done, 2 found" in err
     page = (
-        "import sys; from pathlib import Path; from comparisons.report.studies import study_sections\n"
-        "[one] = study_sections(Path(sys.argv[1]))\nprint(one.title, one.age, len(one.tables[0].rows))"
+        "import sys; from pathlib import Path; from comparisons.report.studies import stored_studies\n"
+        "[one] = [one.section for one in stored_studies(Path(sys.argv[1]))]\n"
+        "print(one.title, one.age, len(one.tables[0].rows))"
     )
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join((str(tmp_path), str(PROJECT_FOLDER)))}
     shown = subprocess.run(
