@@ -71,8 +71,8 @@ def _stored(file):
     try:
         study = get_study(result.kind)
         section = study.section(result)
-        finding = study.finding and study.finding(result)
-        judgement = study.judgement and study.judgement(result)
+        finding = study.finding(result) if study.finding else None
+        judgement = study.judgement(result) if study.judgement else None
     except (KeyError, StudyBroken) as error:
         words = f"{file.name} cannot be shown: {error.args[0]}."
         return Stored(file.stem, Section(f"Study {result.kind}", (words,), age=old), origin=origin)

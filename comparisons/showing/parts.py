@@ -7,7 +7,7 @@ import math
 import re
 from dataclasses import dataclass
 from html import escape
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import matplotlib
 from markupsafe import Markup
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 MINUS_DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 # Text as text, to search and to scale. The salt makes equal figures equal bytes; the caption keeps parts' names apart.
-SVG = {"svg.fonttype": "none"}
+SVG: dict[str, Any] = {"svg.fonttype": "none"}  # keys of matplotlib, a type of its own
 SALT = "rocking"
 # Greys up to a lightness [0 to 255] take a colour of the page, light or dark.
 GREYS = ((110, "currentColor"), (190, "var(--soft)"), (245, "var(--grid)"), (255, "var(--paper)"))
@@ -95,7 +95,7 @@ def figure_of(figure: matplotlib.figure.Figure, alt: str, caption: str) -> Figur
     """The `Figure` of a matplotlib figure, in the colours of its page."""
     _plain_powers(figure)
     file = io.BytesIO()
-    with matplotlib.rc_context({**SVG, "svg.hashsalt": SALT + caption}):  # type: ignore[arg-type]  # a few keys of them
+    with matplotlib.rc_context({**SVG, "svg.hashsalt": SALT + caption}):
         figure.savefig(file, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
     wide = figure.get_size_inches()[0] > WIDE
     return Figure(_inline(file.getvalue().decode(), alt).encode(), alt, caption, wide)

@@ -6,11 +6,10 @@ import re
 from pathlib import Path
 
 import pytest
+from javascript import NEEDED, chromium, quiet_page
 
-from analytic import synthetic_motion
-from comparisons.report.study import make_results
 from comparisons.report.write import write_page
-from tests.javascript import NEEDED, chromium, quiet_page
+from engines import installed_engines
 
 pytestmark = [pytest.mark.xdist_group("report"), pytest.mark.skipif(chromium() is None, reason=NEEDED)]
 PHONE, DESKTOP = {"width": 390, "height": 844}, {"width": 1280, "height": 800}
@@ -35,11 +34,10 @@ TEXTS = """() => {
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """A report with the stored studies, of one engine where there is one."""
-    folder = tmp_path_factory.mktemp("browser")
-    make_results(folder, synthetic_motion(), slendernesses=(0.3,), engines=["mujoco"])
-    write_page(folder)
+def folder(copy_of, studies, tmp_path_factory):
+    """A report with some stored studies."""
+    folder = copy_of(tmp_path_factory.mktemp("browser"))
+    write_page(folder, studies)
     return folder
 
 
@@ -82,7 +80,7 @@ def test_the_block_is_where_the_history_says(folder, browser):
     page, wrong = opened(browser, folder / "report.html")
     data = json.loads(page.locator("#histories").text_content())
     tracks = data["scenes"][0]["tracks"]
-    assert [track["who"] for track in tracks] == ["analytic", "mujoco"]
+    assert [track["who"] for track in tracks] == ["analytic", *installed_engines()]
     slider = page.locator("#stage input")
     for frame in (10, 120, 140):
         slider.fill(str(frame * data["step"]))
@@ -129,8 +127,9 @@ def test_tables_sort_rows_unfold_and_solvers_hide(folder, browser):
     folded = page.locator("details").first
     folded.locator("summary").first.click()
     assert folded.get_attribute("open") is not None
-    key = page.locator("#earthquake button[data-hides=mujoco]")
-    line = page.locator("#earthquake .panels [data-who=mujoco]").first
+    who = installed_engines()[0]
+    key = page.locator(f"#earthquake button[data-hides={who}]")
+    line = page.locator(f"#earthquake .panels [data-who={who}]").first
     assert line.is_visible()
     key.click()
     assert not line.is_visible() and key.get_attribute("aria-pressed") == "false"

@@ -1,0 +1,39 @@
+"""What the tests of the report share: its runs are made once."""
+
+import pytest
+
+from analytic import synthetic_motion
+from comparisons.report.studies import RESULTS
+from comparisons.report.study import make_results
+
+SLENDERNESS = 0.3
+
+
+@pytest.fixture(scope="session")
+def results(tmp_path_factory):
+    """Result files of a report on the synthetic motion, with every engine installed here; not to be changed."""
+    folder = tmp_path_factory.mktemp("results")
+    make_results(folder, synthetic_motion(), slendernesses=(SLENDERNESS,))
+    return folder
+
+
+@pytest.fixture(scope="session")
+def copy_of(results):
+    """Copies the result files into a folder."""
+
+    def copy(folder):
+        for file in results.glob("*.*"):
+            (folder / file.name).write_bytes(file.read_bytes())
+        return folder
+
+    return copy
+
+
+@pytest.fixture(scope="session")
+def studies(tmp_path_factory):
+    """Stored results of three studies: one that judges engines, one ranked, one a matrix."""
+    folder = tmp_path_factory.mktemp("studies")
+    for name in ("restitution", "matters", "stability"):
+        for file in RESULTS.glob(f"{name}.*"):
+            (folder / file.name).write_bytes(file.read_bytes())
+    return folder
