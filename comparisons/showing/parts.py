@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 MINUS_DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 # Text as text, to search and to scale. The salt makes equal figures equal bytes; the caption keeps parts' names apart.
-SVG: dict[str, Any] = {"svg.fonttype": "none"}  # keys of matplotlib, a type of its own
+SVG: Any = {"svg.fonttype": "none"}  # keys of matplotlib, a type of its own
 SALT = "rocking"
 # Greys up to a lightness [0 to 255] take a colour of the page, light or dark.
 GREYS = ((110, "currentColor"), (190, "var(--soft)"), (245, "var(--grid)"), (255, "var(--paper)"))
