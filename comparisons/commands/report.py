@@ -38,6 +38,12 @@ def command(
         str | None, typer.Option(help="Of the one engine, for the scenes given; its default, if not given.")
     ] = None,
     output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the page and its result files.")] = "report",
+    studies: Annotated[
+        str | None,
+        typer.Option(
+            metavar="DIR", help="Folder of the studies' result files, as of rocking study all. Default: those shipped."
+        ),
+    ] = None,
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write what the page shows of each run; - prints it.")
     ] = None,
@@ -54,6 +60,7 @@ def command(
     from ..running.solving import ANALYTIC, check_solver, ground_motion, say, stdout_to_stderr
 
     check_folder(output)
+    shown = _studies(studies)
     check_writable([json_file], inputs=[*(scene or ()), *([record] if record else ())])
     for name in engine or ():
         check_solver(name)
@@ -71,11 +78,24 @@ def command(
         else:
             make_results(output, motion, engines=engines)  # type: ignore[arg-type]  # without scenes there is one
     say("the page")
-    page = write_page(output)
+    page = write_page(output, shown)
     if json_file:
         write_text(json_file, form(page).text())
     if json_file != "-":
         print(page)
+
+
+def _studies(folder):
+    """The folder of the studies' result files, checked."""
+    from pathlib import Path
+
+    from analytic.errors import SettingError
+
+    from ..report.studies import RESULTS
+
+    if folder is not None and not any(Path(folder).glob("*.json")):
+        raise SettingError(f"--studies {folder}: holds no result file; rocking study all --output {folder} writes them")
+    return RESULTS if folder is None else Path(folder)
 
 
 def form(page: Path) -> Report:

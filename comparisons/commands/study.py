@@ -11,7 +11,7 @@ from typer.core import TyperGroup
 
 from analytic.errors import SettingError
 
-from ..studies import StudyBroken, draw, get_study, study_names
+from ..studies import BUILT_IN, StudyBroken, draw, get_study, study_names
 
 if TYPE_CHECKING:
     from ..running.study import Study
@@ -40,6 +40,7 @@ Scheduler = Annotated[
         help="Dask scheduler whose workers do the runs, HOST:PORT, or local:N. What is timed is done here.",
     ),
 ]
+EVERY = "all"
 Replot = Annotated[str | None, typer.Option(metavar="FILE", help="Run nothing, draw only, from this result file.")]
 
 
@@ -105,13 +106,47 @@ def _tell(lines):
         print(line)
 
 
+def every(
+    output: Annotated[
+        str, typer.Option(metavar="DIR", help="Folder for the result files; below it the runs of each study.")
+    ] = "studies",
+    quick: Quick = False,
+    engine: Engines = None,
+    workers: Workers = None,
+) -> None:
+    """All studies of this project, one after the other; interrupted, it goes on where it stopped.
+
+    Runs are kept, so that a second call computes only what is new. The result files are written side by side:
+    rocking report --studies DIR shows them.
+
+    Example: rocking study all --output studies
+    """
+    import shutil
+    import time
+    from pathlib import Path
+
+    from ..running.files import check_folder
+    from ..running.study import compute, say
+
+    check_folder(output)
+    for name in BUILT_IN:
+        began = time.monotonic()
+        say(f"study {name}")
+        folder = Path(output) / name
+        for path in compute(get_study(name), folder, engines=engine or None, quick=quick, workers=workers):
+            for file in (path, path.with_suffix(".npz")):
+                if file.exists():
+                    print(shutil.copy2(file, output))
+        say(f"study {name}: {(time.monotonic() - began) / 60:.1f} minutes")
+
+
 class _Studies(TyperGroup):
     def list_commands(self, ctx):
-        return list(study_names())
+        return [*study_names(), EVERY]
 
     def get_command(self, ctx, name):
         try:
-            function = command_of(get_study(name))
+            function = every if name == EVERY else command_of(get_study(name))
         except KeyError:
             return None
         except StudyBroken as error:

@@ -55,7 +55,7 @@ def rows_of(free: Result, groups: Sequence[Mapping[str, Any]], columns: Sequence
             continue
         variant = group["name"].split(", ")[1]
         kind = free.settings["variants"][group["solver"]][variant]
-        marks = (_restitution(group), *(one.marks.get((group["solver"], variant), UNTESTED) for one in columns))
+        marks = (_restitution(group), *(_mark(one, group, variant) for one in columns))
         rows.append(
             Row(
                 group["solver"],
@@ -70,6 +70,13 @@ def rows_of(free: Result, groups: Sequence[Mapping[str, Any]], columns: Sequence
         )
     order = list(LEVELS)
     return sorted(rows, key=lambda row: (order.index(row.verdict.level), row.cpu or 1e9))
+
+
+def _mark(judgement, group, variant):
+    """What a study says of a variant; one that takes engines as they come knows the default by no name."""
+    marks = judgement.marks
+    unnamed = marks.get((group["solver"], ""), UNTESTED) if group["default"] else UNTESTED
+    return marks.get((group["solver"], variant), unnamed)
 
 
 def _restitution(group):

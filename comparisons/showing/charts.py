@@ -93,7 +93,7 @@ class Chart:
         self.left, self.right = left, WIDTH - right
         self.top, self.bottom = 30 if title else 12, height - (foot or (46 if x.label else 28))
         self.height, self.parts, self.over = height, list[str](), list[str]()
-        self.ends: list[tuple[float, str, str]] = []
+        self.ends: list[tuple[float, str, str, str]] = []
 
     def at(self, xs: Sequence[float] | np.ndarray, ys: Sequence[float] | np.ndarray) -> np.ndarray:
         """Places, shape (points, 2), of values."""
@@ -101,9 +101,15 @@ class Chart:
         return np.column_stack([across, self.bottom - self.y.share(ys) * (self.bottom - self.top)])
 
     def line(
-        self, xs: Sequence[float] | np.ndarray, ys: Sequence[float] | np.ndarray, who: str = "", *, grey: bool = False
+        self,
+        xs: Sequence[float] | np.ndarray,
+        ys: Sequence[float] | np.ndarray,
+        who: str = "",
+        *,
+        grey: bool = False,
+        tone: str = "",
     ) -> None:
-        """A line of one solver; points that are not finite part it."""
+        """A line of one solver, or in a colour `tone`; points that are not finite part it."""
         path, pen = [], False
         last = None
         for x, y in self.at(xs, ys):
@@ -114,7 +120,7 @@ class Chart:
             if place != last:
                 path.append(f"{'L' if pen else 'M'}{place[0]:g} {place[1]:g}")
             pen, last = True, place
-        self.parts.append(f'{_group(who, grey)}<path class="line" d="{"".join(path)}"/></g>')
+        self.parts.append(f'{_group(who, grey, tone)}<path class="line" d="{"".join(path)}"/></g>')
 
     def dots(
         self,
@@ -126,6 +132,7 @@ class Chart:
         grey: bool = False,
         says: Sequence[str] | None = None,
         mark: str | None = None,
+        tone: str = "",
     ) -> None:
         """Marks of one solver; says: what each tells under the pointer."""
         shape = SHAPES.get(mark or marker(who), SHAPES["o"])
@@ -136,14 +143,14 @@ class Chart:
             for (x, y), words in zip(self.at(xs, ys), told, strict=True)
             if math.isfinite(x) and math.isfinite(y)
         ]
-        self.over.append(f"{_group(who, grey)}{''.join(marks)}</g>")
+        self.over.append(f"{_group(who, grey, tone)}{''.join(marks)}</g>")
 
     def reach(self, xs: Sequence[float], ys: Sequence[float], lows: Sequence[float], highs: Sequence[float],
-              who: str = "", *, along: str = "y", grey: bool = False) -> None:  # fmt: skip
+              who: str = "", *, along: str = "y", grey: bool = False, tone: str = "") -> None:  # fmt: skip
         """Intervals from `lows` to `highs` along an axis."""
         begins, ends = (self.at(xs, one) if along == "y" else self.at(one, ys) for one in (lows, highs))
         path = "".join(f"M{a[0]:.1f} {a[1]:.1f}L{b[0]:.1f} {b[1]:.1f}" for a, b in zip(begins, ends, strict=True))
-        self.parts.append(f'{_group(who, grey)}<path class="reach" d="{path}"/></g>')
+        self.parts.append(f'{_group(who, grey, tone)}<path class="reach" d="{path}"/></g>')
 
     def area(self, xs: Sequence[float], ys: Sequence[float], kind: str = "band") -> None:
         """A filled polygon; kind: its class."""
@@ -168,9 +175,9 @@ class Chart:
             f'<text class="{kind}" x="{a:.1f}" y="{b + 4:.1f}" text-anchor="{anchor}">{escape(text)}</text>'
         )
 
-    def label(self, y: float, text: str, who: str = "") -> None:
+    def label(self, y: float, text: str, who: str = "", tone: str = "") -> None:
         """Name of a line, in the right margin at the height where it ends."""
-        self.ends.append((float(self.at([self.x.low], [y])[0][1]), text, who))
+        self.ends.append((float(self.at([self.x.low], [y])[0][1]), text, who, tone))
 
     def cell(self, x: float, y: float, kind: str, sign: str, says: str) -> None:
         """A square of a matrix about (x, y), values one apart, of a class, with a sign in it."""
@@ -230,13 +237,14 @@ class Chart:
     def _labels(self):
         """Names of lines, pushed apart."""
         placed, last = [], -math.inf
-        for y, text, who in sorted(self.ends):
+        for y, text, who, tone in sorted(self.ends):
             last = max(y, last + LETTER + 2)
-            placed.append((last, text, who))
+            placed.append((last, text, who, tone))
         over = max(0.0, (placed[-1][0] if placed else 0.0) - self.bottom)
         return "".join(
-            f'{_group(who, False)}<text x="{self.right + 6}" y="{y - over + 4:.1f}">{escape(text)}</text></g>'
-            for y, text, who in placed
+            f'{_group(who, False, tone)}<path class="line" d="M{self.right + 5} {y - over:.1f}h10"/>'
+            f'<text x="{self.right + 19}" y="{y - over + 4:.1f}">{escape(text)}</text></g>'
+            for y, text, who, tone in placed
         )
 
 
@@ -275,10 +283,10 @@ def _told(words):
     return f' data-says="{escape(words)}"' if words else ""
 
 
-def _group(who, grey):
-    """The beginning of a group in a solver's colour and dashes."""
+def _group(who, grey, tone=""):
+    """The beginning of a group in a solver's colour and dashes, or in another colour."""
     if not who:
-        return '<g class="who">'
+        return f'<g class="who" style="--c:{tone}">' if tone else '<g class="who">'
     colour, dashes = ("var(--ink)", "") if who not in ENGINES else (ENGINES[who].colour, _dashes(who))
     if who not in ENGINES and who != REFERENCE:
         colour = "var(--soft)"

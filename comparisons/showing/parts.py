@@ -63,7 +63,9 @@ class Mark:
 
 @dataclass(frozen=True)
 class Judgement:
-    """A study's column of the decision table. heading: with unit. marks: {(engine, variant): `Mark`}."""
+    """A study's column of the decision table. heading: with unit. marks: {(engine, variant): `Mark`}; variant "" is the
+    default one.
+    """
 
     heading: str
     marks: dict

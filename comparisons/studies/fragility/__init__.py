@@ -3,6 +3,7 @@
 from ...running.study import Study
 from .cases import plan
 from .figures import draw_curves, draw_dispersions, draw_effects
+from .finding import finding, judgement
 from .page import section
 
 STUDY = Study(
@@ -11,4 +12,6 @@ STUDY = Study(
     plan,
     lambda result: {"": draw_curves(result), "measures": draw_dispersions(result), "solvers": draw_effects(result)},
     section,
+    finding=finding,
+    judgement=judgement,
 )

@@ -39,7 +39,7 @@ STARTS = tuple(round(float(start), 4) for start in np.linspace(0.3, 0.8, 8))
 FULL = Grid(
     (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45),
     (None, 10.0, 1.0, 0.3, CARYATID_BASE, 0.01),
-    STARTS,
+    STARTS[::2],
     tuple((gamma, ratio) for gamma in (0.1, 0.2, 0.3, 0.45) for ratio in (None, 1.0, CARYATID_BASE)),
     48,
 )
