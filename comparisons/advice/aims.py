@@ -33,6 +33,8 @@ SPARE = 2.0  # error asked for over the worst that a setting may show: neighbour
 def neighbours(scene: Scene, aim: str) -> dict[float, Scene]:
     """{factor: the scene with its start and its motion times that}, the scene itself with 1 first.
 
+    Where outcomes count they have no duration: a run that is cut before its outcome is decided shows none.
+
     Raises
     ------
     SettingError
@@ -40,6 +42,8 @@ def neighbours(scene: Scene, aim: str) -> dict[float, Scene]:
     """
     if scene.motion is None and not any(scene.start.model_dump().values()):
         raise SettingError(f"{scene.name}: nothing moves; give the scene a [start] or a [motion]")
+    if aim == "outcome":
+        scene = scene.with_(duration=None)
     found = {1.0: scene}
     for factor in sorted(FACTORS + (MORE_FACTORS if aim == "outcome" else ())):
         start = {name: factor * value for name, value in scene.start.model_dump().items()}

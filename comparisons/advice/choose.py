@@ -97,7 +97,8 @@ def choose(
 
 def _family(scene, aim):
     """(scene and neighbours by their factor, as long as they are looked at; that time of the scene itself [s])."""
-    family, span = neighbours(scene, aim), until(scene, aim)
+    family = neighbours(scene, aim)
+    span = until(family[1.0], aim)
 
     def cut(factor, one):
         try:

@@ -39,6 +39,14 @@ def test_neighbours_have_start_and_motion_scaled():
         aims.neighbours(RIGID.with_(start={"tilt": 0.0}), "tilt")
 
 
+def test_outcomes_are_those_of_runs_that_no_duration_cuts():
+    falling = RIGID.with_(start=Start(), motion=PulseMotion("one-sine", 6.0, 5.0), duration=1.0)
+    assert simulate(falling).end.time == 1.0
+    whole = aims.neighbours(falling, "outcome")[1.0]
+    assert simulate(whole).outcome == "overturns" and aims.until(whole, "outcome") == simulate(whole).end.time > 1.0
+    assert aims.neighbours(falling, "tilt")[1.0].duration == 1.0
+
+
 def test_restitution_is_looked_at_up_to_the_eighth_strong_impact():
     end = aims.until(RIGID, "restitution")
     impacts = [impact for impact in simulate(RIGID).impacts if impact.time < end]
