@@ -15,7 +15,7 @@ from markupsafe import Markup, escape
 
 from ..running.provenance import PACKAGES, age, read_result
 from ..showing import diagrams
-from ..showing.charts import REFERENCE, key_of
+from ..showing.charts import REFERENCE, STYLE, key_of
 from ..showing.mathml import mathml
 from ..showing.parts import Section, Table, number
 from ..showing.templates import templates
@@ -145,7 +145,7 @@ def colour_of(who: str) -> str:
 
 def _assets() -> dict[str, Markup]:
     return {
-        "style": Markup((HERE / "style.css").read_text(encoding="utf-8")),
+        "style": Markup(STYLE.read_text(encoding="utf-8") + (HERE / "style.css").read_text(encoding="utf-8")),
         "script": Markup((HERE / "page.js").read_text(encoding="utf-8")),
         "animation": Markup((HERE / "animation.js").read_text(encoding="utf-8")),
     }

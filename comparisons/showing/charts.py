@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
+from pathlib import Path
 
 import numpy as np
 from matplotlib.ticker import LogLocator, MaxNLocator
@@ -19,6 +20,7 @@ from engines import ENGINES
 
 from .parts import Figure, power_of_ten
 
+STYLE = Path(__file__).with_name("charts.css")  # colours of pages, light and dark, and the rules of charts
 WIDTH = 400
 LETTER = 13
 REFERENCE = "analytic"
@@ -272,6 +274,13 @@ def figure(charts: Sequence[Chart], caption: str, solvers: Iterable[str] = ()) -
         wide=len(charts) > 1,
         solvers=tuple(dict.fromkeys(solvers)),
     )
+
+
+def alone(svg: str) -> str:
+    """The element of a chart as a file of its own, light or dark as its reader wants."""
+    named = svg.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1)
+    opening, rest = named[: named.index(">") + 1], named[named.index(">") + 1 :]
+    return f"{opening}<style>{STYLE.read_text(encoding='utf-8')}</style>{rest}\n"
 
 
 def _read(axis, begin, end):

@@ -85,6 +85,7 @@ def _panel(result, ground):
         f"Error of restitution over slenderness on {PANELS[ground]}, every engine and variant.",
         title=f"on {PANELS[ground]}",
         height=300,
+        right=88,
     )
     chart.rule(TRUSTED, "y", "trusted below")
     for grey in (True, False):
@@ -96,6 +97,8 @@ def _panel(result, ground):
             says = [f"{engine}, {variant}: {number(e, 2)} at γ = {g:g}" for g, e in zip(gammas, errors, strict=True)]
             chart.line(gammas, errors, engine, grey=grey)
             chart.dots(gammas, errors, engine, grey=grey, filled=not grey, says=says)
+            if not grey:
+                chart.label(errors[-1], engine, engine)
     return chart
 
 
