@@ -75,8 +75,15 @@ def shown(study, found, tmp_path):
     """The study's section of an answer that went through a result file."""
     settings = {**found.settings, "changed_while_running": []}
     path = write_result(tmp_path / "r.json", study.name, settings, found.rows, found.arrays, modules=["analytic"])
-    section = study.section(read_result(path))
-    assert all(len(row) == len(table.columns) for table in section.tables for row in table.rows)
+    result = read_result(path)
+    section = study.section(result)
+    finding = study.finding(result) if study.finding else None
+    for one in filter(None, (section, finding)):
+        assert all(len(row) == len(table.columns) for table in one.tables for row in table.rows)
+    if finding is not None:
+        assert finding.title and len(finding.figures) == 1 and finding.measured
+        assert rows_with(finding) or drawn(finding)
+    assert study.judgement is None or "crude" in {engine for engine, _ in study.judgement(result).marks}
     return section
 
 
