@@ -38,6 +38,14 @@ def block_from(
     ------
     SettingError
         A length or the mass is not above 0, or both or none of mass and density are given.
+
+    Examples
+    --------
+    >>> bust = block_from(1.9, 0.55, density=MATERIALS["marble"])
+    >>> round(bust.mass), round(bust.slenderness, 4)
+    (1552, 0.2818)
+    >>> "mass = 1551.83" in scene_text("bust", bust)
+    True
     """
     given = {"height": height, "width": width, "depth": depth, "density": density, "mass": mass}
     for name, value in given.items():

@@ -109,7 +109,17 @@ def read_channels(
     column: int | None = None,
     channel: int | str | None = None,
 ) -> tuple[Channel, ...]:
-    """All channels of a record file, or the chosen one alone; parameters and errors as those of `read_record`."""
+    """All channels of a record file, or the chosen one alone; parameters and errors as those of `read_record`.
+
+    >>> import tempfile
+    >>> lines = "Zeit [s];a [m/s2]", "0,00;0,1", "0,01;-0,4", "0,02;0,2"
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "own.csv"
+    ...     _ = file.write_text(chr(10).join(lines))
+    ...     (found,) = read_channels(file)
+    >>> found.motion.dt, found.motion.peak, found.unit.word
+    (0.01, 0.4, 'm/s2')
+    """
     path = Path(path)
     try:
         form, contents = _contents(path, Asked(dt, column))

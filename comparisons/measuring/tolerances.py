@@ -144,6 +144,12 @@ def rows(engine: str, variant: str | None = None) -> tuple[Tolerance, ...]:
     EngineNotInstalled
     SettingError
         The engine has no such variant.
+
+    Examples
+    --------
+    >>> row = rows("exudyn", "switched-joints")[0]
+    >>> row.check() <= row.bound
+    True
     """
     known = get_engine(engine)
     variant = variant or known.default_variant

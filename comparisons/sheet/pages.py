@@ -36,6 +36,11 @@ def write_sheet(folder: Path) -> list[Path]:
     """Write the sheet into `folder`, which exists; returns the paths written, the first to be read first.
 
     Answers that are there already are kept.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     [path.name for path in write_sheet(Path(folder))][:3]
+    ['index.md', 'index.html', 'answers.csv']
     """
     files = {
         "index.md": _index_markdown(),

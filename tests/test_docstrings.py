@@ -1,0 +1,20 @@
+"""The examples in docstrings give what they say."""
+
+import doctest
+import importlib
+
+import pytest
+
+
+@pytest.mark.parametrize(
+    "module",
+    [
+        "analytic.new_scene",
+        "analytic.records",
+        "comparisons.sheet.pages",
+        pytest.param("comparisons.measuring.tolerances", marks=pytest.mark.slow),
+    ],
+)
+def test_examples(module):
+    found = doctest.testmod(importlib.import_module(module))
+    assert found.attempted and not found.failed
