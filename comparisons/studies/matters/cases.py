@@ -6,12 +6,14 @@ how near the verdicts are, and this is said with the answer.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
+import typer
 from scipy.stats import norm
 
 from analytic import load_scene, simulate_many, synthetic_motion
+from analytic.rocking import RockingModel
 from engines import get_engine
 
 from ...measuring.statistics import confusion, mcnemar, wilson
@@ -19,6 +21,8 @@ from ...running.cases import Case
 from ...running.study import Batch, Found, say
 from ...showing.wording import solver_name
 from .changes import changes
+from .records import record_cases, record_rows, triples
+from .vertical import vertical_cases, vertical_rows
 
 if TYPE_CHECKING:
     from analytic import Response
@@ -30,7 +34,13 @@ SPREAD = 0.4  # standard deviation of the logarithm of the motions' factors
 TRIED = np.geomspace(0.1, 4.0, 40)  # factors among which the one is found that overturns half
 # name: (shipped scene, slendernesses [rad])
 SCENES = {"free-standing": ("caryatid-rigid", (0.15, 0.2, 0.28)), "isolated": ("caryatid-isolated", (0.12, 0.15, 0.18))}
-FULL, QUICK = (300, 60), (16, 2)  # motions for the analytic changes and for the engines
+# motions for the analytic changes, for engines at their best, at other rungs (these run the middle slenderness alone)
+FULL, QUICK = (300, 90, 20), (16, 2, 1)
+BEST = "best"
+LIFTING = 1.3  # least peak over g tan γ of the engines' motions: a stiff corner that hardly lifts takes minutes
+TIME_LIMIT = 60.0  # s, of an engine's run
+RECORDS = "Folder of recorded triples, searched for files with two horizontal channels and a vertical one."
+Folder = Annotated[str | None, typer.Option("--records", metavar="FOLDER", help=RECORDS)]
 
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
@@ -39,23 +49,35 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
         "overturns": response.outcome == "overturns",
         "tilt": response.peak_tilt_ratio,
         "displacement": response.peak_base_displacement,
+        "demand": response.friction_demand,
+        "normal": response.min_normal_ratio,
     }
 
 
-def plan(ask: Ask, scenes: dict[str, Any] | None = None, motions: tuple[int, int] | None = None) -> Plan:
+def plan(
+    ask: Ask,
+    scenes: dict[str, Any] | None = None,
+    motions: tuple[int, int, int] | None = None,
+    *,
+    records: Folder = None,
+) -> Plan:
     """The plan of the study; an answer with one scene more each time.
 
-    Rows: a change or an engine's variant in a scene, over all motions and slendernesses: how many verdicts it flips,
-    and how far it moves the peaks of those that stay upright.
+    Rows by "part": "change" (a change or an engine's variant in a scene, over all motions and slendernesses: how many
+    verdicts it flips, and how far it moves the peaks of those that stay upright), "vertical" (see `vertical_rows`) and
+    "record" (see `record_rows`; none without a folder).
 
     Parameters
     ----------
     ask : Ask
-    scenes, motions : dict and (int, int), optional
-        In place of `SCENES`, and of the numbers of motions for changes and engines.
+    scenes, motions : dict and (int, int, int), optional
+        In place of `SCENES`, and of the numbers of motions, `FULL` or `QUICK`.
+    records : str, optional
+        Folder of recorded triples. Of what they hold, the answer keeps counts and ratios.
     """
     scenes = scenes or SCENES
-    count, of_engines = motions or (QUICK if ask.quick else FULL)
+    counts = motions or (QUICK if ask.quick else FULL)
+    count, recorded = counts[0], triples(records)
     variants = {(name, variant): kind for name in ask.engines for variant, kind in get_engine(name).variants.items()}
     rows, described = [], {}
     for name, (shipped, slendernesses) in scenes.items():
@@ -66,14 +88,24 @@ def plan(ask: Ask, scenes: dict[str, Any] | None = None, motions: tuple[int, int
             factors[slenderness] = _half(name, scene, min(count, 50))
             bases.append(_ensemble(scene, factors[slenderness], count))
         changed = yield Batch(_changed(bases), measure, f"{name}: changes")
-        run = yield Batch(_by_engines(bases, variants, of_engines), measure, f"{name}: engines")
-        rows += _rows(name, changed + run)
+        run = yield Batch(_by_engines(bases, variants, counts), measure, f"{name}: engines", TIME_LIMIT)
+        raised = yield Batch(vertical_cases(bases, max(count // 3, 1)), measure, f"{name}: vertical motions")
+        rows += _rows(name, changed + run) + vertical_rows(name, _usual(changed), raised)
+        if recorded:
+            held = yield Batch(record_cases(usual, slendernesses, recorded), measure, f"{name}: records")
+            rows += record_rows(name, recorded, held)
         described[name] = {"scene": shipped, "slendernesses": list(slendernesses), "half": list(factors.values())}
         settings = {
             "quick": ask.quick,
             "scenes": dict(described),
             "motions": count,
-            "motions_of_engines": of_engines,
+            "motions_of_engines": counts[1],
+            "motions_of_other_rungs": counts[2],
+            "slenderness_of_engines": {
+                key: scene["slendernesses"][len(scene["slendernesses"]) // 2] for key, scene in described.items()
+            },
+            "lifting": LIFTING,
+            "records": len(recorded),
             "spread": SPREAD,
             "rungs": {solver_name(*pair): kind.rung for pair, kind in variants.items()},
         }
@@ -92,19 +124,24 @@ def _changed(bases):
     ]
 
 
-def _by_engines(bases, variants, count):
-    """The first scenes of every ensemble as they are, in every (engine, variant)."""
+def _by_engines(bases, variants, counts):
+    """The first scenes of the middle ensemble that lift, in every (engine, variant); most at an engine's best."""
+    place = len(bases) // 2
+    lifting = [
+        (seed, base)
+        for seed, base in enumerate(bases[place])
+        if base.motion.peak >= LIFTING * RockingModel.of(base).uplift_acceleration
+    ]
     return [
         Case(
             base,
             solver,
             variant,
             {"history": False},
-            {"change": solver_name(solver, variant), "seed": seed, "place": k},
+            {"change": solver_name(solver, variant), "seed": seed, "place": place},
         )
-        for solver, variant in variants
-        for k, ensemble in enumerate(bases)
-        for seed, base in enumerate(ensemble[:count])
+        for (solver, variant), kind in variants.items()
+        for seed, base in lifting[: counts[1] if kind.rung == BEST else counts[2]]
     ]
 
 
@@ -131,16 +168,21 @@ def _ensemble(scene, half, count):
 
 def _rows(name, results):
     """A row for every change, against the model as it is on the same motion."""
-    usual = {
-        (row.case.tag["place"], row.case.tag["seed"]): row.values
-        for row in results
-        if row.case.tag["change"] == AS_IT_IS and not row.failed
-    }
+    usual = _usual(results)
     groups: dict[tuple[str, str], list] = {}
     for row in results:
         if row.case.tag["change"] != AS_IT_IS:
             groups.setdefault((row.case.solver, row.case.tag["change"]), []).append(row)
     return [_row(name, solver, change, usual, members) for (solver, change), members in groups.items()]
+
+
+def _usual(results):
+    """{(place, seed): values} of the model as it is."""
+    return {
+        (row.case.tag["place"], row.case.tag["seed"]): row.values
+        for row in results
+        if row.case.tag["change"] == AS_IT_IS and not row.failed
+    }
 
 
 def _row(name, solver, change, usual, members):
@@ -149,7 +191,14 @@ def _row(name, solver, change, usual, members):
         for row in members
         if not row.failed and (row.case.tag["place"], row.case.tag["seed"]) in usual
     ]
-    found = {"scene": name, "solver": solver, "change": change, "runs": len(pairs), "failed": len(members) - len(pairs)}
+    found = {
+        "part": "change",
+        "scene": name,
+        "solver": solver,
+        "change": change,
+        "runs": len(pairs),
+        "failed": len(members) - len(pairs),
+    }
     if not pairs:
         return found | dict.fromkeys(("flips", "falls", "low", "high", "p_value", "tilt", "displacement"))
     table = confusion(*(np.array([values["overturns"] for values in side]) for side in zip(*pairs, strict=True)))

@@ -11,11 +11,11 @@ import numpy as np
 
 from analytic import SampledMotion, synthetic_motion
 from analytic.bearing import BearingLaw
-from analytic.pairing import paired
 from analytic.rocking import RockingModel
 
 if TYPE_CHECKING:
     from analytic import Scene
+    from analytic.types import Motion
 
 OTHERS = 100_000  # seeds of the other horizontal, and twice of the vertical component, above those of the first
 USUAL_RATIO = 2 / 3  # peak vertical over peak horizontal acceleration, as codes took it for long
@@ -34,10 +34,22 @@ def changes(scene: Scene, seed: int) -> Iterator[tuple[str, Scene]]:
 
 def _upright(ratio: float) -> Callable[[Scene, int], list[Scene]]:
     def change(scene, seed):
-        up = synthetic_motion(seed=seed + 2 * OTHERS)
-        return [scene.with_(motion=paired(scene.motion, up.scaled(ratio * scene.motion.peak / up.peak)))]
+        return [scene.with_(motion=with_vertical(scene.motion, seed, ratio))]
 
     return change
+
+
+def with_vertical(motion: Motion, seed: int, ratio: float, faster: float = 1.0) -> SampledMotion:
+    """A sampled motion with a vertical one of another seed: peak `ratio` of its own, in time `faster` times as fast.
+
+    What is faster keeps the time of its peak.
+    """
+    up = synthetic_motion(seed=seed + 2 * OTHERS)
+    times = np.arange(len(motion.samples)) * motion.dt
+    samples = up.acceleration(up.peak_time + faster * (times - up.peak_time))
+    samples = samples * (ratio * motion.peak / np.abs(samples).max())
+    vertical = SampledMotion(motion.dt, samples, f"{up.label}, {faster:g} times as fast")
+    return SampledMotion(motion.dt, motion.samples, motion.label, motion.warnings, vertical)
 
 
 def _turned(scene, seed):

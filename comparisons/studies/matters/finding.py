@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from ...showing.charts import Axis, Chart, figure
 from ...showing.parts import Section, Table, percent
-from .page import ANALYTIC, BEST, _answer, _ranked, _rung
+from .figures import ANALYTIC, BEST, ranked, rung
+from .page import _answer, _contact, _engines, _vertical
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
@@ -30,29 +31,28 @@ def finding(result: Result) -> Section:
     """The `Section` of the report about what flips verdicts."""
     scenes = list(result.settings["scenes"])
     first = [_changes(result, scene)[0] for scene in scenes]
-    engines = [row for scene in scenes for row in _ranked(result, scene) if _rung(result, row) == BEST]
+    engines = [row for scene in scenes for row in ranked(result, scene) if rung(result, row) == BEST]
     flipped = percent(first[0]["flips"] / first[0]["runs"])
     title = f"What matters more than the engine: {first[0]['change']} flips {flipped} of verdicts" + (
         f", a good engine {percent(max(row['flips'] / row['runs'] for row in engines))} at most" if engines else ""
     )
-    text = tuple(_answer(result, scene) for scene in scenes)
+    text = tuple(sentence(result, scene) for scene in scenes for sentence in (_answer, _vertical))
     return Section(
         title,
         text,
         tuple(_table(result, scene) for scene in scenes[:1]),
         (figure([_panel(result, scene) for scene in scenes], _caption(), [row["solver"] for row in engines]),),
-        measured=(_how(result),),
+        measured=(_how(result), *(_contact(result, scene) for scene in scenes)),
     )
 
 
 def _changes(result, scene):
-    return [row for row in _ranked(result, scene) if row["solver"] == ANALYTIC]
+    return [row for row in ranked(result, scene) if row["solver"] == ANALYTIC]
 
 
 def _shown(result, scene):
     """The changes that flip most, and every engine."""
-    ranked = _ranked(result, scene)
-    return [row for row in ranked if row in _changes(result, scene)[:SHOWN] or row["solver"] != ANALYTIC]
+    return [row for row in ranked(result, scene) if row in _changes(result, scene)[:SHOWN] or row["solver"] != ANALYTIC]
 
 
 def _panel(result, scene):
@@ -71,7 +71,7 @@ def _panel(result, scene):
         chart.reach([share], [k], [low], [high], who, along="x")
         within = f"{percent(row['low'])} to {percent(row['high'])}"
         says = f"{row['change']}: {row['flips']} of {row['runs']}, 95 % interval {within}"
-        chart.dots([share], [k], who, filled=not who or _rung(result, row) == BEST, says=[says])
+        chart.dots([share], [k], who, filled=not who or rung(result, row) == BEST, says=[says])
     return chart
 
 
@@ -107,8 +107,8 @@ def _table(result, scene):
 def _how(result):
     s = result.settings
     return (
-        f"{s['motions']} synthetic motions at {len(next(iter(s['scenes'].values()))['slendernesses'])} slendernesses, "
-        f"the first {s['motions_of_engines']} for the engines. Their factors lie lognormally, with a deviation of "
+        f"{s['motions']} synthetic motions at {len(next(iter(s['scenes'].values()))['slendernesses'])} slendernesses. "
+        f"{_engines(s)} The motions' factors lie lognormally, with a deviation of "
         f"{s['spread']:g}, about the one that overturns half: near the boundary, where verdicts flip. The bearings are "
         "taken as stiff vertically; real ones sway at 10 to 20 Hz, so that twice the vertical motion is run too."
     )

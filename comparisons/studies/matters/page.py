@@ -4,92 +4,109 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-from matplotlib.figure import Figure
-
+from ...measuring.statistics import wilson
 from ...showing.parts import Section, Table, figure_of, number, percent
-from ...showing.plots import marker, style
+from .figures import ANALYTIC, BEST, draw, draw_vertical, parted, ranked, rung
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
 
-ANALYTIC = "analytic"
-CHANGED = "0.25"
-BEST = "best"
+USUAL = 0.7  # V/H of the sentence on the contact
 
 
 def section(result: Result) -> Section:
     """The `Section` of a result of this study."""
     s = result.settings
     asked = (
-        f"{s['motions']} synthetic motions, the first {s['motions_of_engines']} of them for the engines, at "
+        f"{s['motions']} synthetic motions at "
         f"{'; '.join(_scene(name, scene) for name, scene in s['scenes'].items())}. Their factors lie lognormally, with "
         f"a deviation of {s['spread']:g}, about the one that overturns half: near the boundary, where verdicts flip. "
-        "Each is changed in one way at a time, and run in every engine at every rung; a flip is another verdict than "
-        "the analytic model's of the motion as it is. The vertical motion is another seed's, and bearings are taken as "
+        "Each is changed in one way at a time; a flip is another verdict than the analytic model's of the motion as it "
+        f"is. {_engines(s)} The vertical motion is another seed's, and bearings are taken as "
         "stiff vertically: real ones sway at 10 to 20 Hz, so that twice the motion is run too."
     )
     answers = [_answer(result, scene) for scene in s["scenes"]]
+    raised = [sentence for scene in s["scenes"] for sentence in (_vertical(result, scene), _contact(result, scene))]
     figure = figure_of(
         draw(result),
         f"Share of verdicts flipped by each change and each engine, ranked, with 95 % intervals. {' '.join(answers)}",
         "Share of verdicts that each change flips, with 95 % Wilson intervals. Grey: changes of the scene in the "
         "analytic model; coloured: engines on the unchanged scene, filled at their best, open at other rungs.",
     )
-    return Section("What matters more than the engine", (asked, *answers), tuple(_tables(result)), (figure,))
-
-
-def draw(result: Result) -> Figure:
-    """Share of flipped verdicts, ranked; a panel per scene."""
-    scenes = list(result.settings["scenes"])
-    most = max(len(_ranked(result, scene)) for scene in scenes)
-    figure = Figure(figsize=(6.4 * len(scenes), 1.2 + 0.26 * most), layout="constrained")
-    for axis, scene in zip(figure.subplots(1, len(scenes), squeeze=False)[0], scenes, strict=True):
-        rows = _ranked(result, scene)[::-1]
-        for place, row in enumerate(rows):
-            engine = row["solver"] != ANALYTIC
-            colour = style(row["solver"])["color"] if engine else CHANGED
-            share = 100 * row["flips"] / row["runs"]
-            reach = [[share - 100 * row["low"]], [100 * row["high"] - share]]
-            axis.errorbar(
-                share,
-                place,
-                xerr=np.maximum(reach, 0),
-                fmt=marker(row["solver"]) if engine else "o",
-                color=colour,
-                markersize=5,
-                capsize=2,
-                markerfacecolor=colour if not engine or _rung(result, row) == BEST else "white",
-            )
-        axis.set_xscale("symlog", linthresh=0.1)
-        axis.set(title=scene, xlabel="verdicts flipped [%]", xlim=(-0.02, 110), ylim=(-0.7, len(rows) - 0.3))
-        axis.set_xticks([0, 0.1, 0.3, 1, 3, 10, 30, 100], labels=["0", "0.1", "0.3", "1", "3", "10", "30", "100"])
-        axis.minorticks_off()
-        axis.set_yticks(range(len(rows)), labels=[row["change"] for row in rows], fontsize="small")
-        axis.grid(axis="x", color="0.9")
-        axis.spines[["top", "right"]].set_visible(False)
-    return figure
+    over = figure_of(
+        draw_vertical(result),
+        f"Share of verdicts that the vertical motion flips, over V/H. {' '.join(raised)}",
+        "Share of verdicts that the vertical motion flips over its peak, with 95 % Wilson intervals, for "
+        "vertical motions "
+        "as fast as the horizontal ones, twice and four times as fast. Diamonds: recorded triples in all "
+        "directions about "
+        "the factor that overturns half, with the mean frequency of their vertical over that of their "
+        "horizontal motion.",
+    )
+    title = "What matters more than the engine"
+    return Section(title, (asked, *answers, *raised), tuple(_tables(result)), (figure, over))
 
 
 def _scene(name, scene):
     return f"{name}, slenderness {', '.join(f'{x:g}' for x in scene['slendernesses'])} ({scene['scene']})"
 
 
-def _rung(result, row):
-    return result.settings["rungs"].get(row["change"])
+def _engines(settings):
+    """What engines are given, and what so few runs resolve."""
+    if not settings["rungs"]:
+        return "No engine took part."
+    best, others = settings["motions_of_engines"], settings["motions_of_other_rungs"]
+    slender = "; ".join(f"{value:g} ({name})" for name, value in settings["slenderness_of_engines"].items())
+    return (
+        f"Engines run the first {best} at their best, {others} at other rungs, whose peak is at least "
+        f"{settings['lifting']:g} g tan γ, at slenderness {slender}: without a flip among them, a share up "
+        f"to {percent(wilson(0, best)[1])} and {percent(wilson(0, others)[1])} is not excluded."
+    )
 
 
-def _ranked(result, scene):
-    rows = [row for row in result.rows if row["scene"] == scene and row["runs"]]
-    return sorted(rows, key=lambda row: (-row["flips"] / row["runs"], row["change"]))
+def _vertical(result, scene):
+    """One sentence: what V/H and how fast the vertical motion is make of it; recorded triples beside it."""
+    rows = [row for row in parted(result, "vertical", scene) if row["ratio"]]
+    told = []
+    for faster in dict.fromkeys(row["faster"] for row in rows):
+        first, *_, last = [row for row in rows if row["faster"] == faster]
+        told.append(
+            f"{percent(first['flips'] / first['runs'])} at V/H {first['ratio']:g} to "
+            f"{percent(last['flips'] / last['runs'])} at {last['ratio']:g}, {faster:g} times as fast as the horizontal"
+        )
+    words = f"{scene.capitalize()}: the vertical motion flips {'; '.join(told)}."
+    recorded = parted(result, "record", scene)
+    if recorded:
+        words += " Recorded triples: " + "; ".join(
+            f"{percent(row['flips'] / row['runs'])} of {row['runs']} verdicts at V/H {row['ratio']:.2f}, "
+            f"{row['faster']:.1f} times as fast (turned by 30°: {percent(row['turned'] / row['runs'])})"
+            for row in recorded
+        )
+        words += "; runs of one record are no sample, so that these have no intervals."
+    return words
+
+
+def _contact(result, scene):
+    """One sentence: friction demand against coefficients and the normal force against zero, without and with it."""
+    told = []
+    rows = parted(result, "vertical", scene)
+    for row in [row for row in rows if row["ratio"] in (0, USUAL, max(row["ratio"] for row in rows))]:
+        if row["faster"] == 1:
+            sliding = ", ".join(f"{limit} in {percent(n / row['runs'])}" for limit, n in row["sliding"].items())
+            told.append(
+                f"at V/H {row['ratio']:g} the block needs more friction than {sliding} of the runs, and N "
+                "reaches zero, "
+                f"where the model ends, in {percent(row['lifts_off'] / row['runs'])}"
+            )
+    return f"{scene.capitalize()}: " + "; ".join(told) + "."
 
 
 def _answer(result, scene):
     """One sentence: the three changes that flip most, and what the best engines flip beside them."""
-    rows = _ranked(result, scene)
+    rows = ranked(result, scene)
     changed = [row for row in rows if row["solver"] == ANALYTIC]
-    best = [row for row in rows if row["solver"] != ANALYTIC and _rung(result, row) == BEST]
-    rest = [row for row in rows if row["solver"] != ANALYTIC and _rung(result, row) != BEST]
+    best = [row for row in rows if row["solver"] != ANALYTIC and rung(result, row) == BEST]
+    rest = [row for row in rows if row["solver"] != ANALYTIC and rung(result, row) != BEST]
     words = f"{scene.capitalize()}: most verdicts are flipped by {'; '.join(_said(row) for row in changed[:3])}."
     if best:
         words += f" Engines at their best: {'; '.join(_said(row) for row in best)}."
@@ -132,6 +149,6 @@ def _tables(result):
                     percent(row["displacement"]),
                     str(row["failed"]),
                 )
-                for row in _ranked(result, scene)
+                for row in ranked(result, scene)
             ],
         )

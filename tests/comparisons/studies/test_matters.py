@@ -1,28 +1,46 @@
 """What matters: every change is of the size its name says, and a flip is another verdict on the same motion."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from answered import answered, by_runs
+from mutated_files import csmip
 from scipy.stats import norm
 
 from analytic import load_scene, simulate, synthetic_motion
 from analytic.bearing import BearingLaw
+from analytic.errors import SettingError
+from analytic.pairing import paired
 from analytic.rocking import RockingModel
+from comparisons.running.provenance import read_result, write_result
 from comparisons.running.study import Ask
 from comparisons.studies import get_study
 from comparisons.studies.matters.cases import SPREAD
-from comparisons.studies.matters.changes import changes
+from comparisons.studies.matters.changes import changes, with_vertical
+from comparisons.studies.matters.page import section
+from comparisons.studies.matters.records import SPREAD as RECORD_SPREAD
+from comparisons.studies.matters.records import triples
+from comparisons.studies.matters.vertical import FASTER, RATIOS
 
 STUDY = get_study("matters")
 SCENES = {"isolated": ("caryatid-isolated", (0.15,))}
 COUNT = 8
 
+pytestmark = pytest.mark.xdist_group("matters")  # its runs are made once
+
+
+def write_triple(path):
+    """A made-up file of three channels, two horizontal: as the synthetic motion, twice (upward) and three times it."""
+    path.write_text(csmip((0.3 * synthetic_motion().samples[::8]).tolist(), step=".040"))
+
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
     folder = tmp_path_factory.mktemp("matters")
-
-    return answered(STUDY.plan(Ask(()), SCENES, (COUNT, 0)), by_runs(folder))[-1]
+    write_triple(folder / "triple.V2")
+    (folder / "notes.txt").write_text("no record\n")
+    return answered(STUDY.plan(Ask(()), SCENES, (COUNT, 0, 0), records=str(folder)), by_runs(folder))[-1]
 
 
 def test_changes_are_of_the_size_their_names_say():
@@ -62,7 +80,7 @@ def test_changes_are_of_the_size_their_names_say():
 def test_flips_are_those_of_single_runs(found):
     half = found.settings["scenes"]["isolated"]["half"][0]
     usual = load_scene("caryatid-isolated").with_(motion=None, duration=None, block={"slenderness": 0.15})
-    rows = {row["change"]: row for row in found.rows}
+    rows = {row["change"]: row for row in found.rows if row["part"] == "change"}
     order = np.random.Generator(np.random.PCG64(7)).permutation(COUNT)
     factors, flips = [], 0
     for seed in range(COUNT):
@@ -88,3 +106,113 @@ def test_half_of_the_motions_overturn_at_the_factor_that_is_said(found):
         return np.mean([simulate(scene).outcome == "overturns" for scene in scenes])
 
     assert share(0.9 * half) <= 0.5 <= share(1.1 * half)
+
+
+def fallen(scene):
+    return simulate(scene, history=False).outcome == "overturns"
+
+
+def test_a_vertical_motion_is_as_strong_and_as_fast_as_asked_for():
+    motion = synthetic_motion(seed=5).scaled(0.7)
+    usual = with_vertical(motion, 5, 0.5).vertical
+    fast = with_vertical(motion, 5, 0.5, faster=4).vertical
+    for up in (usual, fast):
+        assert up.peak == pytest.approx(0.5 * motion.peak) and len(up.samples) == len(motion.samples)
+    assert fast.peak_time == pytest.approx(usual.peak_time, abs=motion.dt)
+
+    def frequency(up):  # mean, of the spectrum
+        power = np.abs(np.fft.rfft(up.samples)) ** 2
+        return np.average(np.fft.rfftfreq(len(up.samples), up.dt), weights=power)
+
+    assert frequency(fast) == pytest.approx(4 * frequency(usual), rel=0.03)
+
+
+def test_flips_by_vertical_motions_and_what_the_contact_bears_are_those_of_single_runs(found):
+    rows = [row for row in found.rows if row["part"] == "vertical"]
+    assert [(row["faster"], row["ratio"]) for row in rows] == [(1, 0.0), *((f, r) for f in FASTER for r in RATIOS)]
+    half = found.settings["scenes"]["isolated"]["half"][0]
+    usual = load_scene("caryatid-isolated").with_(motion=None, duration=None, block={"slenderness": 0.15})
+    order = np.random.Generator(np.random.PCG64(7)).permutation(COUNT)
+    level, raised = [], []
+    for seed in range(COUNT // 3):
+        factor = float(half * np.exp(SPREAD * norm.ppf((order[seed] + 0.5) / COUNT)))
+        scene = usual.with_(motion=synthetic_motion(seed=seed).scaled(factor))
+        level.append(simulate(scene))
+        raised.append(simulate(scene.with_(motion=with_vertical(scene.motion, seed, 1.5, 2))))
+    last = next(row for row in rows if (row["faster"], row["ratio"]) == (2, 1.5))
+    for row, runs in ((rows[0], level), (last, raised)):
+        assert row["runs"] == len(runs)
+        overturned = [[run.outcome == "overturns" for run in some] for some in (level, runs)]
+        assert row["flips"] == sum(before != after for before, after in zip(*overturned, strict=True))
+        assert row["sliding"]["0.5"] == sum(run.friction_demand > 0.5 for run in runs)
+        assert row["lifts_off"] == sum(run.min_normal_ratio <= 0 for run in runs)
+
+
+def test_a_recorded_triple_is_turned_raised_and_counted(found, tmp_path):
+    write_triple(tmp_path / "made-up.v2")
+    (triple,) = triples(str(tmp_path))
+    assert triple.ratio == pytest.approx(2 / 3) and triple.faster == pytest.approx(1.0)
+    assert triple.second.peak == pytest.approx(synthetic_motion().peak)  # the stronger horizontal one
+    np.testing.assert_allclose(triple.turned(0).samples, triple.first.samples)
+    np.testing.assert_allclose(triple.turned(6).samples, triple.second.samples, atol=1e-12)
+    (row,) = [row for row in found.rows if row["part"] == "record"]
+    assert row["record"] == "triple.V2" and row["runs"] == 12 * len(RECORD_SPREAD) and found.settings["records"] == 1
+    usual = load_scene("caryatid-isolated").with_(motion=None, duration=None, block={"slenderness": 0.15})
+
+    def share(factor):
+        return np.mean([fallen(usual.with_(motion=triple.turned(k).scaled(factor))) for k in range(12)])
+
+    factors = np.geomspace(0.1, 10, 40)
+    half = next(float(factor) for factor in factors if share(float(factor)) >= 0.5)
+    level, raised = {}, {}
+    for step in range(12):
+        motion = triple.turned(step)
+        for k, factor in enumerate(RECORD_SPREAD):
+            level[step, k] = fallen(usual.with_(motion=motion.scaled(float(half * factor))))
+            raised[step, k] = fallen(usual.with_(motion=paired(motion, triple.up).scaled(float(half * factor))))
+    assert row["flips"] == sum(level[key] != raised[key] for key in level)
+    assert row["turned"] == sum(level[step, k] != level[(step + 2) % 12, k] for step, k in level) > 0
+
+
+def test_a_folder_without_triples_is_one_message(tmp_path):
+    assert triples(None) == []
+    with pytest.raises(SettingError, match="no file with two horizontal channels"):
+        triples(str(tmp_path))
+    with pytest.raises(SettingError, match="no folder"):
+        triples(str(tmp_path / "nowhere"))
+
+
+def made_up(change, flips, runs=100, solver="analytic"):
+    low, high = flips / runs / 2, min(2 * flips / runs + 0.02, 1.0)
+    counts = {"flips": flips, "falls": 0, "runs": runs, "failed": 0, "low": low, "high": high}
+    moved = {"p_value": 1.0, "tilt": 0.1, "displacement": None}
+    return {"part": "change", "scene": "isolated", "solver": solver, "change": change, **counts, **moved}
+
+
+def test_the_sentence_ranks_changes_and_says_which_certainly_flip_more_than_the_best_engines(found, tmp_path):
+    rows = [
+        made_up("slenderness ±1 %", 4),
+        made_up("direction turned by 30°", 30),
+        made_up("vertical motion", 12),
+        made_up("size ±1 %", 2),
+        made_up("pybullet, impact-aware", 1, solver="pybullet"),
+        made_up("pybullet, first-script", 25, solver="pybullet"),
+        *(row for row in found.rows if row["part"] != "change"),
+    ]
+    rungs = {"pybullet, impact-aware": "best", "pybullet, first-script": "first script"}
+    settings = {**found.settings, "rungs": rungs, "motions_of_engines": 60, "changed_while_running": []}
+    settings["motions_of_other_rungs"] = 10
+    path = write_result(tmp_path / "matters.json", "matters", settings, rows, modules=["analytic"])
+    result = read_result(path)
+    page = section(result)
+    assert (
+        "Isolated: most verdicts are flipped by direction turned by 30° (30 %); vertical motion (12 %); slenderness "
+        "±1 % (4.0 %). Engines at their best: pybullet, impact-aware (1.0 %). 2 of 4 changes certainly flip more than "
+        "the worst of these. At other rungs up to pybullet, first-script (25 %)."
+    ) in page.text
+    assert "a share up to 6.0 % and" in page.text[0]  # Wilson's limit of 0 of 60
+    assert [row[0] for row in page.tables[0].rows][:2] == ["direction turned by 30°", "pybullet, first-script"]
+    sentence = next(text for text in page.text if "Recorded triples" in text)
+    assert "at V/H 0.67, 1.0 times as fast" in sentence
+    assert any("N reaches zero" in text for text in page.text)
+    assert set(STUDY.figures(dataclasses.replace(result))) == {"", "vertical"}

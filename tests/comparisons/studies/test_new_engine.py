@@ -37,7 +37,7 @@ MAPS = {"frequency": [2.0, 4.0], "amplitude": [1.0, 2.0], "rigid ground/one-sine
 SHORT = {
     "restitution": {"grid": Grid((0.2,), (None, CARYATID_BASE), (0.6,), ((0.2, None),), 4)},
     "fragility": {"scenes": {"free-standing": ("caryatid-rigid", (0.2, 0.3))}, "runs": (40, 6, 2)},
-    "matters": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (2, 1)},
+    "matters": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (3, 1, 1)},
     "stability": {"names": ("uplift 0.99", "critical pulse +0.01")},
     "speed-error": {"keep": lambda entry: entry.family.startswith(("crude", "kernel")), "grow": False, "repeats": 1},
 }
