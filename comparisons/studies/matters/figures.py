@@ -66,6 +66,11 @@ def draw(result: Result) -> Figure:
     return figure
 
 
+def speed(faster: float) -> str:
+    """How fast a vertical motion is, in words."""
+    return "as fast as the horizontal" if faster == 1 else f"{faster:.3g} times as fast"
+
+
 def draw_vertical(result: Result) -> Figure:
     """Share of verdicts that the vertical motion flips over V/H, for each of its speeds; a panel per scene.
 
@@ -91,7 +96,7 @@ def draw_vertical(result: Result) -> Figure:
                 color=SHADES.get(faster, "0.4"),
                 markersize=4,
                 capsize=2,
-                label=f"synthetic, {faster:g} times as fast as the horizontal",
+                label=f"synthetic, {speed(faster)}",
             )
         for row in parted(result, "record", scene):
             axis.plot(row["ratio"], 100 * row["flips"] / row["runs"], "D", color="black", markerfacecolor="white")
@@ -101,9 +106,14 @@ def draw_vertical(result: Result) -> Figure:
                 (5, 4),
                 textcoords="offset points",
             )
-        axis.set(title=scene, xlabel="peak vertical over peak horizontal acceleration [-]", ylim=(0, None))
+        axis.set(title=scene, xlabel="peak vertical over peak horizontal acceleration [-]")
         axis.grid(color="0.92")
-        axis.legend(fontsize="small", loc="upper left")
         axis.spines[["top", "right"]].set_visible(False)
         axis.set_ylabel("verdicts flipped [%]")
+        axis.margins(y=0.12)
+        axis.set_ylim(bottom=0)
+    if figure.axes[0].containers:
+        figure.legend(
+            *figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small"
+        )
     return figure

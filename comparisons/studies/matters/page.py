@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ...measuring.statistics import wilson
 from ...showing.parts import Section, Table, figure_of, number, percent
-from .figures import ANALYTIC, BEST, draw, draw_vertical, parted, ranked, rung
+from .figures import ANALYTIC, BEST, draw, draw_vertical, parted, ranked, rung, speed
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
@@ -72,14 +72,14 @@ def _vertical(result, scene):
         first, *_, last = [row for row in rows if row["faster"] == faster]
         told.append(
             f"{percent(first['flips'] / first['runs'])} at V/H {first['ratio']:g} to "
-            f"{percent(last['flips'] / last['runs'])} at {last['ratio']:g}, {faster:g} times as fast as the horizontal"
+            f"{percent(last['flips'] / last['runs'])} at {last['ratio']:g}, {speed(faster)}"
         )
     words = f"{scene.capitalize()}: the vertical motion flips {'; '.join(told)}."
     recorded = parted(result, "record", scene)
     if recorded:
         words += " Recorded triples: " + "; ".join(
             f"{percent(row['flips'] / row['runs'])} of {row['runs']} verdicts at V/H {row['ratio']:.2f}, "
-            f"{row['faster']:.1f} times as fast (turned by 30°: {percent(row['turned'] / row['runs'])})"
+            f"{speed(round(row['faster'], 1))} (turned by 30°: {percent(row['turned'] / row['runs'])})"
             for row in recorded
         )
         words += "; runs of one record are no sample, so that these have no intervals."

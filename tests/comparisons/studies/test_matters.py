@@ -213,6 +213,6 @@ def test_the_sentence_ranks_changes_and_says_which_certainly_flip_more_than_the_
     assert "a share up to 6.0 % and" in page.text[0]  # Wilson's limit of 0 of 60
     assert [row[0] for row in page.tables[0].rows][:2] == ["direction turned by 30°", "pybullet, first-script"]
     sentence = next(text for text in page.text if "Recorded triples" in text)
-    assert "at V/H 0.67, 1.0 times as fast" in sentence
+    assert "at V/H 0.67, as fast as the horizontal" in sentence
     assert any("N reaches zero" in text for text in page.text)
     assert set(STUDY.figures(dataclasses.replace(result))) == {"", "vertical"}
