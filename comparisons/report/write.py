@@ -38,6 +38,7 @@ HERE = Path(__file__).parent
 # Short names of sections in the contents, by the study whose finding it is; studies of others follow.
 SHORT = {
     "restitution": "One impact",
+    "autopsy": "Why engines err",
     "overturning": "Many pulses",
     "fragility": "Many earthquakes",
     "matters": "What matters more",
@@ -218,7 +219,7 @@ def _contents(scenes: Result, stored: list[Stored]) -> list[Part]:
         one = found[name]
         anchor = "impact" if name == "restitution" else name
         parts.append(Part(anchor, SHORT.get(name, one.section.title), one.finding, one.origin, f"{PAGES}/{name}.html"))
-        if name == "restitution":
+        if name == ("autopsy" if "autopsy" in order else "restitution"):
             parts.append(own)
     if own not in parts:
         parts.insert(1, own)

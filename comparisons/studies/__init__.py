@@ -21,6 +21,7 @@ PACKAGE = "comparisons.studies"
 # in the order of the report
 BUILT_IN = (
     "restitution",
+    "autopsy",
     "overturning",
     "fragility",
     "surface",

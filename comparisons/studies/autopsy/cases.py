@@ -1,0 +1,67 @@
+"""The runs behind the autopsy: the first impact of a block let go, on both grounds, in every engine and variant."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from analytic import Base, Block, Scene, Start
+from analytic.caryatid import BASE, MASS, RADIUS
+from engines import get_engine
+
+from ...measuring.causes import CAUSES, LEAST, diagnosis
+from ...running.cases import Case
+from ...running.study import Batch, Found
+
+if TYPE_CHECKING:
+    from analytic import Response
+
+    from ...running.study import Ask, Plan
+
+SLENDERNESS, START = 0.2, 0.6  # rad, tilt over slenderness
+SECONDS = 1.6  # past the swing after the first impact
+GROUNDS = {"rigid ground": None, "sliding base": Base(mass=BASE.mass)}
+
+
+def scene_on(ground: str) -> Scene:
+    """The block let go, on a ground of `GROUNDS`."""
+    return Scene(
+        name="one impact",
+        block=Block(mass=MASS, radius=RADIUS, slenderness=SLENDERNESS),
+        base=GROUNDS[ground],
+        start=Start(tilt=START * SLENDERNESS),
+        duration=SECONDS,
+    )
+
+
+def measure(case: Case, response: Response) -> dict[str, Any]:
+    """The `diagnosis` of the first impact; the run is made once more, for its steps."""
+    return diagnosis(case.solver, case.variant, case.scene)  # type: ignore[arg-type]  # each case has a variant
+
+
+def plan(ask: Ask) -> Plan:
+    """The plan of the study. Rows: `diagnosis`, or the failure, with ground and cpu_seconds.
+
+    Parameters
+    ----------
+    ask : Ask
+        quick: rigid ground only.
+    """
+    cases = [
+        Case(scene_on(ground), engine, variant, tag={"ground": ground})
+        for engine in ask.engines
+        for variant in get_engine(engine).variants
+        for ground in (list(GROUNDS)[:1] if ask.quick else GROUNDS)
+    ]
+    rows = yield Batch(cases, measure, "one impact", time_limit=60.0)
+    found = [
+        {
+            "engine": row.case.solver,
+            "variant": row.case.variant,
+            "ground": row.case.tag["ground"],
+            "failure": row.failure,
+            **row.values,
+        }
+        for row in rows
+    ]
+    settings = {"quick": ask.quick, "slenderness": SLENDERNESS, "start": START, "least": LEAST, "causes": CAUSES}
+    return Found(settings, found)
