@@ -85,6 +85,7 @@ def write_page(folder: str | PathLike[str], studies: Path = RESULTS) -> Path:
             **_assets(),
             motion=scenes.settings["motion"]["label"] if scenes.settings["motion"] else "no motion",
             contents=_contents(scenes, stored),
+            explained="autopsy" if any(one.name == "autopsy" for one in stored) else "impact",
             equations=equations.EQUATIONS,
             drawings=[Markup(getattr(diagrams, name)()) for name in ("rocking", "impact", "isolated")],
             frames=[{"svg": Markup(frame.svg), "words": frame.words} for frame in equations.frames()],

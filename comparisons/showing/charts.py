@@ -143,7 +143,7 @@ class Chart:
         marks = [
             f'<path class="{kind}" transform="translate({x:.1f} {y:.1f})" d="{shape}"{_told(words)}/>'
             for (x, y), words in zip(self.at(xs, ys), told, strict=True)
-            if math.isfinite(x) and math.isfinite(y)
+            if self.left - 1 <= x <= self.right + 1 and self.top - 1 <= y <= self.bottom + 1
         ]
         self.over.append(f"{_group(who, grey, tone)}{''.join(marks)}</g>")
 

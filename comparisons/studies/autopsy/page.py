@@ -118,6 +118,7 @@ def _frame(result, name):
         f"{title}: {label} in {', '.join(dict.fromkeys(row['engine'] for row, *_ in series)) or 'no engine'}.",
         title=title,
         height=260,
+        left=70,
     )
     for row, time, one in series:
         grey = row["rung"] != BEST

@@ -27,7 +27,7 @@ ANALYTIC, SENSITIVITY = "analytic", "analytic, restitution + 1e-4"
 NEAR = (1.3, 6.0)  # PGA/(g tan γ) of the runs that engines get: there verdicts are mixed
 TIME_LIMIT = 60.0  # s, of an engine's run; a stiff corner that hardly lifts may take more, and fails
 # runs: of the analytic model, of engines at their best, of first scripts (gross errors show in few)
-FULL, QUICK = (2000, 180, 40), (200, 6, 2)
+FULL, QUICK = (2000, 60, 20), (200, 6, 2)
 TILTS = (0.1, 0.5, 1.0)  # limit states of |tilt|/slenderness
 
 

@@ -35,7 +35,7 @@ TRIED = np.geomspace(0.1, 4.0, 40)  # factors among which the one is found that 
 # name: (shipped scene, slendernesses [rad])
 SCENES = {"free-standing": ("caryatid-rigid", (0.15, 0.2, 0.28)), "isolated": ("caryatid-isolated", (0.12, 0.15, 0.18))}
 # motions for the analytic changes, for engines at their best, at other rungs (these run the middle slenderness alone)
-FULL, QUICK = (300, 90, 20), (16, 2, 1)
+FULL, QUICK = (300, 60, 12), (16, 2, 1)
 BEST = "best"
 LIFTING = 1.3  # least peak over g tan γ of the engines' motions: a stiff corner that hardly lifts takes minutes
 TIME_LIMIT = 60.0  # s, of an engine's run
