@@ -29,6 +29,7 @@ FRAMES = {
 
 def section(result: Result) -> Section:
     """The `Section` of a result of this study."""
+    told = _told(result)
     causes = [f"{name}: {words}." for name, words in result.settings["causes"].items()]
     drawn = figure_of(
         draw(result),
@@ -38,8 +39,8 @@ def section(result: Result) -> Section:
     )
     return Section(
         "Autopsy of an impact",
-        (_asked(result), *causes),
-        (_table(result, _told(result)),),
+        (_asked(result), _named(told), *causes),
+        (_table(result, told),),
         (drawn,),
         evidence=_silent(result),
     )
@@ -146,6 +147,15 @@ def _table(result, rows):
             for row in rows
         ],
     )
+
+
+def _named(told):
+    """Whose impact has which cause, in one sentence."""
+    found = {}
+    for row in told:
+        found.setdefault(f"{row['engine']}, {row['variant']}", []).append(row["cause"] or "none")
+    words = [f"{name} {' and '.join(dict.fromkeys(causes))}" for name, causes in found.items()]
+    return f"Causes found: {'; '.join(words) or 'no impact could be told'}."
 
 
 def _asked(result):

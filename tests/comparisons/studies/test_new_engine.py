@@ -38,6 +38,7 @@ SHORT = {
     "restitution": {"grid": Grid((0.2,), (None, CARYATID_BASE), (0.6,), ((0.2, None),), 4)},
     "fragility": {"scenes": {"free-standing": ("caryatid-rigid", (0.2, 0.3))}, "runs": (40, 6, 2)},
     "matters": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (3, 1, 1)},
+    "autopsy": {},
     "stability": {"names": ("uplift 0.99", "critical pulse +0.01")},
     "speed-error": {"keep": lambda entry: entry.family.startswith(("crude", "kernel")), "grow": False, "repeats": 1},
 }
