@@ -35,7 +35,7 @@ def scene_on(ground: str) -> Scene:
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
     """The `diagnosis` of the first impact; the run is made once more, for its steps."""
-    return diagnosis(case.solver, case.variant, case.scene)  # type: ignore[arg-type]  # each case has a variant
+    return diagnosis(case.solver, case.variant, case.scene)
 
 
 def plan(ask: Ask) -> Plan:

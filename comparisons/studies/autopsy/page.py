@@ -95,7 +95,7 @@ def _told(result):
     return [row for row in result.rows if row["failure"] is None and "why_not" not in row]
 
 
-def _series(result, name) -> Iterator[tuple[dict[str, Any], np.ndarray, np.ndarray]]:
+def _series(result: Result, name: str) -> Iterator[tuple[dict[str, Any], np.ndarray, np.ndarray]]:
     """(row, time [s], values) of a frame, first scripts before the best."""
     key, unit, _, _ = FRAMES[name]
     rows = [row for row in _told(result) if row["ground"] == RIGID and row["rung"] in (BEST, FIRST)]
