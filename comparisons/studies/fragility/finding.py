@@ -61,7 +61,12 @@ def judgement(result: Result) -> Judgement:
         found = [row["detectable_difference"] for row in falls]
         few = None in found or max(found) > COARSE  # so few runs acquit nobody
         bad = any(row["p_holm"] <= LEVEL for row in rows)
-        words = f"{differ} of {runs} differ" + (", too few to tell" if few and not bad else "")
+        failed = sum(row["left_out"] for row in falls)
+        words = (
+            f"{differ} of {runs} differ"
+            + (f", {failed} failed" if failed else "")
+            + (", too few to tell" if few and not bad else "")
+        )
         marks[engine, variant] = Mark(words, "bad" if bad else "none" if few else "good", _resolved(falls))
     return Judgement("verdicts over many earthquakes", marks)
 

@@ -137,7 +137,8 @@ def _answers(result, scene):
         apart = [row["state"] for row in rows if row["p_holm"] <= LEVEL]
         flips = [row["only_a"] + row["only_b"] for row in rows]
         counts = ", ".join(f"{flip} for {row['state']}" for flip, row in zip(flips, rows, strict=True))
-        said = f"of {size(rows[0])} runs these differ: {counts}"
+        failed = f" ({rows[0]['left_out']} more failed)" if rows[0]["left_out"] else ""
+        said = f"of {size(rows[0])} runs{failed} these differ: {counts}"
         known = [row for row, flip in zip(rows, flips, strict=True) if flip and row["median_shift"] is not None]
         if known:
             most = max(known, key=lambda row: abs(math.log(row["median_shift"])))

@@ -129,6 +129,7 @@ def test_a_solver_that_is_the_model_does_not_differ_and_says_what_would_have_bee
     assert any("exudyn: no difference found" in text for text in page.text)
     failed = len(rows_of(equal, "failure"))
     assert f"Runs of others that failed: {failed}" in text and failed >= 4
+    assert f"exudyn: no difference found; of {RUNS[1] - 2} runs (2 more failed) these differ: 0 for" in text
     assert len(page.evidence) == failed and "raw evidence" in page.evidence[0][1]
 
 
