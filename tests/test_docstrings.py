@@ -13,6 +13,7 @@ import pytest
         "analytic.records",
         "comparisons.sheet.pages",
         pytest.param("comparisons.measuring.tolerances", marks=pytest.mark.slow),
+        pytest.param("comparisons.report.study", marks=pytest.mark.slow),
     ],
 )
 def test_examples(module):

@@ -37,6 +37,14 @@ def make_own_results(
     """Simulate what the report on one's own scenes shows, {name: scene}, and write its result files into `folder`.
 
     engines: those to compare, all that are installed without it; variants: of those not taken as they come.
+
+    >>> from tempfile import mkdtemp
+    >>> from analytic import load_scene
+    >>> from comparisons.report.write import write_page
+    >>> folder = mkdtemp()
+    >>> make_own_results(folder, {"block": load_scene("free-rocking-rigid")}, engines=[])
+    >>> write_page(folder).name
+    'report.html'
     """
     samples = max((len(getattr(scene.motion, "samples", ())) for scene in scenes.values()), default=0)
     _make(folder, OWN, samples, engines, scenes=scenes, variants=dict(variants or {}))

@@ -214,7 +214,8 @@ def _contents(scenes: Result, stored: list[Stored]) -> list[Part]:
     )
     parts = [Part("equations", "Scene and equations", setting)]
     found = {one.name: one for one in stored if one.finding is not None}
-    own = Part("earthquake", "One earthquake", earthquake(scenes), origin_of(scenes), f"{PAGES}/runs.html")
+    name = "One earthquake" if scenes.settings["motion"] else "The scenes"
+    own = Part("earthquake", name, earthquake(scenes), origin_of(scenes), f"{PAGES}/runs.html")
     order = [name for name in SHORT if name in found] + [name for name in found if name not in SHORT]
     for name in order:
         one = found[name]
