@@ -86,7 +86,7 @@ class Chart:
         says: str,
         *,
         height: int = 270,
-        left: int = 58,
+        left: int = 64,
         right: int = 14,
         foot: int | None = None,
         title: str = "",
@@ -231,7 +231,7 @@ class Chart:
             )
         if self.y.label:
             parts.append(
-                f'<text transform="translate(14 {middle[1]:g})rotate(-90)" text-anchor="middle">'
+                f'<text transform="translate(13 {middle[1]:g})rotate(-90)" text-anchor="middle">'
                 f"{escape(self.y.label)}</text>"
             )
         return "".join(parts)
