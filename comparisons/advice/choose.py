@@ -57,9 +57,8 @@ def choose(
     engines : iterable of str or None
         Those to try; None: all that are installed.
     time_limit : float
-        Of one run [s]; a setting that takes longer does not pass.
+        Of one run [s].
     progress : bool
-        Show a bar on standard error.
     source : str
         Name of the scene's file, for the command and the snippet.
 
@@ -82,8 +81,8 @@ def choose(
     answer, best, whole, ladders = _searched(scene, family, names, error, aim, time_limit=time_limit, progress=progress)
     asked: dict[str, Any] = {"aim": aim, "error": error, "spare": spare(aim), "neighbours": list(family), "until": span}
     return Choice(
-        scene=scene.name,
         **asked,
+        scene=scene.name,
         chosen=answer,
         best=best,
         cpu_seconds=whole,

@@ -1,12 +1,17 @@
 """``rocking choose``: the cheapest setting that is good enough for one's own scene."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..running.solving import check_time_limit
+
+if TYPE_CHECKING:
+    from ..advice.found import Choice
 
 
 def command(
@@ -57,15 +62,7 @@ def command(
         choice = choose(
             what, error=error, aim=aim, engines=engine or None, time_limit=time_limit, progress=True, source=scene
         )
-    results: dict[str, str | Callable[[Path], object]] = {}
-    if json_file:
-        results[json_file] = choice.text()
-    if plot:
-        from ..showing.choices import draw_choice
-        from ..showing.plots import save
-
-        results[plot] = lambda path: save(draw_choice(choice), path)
-    problem = write_all(results)
+    problem = write_all(_results(choice, json_file, plot))
     if json_file != "-":
         from ..showing.choices import print_choice
 
@@ -74,3 +71,16 @@ def command(
         raise problem
     if choice.chosen is None:
         raise typer.Exit(1)
+
+
+def _results(choice: Choice, json_file: str | None, plot: str | None) -> dict[str, str | Callable[[Path], object]]:
+    """{file: what is written there}."""
+    results: dict[str, str | Callable[[Path], object]] = {}
+    if json_file:
+        results[json_file] = choice.text()
+    if plot:
+        from ..showing.choices import draw_choice
+        from ..showing.plots import save
+
+        results[plot] = lambda path: save(draw_choice(choice), path)
+    return results

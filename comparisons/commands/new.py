@@ -66,10 +66,8 @@ def command(
     motion = _motion(file, record, tilt, {"units": units, "dt": dt, "column": column, "channel": channel})
     base = None if base_mass is None else Base(mass=base_mass)
     about = f"A block {height:g} m high and {width:g} m wide along the motion; rocking run {Path(file).name}"
-    name = name or Path(file).stem
-    text = scene_text(
-        name, block, base=base, bearings=bearings, motion=motion, tilt=tilt, friction=friction, about=(about,)
-    )
+    parts = {"base": base, "bearings": bearings, "motion": motion, "tilt": tilt, "friction": friction}
+    text = scene_text(name or Path(file).stem, block, **parts, about=(about,))  # type: ignore[arg-type]  # as named
     _write_and_tell(file, text, json_file)
 
 

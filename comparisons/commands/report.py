@@ -53,11 +53,9 @@ def command(
     A record given with scenes takes the place of their motions. The stored studies follow as background.
     Example: rocking report bust.toml --output bust
     """
-    from ..report.own import load_scenes
-    from ..report.study import make_own_results, make_results
     from ..report.write import write_page
     from ..running.files import check_folder, check_writable, write_text
-    from ..running.solving import ANALYTIC, check_solver, ground_motion, say, stdout_to_stderr
+    from ..running.solving import ANALYTIC, check_solver, say
 
     check_folder(output)
     shown = _studies(studies)
@@ -66,23 +64,39 @@ def command(
         check_solver(name)
     engines = [name for name in engine if name != ANALYTIC] if engine else None
     variants = _variants(variant, engines or [], scene)
-    said = {"units": units, "dt": dt, "column": column, "channel": channel}
-    if scene and not record and any(value is not None for value in said.values()):
-        ground_motion(record, **said)  # says what belongs to a record
-    motion = None if scene and not record else ground_motion(record, **said)
-    if motion is not None:
-        say(f"ground motion: {motion.label}")
-    with stdout_to_stderr():  # engines greet on standard output
-        if scene:
-            make_own_results(output, load_scenes(scene, motion), engines=engines, variants=variants)
-        else:
-            make_results(output, motion, engines=engines)  # type: ignore[arg-type]  # without scenes there is one
+    motion = _motion(scene, record, {"units": units, "dt": dt, "column": column, "channel": channel})
+    _simulate(output, scene, motion, engines, variants)
     say("the page")
     page = write_page(output, shown)
     if json_file:
         write_text(json_file, form(page).text())
     if json_file != "-":
         print(page)
+
+
+def _motion(scene, record, said):
+    """The motion of the record, or the shipped one; None where scenes bring theirs."""
+    from ..running.solving import ground_motion, say
+
+    if scene and not record and any(value is not None for value in said.values()):
+        ground_motion(record, **said)  # says what belongs to a record
+    motion = None if scene and not record else ground_motion(record, **said)
+    if motion is not None:
+        say(f"ground motion: {motion.label}")
+    return motion
+
+
+def _simulate(output, scene, motion, engines, variants):
+    """The result files of the page."""
+    from ..report.own import load_scenes
+    from ..report.study import make_own_results, make_results
+    from ..running.solving import stdout_to_stderr
+
+    with stdout_to_stderr():  # engines greet on standard output
+        if scene:
+            make_own_results(output, load_scenes(scene, motion), engines=engines, variants=variants)
+        else:
+            make_results(output, motion, engines=engines)
 
 
 def _studies(folder):
