@@ -45,12 +45,17 @@ Replot = Annotated[str | None, typer.Option(metavar="FILE", help="Run nothing, d
 
 
 def _options(function):
-    """The keyword-only parameters of a plan or of figures."""
+    """The keyword-only parameters of a plan or of figures, with annotations that Typer can read."""
     return [
-        parameter
+        parameter.replace(annotation=_known(parameter.annotation, function))
         for parameter in inspect.signature(function).parameters.values()
         if parameter.kind is inspect.Parameter.KEYWORD_ONLY
     ]
+
+
+def _known(annotation, function):
+    """What an annotation that is kept as text stands for, where the function was written."""
+    return eval(annotation, function.__globals__) if isinstance(annotation, str) else annotation
 
 
 def command_of(study: Study) -> Callable[..., None]:
