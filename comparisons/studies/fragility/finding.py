@@ -29,6 +29,8 @@ def finding(result: Result) -> Section:
     title = f"Many earthquakes: no difference of the odds found for {sound} of {len(judged)} settings of engines" + (
         f"; not so for {', '.join(apart)}" if apart else ""
     )
+    if few := len(judged) - sound - len(apart):
+        title += f"; too few runs to tell for {few}"
     scenes = list(result.settings["scenes"])
     text = (
         "Over a whole motion the rocking of a block cannot be predicted point by point; its odds can. “No difference "
