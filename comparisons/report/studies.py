@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
@@ -43,9 +44,11 @@ def stored_studies(folder: Path = RESULTS) -> list[Stored]:
 
     files = sorted(folder.glob("*.json"), key=place)
     if len(files) < FEW:
-        return [_stored(file) for file in files]
+        return [_aged(_stored(file), _age(file)) for file in files]
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as workers:
-        return list(workers.map(_stored, files))
+        shown = workers.map(_stored, files)
+        ages = [_age(file) for file in files]  # meanwhile: all code is read for the first of them
+        return [_aged(*pair) for pair in zip(shown, ages, strict=True)]
 
 
 def origin_of(result: Result) -> str:
@@ -62,12 +65,23 @@ def commit_of(origin: Mapping[str, Any]) -> str:
     return origin["commit"][:12] + (", with uncommitted changes" if origin["dirty"] else "")
 
 
+def _age(file):
+    """How the result is older than the code, None if it is not or cannot be read."""
+    with contextlib.suppress(ResultError):
+        return age(read_result(file))
+
+
+def _aged(stored, old):
+    finding = stored.finding and replace(stored.finding, age=old)
+    return replace(stored, section=replace(stored.section, age=old), finding=finding)
+
+
 def _stored(file):
+    """What is shown of a file; whether it is old is not asked here."""
     try:
         result = read_result(file)
     except ResultError as error:
         return Stored(file.stem, Section(f"Study {file.stem}", (f"{file.name} cannot be shown: {error}",)))
-    old, origin = age(result), origin_of(result)
     try:
         study = get_study(result.kind)
         section = study.section(result)
@@ -75,5 +89,5 @@ def _stored(file):
         judgement = study.judgement(result) if study.judgement else None
     except (KeyError, StudyBroken) as error:
         words = f"{file.name} cannot be shown: {error.args[0]}."
-        return Stored(file.stem, Section(f"Study {result.kind}", (words,), age=old), origin=origin)
-    return Stored(file.stem, replace(section, age=old), finding and replace(finding, age=old), judgement, origin)
+        return Stored(file.stem, Section(f"Study {result.kind}", (words,)), origin=origin_of(result))
+    return Stored(file.stem, section, finding, judgement, origin_of(result))
