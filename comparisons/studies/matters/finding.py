@@ -36,13 +36,13 @@ def finding(result: Result) -> Section:
     title = f"What matters more than the engine: {first[0]['change']} flips {flipped} of verdicts" + (
         f", a good engine {percent(max(row['flips'] / row['runs'] for row in engines))} at most" if engines else ""
     )
-    text = tuple(sentence(result, scene) for scene in scenes for sentence in (_answer, _vertical))
+    text = tuple(_answer(result, scene) for scene in scenes)
     return Section(
         title,
         text,
         tuple(_table(result, scene) for scene in scenes[:1]),
         (figure([_panel(result, scene) for scene in scenes], _caption(), [row["solver"] for row in engines]),),
-        measured=(_how(result), *(_contact(result, scene) for scene in scenes)),
+        measured=(_how(result), *(told(result, scene) for scene in scenes for told in (_vertical, _contact))),
     )
 
 
