@@ -56,7 +56,8 @@ def _shown(result, scene):
 
 
 def _panel(result, scene):
-    rows = _shown(result, scene)
+    """The changes, and engines at their best; other rungs have too few runs to be looked at."""
+    rows = [row for row in _shown(result, scene) if row["solver"] == ANALYTIC or rung(result, row) == BEST]
     chart = Chart(
         Axis("verdicts flipped [%]", LEAST, 100, "log", TICKS),
         Axis("", len(rows) - 0.5, -0.5, ticks=tuple((k, _short(row["change"])) for k, row in enumerate(rows))),
@@ -71,7 +72,7 @@ def _panel(result, scene):
         chart.reach([share], [k], [low], [high], who, along="x")
         within = f"{percent(row['low'])} to {percent(row['high'])}"
         says = f"{row['change']}: {row['flips']} of {row['runs']}, 95 % interval {within}"
-        chart.dots([share], [k], who, filled=not who or rung(result, row) == BEST, says=[says])
+        chart.dots([share], [k], who, says=[says])
     return chart
 
 
@@ -84,7 +85,7 @@ def _short(words):
 def _caption():
     return (
         "Share of verdicts that each change flips, with 95 % Wilson intervals. Ink: changes of the scene in the "
-        "analytic model; coloured: engines on the unchanged scene, filled at their best, open at other settings."
+        "analytic model; coloured: engines on the unchanged scene, at their best."
     )
 
 
