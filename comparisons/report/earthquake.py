@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from analytic.records import G
+
 from ..showing.charts import Axis, Chart, figure
 from ..showing.parts import Section, Table, number, percent
 from .histories import thinned
@@ -16,7 +18,6 @@ if TYPE_CHECKING:
     from ..running.provenance import Result
 
 ANALYTIC = "analytic"
-G = 9.81  # m/s2
 TILT = 1.6  # limit of a tilt's axis, over slenderness
 SHOWN = 700  # samples of a line
 LEAST = 1e-9  # of a difference drawn

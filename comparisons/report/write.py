@@ -15,7 +15,7 @@ from markupsafe import Markup, escape
 
 from ..running.provenance import PACKAGES, age, read_result
 from ..showing import diagrams
-from ..showing.charts import REFERENCE, STYLE, key_of
+from ..showing.charts import REFERENCE, STYLE, colour, key_of
 from ..showing.mathml import mathml
 from ..showing.parts import Section, Table, number
 from ..showing.templates import templates
@@ -133,16 +133,9 @@ def _environment():
         "glossed": glossed,
         "number": lambda value: number(value, 2),
         "key": lambda who: Markup(key_of(who)),
-        "colour": colour_of,
+        "colour": colour,
     }
     return environment
-
-
-def colour_of(who: str) -> str:
-    """Colour of a solver, for a style."""
-    found = re.search("--c:([^;]+);", key_of(who))
-    assert found is not None  # every key has one
-    return found[1]
 
 
 def _assets() -> dict[str, Markup]:

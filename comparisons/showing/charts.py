@@ -19,6 +19,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator
 from engines import ENGINES
 
 from .parts import Figure, power_of_ten
+from .plots import marker
 
 STYLE = Path(__file__).with_name("charts.css")  # colours of pages, light and dark, and the rules of charts
 WIDTH = 400
@@ -154,7 +155,7 @@ class Chart:
         path = "".join(f"M{a[0]:.1f} {a[1]:.1f}L{b[0]:.1f} {b[1]:.1f}" for a, b in zip(begins, ends, strict=True))
         self.parts.append(f'{_group(who, grey, tone)}<path class="reach" d="{path}"/></g>')
 
-    def area(self, xs: Sequence[float], ys: Sequence[float], kind: str = "band") -> None:
+    def area(self, xs: Sequence[float], ys: Sequence[float], kind: str) -> None:
         """A filled polygon; kind: its class."""
         places = " ".join(f"{x:.1f},{y:.1f}" for x, y in self.at(xs, ys))
         self.parts.insert(0, f'<polygon class="{kind}" points="{places}"/>')
@@ -169,13 +170,6 @@ class Chart:
             y = self.at([self.x.low], [value])[0][1]
             self.parts.append(f'<path class="rule" d="M{self.left} {y:.1f}H{self.right}"/>')
             self.over.append(f'<text x="{self.left + 4}" y="{y - 4:.1f}" class="soft">{escape(words)}</text>')
-
-    def words(self, x: float, y: float, text: str, anchor: str = "start", kind: str = "") -> None:
-        """Text at a place in values."""
-        a, b = self.at([x], [y])[0]
-        self.over.append(
-            f'<text class="{kind}" x="{a:.1f}" y="{b + 4:.1f}" text-anchor="{anchor}">{escape(text)}</text>'
-        )
 
     def label(self, y: float, text: str, who: str = "", tone: str = "") -> None:
         """Name of a line, in the right margin at the height where it ends."""
@@ -250,9 +244,9 @@ class Chart:
         )
 
 
-def marker(who: str) -> str:
-    """Marker of a solver: the same in every figure."""
-    return ENGINES[who].marker if who in ENGINES else "o"
+def colour(who: str) -> str:
+    """Colour of a solver, as a style has it; the model's is the page's ink."""
+    return ENGINES[who].colour if who in ENGINES else "var(--ink)" if who == REFERENCE else "var(--soft)"
 
 
 def key_of(who: str) -> str:
@@ -296,12 +290,8 @@ def _group(who, grey, tone=""):
     """The beginning of a group in a solver's colour and dashes, or in another colour."""
     if not who:
         return f'<g class="who" style="--c:{tone}">' if tone else '<g class="who">'
-    colour, dashes = ("var(--ink)", "") if who not in ENGINES else (ENGINES[who].colour, _dashes(who))
-    if who not in ENGINES and who != REFERENCE:
-        colour = "var(--soft)"
-    if grey:
-        colour = "var(--faint)"
-    return f'<g class="who" data-who="{escape(who)}" style="--c:{colour};--d:{dashes or "none"}">'
+    drawn, dashes = "var(--faint)" if grey else colour(who), _dashes(who) if who in ENGINES else ""
+    return f'<g class="who" data-who="{escape(who)}" style="--c:{drawn};--d:{dashes or "none"}">'
 
 
 def _dashes(who):

@@ -118,13 +118,18 @@ def power_of_ten(value: float) -> str:
 
 def _inline(text, alt):
     """An SVG file of matplotlib as an element: no header, no names that nothing refers to, greys of the page."""
-    text = re.sub(r"<metadata>.*?</metadata>\s*", "", text[text.index("<svg") :], flags=re.DOTALL)
-    opening = f'<svg class="drawn" viewBox="\\1" role="img" aria-label="{escape(alt)}">'
-    text = re.sub(r'<svg [^>]*?viewBox="([^"]+)"[^>]*>', opening, text, count=1)
+    text = element_of(text, f'class="drawn" role="img" aria-label="{escape(alt)}"')
     named = set(re.findall(r"#([\w.-]+)", text))
     text = re.sub(r' id="([^"]+)"', lambda found: found[0] if found[1] in named else "", text)
+    return re.sub(r"#([0-9a-f]{2})\1\1\b", _grey, text)
+
+
+def element_of(text: str, attributes: str) -> str:
+    """An SVG file of matplotlib as an element with these attributes: no header, nothing finer than is seen."""
+    text = re.sub(r"<metadata>.*?</metadata>\s*", "", text[text.index("<svg") :], flags=re.DOTALL)
+    opening = r'<svg [^>]*?viewBox="([^"]+)"[^>]*>'
+    text = re.sub(opening, lambda found: f'<svg {attributes} viewBox="{found[1]}">', text, count=1)
     text = re.sub(r"(\d+\.\d{2})\d+", r"\1", text)  # a hundredth of a point is enough
-    text = re.sub(r"#([0-9a-f]{2})\1\1\b", _grey, text)
     return re.sub(r"\s*\n\s*", " ", text)
 
 

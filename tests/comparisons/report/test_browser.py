@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from javascript import NEEDED, chromium, quiet_page
+from page_numbers import number_in
 
 from comparisons.report.write import write_page
 from engines import installed_engines
@@ -117,9 +118,7 @@ def test_tables_sort_rows_unfold_and_solvers_hide(folder, browser):
     column.get_by_role("button").click()
 
     def cells():
-        values = table.locator("tbody tr td:nth-child(3)").all_text_contents()
-        digits = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹−", "-0123456789-")
-        return [float(re.sub(r"·10(.+)", lambda found: "e" + found[1], one).translate(digits)) for one in values]
+        return [number_in(one) for one in table.locator("tbody tr td:nth-child(3)").all_text_contents()]
 
     assert cells() == sorted(cells()) and column.get_attribute("aria-sort") == "ascending"
     column.get_by_role("button").click()

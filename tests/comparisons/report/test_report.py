@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from page_numbers import number_in
 
 from analytic import EngineNotInstalled, load_scene, simulate, synthetic_motion
 from analytic.records import read_record
@@ -74,12 +75,6 @@ class Page(HTMLParser):
         return {(row[0], head): cell for row in rows[1:] for head, cell in zip(rows[0], row, strict=True)}
 
 
-def value(cell):
-    """The number a cell of the page shows."""
-    digits = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹−", "-0123456789-")
-    return float(re.sub(r"·10(.+)", lambda found: "e" + found.group(1), cell).translate(digits))
-
-
 @pytest.fixture(scope="module")
 def folder(copy_of, tmp_path_factory):
     """A report on the synthetic motion, with every engine installed here."""
@@ -118,12 +113,14 @@ def test_outcomes_in_the_page_are_those_of_the_solvers(folder):
         expected = simulate(scene)
         table = page.table(f"{scene.name}, until decided")
         assert table["outcome", "analytic"] == expected.outcome
-        assert value(table["peak |φ|/γ [-]", "analytic"]) == pytest.approx(expected.peak_tilt_ratio, rel=1e-3)
+        assert number_in(table["peak |φ|/γ [-]", "analytic"]) == pytest.approx(expected.peak_tilt_ratio, rel=1e-3)
         assert {head for _, head in table} == {"quantity", "analytic", *engines}
         if expected.outcome == "overturns":
-            assert value(table["overturns at [s]", "analytic"]) == pytest.approx(expected.overturning_time, rel=1e-4)
+            assert number_in(table["overturns at [s]", "analytic"]) == pytest.approx(
+                expected.overturning_time, rel=1e-4
+            )
         if scene.base:
-            assert value(table["peak base displacement [m]", "analytic"]) == pytest.approx(
+            assert number_in(table["peak base displacement [m]", "analytic"]) == pytest.approx(
                 expected.peak_base_displacement, rel=1e-4
             )
 
@@ -142,7 +139,7 @@ def test_every_cell_of_the_outcome_tables_equals_the_result_file(folder):
         for label, key in shown.items():
             cell = table.get((label, row["solver"]), "–")
             if cell != "–":
-                assert value(cell) == pytest.approx(row[key], rel=0.05 if key == "cpu_seconds" else 1e-4)
+                assert number_in(cell) == pytest.approx(row[key], rel=0.05 if key == "cpu_seconds" else 1e-4)
                 compared += 1
     assert compared >= 2 * len(result.rows)
 
@@ -162,11 +159,11 @@ def test_restitution_table_equals_the_impacts_in_the_file_and_the_momentum_formu
     for row in result.rows:
         table = page.table("Error of restitution on " + ("a " if "base" in row["ground"] else "") + row["ground"])
         formula = 1 - 2 * b2 / (4 / 3 * block.radius**2 - share[row["ground"]] * h2)  # (7)
-        assert value(table["eq. (7) itself [-]", "γ = 0.3 rad"]) == pytest.approx(formula, abs=1e-6)
+        assert number_in(table["eq. (7) itself [-]", "γ = 0.3 rad"]) == pytest.approx(formula, abs=1e-6)
         if row["impacts"]:
             errors = [impact["restitution"] - formula for impact in row["impacts"]]
             cell = table[f"{row['solver']}, {row['variant']}", "γ = 0.3 rad"]
-            assert value(cell) == pytest.approx(math.sqrt(np.mean(np.square(errors))), rel=0.06, abs=1e-15)
+            assert number_in(cell) == pytest.approx(math.sqrt(np.mean(np.square(errors))), rel=0.06, abs=1e-15)
 
 
 def test_summary_follows_the_numbers(folder, copied):
@@ -193,10 +190,10 @@ def test_the_decision_table_holds_the_runs_errors_and_the_studies_judgements(cop
     checked = 0
     for (name, head), cell in best.items():
         if head == "restitution error, rms":
-            assert value(cell) == pytest.approx(groups[name]["rms"], rel=0.06)
+            assert number_in(cell) == pytest.approx(groups[name]["rms"], rel=0.06)
             checked += 1
         if head == "CPU s per simulated s":
-            assert value(cell) == pytest.approx(groups[name]["cpu_per_second"], rel=0.06)
+            assert number_in(cell) == pytest.approx(groups[name]["cpu_per_second"], rel=0.06)
     assert checked == len(installed_engines())
     marks = get_study("stability").judgement(read_result(studies / "stability.json")).marks
     for name in {name for name, _ in best}:
@@ -369,6 +366,6 @@ def test_duzce_record_overturns_the_free_caryatid_and_not_the_isolated_one(tmp_p
     free, isolated = (page.table(f"Caryatid {name}, until decided") for name in ("on rigid ground", "isolated"))
     for solver in {"analytic", "exudyn", "pybullet"} - set(available_engines()[1]):
         assert free["outcome", solver] == "overturns"
-        assert 6 < value(free["overturns at [s]", solver]) < 9
+        assert 6 < number_in(free["overturns at [s]", solver]) < 9
         assert isolated["outcome", solver] == "stands"
-        assert value(isolated["peak base displacement [m]", solver]) == pytest.approx(0.212, rel=0.01)
+        assert number_in(isolated["peak base displacement [m]", solver]) == pytest.approx(0.212, rel=0.01)

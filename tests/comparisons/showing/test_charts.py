@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from page_numbers import number_in
 
 from comparisons.showing.charts import SHAPES, Axis, Chart, figure, key_of, log_axis, marker
 from engines import ENGINES
@@ -56,13 +57,7 @@ def test_ticks_lie_between_the_ends_and_say_their_values():
         assert len(marks) >= 3
         for place, word in marks:
             assert -1e-9 <= axis.share([place])[0] <= 1 + 1e-9
-            digits = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹−", "-0123456789-")
-            power = re.fullmatch("10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)", word)
-            number = (
-                10.0 ** int(power[1].translate(digits))
-                if power and axis.scale == "log"
-                else float(word.translate(digits))
-            )
+            number = number_in(f"1·{word}") if axis.scale == "log" else number_in(word)
             assert number == pytest.approx(place, rel=1e-9, abs=1e-12)
     assert log_axis("e", [3e-9, 0.0, 2e-4]).low == 1e-9
 

@@ -1,8 +1,7 @@
 """What the report's first page takes of the studies: each number from the stored rows, no lucky setting, no silence."""
 
-import re
-
 import pytest
+from page_numbers import number_in
 
 from comparisons.report.studies import RESULTS
 from comparisons.running.provenance import Result, read_result
@@ -12,13 +11,6 @@ from comparisons.studies.speed_error.finding import passing
 from comparisons.studies.stability.finding import judgement as hard_cases
 
 WITH_FINDING = [name for name in BUILT_IN if get_study(name).finding is not None]
-
-
-def number(cell):
-    """The first number of a cell, as the page writes it."""
-    digits = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹−", "-0123456789-")
-    found = re.match(r"([−\d.]+)(?:·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?", cell)
-    return float(found[1].translate(digits)) * 10.0 ** int((found[2] or "⁰").translate(digits))
 
 
 def stored(name):
@@ -41,8 +33,8 @@ def test_the_errors_of_restitution_are_the_worse_of_both_grounds():
     checked = 0
     for name, _, error, worst, _, _ in table.rows:
         mine = [row for row in rows if f"{row['engine']}, {row['variant']}" == name]
-        assert number(error) == pytest.approx(max(row["rms"] for row in mine), rel=0.06)
-        assert number(worst) == pytest.approx(max(row["worst"] for row in mine), rel=0.06)
+        assert number_in(error) == pytest.approx(max(row["rms"] for row in mine), rel=0.06)
+        assert number_in(worst) == pytest.approx(max(row["worst"] for row in mine), rel=0.06)
         checked += 1
     assert checked >= 8
 
@@ -64,7 +56,7 @@ def test_the_boundaries_judged_are_those_where_the_block_stays_pressed():
         ]
         mark = boundaries(result).marks[tuple(solver.split(", "))]
         assert mark.note == f"{sum(shift is not None for shift in shifts)} of {len(shifts)} boundaries found"
-        assert number(mark.words) == pytest.approx(
+        assert number_in(mark.words) == pytest.approx(
             100 * max(abs(shift) for shift in shifts if shift is not None), rel=0.06
         )
 
