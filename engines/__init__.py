@@ -1,6 +1,6 @@
 """The same scene in multibody engines: ``get_engine("exudyn").simulate(scene)``.
 
-An engine is a package with an `engines.contract.Engine` called ``ENGINE``; those of this project stand in `BUILT_IN`,
+An engine is a package with an `engines.contract.Engine` called ``ENGINE``: the folders here are this project's own,
 others are declared by their packages (`engines.plugins`).
 """
 
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from importlib import import_module
+from pkgutil import iter_modules
 from typing import TYPE_CHECKING
 
 from analytic.errors import EngineNotInstalled
@@ -17,8 +18,14 @@ from .plugins import find_engines
 if TYPE_CHECKING:
     from .contract import Engine
 
-BUILT_IN = ("exudyn", "pybullet", "mujoco", "pymunk", "dart")
-# By name; imported so, not by statement, a result of one engine does not depend on the records of the others.
+# The two that the project began with stand first. Found, and imported by name, not by statement: a result of one engine
+# depends neither on the records of the others nor on which there are.
+BUILT_IN = tuple(
+    sorted(
+        (module.name for module in iter_modules(__path__) if module.ispkg),
+        key=lambda name: (name not in ("exudyn", "pybullet"), name),
+    )
+)
 ENGINES = {name: import_module(f"{__name__}.{name}").ENGINE for name in BUILT_IN}
 _found, BROKEN = find_engines(ENGINES)  # BROKEN: the errors of entries that hold no engine, by name
 ENGINES |= _found

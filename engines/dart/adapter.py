@@ -27,12 +27,13 @@ import dartpy
 from analytic.response import Failure
 
 from ..contract import Mismatch, Run, Variant
-from ..leapfrog import failure_of, raw_trace_of, trace_of
+from ..leapfrog import raw_trace_of, trace_of
 from ..pace import FLAT
+from ..planar import run_of, size_scale
 from ..verified import Range
 from ..vibration import longest_step
 from . import script, stepping
-from .scene import build, size_scale
+from .scene import build
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -141,7 +142,7 @@ def run(scene: Scene, variant: str, settings: ImpactAware | Expert | FirstScript
     rows, ended = script.run(assembly, scene, settings.step)
     cpu, edge = time.process_time() - clock, PASSING * settings.step * scene.block.slenderness
     trace = trace_of(rows, scene, edge) if isinstance(settings, Expert) else raw_trace_of(rows, scene, edge)
-    return _run(scene, rows, ended, cpu, trace, settings.step)
+    return run_of(scene, rows, ended, cpu, trace, settings.step)
 
 
 def _impact_aware(scene, settings):
@@ -149,9 +150,4 @@ def _impact_aware(scene, settings):
     clock = time.process_time()
     rows, ended = stepping.run(assembly, scene, largest, settings.accuracy)
     cpu = time.process_time() - clock
-    return _run(scene, rows, ended, cpu, trace_of(rows, scene, CONTACT * scene.block.slenderness, smeared=3), largest)
-
-
-def _run(scene, rows, ended, cpu, trace, step):
-    overturned = "overturned" if ended == "overturned" else None
-    return Run(trace, len(rows) - 1, cpu, failure_of(scene, rows, ended), overturned, step)
+    return run_of(scene, rows, ended, cpu, trace_of(rows, scene, CONTACT * scene.block.slenderness, smeared=3), largest)

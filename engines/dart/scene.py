@@ -21,7 +21,6 @@ CORNER_RADIUS = 1e-6  # share of R: the block touches by a sphere at each bottom
 WIDTH, THICKNESS = 2e3, 2.0  # of the ground, shares of R
 # The second solver is Gauss and Seidel's; with c of 2.9, measured, exp(-c gamma^2) of an error is left by an iteration.
 SWEEPS, LEAST_CHANGE, LEAST_DIVISOR = 5.0, 1e-12, 1e-15
-UNIT_RADIUS = 1.0884  # m, of the Caryatid, for which the variants' times are given
 
 
 @dataclass(frozen=True)
@@ -32,11 +31,6 @@ class Assembly:
     block: dartpy.dynamics.Skeleton
     ground: dartpy.dynamics.Skeleton
     base: dartpy.dynamics.BodyNode | None
-
-
-def size_scale(scene: Scene) -> float:
-    """What times set for a block of `UNIT_RADIUS` are multiplied with: rocking goes with sqrt(R/g)."""
-    return math.sqrt(scene.block.radius / UNIT_RADIUS)
 
 
 def add_shape(body: dartpy.dynamics.BodyNode, shape: object, place: list[float], friction: float | None) -> None:

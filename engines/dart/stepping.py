@@ -12,24 +12,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel
 
 from ..kicks import pushes
 from ..leapfrog import row_limit
-from ..pace import REST, ROUNDING, StepRule, impact_aware, least_pull, limits
+from ..pace import REST, ROUNDING, limits
 from ..pivoting import Block
 from ..placement import placement
-from ..vibration import VISCOUS, added_mass, driven_mass, leapfrog_stiffness
-from .scene import size_scale
+from ..planar import pace_of
+from ..sliding import SlidingBase
 
 if TYPE_CHECKING:
     from analytic import Scene
 
     from .scene import Assembly
-
-APPROACH = 0.3  # share of the remaining time to the impact that a step may take
-SMALLEST_STEP = 1e-7  # s, at `UNIT_RADIUS`
 
 
 def run(assembly: Assembly, scene: Scene, largest: float, accuracy: float) -> tuple[np.ndarray, str]:
@@ -51,7 +47,7 @@ def run(assembly: Assembly, scene: Scene, largest: float, accuracy: float) -> tu
     """
     world, skeleton, model = assembly.world, assembly.block, RockingModel.of(scene)
     block, base = Block(scene, model), Base(assembly, scene, model, largest)
-    pace, push = _pace(model, scene, largest, accuracy), pushes(scene.motion, model.g)
+    pace, push = pace_of(model, scene, largest, accuracy), pushes(scene.motion, model.g)
     limit, fitted = limits(scene.duration, largest, scene.motion.jumps if scene.motion else ())
     advance, on_base, m, height, fallen = world.step, assembly.base is not None, model.m, block.height, 0.5 * math.pi
     across, up, vx, vz = placement(scene)
@@ -92,47 +88,21 @@ def run(assembly: Assembly, scene: Scene, largest: float, accuracy: float) -> tu
     return np.frombuffer(rows).reshape(-1, width), ended
 
 
-def _pace(model, scene, largest, accuracy):
-    """Length and purpose of a step as `engines.pace` has them."""
-    standing = 2 * least_pull(model) * model.g * largest * largest / (2 * scene.block.half_width)
-    damping, smallest = model.bearing.count * model.bearing.damping, SMALLEST_STEP * size_scale(scene)
-    sharpest = VISCOUS * accuracy * model.M / damping if damping else math.inf
-    rule = StepRule(largest, smallest, accuracy, APPROACH, sharpest, standing, overlong=True, cruise=True)
-    return impact_aware(model, scene.start.tilt_rate, rule)
-
-
-class Base:
-    """The base on its bearings: its loads and its way. All zeros on rigid ground."""
-
-    __slots__ = ("skeleton", "body", "law", "mass", "driven", "damping", "heavier", "held", "lagged", *"xvz", "force")
+class Base(SlidingBase):
+    """The base as a body of DART on a prismatic joint."""
 
     def __init__(self, assembly: Assembly, scene: Scene, model: RockingModel, largest: float) -> None:
-        self.skeleton, self.body, self.law = assembly.ground, assembly.base, BearingLaw.of(scene.bearings)
-        self.mass, self.driven = model.M - model.m, driven_mass(model)
-        self.damping = self.law.count * self.law.damping
-        self.heavier = leapfrog_stiffness(self.law, largest, self.driven)
-        self.held = self.lagged = 0.0
-        self.x, self.v = scene.start.base_displacement, scene.start.base_velocity
-        self.z = self.law.start(self.x)
-        self.force = self.law.force(self.x, self.z)
+        super().__init__(scene, model, largest)
+        self.skeleton, self.body = assembly.ground, assembly.base
+
+    def weigh(self, mass: float) -> None:
+        """Give it a mass [kg]."""
+        self.body.setMass(mass)
 
     def load(self, step: float, interval: float, pushed: float, lag: float) -> None:
-        """Load the base for a step [s] whose kick lasts `interval` [s].
-
-        pushed: gain of velocity from the ground's motion [m/s]; lag: of `Block.lag`.
-        """
-        if interval != self.held and (self.damping or self.heavier):
-            self.held = interval
-            added = added_mass(self.damping, interval, self.driven) + self.heavier * interval * interval
-            self.body.setMass(self.mass + added)
-        impulse = self.mass * pushed + lag - self.lagged - (self.force + self.damping * self.v) * interval
-        self.skeleton.setForces((impulse / step,))
-        self.lagged = lag
+        """Load it for a step [s]: see `SlidingBase.impulse`."""
+        self.skeleton.setForces((self.impulse(interval, pushed, lag) / step,))
 
     def move(self, step: float) -> None:
-        """Move at the velocity that a kick left; the bearings follow."""
-        self.v = self.skeleton.getVelocity(0)
-        self.x += self.v * step
-        if self.law.count:
-            self.z = self.law.hysteretic(self.z, self.v * step)
-            self.force = self.law.force(self.x, self.z)
+        """Move at the velocity that a kick left."""
+        self.follow(self.skeleton.getVelocity(0), step)

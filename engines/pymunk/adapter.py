@@ -27,12 +27,13 @@ import pymunk
 from analytic.response import Failure
 
 from ..contract import Mismatch, Run, Variant
-from ..leapfrog import failure_of, raw_trace_of, trace_of
+from ..leapfrog import raw_trace_of, trace_of
 from ..pace import FLAT
+from ..planar import run_of, size_scale
 from ..verified import Range
 from ..vibration import longest_step
 from . import script, stepping
-from .scene import build, size_scale
+from .scene import build
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -143,7 +144,7 @@ def run(scene: Scene, variant: str, settings: ImpactAware | Expert | FirstScript
         trace = trace_of(rows, scene, SCRIPT_CONTACT * slenderness)
     else:
         trace = raw_trace_of(rows, scene, FIRST_CONTACT * slenderness)
-    return _run(scene, rows, ended, cpu, trace, settings.step)
+    return run_of(scene, rows, ended, cpu, trace, settings.step)
 
 
 def _impact_aware(scene, settings):
@@ -156,9 +157,4 @@ def _impact_aware(scene, settings):
     rows, ended = stepping.run(assembly, scene, largest, settings.accuracy)
     cpu = time.process_time() - clock
     trace = trace_of(rows, scene, CONTACT * scene.block.slenderness, smeared=3)
-    return _run(scene, rows, ended, cpu, trace, largest, () if assembly.sure else (UNSURE,))
-
-
-def _run(scene, rows, ended, cpu, trace, step, warnings=()):
-    overturned = "overturned" if ended == "overturned" else None
-    return Run(trace, len(rows) - 1, cpu, failure_of(scene, rows, ended), overturned, step, warnings)
+    return run_of(scene, rows, ended, cpu, trace, largest, () if assembly.sure else (UNSURE,))

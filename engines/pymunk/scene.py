@@ -25,8 +25,6 @@ WHEEL = 2.0**30
 HEAVY = 1e30  # kg, of what must not move: Chipmunk takes no infinite mass
 WIDTH, THICKNESS = 1e3, 1.0  # half the length of the ground and half its thickness, shares of R
 
-UNIT_RADIUS = 1.0884  # m, of the Caryatid, for which the variants' times are given
-
 
 @dataclass(frozen=True)
 class Assembly:
@@ -41,11 +39,6 @@ class Assembly:
     radius: float
     sweeps: tuple[int, int, int]
     sure: bool
-
-
-def size_scale(scene: Scene) -> float:
-    """What times set for a block of `UNIT_RADIUS` are multiplied with: rocking goes with sqrt(R/g)."""
-    return math.sqrt(scene.block.radius / UNIT_RADIUS)
 
 
 def build(scene: Scene) -> Assembly:

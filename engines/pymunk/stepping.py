@@ -14,30 +14,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel
 
 from ..kicks import pushes
 from ..leapfrog import row_limit
-from ..pace import IMPACT, REST, ROUNDING, StepRule, fixed, impact_aware, least_pull, limits
+from ..pace import IMPACT, REST, ROUNDING, limits
 from ..pivoting import DEPTH, Block
 from ..placement import placement
-from ..vibration import VISCOUS, added_mass, driven_mass, leapfrog_stiffness
-from .scene import size_scale
+from ..planar import pace_of
+from ..sliding import SlidingBase
 
 if TYPE_CHECKING:
     from analytic import Scene
 
     from .scene import Assembly
 
-APPROACH = 0.3  # share of the remaining time to the impact that a step may take
-SMALLEST_STEP = 1e-7  # s, at `UNIT_RADIUS`
-LEAST_VISCOUS = (
-    1e-5  # of the accuracy, where viscous bearings set the step at an impact: below, Chipmunk's corners pull
-)
+# Least accuracy at which viscous bearings set the step at an impact: below it Chipmunk's corners pull.
+LEAST_VISCOUS = 1e-5
 
 
-def run(assembly: Assembly, scene: Scene, largest: float, accuracy: float | None) -> tuple[np.ndarray, str]:
+def run(assembly: Assembly, scene: Scene, largest: float, accuracy: float) -> tuple[np.ndarray, str]:
     """Step until the duration is over, the block has overturned or a state is not finite.
 
     Parameters
@@ -45,8 +41,8 @@ def run(assembly: Assembly, scene: Scene, largest: float, accuracy: float | None
     assembly : Assembly
     scene : Scene
     largest : float
-        Longest step [s]; the only one where `accuracy` is None.
-    accuracy : float or None
+        Longest step [s].
+    accuracy : float
         Share of its speed at the impact that the block may gain in one step there.
 
     Returns
@@ -56,8 +52,8 @@ def run(assembly: Assembly, scene: Scene, largest: float, accuracy: float | None
     """
     space, body, model = assembly.space, assembly.block, RockingModel.of(scene)
     block, base = Block(scene, model), Base(assembly, scene, model, largest)
-    pace, push = _pace(model, scene, largest, accuracy), pushes(scene.motion, model.g)
-    limit, fitted = limits(scene.duration, largest, scene.motion.jumps if scene.motion and accuracy else ())
+    pace, push = pace_of(model, scene, largest, accuracy, LEAST_VISCOUS), pushes(scene.motion, model.g)
+    limit, fitted = limits(scene.duration, largest, scene.motion.jumps if scene.motion else ())
     advance, on_base, sweeps, used = space.step, assembly.wheel is not None, assembly.sweeps, 0
     height, fallen, close = block.height, 0.5 * math.pi, DEPTH * model.gamma
     across, up, vx, vz = placement(scene)
@@ -108,51 +104,22 @@ def _load(body, block, call, across, up, rate, vx, vz):
     body.position = block.x - vx * call, block.up - vz * call
 
 
-def _pace(model, scene, largest, accuracy):
-    """Length and purpose of a step as `engines.pace` has them; without accuracy all are `largest` [s]."""
-    # Both corners count as loaded where the higher one is within what a step of free fall covers.
-    standing = 2 * least_pull(model) * model.g * largest * largest / (2 * scene.block.half_width)
-    if accuracy is None:
-        return fixed(model, largest, standing)
-    damping, smallest = model.bearing.count * model.bearing.damping, SMALLEST_STEP * size_scale(scene)
-    sharpest = VISCOUS * max(accuracy, LEAST_VISCOUS) * model.M / damping if damping else math.inf
-    rule = StepRule(largest, smallest, accuracy, APPROACH, sharpest, standing, overlong=True, cruise=True)
-    return impact_aware(model, scene.start.tilt_rate, rule)
-
-
-class Base:
-    """The base on its bearings: its wheel's loads and its way. All zeros on rigid ground."""
-
-    __slots__ = ("wheel", "radius", "law", "mass", "driven", "damping", "heavier", "held", "lagged", *"xvz", "force")
+class Base(SlidingBase):
+    """The base as the rim of a wheel of Chipmunk."""
 
     def __init__(self, assembly: Assembly, scene: Scene, model: RockingModel, largest: float) -> None:
-        self.wheel, self.radius, self.law = assembly.wheel, assembly.radius, BearingLaw.of(scene.bearings)
-        self.mass, self.driven = model.M - model.m, driven_mass(model)
-        self.damping = self.law.count * self.law.damping
-        self.heavier = leapfrog_stiffness(self.law, largest, self.driven)
-        self.held = self.lagged = 0.0
-        self.x, self.v = scene.start.base_displacement, scene.start.base_velocity
-        self.z = self.law.start(self.x)
-        self.force = self.law.force(self.x, self.z)
+        super().__init__(scene, model, largest)
+        self.wheel, self.radius = assembly.wheel, assembly.radius
+
+    def weigh(self, mass: float) -> None:
+        """Give it a mass [kg]."""
+        self.wheel.moment = mass * self.radius**2
 
     def load(self, call: float, interval: float, pushed: float, lag: float) -> None:
-        """Load the wheel for a call of Chipmunk [s] that stands for `interval` [s].
-
-        pushed: gain of velocity from the ground's motion [m/s]; lag: of `Block.lag`.
-        """
-        if interval != self.held and (self.damping or self.heavier):
-            self.held = interval
-            added = added_mass(self.damping, interval, self.driven) + self.heavier * interval * interval
-            self.wheel.moment = (self.mass + added) * self.radius**2
-        impulse = self.mass * pushed + lag - self.lagged - (self.force + self.damping * self.v) * interval
-        self.wheel.torque = -impulse / call * self.radius
+        """Load it for a call of Chipmunk [s]: see `SlidingBase.impulse`."""
+        self.wheel.torque = -self.impulse(interval, pushed, lag) / call * self.radius
         self.wheel.angle = self.v / self.radius * call  # and 0 after the call's way
-        self.lagged = lag
 
     def move(self, step: float) -> None:
-        """Move at the velocity that a kick left; the bearings follow."""
-        self.v = -self.radius * self.wheel.angular_velocity
-        self.x += self.v * step
-        if self.law.count:
-            self.z = self.law.hysteretic(self.z, self.v * step)
-            self.force = self.law.force(self.x, self.z)
+        """Move at the velocity that a kick left."""
+        self.follow(-self.radius * self.wheel.angular_velocity, step)

@@ -1,4 +1,4 @@
-"""What every engine and each of its variants must fulfil; an engine is covered by its name in `engines.BUILT_IN`.
+"""What every engine and each of its variants must fulfil; an engine is covered by its folder in `engines`.
 
 What their blocks do is in `test_physics`.
 """
