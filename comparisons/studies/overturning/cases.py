@@ -27,13 +27,13 @@ SHAPES = ("one-sine", "one-cosine", "ricker")
 # The isolated Caryatid itself overturns at base displacements far beyond its bearings' 0.30 m only; a more slender
 # block on the same bearings does at amplitudes of a strong earthquake.
 GROUNDS = {"rigid ground": ("caryatid-rigid", {}), "isolated base": ("caryatid-isolated", {"slenderness": 0.15})}
-FREQUENCIES = (2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0)
+FREQUENCIES = (2.0, 4.0, 6.0, 8.0)
 SCAN = np.geomspace(1.05, 19.5, 11)
 LADDER = ((2e-4, 1.2e-2), (3e-2,), (0.1,), (0.3,))
 KNOB_LADDER = ((2e-3, 2e-2), (0.1,), (0.3,))
 TOLERANCE, KNOB_TOLERANCE = 2e-5, 2e-4
 
-KNOB_FREQUENCIES = (2.0, 8.0)
+KNOB_FREQUENCY = 4.0
 TIME_STEPPING = ("time-stepping", None, "step", (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5))
 
 
@@ -122,11 +122,7 @@ def plan(ask: Ask) -> Plan:
     settings = _settings(ask, grounds, shapes, frequencies)
     yield Found(settings, rows + log.failures, arrays)
     chosen = {
-        (ground, "one-sine"): {
-            f: column
-            for f, column in boundaries[ground, "one-sine"].items()
-            if f in KNOB_FREQUENCIES[: 1 if quick else None]
-        }
+        (ground, "one-sine"): {f: column for f, column in boundaries[ground, "one-sine"].items() if f == KNOB_FREQUENCY}
         for ground in grounds
     }
     for solver, variant, knob, values in (*first_scripts_of(ask.engines), TIME_STEPPING, *ladders_of(ask.engines)):
