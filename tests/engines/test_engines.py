@@ -31,7 +31,7 @@ def broken(monkeypatch, tmp_path):
 
 def test_unknown_engine_is_told_with_the_known_ones():
     with pytest.raises(
-        KeyError, match="unknown engine 'simbody': choose one of exudyn, pybullet, mujoco, pymunk, dart"
+        KeyError, match="unknown engine 'simbody': choose one of exudyn, pybullet, dart, drake, mujoco, pymunk"
     ):
         engines.get_engine("simbody")
 

@@ -25,6 +25,7 @@ ENGINES = {
     "mujoco": "impact-aware",
     "pymunk": "impact-aware",
     "dart": "impact-aware",
+    "drake": "impact-aware",
 }
 
 
@@ -149,6 +150,7 @@ MUTATE = {
     "mujoco": mutate_mujoco,
     "pymunk": functools.partial(mutate_base, "pymunk"),
     "dart": functools.partial(mutate_base, "dart"),
+    "drake": functools.partial(mutate_base, "drake"),
 }
 LARGEST_STEP = 1e-3  # s, of the delay in exudyn, whose steps are its own
 

@@ -108,7 +108,7 @@ def test_a_jump_that_is_gone_or_far_changes_no_step():
     assert aligned(1.0, -0.2) == aligned(1.0, 1.001) == aligned(1.0, math.inf) == aligned(1.0, 1e-4) == 1.0
 
 
-@pytest.mark.parametrize("engine", ["pybullet", "mujoco", "pymunk", "dart"])
+@pytest.mark.parametrize("engine", ["pybullet", "mujoco", "pymunk", "dart", "drake"])
 @pytest.mark.parametrize("shape", ["one-cosine", "rectangular"])
 def test_a_pulse_that_begins_with_a_jump_lifts_the_block_at_once(engine, shape):
     """Where a kick held the jump the block lifted a step late: .03 of the tilt five steps later."""

@@ -14,7 +14,7 @@ from engines.events import contact_measures
 from engines.ground_velocity import ground_velocity
 from engines.swings import Trace
 
-ENGINES = ["exudyn", "pybullet", "mujoco", "pymunk", "dart"]
+ENGINES = ["exudyn", "pybullet", "mujoco", "pymunk", "dart", "drake"]
 BLOCK = Block(mass=3172.05, radius=1.0884, slenderness=0.2)
 LRB = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 TIMES = np.arange(0, 4.001, 0.005)

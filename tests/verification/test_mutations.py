@@ -43,6 +43,7 @@ DEFAULTS = [
     ("mujoco", "impact-aware"),
     ("pymunk", "impact-aware"),
     ("dart", "impact-aware"),
+    ("drake", "impact-aware"),
 ]
 
 
@@ -172,13 +173,14 @@ class Lagging(BearingLaw):
 
 
 # exudyn is not among them: it commits inside a compiled call.
-@pytest.mark.parametrize("engine", ["pybullet", "mujoco", "pymunk", "dart"])
+@pytest.mark.parametrize("engine", ["pybullet", "mujoco", "pymunk", "dart", "drake"])
 def test_a_bearing_force_that_lags_one_step_fails(monkeypatch, engine):
     one = row("bearing force replayed", engine, "impact-aware", "isolated Caryatid, synthetic motion")
     if engine == "pybullet":
         lag_pybullet(monkeypatch)
     else:
-        monkeypatch.setattr(f"engines.{engine}.stepping.BearingLaw", Lagging)
+        module = "engines.mujoco.stepping" if engine == "mujoco" else "engines.sliding"
+        monkeypatch.setattr(f"{module}.BearingLaw", Lagging)
     with pytest.raises(agreement.Unmeasurable, match="not that of the bearings' force"):  # the run itself says so
         one.found()
 
@@ -281,6 +283,10 @@ def test_the_share_of_a_penetration_that_bullet_takes_back_does_not_matter(monke
         ("dart", "impact-aware", {"accuracy": 1e-4}, "base velocity jump, rms", "sliding base"),
         ("dart", "impact-aware", {"largest_step": 1e-2}, "impact times", "rigid ground"),
         ("dart", "expert", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
+        ("drake", "impact-aware", {"accuracy": 1e-4}, "restitution, rms", "sliding base"),
+        ("drake", "impact-aware", {"accuracy": 1e-4}, "base velocity jump, rms", "sliding base"),
+        ("drake", "impact-aware", {"largest_step": 1e-2}, "impact times", "rigid ground"),
+        ("drake", "expert", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
     ],
 )
 def test_a_coarse_step_fails(monkeypatch, engine, variant, changes, quantity, scenes):

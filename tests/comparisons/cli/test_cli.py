@@ -114,7 +114,7 @@ def test_no_such_scene(rocking, command):
     [
         (
             ["--engine", "ode"],
-            "unknown engine 'ode': choose one of exudyn, pybullet, mujoco, pymunk, dart, or analytic",
+            "unknown engine 'ode': choose one of exudyn, pybullet, dart, drake, mujoco, pymunk, or analytic",
         ),
         (["--variant", "fast"], "the analytic model has no variant 'fast': leave --variant out"),
         (["--set", "tolerance"], "--set tolerance: write name=value"),
@@ -248,7 +248,8 @@ def test_help_loads_no_engine_and_no_plots():
         "import sys; from comparisons import cli\n"
         "try: cli.main(['--help'])\n"
         "except SystemExit: pass\n"
-        "heavy = [m for m in ('exudyn', 'pybullet', 'mujoco', 'pymunk', 'dartpy', 'matplotlib') if m in sys.modules]\n"
+        "names = ('exudyn', 'pybullet', 'mujoco', 'pymunk', 'dartpy', 'pydrake', 'matplotlib')\n"
+        "heavy = [name for name in names if name in sys.modules]\n"
         "sys.exit(f'loaded: {heavy}' if heavy else 0)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)

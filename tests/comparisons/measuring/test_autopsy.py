@@ -63,6 +63,8 @@ def test_impulse_of_the_landing_corner_turns_the_fall_of_the_centre_into_a_rise(
         ("pymunk", "impact-aware", {}),
         ("dart", "expert", {"step": 1e-3}),
         ("dart", "impact-aware", {}),
+        ("drake", "expert", {"step": 1e-3}),
+        ("drake", "impact-aware", {}),
     ],
 )
 def test_parts_add_up_to_the_error(ground, engine, variant, settings):

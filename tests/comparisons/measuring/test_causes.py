@@ -158,7 +158,7 @@ def random_scenes(count, seed=15):
             yield given.with_(duration=0.6 * exact.impacts[1].time + 0.4 * exact.impacts[2].time)
 
 
-CLEAN = {"exudyn": "compliant-corners", "mujoco": "impact-aware", "pymunk": "impact-aware", "dart": "impact-aware"}
+CLEAN = {"exudyn": "compliant-corners"} | dict.fromkeys(("mujoco", "pymunk", "dart", "drake"), "impact-aware")
 
 
 @pytest.mark.parametrize("engine, variant", CLEAN.items())

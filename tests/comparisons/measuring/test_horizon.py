@@ -173,7 +173,7 @@ def assert_no_engine_parts_before_its_own_horizon(engine, scenes):
         assert distance < 1.2 * SPREAD, f"{scene.name}: {distance:.3g} by {own.horizon:.3g} s, {own.perturbation:.2g}"
 
 
-@pytest.mark.parametrize("engine", ["exudyn", "pybullet", "mujoco", "pymunk", "dart"])
+@pytest.mark.parametrize("engine", ["exudyn", "pybullet", "mujoco", "pymunk", "dart", "drake"])
 def test_no_engine_parts_before_its_own_horizon(engine):
     """Small rocking under long shaking, where exudyn's corners were off before the horizon of 1e-4."""
     scenes = [long_shaking(0.15, seed).with_(name=f"seed {seed}", duration=12.0) for seed in (3, 4)]

@@ -1,0 +1,14 @@
+"""Drake: ``get_engine("drake").simulate(scene, variant=...)``."""
+
+from ..contract import Engine
+
+ENGINE = Engine(
+    name="drake",
+    package="pydrake",
+    install="pip install 'rocking[drake]'",
+    adapter="engines.drake.adapter",
+    tolerances="engines.drake.tolerances",
+    colour="#8C510A",
+    marker="X",
+    dashes=(0, (3, 1, 1, 1, 1, 1)),
+)
