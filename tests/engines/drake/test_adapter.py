@@ -13,6 +13,7 @@ from analytic import Base, Bearings, Block, PulseMotion, Start  # noqa: E402
 from analytic import Scene as AnyScene  # noqa: E402
 from analytic import simulate as exact  # noqa: E402
 from analytic.rocking import restitution  # noqa: E402
+from comparisons.measuring.restitution import impact_errors as impact_quantities  # noqa: E402
 from engines import get_engine  # noqa: E402
 from engines.contract import Mismatch  # noqa: E402
 from engines.drake import scene as built  # noqa: E402
@@ -38,10 +39,12 @@ def test_expert_is_of_first_order():
 
 
 @pytest.mark.slow
-def test_first_script_is_no_better_with_shorter_steps():
-    """Its contact, soft by default, is what is off."""
-    errors = [impact_errors(simulate, 0.2, None, 2, 3.0, variant="first-script", step=h)[0] for h in (5e-3, 1e-3)]
-    assert 5e-3 < errors[0] < errors[1] < 5e-2
+@pytest.mark.parametrize("step", [1e-3, 2e-4])
+def test_first_script_is_off_at_any_step(step):
+    """Its contact, soft by default, leaves the block too fast: e from the swings around three impacts."""
+    given = scene(0.2, 212.0, 3.0, start=Start(tilt=0.1))
+    off = impact_quantities(given, simulate(given, variant="first-script", step=step), 3)["swing"]
+    assert 5e-3 < np.mean(off) < 3e-2
 
 
 def test_drake_and_not_the_adapter_decides_the_impact():
