@@ -103,6 +103,7 @@ VARIANTS = {
             inertia=(1.3, 1.4),
             base_mass=(0.05, 0.1),
             radius=(1.0, 1.2),
+            stiffness=(0.0, 0.05),
             damping=(0.0, 0.1),
             tilt=(0.3, math.inf),
         ),
