@@ -18,6 +18,7 @@ from numba import njit
 
 from analytic.bearing import BearingLaw
 
+from .phases import Phases, Rule
 from .scene import build
 from .stepping import solver_settings, step_through
 
@@ -100,8 +101,10 @@ class CompliantCorners:
     # Local error per step [m, rad, m/s, rad/s]. Stability of the stiff contact, not this, sets the step:
     # 1e-6 costs as much within 10 %.
     tolerance: float = 1e-7
-    # [s]; reached by no step in contact.
+    # [s]; of explicit steps, reached by none in contact.
     longest_step: float = 5e-3
+    # [s]; of implicit steps, while the block pivots or stands.
+    pivoting_step: float = 1e-3
 
 
 def start_share(scene: Scene) -> float:
@@ -143,6 +146,7 @@ def scaled(scene: Scene, settings: CompliantCorners, share: float) -> CompliantC
         slip=settings.slip * speed * math.sqrt(share / max(1.0, need)) * min(max(1.0, math.sqrt(0.5 / need)), EASE),
         tolerance=settings.tolerance * min(speed, 1 / speed, 1.0) * share,
         longest_step=settings.longest_step * min(time, 1.0) * math.sqrt(share),
+        pivoting_step=settings.pivoting_step * time * math.sqrt(share),
     )
 
 
@@ -281,12 +285,10 @@ def run(scene: Scene, settings: CompliantCorners) -> Run:
 def _run(scene: Scene, settings: CompliantCorners) -> Run:
     """Step a scene once, with settings that are scaled to it."""
     model, contact_tilt = assemble(scene, settings)
-    steps = max(1, math.ceil(scene.duration / settings.longest_step))
-    solver = solver_settings(
+    explicit = solver_settings(
         scene,
-        numberOfSteps=steps,
+        solverType=exu.DynamicSolverType.DOPRI5,
         automaticStepSize=True,
-        initialStepSize=2e-3 * settings.longest_step,
         minimumStepSize=1e-13,
         relativeTolerance=1e-14,
         absoluteTolerance=settings.tolerance,
@@ -295,7 +297,11 @@ def _run(scene: Scene, settings: CompliantCorners) -> Run:
         RELAX * math.sqrt(scene.block.mass / settings.stiffness),
         MOST_RELAX * math.sqrt(scene.block.radius / scene.gravity),
     )
-    ran = step_through(model, solver, exu.DynamicSolverType.DOPRI5, 2 * contact_tilt, settings.longest_step, settle)
+    sink = contact_tilt * scene.block.half_width
+    rule = Rule(explicit, settings.longest_step, settings.pivoting_step, sink, settle)
+    ran = step_through(
+        model, lambda model, steps, record: Phases(model, rule, steps, record).run(), 2 * contact_tilt, settle
+    )
     return replace(ran, warnings=(*ran.warnings, *_unresolved(scene, settings)))
 
 

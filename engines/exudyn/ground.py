@@ -58,13 +58,14 @@ def segments(motion: Motion, duration: float) -> tuple[array[float], np.ndarray]
 class Ground:
     """Keeps the loads on the segment of the coming step, and the steps inside segments."""
 
-    def __init__(self, model: Model, longest: float) -> None:
+    def __init__(self, model: Model, longest: float = math.inf) -> None:
         """longest : longest step [s]."""
         self.ends, _ = segments(model.scene.motion, model.scene.duration)
         vectors = {motion: segments(motion, model.scene.duration)[1] for _, motion in model.loads}
         self.loads = [(number, vectors[motion]) for number, motion in model.loads]
         self.mbs, self.longest = model.mbs, longest
         self.slack = 1e-12 * max(1.0, model.scene.duration)  # round-off of a sum of steps
+        self.dt = model.scene.motion.dt if isinstance(model.scene.motion, SampledMotion) else None
         self.at, self.limited = 0, False
         self.iterations = None
         self._enter()
@@ -74,9 +75,23 @@ class Ground:
         for number, vectors in self.loads:
             self.mbs.SetLoadParameter(number, "loadVector", vectors[self.at].tolist())
 
-    def first_step(self, step: float) -> float:
-        """The first step [s]: `step`, but inside the first segment."""
-        return min(step, self.ends[0])
+    def begin(self, t: float, iterations: Any) -> float:
+        """Begin a piece of the integration at t [s]; the time [s] that is left of its segment.
+
+        iterations: exudyn's, of the solver that chooses its steps; None: steps are equal.
+        """
+        self.iterations, self.limited = iterations, False
+        while self.end <= t + self.slack and self.at + 1 < len(self.ends):
+            self.at += 1
+            self._enter()
+        return self.end - t
+
+    def equal(self, t: float, step: float) -> tuple[float, int]:
+        """(end [s], number) of equal steps, none longer than `step` [s], from t on that meet the ends of segments."""
+        left, samples = self.end - t, len(self.ends) - 1 - self.at  # segments of equal length, and the last
+        if self.dt and samples and abs(left - self.dt) < self.slack:
+            return self.ends[-2], samples * math.ceil(self.dt / step - 1e-9)
+        return self.end, math.ceil(left / step)
 
     def prepare(self, mbs: exu.MainSystem, t: float) -> bool:
         """Before each attempt of a step that would end at t (PreStep): its segment, and the longest step after it.

@@ -10,7 +10,7 @@ import exudyn as exu
 from exudyn.itemInterface import MarkerBodyRigid, NodeGenericData, ObjectContactSphereTriangle
 
 from .scene import build
-from .stepping import solver_settings, step_through
+from .stepping import in_one_go, solver_settings, step_through
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -73,10 +73,5 @@ def run(scene: Scene, settings: NativeContact) -> Run:
     )
     solver.timeIntegration.newton.useModifiedNewton = False
     return step_through(
-        model,
-        solver,
-        exu.DynamicSolverType.TrapezoidalIndex2,
-        4 * sink / scene.block.half_width,
-        settings.step,
-        settle=0.0,
+        model, lambda model, steps, record: in_one_go(model, solver, steps, record), 4 * sink / scene.block.half_width
     )

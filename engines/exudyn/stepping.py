@@ -7,7 +7,7 @@ import signal
 import threading
 import time
 from array import array
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -86,20 +86,25 @@ def solver_settings(scene: Scene, **time_integration: Any) -> exu.SimulationSett
 class Steps:
     """What is recorded of a run: times, states (coordinates, then velocities) and bearing forces, step after step.
 
-    Not in lists: a step costs 100 bytes instead of 500. interrupts: as of `interruptible`.
+    Not in lists: a step costs 100 bytes instead of 500. interrupts: as of `interruptible`. ended: the run is not to go
+    on, by overturning, interrupt, the number of steps or a state that is not finite.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, width: int) -> None:
         self.times, self.states, self.forces = array("d"), array("d"), array("d")
         self.interrupts: list[int] = []
+        self.width, self.ended = width, False  # width: coordinates of a state
+
+    def last(self) -> tuple[np.ndarray, np.ndarray]:
+        """(coordinates, velocities) of the last step."""
+        q, v = np.split(np.array(self.states[-2 * self.width :]), 2)
+        return q, v
 
 
 def step_through(
     model: Model,
-    settings: exu.SimulationSettings,
-    solver: exu.DynamicSolverType,
+    drive: Callable[[Model, Steps, Callable[..., bool]], Failure | None],
     contact_tilt: float,
-    longest: float,
     settle: float = 0.0,
 ) -> Run:
     """Run a model to the scene's end, overturning or failure.
@@ -108,32 +113,24 @@ def step_through(
     ----------
     model : Model
         With its contact.
-    settings : exudyn.SimulationSettings
-    solver : exudyn.DynamicSolverType
+    drive : callable
+        (model, steps, record) -> failure or None: sets exudyn's user functions and lets it integrate; record, called
+        after a step, keeps it in steps and says whether to go on.
     contact_tilt : float
         For the trace [rad].
-    longest : float
-        Longest step [s].
     settle : float
         For the trace [s].
     """
     exu.config.printToConsole = False
     scene, mbs, limit = model.scene, model.mbs, step_limit(model.scene)
     check(model)
-    steps = Steps()
-    mbs.SetPostStepUserFunction(_recorder(model, steps, limit))
-    dynamic = _integrator(settings.timeIntegration, solver)
-    if scene.motion is not None:
-        mbs.SetPreStepUserFunction(_ground(model, settings.timeIntegration, dynamic, longest).prepare)
+    steps = Steps(4 if scene.base else 3)
     began = time.process_time()
-    failure = None
     try:
         with interruptible() as steps.interrupts:
-            done = dynamic.SolveSystem(mbs, settings)
-        if not done:
-            failure = Failure("the solver gave up", dynamic.GetErrorString())
+            failure = drive(model, steps, _recorder(model, steps, limit))
     except exu.ExudynError as error:
-        failure = Failure("the solver stopped with an error", f"{error} {dynamic.GetErrorString()}".strip())
+        failure = Failure("the solver stopped with an error", str(error).strip())
     finally:
         release(mbs)
     cpu = time.process_time() - began
@@ -142,7 +139,7 @@ def step_through(
             "the run took too many steps",
             f"{limit} steps reached t = {steps.times[-1]:.9g} s of {scene.duration:.9g} s",
         )
-    q, v = np.split(np.asarray(steps.states).reshape(-1, 8 if scene.base else 6), 2, axis=1)
+    q, v = np.split(np.asarray(steps.states).reshape(-1, 2 * steps.width), 2, axis=1)
     trace = make_trace(scene, np.asarray(steps.times), q, v, steps.forces, model.bearing, contact_tilt, settle)
     ended = "overturned" if trace is not None and abs(trace.tilt[-1]) >= OVERTURNED else None
     return Run(trace, len(steps.times) - 1, cpu, failure, ended)
@@ -163,27 +160,25 @@ def _recorder(model, steps, limit):
             forces.append(bearing.commit(mbs, q.item(3)))
         if anchor is not None:
             anchor.commit(mbs, q, v)
-        # False for NaN too
-        return -OVERTURNED < q.item(2) < OVERTURNED and len(times) <= limit and not steps.interrupts
+        # Not for NaN either
+        steps.ended = not (-OVERTURNED < q.item(2) < OVERTURNED and len(times) <= limit and not steps.interrupts)
+        return not steps.ended
 
     return keep
 
 
-def _integrator(integration, solver):
-    """exudyn's solver object for a solver type, which is set in the time integration's settings."""
-    implicit = solver == exu.DynamicSolverType.TrapezoidalIndex2
-    integration.solverType = solver
-    integration.generalizedAlpha.useNewmark = integration.generalizedAlpha.useIndex2Constraints = implicit
-    return exu.MainSolverImplicitSecondOrder() if implicit else exu.MainSolverExplicit()
-
-
-def _ground(model, integration, dynamic, longest):
-    """The `Ground` under a model; where the solver chooses its steps, the first is one that the motion allows."""
-    ground = Ground(model, longest)
-    if integration.automaticStepSize:
-        ground.iterations = dynamic.it
-        integration.initialStepSize = ground.first_step(integration.initialStepSize)
-    return ground
+def in_one_go(
+    model: Model, settings: exu.SimulationSettings, steps: Steps, record: Callable[..., bool]
+) -> Failure | None:
+    """Drive a model by the implicit trapezoidal rule in equal steps, as `step_through` asks."""
+    mbs, integration = model.mbs, settings.timeIntegration
+    integration.solverType = exu.DynamicSolverType.TrapezoidalIndex2
+    integration.generalizedAlpha.useNewmark = integration.generalizedAlpha.useIndex2Constraints = True
+    mbs.SetPostStepUserFunction(record)
+    if model.scene.motion is not None:
+        mbs.SetPreStepUserFunction(Ground(model).prepare)
+    solver = exu.MainSolverImplicitSecondOrder()
+    return None if solver.SolveSystem(mbs, settings) else Failure("the solver gave up", solver.GetErrorString())
 
 
 def release(mbs: exu.MainSystem) -> None:

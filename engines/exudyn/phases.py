@@ -1,0 +1,156 @@
+"""Two integrators of exudyn for one model: explicit steps through impacts, implicit ones while contact stays as it is.
+
+A stiff corner asks for thousands of explicit steps a second even while the block merely pivots on it or stands; there
+exudyn's generalized-alpha method takes steps of a millisecond. Both see the same corners and the same bearings: a
+change of integrator changes no state and no force.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import exudyn as exu
+import numpy as np
+from numba import njit
+
+from analytic.response import Failure
+from analytic.rocking import RockingModel
+
+from ..vibration import longest_step
+from .ground import Ground
+from .stepping import solver_settings
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .scene import Model
+    from .stepping import Steps
+
+INITIAL = exu.ConfigurationType.Initial
+NEITHER, BOTH = -2, 0  # corners that carry; -1 and 1: that one
+
+# Implicit steps begin only where so many of them are left before the impact, and end where fewer than LEAVE are.
+ENTER, LEAVE = 8.0, 4.0
+# Share of the weight that a corner must carry to count, for steps to become implicit and to stay so.
+CARRIES, HOLDS = 0.2, 0.1
+# Rate toward the impact that a base may give the block, over that of the block's own fall.
+PUSHED = 3.0
+# Steps shorter than this share of `pivoting_step`, which stiff bearings ask for, gain nothing over explicit ones.
+WORTHWHILE = 0.1
+# Of the steps that leapfrog engines take where bearings vibrate: its phase is off by (h omega)^2/12 a radian.
+SMOOTH = 0.1
+FIRST = 2e-3  # of the longest explicit step: the first one of a piece
+# Damping of what steps do not resolve: the spectral radius of generalized-alpha. .6 to .98 give the same e to 2e-7.
+DAMPED = 0.9
+# Newton's residual, over the block's weight. Below 1e-14, its round-off, exudyn finds no end.
+RESIDUAL = 1e-7
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What a variant asks of its steps. explicit: settings of the explicit solver; step: longest implicit one [s].
+
+    sink: penetration of a corner that carries half the weight [m]. settle: time [s] that a change of contact takes to
+    die away.
+    """
+
+    explicit: exu.SimulationSettings
+    longest: float
+    step: float
+    sink: float
+    settle: float
+
+
+@njit(cache=True)
+def carrying(q: np.ndarray, b: float, h: float, least: float) -> int:
+    """Which corner is deeper than `least` [m] in the ground: -1, 1, BOTH or NEITHER."""
+    sin, drop = math.sin(q[2]), h * (math.cos(q[2]) - 1) - q[1]
+    left, right = drop + b * sin >= least, drop - b * sin >= least
+    if left:
+        return 0 if right else -1
+    return 1 if right else -2
+
+
+class Phases:
+    """Which integrator a run needs at a step, and the pieces of exudyn's time integration that follow from it."""
+
+    def __init__(self, model: Model, rule: Rule, steps: Steps, record: Callable[..., bool]) -> None:
+        scene, self.model, self.rule, self.steps, self.record = model.scene, model, rule, steps, record
+        rocking = RockingModel.of(scene)
+        self.pull = PUSHED * rocking.m * rocking.g * scene.block.half_width / rocking.J
+        self.shape = scene.block.half_width, scene.block.half_height
+        self.step = SMOOTH * longest_step(scene, rule.step / SMOOTH)
+        self.worthwhile = self.step >= WORTHWHILE * rule.step
+        self.implicit, self.state, self.since, self.anchored, self.refused = False, NEITHER, 0.0, 0.0, -math.inf
+        self.ground = Ground(model, rule.longest) if scene.motion else None
+        model.mbs.SetPostStepUserFunction(self.keep)
+        if self.ground:
+            model.mbs.SetPreStepUserFunction(self.ground.prepare)
+        self.smooth = solver_settings(scene, automaticStepSize=False, adaptiveStep=False)
+        integration = self.smooth.timeIntegration
+        integration.solverType = exu.DynamicSolverType.GeneralizedAlpha
+        integration.generalizedAlpha.spectralRadius = DAMPED
+        integration.newton.useModifiedNewton = True
+        integration.newton.absoluteTolerance = RESIDUAL * scene.block.mass * scene.gravity
+        self.solvers = exu.MainSolverExplicit(), exu.MainSolverImplicitSecondOrder()
+
+    def keep(self, mbs: exu.MainSystem, t: float) -> bool:
+        """After each step (PostStep): record it; False ends the run, or a piece of it."""
+        if t <= self.steps.times[-1]:
+            return True  # exudyn calls it at the start of each piece, too
+        if not self.record(mbs, t):
+            return False
+        system = self.model.mbs.systemData
+        return self.quiet(t, system.GetODE2Coordinates(), system.GetODE2Coordinates_t()) == self.implicit
+
+    def quiet(self, t: float, q: np.ndarray, v: np.ndarray) -> bool:
+        """Whether contact has been as it is for a while, and will be for the next steps."""
+        least = 2 * (HOLDS if self.implicit else CARRIES) * self.rule.sink
+        state, at = carrying(q, *self.shape, least), self.model.anchor.at
+        if state != self.state or at != self.anchored or state == NEITHER:
+            # A corner came, left or slid.
+            self.state, self.since, self.anchored = state, t, at
+            return False
+        if not self.worthwhile or t - self.since < self.rule.settle or t < self.refused:
+            return False
+        if state == BOTH:
+            return True
+        tilt, fall = abs(q.item(2)), v.item(2) * math.copysign(1.0, q.item(2))
+        ahead = (LEAVE if self.implicit else ENTER) * self.step
+        return tilt + fall * ahead - 0.5 * self.pull * ahead * ahead > 0.0
+
+    def run(self) -> Failure | None:
+        """Step to the scene's end, to overturning or to where a run is given up; exudyn's failure, or None."""
+        steps, duration = self.steps, self.model.scene.duration
+        self.record(self.model.mbs, 0.0)
+        while steps.times[-1] < duration * (1 - 1e-12):
+            t, count = steps.times[-1], len(steps.times)
+            q, v = steps.last()
+            self.implicit = self.quiet(t, q, v)
+            done = self._piece(t, q, v)
+            if not done and not self.implicit:
+                return Failure("the solver gave up", self.solvers[0].GetErrorString())
+            if not done:
+                self.refused = steps.times[-1] + self.rule.settle  # explicit steps go where Newton's method does not
+            elif len(steps.times) == count or steps.ended:
+                return None
+        return None
+
+    def _piece(self, t, q, v):
+        """Integrate from a state to where the other integrator is due; whether exudyn took it for a success."""
+        mbs, settings = self.model.mbs, self.smooth if self.implicit else self.rule.explicit
+        mbs.systemData.SetODE2Coordinates(q, configuration=INITIAL)
+        mbs.systemData.SetODE2Coordinates_t(v, configuration=INITIAL)
+        solver, integration = self.solvers[self.implicit], settings.timeIntegration
+        duration, first = self.model.scene.duration, FIRST * self.rule.longest
+        left = self.ground.begin(t, None if self.implicit else solver.it) if self.ground else duration - t
+        integration.startTime, integration.endTime = t, duration
+        if self.implicit:
+            end, count = self.ground.equal(t, self.step) if self.ground else (duration, math.ceil(left / self.step))
+            integration.endTime, integration.numberOfSteps = end, count
+        else:
+            integration.numberOfSteps = math.ceil((duration - t) / self.rule.longest)
+            integration.initialStepSize = min(left, first)
+        return solver.SolveSystem(mbs, settings)
