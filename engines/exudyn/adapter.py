@@ -38,7 +38,10 @@ VARIANTS = {
         corners.CompliantCorners(),
         rung="best",
         ladder=(1e9, 1e10, 2e11, 1e12),
-        finer=({"stiffness": 1e12, "longest_step": 1e-3}, {"stiffness": 1e12, "longest_step": 1e-3, "tolerance": 1e-9}),
+        finer=(
+            {"stiffness": 1e12, "pivoting_step": 2e-4},
+            {"stiffness": 1e12, "pivoting_step": 2e-4, "tolerance": 1e-9},
+        ),
         varied={
             "stiffness": (1e8, 1e9, 1e10, 1e11, 1e12),
             "rebound": (1e-4, 1e-3, 1e-2, 1e-1),
@@ -49,7 +52,7 @@ VARIANTS = {
         decides="the integration decides contact, impact, sliding and rest; the corners' law, Hunt-Crossley contact "
         "with Coulomb's friction, is the adapter's: plastic, non-slipping (unless the scene gives a "
         "coefficient) and planar, as Housner assumes, so that an impact which agrees with him verifies law and "
-        "integration",
+        "integration; the adapter says when exudyn steps explicitly, through impacts, and when implicitly",
         verified=Range(slenderness=(0.03, 1.2), inertia=(1.01, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0)),
     ),
     "switched-joints": Variant(

@@ -1,8 +1,8 @@
 """exudyn, variant compliant-corners: a stiff contact at each bottom corner.
 
-The contact's law is this adapter's own, in the tradition of Hunt and Crossley, and exudyn integrates it: plastic
-(`rebound`), non-slipping (`friction`) and planar, which is what Housner assumes. That an impact then turns out as his
-formula says verifies law and integration, it is no independent physics.
+The contact's law is this adapter's own, in the tradition of Hunt and Crossley, and exudyn integrates it, by the two
+methods of `phases`: plastic (`rebound`), non-slipping (`friction`) and planar, which is what Housner assumes. That an
+impact then turns out as his formula says verifies law and integration, it is no independent physics.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ class CompliantCorners:
 
     stiffness [N/m] per corner, rebound and slip [m/s] are those of a block of the Caryatid's weight and size released
     at .3 of its slenderness or more; other blocks and smaller starts get the equivalent (penetration over radius and
-    tilt, speeds over those of the impact stay the same). Likewise tolerance and longest_step.
+    tilt, speeds over those of the impact stay the same). Likewise tolerance and both steps.
     """
 
     # Measured in free rocking from 8 starts, 0.3 to 0.8 gamma, gamma 0.1 to 0.45, rigid ground and m_b = 212 kg, every
