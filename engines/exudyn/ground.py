@@ -75,6 +75,10 @@ class Ground:
         for number, vectors in self.loads:
             self.mbs.SetLoadParameter(number, "loadVector", vectors[self.at].tolist())
 
+    def _next(self):
+        self.at += 1
+        self._enter()
+
     def begin(self, t: float, iterations: Any) -> float:
         """Begin a piece of the integration at t [s]; the time [s] that is left of its segment.
 
@@ -82,8 +86,7 @@ class Ground:
         """
         self.iterations, self.limited = iterations, False
         while self.end <= t + self.slack and self.at + 1 < len(self.ends):
-            self.at += 1
-            self._enter()
+            self._next()
         return self.end - t
 
     def equal(self, t: float, step: float) -> tuple[float, int]:
@@ -100,8 +103,7 @@ class Ground:
         """
         rest = self.end - t
         while rest < -self.slack and self.at + 1 < len(self.ends):
-            self.at += 1
-            self._enter()
+            self._next()
             rest = self.end - t
         iterations = self.iterations
         if iterations is None:  # fixed steps

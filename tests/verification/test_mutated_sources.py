@@ -57,8 +57,8 @@ MUTATIONS = {
     # For ever, within one call of exudyn, which makes a failed run of the limit's exception.
     "exudyn: the motion's first segment is never left": Mutation(
         "engines.exudyn.ground",
-        "            self.at += 1\n            self._enter()\n",
-        "            self._enter()\n",
+        "        self.at += 1\n        self._enter()\n",
+        "        self._enter()\n",
         f"{PHYSICS}::test_isolated_caryatid[synthetic-exudyn-compliant-corners]",
         "'failed' == 'stands'",
         limit=SHORT,
