@@ -96,7 +96,7 @@ VARIANTS = {
     "expert": Variant(
         Expert(),
         rung="expert",
-        ladder=(1e-3, 2e-4, 5e-5),
+        ladder=(4e-3, 1e-3, 2e-4),
         decides=SCRIPT_DECIDES,
         verified=Range(
             slenderness=(0.1, 0.45),
@@ -111,7 +111,7 @@ VARIANTS = {
     "first-script": Variant(
         FirstScript(),
         rung="first script",
-        ladder=(5e-3, 1e-3, 2e-4),
+        ladder=(5e-3, 2e-3, 1e-3),
         decides=SCRIPT_DECIDES,
         verified=None,
         caveats=(
