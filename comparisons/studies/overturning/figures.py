@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
 MODES = ("white", "#9ecae1", "#6baed6", "#d9d9d9")  # stands; overturns without, after one, after more impacts
 SHADES = ("#000000", "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00")  # Okabe and Ito
+ACROSS = 4  # panels beside each other
 LIMIT = 0.5  # %, asked of the boundaries at default settings
 
 
@@ -144,9 +146,13 @@ def draw_shifts(result: Result) -> Figure:
 def draw_knobs(result: Result) -> Figure:
     """Largest and median |shift| over the setting that buys accuracy, one panel for each solver and variant."""
     curves = knob_curves(result)
-    figure = Figure(figsize=(3.2 * len(curves), 3.6), layout="constrained")
-    axes = figure.subplots(1, len(curves), squeeze=False, sharey=True)[0]
-    for axis, ((solver, knob), values) in zip(axes, curves.items(), strict=True):
+    across = min(ACROSS, len(curves)) or 1
+    lines = math.ceil(len(curves) / across) or 1
+    figure = Figure(figsize=(3.2 * across, 3.4 * lines), layout="constrained")
+    axes = figure.subplots(lines, across, squeeze=False, sharey=True).ravel()
+    for axis in axes[len(curves) :]:
+        axis.set_axis_off()
+    for axis, ((solver, knob), values) in zip(axes, curves.items(), strict=False):
         x = sorted(values)
         for shade, (name, measure) in zip(SHADES[1:], (("largest", np.max), ("median", np.median)), strict=False):
             y = [
@@ -177,7 +183,7 @@ def draw_knobs(result: Result) -> Figure:
         unit = {"step": "step [s]", "stiffness": "stiffness [N/m]"}.get(knob, f"{knob} [-]")
         axis.set(xscale="log", yscale="log", xlabel=unit, title=solver.replace(", ", "\n"))
         axis.grid(color="0.92")
-    axes[0].set_ylabel("shift of the boundaries, absolute [%]")
+    figure.supylabel("shift of the boundaries, absolute [%]")
     axes[0].legend(fontsize="small")
     return figure
 

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 RULE = (
     f"An engine may be trusted for restitution if its error, root mean square, is at most {TRUSTED:g} on both "
-    f"grounds and no run failed; at most {USABLE:g} it is usable where a per cent does not matter. The answer for "
-    "each engine and variant at its default setting, with error and cost:"
+    f"grounds and no run failed; at most {USABLE:g} it is usable where a per cent does not matter. At their default "
+    "settings: "
 )
 CAPTIONS = {
     "maps": (
@@ -49,14 +49,8 @@ def section_of(result: Result) -> Section:
     """The `Section` of a `Result` of the restitution study."""
     settings = result.settings
     defaults = [row for row in select(result, "summary", scope="all")]
-    text = [
-        _setting_words(settings),
-        RULE,
-        *[words for knob in settings["knobs"] if (words := _verdict(result, knob))],
-        *_cause_words(result),
-        *_equation_words(result),
-    ]
-    tables = [_default_table(defaults), _ladder_table(result), _experiment_table(result)]
+    text = [_setting_words(settings), RULE + _sorted_words(result), *_cause_words(result), *_equation_words(result)]
+    tables = [_verdict_table(result), _default_table(defaults), _ladder_table(result), _experiment_table(result)]
     drawn = [figure_of(figure, *CAPTIONS[name]) for name, figure in figures(result).items()]
     evidence = [
         (
@@ -87,52 +81,59 @@ def _setting(knob):
     return f"{knob['knob']} = {number(knob['default'], 2)}{UNITS.get(knob['knob'], '')}"
 
 
-def _trust(result, knob):
-    """May I trust it, at which setting and cost?"""
+def _asked(result, knob):
+    """(rows of a variant at its default setting, those of them with an error, worst of these or None, failed runs)."""
     rows = select(result, "summary", scope="all", engine=knob["engine"], variant=knob["variant"])
     measured = [row for row in rows if row["rms"] is not None]
-    name = f"{knob['engine']}, {knob['variant']} ({_setting(knob)})"
-    if knob["applies_impact"]:
-        name += ", whose adapter applies eqs (7) and (8) itself,"
-    failed, runs = sum(row["failed"] for row in rows), sum(row["runs"] for row in rows)
-    if not measured:
-        return f"{name}: no run succeeded" if runs else ""
-    worst = max(row["rms"] for row in measured)
-    cost = max(row["cpu_per_second"] for row in measured)
-    errors = ", ".join(
-        f"{number(row['rms'], 2)} on {'a ' if row['ground'] == 'sliding base' else ''}{row['ground']} "
-        f"(worst impact {number(row['worst'], 2)})"
-        for row in measured
-    )
-    return (
-        f"{name} {trust(worst, failed)} for restitution: error {errors}, at {number(cost, 2)} s of CPU time per "
-        "simulated second"
-    )
+    return rows, measured, max((row["rms"] for row in measured), default=None), sum(row["failed"] for row in rows)
 
 
-def _verdict(result, knob):
-    """The same, and all else that is known of a variant."""
-    words = _trust(result, knob)
-    rows = select(result, "summary", scope="all", engine=knob["engine"], variant=knob["variant"])
-    measured = [row for row in rows if row["rms"] is not None]
-    failed, runs = sum(row["failed"] for row in rows), sum(row["runs"] for row in rows)
-    if not measured:
-        return words and words + "."
-    jumps = [row["jump_rms"] for row in measured if row["jump_rms"] is not None]
-    words += f"; base velocity jump off by {percent(max(jumps))}." if jumps else "."
-    orders = [row for row in select(result, "order", engine=knob["engine"], variant=knob["variant"]) if row["order"]]
-    if orders:
-        words += (
-            f" The error goes as the {knob['knob']} to the power of "
-            + " and ".join(f"{number(row['order'], 2)} ({row['ground']})" for row in orders)
-            + "."
+def _sorted_words(result):
+    """Which variants may be trusted, which are usable, which are not to be."""
+    said = {}
+    for knob in result.settings["knobs"]:
+        rows, _, worst, failed = _asked(result, knob)
+        if rows:
+            said.setdefault(trust(worst, failed), []).append(_name(knob).replace(",", ""))
+    return " ".join(f"{', '.join(names)}: {words.removeprefix('is ')}." for words, names in said.items())
+
+
+def _verdict_table(result):
+    rows = []
+    for knob in result.settings["knobs"]:
+        found, measured, worst, failed = _asked(result, knob)
+        if not found:
+            continue
+        orders = select(result, "order", engine=knob["engine"], variant=knob["variant"])
+        jumps = [row["jump_rms"] for row in measured if row["jump_rms"] is not None]
+        by_ground = {row["ground"]: row["rms"] for row in measured}
+        rows.append(
+            [
+                f"{_name(knob)} ({_setting(knob)})" + ("*" if knob["applies_impact"] else ""),
+                trust(worst, failed).removesuffix(" where a per cent does not matter"),
+                *(number(by_ground.get(ground), 2) for ground in ("rigid ground", "sliding base")),
+                number(max((row["worst"] for row in measured), default=None), 2),
+                percent(max(jumps)) if jumps else "–",
+                ", ".join(number(row["order"], 2) for row in orders if row["order"]) or "–",
+                number(max((row["cpu_per_second"] for row in measured), default=None), 2),
+                f"{failed} of {sum(row['runs'] for row in found)}, {sum(row['lost'] for row in found)}",
+            ]
         )
-    if failed:
-        words += f" {failed} of {runs} runs failed."
-    lost = sum(row["lost"] for row in rows)
-    if lost > 0:
-        words += f" {lost} impacts of the model have no counterpart in the runs."
-    return words
+    return Table(
+        "May it be trusted for restitution, at its default setting? (*: its adapter applies eqs (7) and (8) itself)",
+        (
+            "engine, variant",
+            "verdict",
+            "error, rms: rigid ground [-]",
+            "sliding base [-]",
+            "worst impact [-]",
+            "base velocity jump off by",
+            "power of the knob: both grounds [-]",
+            "CPU time per simulated second [s/s]",
+            "runs failed, impacts lost [-]",
+        ),
+        rows,
+    )
 
 
 def _cause_words(result):

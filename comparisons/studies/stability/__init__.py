@@ -2,14 +2,14 @@
 
 from ...running.study import Study
 from .finding import finding, judgement
-from .page import draw, section
+from .page import pictures, section
 from .verdicts import plan
 
 STUDY = Study(
     "stability",
     "Named hard cases, every solver and variant: right, degraded or failed, with measures, evidence and cures.",
     plan,
-    lambda result: {"": draw(result)},
+    pictures,
     section,
     finding=finding,
     judgement=judgement,

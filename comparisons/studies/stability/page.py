@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from matplotlib.colors import to_rgb
@@ -40,9 +41,22 @@ def _cured(cure):
     return cure is not None and cure["verdict"] == RIGHT
 
 
-def draw(result: Result) -> Canvas:
-    """The matrix of verdicts: a line per case, a column per solver; a matplotlib Figure."""
-    cases, solvers, cells = list(result.settings["cases"]), list(result.settings["solvers"]), matrix(result)
+def pictures(result: Result) -> dict[str, Canvas]:
+    """The matrix of verdicts in two: the references and the engines' best, and all other variants."""
+    best, others = halves(result)
+    return {"": draw(result, best)} | ({"others": draw(result, others)} if others else {})
+
+
+def halves(result: Result) -> tuple[list[str], list[str]]:
+    """(references and default variants, all others) of a result."""
+    solvers = result.settings["solvers"]
+    best = [name for name, solver in solvers.items() if solver["default_variant"]]
+    return best, [name for name in solvers if name not in best]
+
+
+def draw(result: Result, solvers: Sequence[str]) -> Canvas:
+    """The matrix of verdicts: a line per case, a column for each of `solvers`; a matplotlib Figure."""
+    cases, cells = list(result.settings["cases"]), matrix(result)
     canvas = Canvas(figsize=(2.2 + 0.76 * len(solvers), 1.4 + 0.39 * len(cases)), layout="constrained")
     axes = canvas.add_subplot()
     for j, case in enumerate(cases):
@@ -104,15 +118,18 @@ def section(result: Result) -> Section:
         ]
         for solver in solvers
     ]
-    picture = figure_of(
-        draw(result),
-        _spoken(counts),
+    captions = (
         "Verdicts. In the cells: the measure that is farthest outside "
         "its tolerance (tol.), and by how many times, or the count lost; “cured”: a setting tried "
         "makes it right.",
+        "The same of the engines' other variants.",
     )
+    drawn = [
+        figure_of(picture, _spoken([row for row in counts if row[0] in half]), caption)
+        for picture, half, caption in zip(pictures(result).values(), halves(result), captions, strict=False)
+    ]
     ill = [(row, cure) for row, cure in cells.values() if row["verdict"] != RIGHT]
-    best = [name for name, solver in solvers.items() if solver["default_variant"]]
+    best, _ = halves(result)
     tables = [
         Table("Verdicts by solver", ("Solver", "right", "degraded", "failed", "of these cured"), counts),
         Table(
@@ -146,7 +163,7 @@ def section(result: Result) -> Section:
         *((f"{row['case']}: {row['solver']}", _evidence(row)) for row, _ in ill if row["verdict"] == FAILED),
     )
     return Section(
-        "Numerical stability on hard cases", _text(result, cells, ill), tuple(tables), (picture,), evidence=evidence
+        "Numerical stability on hard cases", _text(result, cells, ill), tuple(tables), tuple(drawn), evidence=evidence
     )
 
 
@@ -167,12 +184,12 @@ def _text(result, cells, ill):
         for name in steppers
     }
     trusted = [name for name, count in right.items() if count == len(result.settings["cases"])]
+    best = [name for name, count in right.items() if count == max(right.values())]
     answer = (
         "Which solver that steps may be trusted in all cases as hard as these? "
-        f"{', '.join(trusted) or 'None'}. Right are "
-        + ", ".join(f"{name} in {count}" for name, count in right.items())
-        + f" of {len(result.settings['cases'])} cases. The tables say what was wrong in the others, by how much, "
-        "and which setting cures it."
+        f"{', '.join(trusted) or 'None'}; the most, {max(right.values(), default=0)} of "
+        f"{len(result.settings['cases'])}, in {' and '.join(best) or 'none'}. The tables say what was wrong in the "
+        "others, by how much, and which setting cures it."
     )
     of_events = sum(name in event for _, name in cells)
     second = (

@@ -137,7 +137,8 @@ def test_the_study_measures_the_shift_it_is_given(tmp_path, monkeypatch, shift):
     assert ("All boundaries lie within 0.5 %" in text) == (shift == 0)
     assert ("Not all boundaries lie within 0.5 %" in text) == (shift != 0)
     assert ("is not to be trusted" in text) == (shift != 0)
-    assert {mark.level for mark in judgement(result).marks.values()} == ({"good"} if shift == 0 else {"bad"})
+    # at default settings gaps are lost, too; the first script is asked at one frequency, where none is as narrow
+    assert {mark.level for mark in judgement(result).marks.values()} == ({"good"} if shift == 0 else {"bad", "fair"})
 
 
 def test_failed_runs_are_no_outcomes_and_their_evidence_is_kept(tmp_path, monkeypatch):

@@ -96,10 +96,13 @@ def test_figures_and_section_come_from_the_result_alone(small):
     assert len(figures) == 5 and all(figure.stat().st_size > 10_000 for figure in figures)
     section = STUDY.section(read_result(path))
     words = " ".join(section.text)
-    assert "pybullet, impact-aware (accuracy = 1.0·10⁻⁵) may be trusted for restitution" in words
-    assert "not to be trusted" in words and "Step phase." in words and "Eq. (8)." in words
+    assert "pybullet impact-aware: may be trusted." in words
+    assert "pybullet first-script: not to be trusted." in words and "Step phase." in words and "Eq. (8)." in words
     for table in section.tables:
         assert table.rows and all(len(row) == len(table.columns) for row in table.rows)
+    verdicts = {row[0]: row[1:] for row in section.tables[0].rows}
+    assert verdicts["pybullet, impact-aware (accuracy = 1.0·10⁻⁵)"][0] == "may be trusted"
+    assert verdicts["pybullet, first-script (step = 0.0042 s)"][0] == "is not to be trusted"
     assert len(section.figures) == 5 and all(figure.alt and figure.caption for figure in section.figures)
     json.dumps([section.title, section.text])
 

@@ -162,7 +162,7 @@ def test_columns_cover_every_variant_and_cures_are_settings_they_have():
 def test_the_study_writes_cells_cures_and_page_and_resumes(tmp_path):
     names, columns = ("uplift 0.99", "zeno", "critical pulse -0.01"), [KERNEL, TIME_STEPPING]
     (path,) = compute(STUDY, tmp_path, engines=(), workers=1, progress=False, names=names, columns=columns)
-    (figure,) = draw(STUDY, path)
+    figure, _ = draw(STUDY, path)
     rows = (tmp_path / "runs.jsonl").read_text()
     result = read_result(path)
     cells = matrix(result)
