@@ -272,18 +272,19 @@ def assemble(scene: Scene, settings: CompliantCorners) -> tuple[Model, float]:
 def run(scene: Scene, settings: CompliantCorners) -> Run:
     """Step a scene with compliant corners; small swings under a motion are stepped again, see `SMALL`."""
     share = start_share(scene)
-    first = _run(scene, scaled(scene, settings, share))
+    first = _run(scene, settings, share)
     if share < 1 or first.trace is None or first.failure is not None:
         return first
     peak = float(np.nanmax(np.abs(first.trace.tilt)))
     if not first.trace.contact_tilt < peak < SMALL * scene.block.slenderness:
         return first
-    again = _run(scene, scaled(scene, settings, max(LEAST_SHARE, peak / scene.block.slenderness / MEASURED_START)))
+    again = _run(scene, settings, max(LEAST_SHARE, peak / scene.block.slenderness / MEASURED_START))
     return replace(again, cpu_seconds=first.cpu_seconds + again.cpu_seconds, steps=first.steps + again.steps)
 
 
-def _run(scene: Scene, settings: CompliantCorners) -> Run:
-    """Step a scene once, with settings that are scaled to it."""
+def _run(scene: Scene, unscaled: CompliantCorners, share: float) -> Run:
+    """Step a scene once, with settings that are scaled to it and to swings of `share`."""
+    settings = scaled(scene, unscaled, share)
     model, contact_tilt = assemble(scene, settings)
     explicit = solver_settings(
         scene,
@@ -298,7 +299,9 @@ def _run(scene: Scene, settings: CompliantCorners) -> Run:
         MOST_RELAX * math.sqrt(scene.block.radius / scene.gravity),
     )
     sink = contact_tilt * scene.block.half_width
-    rule = Rule(explicit, settings.longest_step, settings.pivoting_step, sink, settle)
+    rule = Rule(
+        explicit, settings.longest_step, settings.pivoting_step, settings.pivoting_step / math.sqrt(share), sink, settle
+    )
     ran = step_through(
         model, lambda model, steps, record: Phases(model, rule, steps, record).run(), 2 * contact_tilt, settle
     )

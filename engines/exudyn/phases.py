@@ -44,8 +44,10 @@ SMOOTH = 0.1
 FIRST = 2e-3  # of the longest explicit step: the first one of a piece
 # Damping of what steps do not resolve: the spectral radius of generalized-alpha. .6 to .98 give the same e to 2e-7.
 DAMPED = 0.9
-# Newton's residual, over the block's weight. Below 1e-14, its round-off, exudyn finds no end.
-RESIDUAL = 1e-7
+# Newton's residual, over the block's weight; but no less than some rounding errors of a place, as stiff corners feel
+# them: below these exudyn finds no end.
+RESIDUAL, ROUNDING = 1e-7, 30 * 2.0**-52
+DIFFERENCE = 0.02
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,7 @@ class Rule:
     explicit: exu.SimulationSettings
     longest: float
     step: float
+    standing: float
     sink: float
     settle: float
 
@@ -81,7 +84,7 @@ class Phases:
         rocking = RockingModel.of(scene)
         self.pull = PUSHED * rocking.m * rocking.g * scene.block.half_width / rocking.J
         self.shape = scene.block.half_width, scene.block.half_height
-        self.step = SMOOTH * longest_step(scene, rule.step / SMOOTH)
+        self.step, self.standing = (SMOOTH * longest_step(scene, one / SMOOTH) for one in (rule.step, rule.standing))
         self.worthwhile = self.step >= WORTHWHILE * rule.step
         self.implicit, self.state, self.since, self.anchored, self.refused = False, NEITHER, 0.0, 0.0, -math.inf
         self.ground = Ground(model, rule.longest) if scene.motion else None
@@ -93,7 +96,15 @@ class Phases:
         integration.solverType = exu.DynamicSolverType.GeneralizedAlpha
         integration.generalizedAlpha.spectralRadius = DAMPED
         integration.newton.useModifiedNewton = True
-        integration.newton.absoluteTolerance = RESIDUAL * scene.block.mass * scene.gravity
+        weight = scene.block.mass * scene.gravity
+        rounding = ROUNDING * scene.block.radius * weight / (2 * rule.sink)
+        integration.newton.absoluteTolerance = max(RESIDUAL * weight, rounding)
+        # Forces are derived by differences: of a share of the corner's depth, beyond which it would leave contact.
+        differences = integration.newton.numericalDifferentiation
+        differences.minimumCoordinateSize, differences.relativeEpsilon = (
+            1.0,
+            DIFFERENCE * rule.sink / scene.block.radius,
+        )
         self.solvers = exu.MainSolverExplicit(), exu.MainSolverImplicitSecondOrder()
 
     def keep(self, mbs: exu.MainSystem, t: float) -> bool:
@@ -148,7 +159,8 @@ class Phases:
         left = self.ground.begin(t, None if self.implicit else solver.it) if self.ground else duration - t
         integration.startTime, integration.endTime = t, duration
         if self.implicit:
-            end, count = self.ground.equal(t, self.step) if self.ground else (duration, math.ceil(left / self.step))
+            step = self.standing if self.state == BOTH else self.step
+            end, count = self.ground.equal(t, step) if self.ground else (duration, math.ceil(left / step))
             integration.endTime, integration.numberOfSteps = end, count
         else:
             integration.numberOfSteps = math.ceil((duration - t) / self.rule.longest)

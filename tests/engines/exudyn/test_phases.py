@@ -53,11 +53,24 @@ def test_where_newton_finds_no_end_the_explicit_steps_go_on(monkeypatch):
         return made
 
     monkeypatch.setattr(phases, "solver_settings", hopeless)
-    monkeypatch.setattr(phases, "RESIDUAL", 1e-30)  # below round-off
+    monkeypatch.setattr(phases, "RESIDUAL", 1e-30)
+    monkeypatch.setattr(phases, "ROUNDING", 0.0)
     response = simulate(scene)
     assert response.failure is None
     assert response.impacts[0].time == pytest.approx(exact(scene).impacts[0].time, abs=2e-5)
     assert response.steps > 2 * usual
+
+
+def test_small_swings_on_the_stiff_corners_they_ask_for_are_stepped_implicitly(monkeypatch):
+    """Newton's differences must stay within a corner's depth, here 5e-10 m, and its end above rounding errors."""
+    motion = PulseMotion("one-sine", 1.1 * 9.81 * math.tan(0.2), 20.0)
+    scene = Scene(block=BLOCK, motion=motion, duration=3.0)
+    response, expected = simulate(scene), exact(scene)
+    assert 1e-4 < expected.peak_tilt_ratio < 5e-3
+    assert response.peak_tilt == pytest.approx(expected.peak_tilt, rel=1e-3)
+    assert response.steps < 40_000
+    monkeypatch.setattr(phases, "DIFFERENCE", 1e3)
+    assert simulate(scene).steps > 100_000
 
 
 @pytest.mark.parametrize(
