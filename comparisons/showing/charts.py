@@ -166,11 +166,11 @@ class Chart:
         if along == "x":
             x = self.at([value], [self.y.low])[0][0]
             self.parts.append(f'<path class="rule" d="M{x:.1f} {self.top}V{self.bottom}"/>')
-            self.over.append(f'<text x="{x + 4:.1f}" y="{self.top + 12}" class="soft">{escape(words)}</text>')
+            self.over.append(f'<text x="{x + 4:.1f}" y="{self.top + 12}" class="soft clear">{escape(words)}</text>')
         else:
             y = self.at([self.x.low], [value])[0][1]
             self.parts.append(f'<path class="rule" d="M{self.left} {y:.1f}H{self.right}"/>')
-            self.over.append(f'<text x="{self.left + 4}" y="{y - 4:.1f}" class="soft">{escape(words)}</text>')
+            self.over.append(f'<text x="{self.left + 4}" y="{y - 4:.1f}" class="soft clear">{escape(words)}</text>')
 
     def label(self, y: float, text: str, who: str = "", tone: str = "") -> None:
         """Name of a line, in the right margin at the height where it ends."""

@@ -138,8 +138,9 @@ def _verdict_table(result):
 
 def _cause_words(result):
     """The causes that the experiments name, and which engines have none of them."""
-    for rows in by_variant(select(result, "phase")):
-        yield _phase_words(rows)
+    phases = [(min(rows, key=lambda row: row["step"]), rows) for rows in by_variant(select(result, "phase"))]
+    if phases:
+        yield _phase_words(phases)
     for name, words in (("stiffness", _stiffness_words), ("rebound", _rebound_words), ("friction", _friction_words)):
         for rows in by_variant(select(result, "experiment", experiment=name)):
             yield from words(result, rows)
@@ -159,15 +160,18 @@ def _name(row):
     return f"{row['engine']}, {row['variant']}"
 
 
-def _phase_words(rows):
-    finest = min(rows, key=lambda row: row["step"])
-    explained = percent(min(row["explained"] for row in rows), 3)
+def _phase_words(phases):
+    """phases: (row of the finest step, all rows) of each variant."""
+    explained = percent(min(row["explained"] for _, rows in phases for row in rows), 3)
+    ranges = "; ".join(
+        f"{_name(finest)}: {number(finest['least'] * finest['step'], 2)} to "
+        f"{number(finest['most'] * finest['step'], 2)} at {number(1e3 * finest['step'], 2)} ms"
+        for finest, _ in phases
+    )
     return (
-        f"Step phase. With a fixed step the error of {_name(finest)} depends on where in the step the impact falls: a "
-        f"sawtooth of that phase explains {explained} or more of its variance at every step length. At a "
-        f"step of {number(1e3 * finest['step'], 2)} ms the error runs from "
-        f"{number(finest['least'] * finest['step'], 2)} to {number(finest['most'] * finest['step'], 2)}. "
-        "It shrinks with the step; a variant that looks ahead makes the step small only where that counts."
+        "Step phase. With a fixed step the error depends on where in the step the impact falls: a sawtooth of that "
+        f"phase explains {explained} or more of its variance at every step length. Its ends: {ranges}. It "
+        "shrinks with the step; a variant that looks ahead makes the step small only where that counts."
     )
 
 
