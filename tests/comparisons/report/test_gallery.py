@@ -2,16 +2,22 @@
 
 from xml.etree import ElementTree
 
-from comparisons.report.gallery import GALLERY, gallery
-from comparisons.running.provenance import PROJECT_FOLDER
+from comparisons.report.gallery import GALLERY, README, findings, gallery, with_findings
 
 
 def test_the_shipped_figures_are_those_of_the_stored_results_and_stand_in_the_readme():
     made = gallery()
     assert {file.name: file.read_text(encoding="utf-8") for file in GALLERY.iterdir()} == made and len(made) == 4
-    readme = (PROJECT_FOLDER / "README.md").read_text(encoding="utf-8")
+    readme = README.read_text(encoding="utf-8")
     for name, svg in made.items():
         assert f"comparisons/report/gallery/{name}" in readme
         root = ElementTree.fromstring(svg)
         assert root.tag == "{http://www.w3.org/2000/svg}svg" and root.get("aria-label")
         assert "prefers-color-scheme" in svg and "http://" not in svg.replace("http://www.w3.org", "")
+
+
+def test_the_readme_says_what_the_stored_results_say():
+    readme, words = README.read_text(encoding="utf-8"), findings()
+    assert len(words.splitlines()) == 6 and words in readme
+    assert with_findings(readme, words) == readme
+    assert with_findings(readme, "- something else") != readme
