@@ -47,15 +47,16 @@ DAMPED = 0.9
 # Newton's residual, over the block's weight; but no less than some rounding errors of a place, as stiff corners feel
 # them: below these exudyn finds no end.
 RESIDUAL, ROUNDING = 1e-7, 30 * 2.0**-52
-DIFFERENCE = 0.02
+DIFFERENCE = 0.02  # of a corner's depth, by which exudyn moves a coordinate to derive the forces
 
 
 @dataclass(frozen=True)
 class Rule:
-    """What a variant asks of its steps. explicit: settings of the explicit solver; step: longest implicit one [s].
+    """What a variant asks of its steps.
 
-    sink: penetration of a corner that carries half the weight [m]. settle: time [s] that a change of contact takes to
-    die away.
+    explicit: settings of the explicit solver. longest, step, standing: longest explicit step, and implicit ones of a
+    block that pivots and of one that stands [s]. sink: penetration of a corner that carries half the weight [m].
+    settle: time [s] that a change of contact takes to die away.
     """
 
     explicit: exu.SimulationSettings
