@@ -9,15 +9,13 @@ pytest.importorskip("pydrake", reason="pydrake is not installed: pip install 'ro
 
 from released import impact_errors, scene  # noqa: E402
 
-from analytic import Base, Bearings, Block, PulseMotion, Start  # noqa: E402
-from analytic import Scene as AnyScene  # noqa: E402
+from analytic import Bearings, PulseMotion, Start  # noqa: E402
 from analytic import simulate as exact  # noqa: E402
 from analytic.rocking import restitution  # noqa: E402
 from comparisons.measuring.restitution import impact_errors as impact_quantities  # noqa: E402
 from engines import get_engine  # noqa: E402
 from engines.contract import Mismatch  # noqa: E402
 from engines.drake import scene as built  # noqa: E402
-from engines.drake import stepping  # noqa: E402
 
 simulate = get_engine("drake").simulate
 BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
@@ -93,56 +91,6 @@ def test_a_corner_that_slips_is_held_by_sap(monkeypatch):
     assert sum(held) > 100
     assert other == pytest.approx(usual, abs=1e-4)
     assert other == pytest.approx(exact(given).end.tilt, abs=1e-4)
-
-
-def test_friction_of_the_scene_is_coulombs():
-    """A push of .3 g for .05 s on a block that slides at .2 g: (.1 g t^2/2)(1 + .1/.2), and it stays there."""
-    given = scene(0.45, duration=0.5, friction=0.2, motion=PulseMotion("rectangular", -0.3 * 9.81, math.pi / 0.05))
-    _, trace = get_engine("drake").traced(given)
-    assert abs(trace.centre[-1, 0]) == pytest.approx(0.5 * 0.1 * 9.81 * 0.05**2 * 1.5, rel=0.02)
-
-
-def test_sliding_block_fails():
-    response = simulate(scene(0.4, friction=0.2, motion=PulseMotion("rectangular", 3.0, 2.0)))
-    assert response.outcome == "failed"
-    assert "slid" in response.failure.reason
-
-
-@pytest.mark.parametrize("base", [10.0, 0.067])
-def test_light_base(base):
-    given = scene(0.28, base, 1.0, bearings=BEARINGS, start=Start(tilt=0.168))
-    model, response = exact(given), simulate(given)
-    assert response.outcome == model.outcome, response.failure
-    assert response.peak_base_displacement == pytest.approx(model.peak_base_displacement, rel=2e-3)
-
-
-@pytest.mark.parametrize("damping", [1e4, 1e6])
-def test_viscous_bearings_of_any_strength_are_right_or_warned(damping):
-    given = scene(0.28, 212.0, 1.0, bearings=BEARINGS.model_copy(update={"damping": damping}), start=Start(tilt=0.168))
-    model, response = exact(given), simulate(given)
-    off = response.failure or abs(response.peak_base_displacement / model.peak_base_displacement - 1) > 1e-2
-    assert not off or response.warnings
-
-
-@pytest.mark.parametrize("radius, density", [(1e-3, 2460.0), (30.0, 2460.0), (0.02, 600.0)])
-def test_steps_go_with_the_size_of_the_block(radius, density):
-    mass = density * radius**3
-    given = AnyScene(
-        block=Block(mass=mass, radius=radius, slenderness=0.25),
-        base=Base(mass=0.1 * mass),
-        start=Start(tilt=0.15),
-        duration=2.0 * math.sqrt(radius),
-    )
-    response = simulate(given, history=False)
-    for impact in response.impacts[:3]:
-        assert impact.rate_after / impact.rate_before == pytest.approx(restitution(given), abs=1e-4)
-
-
-def test_run_that_does_not_advance_is_given_up(monkeypatch):
-    monkeypatch.setattr(stepping, "row_limit", lambda duration, largest: 100)
-    response = simulate(scene(0.2, start=Start(tilt=0.1)))
-    assert response.outcome == "failed"
-    assert response.failure.reason == "too many steps"
 
 
 def forgetful_friction(monkeypatch):

@@ -1,19 +1,17 @@
 """pymunk, beside what every engine must fulfil: accuracy, the limits of its solver, what goes wrong surfaces."""
 
-import math
-
 import numpy as np
 import pytest
 
 pytest.importorskip("pymunk", reason="pymunk is not installed: pip install 'rocking[pymunk]'")
 
-from analytic import Base, Bearings, Block, PulseMotion, Start  # noqa: E402
+from analytic import Base, Bearings, Block, Start  # noqa: E402
 from analytic import Scene as AnyScene  # noqa: E402
 from analytic import simulate as exact  # noqa: E402
 from analytic.rocking import RockingModel, restitution  # noqa: E402
 from engines import get_engine  # noqa: E402
 from engines.contract import Mismatch  # noqa: E402
-from engines.pymunk import impulses, stepping  # noqa: E402
+from engines.pymunk import impulses  # noqa: E402
 from engines.pymunk import scene as built  # noqa: E402
 
 simulate = get_engine("pymunk").simulate
@@ -117,56 +115,6 @@ def test_too_few_iterations_at_an_impact_are_seen(monkeypatch):
     monkeypatch.setattr(impulses, "settled", lambda scene: (5.0, 2, True))
     monkeypatch.setattr(built, "settled", lambda scene: (5.0, 2, True))
     assert impact_errors(0.45, None, 2)[0] > 20 * usual
-
-
-def test_friction_of_the_scene_is_coulombs():
-    """A push of .3 g for .05 s on a block that slides at .2 g: (.1 g t^2/2)(1 + .1/.2), and it stays there."""
-    given = scene(0.45, duration=0.5, friction=0.2, motion=PulseMotion("rectangular", -0.3 * 9.81, math.pi / 0.05))
-    _, trace = get_engine("pymunk").traced(given)
-    assert abs(trace.centre[-1, 0]) == pytest.approx(0.5 * 0.1 * 9.81 * 0.05**2 * 1.5, rel=0.02)
-
-
-def test_sliding_block_fails():
-    response = simulate(scene(0.4, friction=0.2, motion=PulseMotion("rectangular", 3.0, 2.0)))
-    assert response.outcome == "failed"
-    assert "slid" in response.failure.reason
-
-
-@pytest.mark.parametrize("base", [10.0, 0.067])
-def test_light_base(base):
-    given = scene(0.28, base, 1.0, bearings=BEARINGS, start=Start(tilt=0.168))
-    model, response = exact(given), simulate(given)
-    assert response.outcome == model.outcome, response.failure
-    assert response.peak_base_displacement == pytest.approx(model.peak_base_displacement, rel=2e-3)
-
-
-@pytest.mark.parametrize("damping", [1e4, 1e6])
-def test_viscous_bearings_of_any_strength_are_right_or_warned(damping):
-    given = scene(0.28, 212.0, 1.0, bearings=BEARINGS.model_copy(update={"damping": damping}), start=Start(tilt=0.168))
-    model, response = exact(given), simulate(given)
-    off = response.failure or abs(response.peak_base_displacement / model.peak_base_displacement - 1) > 1e-2
-    assert not off or response.warnings
-
-
-@pytest.mark.parametrize("radius", [1e-3, 30.0])
-def test_steps_go_with_the_size_of_the_block(radius):
-    mass = 2460.0 * radius**3
-    given = AnyScene(
-        block=Block(mass=mass, radius=radius, slenderness=0.25),
-        base=Base(mass=0.1 * mass),
-        start=Start(tilt=0.15),
-        duration=2.0 * math.sqrt(radius),
-    )
-    response = simulate(given, history=False)
-    for impact in response.impacts[:3]:
-        assert impact.rate_after / impact.rate_before == pytest.approx(restitution(given), abs=1e-4)
-
-
-def test_run_that_does_not_advance_is_given_up(monkeypatch):
-    monkeypatch.setattr(stepping, "row_limit", lambda duration, largest: 100)
-    response = simulate(scene(0.2, start=Start(tilt=0.1)))
-    assert response.outcome == "failed"
-    assert response.failure.reason == "too many steps"
 
 
 @pytest.mark.parametrize(
