@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from matplotlib.colors import to_rgb
@@ -22,6 +22,11 @@ COLOURS = {RIGHT: "#B5DDF2", DEGRADED: "#E69F00", FAILED: "#882200"}
 CURED = "cured"
 WRAP = 14  # characters that a cell holds
 FINDINGS = "Case", "Solver", "Verdict", "Measure", "Value", "Tolerance", "Cure"
+CAPTIONS = (
+    "Verdicts. In the cells: the measure that is farthest outside its tolerance (tol.), and by how many times, or the "
+    "count lost; “cured”: a setting tried makes it right.",
+    "The same of the engines' other variants.",
+)
 CLASSES = {"event-driven": "event-driven solvers", "stepping": "solvers that step"}
 
 
@@ -43,8 +48,8 @@ def _cured(cure):
 
 def pictures(result: Result) -> dict[str, Canvas]:
     """The matrix of verdicts in two: the references and the engines' best, and all other variants."""
-    best, others = halves(result)
-    return {"": draw(result, best)} | ({"others": draw(result, others)} if others else {})
+    cases, cells = list(result.settings["cases"]), matrix(result)
+    return {name: draw(cases, half, cells) for name, half in zip(("", "others"), halves(result), strict=True) if half}
 
 
 def halves(result: Result) -> tuple[list[str], list[str]]:
@@ -54,9 +59,8 @@ def halves(result: Result) -> tuple[list[str], list[str]]:
     return best, [name for name in solvers if name not in best]
 
 
-def draw(result: Result, solvers: Sequence[str]) -> Canvas:
-    """The matrix of verdicts: a line per case, a column for each of `solvers`; a matplotlib Figure."""
-    cases, cells = list(result.settings["cases"]), matrix(result)
+def draw(cases: Sequence[str], solvers: Sequence[str], cells: Mapping[tuple[str, str], Any]) -> Canvas:
+    """The matrix of verdicts: a line per case, a column per solver; a matplotlib Figure. cells: of `matrix`."""
     canvas = Canvas(figsize=(2.2 + 0.76 * len(solvers), 1.4 + 0.39 * len(cases)), layout="constrained")
     axes = canvas.add_subplot()
     for j, case in enumerate(cases):
@@ -105,54 +109,13 @@ def _reason(row):
 
 def section(result: Result) -> Section:
     """The study's section of the report."""
-    cells = matrix(result)
-    solvers, cases = result.settings["solvers"], result.settings["cases"]
-    counts = [
-        [
-            solver,
-            *(
-                str(sum(row["verdict"] == verdict for (_, name), (row, _) in cells.items() if name == solver))
-                for verdict in (RIGHT, DEGRADED, FAILED)
-            ),
-            str(sum(_cured(cure) for (_, name), (_, cure) in cells.items() if name == solver)),
-        ]
-        for solver in solvers
-    ]
-    captions = (
-        "Verdicts. In the cells: the measure that is farthest outside "
-        "its tolerance (tol.), and by how many times, or the count lost; “cured”: a setting tried "
-        "makes it right.",
-        "The same of the engines' other variants.",
-    )
+    cells, (best, _) = matrix(result), halves(result)
+    counts = _counts(result, cells)
     drawn = [
         figure_of(picture, _spoken([row for row in counts if row[0] in half]), caption)
-        for picture, half, caption in zip(pictures(result).values(), halves(result), captions, strict=False)
+        for picture, half, caption in zip(pictures(result).values(), halves(result), CAPTIONS, strict=False)
     ]
     ill = [(row, cure) for row, cure in cells.values() if row["verdict"] != RIGHT]
-    best, _ = halves(result)
-    tables = [
-        Table("Verdicts by solver", ("Solver", "right", "degraded", "failed", "of these cured"), counts),
-        Table(
-            "Where the default variants are not right, and what was measured there",
-            FINDINGS,
-            [_line(row, cure) for row, cure in ill if row["solver"] in best],
-        ),
-    ]
-    tables += [
-        Table(
-            f"Tolerances of {CLASSES[kind]}",
-            ("Measure", "Tolerance", "Unit", "Reason"),
-            [[name, number(limit), MEASURES[name][0], reason] for name, (limit, reason) in limits.items()],
-        )
-        for kind, limits in result.settings["tolerances"].items()
-    ]
-    tables.append(
-        Table(
-            "The cases",
-            ("Case", "What is hard", "Judged by, and tolerances of its own", "Duration [s]"),
-            [[name, case["title"], _oracle(case), number(case["duration"])] for name, case in cases.items()],
-        )
-    )
     others = "\n".join(
         "; ".join(f"{head}: {cell}" for head, cell in zip(FINDINGS, _line(row, cure), strict=True))
         for row, cure in ill
@@ -162,8 +125,50 @@ def section(result: Result) -> Section:
         ("Where the other variants are not right", others or "nowhere"),
         *((f"{row['case']}: {row['solver']}", _evidence(row)) for row, _ in ill if row["verdict"] == FAILED),
     )
+    tables = (
+        Table("Verdicts by solver", ("Solver", "right", "degraded", "failed", "of these cured"), counts),
+        Table(
+            "Where the default variants are not right, and what was measured there",
+            FINDINGS,
+            [_line(row, cure) for row, cure in ill if row["solver"] in best],
+        ),
+        *_rules(result),
+    )
     return Section(
-        "Numerical stability on hard cases", _text(result, cells, ill), tuple(tables), tuple(drawn), evidence=evidence
+        "Numerical stability on hard cases", _text(result, cells, ill), tables, tuple(drawn), evidence=evidence
+    )
+
+
+def _counts(result, cells):
+    """Of each solver: its name, right, degraded and failed cells, and the cured ones of these, as words."""
+    return [
+        [
+            solver,
+            *(
+                str(sum(row["verdict"] == verdict for (_, name), (row, _) in cells.items() if name == solver))
+                for verdict in (RIGHT, DEGRADED, FAILED)
+            ),
+            str(sum(_cured(cure) for (_, name), (_, cure) in cells.items() if name == solver)),
+        ]
+        for solver in result.settings["solvers"]
+    ]
+
+
+def _rules(result):
+    """Tables of the tolerances and of the cases."""
+    for kind, limits in result.settings["tolerances"].items():
+        yield Table(
+            f"Tolerances of {CLASSES[kind]}",
+            ("Measure", "Tolerance", "Unit", "Reason"),
+            [[name, number(limit), MEASURES[name][0], reason] for name, (limit, reason) in limits.items()],
+        )
+    yield Table(
+        "The cases",
+        ("Case", "What is hard", "Judged by, and tolerances of its own", "Duration [s]"),
+        [
+            [name, case["title"], _oracle(case), number(case["duration"])]
+            for name, case in result.settings["cases"].items()
+        ],
     )
 
 
