@@ -20,7 +20,7 @@ from analytic.rocking import RockingModel
 from ..contract import Run
 from .ground import Ground
 from .scene import build
-from .stepping import OVERTURNED, check, interruptible, make_trace, release, solver_settings
+from .stepping import OVERTURNED, check, interruptible, make_trace, release, solve, solver_settings
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -123,9 +123,7 @@ class Stepper:
         mbs.systemData.SetODE2Coordinates_t(v, configuration=INITIAL)
         integration.startTime, integration.endTime = t, until
         integration.numberOfSteps = max(1, math.ceil((until - t) / self.step - 1e-9))
-        if not self.solver.SolveSystem(mbs, self.settings):
-            return Failure("the solver gave up", self.solver.GetErrorString())
-        return None
+        return solve(self.solver, mbs, self.settings)
 
     def take_back(self) -> None:
         """Undo the last step."""
@@ -219,8 +217,6 @@ def run(scene: Scene, settings: SwitchedJoints) -> Run:
     try:
         with interruptible() as stepper.interrupts:
             failure = stepper.run()
-    except exu.ExudynError as error:
-        failure = Failure("the solver stopped with an error", f"{error} {stepper.solver.GetErrorString()}".strip())
     finally:
         release(stepper.model.mbs)
     cpu = time.process_time() - began

@@ -15,15 +15,16 @@ import exudyn as exu
 import numpy as np
 from numba import njit
 
-from analytic.response import Failure
 from analytic.rocking import RockingModel
 
 from ..vibration import longest_step
 from .ground import Ground
-from .stepping import solver_settings
+from .stepping import solve, solver_settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from analytic.response import Failure
 
     from .scene import Model
     from .stepping import Steps
@@ -102,10 +103,8 @@ class Phases:
         integration.newton.absoluteTolerance = max(RESIDUAL * weight, rounding)
         # Forces are derived by differences: of a share of the corner's depth, beyond which it would leave contact.
         differences = integration.newton.numericalDifferentiation
-        differences.minimumCoordinateSize, differences.relativeEpsilon = (
-            1.0,
-            DIFFERENCE * rule.sink / scene.block.radius,
-        )
+        differences.minimumCoordinateSize = 1.0
+        differences.relativeEpsilon = DIFFERENCE * rule.sink / scene.block.radius
         self.solvers = exu.MainSolverExplicit(), exu.MainSolverImplicitSecondOrder()
 
     def keep(self, mbs: exu.MainSystem, t: float) -> bool:
@@ -141,17 +140,17 @@ class Phases:
             t, count = steps.times[-1], len(steps.times)
             q, v = steps.last()
             self.implicit = self.quiet(t, q, v)
-            done = self._piece(t, q, v)
-            if not done and not self.implicit:
-                return Failure("the solver gave up", self.solvers[0].GetErrorString())
-            if not done:
+            failure = self._piece(t, q, v)
+            if failure and not self.implicit:
+                return failure
+            if failure:
                 self.refused = steps.times[-1] + self.rule.settle  # explicit steps go where Newton's method does not
             elif len(steps.times) == count or steps.ended:
                 return None
         return None
 
     def _piece(self, t, q, v):
-        """Integrate from a state to where the other integrator is due; whether exudyn took it for a success."""
+        """Integrate from a state to where the other integrator is due; the failure, or None."""
         mbs, settings = self.model.mbs, self.smooth if self.implicit else self.rule.explicit
         mbs.systemData.SetODE2Coordinates(q, configuration=INITIAL)
         mbs.systemData.SetODE2Coordinates_t(v, configuration=INITIAL)
@@ -166,4 +165,4 @@ class Phases:
         else:
             integration.numberOfSteps = math.ceil((duration - t) / self.rule.longest)
             integration.initialStepSize = min(left, first)
-        return solver.SolveSystem(mbs, settings)
+        return solve(solver, mbs, settings)

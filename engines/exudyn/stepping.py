@@ -129,8 +129,6 @@ def step_through(
     try:
         with interruptible() as steps.interrupts:
             failure = drive(model, steps, _recorder(model, steps, limit))
-    except exu.ExudynError as error:
-        failure = Failure("the solver stopped with an error", str(error).strip())
     finally:
         release(mbs)
     cpu = time.process_time() - began
@@ -178,7 +176,16 @@ def in_one_go(
     if model.scene.motion is not None:
         mbs.SetPreStepUserFunction(Ground(model).prepare)
     solver = exu.MainSolverImplicitSecondOrder()
-    return None if solver.SolveSystem(mbs, settings) else Failure("the solver gave up", solver.GetErrorString())
+    return solve(solver, mbs, settings)
+
+
+def solve(solver: Any, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> Failure | None:
+    """Let a solver of exudyn integrate; what it says where it fails, or None."""
+    try:
+        done = solver.SolveSystem(mbs, settings)
+    except exu.ExudynError as error:
+        return Failure("the solver stopped with an error", f"{error} {solver.GetErrorString()}".strip())
+    return None if done else Failure("the solver gave up", solver.GetErrorString())
 
 
 def release(mbs: exu.MainSystem) -> None:
