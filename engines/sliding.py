@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from analytic.bearing import BearingLaw
@@ -14,13 +14,14 @@ if TYPE_CHECKING:
     from analytic.rocking import RockingModel
 
 
-class SlidingBase(ABC):
+class SlidingBase:
     """x [m], v [m/s], hysteretic force z of one bearing [N] and the force of all [N]. All zeros on rigid ground.
 
-    An engine gives its body a mass by `weigh`, and its own words for loads and readback.
+    weigh: gives the engine's body a mass [kg].
     """
 
-    def __init__(self, scene: Scene, model: RockingModel, largest: float) -> None:
+    def __init__(self, scene: Scene, model: RockingModel, largest: float, weigh: Callable[[float], None]) -> None:
+        self.weigh = weigh
         self.law, self.mass, self.driven = BearingLaw.of(scene.bearings), model.M - model.m, driven_mass(model)
         self.damping = self.law.count * self.law.damping
         self.heavier = leapfrog_stiffness(self.law, largest, self.driven)
@@ -28,10 +29,6 @@ class SlidingBase(ABC):
         self.x, self.v = scene.start.base_displacement, scene.start.base_velocity
         self.z = self.law.start(self.x)
         self.force = self.law.force(self.x, self.z)
-
-    @abstractmethod
-    def weigh(self, mass: float) -> None:
-        """Give the engine's body a mass [kg]."""
 
     def impulse(self, interval: float, pushed: float, lag: float) -> float:
         """Impulse [N s] on the base in a kick of `interval` [s].

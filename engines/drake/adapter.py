@@ -20,7 +20,6 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass, replace
 from importlib import metadata
 from typing import TYPE_CHECKING
 
@@ -28,12 +27,11 @@ from analytic.response import Failure
 
 from ..contract import Mismatch, Run, Variant
 from ..leapfrog import raw_trace_of, trace_of
-from ..pace import FLAT
-from ..planar import run_of, size_scale
+from ..planar import EqualSteps, ImpactAware, impact_aware_run, run_of
 from ..verified import Range
-from ..vibration import longest_step
-from . import script, stepping
+from . import script
 from .scene import build
+from .stepping import DrakeBodies
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -57,35 +55,9 @@ SCRIPT_DECIDES = (
 )
 
 
-@dataclass(frozen=True)
-class ImpactAware:
-    """Large steps in flight and at rest, small ones on the way to an impact.
-
-    accuracy is the one knob: the share of its speed at the impact that the block may gain in one step there; the error
-    of e is about as large. largest_step [s] is that of flight and rest for the Caryatid's R, and goes with sqrt(R/g).
-    """
-
-    accuracy: float = 1e-6
-    largest_step: float = 1.5e-3
-
-
-@dataclass(frozen=True)
-class Expert:
-    """A free 3-D block with an hour's settings: `step` [s] is the one knob."""
-
-    step: float = 2e-4
-
-
-@dataclass(frozen=True)
-class FirstScript:
-    """A free 3-D box with all defaults of Drake: `step` [s] is the one knob."""
-
-    step: float = 1e-3  # Drake's own default
-
-
 VARIANTS = {
     "impact-aware": Variant(
-        ImpactAware(),
+        ImpactAware(accuracy=1e-6, largest_step=1.5e-3),
         rung="best",
         ladder=(1e-3, 1e-4, 1e-5, 1e-6),
         decides=DECIDES,
@@ -94,7 +66,7 @@ VARIANTS = {
         ),
     ),
     "expert": Variant(
-        Expert(),
+        EqualSteps(2e-4),
         rung="expert",
         ladder=(4e-3, 1e-3, 2e-4),
         decides=SCRIPT_DECIDES,
@@ -109,7 +81,7 @@ VARIANTS = {
         ),
     ),
     "first-script": Variant(
-        FirstScript(),
+        EqualSteps(1e-3),  # Drake's own default
         rung="first script",
         ladder=(5e-3, 2e-3, 1e-3),
         decides=SCRIPT_DECIDES,
@@ -121,11 +93,9 @@ VARIANTS = {
     ),
 }
 
-# Tilt below which the block counts as in flat contact, as a share of gamma. Impacts of swings below FLAT are stepped
-# over. In the scripts a corner is met in the step after it has sunk: what a block passes in a step or two, so often of
-# gamma a second.
-CONTACT, PASSING = 3 * FLAT, 10.0
-ENDS = ("done", "overturned", "not finite", "too many steps")
+# Tilt below which the block counts as in flat contact in the scripts: a corner is met in the step after it has sunk,
+# what a block passes in a step or two, so often of gamma a second.
+PASSING = 10.0
 
 
 def versions() -> dict[str, str]:
@@ -133,33 +103,18 @@ def versions() -> dict[str, str]:
     return {"pydrake": metadata.version("drake")}
 
 
-def run(scene: Scene, variant: str, settings: ImpactAware | Expert | FirstScript) -> Run:
+def run(scene: Scene, variant: str, settings: ImpactAware | EqualSteps) -> Run:
     """The `Run` of a scene."""
+    tuned = VARIANTS[variant].rung == "expert"
     try:
         if isinstance(settings, ImpactAware):
-            return _impact_aware(scene, settings)
-        parts = script.build(scene, settings.step, tuned=isinstance(settings, Expert))
+            assembly = build(scene)
+            return impact_aware_run(scene, settings, lambda largest: DrakeBodies(assembly, scene, largest))
+        parts = script.build(scene, settings.step, tuned)
     except Mismatch as error:
         return Run(None, 0, math.nan, Failure("Drake does not hold the scene", str(error)))
     clock = time.process_time()
     rows, ended = script.run(parts, scene, settings.step)
     cpu, edge = time.process_time() - clock, PASSING * settings.step * scene.block.slenderness
-    trace = trace_of(rows, scene, edge) if isinstance(settings, Expert) else raw_trace_of(rows, scene, edge)
-    return _run(scene, rows, ended, cpu, trace, settings.step)
-
-
-def _impact_aware(scene, settings):
-    largest, assembly = longest_step(scene, settings.largest_step * size_scale(scene)), build(scene)
-    clock = time.process_time()
-    rows, ended = stepping.run(assembly, scene, largest, settings.accuracy)
-    cpu = time.process_time() - clock
-    trace = trace_of(rows, scene, CONTACT * scene.block.slenderness, smeared=3)
-    return _run(scene, rows, ended, cpu, trace, largest)
-
-
-def _run(scene, rows, ended, cpu, trace, step):
-    run = run_of(scene, rows, ended, cpu, trace, step)
-    if ended in ENDS:
-        return run
-    said = f"at step {len(rows) - 1}, t = {rows[-1][0]:.9g} s: {ended.partition(' at simulation time')[0]}"
-    return replace(run, failure=Failure("Drake found no solution of a step", said))
+    trace = trace_of(rows, scene, edge) if tuned else raw_trace_of(rows, scene, edge)
+    return run_of(scene, rows, ended, cpu, trace, settings.step)

@@ -30,6 +30,7 @@ from analytic.motion import vertical_acceleration
 from ..leapfrog import row_limit
 from ..placement import placement
 from .scene import add_ground, material, solid
+from .stepping import said
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -107,7 +108,7 @@ def run(parts: Parts, scene: Scene, step: float) -> tuple[np.ndarray, str]:
         try:
             parts.simulator.AdvanceTo(k * step)
         except RuntimeError as error:
-            return np.frombuffer(rows).reshape(-1, width), str(error)
+            return np.frombuffer(rows).reshape(-1, width), said(error)
         pose, twist = plant.EvalBodyPoseInWorld(context, body), plant.EvalBodySpatialVelocityInWorld(context, body)
         turn, place, speed = pose.rotation().matrix(), pose.translation(), twist.translational()
         tilt, rate = math.atan2(turn[0, 2], turn[0, 0]), twist.rotational()[1]

@@ -10,6 +10,7 @@ import mujoco
 from ..contract import Mismatch
 from ..placement import placement
 from ..readback import require
+from ..scale import size_scale
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -30,7 +31,6 @@ IMPEDANCE = 0.999
 # second matters (gamma .45, before the arc: 4e-4 at 30, 1.8e-3 at 150).
 MOST_RECOVERY = 0.1
 
-UNIT_RADIUS = 1.0884  # m, of the Caryatid, for which the variants' times are given
 # Most radians of the base's vibration on its bearings in a step (at .15 the phase after 100 periods is off by .6 rad,
 # and a displacement of the wide box by 5 %); what it shortens the steps to at most, as a share.
 VIBRATION, MOST_REFINEMENT = 0.07, 40.0
@@ -40,11 +40,6 @@ def least_mass(scene: Scene) -> float:
     """Least inertia [kg] that a push on the base meets while the block stands or rocks on it, eqs (3)-(6)."""
     block = scene.block
     return scene.total_mass - (block.mass * block.radius) ** 2 / block.inertia
-
-
-def size_scale(scene: Scene) -> float:
-    """What times set for a block of `UNIT_RADIUS` are multiplied with: rocking goes with sqrt(R/g)."""
-    return math.sqrt(scene.block.radius / UNIT_RADIUS)
 
 
 def recovery_rate(scene: Scene, chosen: Settings) -> float | None:

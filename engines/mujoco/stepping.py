@@ -16,7 +16,8 @@ from analytic.rocking import RockingModel
 from ..ground_velocity import ground_velocity
 from ..leapfrog import row_limit
 from ..pace import FLIGHT, ROUNDING, StepRule, impact_aware, limits
-from .scene import contact_reference, least_mass, recovery_rate, size_scale
+from ..scale import size_scale
+from .scene import contact_reference, least_mass, recovery_rate
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from .scene import Settings
 
 APPROACH = 0.15  # share of the remaining time to the impact that a step may take; .1 to .3: no accuracy knob
-SMALLEST_STEP = 1e-7  # s, at `UNIT_RADIUS`; 1e-8 to 1e-6
+SMALLEST_STEP = 1e-7  # s, at `scale.UNIT_RADIUS`; 1e-8 to 1e-6
 # Viscous impulse of a step over the base's momentum from which on it is solved with the contacts. (MuJoCo's least
 # impedance is 1e-4.) Below, it is taken at the velocity half a step earlier: an error of half of this.
 LEAST_RATIO = 2e-4

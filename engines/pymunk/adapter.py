@@ -19,7 +19,6 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import pymunk
@@ -28,12 +27,11 @@ from analytic.response import Failure
 
 from ..contract import Mismatch, Run, Variant
 from ..leapfrog import raw_trace_of, trace_of
-from ..pace import FLAT
-from ..planar import run_of, size_scale
+from ..planar import EqualSteps, ImpactAware, impact_aware_run, run_of
 from ..verified import Range
-from ..vibration import longest_step
-from . import script, stepping
+from . import script
 from .scene import build
+from .stepping import ChipmunkBodies
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -54,35 +52,9 @@ DECIDES = (
 SCRIPT_DECIDES = f"{SOLVER_DECIDES}, in equal steps; a groove joint of Chipmunk's guides the base."
 
 
-@dataclass(frozen=True)
-class ImpactAware:
-    """Large steps in flight and at rest, small ones on the way to an impact.
-
-    accuracy is the one knob: the share of its speed at the impact that the block may gain in one step there; the error
-    of e is about as large. largest_step [s] is that of flight and rest for the Caryatid's R, and goes with sqrt(R/g).
-    """
-
-    accuracy: float = 1e-6
-    largest_step: float = 1e-3
-
-
-@dataclass(frozen=True)
-class Expert:
-    """A free box with an hour's settings: `step` [s] is the one knob."""
-
-    step: float = 1e-4
-
-
-@dataclass(frozen=True)
-class FirstScript:
-    """The same box with the defaults of pymunk: `step` [s] hardly matters."""
-
-    step: float = 1 / 240  # four a frame: pymunk leaves the step to its user
-
-
 VARIANTS = {
     "impact-aware": Variant(
-        ImpactAware(),
+        ImpactAware(accuracy=1e-6, largest_step=1e-3),
         rung="best",
         ladder=(1e-3, 1e-4, 1e-5, 1e-6),
         decides=DECIDES,
@@ -91,7 +63,7 @@ VARIANTS = {
         ),
     ),
     "expert": Variant(
-        Expert(),
+        EqualSteps(1e-4),
         rung="expert",
         ladder=(1e-3, 1e-4, 2e-5),
         decides=SCRIPT_DECIDES,
@@ -105,7 +77,7 @@ VARIANTS = {
         ),
     ),
     "first-script": Variant(
-        FirstScript(),
+        EqualSteps(1 / 240),  # four a frame: pymunk leaves the step to its user
         rung="first script",
         ladder=(1 / 60, 1 / 240, 1e-3),
         decides=SCRIPT_DECIDES,
@@ -121,10 +93,9 @@ UNSURE = (
     "Chipmunk's iterations for impacts of this block settle at some coefficients of friction only, if at all; unless "
     "the scene gives it, the one taken is that at which they end at eq. (7)"
 )
-# Tilt below which the block counts as in flat contact, as a share of gamma. Impacts of swings below FLAT are stepped
-# over, and come out as swings of up to 3 FLAT. The scripts' corners sink, at rest up to 3e-3 where the slop is the
-# default.
-CONTACT, SCRIPT_CONTACT, FIRST_CONTACT = 3 * FLAT, 1e-3, 1e-2
+# Tilt below which the block counts as in flat contact, as a share of gamma: the scripts' corners sink, at rest up to
+# 3e-3 where the slop is the default.
+SCRIPT_CONTACT, FIRST_CONTACT = 1e-3, 1e-2
 
 
 def versions() -> dict[str, str]:
@@ -132,29 +103,19 @@ def versions() -> dict[str, str]:
     return {"pymunk": pymunk.version, "chipmunk": pymunk.chipmunk_version}
 
 
-def run(scene: Scene, variant: str, settings: ImpactAware | Expert | FirstScript) -> Run:
+def run(scene: Scene, variant: str, settings: ImpactAware | EqualSteps) -> Run:
     """The `Run` of a scene."""
     if isinstance(settings, ImpactAware):
-        return _impact_aware(scene, settings)
-    parts = script.build(scene, tuned=isinstance(settings, Expert))
+        try:
+            assembly = build(scene)
+        except Mismatch as error:
+            return Run(None, 0, math.nan, Failure("Chipmunk does not hold the scene", str(error)))
+        unsure = () if assembly.sure else (UNSURE,)
+        return impact_aware_run(scene, settings, lambda largest: ChipmunkBodies(assembly, scene, largest), unsure)
+    tuned, slenderness = VARIANTS[variant].rung == "expert", scene.block.slenderness
+    parts = script.build(scene, tuned)
     clock = time.process_time()
     rows, ended = script.run(parts, scene, settings.step)
-    cpu, slenderness = time.process_time() - clock, scene.block.slenderness
-    if isinstance(settings, Expert):
-        trace = trace_of(rows, scene, SCRIPT_CONTACT * slenderness)
-    else:
-        trace = raw_trace_of(rows, scene, FIRST_CONTACT * slenderness)
-    return run_of(scene, rows, ended, cpu, trace, settings.step)
-
-
-def _impact_aware(scene, settings):
-    largest = longest_step(scene, settings.largest_step * size_scale(scene))
-    try:
-        assembly = build(scene)
-    except Mismatch as error:
-        return Run(None, 0, math.nan, Failure("Chipmunk does not hold the scene", str(error)))
-    clock = time.process_time()
-    rows, ended = stepping.run(assembly, scene, largest, settings.accuracy)
     cpu = time.process_time() - clock
-    trace = trace_of(rows, scene, CONTACT * scene.block.slenderness, smeared=3)
-    return run_of(scene, rows, ended, cpu, trace, largest, () if assembly.sure else (UNSURE,))
+    read, edge = (trace_of, SCRIPT_CONTACT) if tuned else (raw_trace_of, FIRST_CONTACT)
+    return run_of(scene, rows, ended, cpu, read(rows, scene, edge * slenderness), settings.step)

@@ -1,8 +1,6 @@
 """The bearings' force as an engine really applied it: doubled, late or from another law, it is seen from outside."""
 
 import dataclasses
-import functools
-import importlib
 
 import numpy as np
 import pytest
@@ -14,6 +12,7 @@ from analytic import PulseMotion, simulate
 from analytic.bearing import BearingLaw
 from engines import get_engine
 from engines.momentum import IMPULSE_LIMIT, bearing_impulse, check_impulse, impulse_error, missing_impulse
+from engines.sliding import SlidingBase
 
 ROCKING = SCENES["isolated"].with_(duration=1.5)
 DRIVEN = ROCKING.with_(
@@ -130,27 +129,27 @@ def mutate_mujoco(monkeypatch, gain, delay, step):
     monkeypatch.setattr(stepping.mujoco, "mj_step", changed)
 
 
-def mutate_base(engine, monkeypatch, gain, delay, step):
+def mutate_base(monkeypatch, gain, delay, step):
     """The base is loaded with another force than the adapter believes."""
-    stepping = importlib.import_module(f"engines.{engine}.stepping")
-    load, told = stepping.Base.load, []
+    impulse, told = SlidingBase.impulse, []
 
     def changed(self, *given):
         told.append(self.force)
         believed, self.force = self.force, gain * told[max(len(told) - 1 - delay, 0)]
-        load(self, *given)
+        given = impulse(self, *given)
         self.force = believed
+        return given
 
-    monkeypatch.setattr(stepping.Base, "load", changed)
+    monkeypatch.setattr(SlidingBase, "impulse", changed)
 
 
 MUTATE = {
     "exudyn": mutate_exudyn,
     "pybullet": mutate_pybullet,
     "mujoco": mutate_mujoco,
-    "pymunk": functools.partial(mutate_base, "pymunk"),
-    "dart": functools.partial(mutate_base, "dart"),
-    "drake": functools.partial(mutate_base, "drake"),
+    "pymunk": mutate_base,
+    "dart": mutate_base,
+    "drake": mutate_base,
 }
 LARGEST_STEP = 1e-3  # s, of the delay in exudyn, whose steps are its own
 

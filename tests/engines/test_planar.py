@@ -1,7 +1,6 @@
 """What holds for every engine that moves bodies along their velocities, at its best: sliding, light bases, sizes."""
 
 import math
-from importlib import import_module
 
 import pytest
 from engine_cases import needs
@@ -11,7 +10,7 @@ from analytic import Base, Bearings, Block, PulseMotion, Start
 from analytic import Scene as AnyScene
 from analytic import simulate as exact
 from analytic.rocking import restitution
-from engines import get_engine
+from engines import get_engine, planar
 
 BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 
@@ -67,8 +66,7 @@ def test_steps_go_with_the_size_of_the_block(engine, radius, density):
 
 
 def test_run_that_does_not_advance_is_given_up(engine, monkeypatch):
-    stepping = import_module(f"engines.{engine.name}.stepping")
-    monkeypatch.setattr(stepping, "row_limit", lambda duration, largest: 100)
+    monkeypatch.setattr(planar, "row_limit", lambda duration, largest: 100)
     response = engine.simulate(scene(0.2, start=Start(tilt=0.1)))
     assert response.outcome == "failed"
     assert response.failure.reason == "too many steps"
