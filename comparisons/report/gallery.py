@@ -5,7 +5,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 from ..running.provenance import PROJECT_FOLDER, read_result
@@ -13,14 +15,17 @@ from ..showing.charts import alone
 from ..studies import get_study
 from .studies import RESULTS
 
+if TYPE_CHECKING:
+    from ..showing.parts import Section
+
 GALLERY, README = Path(__file__).with_name("gallery"), PROJECT_FOLDER / "README.md"
 BEGIN, END = "<!-- findings of the stored studies -->", "<!-- end of findings -->"
 HEADLINES = ("restitution", "overturning", "fragility", "matters", "speed-error", "stability")
 PANELS = {"restitution": 0, "overturning": -1, "matters": 0, "speed-error": -1}  # study: which panel of its finding
 
 
-def gallery(studies: Path = RESULTS) -> dict[str, str]:
-    """{name of a file: SVG} of those figures whose result lies in `studies`.
+def stored(studies: Path = RESULTS) -> dict[str, Section]:
+    """{study: its finding}, of those in `HEADLINES` whose result lies in `studies`.
 
     Raises
     ------
@@ -28,24 +33,29 @@ def gallery(studies: Path = RESULTS) -> dict[str, str]:
         A result file is damaged.
     """
     found = {}
-    for name, panel in PANELS.items():
-        finding = get_study(name).finding
-        if finding is None or not (studies / f"{name}.json").exists():
-            continue
-        (picture,) = finding(read_result(studies / f"{name}.json")).figures
-        panels = ElementTree.fromstring(f"<panels>{picture.svg.decode()}</panels>")
-        found[f"{name}.svg"] = alone(ElementTree.tostring(panels[panel], encoding="unicode"))
+    for name in HEADLINES:
+        finding, file = get_study(name).finding, studies / f"{name}.json"
+        if finding is not None and file.exists():
+            found[name] = finding(read_result(file))
     return found
 
 
-def findings(studies: Path = RESULTS) -> str:
-    """The headlines of the studies' findings, a Markdown list; raises as `gallery`."""
+def gallery(found: Mapping[str, Section]) -> dict[str, str]:
+    """{name of a file: SVG} of findings as `stored` has them."""
+    made = {}
+    for name in PANELS.keys() & found.keys():
+        (picture,) = found[name].figures
+        panels = ElementTree.fromstring(f"<panels>{picture.svg.decode()}</panels>")
+        made[f"{name}.svg"] = alone(ElementTree.tostring(panels[PANELS[name]], encoding="unicode"))
+    return made
+
+
+def headlines(found: Mapping[str, Section]) -> str:
+    """What was found, a Markdown list."""
     lines = []
-    for name in HEADLINES:
-        finding = get_study(name).finding
-        if finding is not None and (studies / f"{name}.json").exists():
-            subject, _, found = finding(read_result(studies / f"{name}.json")).title.partition(": ")
-            lines.append(f"- **{subject}**: {found}.")
+    for section in found.values():
+        subject, _, words = section.title.partition(": ")
+        lines.append(f"- **{subject}**: {words}.")
     return "\n".join(lines)
 
 
@@ -57,7 +67,8 @@ def with_findings(readme: str, words: str) -> str:
 
 
 if __name__ == "__main__":
-    README.write_text(with_findings(README.read_text(encoding="utf-8"), findings()), encoding="utf-8")
+    found = stored()
+    README.write_text(with_findings(README.read_text(encoding="utf-8"), headlines(found)), encoding="utf-8")
     GALLERY.mkdir(exist_ok=True)
-    for name, svg in gallery().items():
+    for name, svg in gallery(found).items():
         (GALLERY / name).write_text(svg, encoding="utf-8")

@@ -86,7 +86,7 @@ def run(parts: Parts, scene: Scene, step: float) -> tuple[np.ndarray, str]:
     """(rows, ended) as `stepping.run`: rates are those at the step's end, loads those at its beginning."""
     plant, context, body, slide = parts.plant, parts.context, parts.block, parts.slide
     law, g, height, motion = BearingLaw.of(scene.bearings), scene.gravity, scene.block.half_height, scene.motion
-    port, gravity, loads = plant.get_applied_generalized_force_input_port(), plant.mutable_gravity_field(), None
+    port, gravity = plant.get_applied_generalized_force_input_port(), plant.mutable_gravity_field()
     start, fallen, ended = scene.start, 0.5 * math.pi, "done"
     x, v = start.base_displacement, start.base_velocity
     z = law.start(x)

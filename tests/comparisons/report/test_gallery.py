@@ -2,11 +2,11 @@
 
 from xml.etree import ElementTree
 
-from comparisons.report.gallery import GALLERY, README, findings, gallery, with_findings
+from comparisons.report.gallery import GALLERY, README, gallery, headlines, stored, with_findings
 
 
 def test_the_shipped_figures_are_those_of_the_stored_results_and_stand_in_the_readme():
-    made = gallery()
+    made = gallery(stored())
     assert {file.name: file.read_text(encoding="utf-8") for file in GALLERY.iterdir()} == made and len(made) == 4
     readme = README.read_text(encoding="utf-8")
     for name, svg in made.items():
@@ -17,7 +17,7 @@ def test_the_shipped_figures_are_those_of_the_stored_results_and_stand_in_the_re
 
 
 def test_the_readme_says_what_the_stored_results_say():
-    readme, words = README.read_text(encoding="utf-8"), findings()
+    readme, words = README.read_text(encoding="utf-8"), headlines(stored())
     assert len(words.splitlines()) == 6 and words in readme
     assert with_findings(readme, words) == readme
     assert with_findings(readme, "- something else") != readme
