@@ -105,7 +105,7 @@ class CompliantCorners:
     # [s]; of explicit steps, reached by none in contact.
     longest_step: float = 5e-3
     # [s]; of implicit steps, while the block pivots or stands.
-    pivoting_step: float = 1e-3
+    pivoting_step: float = 2e-3
 
 
 def start_share(scene: Scene) -> float:

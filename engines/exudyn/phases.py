@@ -33,7 +33,7 @@ INITIAL = exu.ConfigurationType.Initial
 NEITHER, BOTH = -2, 0  # corners that carry; -1 and 1: that one
 
 # Implicit steps begin only where so many of them are left before the impact, and end where fewer than LEAVE are.
-ENTER, LEAVE = 8.0, 4.0
+ENTER, LEAVE = 4.0, 2.0
 # Share of the weight that a corner must carry to count, for steps to become implicit and to stay so.
 CARRIES, HOLDS = 0.2, 0.1
 # Rate toward the impact that a base may give the block, over that of the block's own fall.
@@ -41,7 +41,7 @@ PUSHED = 3.0
 # Steps shorter than this share of `pivoting_step`, which stiff bearings ask for, gain nothing over explicit ones.
 WORTHWHILE = 0.1
 # Of the steps that leapfrog engines take where bearings vibrate: its phase is off by (h omega)^2/12 a radian.
-SMOOTH = 0.1
+SMOOTH = 0.075
 FIRST = 2e-3  # of the longest explicit step: the first one of a piece
 # Damping of what steps do not resolve: the spectral radius of generalized-alpha. .6 to .98 give the same e to 2e-7.
 DAMPED = 0.9
