@@ -17,7 +17,7 @@ import numpy as np
 from numba import njit
 
 from .bearing import hysteretic_force
-from .decision import is_decided, until_decided
+from .ending import is_decided, until_decided
 from .errors import SettingError
 from .motion import vertical_acceleration
 from .response import History, Impact, Response, State

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from analytic.decision import is_decided, model_warnings
+from analytic.decision import model_warnings
+from analytic.ending import is_decided
 from analytic.limits import limit_warnings
 from analytic.motion import SampledMotion
 from analytic.response import Failure, History, Response

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import analytic
-from analytic import decision
+from analytic import ending
 from analytic.response import Failure
 
 from .observe import failed_response, observe
@@ -29,7 +29,7 @@ def traced(
     """(response, trace or None) of `Engine.traced`.
 
     A scene without a duration is first run to where the analytic model's run ends, as engines end alike; an engine
-    whose own end state is not decided there goes on for longer (`analytic.decision.until_decided`).
+    whose own end state is not decided there goes on for longer (`analytic.ending.until_decided`).
     """
     name, chosen = choose(engine, variant, settings)
     if not engine.variants[name].takes_restitution:
@@ -46,7 +46,7 @@ def traced(
         return response
 
     end = analytic.simulate(scene, history=False).end.time
-    response = decision.until_decided(attempt, scene, at_least=end, finished=lambda _, response: response.decided)
+    response = ending.until_decided(attempt, scene, at_least=end, finished=lambda _, response: response.decided)
     return response, traces[0]
 
 

@@ -15,7 +15,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from ..decision import is_decided, until_decided
+from ..ending import is_decided, until_decided
 from ..errors import SettingError
 from ..response import Response
 from .run import Run

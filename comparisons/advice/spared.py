@@ -11,8 +11,8 @@ from analytic import SampledMotion, Scene, simulate
 from engines import get_engine
 
 from ..running.cases import Case
-from ..studies.speed_error.models import on_heavy_base, on_stiff_springs
 from .found import Setting, Spared
+from .models import on_heavy_base, on_stiff_springs
 
 if TYPE_CHECKING:
     from analytic import Response

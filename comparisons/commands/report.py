@@ -105,7 +105,7 @@ def _studies(folder):
 
     from analytic.errors import SettingError
 
-    from ..report.studies import RESULTS
+    from ..running.provenance import RESULTS
 
     if folder is not None and not any(Path(folder).glob("*.json")):
         raise SettingError(f"--studies {folder}: holds no result file; rocking study all --output {folder} writes them")

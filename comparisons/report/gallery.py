@@ -10,10 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
-from ..running.provenance import PROJECT_FOLDER, read_result
+from ..running.provenance import PROJECT_FOLDER, RESULTS, read_result
 from ..showing.charts import alone
 from ..studies import get_study
-from .studies import RESULTS
 
 if TYPE_CHECKING:
     from ..showing.parts import Section

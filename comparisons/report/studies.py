@@ -10,7 +10,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..running.provenance import PROJECT_FOLDER, ResultError, age, read_result
+from ..running.provenance import RESULTS, ResultError, age, read_result
 from ..showing.parts import Judgement, Section
 from ..studies import StudyBroken, get_study, study_names
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from ..running.provenance import Result
 
 FEW = 4  # files, drawn here: new processes would take longer
-RESULTS = PROJECT_FOLDER / "comparisons" / "results"
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup, escape
 
-from ..running.provenance import PACKAGES, age, read_result
+from ..running.provenance import PACKAGES, RESULTS, age, read_result
 from ..showing import diagrams
 from ..showing.charts import REFERENCE, STYLE, colour, key_of
 from ..showing.mathml import mathml
@@ -27,7 +27,7 @@ from .earthquake import earthquake
 from .own import SCENES_FILE, own_sections
 from .runs import CARYATID, FREE_ROCKING
 from .sections import caryatid_sections, restitution_sections, variant_groups
-from .studies import RESULTS, Stored, commit_of, origin_of, stored_studies
+from .studies import Stored, commit_of, origin_of, stored_studies
 from .summary import summary
 
 if TYPE_CHECKING:

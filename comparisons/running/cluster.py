@@ -280,3 +280,8 @@ def _end_with_worker(busy):
 
 if __name__ == "__main__":
     serve(tuple(sys.argv[1:]))
+
+
+def workers_at(scheduler: str | None, workers: int | None, solvers: Iterable[str]) -> Any:
+    """The executor of a Dask scheduler at an address, or without one of so many worker processes here."""
+    return Processes(workers, solvers) if scheduler is None else Cluster(scheduler, solvers)

@@ -113,15 +113,6 @@ def number_of(workers: int | None) -> int:
     return number  # type: ignore[return-value]  # as above
 
 
-def workers_at(scheduler: str | None, workers: int | None, solvers: Iterable[str]) -> Any:
-    """The executor of a Dask scheduler at an address, or without one of so many worker processes here."""
-    if scheduler is None:
-        return Processes(workers, solvers)
-    from .cluster import Cluster
-
-    return Cluster(scheduler, solvers)
-
-
 class Processes(Closing):
     """Runs in `workers` processes (default: one per core), each with one numerical thread.
 

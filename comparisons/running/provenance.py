@@ -26,6 +26,7 @@ from .sources import PROJECT, digests_of_all, source_digests
 NAMED = 3  # modules that a sentence on a stale result names
 SCHEMA = 1  # of the result files; raise it when a reader of the old ones would go wrong
 PROJECT_FOLDER = Path(__file__).parents[2]
+RESULTS = PROJECT_FOLDER / "comparisons" / "results"  # those that the project ships
 PACKAGES = ("numpy", "scipy", "numba", *(engine.package for engine in ENGINES.values()))
 
 

@@ -24,7 +24,8 @@ from typing import Any
 from engines import ENGINES, installed_engines
 
 from .cases import Case, module_of
-from .executors import Processes, number_of, workers_at
+from .cluster import workers_at
+from .executors import Processes, number_of
 from .files import check_folder
 from .provenance import Result, write_result
 from .solving import named_engines, stdout_to_stderr

@@ -21,7 +21,8 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from .cases import Case, compile_kernels, name_of, solver
-from .executors import Done, Executor, Processes, Serial, Task, workers_at
+from .cluster import workers_at
+from .executors import Done, Executor, Processes, Serial, Task
 from .provenance import json_ready
 from .store import Store
 

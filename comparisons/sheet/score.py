@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
 
-from ..report.studies import RESULTS
-from ..running.provenance import ResultError, read_result
+from ..running.provenance import RESULTS, ResultError, read_result
 from ..schemas.form import Form, Part
 from ..showing.wording import TRUSTED
 from .answers import error, exact

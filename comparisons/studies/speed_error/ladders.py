@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from engines import get_engine
 
+from ...advice import models
 from ...bench import peers
 from ...running.cases import Case
-from . import models
 from .scenes import Trial
 from .timing import PEER
 

@@ -15,7 +15,6 @@ from analytic.caryatid import BASE, BEARINGS, caryatid_block
 from analytic.motion import PulseMotion
 from analytic.response import Response
 from analytic.synthetic import synthetic_motion
-from analytic.twin import simulate_twin
 
 from ...measuring.horizon import sensitivity_horizon
 
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
     from analytic import State
 
 TIGHTEST = 1e-17  # tolerance of the kernel as a reference
-TWIN_TOLERANCE = 1e-13  # of the independent solution each reference is held against
 LONGEST = 10.0  # s, of a run under the synthetic motion: the strong shaking and what follows
 FREQUENCY_RATIO = 3.0  # pulse frequency over omega_r, near-overturning scene
 BOUNDARY_RUNS = 6  # a first run at the reference's boundary, then at the corrected ones
@@ -137,18 +135,6 @@ def _trial(name, scene, measures):
     return Trial(name, scene.name, scene, measures, tight(scene))
 
 
-def reference_difference(trial: Trial) -> dict[str, float]:
-    """What an independent solution (scipy DOP853 at its tightest) differs by: a dict as `errors` gives it."""
-    from .measure import errors
-    from .timing import searched
-
-    def run(scene):
-        return simulate_twin(scene, rtol=TWIN_TOLERANCE, history=False, energy=False)
-
-    response, shifts = searched(run, trial.scene, trial.boundary)
-    return errors(trial, response.to_json(), shifts)
-
-
 def description(trial: Trial) -> dict[str, Any]:
     """JSON-ready description of a trial for the result file."""
     reference = trial.reference
@@ -165,5 +151,4 @@ def description(trial: Trial) -> dict[str, Any]:
         "peak_base_displacement": reference.peak_base_displacement,
         "digest": trial.scene.digest(),
         "boundary_amplitude": trial.boundary and trial.boundary.amplitude,
-        "reference_difference": reference_difference(trial),
     }

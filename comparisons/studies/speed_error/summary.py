@@ -8,6 +8,8 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from analytic.twin import simulate_twin
+
 from ...bench.analytic_bench import peer_versions
 from ...running.study import Ask, Batch, Found, Plan
 from . import growth, timing
@@ -18,6 +20,7 @@ from .scenes import Trial, description, trials
 REPEATS, QUICK_REPEATS = 5, 3
 SLOW = 0.5  # s of CPU: such measurements are repeated `FEW` times only
 FEW = 3
+TWIN_TOLERANCE = 1e-13  # of the independent solution each reference is held against
 EVIDENCE = 600  # characters of an engine's message that a row keeps
 
 Repeats = Annotated[int | None, typer.Option(min=1, help="Fresh processes in turn. Default 5, quick 3.")]
@@ -65,7 +68,9 @@ def plan(
     settings = {
         "quick": ask.quick,
         "rounds": rounds,
-        "scenes": {trial.name: description(trial) for trial in scenes},
+        "scenes": {
+            trial.name: description(trial) | {"reference_difference": reference_difference(trial)} for trial in scenes
+        },
         "laws": _laws(scenes),
         "peers": peer_versions(),
         "applied_impacts": applied_impacts(ask.engines),
@@ -166,3 +171,13 @@ def _laws(scenes):
                 "peak_tilt": other.peak_tilt / trial.reference.peak_tilt - 1 if trial.reference.peak_tilt else None,
             }
     return effects
+
+
+def reference_difference(trial: Trial) -> dict[str, float]:
+    """What an independent solution (scipy DOP853 at its tightest) differs by: a dict as `errors` gives it."""
+
+    def run(scene):
+        return simulate_twin(scene, rtol=TWIN_TOLERANCE, history=False, energy=False)
+
+    response, shifts = timing.searched(run, trial.scene, trial.boundary)
+    return errors(trial, response.to_json(), shifts)

@@ -3,8 +3,8 @@
 import pytest
 
 from analytic import synthetic_motion
-from comparisons.report.studies import RESULTS
 from comparisons.report.study import make_results
+from comparisons.running.provenance import RESULTS
 
 SLENDERNESS = 0.3
 

@@ -9,9 +9,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from comparisons.report.studies import RESULTS
 from comparisons.running import provenance as module
-from comparisons.running.provenance import ResultError, age, json_ready, provenance, read_result, scrub, write_result
+from comparisons.running.provenance import (
+    RESULTS,
+    ResultError,
+    age,
+    json_ready,
+    provenance,
+    read_result,
+    scrub,
+    write_result,
+)
 
 ROWS = [{"engine": "exudyn", "error": 1.25e-5, "outcome": "rocks"}, {"engine": "analytic", "error": 0.1 + 0.2}]
 

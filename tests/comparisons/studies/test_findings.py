@@ -3,8 +3,7 @@
 import pytest
 from page_numbers import number_in
 
-from comparisons.report.studies import RESULTS
-from comparisons.running.provenance import Result, read_result
+from comparisons.running.provenance import RESULTS, Result, read_result
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.overturning.finding import judgement as boundaries
 from comparisons.studies.speed_error.finding import passing

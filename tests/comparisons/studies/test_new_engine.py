@@ -14,8 +14,7 @@ from installed_package import FAKE_ENGINE, install_fake_engine
 import engines
 from analytic import simulate, synthetic_motion
 from comparisons.report.runs import caryatid_scenes, free_rocking_cases
-from comparisons.report.studies import RESULTS
-from comparisons.running.provenance import read_result, write_result
+from comparisons.running.provenance import RESULTS, read_result, write_result
 from comparisons.running.study import Ask
 from comparisons.running.sweep import Row
 from comparisons.sheet.problems import PROBLEMS

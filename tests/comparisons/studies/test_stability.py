@@ -9,9 +9,8 @@ import pytest
 
 from analytic import PulseMotion, Scene, simulate
 from analytic.response import Failure
-from comparisons.report.studies import RESULTS
 from comparisons.running.cases import Case
-from comparisons.running.provenance import read_result
+from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.study import compute
 from comparisons.running.sweep import Row
 from comparisons.studies import draw
