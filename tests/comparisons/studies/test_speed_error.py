@@ -9,12 +9,13 @@ import pytest
 from analytic import simulate
 from analytic.errors import SettingError
 from analytic.time_stepping import simulate_time_stepping
+from comparisons.advice import models
 from comparisons.cli import main
 from comparisons.running.cases import Case, solver
 from comparisons.running.provenance import Result, read_result
 from comparisons.running.store import Store
 from comparisons.running.study import RUNS, compute
-from comparisons.studies.speed_error import STUDY, growth, models, tables
+from comparisons.studies.speed_error import STUDY, growth, tables
 from comparisons.studies.speed_error.figures import check_axes, draw_growth, draw_pareto
 from comparisons.studies.speed_error.ladders import NEEDED
 from comparisons.studies.speed_error.measure import errors
