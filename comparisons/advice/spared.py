@@ -10,9 +10,9 @@ import numpy as np
 from analytic import SampledMotion, Scene, simulate
 from engines import get_engine
 
+from ..measuring.models import on_heavy_base, on_stiff_springs
 from ..running.cases import Case
 from .found import Setting, Spared
-from .models import on_heavy_base, on_stiff_springs
 
 if TYPE_CHECKING:
     from analytic import Response

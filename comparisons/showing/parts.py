@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import matplotlib
 from markupsafe import Markup
-from matplotlib.ticker import FuncFormatter, LogFormatter, NullFormatter
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.ticker import FuncFormatter, LogFormatter, NullLocator
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -97,9 +98,18 @@ def figure_of(figure: matplotlib.figure.Figure, alt: str, caption: str) -> Figur
     _plain_powers(figure)
     file = io.BytesIO()
     with matplotlib.rc_context({**SVG, "svg.hashsalt": SALT + caption}):
+        _lay_out(figure)
         figure.savefig(file, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
     wide = figure.get_size_inches()[0] > WIDE
     return Figure(_inline(file.getvalue().decode(), alt).encode(), alt, caption, wide)
+
+
+def _lay_out(figure):
+    """Places all parts now: to do it while saving, matplotlib draws everything once more than is written."""
+    FigureCanvasSVG(figure)  # whose letters it measures
+    if engine := figure.get_layout_engine():
+        engine.execute(figure)
+        figure.set_layout_engine(None)
 
 
 def _plain_powers(figure):
@@ -108,7 +118,7 @@ def _plain_powers(figure):
         for axis in (axes.xaxis, axes.yaxis):
             if axis.get_scale() == "log" and isinstance(axis.get_major_formatter(), LogFormatter):
                 axis.set_major_formatter(FuncFormatter(lambda value, _: power_of_ten(value)))
-                axis.set_minor_formatter(NullFormatter())
+                axis.set_minor_locator(NullLocator())
 
 
 def power_of_ten(value: float) -> str:

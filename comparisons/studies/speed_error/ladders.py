@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from engines import get_engine
 
-from ...advice import models
 from ...bench import peers
+from ...measuring import models
 from ...running.cases import Case
 from .scenes import Trial
 from .timing import PEER

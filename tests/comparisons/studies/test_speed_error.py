@@ -9,8 +9,8 @@ import pytest
 from analytic import simulate
 from analytic.errors import SettingError
 from analytic.time_stepping import simulate_time_stepping
-from comparisons.advice import models
 from comparisons.cli import main
+from comparisons.measuring import models
 from comparisons.running.cases import Case, solver
 from comparisons.running.provenance import Result, read_result
 from comparisons.running.store import Store
