@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from .cases import HardCase
 
 QUICK_LIMIT, TIME_LIMIT = 60.0, 300.0  # s, of one run; of those that end the longest takes 75 s of CPU time
-LONG = 60.0  # s; in longer scenes cures are tried on the engines' default variants only, to save time
+# s; scenes longer than the first are cured, longer than the second run at all, in the default variants only: an
+# expert's ten minutes take 45 to 300 s of CPU time
+LONG, LONGEST = 60.0, 300.0
 RIGHT, DEGRADED, FAILED = "right", "degraded", "failed"
 EVIDENCE_CHARACTERS = 600
 
@@ -188,6 +190,8 @@ def worst(content: Mapping[str, Any]) -> tuple[str, float | None, float, float]:
 def plan(ask: Ask, names: Iterable[str] | None = None, columns: Sequence[Solver] | None = None) -> Plan:
     """The plan of the study: all cells, then the cures tried in turn where the verdict was not "right".
 
+    Scenes longer than `LONGEST` are not asked of variants that are no default; their cells are missing.
+
     Parameters
     ----------
     ask : Ask
@@ -202,7 +206,8 @@ def plan(ask: Ask, names: Iterable[str] | None = None, columns: Sequence[Solver]
     ]
     columns = solvers(ask.engines) if columns is None else columns
     limit = QUICK_LIMIT if ask.quick else TIME_LIMIT
-    ill, cure, rows = [(case, column) for case in cases for column in columns], None, []
+    ill = [(case, column) for case in cases for column in columns if column.default or case.scene.duration <= LONGEST]
+    cure, rows = None, []
     while ill:
         label = "hard cases" if cure is None else f"cures, round {cure + 1}"
         done = yield Batch([column.case(case, cure) for case, column in ill], measure, label, limit)

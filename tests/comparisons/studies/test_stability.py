@@ -11,13 +11,14 @@ from analytic import PulseMotion, Scene, simulate
 from analytic.response import Failure
 from comparisons.running.cases import Case
 from comparisons.running.provenance import RESULTS, read_result
-from comparisons.running.study import compute
+from comparisons.running.study import Ask, compute
 from comparisons.running.sweep import Row
 from comparisons.studies import draw
 from comparisons.studies.stability import STUDY
 from comparisons.studies.stability import measure as stability_measures
 from comparisons.studies.stability.cases import BLOCK, GAP, OVERTURNS_FROM, THRESHOLD, hard_cases
 from comparisons.studies.stability.measure import measure, oracle
+from comparisons.studies.stability.page import draw as matrix_figure
 from comparisons.studies.stability.page import matrix, section
 from comparisons.studies.stability.verdicts import (
     DEGRADED,
@@ -28,6 +29,7 @@ from comparisons.studies.stability.verdicts import (
     TOLERANCES,
     Solver,
     entry,
+    plan,
     solvers,
     worst,
 )
@@ -156,6 +158,15 @@ def test_columns_cover_every_variant_and_cures_are_settings_they_have():
             assert all(set(cure) <= fields for cure in column.cures)
             default = dataclasses.asdict(variants[column.variant].settings)
             assert all(any(default[key] != value for key, value in cure.items()) for cure in column.cures)
+
+
+def test_ten_minutes_are_asked_of_the_default_variants_alone_and_the_rest_is_shown_as_not_tested():
+    names, other = ("zeno", "10 minutes, rigid ground"), dataclasses.replace(TIME_STEPPING, variant="b", default=False)
+    asked = [(case.tag["case"], case.tag["solver"]) for case in next(plan(Ask(), names, (TIME_STEPPING, other))).cases]
+    assert asked == [(names[0], "time-stepping"), (names[0], "time-stepping, b"), (names[1], "time-stepping")]
+    cells = {cell: ({"verdict": RIGHT}, None) for cell in asked}
+    said = [text.get_text() for text in matrix_figure(names, ["time-stepping", other.label], cells).axes[0].texts]
+    assert said == [RIGHT, RIGHT, RIGHT, "not\ntested"]
 
 
 def test_the_study_writes_cells_cures_and_page_and_resumes(tmp_path):
