@@ -2,14 +2,17 @@
 
 A verdict need not flip once: resonances leave narrow bands of another outcome far from the first boundary, and safe
 gaps beyond it. So each quantity is scanned, one at a time, at even relative changes, and every boundary between two
-changes is bisected. A band narrower than the scan's `step` may be missed; one of twice the step never is.
+changes is bisected. A band narrower than the scan's `step` may be missed; one of twice the step never is. Where such
+narrow bands show, the boundary is frayed (as a fractal is): the safe gap about the scene is then scanned again in steps
+`FINER` times smaller, and the margin says so, as still narrower bands may lie in it.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,6 +25,7 @@ from .solver import simulate
 
 SPAN, STEP = 0.2, 5e-4
 BISECTIONS = 14  # of a step: boundaries are known to 6e-5 of it
+FINER = 20
 
 
 @dataclass(frozen=True)
@@ -36,12 +40,16 @@ class Band:
 
 @dataclass(frozen=True)
 class Margin:
-    """What relative changes of one quantity do to the outcome; `value` is the scene's own, `bands` from low to high."""
+    """What relative changes of one quantity do to the outcome; `value` is the scene's own, `bands` from low to high.
+
+    step: of the scan.
+    """
 
     quantity: str
     value: float
     unit: str
     bands: tuple[Band, ...]
+    step: float = STEP
 
     @property
     def outcome(self) -> str:
@@ -69,6 +77,12 @@ class Margin:
         outside = [band for band in self.bands if not band.holds]
         changes = (0.0 if band.low <= 0 <= band.high else band.low if band.low > 0 else band.high for band in outside)
         return min(changes, key=abs, default=None)
+
+    @property
+    def frayed(self) -> bool:
+        """Whether the outcome changes and changes back within two steps: a flip may lie nearer than `nearest` says."""
+        grouped = [list(group) for _, group in itertools.groupby(self.bands, lambda band: band.outcome)]
+        return any(group[-1].high - group[0].low < 2 * self.step for group in grouped[1:-1])
 
     def beyond(self, change: float) -> str:
         """The outcome on the far side of a boundary."""
@@ -195,7 +209,10 @@ def margins(
             continue
         if progress:
             progress(name)
-        found.append(Margin(name, float(value), quantity.unit, _bands(scene, name, changes, workers)))
+        margin = Margin(name, float(value), quantity.unit, _bands(scene, name, changes, workers), step)
+        if margin.frayed:
+            margin = replace(margin, bands=_bands(scene, name, _finer(margin, changes), workers))
+        found.append(margin)
     return sorted(found, key=lambda margin: math.inf if margin.nearest is None else abs(margin.nearest))
 
 
@@ -212,6 +229,13 @@ def contact_margins(scene: Scene) -> Contact:
     """The `Contact` of a scene as it is, run until its outcome is decided."""
     response = simulate(scene.with_(duration=None), history=False)
     return Contact(response.min_normal_ratio, response.friction_demand, scene.friction)
+
+
+def _finer(margin, changes):
+    """The changes, and between the nearest flips steps `FINER` times smaller."""
+    low, high = (end if flip is None else flip for end, flip in ((changes[0], margin.down), (changes[-1], margin.up)))
+    counts = np.arange(math.ceil(FINER * low / margin.step), FINER * high / margin.step)
+    return np.union1d(changes, margin.step / FINER * counts[counts % FINER != 0])
 
 
 def _bands(scene, name, changes, workers):

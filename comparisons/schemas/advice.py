@@ -18,7 +18,8 @@ class Band(Part):
 
 class Margin(Part):
     """Of one quantity, `value` as the scene has it. down, up: nearest change with another outcome; leaves_model:
-    nearest change at which the model no longer holds; null where there is none in the range scanned."""
+    nearest change at which the model no longer holds; null where there is none in the range scanned. frayed: the
+    outcome changes and changes back within two steps of the scan: a flip in a narrower band may lie nearer."""
 
     quantity: str
     value: float
@@ -28,6 +29,7 @@ class Margin(Part):
     up: float | None
     nearest: float | None
     leaves_model: float | None
+    frayed: bool
 
 
 class Contact(Part):

@@ -55,6 +55,13 @@ def print_margins(scene: Scene, margins: Sequence[Margin], contact: Contact, spa
             f"{nearest.beyond(nearest.nearest)}.",
             soft_wrap=True,
         )
+    if frayed := [margin for margin in margins if margin.frayed]:
+        console.print(
+            f"Frayed in {', '.join(margin.quantity for margin in frayed)}: bands narrower than "
+            f"{200 * frayed[0].step:.2g} % alternate there, and still narrower ones may lie nearer than the flip that "
+            "is given: do not rest a decision on this margin.",
+            soft_wrap=True,
+        )
     console.print(f"{_normal_words(contact)} {_friction_words(contact)}", soft_wrap=True)
     if scene.bearings is not None:
         console.print("Assumed: the bearings are stiff vertically (real ones sway at 10 to 20 Hz).", soft_wrap=True)

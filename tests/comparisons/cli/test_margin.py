@@ -4,6 +4,11 @@ import json
 
 import pytest
 
+from analytic import PulseMotion, Scene
+from analytic.margins import contact_margins, margins
+from comparisons.showing.margins import print_margins
+from comparisons.studies.stability.cases import BLOCK, GAP, THRESHOLD
+
 RELEASED = """
 friction = 0.3
 [block]
@@ -48,3 +53,12 @@ def test_margin_says_when_nothing_flips_the_verdict(rocking, scene_file):
 def test_a_span_out_of_range_is_one_message(rocking):
     status, _, err = rocking("margin", "free-rocking-rigid", "--span", "200")
     assert status == 2 and "span = 2.0" in err and "below 1" in err
+
+
+def test_a_frayed_boundary_is_said(capsys):
+    scene = Scene(block=BLOCK, motion=PulseMotion("one-sine", 1.1 * GAP * THRESHOLD, 7.8))
+    for step, frayed in ((0.04, True), (0.01, False)):
+        found = [margin for margin in margins(scene, span=0.16, step=step) if margin.quantity == "motion"]
+        print_margins(scene, found, contact_margins(scene), 16.0)
+        words = " ".join(capsys.readouterr().out.split())
+        assert ("Frayed in motion: bands narrower than 8 % alternate" in words) == frayed
