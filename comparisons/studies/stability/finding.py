@@ -27,7 +27,8 @@ def finding(result: Result) -> Section:
         for case in cases
         if all(cells[case, name][0]["verdict"] != RIGHT for name in engines if (case, name) in cells)
     ]
-    title = f"Where all fail: {len(ill)} of {len(cases)} hard cases {'is' if len(ill) == 1 else 'are'} right in no engine" + (
+    are = "is" if len(ill) == 1 else "are"
+    title = f"Where all fail: {len(ill)} of {len(cases)} hard cases {are} right in no engine" + (
         f" ({', '.join(ill[:3])}{' …' if len(ill) > 3 else ''})" if ill else ""
     )
     text = (
