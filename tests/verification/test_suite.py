@@ -59,6 +59,14 @@ def test_plain_pytest_runs_from_another_folder_and_on_workers(folder, files):
     assert status == 0, words
 
 
+@pytest.mark.xdist_group("shared")
+def test_workers_keep_groups_together(request):
+    """Else what a group shares is made on every worker, in silence."""
+    if not getattr(request.config.option, "loadgroup", False):
+        pytest.skip("not run with --dist loadgroup")
+    assert request.node.nodeid.endswith("@shared")
+
+
 def test_every_test_has_a_time_limit(request):
     limit = float(request.config.getini("timeout"))
     assert 0 < limit < float(request.config.getini("faulthandler_timeout"))

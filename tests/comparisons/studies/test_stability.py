@@ -203,7 +203,7 @@ def test_committed_result_has_no_ill_cell_of_the_kernel():
         pytest.skip("no committed result of the full study")
     result = read_result(path)
     assert not result.settings["quick"]
-    assert path.stat().st_size < 500_000
+    assert path.stat().st_size < 700_000  # 41 cases, 21 solvers, a row for each and for each cure tried
     kernel = [row for row in result.rows if row["solver"] == "analytic"]
     assert {row["case"] for row in kernel} == set(result.settings["cases"]) == set(CASES)
     assert all(row["verdict"] == RIGHT for row in kernel)
