@@ -40,6 +40,8 @@ def said(process):
     return process.returncode, out
 
 
+@pytest.mark.slow
+@pytest.mark.timeout(1400)
 def test_plain_pytest_finds_the_same_tests_from_every_folder():
     runs = [(PROJECT, ()), (TESTS, ()), (Path("/"), (str(TESTS),))]
     found = set()
@@ -50,6 +52,8 @@ def test_plain_pytest_finds_the_same_tests_from_every_folder():
     assert len(found) == 1 and found.pop() > 1000
 
 
+@pytest.mark.slow
+@pytest.mark.timeout(1400)
 @pytest.mark.parametrize(
     "folder, files",
     [(TESTS / "analytic", ["test_design.py"]), (Path("/"), ["-n", "2", str(TESTS / "analytic" / "test_design.py")])],
