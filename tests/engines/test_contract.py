@@ -199,7 +199,10 @@ def test_runs_repeat_bit_for_bit_also_in_other_processes(engine, variant):
             )
 
 
-@pytest.mark.parametrize("missing", [("pybullet",), tuple(ENGINES)], ids=["one", "all"])
+ALONE = [pytest.param((name,), id=name, marks=() if name == "pybullet" else pytest.mark.slow) for name in ENGINES]
+
+
+@pytest.mark.parametrize("missing", [*ALONE, pytest.param(tuple(ENGINES), id="all")])
 def test_all_else_works_where_engines_are_not_installed(missing):
     told = {name: (ENGINES[name].package, ENGINES[name].install) for name in missing}
     program = f"""
