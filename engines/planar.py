@@ -36,9 +36,6 @@ if TYPE_CHECKING:
 
 APPROACH = 0.3  # share of the remaining time to the impact that a step may take
 SMALLEST_STEP = 1e-7  # s, at `scale.UNIT_RADIUS`
-# Tilt below which the block counts as in flat contact, as a share of gamma. Impacts of swings below FLAT are stepped
-# over, and may come out as swings of up to 3 FLAT.
-CONTACT = 3 * FLAT
 ENDS = ("done", "overturned", "not finite", "too many steps")  # all others are an engine's words, "what: why"
 
 
@@ -69,6 +66,9 @@ class Bodies(ABC):
     """The block and the base of a scene as an engine holds them, and where they are."""
 
     least_viscous = 0.0  # the least accuracy for which viscous bearings set the step at an impact
+    # Tilt below which the block counts as in flat contact, as a share of gamma. Impacts of swings below FLAT are
+    # stepped over, and may come out as swings of up to 3 FLAT.
+    contact = 3 * FLAT
 
     def __init__(self, scene: Scene, largest: float) -> None:
         self.model = RockingModel.of(scene)
@@ -189,9 +189,10 @@ def impact_aware_run(
     """The `Run` of a scene; bodies_of: from the longest step [s]."""
     largest = longest_step(scene, settings.largest_step * size_scale(scene))
     clock = time.process_time()
-    rows, ended = march(bodies_of(largest), scene, largest, settings.accuracy)
+    bodies = bodies_of(largest)
+    rows, ended = march(bodies, scene, largest, settings.accuracy)
     cpu = time.process_time() - clock
-    trace = trace_of(rows, scene, CONTACT * scene.block.slenderness, smeared=3)
+    trace = trace_of(rows, scene, bodies.contact * scene.block.slenderness, smeared=3)
     return run_of(scene, rows, ended, cpu, trace, largest, warnings)
 
 

@@ -246,8 +246,7 @@ def _provenance(scenes: Result, free: Result | None) -> Section:
         ["system", machine["system"]],
         ["Python", origin["python"]],
     ]
-    told = {name: version for row in scenes.rows for name, version in (row.get("versions") or {}).items()}
-    rows += [[name, origin["packages"].get(name) or told.get(name) or "not installed"] for name in PACKAGES]
+    rows += [[name, origin["packages"].get(name) or "not installed"] for name in PACKAGES]
     settings = {}
     for row in [*scenes.rows, *(free.rows if free else ())]:
         if row.get("settings") is not None:

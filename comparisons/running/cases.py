@@ -9,13 +9,12 @@ import json
 import platform
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 from analytic import Block, Scene, Start
 from engines import ENGINES, get_engine
 
-from .sources import digest_of, source_digests
+from .sources import digest_of, source_digests, version_of
 
 if TYPE_CHECKING:
     from analytic import Response
@@ -104,13 +103,7 @@ def module_of(name: str) -> str:
 def versions(name: str) -> dict[str, str | None]:
     """Versions of Python and of the packages that the solver `name` rests on."""
     packages = ["numpy", "scipy", "numba"] + ([ENGINES[name].package] if name in ENGINES else [])
-    installed: dict[str, str | None] = {"python": platform.python_version()}
-    for package in packages:
-        try:
-            installed[package] = version(package)
-        except PackageNotFoundError:
-            installed[package] = None
-    return installed
+    return {"python": platform.python_version(), **{package: version_of(package) for package in packages}}
 
 
 def name_of(function: Callable[..., Any] | None) -> str | None:

@@ -11,7 +11,6 @@ import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, is_dataclass
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -21,7 +20,7 @@ import psutil
 
 from engines import ENGINES
 
-from .sources import PROJECT, digests_of_all, source_digests
+from .sources import PROJECT, digests_of_all, source_digests, version_of
 
 NAMED = 3  # modules that a sentence on a stale result names
 SCHEMA = 1  # of the result files; raise it when a reader of the old ones would go wrong
@@ -60,7 +59,7 @@ def provenance(modules: Iterable[str] = ("analytic",), seed: object = None) -> d
         "time": datetime.now(UTC).isoformat(timespec="seconds"),
         "machine": machine(),
         "python": platform.python_version(),
-        "packages": {name: _version(name) for name in PACKAGES},
+        "packages": {name: version_of(name) for name in PACKAGES},
         **_checkout(),
         "sources": {name: digest[:16] for name, digest in sources.items()},
         "seed": seed,
@@ -248,13 +247,6 @@ def _checkout():
         return {"commit": git("rev-parse", "HEAD"), "dirty": bool(git("status", "--porcelain", "-uno"))}
     except (OSError, subprocess.SubprocessError):
         return {"commit": None, "dirty": None}
-
-
-def _version(package):
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return None
 
 
 def _digest(file):

@@ -5,6 +5,7 @@ import functools
 import hashlib
 import importlib.util
 from collections.abc import Iterable, Mapping
+from importlib.metadata import PackageNotFoundError, packages_distributions, version
 from pathlib import Path
 
 PROJECT = ("analytic", "engines", "comparisons")
@@ -47,6 +48,15 @@ def source_digests(modules: Iterable[str]) -> dict[str, str]:
         digests[name], imported = _read(name, str(file), file.stat().st_mtime_ns)
         waiting += [other for other in imported if other.partition(".")[0] in within]
     return dict(sorted(digests.items()))
+
+
+def version_of(package: str) -> str | None:
+    """Version of an installed package, also where its distribution has another name (pydrake's is drake); else None."""
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        distribution = packages_distributions().get(package)
+        return version(distribution[0]) if distribution else None
 
 
 def digest_of(digests: Mapping[str, str]) -> str:

@@ -30,6 +30,8 @@ def said(error: RuntimeError) -> str:
 class DrakeBodies(Bodies):
     """The bodies of one plant or two."""
 
+    contact = 1e-5  # a block that stands under a motion lifts by up to 7e-6 of gamma: its corners yield
+
     def __init__(self, assembly: Assembly, scene: Scene, largest: float) -> None:
         super().__init__(scene, largest)
         self.contacts, self.holding = assembly.contacts, assembly.holding

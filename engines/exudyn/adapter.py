@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from analytic import Scene
 
     from ..contract import Run
-    from .corners import CompliantCorners
     from .joints import SwitchedJoints
     from .native import NativeContact
+    from .sizing import CompliantCorners
 
 # Replayed bearing force, over f0: round-off stays below 1e-12.
 REPLAY_LIMIT = 1e-9

@@ -8,7 +8,6 @@ impact then turns out as his formula says verifies law and integration, it is no
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Self
 
@@ -20,6 +19,7 @@ from analytic.bearing import BearingLaw
 
 from .phases import Phases, Rule
 from .scene import build
+from .sizing import MEASURED_START, CompliantCorners, scaled, start_share, unresolved
 from .stepping import solver_settings, step_through
 
 if TYPE_CHECKING:
@@ -30,11 +30,6 @@ if TYPE_CHECKING:
 
 Real = exu.symbolic.Real
 
-# The block the defaults were measured with: the Caryatid, mass [kg], radius [m], gravity [m/s2]; and the least start,
-# tilt over slenderness. Smaller blocks and starts get the equivalent.
-MEASURED = 3172.05, 1.0884, 9.81
-MEASURED_START = 0.3
-
 # Under a motion the swings are not known beforehand: a run whose own peak is below SMALL slendernesses is done again
 # for swings of that size, as for the equivalent start (else peaks of .04 and .02 slendernesses are off by 2 %), but
 # for none smaller than LEAST_SHARE of those measured.
@@ -44,111 +39,11 @@ SMALL, LEAST_SHARE = 0.1, 4e-3
 # for a third of it, 3 ms for the Caryatid. At most this over sqrt(R/g), which is 20 ms for it.
 RELAX, MOST_RELAX = 75.0, 0.06
 
-# A base below LIGHT block masses that vibrates, or is stopped by its damper, more than MOST_RATIO times as fast as a
-# corner gives way is on its way back before an impact is over. m_b/m 1e-5, ratio 1.7: its displacement is off by 26 %,
-# and by -48 % at .5; .006, ratio .13: 27 %; 1e-5 with a damper, ratio 11: e is off by .023.
-LIGHT, MOST_RATIO = 0.05, 0.1
-
-# A damper that stops a base of up to STOPPED block masses about as fast as a corner gives way takes part in the impact:
-# m_b/m .07, ratio .96: e is off by .0117. Such corners are stiffer, for a ratio of DECAY, by at most STIFFER: e is off
-# by 6e-4 there, and up to a ratio of 6; what is left above MOST_DECAY is said.
-STOPPED, DECAY, MOST_DECAY, STIFFER = 0.3, 0.3, 0.6, 400.0
-
-# An undamped base that vibrates fast keeps what every impact gives it, and errs by the phase in which the next one
-# finds it: m_b/m .1, ratio .028: its displacement is off by 9 %, at .01 by .8 %. Such corners are stiffer too, for a
-# ratio of VIBRATES, by at most STIFFEST.
-VIBRATES, STIFFEST = 0.01, 25.0
-
 # Least sticking stiffness over what the bearings ask of it, so that a light base moves with the block.
 STICKS = 200.0
 
-# Most by which `slip` grows for slender blocks.
-EASE = 10.0
-
 # Change of the anchor that is not worth telling exudyn, over the sticking spring's stretch under the block's weight.
 SLOP = 1e-3
-
-
-@dataclass(frozen=True)
-class CompliantCorners:
-    """Settings of compliant-corners. `stiffness` is the accuracy knob: the error of restitution goes as its inverse.
-
-    stiffness [N/m] per corner, rebound and slip [m/s] are those of a block of the Caryatid's weight and size released
-    at .3 of its slenderness or more; other blocks and smaller starts get the equivalent (penetration over radius and
-    tilt, speeds over those of the impact stay the same). Likewise tolerance and both steps.
-    """
-
-    # Measured in free rocking from 8 starts, 0.3 to 0.8 gamma, gamma 0.1 to 0.45, rigid ground and m_b = 212 kg, every
-    # impact at least a tenth as fast as the run's fastest; worst rms error of restitution and CPU s per simulated s:
-    # 1e11: 1.3e-4, .02-.05; 1.5e11: 6e-5, .02-.055; 2e11: 3e-5, .02-.055; 3e11: 7e-6, .03-.065. Slow impacts err
-    # more, as the inverse square of their rate. Here and below the times are of explicit steps alone; the implicit ones
-    # of `phases` take 2.6 to 4.5 times less in free rocking, 6.6 under 25 s of motion (side by side, at 2e11).
-    stiffness: float = 2e11
-    # Hunt-Crossley damping of 1000 s/m: the corner is thrown back at 1 mm/s at most.
-    rebound: float = 1e-3
-    # No slip in any impact; the model's friction demand is far below it. A scene's own coefficient comes first.
-    friction: float = 5.0
-    # Tangential over normal stiffness, less on a light base. 1: .03-.09 CPU s; 0.3: .02-.05, error up to 4e-5;
-    # 0.1: .02-.045, up to 1e-4.
-    sticking: float = 0.3
-    # Tangential, over the critical one of block and base sliding on the contact. 0.3 throws the stocky block about
-    # after its impacts, 1 costs up to twice the steps.
-    damping: float = 0.5
-    # Sliding speed [m/s] at which the viscous part of friction, which grows with the normal force, would equal it.
-    # A corner must stick as fast as it lands: if the normal impulse comes first it presses the other corner down, which
-    # then takes part in the impact, for sin^2 gamma > J_O/(m R^2) - 1 (gamma .6: e off by 3e-2 without this part). For
-    # less it is larger as there is less need, by up to EASE: it costs steps.
-    slip: float = 0.1
-    # Local error per step [m, rad, m/s, rad/s]. Stability of the stiff contact, not this, sets the step:
-    # 1e-6 costs as much within 10 %.
-    tolerance: float = 1e-7
-    # [s]; of explicit steps, reached by none in contact.
-    longest_step: float = 5e-3
-    # [s]; of implicit steps, while the block pivots or stands.
-    pivoting_step: float = 2e-3
-
-
-def start_share(scene: Scene) -> float:
-    """Amplitude of the free rocking that a scene starts with, over `MEASURED_START` slendernesses; at most 1."""
-    start, gamma = scene.start, scene.block.slenderness
-    if scene.motion is not None or (start.tilt == 0 and start.tilt_rate == 0):
-        return 1.0
-    tilt, rate = abs(start.tilt) / gamma, start.tilt_rate / (scene.rocking_frequency * gamma)
-    energy = 1 - (1 - tilt) ** 2 + rate * rate  # of a slender block; 1 takes it to the unstable point
-    if tilt >= 1 or energy >= 1:
-        return 1.0
-    return min(1.0, (1 - math.sqrt(1 - energy)) / MEASURED_START)
-
-
-def scaled(scene: Scene, settings: CompliantCorners, share: float) -> CompliantCorners:
-    """The settings for a scene's size, and for swings of `share` of `MEASURED_START` slendernesses."""
-    block = scene.block
-    mass, radius, gravity = MEASURED
-    speed, time = (
-        math.sqrt(value)
-        for value in (
-            scene.gravity * block.radius / (gravity * radius),
-            block.radius / scene.gravity / (radius / gravity),
-        )
-    )
-    weight = block.mass * scene.gravity / block.radius / (mass * gravity / radius)
-    need = block.mass * block.half_width**2 / block.centre_inertia  # above 1: see `slip`
-    # a corner of a block with a small moment of inertia gives way easily: the same damping would cost many more steps
-    easy = (1 + need) / (1 + 3 * math.sin(block.slenderness) ** 2)
-    stiffness = settings.stiffness * weight / share
-    if scene.base is not None and LIGHT <= scene.base.mass / block.mass <= STOPPED:
-        slow = math.sqrt(block.mass / stiffness)
-        stopped, vibrating = _decay(scene) * slow / DECAY, _frequency(scene) * slow / VIBRATES
-        stiffness *= max(1.0, min(stopped**2, STIFFER), min(vibrating**2, STIFFEST))
-    return replace(
-        settings,
-        stiffness=stiffness,
-        rebound=settings.rebound * speed * math.sqrt(share * max(1.0, easy)),
-        slip=settings.slip * speed * math.sqrt(share / max(1.0, need)) * min(max(1.0, math.sqrt(0.5 / need)), EASE),
-        tolerance=settings.tolerance * min(speed, 1 / speed, 1.0) * share,
-        longest_step=settings.longest_step * min(time, 1.0) * math.sqrt(share),
-        pivoting_step=settings.pivoting_step * time * math.sqrt(share),
-    )
 
 
 @njit(cache=True)
@@ -306,32 +201,4 @@ def _run(scene: Scene, unscaled: CompliantCorners, share: float) -> Run:
     ran = step_through(
         model, lambda model, steps, record: Phases(model, rule, steps, record).run(), 2 * contact_tilt, settle
     )
-    return replace(ran, warnings=(*ran.warnings, *_unresolved(scene, settings)))
-
-
-def _decay(scene: Scene) -> float:
-    """Rate at which its dampers alone stop the base, n_d c/m_b [1/s]."""
-    return scene.bearings.count * scene.bearings.damping / scene.base.mass if scene.bearings else 0.0
-
-
-def _frequency(scene: Scene) -> float:
-    """Angular frequency of the base alone on its bearings at their largest stiffness [rad/s]."""
-    return math.sqrt(scene.bearings.count * scene.bearings.ka / scene.base.mass) if scene.bearings else 0.0
-
-
-def _unresolved(scene: Scene, settings: CompliantCorners) -> Iterator[str]:
-    """Sentences on a base that is gone again while the impact that kicks it still lasts."""
-    if scene.bearings is None or scene.base.mass > STOPPED * scene.block.mass:
-        return
-    light = scene.base.mass < LIGHT * scene.block.mass
-    slow = math.sqrt(scene.block.mass / settings.stiffness)
-    for name, rate, most in (
-        ("frequency on its bearings", _frequency(scene), MOST_RATIO if light else math.inf),
-        ("decay by its dampers", _decay(scene), MOST_RATIO if light else MOST_DECAY),
-    ):
-        if rate * slow > most:
-            yield (
-                f"the base's {name} over the frequency of a corner on it = {rate * slow:.4g} is above {most:g}, the "
-                f"limit verified for bases below {LIGHT if light else STOPPED:g} block masses: what an impact moves it "
-                "by is not resolved"
-            )
+    return replace(ran, warnings=(*ran.warnings, *unresolved(scene, settings)))

@@ -17,7 +17,7 @@ from analytic.bearing import BearingLaw
 from analytic.motion import vertical_acceleration
 
 from ..placement import placement
-from .scene import chain
+from .links import chain
 
 if TYPE_CHECKING:
     from analytic import Scene

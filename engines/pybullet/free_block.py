@@ -16,7 +16,8 @@ from ..observe import observe
 from ..pace import FLAT
 from . import first_script as script
 from .adapter import versions
-from .scene import BREAKING_THRESHOLD, FRICTION, iterations, without_losses
+from .links import without_losses
+from .scene import BREAKING_THRESHOLD, FRICTION, iterations
 
 # contactERP of a box on a slab: penetration decays at this rate per second whatever the step. A fixed share of .08 per
 # step leaves the base velocity jump 2 to 5 % off at every step.

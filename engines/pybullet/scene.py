@@ -14,6 +14,7 @@ import pybullet
 
 from ..placement import placement
 from ..readback import require
+from .links import chain, without_losses
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -177,42 +178,6 @@ def _shapes(client, block):
     )
     plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, planeNormal=[0, 0, 1], physicsClientId=client)
     return corners, plane
-
-
-def chain(client: int, links: list[tuple], **options: int) -> int:
-    """A multibody on a fixed origin of links (mass, shape, position, joint, axis, parent); their frames are level."""
-    masses, shapes, positions, joints, axes, parents = (list(column) for column in zip(*links, strict=True))
-    count = len(links)
-    return pybullet.createMultiBody(
-        0,
-        -1,
-        -1,
-        [0, 0, 0],
-        linkMasses=masses,
-        linkCollisionShapeIndices=shapes,
-        linkVisualShapeIndices=[-1] * count,
-        linkPositions=positions,
-        linkOrientations=[[0, 0, 0, 1]] * count,
-        linkInertialFramePositions=[[0, 0, 0]] * count,
-        linkInertialFrameOrientations=[[0, 0, 0, 1]] * count,
-        linkParentIndices=parents,
-        linkJointTypes=joints,
-        linkJointAxis=axes,
-        physicsClientId=client,
-        **options,
-    )
-
-
-def without_losses(client: int, body: int, link: int, friction: float, **limits: float) -> None:
-    """Take Bullet's damping, restitution and motor out of a link (-1: the body itself), and set its friction.
-
-    Damping and velocity limits in a call force its linkIndex to -1: friction goes in a call of its own.
-    """
-    pybullet.changeDynamics(body, link, linearDamping=0.0, angularDamping=0.0, physicsClientId=client, **limits)
-    none = dict.fromkeys(("rollingFriction", "spinningFriction", "restitution", "jointDamping"), 0.0)
-    pybullet.changeDynamics(body, link, lateralFriction=friction, physicsClientId=client, **none)
-    if link >= 0:  # joints come with a motor of 1 N s per step
-        pybullet.setJointMotorControl2(body, link, pybullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client)
 
 
 def check_readback(assembly: Assembly, scene: Scene, step: float, many: int, rough: float) -> None:

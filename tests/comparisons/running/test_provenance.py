@@ -20,6 +20,7 @@ from comparisons.running.provenance import (
     scrub,
     write_result,
 )
+from comparisons.running.sources import version_of
 
 ROWS = [{"engine": "exudyn", "error": 1.25e-5, "outcome": "rocks"}, {"engine": "analytic", "error": 0.1 + 0.2}]
 
@@ -147,3 +148,9 @@ def test_every_committed_result_can_be_read_and_says_where_it_comes_from():
         # <study>.json, or <study>-<part>.json where a study has several
         study = result.kind
         assert (file.stem == study or file.stem.startswith(f"{study}-")) and result.provenance["commit"], file.name
+
+
+def test_version_by_the_name_that_is_imported(monkeypatch):
+    monkeypatch.setattr("comparisons.running.sources.packages_distributions", lambda: {"imported": ["numpy"]})
+    assert version_of("imported") == np.__version__ == version_of("numpy")
+    assert version_of("not_there") is None

@@ -96,7 +96,7 @@ def test_a_key_follows_versions_and_source_code(tmp_path, monkeypatch):
     assert key('"""Better words."""\ndef simulate(scene):\n    return 1  # one\n') == first
     assert key("def simulate(scene):\n    return 2\n") != first
     assert key("def simulate(scene):\n    return 1\n") == first
-    monkeypatch.setattr(module, "version", lambda package: "0.0")
+    monkeypatch.setattr(module, "version_of", lambda package: "0.0")
     assert key("def simulate(scene):\n    return 1\n") != first
 
 
