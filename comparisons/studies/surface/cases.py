@@ -19,7 +19,7 @@ from ...running.study import Ask, Batch, Found, Plan
 ANALYTIC = "analytic"
 # slendernesses [rad], peak ground accelerations [g], synthetic motions
 FULL = np.linspace(0.08, 0.45, 50), np.geomspace(0.1, 3.0, 40), 500
-QUICK = np.linspace(0.1, 0.4, 7), np.geomspace(0.1, 3.0, 16), 24
+QUICK = np.linspace(0.1, 0.4, 4), np.geomspace(0.1, 3.0, 8), 10
 STANDS, OVERTURNS, FAILED = "0", "1", "x"
 
 SCENE = "Scene whose block takes the slendernesses; shipped, or a file."
