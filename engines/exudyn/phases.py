@@ -15,6 +15,7 @@ import exudyn as exu
 import numpy as np
 from numba import njit
 
+from analytic.motion import PulseMotion
 from analytic.rocking import RockingModel
 
 from ..vibration import longest_step
@@ -48,6 +49,7 @@ DAMPED = 0.9
 # Newton's residual, over the block's weight; but no less than some rounding errors of a place, as stiff corners feel
 # them: below these exudyn finds no end.
 RESIDUAL, ROUNDING = 1e-7, 30 * 2.0**-52
+JUST = 1e-9  # s, before a jump: round-off of a sum of steps
 DIFFERENCE = 0.02  # of a corner's depth, by which exudyn moves a coordinate to derive the forces
 
 
@@ -90,6 +92,8 @@ class Phases:
         self.worthwhile = self.step >= WORTHWHILE * rule.step
         self.implicit, self.state, self.since, self.anchored, self.refused = False, NEITHER, 0.0, 0.0, -math.inf
         self.ground = Ground(model, rule.longest) if scene.motion else None
+        # Where a pulse begins or ends the ground may jump, and lift a standing block within one implicit step.
+        self.jumps = (scene.motion.start, scene.motion.end) if isinstance(scene.motion, PulseMotion) else ()
         model.mbs.SetPostStepUserFunction(self.keep)
         if self.ground:
             model.mbs.SetPreStepUserFunction(self.ground.prepare)
@@ -125,6 +129,8 @@ class Phases:
             self.state, self.since, self.anchored = state, t, at
             return False
         if not self.worthwhile or t - self.since < self.rule.settle or t < self.refused:
+            return False
+        if any(-JUST < t - jump < self.rule.settle for jump in self.jumps):
             return False
         if state == BOTH:
             return True

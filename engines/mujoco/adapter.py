@@ -29,7 +29,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
@@ -39,13 +39,17 @@ import numpy as np
 from analytic.response import Failure
 
 from ..contract import Mismatch, Run, Variant
+from ..kicked import sound, unsure_displacement
 from ..leapfrog import failure_of, raw_trace_of, trace_of
+from ..swings import find_swings
 from ..verified import Range
 from . import stepping
 from .scene import build, longest_step
 
 if TYPE_CHECKING:
     from analytic import Scene
+
+    from ..swings import Trace
 
 SOLVER_DECIDES = (
     "MuJoCo's contact solver decides when a corner lands, sticks or lifts and what an impact does to the tilt rate and "
@@ -147,6 +151,10 @@ VARIANTS = {
     ),
 }
 
+# Relative error of the frequency of a base that vibrates on its bearings: m_b/m 1.9, 180 omega_r.
+DRIFT = 1e-3
+# Swings below SMALL slendernesses that grow from impact to impact: after 14 of them the peak is off by a third.
+SMALL, SHAKEN = 0.02, 5
 # Of the default contact, which sinks by .02 of gamma; see _contact_tilt.
 FIRST_CONTACT_TILT = 0.05
 FIRST_SETTLE = 0.1  # s, 5 time constants of the default contact; 0.2 reads the same e to 2e-3
@@ -179,8 +187,27 @@ def run(scene: Scene, variant: str, settings: ImpactAware | FixedStep | FirstScr
         trace = trace_of(rows, scene, _contact_tilt(settings, peak, slenderness))
     failure = _failure(scene, rows, ended, "; ".join(line.strip() for line in said))
     return Run(
-        trace, len(rows) - 1, cpu, failure, ended if ended == "overturned" else None, longest_step(scene, settings)
+        trace,
+        len(rows) - 1,
+        cpu,
+        failure,
+        ended if ended == "overturned" else None,
+        longest_step(scene, settings),
+        (*unsure_displacement(scene, trace, drift=DRIFT), *_shaken(scene, trace)),
     )
+
+
+def _shaken(scene: Scene, trace: Trace | None) -> Iterator[str]:
+    """A sentence where small swings grow to their peak from impact to impact."""
+    if scene.motion is None or not sound(trace):
+        return
+    peak = int(np.argmax(np.abs(trace.tilt)))
+    size, impacts = abs(trace.tilt[peak]) / scene.block.slenderness, int((find_swings(trace).first <= peak).sum()) - 1
+    if size < SMALL and impacts > SHAKEN:
+        yield (
+            f"the peak tilt, {size:.2g} slendernesses, comes after {impacts} impacts of a block that the ground hardly "
+            "lifts, each with its error: do not trust it"
+        )
 
 
 def _contact_tilt(chosen: ImpactAware | FixedStep | FirstScript, peak: float, slenderness: float) -> float:
