@@ -26,7 +26,7 @@ def said(scene, drift, lag=0.0):
 
 
 def test_a_base_that_vibrates_undamped_at_447_omega_r_is_said():
-    """As much as its peak changes in the analytic model when the vibration is faster by the drift: 1e-3 to .1."""
+    """By what its peak changes in the analytic model, within a factor of 4, when the vibration is off by the drift."""
     (sentence,) = said(FAST, drift=2e-4)
     assert "vibrates at 44" in sentence and "give the bearings their damping" in sentence
     peak = simulate(FAST, history=False).peak_base_displacement
