@@ -22,9 +22,9 @@ DATA = re.compile(r"\s*(?:[-+.,;0-9]|(?:nan|inf|infinity)\b)", re.I)
 COMMENT = ("#", "%", "!", "//")
 HEADER_LINES = 200
 NUMERIC = re.compile(r"[-+]?[.,]?[0-9]")
-TIME = re.compile(r"(?<![a-z])(?:time|t)[ ,:=_/(\[]+(?:in |units?[ :=]+)?[(\[]?(µs|[a-z]+)\b", re.I)
+TIME = re.compile(r"(?<![^\W\d_])(?:time|t)[ ,:=_/(\[]+(?:in |units?[ :=]+)?[(\[]?(µs|[a-z]+)\b", re.I)
 STEP = re.compile(
-    rf"(?<![a-z])dt ?(?:[(\[] ?([a-zµ]+) ?[)\]] ?)?[:=] ?(?:({NUMBER})(?![0-9.]|,[0-9]) ?([a-zµ]*))?", re.I
+    rf"(?<![^\W\d_])dt ?(?:[(\[] ?([a-zµ]+) ?[)\]] ?)?[:=] ?(?:({NUMBER})(?![0-9.]|,[0-9]) ?([a-zµ]*))?", re.I
 )
 OTHER_TIMES = {"us", "µs", "usec", "ns", "min", "minute", "minutes", "h", "hour", "hours", "samples"}
 REMEDY = "write time [s] and acceleration, two numbers a line"

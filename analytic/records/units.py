@@ -36,18 +36,23 @@ WORDS = {
 }  # -> m/s2, as `_plain` writes them
 NOT_ACCELERATIONS = {f"{length}{rate}" for length in LENGTHS for rate in ("", "/s", ".s-1", "s-1")}
 
+# A word begins and ends where no letter of any alphabet is.
+_START, _END = r"(?<![^\W\d_])", r"(?![^\W\d_])"
+
 _TIMES = {"s", "ms", "us", "min", "h"}
 
 _LENGTH = "(?:mm|cm|m|in|ft|inch(?:es)?|feet|foot|(?:milli|centi)?met(?:er|re)s?)"
 # A length by a time is a unit wherever it stands, except after a number ("Vs30 = 360 m/s" is a value).
 _BY = r"(?:/|[ .*·](?=s(?:ec)?(?:\^|\*\*)?[-−⁻(])|(?=s-2))"  # "cm/s2", "cm s^-2", "cms-2"
-_QUOTIENT = re.compile(rf"(?<![a-z0-9/.])({_LENGTH}{_BY}[^\s,;:\]=]+)", re.I)
+# What may stand before it is listed: behind other signs, or a letter of any alphabet, it is the rest of a damaged word.
+_APART = r"""(?:(?<![^\s,;:=(\[{<'"|])|(?<=^[#!])|(?<=[^\W_][_-]))"""
+_QUOTIENT = re.compile(rf"{_APART}({_LENGTH}{_BY}[^\s,;:\]=]+)", re.I)
 _AFTER_NUMBER = re.compile(r"[0-9.] ?$")
 # Short words are units only where a header introduces one.
 _INTRODUCED = re.compile(r"\bunits?\b(?: (?:of|in|is|are)(?=[ :=(\[]))?[ :=]*[(\[]?((?:% ?)?[a-z][^\s,;:\]=]*)", re.I)
 _SUGGESTED = re.compile(r"(?:\bin |[(\[] ?|\b(?:acceleration|accel|acc)\.? (?!in ))((?:% ?)?[a-z][^\s,;:\]=]*)", re.I)
-_ACCELERATION = re.compile(r"(?<![a-z])acc(?:el|elerations?|elerograms?)?(?![a-z])", re.I)
-_OTHER = re.compile(r"(?<![a-z])(?:velocit(?:y|ies)|veloc|vel|displacements?|displ|disp)(?![a-z])", re.I)
+_ACCELERATION = re.compile(rf"{_START}acc(?:el|elerations?|elerograms?)?{_END}", re.I)
+_OTHER = re.compile(rf"{_START}(?:velocit(?:y|ies)|veloc|vel|displacements?|displ|disp){_END}", re.I)
 
 
 @dataclass(frozen=True)
@@ -171,6 +176,6 @@ def _plain(word: str) -> str:
     """A unit in one spelling: "CM/SEC**2", "cm/(s²)" and "cm/s^2" are all "cm/s2"."""
     word = word.lower().strip(" .'\"").replace("²", "2").replace("⁻", "-").replace("−", "-").replace("·", ".")
     for pattern, short in LONG_NAMES:
-        word = re.sub(rf"(?<![a-z])(?:{pattern})(?![a-z])", short, word)
+        word = re.sub(rf"{_START}(?:{pattern}){_END}", short, word)
     word = word.replace("**", "").replace("*", ".")
     return re.sub(r"[\^(){}]", "", word).replace("% ", "%").replace(" ", ".")

@@ -87,6 +87,31 @@ def test_dyna(tmp_path):
     np.testing.assert_allclose(motion.samples, np.array(VALUES) * 0.01, rtol=1e-15)
 
 
+@pytest.mark.parametrize("letter", [*"\u00ddç¿$~%&+*\\?@^`}0.x_-!#", "\u0411", "\u00b5"])
+@pytest.mark.parametrize("header", ["# time [s] acceleration [{}m/s2]", "# time, acc ({}m/s^2)", "# {}m/s/s"])
+def test_a_damaged_letter_leaves_no_unit_behind_it(tmp_path, letter, header):
+    """One damaged byte of "cm/s2" must not make metres of centimetres."""
+    for units in (None, "cm/s2"):
+        path = write(tmp_path, "\n".join([header.format(letter), *(f"{i / 200} {a}" for i, a in enumerate(VALUES))]))
+        if units is None:
+            with pytest.raises(SceneError, match="missing; the header names no unit|not an acceleration"):
+                read_record(path)
+        else:
+            np.testing.assert_allclose(read_record(path, units).samples, np.array(VALUES) * 0.01, rtol=1e-15)
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        *(f"# time acceleration {sign}cm/s2" for sign in ("", "\t", *",;:=([{<'\"|")),
+        *("#cm/s2", "! cm/s2", "time,acc_cm/s2", "time,acc-cm/s2"),
+    ],
+)
+def test_a_unit_stands_by_itself_behind_what_parts_words(tmp_path, header):
+    text = "\n".join([header, *(f"{i / 200} {a}" for i, a in enumerate(VALUES))])
+    np.testing.assert_allclose(read_record(write(tmp_path, text)).samples, np.array(VALUES) * 0.01, rtol=1e-15)
+
+
 @pytest.mark.parametrize("units, factor", [("m/s2", 1.0), ("cm/s2", 0.01), ("g", G)])
 @pytest.mark.parametrize("row", ["{t:8.4f} {a:14.6E}", "{t},{a}", "{t}\t{a}  # remark"])
 def test_two_columns(tmp_path, units, factor, row):
