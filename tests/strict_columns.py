@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 
-from strict_words import DIGITS, LETTERS, TIME_WORDS, Refused, ends_of, scan, single, unit_of, words_of
+from strict_words import DIGITS, LETTERS, TIME_WORDS, Refused, scan, single, stem_of, unit_of, words_of
 
 OTHER_TIMES = ("us", "µs", "usec", "ns", "min", "minute", "minutes", "h", "hour", "hours", "samples")
 
@@ -183,17 +183,25 @@ def _numeric(field):
     return field[:1] in tuple(DIGITS)
 
 
+def _letters_of(word):
+    """The letters a word begins with; nothing where digits follow them."""
+    end = 0
+    while end < len(word) and (word[end] in LETTERS or word[end] == "µ"):
+        end += 1
+    return "" if word[end : end + 1] in tuple(DIGITS) else word[:end]
+
+
 def _times_in(line):
     """Units of time that stand behind the word time (or t) of a header line, in units a second; None: another unit."""
     found = []
     flat = " ".join(line[:400].lower().split())
     words = words_of(flat.replace("/", " , ").replace("_", " "))
     for i, word in enumerate(words):
-        if word in ("time", "t"):
+        if stem_of(word) in ("time", "t"):
             rest = words[i + 1 :]
             while rest and rest[0] in ("(", "[", ",", ":", "=", "in", "unit", "units"):
                 rest = rest[1:]
-            unit = ends_of(rest[0]) if rest else ""
+            unit = _letters_of(rest[0]) if rest else ""
             if unit in OTHER_TIMES:
                 found.append(None)
             elif unit in TIME_WORDS:

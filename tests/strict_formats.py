@@ -29,7 +29,12 @@ def layout_of(line):
         if len(kept) > 4 and kept[4] == "E" and "".join(kept[5:]) in ("", *DIGITS):
             kept = kept[:4]
         good = len(kept) == 4 and kept[2] == "." and 0 < len(kind) < 3 and closed
-        if good and all(len(part) < 3 for part in kept) and kept[0][0] in DIGITS[1:] and kept[1][0] in DIGITS[1:]:
+        numbers = [part for at, part in enumerate(kept) if at != 2]
+        if (
+            good
+            and all(len(part) < 3 and part[0] in DIGITS for part in numbers)
+            and "0" not in (kept[0][0], kept[1][0])
+        ):
             found = int(kept[0]), int(kept[1]), int(kept[3])
     return found
 

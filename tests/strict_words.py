@@ -192,6 +192,13 @@ def words_of(line):
     return words
 
 
+def stem_of(word):
+    """The word without the signs before it."""
+    while word and not (word[0] in LETTERS or word[0] in DIGITS or word[0] == "_"):
+        word = word[1:]
+    return word
+
+
 def ends_of(word):
     while word and word[-1] in ".'\"":
         word = word[:-1]
@@ -216,11 +223,12 @@ def unit_of(lines, titles):
                 before = before[:-1]
             if before and before[-1] in ("of", "in", "is", "are"):
                 stated = before[-1] == "in" and (named or index == titles)
-                before = before[:-1] if before[:-1] and before[-2] in ("unit", "units") else before
+                before = before[:-1] if before[:-1] and stem_of(before[-2]) in ("unit", "units") else before
             bare = ends_of(word)
+            glued = f"{word}(" in flat.lower() or f"{word}[" in flat.lower()  # a name: g[cm/s2]
             if (
                 before
-                and before[-1] in ("unit", "units")
+                and stem_of(before[-1]) in ("unit", "units")
                 and word not in "()[]:=,;"
                 and word not in ("of", "in", "is", "are")
             ):
@@ -242,9 +250,9 @@ def unit_of(lines, titles):
                 or ((named or index == titles) and i and words[i - 1] in ("(", "["))
                 or (i and ends_of(words[i - 1]) in ("acc", "accel", "acceleration"))
             ):
-                if bare in LENGTHS or bare in RATES:
+                if (bare in LENGTHS or bare in RATES) and not glued:
                     raise Refused(f"unit {word}")
-                if bare in KNOWN:
+                if bare in KNOWN and not glued:
                     factors.add(KNOWN[bare])
     if len(factors) > 1:
         raise Refused("two units")

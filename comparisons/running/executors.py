@@ -3,6 +3,7 @@
 import contextlib
 import faulthandler
 import json
+import math
 import multiprocessing
 import os
 import queue
@@ -211,7 +212,8 @@ def _lines(task):
         row = {"key": key, "values": {}, "failure": None, "cost": {}}
         try:
             response = case.run()
-            row["cost"] = {"cpu_seconds": response.cpu_seconds}
+            if math.isfinite(response.cpu_seconds):  # nan: nothing was stepped
+                row["cost"] = {"cpu_seconds": response.cpu_seconds}
             if response.outcome == "failed":
                 # Measures see sound responses only; of a failed one everything is kept as evidence.
                 row["values"] = response.to_json()

@@ -17,8 +17,8 @@ from numba import njit
 
 from analytic.bearing import BearingLaw
 
-from ..kicked import sound, unsure_displacement
-from .phases import Phases, Rule
+from ..kicked import shaken, sound, unsure_displacement
+from .phases import JUST, Phases, Rule
 from .scene import build
 from .sizing import DRIFT, LATE, MEASURED_START, CompliantCorners, scaled, start_share, unread, unresolved
 from .stepping import solver_settings, step_through
@@ -33,11 +33,13 @@ Real = exu.symbolic.Real
 
 # Under a motion the swings are not known beforehand: a run whose own peak is below SMALL slendernesses is done again
 # for swings of that size, as for the equivalent start (else peaks of .04 and .02 slendernesses are off by 2 %), but
-# for none smaller than LEAST_SHARE of those measured. Where a jump of the ground little above uplift lifts the block,
-# what the corners had taken up throws it, and the peak is off as 1/sqrt(stiffness), by 8 to 65 %. So two runs tell the
-# error of the stiffer one: above UNSURE it is done again for swings a HARDER-th of the size, twice at most; what is
-# left is said, as where that would take more than MOST_AGAIN steps.
-SMALL, LEAST_SHARE, UNSURE, HARDER, MOST_AGAIN = 0.1, 4e-3, 0.01, 10.0, 200_000
+# for none smaller than LEAST_SHARE of those measured. Where a jump of the ground, of at least JUMP of what lifts the
+# block, finds it standing, what the corners had taken up throws it, and the peak is off as 1/sqrt(stiffness): small
+# ones by 8 to 65 %, others by up to 7 %. So two runs tell the error of the stiffer one: above UNSURE it is done again
+# for swings a HARDER-th of the size, twice at most; what is left is said, as where that would take more than
+# MOST_AGAIN steps.
+SMALL, LEAST_SHARE, JUMP, UNSURE, HARDER, MOST_AGAIN = 0.1, 4e-3, 0.3, 0.01, 10.0, 200_000
+TOLD = 0.7  # square root of the stiffnesses' ratio, above which two runs tell nothing
 STANDS = 1e-4  # slendernesses, below which a peak is the corners' own
 
 # Time for the corners to relax after an impact, over sqrt(m/k): the landing corner is pushed out at the rebound speed
@@ -175,19 +177,24 @@ def run(scene: Scene, settings: CompliantCorners) -> Run:
     share = start_share(scene)
     ran = _run(scene, settings, share)
     size = _size(scene, ran)
-    if share < 1 or not size < SMALL:
+    if share < 1 or math.isnan(size) or not (size < SMALL or _thrown(scene, ran)):
         return ran
-    least, again = max(LEAST_SHARE, size / MEASURED_START), ran
-    for finer in (least, least / HARDER, least / HARDER**2):
-        if finer < least and again.steps * math.sqrt(HARDER) > MOST_AGAIN:
+    again, stiffness = ran, scaled(scene, settings, share).stiffness
+    tries = [(share, HARDER), (share, HARDER**2)]
+    if size < SMALL:
+        least = max(LEAST_SHARE, size / MEASURED_START)
+        tries = [(least, 1.0), (least, HARDER), (least, HARDER**2)]
+    for nth, (share, harder) in enumerate(tries):
+        if nth and again.steps * math.sqrt(HARDER) > MOST_AGAIN:
             break
-        again = _run(scene, settings, finer)
-        before, size, ratio = size, _size(scene, again), math.sqrt(finer / share)
-        error = abs(before / size - 1) * ratio / (1 - ratio)
+        before, again = again, _run(scene, settings, share, harder)
+        softer, stiffness = stiffness, scaled(scene, settings, share, harder).stiffness
+        size, ratio = _size(scene, again), math.sqrt(softer / stiffness)
+        # a base may have asked for the same stiffness in both
+        error = _difference(scene, before, again) * ratio / (1 - ratio) if ratio < TOLD else math.inf
         ran = replace(again, cpu_seconds=ran.cpu_seconds + again.cpu_seconds, steps=ran.steps + again.steps)
         if not (error > UNSURE and size > STANDS):  # nor where one did not lift
             return ran
-        share = finer
     hangs = (
         f"the peak tilt, {size:.2g} slendernesses, hangs on the corners' stiffness, by {error:.2g} of itself: the "
         "ground hardly lifts the block; give a larger stiffness"
@@ -203,9 +210,36 @@ def _size(scene: Scene, ran: Run) -> float:
     return peak / scene.block.slenderness if peak > ran.trace.contact_tilt else math.nan
 
 
-def _run(scene: Scene, unscaled: CompliantCorners, share: float) -> Run:
-    """Step a scene once, with settings that are scaled to it and to swings of `share`."""
-    settings = scaled(scene, unscaled, share)
+def _thrown(scene: Scene, ran: Run) -> bool:
+    """Whether a jump of the ground finds the block of a sound run standing."""
+    if scene.motion is None:
+        return False
+    least = JUMP * scene.gravity * math.tan(scene.block.slenderness)
+    for t in {scene.motion.start, *scene.motion.jumps}:
+        before, after = scene.motion.acceleration(np.array([t - JUST, t + JUST]))
+        stands = abs(np.interp(t, ran.trace.time, ran.trace.tilt)) < ran.trace.contact_tilt
+        if stands and abs(after - before) > least:
+            return True
+    return False
+
+
+def _difference(scene: Scene, before: Run, after: Run) -> float:
+    """Relative change of the peak tilt from one run to the next, of a block that falls up to where the next one does.
+
+    NaN where one of them failed or did not lift.
+    """
+    if math.isnan(_size(scene, before)) or math.isnan(_size(scene, after)):
+        return math.nan
+    tilt = np.abs(after.trace.tilt)
+    fallen = np.flatnonzero(tilt > scene.block.slenderness)
+    until = after.trace.time[fallen[0]] if len(fallen) else math.inf
+    peaks = [np.abs(ran.trace.tilt[ran.trace.time <= until]).max() for ran in (before, after)]
+    return abs(peaks[0] / peaks[1] - 1)
+
+
+def _run(scene: Scene, unscaled: CompliantCorners, share: float, harder: float = 1.0) -> Run:
+    """Step a scene once, with settings that are `scaled` to it."""
+    settings = scaled(scene, unscaled, share, harder)
     model, contact_tilt = assemble(scene, settings)
     explicit = solver_settings(
         scene,
@@ -221,7 +255,12 @@ def _run(scene: Scene, unscaled: CompliantCorners, share: float) -> Run:
     )
     sink = contact_tilt * scene.block.half_width
     rule = Rule(
-        explicit, settings.longest_step, settings.pivoting_step, settings.pivoting_step / math.sqrt(share), sink, settle
+        explicit,
+        settings.longest_step,
+        settings.pivoting_step,
+        settings.pivoting_step * math.sqrt(harder / share),
+        sink,
+        settle,
     )
     ran = step_through(
         model, lambda model, steps, record: Phases(model, rule, steps, record).run(), 2 * contact_tilt, settle
@@ -230,4 +269,5 @@ def _run(scene: Scene, unscaled: CompliantCorners, share: float) -> Run:
     if sound(ran.trace):
         late = LATE * math.sqrt(scene.block.mass / settings.stiffness)
         warnings += [*unread(scene, ran.trace), *unsure_displacement(scene, ran.trace, lag=late, drift=DRIFT)]
+        warnings += shaken(scene, ran.trace)
     return replace(ran, warnings=tuple(warnings))

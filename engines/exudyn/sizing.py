@@ -95,8 +95,11 @@ def start_share(scene: Scene) -> float:
     return min(1.0, (1 - math.sqrt(1 - energy)) / MEASURED_START)
 
 
-def scaled(scene: Scene, settings: CompliantCorners, share: float) -> CompliantCorners:
-    """The settings for a scene's size, and for swings of `share` of `MEASURED_START` slendernesses."""
+def scaled(scene: Scene, settings: CompliantCorners, share: float, harder: float = 1.0) -> CompliantCorners:
+    """The settings for a scene's size, and for swings of `share` of `MEASURED_START` slendernesses.
+
+    harder: corners that many times as stiff, all else as for swings that are smaller by it.
+    """
     block = scene.block
     mass, radius, gravity = MEASURED
     speed, time = (
@@ -116,9 +119,10 @@ def scaled(scene: Scene, settings: CompliantCorners, share: float) -> CompliantC
         taken = _decay(scene) * slow * given_back(scene) / TAKEN
         vibrating = _frequency(scene) * slow / VIBRATES if scene.base.mass <= KICKED * block.mass else 0.0
         stiffness *= max(1.0, min(taken**2, STIFFER), min(vibrating**2, STIFFEST))
+    share /= harder
     return replace(
         settings,
-        stiffness=stiffness,
+        stiffness=stiffness * harder,
         rebound=settings.rebound * speed * math.sqrt(share * max(1.0, easy)),
         slip=settings.slip * speed * math.sqrt(share / max(1.0, need)) * min(max(1.0, math.sqrt(0.5 / need)), EASE),
         tolerance=settings.tolerance * min(speed, 1 / speed, 1.0) * share,

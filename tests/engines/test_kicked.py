@@ -1,5 +1,6 @@
 """Bases that still vibrate when impacts kick them: whose displacement is said to be unsure, and whose is not."""
 
+import numpy as np
 import pytest
 from engine_cases import needs
 from sampled_traces import SCENES, sampled
@@ -45,6 +46,14 @@ def test_where_nothing_vibrates_at_an_impact_nothing_is_said(name):
 def test_dampers_make_it_sure():
     damped = FAST.with_(bearings={"damping": 0.2 * (BEARINGS.ka * 0.17814 / 8) ** 0.5})
     assert not said(damped, drift=1e-3)
+
+
+def test_a_soft_base_that_impacts_drive_is_no_vibration():
+    """At omega_r/4 and less it moves as the block pushes it: the bound was 86 times its peak displacement."""
+    soft = FAST.with_(bearings={"ka": BEARINGS.ka * (0.25 / 447) ** 2}, start={"tilt": 6.8e-3}, duration=3.0)
+    assert not said(soft, drift=1e-3)
+    trace, _ = sampled(soft, 2e-4, step=1e-4)
+    assert np.abs(trace.base_velocity).max() > 5 * np.abs(trace.base_displacement).max() * 0.25 * soft.rocking_frequency
 
 
 @pytest.mark.parametrize("engine, scene", [("exudyn", FAST), ("pybullet", HYSTERETIC), ("mujoco", FAST)])

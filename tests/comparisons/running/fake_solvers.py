@@ -1,5 +1,6 @@
 """Cheap solvers for the tests of the sweep layer: some sound, some that crash, hang or raise."""
 
+import dataclasses
 import math
 import os
 import time
@@ -84,6 +85,12 @@ def raises(scene):
 def fails(scene):
     last = State(0.5, 0.1, 0.0, 0.0, 0.0, 0.0)
     return response(scene, outcome="failed", failure=Failure("energy gain", "12 J at 0.5 s", last))
+
+
+def never_steps(scene):
+    """Fails before its first step: it has no time to report."""
+    failed = response(scene, outcome="failed", failure=Failure("too many steps", "1e8 of 2 s"))
+    return dataclasses.replace(failed, cpu_seconds=math.nan)
 
 
 def tilt(case, response):

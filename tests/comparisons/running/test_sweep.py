@@ -135,6 +135,8 @@ def test_exceptions_and_failed_responses_become_failed_rows(tmp_path, fakes):
     (failed,) = sweep(cases("fails", 1), tmp_path / "s.jsonl", executor=Serial(), measure=fakes.tilt)
     assert failed.failure["kind"] == "solver" and failed.failure["reason"] == "energy gain"
     assert failed.failure["last_state"]["time"] == 0.5 and failed.values["outcome"] == "failed"
+    (unstepped,) = sweep(cases("never_steps", 1), tmp_path / "s.jsonl", executor=Serial(), measure=fakes.tilt)
+    assert unstepped.failure["reason"] == "too many steps" and "cpu_seconds" not in unstepped.cost
     (unfit,) = sweep(cases(count=1), tmp_path / "s.jsonl", executor=Serial(), measure=fakes.broken)
     assert unfit.failure["reason"].startswith("TypeError") and "JSON" in unfit.failure["reason"]
 
