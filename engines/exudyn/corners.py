@@ -33,12 +33,13 @@ Real = exu.symbolic.Real
 
 # Under a motion the swings are not known beforehand: a run whose own peak is below SMALL slendernesses is done again
 # for swings of that size, as for the equivalent start (else peaks of .04 and .02 slendernesses are off by 2 %), but
-# for none smaller than LEAST_SHARE of those measured. Where a jump of the ground, of at least JUMP of what lifts the
+# for none smaller than LEAST_SHARE of those measured. Where a jump of the ground, within JUMPS times what lifts the
 # block, finds it standing, what the corners had taken up throws it, and the peak is off as 1/sqrt(stiffness): small
 # ones by 8 to 65 %, others by up to 7 %. So two runs tell the error of the stiffer one: above UNSURE it is done again
 # for swings a HARDER-th of the size, twice at most; what is left is said, as where that would take more than
 # MOST_AGAIN steps.
-SMALL, LEAST_SHARE, JUMP, UNSURE, HARDER, MOST_AGAIN = 0.1, 4e-3, 0.3, 0.01, 10.0, 200_000
+SMALL, LEAST_SHARE, UNSURE, HARDER, MOST_AGAIN = 0.1, 4e-3, 0.01, 10.0, 200_000
+JUMPS = 0.3, 3.0  # vibrating bases add to less; of higher ones no peak was off
 TOLD = 0.7  # square root of the stiffnesses' ratio, above which two runs tell nothing
 STANDS = 1e-4  # slendernesses, below which a peak is the corners' own
 
@@ -214,11 +215,11 @@ def _thrown(scene: Scene, ran: Run) -> bool:
     """Whether a jump of the ground finds the block of a sound run standing."""
     if scene.motion is None:
         return False
-    least = JUMP * scene.gravity * math.tan(scene.block.slenderness)
+    lifts = scene.gravity * math.tan(scene.block.slenderness)
     for t in {scene.motion.start, *scene.motion.jumps}:
         before, after = scene.motion.acceleration(np.array([t - JUST, t + JUST]))
         stands = abs(np.interp(t, ran.trace.time, ran.trace.tilt)) < ran.trace.contact_tilt
-        if stands and abs(after - before) > least:
+        if stands and JUMPS[0] < abs(after - before) / lifts < JUMPS[1]:
             return True
     return False
 
