@@ -157,7 +157,7 @@ def _known_units():
         "mgal": Fraction(1, 100_000),
     }
     for length, factor in LENGTHS.items():
-        known[f"{length}/ss"] = factor
+        known |= {f"{length}/{power}": factor for power in ("ss", "s*s", "s.s")}
         for time in ("s", "sec"):
             for power in (
                 f"/{time}2",

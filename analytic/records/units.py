@@ -52,7 +52,8 @@ _AFTER_NUMBER = re.compile(r"[0-9.] ?$")
 _INTRODUCED = re.compile(r"\bunits?\b(?: (?:of|in|is|are)(?=[ :=(\[]))?[ :=]*[(\[]?((?:% ?)?[a-z][^\s,;:\]=]*)", re.I)
 _SUGGESTED = re.compile(r"(?:\bin |[(\[] ?|\b(?:acceleration|accel|acc)\.? (?!in ))((?:% ?)?[a-z][^\s,;:\]=]*)", re.I)
 _ACCELERATION = re.compile(rf"{_START}acc(?:el|elerations?|elerograms?)?{_END}", re.I)
-_OTHER = re.compile(rf"{_START}(?:velocit(?:y|ies)|veloc|vel|displacements?|displ|disp){_END}", re.I)
+# Behind a damaged sign these still refuse a record.
+_OTHER = re.compile(r"(?<![a-z])(?:velocit(?:y|ies)|veloc|vel|displacements?|displ|disp)(?![a-z])", re.I)
 
 
 @dataclass(frozen=True)

@@ -196,9 +196,10 @@ def run(scene: Scene, settings: CompliantCorners) -> Run:
         ran = replace(again, cpu_seconds=ran.cpu_seconds + again.cpu_seconds, steps=ran.steps + again.steps)
         if not (error > UNSURE and size > STANDS):  # nor where one did not lift
             return ran
+    by = f"{error:.2g} of itself" if math.isfinite(error) else "what no second run tells"
     hangs = (
-        f"the peak tilt, {size:.2g} slendernesses, hangs on the corners' stiffness, by {error:.2g} of itself: the "
-        "ground hardly lifts the block; give a larger stiffness"
+        f"the peak tilt, {size:.2g} slendernesses, hangs on the corners' stiffness, by {by}: the ground hardly lifts "
+        "the block; give a larger stiffness"
     )
     return replace(ran, warnings=(*ran.warnings, hangs))
 

@@ -100,6 +100,12 @@ def test_a_damaged_letter_leaves_no_unit_behind_it(tmp_path, letter, header):
             np.testing.assert_allclose(read_record(path, units).samples, np.array(VALUES) * 0.01, rtol=1e-15)
 
 
+def test_a_damaged_sign_before_the_word_velocity_makes_no_acceleration_of_it(tmp_path):
+    path = write(tmp_path, "# dt = 5 ms\u00ecVELOCITY\n" + "\n".join(map(str, VALUES)))
+    with pytest.raises(SceneError, match="not an acceleration"):
+        read_record(path, "g")
+
+
 @pytest.mark.parametrize(
     "header",
     [
