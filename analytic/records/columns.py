@@ -22,7 +22,7 @@ DATA = re.compile(r"\s*(?:[-+.,;0-9]|(?:nan|inf|infinity)\b)", re.I)
 COMMENT = ("#", "%", "!", "//")
 HEADER_LINES = 200
 NUMERIC = re.compile(r"[-+]?[.,]?[0-9]")
-TIME = re.compile(r"(?<![^\W\d_])(?:time|t)[ ,:=_/(\[]+(?:in |units?[ :=]+)?[(\[]?(µs|[a-z]+)\b", re.I)
+TIME = re.compile(r"(?<![^\W\d_])(?:time|t)[ ,:=_/(\[]+(?:in |units?[ :=]+)?[(\[]?(µs|[a-z]+)(?![a-z0-9_])", re.I)
 STEP = re.compile(
     rf"(?<![^\W\d_])dt ?(?:[(\[] ?([a-zµ]+) ?[)\]] ?)?[:=] ?(?:({NUMBER})(?![0-9.]|,[0-9]) ?([a-zµ]*))?", re.I
 )

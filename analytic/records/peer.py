@@ -14,7 +14,7 @@ HEADER_LINES = 8  # the NPTS line is the fourth in every known variant
 
 NPTS = re.compile(r"\bNPTS\s*[=:]\s*([^\s,;]*)", re.I)
 DT = re.compile(r"\bDT\s*(?:[(\[]\s*([a-z]*)\s*[)\]]\s*)?[=:]\s*((?:[^\s,;]|,(?=[0-9]))*)(?:[ \t]*([a-zµ]+))?", re.I)
-OLD = re.compile(rf"\s*([0-9]+)[\s,]+({NUMBER})[\s,]+NPTS[\s,]+DT\b(?:\s*[(\[]\s*([a-z]*))?", re.I)
+OLD = re.compile(rf"\s*([0-9]+)[\s,]+({NUMBER})[\s,]+NPTS[\s,]+DT\b(?!\s*[=:])(?:\s*[(\[]\s*([a-z]*))?", re.I)
 
 
 def recognises(lines: Sequence[str]) -> bool:

@@ -100,6 +100,11 @@ def test_a_damaged_letter_leaves_no_unit_behind_it(tmp_path, letter, header):
             np.testing.assert_allclose(read_record(path, units).samples, np.array(VALUES) * 0.01, rtol=1e-15)
 
 
+def test_a_letter_beyond_ascii_behind_ms_leaves_milliseconds(tmp_path):
+    path = write(tmp_path, "time [ms\u0663],acc [g]\n" + "".join(f"{5 * i},{a}\n" for i, a in enumerate(VALUES)))
+    assert read_record(path).dt == pytest.approx(0.005, rel=1e-12)
+
+
 def test_a_damaged_sign_before_the_word_velocity_makes_no_acceleration_of_it(tmp_path):
     path = write(tmp_path, "# dt = 5 ms\u00ecVELOCITY\n" + "\n".join(map(str, VALUES)))
     with pytest.raises(SceneError, match="not an acceleration"):
@@ -146,6 +151,8 @@ BAD = {
     "one sample": ("0 1\n", "g", "record: holds 1 samples"),
     "short": (AT2 + "1 2 3\n", None, "line 4, NPTS = 4: but 3 samples follow; the file is cut or damaged"),
     "long": (AT2 + "1 2 3\n4 5", None, "line 4, NPTS = 4: but 5 samples follow"),
+    "old header with a second step": (AT2_TOP + "4 .005 NPTS, DT= .01\n1 2 3 4", None, "line 5 = '1 2 3 4': holds 1"),
+    "old header, number stuck to a word": (AT2_TOP + "4 .005NPTS, DT\n1 2 3 4", None, "line 5 = '1 2 3 4': holds 1"),
     "NaN in AT2": (AT2 + "1 2\n3 NaN\n", None, "line 6 = 'NaN': not finite; mend or remove it"),
     "infinite in AT2": (AT2 + "1 2\n3 -Inf\n", None, "line 6 = '-Inf': not finite"),
     "stars": (AT2 + "1 2 3 *******\n", None, "line 5 = '*******': not a number"),
