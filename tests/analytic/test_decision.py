@@ -236,7 +236,9 @@ def test_nothing_changes_after_the_end_of_a_decided_run(scene):
         assert response.end.time >= longest_duration(scene) * (1 - 1e-9)
         return
     # A scene whose outcome hangs on the last digits of its pulse has none to keep: its steps follow the duration, too.
-    near = [simulate(scene.with_(motion=scene.motion.scaled(1 + part)), history=False) for part in (1e-13, 1e-12, 1e-11)]
+    near = [
+        simulate(scene.with_(motion=scene.motion.scaled(1 + part)), history=False) for part in (1e-13, 1e-12, 1e-11)
+    ]
     assume(all(copy.outcome == response.outcome for copy in near))
     assume(all(copy.peak_tilt == pytest.approx(response.peak_tilt, rel=1e-3) for copy in near))
     assume(all(copy.end.time == pytest.approx(response.end.time, rel=1e-3) for copy in near))
