@@ -129,8 +129,9 @@ class Run:
 
     trace: the accepted steps, None where there are fewer than two. steps: how many were made. cpu_seconds: of the
     stepping alone. failure: what the engine or the adapter found wrong. ended: "overturned" where the run was stopped
-    at overturning. step: the longest [s], which the verified range asks for; None where it is not known. warnings:
-    sentences.
+    at overturning. step: the longest [s], which the verified range asks for; None where it is not known. drift, late:
+    relative error of the time between two impacts or of the frequency of a base that vibrates, and the time [s] by
+    which an impact comes off beside it, as far as they are known (`engines.kicked`). warnings: sentences.
     """
 
     trace: Trace | None
@@ -139,6 +140,8 @@ class Run:
     failure: Failure | None = None
     ended: str | None = None
     step: float | None = None
+    drift: float = 0.0
+    late: float = 0.0
     warnings: tuple[str, ...] = ()
 
 

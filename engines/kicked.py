@@ -1,21 +1,21 @@
-"""What impacts add up: a base that still vibrates when the next one kicks it, and small swings that grow in many."""
+"""What impacts add up, or leave unread: a base that still vibrates when the next one kicks it, small swings that grow
+in many, and a run that ends in one."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, TypeGuard
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic.bearing import BearingLaw
-
 from .swings import find_swings
+from .vibration import base_frequency
 
 if TYPE_CHECKING:
     from analytic import Scene
 
-    from .swings import Trace
+    from .contract import Run
+    from .swings import Swings, Trace
 
 UNSURE = 0.015  # relative, of the peak base displacement
 LEAST = 1e-5  # peak base displacement over R gamma that is worth a word: 3 micrometres for the Caryatid
@@ -24,12 +24,18 @@ LEAST = 1e-5  # peak base displacement over R gamma that is worth a word: 3 micr
 SMALL, SHAKEN = 0.02, 5
 
 
-def sound(trace: Trace | None) -> TypeGuard[Trace]:
-    """Whether there is a trace of finite numbers: what is not fails elsewhere, with the evidence."""
-    return trace is not None and bool(np.isfinite(trace.tilt).all() and np.isfinite(trace.base_displacement).all())
+def warnings(scene: Scene, run: Run) -> Iterator[str]:
+    """Sentences on what a run's impacts add up; none of a trace that is not finite, which fails, with the evidence."""
+    trace = run.trace
+    if trace is None or not (np.isfinite(trace.tilt).all() and np.isfinite(trace.base_displacement).all()):
+        return
+    swings = find_swings(trace)
+    yield from unsure_displacement(scene, trace, swings, drift=run.drift, late=run.late)
+    yield from shaken(scene, trace, swings)
+    yield from unread(scene, trace, swings)
 
 
-def unsure_displacement(scene: Scene, trace: Trace | None, *, drift: float, lag: float = 0.0) -> Iterator[str]:
+def unsure_displacement(scene: Scene, trace: Trace, swings: Swings, *, drift: float, late: float) -> Iterator[str]:
     """A sentence where the peak base displacement hangs on the phase in which an impact finds a vibrating base.
 
     The vibration's amplitude before the last impact up to the peak is that of its velocity, so that what the ground or
@@ -39,27 +45,26 @@ def unsure_displacement(scene: Scene, trace: Trace | None, *, drift: float, lag:
     Parameters
     ----------
     scene : Scene
-    trace : Trace or None
-    drift : float
-        Relative error of the time between impacts, or of the vibration's frequency.
-    lag : float
-        Time [s] by which each impact comes off, beside it.
+    trace : Trace
+    swings : Swings
+        Of the trace.
+    drift, late : float
+        As of `engines.contract.Run`.
     """
-    if scene.base is None or scene.bearings is None or not sound(trace):
+    if scene.bearings is None:
         return
-    swings, size = find_swings(trace), np.abs(trace.base_displacement)
+    size = np.abs(trace.base_displacement)
     peak = int(np.argmax(size))
     last = int(np.searchsorted(swings.first, peak, side="right")) - 1
     if last < 1 or size[peak] < LEAST * scene.block.radius * scene.block.slenderness:
         return  # no impact before the peak
-    law = BearingLaw.of(scene.bearings)
-    frequency = math.sqrt(law.count * (law.kb + law.dk) / scene.base.mass)
+    frequency = base_frequency(scene)
     impact = swings.first[last]
     flight = slice((swings.first[last - 1] + impact) // 2, impact)
     amplitude = min(
         float(np.abs(trace.base_velocity[flight]).max()) / frequency, float(np.ptp(trace.base_displacement[flight])) / 2
     )
-    phase = frequency * lag + frequency / scene.rocking_frequency * drift
+    phase = frequency * late + frequency / scene.rocking_frequency * drift
     if phase * amplitude > UNSURE * size[peak]:
         yield (
             f"the base vibrates at {frequency / scene.rocking_frequency:.4g} times the rocking frequency, and still "
@@ -68,14 +73,23 @@ def unsure_displacement(scene: Scene, trace: Trace | None, *, drift: float, lag:
         )
 
 
-def shaken(scene: Scene, trace: Trace | None) -> Iterator[str]:
+def shaken(scene: Scene, trace: Trace, swings: Swings) -> Iterator[str]:
     """A sentence where small swings grow to their peak from impact to impact."""
-    if scene.motion is None or not sound(trace):
+    if scene.motion is None:
         return
     peak = int(np.argmax(np.abs(trace.tilt)))
-    size, impacts = abs(trace.tilt[peak]) / scene.block.slenderness, int((find_swings(trace).first <= peak).sum()) - 1
+    size, impacts = abs(trace.tilt[peak]) / scene.block.slenderness, int((swings.first <= peak).sum()) - 1
     if size < SMALL and impacts > SHAKEN:
         yield (
             f"the peak tilt, {size:.2g} slendernesses, comes after {impacts} impacts of a block that the ground hardly "
             "lifts, each with its error: do not trust it"
+        )
+
+
+def unread(scene: Scene, trace: Trace, swings: Swings) -> Iterator[str]:
+    """A sentence where the run ends before a compliant contact has come to rest after its last impact."""
+    if len(swings) > 1 and trace.time[-1] - trace.time[swings.first[-1]] < 2 * trace.settle:
+        yield (
+            f"the run ends at {scene.duration:.6g} s, within {trace.settle:.2g} s of its last impact, while corners "
+            "still give way: do not trust the restitution of this impact, or let the scene run longer"
         )

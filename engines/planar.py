@@ -27,7 +27,7 @@ from .pivoting import Block
 from .placement import placement
 from .scale import size_scale
 from .sliding import SlidingBase
-from .vibration import VISCOUS, longest_step
+from .vibration import VISCOUS, drift, longest_step
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -205,4 +205,4 @@ def run_of(
         reason, _, why = ended.partition(": ")
         failure = Failure(reason, f"at step {len(rows) - 1}, t = {rows[-1][0]:.9g} s: {why}")
     overturned = "overturned" if ended == "overturned" else None
-    return Run(trace, len(rows) - 1, cpu, failure, overturned, step, warnings)
+    return Run(trace, len(rows) - 1, cpu, failure, overturned, step, drift(scene), warnings=warnings)

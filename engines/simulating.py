@@ -12,6 +12,7 @@ import analytic
 from analytic import ending
 from analytic.response import Failure
 
+from . import kicked
 from .observe import failed_response, observe
 from .settings import choose, leave_restitution
 from .verified import outside
@@ -68,7 +69,8 @@ def _once(engine: Engine, scene: Scene, name: str, chosen: Any, history: bool) -
 
 
 def _warnings(variant: Variant, scene: Scene, run: Run) -> tuple[str, ...]:
-    """What is said of every run of a variant, what of this one is outside its verified range, what the adapter says."""
+    """What is said of every run of a variant, what of this one is outside its verified range, what the adapter says,
+    and what impacts add up."""
     beyond: tuple[str, ...]
     beyond, peak = (), None
     if run.trace is not None:
@@ -77,4 +79,4 @@ def _warnings(variant: Variant, scene: Scene, run: Run) -> tuple[str, ...]:
         peak = lifted if lifted > run.trace.contact_tilt else None
     if variant.verified is not None and run.step is not None:
         beyond = outside(scene, variant.verified, step=run.step, peak_tilt=peak)
-    return (*variant.caveats, *beyond, *run.warnings)
+    return (*variant.caveats, *beyond, *run.warnings, *kicked.warnings(scene, run))

@@ -9,11 +9,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel
 
 if TYPE_CHECKING:
     from analytic import Scene
-    from analytic.bearing import BearingLaw
 
 # Most of a step over the time in which the bearings' vibration advances by 1 rad; stable below 2.
 VIBRATION = 0.2
@@ -22,6 +22,30 @@ VISCOUS = 10.0
 # Leapfrog vibrates too fast, by (h omega)^2/24; this share of the stiffness times h^2 as mass cures it. Without damping
 # the phase at the next impact decides how far the base goes. Not needed below STIFF = h omega.
 LEAPFROG, STIFF = 1 / 12, 0.02
+# What is left, relative: m_b/m .14 to .42, 100 to 330 omega_r; of a hysteretic bearing the stiffness is a guess.
+DRIFT, HYSTERETIC_DRIFT = 1e-4, 7e-4
+
+
+def base_frequency(scene: Scene) -> float:
+    """Angular frequency of the base alone on its bearings at their largest stiffness [rad/s]; 0 without any."""
+    bearings = scene.bearings
+    return math.sqrt(bearings.count * bearings.ka / scene.base.mass) if bearings else 0.0  # type: ignore[union-attr]  # bearings have a base
+
+
+def base_decay(scene: Scene) -> float:
+    """Rate at which its dampers alone stop the base, n_d c/m_b [1/s]; 0 without any."""
+    bearings = scene.bearings
+    return bearings.count * bearings.damping / scene.base.mass if bearings else 0.0  # type: ignore[union-attr]  # as above
+
+
+def given_back(scene: Scene) -> float:
+    """Change of the block's rate, over that before an impact, where a base that the impact kicked is stopped, eq. (8).
+
+    J_O times it is m h times the jump of the base's velocity.
+    """
+    model = RockingModel.of(scene)
+    height = model.R * math.cos(model.gamma)
+    return model.m * height * model.impact(1.0)[1] / model.J
 
 
 def longest_step(scene: Scene, largest: float) -> float:
@@ -47,6 +71,11 @@ def leapfrog_stiffness(law: BearingLaw, largest: float, mass: float) -> float:
     """
     elastic = law.count * (law.kb + 0.5 * law.dk)
     return LEAPFROG * elastic if largest * math.sqrt(elastic / mass) > STIFF else 0.0
+
+
+def drift(scene: Scene) -> float:
+    """Relative error of the frequency of a base that vibrates, stepped with the mass of `leapfrog_stiffness`."""
+    return HYSTERETIC_DRIFT if BearingLaw.of(scene.bearings).dk else DRIFT
 
 
 def added_mass(damping: float, interval: float, mass: float) -> float:

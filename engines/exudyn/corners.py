@@ -16,11 +16,11 @@ import numpy as np
 from numba import njit
 
 from analytic.bearing import BearingLaw
+from analytic.rocking import RockingModel
 
-from ..kicked import shaken, sound, unsure_displacement
 from .phases import JUST, Phases, Rule
 from .scene import build
-from .sizing import DRIFT, LATE, MEASURED_START, CompliantCorners, scaled, start_share, unread, unresolved
+from .sizing import DRIFT, LATE, MEASURED_START, CompliantCorners, scaled, start_share, unresolved
 from .stepping import solver_settings, step_through
 
 if TYPE_CHECKING:
@@ -176,32 +176,41 @@ def assemble(scene: Scene, settings: CompliantCorners) -> tuple[Model, float]:
 def run(scene: Scene, settings: CompliantCorners) -> Run:
     """Step a scene with compliant corners; small swings under a motion are stepped again, see `SMALL`."""
     share = start_share(scene)
-    ran = _run(scene, settings, share)
-    size = _size(scene, ran)
-    if share < 1 or math.isnan(size) or not (size < SMALL or _thrown(scene, ran)):
-        return ran
-    again, stiffness = ran, scaled(scene, settings, share).stiffness
+    used = [scaled(scene, settings, share)]
+    runs = [_run(scene, used[0], math.sqrt(1 / share))]
+    size = _size(scene, runs[0])
+    if share < 1 or math.isnan(size) or not (size < SMALL or _thrown(scene, runs[0])):
+        return _ended(runs, runs[0])
     tries = [(share, HARDER), (share, HARDER**2)]
     if size < SMALL:
         least = max(LEAST_SHARE, size / MEASURED_START)
         tries = [(least, 1.0), (least, HARDER), (least, HARDER**2)]
-    for nth, (share, harder) in enumerate(tries):
-        if nth and again.steps * math.sqrt(HARDER) > MOST_AGAIN:
+    for share, harder in tries:
+        taken = runs[-1]
+        if len(runs) > 1 and taken.steps * math.sqrt(HARDER) > MOST_AGAIN:
             break
-        before, again = again, _run(scene, settings, share, harder)
-        softer, stiffness = stiffness, scaled(scene, settings, share, harder).stiffness
-        size, ratio = _size(scene, again), math.sqrt(softer / stiffness)
-        # a base may have asked for the same stiffness in both
-        error = _difference(scene, before, again) * ratio / (1 - ratio) if ratio < TOLD else math.inf
-        ran = replace(again, cpu_seconds=ran.cpu_seconds + again.cpu_seconds, steps=ran.steps + again.steps)
-        if not (error > UNSURE and size > STANDS):  # nor where one did not lift
-            return ran
+        used.append(scaled(scene, settings, share, harder))
+        runs.append(_run(scene, used[-1], math.sqrt(harder / share)))
+        error, ratio = math.inf, math.sqrt(used[-2].stiffness / used[-1].stiffness)
+        if runs[-1].failure is not None:
+            break
+        if ratio < TOLD:  # a base may have asked for the same stiffness in both
+            error = _difference(scene, taken, runs[-1]) * ratio / (1 - ratio)
+        taken = runs[-1]
+        if not (error > UNSURE and _size(scene, taken) > STANDS):  # nor where one did not lift
+            return _ended(runs, taken)
     by = f"{error:.2g} of itself" if math.isfinite(error) else "what no second run tells"
     hangs = (
-        f"the peak tilt, {size:.2g} slendernesses, hangs on the corners' stiffness, by {by}: the ground hardly lifts "
-        "the block; give a larger stiffness"
+        f"the peak tilt, {_size(scene, taken):.2g} slendernesses, hangs on the corners' stiffness, by {by}: the ground "
+        "hardly lifts the block; give a larger stiffness"
     )
-    return replace(ran, warnings=(*ran.warnings, hangs))
+    return _ended(runs, taken, hangs)
+
+
+def _ended(runs: list[Run], taken: Run, *said: str) -> Run:
+    """The run taken, which costs as much as all of them."""
+    cost, steps = sum(ran.cpu_seconds for ran in runs), sum(ran.steps for ran in runs)
+    return replace(taken, cpu_seconds=cost, steps=steps, warnings=(*taken.warnings, *said))
 
 
 def _size(scene: Scene, ran: Run) -> float:
@@ -216,7 +225,7 @@ def _thrown(scene: Scene, ran: Run) -> bool:
     """Whether a jump of the ground finds the block of a sound run standing."""
     if scene.motion is None:
         return False
-    lifts = scene.gravity * math.tan(scene.block.slenderness)
+    lifts = RockingModel.of(scene).uplift_acceleration
     for t in {scene.motion.start, *scene.motion.jumps}:
         before, after = scene.motion.acceleration(np.array([t - JUST, t + JUST]))
         stands = abs(np.interp(t, ran.trace.time, ran.trace.tilt)) < ran.trace.contact_tilt
@@ -239,9 +248,8 @@ def _difference(scene: Scene, before: Run, after: Run) -> float:
     return abs(peaks[0] / peaks[1] - 1)
 
 
-def _run(scene: Scene, unscaled: CompliantCorners, share: float, harder: float = 1.0) -> Run:
-    """Step a scene once, with settings that are `scaled` to it."""
-    settings = scaled(scene, unscaled, share, harder)
+def _run(scene: Scene, settings: CompliantCorners, standing: float) -> Run:
+    """Step a scene once, with settings that are `scaled` to it; standing: steps of a block that stands, over others."""
     model, contact_tilt = assemble(scene, settings)
     explicit = solver_settings(
         scene,
@@ -257,19 +265,14 @@ def _run(scene: Scene, unscaled: CompliantCorners, share: float, harder: float =
     )
     sink = contact_tilt * scene.block.half_width
     rule = Rule(
-        explicit,
-        settings.longest_step,
-        settings.pivoting_step,
-        settings.pivoting_step * math.sqrt(harder / share),
-        sink,
-        settle,
+        explicit, settings.longest_step, settings.pivoting_step, settings.pivoting_step * standing, sink, settle
     )
     ran = step_through(
         model, lambda model, steps, record: Phases(model, rule, steps, record).run(), 2 * contact_tilt, settle
     )
-    warnings = [*ran.warnings, *unresolved(scene, settings)]
-    if sound(ran.trace):
-        late = LATE * math.sqrt(scene.block.mass / settings.stiffness)
-        warnings += [*unread(scene, ran.trace), *unsure_displacement(scene, ran.trace, lag=late, drift=DRIFT)]
-        warnings += shaken(scene, ran.trace)
-    return replace(ran, warnings=tuple(warnings))
+    return replace(
+        ran,
+        drift=DRIFT,
+        late=LATE * math.sqrt(scene.block.mass / settings.stiffness),
+        warnings=(*ran.warnings, *unresolved(scene, settings)),
+    )

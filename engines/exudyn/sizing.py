@@ -7,14 +7,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from analytic.rocking import RockingModel
-
-from ..swings import find_swings
+from ..vibration import base_decay, base_frequency, given_back
 
 if TYPE_CHECKING:
     from analytic import Scene
-
-    from ..swings import Trace
 
 # The block the defaults were measured with: the Caryatid, mass [kg], radius [m], gravity [m/s2]; and the least start,
 # tilt over slenderness. Smaller blocks and starts get the equivalent.
@@ -116,8 +112,8 @@ def scaled(scene: Scene, settings: CompliantCorners, share: float, harder: float
     stiffness = settings.stiffness * weight / share
     if scene.base is not None and scene.base.mass >= LIGHT * block.mass:
         slow = math.sqrt(block.mass / stiffness)
-        taken = _decay(scene) * slow * given_back(scene) / TAKEN
-        vibrating = _frequency(scene) * slow / VIBRATES if scene.base.mass <= KICKED * block.mass else 0.0
+        taken = base_decay(scene) * slow * given_back(scene) / TAKEN
+        vibrating = base_frequency(scene) * slow / VIBRATES if scene.base.mass <= KICKED * block.mass else 0.0
         stiffness *= max(1.0, min(taken**2, STIFFER), min(vibrating**2, STIFFEST))
     share /= harder
     return replace(
@@ -131,52 +127,25 @@ def scaled(scene: Scene, settings: CompliantCorners, share: float, harder: float
     )
 
 
-def _decay(scene: Scene) -> float:
-    """Rate at which its dampers alone stop the base, n_d c/m_b [1/s]."""
-    return scene.bearings.count * scene.bearings.damping / scene.base.mass if scene.bearings else 0.0
-
-
-def _frequency(scene: Scene) -> float:
-    """Angular frequency of the base alone on its bearings at their largest stiffness [rad/s]."""
-    return math.sqrt(scene.bearings.count * scene.bearings.ka / scene.base.mass) if scene.bearings else 0.0
-
-
-def given_back(scene: Scene) -> float:
-    """Change of the block's rate, over that before an impact, where a base that the impact kicked is stopped, eq. (8).
-
-    J_O times it is m h times the jump of the base's velocity.
-    """
-    model = RockingModel.of(scene)
-    height = model.R * math.cos(model.gamma)
-    return model.m * height * model.impact(1.0)[1] / model.J
-
-
 def unresolved(scene: Scene, settings: CompliantCorners) -> Iterator[str]:
     """Sentences on a base that is gone again while the impact that kicks it still lasts."""
     if scene.bearings is None:
         return
     slow = math.sqrt(scene.block.mass / settings.stiffness)
     if scene.base.mass < LIGHT * scene.block.mass:
-        for name, rate in (("frequency on its bearings", _frequency(scene)), ("decay by its dampers", _decay(scene))):
+        for name, rate in (
+            ("frequency on its bearings", base_frequency(scene)),
+            ("decay by its dampers", base_decay(scene)),
+        ):
             if rate * slow > MOST_RATIO:
                 yield (
                     f"the base's {name} over the frequency of a corner on it = {rate * slow:.4g} is above "
                     f"{MOST_RATIO:g}, the limit verified for bases below {LIGHT:g} block masses: what an impact moves "
                     "it by is not resolved"
                 )
-    elif (taken := _decay(scene) * slow * given_back(scene)) > MOST_TAKEN:
+    elif (taken := base_decay(scene) * slow * given_back(scene)) > MOST_TAKEN:
         yield (
             "the base's decay by its dampers over the frequency of a corner on it, times what it gives back to the "
             f"block, = {taken:.4g} is above {MOST_TAKEN:g}, the limit verified: what an impact moves it by is not "
             "resolved"
-        )
-
-
-def unread(scene: Scene, trace: Trace) -> Iterator[str]:
-    """A sentence where the run ends before the corners have come to rest after its last impact."""
-    swings = find_swings(trace)
-    if len(swings) > 1 and trace.time[-1] - trace.time[swings.first[-1]] < 2 * trace.settle:
-        yield (
-            f"the run ends at {scene.duration:.6g} s, within {trace.settle:.2g} s of its last impact, while corners "
-            "still give way: do not trust the restitution of this impact, or let the scene run longer"
         )

@@ -39,15 +39,14 @@ import numpy as np
 from analytic.response import Failure
 
 from ..contract import Mismatch, Run, Variant
-from ..kicked import shaken, unsure_displacement
 from ..leapfrog import failure_of, raw_trace_of, trace_of
 from ..verified import Range
+from ..vibration import drift
 from . import stepping
 from .scene import build, longest_step
 
 if TYPE_CHECKING:
     from analytic import Scene
-
 
 SOLVER_DECIDES = (
     "MuJoCo's contact solver decides when a corner lands, sticks or lifts and what an impact does to the tilt rate and "
@@ -149,8 +148,6 @@ VARIANTS = {
     ),
 }
 
-# Relative error of the frequency of a base that vibrates on its bearings: m_b/m 1.9, 180 omega_r.
-DRIFT = 1e-3
 # Of the default contact, which sinks by .02 of gamma; see _contact_tilt.
 FIRST_CONTACT_TILT = 0.05
 FIRST_SETTLE = 0.1  # s, 5 time constants of the default contact; 0.2 reads the same e to 2e-3
@@ -189,7 +186,7 @@ def run(scene: Scene, variant: str, settings: ImpactAware | FixedStep | FirstScr
         failure,
         ended if ended == "overturned" else None,
         longest_step(scene, settings),
-        (*unsure_displacement(scene, trace, drift=DRIFT), *shaken(scene, trace)),
+        drift(scene),
     )
 
 

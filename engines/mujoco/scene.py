@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, TypeAlias
 
 import mujoco
@@ -11,6 +10,7 @@ from ..contract import Mismatch
 from ..placement import placement
 from ..readback import require
 from ..scale import size_scale
+from ..vibration import base_frequency
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -34,8 +34,8 @@ MOST_RECOVERY = 0.1
 # gamma .03: e off by 8e-3 without, 1.1e-3 with it.
 SLENDER = 0.3
 
-# Most radians of the base's vibration on its bearings in a step (at .15 the phase after 100 periods is off by .6 rad,
-# and a displacement of the wide box by 5 %); what it shortens the steps to at most, as a share.
+# Most radians of the base's vibration on its bearings in a step (at .15, without the mass of `leapfrog_stiffness`, the
+# phase after 100 periods is off by .6 rad); what it shortens the steps to at most, as a share.
 VIBRATION, MOST_REFINEMENT = 0.07, 40.0
 
 
@@ -66,8 +66,7 @@ def longest_step(scene: Scene, chosen: Settings) -> float:
     step = chosen.largest_step * size_scale(scene)
     if scene.bearings is None:
         return step
-    frequency = math.sqrt(scene.bearings.count * scene.bearings.ka / scene.base.mass)
-    return min(step, max(VIBRATION / frequency, step / MOST_REFINEMENT))
+    return min(step, max(VIBRATION / base_frequency(scene), step / MOST_REFINEMENT))
 
 
 def coordinates(scene: Scene) -> tuple[list[float], list[float]]:

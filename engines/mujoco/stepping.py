@@ -17,6 +17,7 @@ from ..ground_velocity import ground_velocity
 from ..leapfrog import row_limit
 from ..pace import FLIGHT, ROUNDING, StepRule, impact_aware, limits
 from ..scale import size_scale
+from ..vibration import leapfrog_stiffness
 from .scene import contact_reference, least_mass, recovery_rate
 
 if TYPE_CHECKING:
@@ -124,10 +125,11 @@ def _mean_loads(model, data, scene, chosen):
     viscous, recovery = Viscous.of(scene, model, data), recovery_rate(scene, chosen)
     option, gravity, solref, push = model.opt, model.opt.gravity, model.geom_solref, data.qfrc_applied
     loaded, g = scene.bearings is not None, scene.gravity
-    used, gained, risen, last_scale = option.timestep, 0.0, 0.0, 1.0
+    used, gained, risen, last_scale, held = option.timestep, 0.0, 0.0, 1.0, 0.0
+    heavier = leapfrog_stiffness(BearingLaw.of(scene.bearings), used, least_mass(scene)) if loaded else 0.0
 
     def load(t, step, h, tilt, rate, v, force, jumped):
-        nonlocal used, gained, risen, last_scale
+        nonlocal used, gained, risen, last_scale, held
         if step != used:
             option.timestep = used = step
             solref[:] = contact_reference(step, recovery)
@@ -148,6 +150,9 @@ def _mean_loads(model, data, scene, chosen):
             if viscous and not viscous.solved(h, step, scale, jumped or (tilt > 0) != (tilt + step * rate > 0)):
                 force += viscous.most(step) * v
             push[0] = -force * scale
+            if heavier and interval != held:  # inertia alone: gravity, which is the ground's motion, acts on body_mass
+                held = interval
+                model.dof_M0[0] = scene.base.mass + heavier * interval * interval
         return interval
 
     return load

@@ -12,16 +12,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pybullet
 
-from analytic.bearing import BearingLaw
 from analytic.response import Failure
 
 from ..checks import GAIN_LIMIT, HEIGHT_TOLERANCE, energy_gain, pivoting_centre
 from ..contract import Mismatch, Run, Variant
-from ..kicked import unsure_displacement
 from ..leapfrog import MOST_ROWS, failure_of, raw_trace_of, trace_of
 from ..pace import FLAT
 from ..verified import Range
-from ..vibration import longest_step
+from ..vibration import drift, longest_step
 from . import first_script, stepping
 from .scene import MOST_FRICTION, MOST_VELOCITY, Units, assemble
 
@@ -35,10 +33,6 @@ DECIDES = (
     "and the base velocity; no restitution is given to it. The adapter gives it the bearings' force and the "
     "ground's acceleration, and chooses the length of the steps."
 )
-
-# Relative error of the frequency of a base that vibrates on its bearings: m_b/m .14 to .42, 100 to 330 omega_r. Of
-# hysteretic ones the vibration's stiffness is a guess (`vibration.leapfrog_stiffness`).
-DRIFT, HYSTERETIC_DRIFT = 1e-4, 7e-4
 
 
 @dataclass(frozen=True)
@@ -130,7 +124,6 @@ def run(scene: Scene, variant: str, settings: ImpactAware | FixedStep | FirstScr
     if failure is None and place is not None and _may_have_left(scene, trace, ended, place):
         # The same run again, with all places of the block: to read them each time costs up to a tenth more.
         trace = _attempt(scene, settings, places=True)[0]
-    drift = HYSTERETIC_DRIFT if BearingLaw.of(scene.bearings).dk else DRIFT
     return Run(
         trace,
         steps,
@@ -138,7 +131,8 @@ def run(scene: Scene, variant: str, settings: ImpactAware | FixedStep | FirstScr
         failure,
         ended if ended == "overturned" else None,
         _largest(scene, settings),
-        (*_beyond(scene, variant, settings), *unsure_displacement(scene, trace, drift=drift)),
+        drift(scene),
+        warnings=tuple(_beyond(scene, variant, settings)),
     )
 
 
