@@ -7,6 +7,7 @@ large the solvers' errors are: each solver has its own horizon.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -69,6 +70,18 @@ def changed_copies(scene: Scene, perturbation: float = PERTURBATION) -> dict[str
         if changed != start.model_dump():
             copies[f"start {word}"] = scene.with_(start=changed)
     return copies
+
+
+def unsure_outcome(scene: Scene, perturbation: float) -> Iterator[str]:
+    """A sentence where the model's outcome is another one for one of the `changed_copies`."""
+    outcome = simulate(scene, history=False).outcome
+    for name, copy in changed_copies(scene, perturbation).items():
+        if (other := simulate(copy, history=False).outcome) != outcome:
+            yield (
+                f"the outcome hangs on a change of {perturbation:.0e}: with {name} by that, the analytic model's block "
+                f"{other}, else it {outcome}; do not trust it, and see rocking margin"
+            )
+            return
 
 
 def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION, spread: float = SPREAD) -> Horizon:

@@ -81,8 +81,12 @@ def simulate(
     history: bool = True,
     time_limit: float = TIME_LIMIT,
     words: str | None = None,
+    perturbation: float | None = None,
 ) -> Response:
     """The `Response` of the solver called `solver`, run in a process of its own while `words` are shown.
+
+    perturbation: relative change of the scene at which a decided outcome has to stay what it is, else a warning says so
+    (`measuring.horizon.unsure_outcome`).
 
     What is odd about the record stands among its warnings. A run that crashes, or takes more than `time_limit` [s], is
     a response of outcome "failed" with the evidence.
@@ -105,6 +109,7 @@ def simulate(
         variant,
         settings,
         history,
+        perturbation,
         time_limit=time_limit,
         meanwhile=words and spinner(words),  # type: ignore[arg-type]  # no words: None or ""
     )
@@ -164,14 +169,20 @@ def check_time_limit(seconds: float) -> None:
         raise SettingError(f"--{error}".replace("time_limit", "time-limit", 1)) from None
 
 
-def _simulate(scene, solver, variant, settings, history):
+def _simulate(scene, solver, variant, settings, history, perturbation):
     if solver == ANALYTIC:
-        return _analytic(scene, variant, settings, history)
-    from engines import get_engine
+        response = _analytic(scene, variant, settings, history)
+    else:
+        from engines import get_engine
 
-    engine = get_engine(solver)
-    _check_types(engine, variant, settings)
-    return engine.simulate(scene, variant=variant, history=history, **settings)
+        engine = get_engine(solver)
+        _check_types(engine, variant, settings)
+        response = engine.simulate(scene, variant=variant, history=history, **settings)
+    if perturbation is None or not response.decided or response.failure:
+        return response
+    from ..measuring.horizon import unsure_outcome
+
+    return dataclasses.replace(response, warnings=(*response.warnings, *unsure_outcome(scene, perturbation)))
 
 
 def _analytic(scene, variant, settings, history):

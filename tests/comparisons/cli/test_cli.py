@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from bad_scenes import BAD, SCENE, write_scene
+from engine_cases import needs
 
 from analytic import EngineNotInstalled, Failure, load_scene, simulate
 from comparisons import cli
@@ -199,6 +200,17 @@ def test_comparison_table_fits_a_terminal(rocking):
     _, out, _ = rocking("compare", "caryatid-rigid")
     assert max(len(line) for line in out.splitlines()) <= 80
     assert "…" not in out
+
+
+@pytest.mark.parametrize("engine", ["analytic", "exudyn"])
+def test_an_outcome_that_hangs_on_the_last_digits_is_said(rocking, tmp_path, engine):
+    """A thousandth of the slenderness is enough for an engine, too; on the edge nobody is to trust a word."""
+    if engine != "analytic":
+        needs(engine)
+    block = "[block]\nmass = 3172.05\nradius = 1.0884\nslenderness = 0.2\n[start]\ntilt = "
+    for tilt, hangs in (("0.1999999999", True), ("0.199", False)):
+        _, out, _ = rocking("run", write_scene(tmp_path, block + tilt), "--engine", engine, "--json", "-")
+        assert hangs == any("the outcome hangs on a change" in said for said in json.loads(out)["warnings"])
 
 
 def test_failed_run_is_told_and_has_a_status_of_its_own(rocking, monkeypatch, tmp_path):

@@ -20,6 +20,7 @@ from comparisons.measuring.horizon import (
     restitution_error,
     sensitivity_horizon,
     solver_horizon,
+    unsure_outcome,
 )
 from engines import get_engine
 
@@ -43,6 +44,19 @@ def test_free_rocking_is_never_parted():
     assert horizon.horizon == 10.0
     assert 0 < horizon.spread[-1] < SPREAD
     assert (np.diff(horizon.spread) >= 0).all()
+
+
+@pytest.mark.parametrize("short, sizes", [(1e-8, {1e-6, 1e-4}), (1e-5, {1e-4}), (1e-3, set())])
+def test_an_outcome_that_a_small_change_turns_is_said(short, sizes):
+    """Let go just short of balance, where a block on rigid ground begins to fall outward."""
+    scene = Scene(block=BLOCK, start=Start(tilt=BLOCK.slenderness * (1 - short)))
+    said = {size: list(unsure_outcome(scene, size)) for size in (1e-6, 1e-4)}
+    assert {size for size in said if said[size]} == sizes
+    for size in sizes:
+        assert said[size] == [
+            f"the outcome hangs on a change of {size:.0e}: with start up by that, the analytic model's block "
+            "overturns, else it rocks; do not trust it, and see rocking margin"
+        ]
 
 
 def test_long_shaking_parts_and_sooner_for_larger_perturbations():
