@@ -3,6 +3,7 @@ in many, and a run that ends in one."""
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -36,9 +37,13 @@ def warnings(scene: Scene, run: Run) -> Iterator[str]:
 
 
 def unsure_displacement(scene: Scene, trace: Trace, swings: Swings, *, drift: float, late: float) -> Iterator[str]:
-    """A sentence where the peak base displacement hangs on the phase in which an impact finds a vibrating base.
+    """A sentence where the peak base displacement hangs on the phase of a base that vibrates on its bearings.
 
-    The vibration's amplitude before the last impact up to the peak is that of its velocity, so that what the ground or
+    An impact that finds it in another phase adds to its amplitude, or takes from it, up to the error of the phase times
+    it: before the peak that may change the peak, after it another one may be higher. Where all of the phase is lost the
+    amplitude is, too: what yields in a contact damps it within thousands of periods.
+
+    The amplitude is that of the velocity in the second half of the time between two impacts, so that what the ground or
     the block pushes slowly does not count, and at most half of the way that the base goes to and fro, so that what
     moves it fast on soft bearings does not either. What is left of it by dampers and hysteresis is in the trace.
 
@@ -51,25 +56,27 @@ def unsure_displacement(scene: Scene, trace: Trace, swings: Swings, *, drift: fl
     drift, late : float
         As of `engines.contract.Run`.
     """
-    if scene.bearings is None:
-        return
     size = np.abs(trace.base_displacement)
     peak = int(np.argmax(size))
-    last = int(np.searchsorted(swings.first, peak, side="right")) - 1
-    if last < 1 or size[peak] < LEAST * scene.block.radius * scene.block.slenderness:
-        return  # no impact before the peak
+    if scene.bearings is None or size[peak] < LEAST * scene.block.radius * scene.block.slenderness:
+        return
     frequency = base_frequency(scene)
-    impact = swings.first[last]
-    flight = slice((swings.first[last - 1] + impact) // 2, impact)
-    amplitude = min(
-        float(np.abs(trace.base_velocity[flight]).max()) / frequency, float(np.ptp(trace.base_displacement[flight])) / 2
-    )
     phase = frequency * late + frequency / scene.rocking_frequency * drift
-    if phase * amplitude > UNSURE * size[peak]:
+    edges = [0, *swings.first[1:], len(size)]
+    reach, amplitude = [], []
+    for begin, end in itertools.pairwise(edges):
+        flight = slice((begin + end) // 2, end)
+        way = float(np.ptp(trace.base_displacement[flight])) / 2
+        amplitude.append(min(float(np.abs(trace.base_velocity[flight]).max()) / frequency, way))
+        reach.append(size[begin:end].max())
+    turned = min(phase, 2.0) * np.array([0.0, *amplitude[:-1]])  # what an impact's phase may add to the swing after it
+    at = int(np.searchsorted(edges, peak, side="right")) - 1
+    unsure = max(turned[at], float((reach + turned).max()) - size[peak], amplitude[at] if phase >= 1 else 0.0)
+    if unsure > UNSURE * size[peak]:
         yield (
-            f"the base vibrates at {frequency / scene.rocking_frequency:.4g} times the rocking frequency, and still "
-            f"does when impacts kick it again: their phase is sure to {phase:.2g} rad, the peak base displacement to "
-            f"{phase * amplitude / size[peak]:.2g} of itself; give the bearings their damping"
+            f"the base vibrates at {frequency / scene.rocking_frequency:.4g} times the rocking frequency, and nothing "
+            f"stops it before the next impact: its phase is sure to {phase:.2g} rad, the peak base displacement to "
+            f"{unsure / size[peak]:.2g} of itself; give the bearings their damping"
         )
 
 

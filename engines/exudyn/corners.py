@@ -20,7 +20,7 @@ from analytic.rocking import RockingModel
 
 from .phases import JUST, Phases, Rule
 from .scene import build
-from .sizing import DRIFT, LATE, MEASURED_START, CompliantCorners, scaled, start_share, unresolved
+from .sizing import LATE, MEASURED_START, CompliantCorners, drift, scaled, start_share, unresolved
 from .stepping import solver_settings, step_through
 
 if TYPE_CHECKING:
@@ -272,7 +272,7 @@ def _run(scene: Scene, settings: CompliantCorners, standing: float) -> Run:
     )
     return replace(
         ran,
-        drift=DRIFT,
+        drift=drift(scene, settings),
         late=LATE * math.sqrt(scene.block.mass / settings.stiffness),
         warnings=(*ran.warnings, *unresolved(scene, settings)),
     )

@@ -62,7 +62,7 @@ def test_engines_say_it(engine, scene):
     """Displacements were off by 3.8 % in exudyn and by 6.5 % in PyBullet, in silence."""
     needs(engine)
     said = get_engine(engine).simulate(scene, history=False).warnings
-    assert any("their phase is sure to" in warning for warning in said)
+    assert any("its phase is sure to" in warning for warning in said)
 
 
 def test_mujoco_says_where_small_swings_grow_from_impact_to_impact():
