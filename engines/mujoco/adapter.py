@@ -188,7 +188,7 @@ def run(scene: Scene, variant: str, settings: ImpactAware | FixedStep | FirstScr
         failure,
         ended if ended == "overturned" else None,
         longest_step(scene, settings),
-        max(drift(scene), SINK * slenderness / max(peak, SINK * slenderness)),
+        max(drift(scene), SINK * slenderness / peak if peak > trace.contact_tilt else 0.0),
     )
 
 
