@@ -27,7 +27,7 @@ from .pivoting import Block
 from .placement import placement
 from .scale import size_scale
 from .sliding import SlidingBase
-from .vibration import VISCOUS, drift, longest_step
+from .vibration import VISCOUS, base_decay, drift, longest_step
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -119,7 +119,7 @@ def pace_of(
     standing = 2 * least_pull(model) * model.g * largest * largest / (2 * scene.block.half_width)
     damping, smallest = model.bearing.count * model.bearing.damping, SMALLEST_STEP * size_scale(scene)
     sharpest = VISCOUS * max(accuracy, least_viscous) * model.M / damping if damping else math.inf
-    rule = StepRule(largest, smallest, accuracy, APPROACH, sharpest, standing, overlong=True, cruise=True)
+    rule = StepRule(largest, smallest, accuracy, APPROACH, sharpest, standing, True, True, base_decay(scene))
     return impact_aware(model, scene.start.tilt_rate, rule)
 
 

@@ -17,7 +17,7 @@ from ..ground_velocity import ground_velocity
 from ..leapfrog import row_limit
 from ..pace import FLIGHT, ROUNDING, StepRule, impact_aware, limits
 from ..scale import size_scale
-from ..vibration import leapfrog_stiffness
+from ..vibration import base_decay, leapfrog_stiffness
 from .scene import contact_reference, least_mass, recovery_rate
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def _pace(scene, chosen, largest):
     """Length and purpose of a step as `engines.pace` has them; without an accuracy all are the largest [s]."""
     if not chosen.accuracy:
         return lambda *_: (largest, FLIGHT)
-    rule = StepRule(largest, SMALLEST_STEP * size_scale(scene), chosen.accuracy, APPROACH)
+    rule = StepRule(largest, SMALLEST_STEP * size_scale(scene), chosen.accuracy, APPROACH, decay=base_decay(scene))
     return impact_aware(RockingModel.of(scene), scene.start.tilt_rate, rule)
 
 

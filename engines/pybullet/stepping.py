@@ -110,7 +110,8 @@ def _pace(scene, units, largest, accuracy):
         return fixed(model, largest, standing)
     damping = _damping(model.bearing, units)
     sharpest = VISCOUS * accuracy * model.M / damping if damping else math.inf
-    rule = StepRule(largest, SMALLEST_STEP, accuracy, APPROACH, sharpest, standing, overlong=True, cruise=True)
+    decay = damping / scene.base.mass if damping else 0.0
+    rule = StepRule(largest, SMALLEST_STEP, accuracy, APPROACH, sharpest, standing, True, True, decay)
     return impact_aware(model, scene.start.tilt_rate, rule)
 
 

@@ -10,18 +10,18 @@ Off is a run with at least one finding, each further from the analytic model tha
   a block that stands on compliant corners tilts a little.
 - outcome: another one; "rocks" below LEAST_TILT is not told from "stands".
 - lost impact: an impact of the model that counts has none in the engine on its side within half the intervals to its
-  neighbours, up to the first that the model itself loses for a relative change of 1e-4 of start, amplitude or
-  restitution: beyond, the motion is not determined.
+  neighbours, up to the first that the model itself loses for a relative change of 1e-4 of start, amplitude, slenderness
+  or restitution: beyond, the motion is not determined.
 
 A block that overturns is judged up to its first passage of the slenderness, and by its outcome: falling, every block
 loses the contact that the model assumes. A run cut short before its outcome is decided has none that could be another.
 
 Three things are no fault of the engine, and each excuses as little as can be. *Left out* is a scene whose analytic run
 has N <= 0 or a friction demand above FRICTION at the contact. *Ill-conditioned* is a peak that the analytic
-model itself changes by more than PEAK for relative changes of 1e-4 of start, amplitude or restitution: it is
-compared up to the time where that begins. *Near a boundary* is an outcome that the model changes for a change of 1 % of
-start, amplitude or slenderness: it does not count, and peaks do only up to the time where those of the copies with
-another outcome part by more than APART.
+model itself changes by more than PEAK for relative changes of 1e-4 of start, amplitude, slenderness or restitution: it
+is compared up to the time where that begins. *Near a boundary* is an outcome that the model changes for a change of
+1 % of start, amplitude or slenderness: it does not count, and peaks do only up to the time where those of the copies
+with another outcome part by more than APART.
 """
 
 from __future__ import annotations
@@ -60,7 +60,11 @@ def _cause(sentence):
 
 def near_copies(scene: Scene) -> dict[str, Scene]:
     """{name: scene} of the copies that tell how well the peaks are determined."""
-    return {f"{name}, {SMALL:g}": copy for name, copy in changed_copies(scene, SMALL).items()}
+    copies = {f"{name}, {SMALL:g}": copy for name, copy in changed_copies(scene, SMALL).items()}
+    for sign, word in ((1, "up"), (-1, "down")):
+        slenderness = scene.block.slenderness * (1 + sign * SMALL)
+        copies[f"slenderness {word}, {SMALL:g}"] = scene.with_(block={"slenderness": slenderness})
+    return copies
 
 
 def boundary_copies(scene: Scene) -> dict[str, Scene]:
