@@ -10,8 +10,8 @@ Off is a run with at least one finding, each further from the analytic model tha
   a block that stands on compliant corners tilts a little.
 - outcome: another one; "rocks" below LEAST_TILT is not told from "stands".
 - lost impact: an impact of the model that counts has none in the engine on its side within half the intervals to its
-  neighbours, up to the first that the model itself loses for a relative change of 1e-4 of start, amplitude, slenderness
-  or restitution: beyond, the motion is not determined.
+  neighbours, before the first that the model itself loses for a relative change of 1e-4 of start, amplitude,
+  slenderness or restitution: from there on the motion is not determined.
 
 A block that overturns is judged up to its first passage of the slenderness, and by its outcome: falling, every block
 loses the contact that the model assumes. A run cut short before its outcome is decided has none that could be another.
@@ -105,7 +105,7 @@ def findings(
 ) -> list[dict[str, Any]]:
     """What is off in a run up to the time `until` [s]: list of {quantity, error, limit}; both as kept by `keep`.
 
-    determined: time [s] up to which impacts are compared one by one.
+    determined: time [s] before which impacts are compared one by one.
     """
     wrong: list[dict[str, Any]] = []
     if _other(scene, model, run):
@@ -116,7 +116,7 @@ def findings(
     error = restitution_error(scene, run, until)
     if not error <= RESTITUTION:
         wrong.append({"quantity": "restitution", "error": error, "limit": RESTITUTION})
-    if lost := lost_impacts(scene, model, run, min(until, determined)):
+    if lost := lost_impacts(scene, model, run, min(until, math.nextafter(determined, 0.0))):
         wrong.append({"quantity": "lost impact", "error": len(lost), "limit": 0})
     return wrong
 
