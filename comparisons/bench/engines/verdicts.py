@@ -60,25 +60,23 @@ def _cause(sentence):
 
 def near_copies(scene: Scene) -> dict[str, Scene]:
     """{name: scene} of the copies that tell how well the peaks are determined."""
-    copies = {f"{name}, {SMALL:g}": copy for name, copy in changed_copies(scene, SMALL).items()}
-    for sign, word in ((1, "up"), (-1, "down")):
-        slenderness = scene.block.slenderness * (1 + sign * SMALL)
-        copies[f"slenderness {word}, {SMALL:g}"] = scene.with_(block={"slenderness": slenderness})
-    return copies
+    return {f"{name}, {SMALL:g}": copy for name, copy in _copies(scene, SMALL).items()}
 
 
 def boundary_copies(scene: Scene) -> dict[str, Scene]:
     """{name: scene} of the copies that tell whether another outcome is near."""
-    copies = {}
-    for sign, word in ((1, "up"), (-1, "down")):
-        factor = 1 + sign * BOUNDARY
-        copies[f"slenderness {word}"] = scene.with_(block={"slenderness": scene.block.slenderness * factor})
-        if scene.motion is not None:
-            copies[f"motion {word}"] = scene.with_(motion=scene.motion.scaled(factor))
-        changed = {name: value * factor for name, value in scene.start.model_dump().items()}
-        if changed != scene.start.model_dump():
-            copies[f"start {word}"] = scene.with_(start=changed)
-    return copies
+    return {name: copy for name, copy in _copies(scene, BOUNDARY).items() if not name.startswith("restitution")}
+
+
+def _copies(scene, change):
+    """`changed_copies`, and those of another slenderness."""
+    return {
+        **{
+            f"slenderness {word}": scene.with_(block={"slenderness": scene.block.slenderness * (1 + sign * change)})
+            for sign, word in ((1, "up"), (-1, "down"))
+        },
+        **changed_copies(scene, change),
+    }
 
 
 def rule(scene: Scene, model: Mapping[str, Any]) -> str | None:
