@@ -193,16 +193,23 @@ def impact_aware_run(
     rows, ended = march(bodies, scene, largest, settings.accuracy)
     cpu = time.process_time() - clock
     trace = trace_of(rows, scene, bodies.contact * scene.block.slenderness, smeared=3)
-    return run_of(scene, rows, ended, cpu, trace, largest, warnings)
+    return run_of(scene, rows, ended, cpu, trace, largest, drift(scene), warnings)
 
 
 def run_of(
-    scene: Scene, rows: np.ndarray, ended: str, cpu: float, trace: Trace, step: float, warnings: tuple[str, ...] = ()
+    scene: Scene,
+    rows: np.ndarray,
+    ended: str,
+    cpu: float,
+    trace: Trace,
+    step: float,
+    drift: float,
+    warnings: tuple[str, ...] = (),
 ) -> Run:
-    """The `Run` of rows as `engines.leapfrog` has them, and of how they ended."""
+    """The `Run` of rows as `engines.leapfrog` has them, and of how they ended; step, drift: as `Run` has them."""
     failure = failure_of(scene, rows, ended)
     if ended not in ENDS:
         reason, _, why = ended.partition(": ")
         failure = Failure(reason, f"at step {len(rows) - 1}, t = {rows[-1][0]:.9g} s: {why}")
     overturned = "overturned" if ended == "overturned" else None
-    return Run(trace, len(rows) - 1, cpu, failure, overturned, step, drift(scene), warnings=warnings)
+    return Run(trace, len(rows) - 1, cpu, failure, overturned, step, drift, warnings=warnings)

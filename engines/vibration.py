@@ -73,9 +73,13 @@ def leapfrog_stiffness(law: BearingLaw, largest: float, mass: float) -> float:
     return LEAPFROG * elastic if largest * math.sqrt(elastic / mass) > STIFF else 0.0
 
 
-def drift(scene: Scene) -> float:
-    """Relative error of the frequency of a base that vibrates, stepped with the mass of `leapfrog_stiffness`."""
-    return HYSTERETIC_DRIFT if BearingLaw.of(scene.bearings).dk else DRIFT
+def drift(scene: Scene, light: float = 0.0) -> float:
+    """Relative error of the frequency of a base that vibrates, stepped with the mass of `leapfrog_stiffness`.
+
+    light: longest step [s] of a script that goes without that mass.
+    """
+    known = HYSTERETIC_DRIFT if BearingLaw.of(scene.bearings).dk else DRIFT
+    return max(known, LEAPFROG * (light * base_frequency(scene)) ** 2 / 2)
 
 
 def added_mass(damping: float, interval: float, mass: float) -> float:

@@ -14,7 +14,7 @@ from ..errors import SceneError
 from .content import HEADER_WIDTH, UNKNOWN, Asked, Content
 from .numbers import NUMBER, number
 from .times import PER_SECOND, SAME, interval, uniform_step, usable
-from .units import stated_unit
+from .units import START, stated_unit
 
 NAME = "columns"
 # A line that begins like a number is data and must be read, or else damage would pass as a header.
@@ -22,10 +22,8 @@ DATA = re.compile(r"\s*(?:[-+.,;0-9]|(?:nan|inf|infinity)\b)", re.I)
 COMMENT = ("#", "%", "!", "//")
 HEADER_LINES = 200
 NUMERIC = re.compile(r"[-+]?[.,]?[0-9]")
-TIME = re.compile(r"(?<![^\W\d_])(?:time|t)[ ,:=_/(\[]+(?:in |units?[ :=]+)?[(\[]?(µs|[a-z]+)(?![a-z0-9_])", re.I)
-STEP = re.compile(
-    rf"(?<![^\W\d_])dt ?(?:[(\[] ?([a-zµ]+) ?[)\]] ?)?[:=] ?(?:({NUMBER})(?![0-9.]|,[0-9]) ?([a-zµ]*))?", re.I
-)
+TIME = re.compile(rf"{START}(?:time|t)[ ,:=_/(\[]+(?:in |units?[ :=]+)?[(\[]?(µs|[a-z]+)(?![a-z0-9_])", re.I)
+STEP = re.compile(rf"{START}dt ?(?:[(\[] ?([a-zµ]+) ?[)\]] ?)?[:=] ?(?:({NUMBER})(?![0-9.]|,[0-9]) ?([a-zµ]*))?", re.I)
 OTHER_TIMES = {"us", "µs", "usec", "ns", "min", "minute", "minutes", "h", "hour", "hours", "samples"}
 REMEDY = "write time [s] and acceleration, two numbers a line"
 # Of numbers one after the other, neighbours in a line are no rougher than those a line apart, wherever in the line they

@@ -37,7 +37,7 @@ WORDS = {
 NOT_ACCELERATIONS = {f"{length}{rate}" for length in LENGTHS for rate in ("", "/s", ".s-1", "s-1")}
 
 # A word begins and ends where no letter of any alphabet is.
-_START, _END = r"(?<![^\W\d_])", r"(?![^\W\d_])"
+START, _END = r"(?<![^\W\d_])", r"(?![^\W\d_])"
 
 _TIMES = {"s", "ms", "us", "min", "h"}
 
@@ -51,7 +51,7 @@ _AFTER_NUMBER = re.compile(r"[0-9.] ?$")
 # Short words are units only where a header introduces one.
 _INTRODUCED = re.compile(r"\bunits?\b(?: (?:of|in|is|are)(?=[ :=(\[]))?[ :=]*[(\[]?((?:% ?)?[a-z][^\s,;:\]=]*)", re.I)
 _SUGGESTED = re.compile(r"(?:\bin |[(\[] ?|\b(?:acceleration|accel|acc)\.? (?!in ))((?:% ?)?[a-z][^\s,;:\]=]*)", re.I)
-_ACCELERATION = re.compile(rf"{_START}acc(?:el|elerations?|elerograms?)?{_END}", re.I)
+_ACCELERATION = re.compile(rf"{START}acc(?:el|elerations?|elerograms?)?{_END}", re.I)
 # Behind a damaged sign these still refuse a record.
 _OTHER = re.compile(r"(?<![a-z])(?:velocit(?:y|ies)|veloc|vel|displacements?|displ|disp)(?![a-z])", re.I)
 
@@ -177,6 +177,6 @@ def _plain(word: str) -> str:
     """A unit in one spelling: "CM/SEC**2", "cm/(s²)" and "cm/s^2" are all "cm/s2"."""
     word = word.lower().strip(" .'\"").replace("²", "2").replace("⁻", "-").replace("−", "-").replace("·", ".")
     for pattern, short in LONG_NAMES:
-        word = re.sub(rf"{_START}(?:{pattern}){_END}", short, word)
+        word = re.sub(rf"{START}(?:{pattern}){_END}", short, word)
     word = word.replace("**", "").replace("*", ".")
     return re.sub(r"[\^(){}]", "", word).replace("% ", "%").replace(" ", ".")

@@ -8,7 +8,6 @@ from typing import Annotated
 import typer
 
 from ..running.solving import (
-    ANALYTIC,
     TIME_LIMIT,
     TIME_LIMIT_HELP,
     check_solver,
@@ -39,7 +38,6 @@ def command(
     """
     from analytic.scene_file import load_scene
 
-    from ..measuring.horizon import LEAST, PERTURBATION
     from ..running.files import check_writable, write_all
     from ..schemas.runs import Run
 
@@ -55,7 +53,7 @@ def command(
         history=bool(csv or plot),
         time_limit=time_limit,
         words=f"{what.name}: {engine}",
-        perturbation=LEAST if engine == ANALYTIC else PERTURBATION,
+        doubt=True,
     )
     results: dict[str, str | Callable[[Path], object]] = {}
     if json_file:

@@ -72,9 +72,8 @@ def changed_copies(scene: Scene, perturbation: float = PERTURBATION) -> dict[str
     return copies
 
 
-def unsure_outcome(scene: Scene, perturbation: float) -> Iterator[str]:
-    """A sentence where the model's outcome is another one for one of the `changed_copies`."""
-    outcome = simulate(scene, history=False).outcome
+def unsure_outcome(scene: Scene, outcome: str, perturbation: float) -> Iterator[str]:
+    """A sentence where the model's `outcome` is another one for one of the `changed_copies`."""
     for name, copy in changed_copies(scene, perturbation).items():
         if (other := simulate(copy, history=False).outcome) != outcome:
             yield (

@@ -81,12 +81,11 @@ def simulate(
     history: bool = True,
     time_limit: float = TIME_LIMIT,
     words: str | None = None,
-    perturbation: float | None = None,
+    doubt: bool = False,
 ) -> Response:
     """The `Response` of the solver called `solver`, run in a process of its own while `words` are shown.
 
-    perturbation: relative change of the scene at which a decided outcome has to stay what it is, else a warning says so
-    (`measuring.horizon.unsure_outcome`).
+    doubt: whether warnings say where the analytic model says otherwise or is unsure (`measuring.verdicts.doubts`).
 
     What is odd about the record stands among its warnings. A run that crashes, or takes more than `time_limit` [s], is
     a response of outcome "failed" with the evidence.
@@ -109,7 +108,7 @@ def simulate(
         variant,
         settings,
         history,
-        perturbation,
+        doubt,
         time_limit=time_limit,
         meanwhile=words and spinner(words),  # type: ignore[arg-type]  # no words: None or ""
     )
@@ -169,7 +168,7 @@ def check_time_limit(seconds: float) -> None:
         raise SettingError(f"--{error}".replace("time_limit", "time-limit", 1)) from None
 
 
-def _simulate(scene, solver, variant, settings, history, perturbation):
+def _simulate(scene, solver, variant, settings, history, doubt):
     if solver == ANALYTIC:
         response = _analytic(scene, variant, settings, history)
     else:
@@ -178,11 +177,14 @@ def _simulate(scene, solver, variant, settings, history, perturbation):
         engine = get_engine(solver)
         _check_types(engine, variant, settings)
         response = engine.simulate(scene, variant=variant, history=history, **settings)
-    if perturbation is None or not response.decided or response.failure:
+    if not doubt or response.failure:
         return response
-    from ..measuring.horizon import unsure_outcome
+    import analytic
 
-    return dataclasses.replace(response, warnings=(*response.warnings, *unsure_outcome(scene, perturbation)))
+    from ..measuring.verdicts import doubts
+
+    model = response if solver == ANALYTIC else analytic.simulate(scene, history=False)
+    return dataclasses.replace(response, warnings=(*response.warnings, *doubts(scene, response, model)))
 
 
 def _analytic(scene, variant, settings, history):

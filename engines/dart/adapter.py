@@ -29,6 +29,7 @@ from ..contract import Mismatch, Run, Variant
 from ..leapfrog import raw_trace_of, trace_of
 from ..planar import EqualSteps, ImpactAware, impact_aware_run, run_of
 from ..verified import Range
+from ..vibration import drift
 from . import script
 from .scene import build
 from .stepping import DartBodies
@@ -114,4 +115,4 @@ def run(scene: Scene, variant: str, settings: ImpactAware | EqualSteps) -> Run:
     rows, ended = script.run(parts, scene, settings.step)
     cpu, edge = time.process_time() - clock, PASSING * settings.step * scene.block.slenderness
     trace = trace_of(rows, scene, edge) if tuned else raw_trace_of(rows, scene, edge)
-    return run_of(scene, rows, ended, cpu, trace, settings.step)
+    return run_of(scene, rows, ended, cpu, trace, settings.step, drift(scene, settings.step))

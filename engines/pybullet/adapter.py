@@ -131,7 +131,7 @@ def run(scene: Scene, variant: str, settings: ImpactAware | FixedStep | FirstScr
         failure,
         ended if ended == "overturned" else None,
         _largest(scene, settings),
-        drift(scene),
+        drift(scene, settings.step if isinstance(settings, FirstScript) else 0.0),
         warnings=tuple(_beyond(scene, variant, settings)),
     )
 

@@ -29,6 +29,7 @@ from ..contract import Mismatch, Run, Variant
 from ..leapfrog import raw_trace_of, trace_of
 from ..planar import EqualSteps, ImpactAware, impact_aware_run, run_of
 from ..verified import Range
+from ..vibration import drift
 from . import script
 from .scene import build
 from .stepping import ChipmunkBodies
@@ -118,4 +119,6 @@ def run(scene: Scene, variant: str, settings: ImpactAware | EqualSteps) -> Run:
     rows, ended = script.run(parts, scene, settings.step)
     cpu = time.process_time() - clock
     read, edge = (trace_of, SCRIPT_CONTACT) if tuned else (raw_trace_of, FIRST_CONTACT)
-    return run_of(scene, rows, ended, cpu, read(rows, scene, edge * slenderness), settings.step)
+    return run_of(
+        scene, rows, ended, cpu, read(rows, scene, edge * slenderness), settings.step, drift(scene, settings.step)
+    )

@@ -6,7 +6,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from .verdicts import CLASSES
+from ...measuring.verdicts import CLASSES
 
 # Okabe and Ito: told apart in every colour vision; markers differ as well. The later ones lie on top.
 STYLES = {

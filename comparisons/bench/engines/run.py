@@ -2,7 +2,7 @@
 
     rows = bench_engines("exudyn", "bench-engines", scenes=2000, seed=1, workers=2)
 
-A row a scene: its class (`verdicts.CLASSES`), what was found, the warnings, and where in the box it lies. All
+A row a scene: its class (`measuring.verdicts.CLASSES`), what was found, the warnings, and where in the box it lies. All
 runs are kept in the folder (reference.jsonl: analytic model, ENGINE.jsonl: engine): what is there and whose code has
 not changed is not run again, so that a broken-off bench goes on, and a mended engine costs the engine's runs alone.
 `examine` runs one scene again.
@@ -19,12 +19,8 @@ from typing import TYPE_CHECKING, Any
 
 from engines import get_engine
 
-from ...running.files import make_folder
-from ...running.provenance import write_result
-from ...running.sweep import Case, Processes, Store, run_sweep
-from ..random_scenes import describe
-from .kept import keep
-from .verdicts import (
+from ...measuring.kept import keep
+from ...measuring.verdicts import (
     boundary_copies,
     findings,
     judge,
@@ -35,6 +31,10 @@ from .verdicts import (
     rule,
     span,
 )
+from ...running.files import make_folder
+from ...running.provenance import write_result
+from ...running.sweep import Case, Processes, Store, run_sweep
+from ..random_scenes import describe
 from .wide_box import place, wide_scene
 
 if TYPE_CHECKING:

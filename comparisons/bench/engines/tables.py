@@ -9,7 +9,7 @@ import numpy as np
 from rich.markup import escape
 from rich.table import Table
 
-from .verdicts import CLASSES
+from ...measuring.verdicts import CLASSES
 
 TELLING = 3  # quantities shown for a cause: those in which its scenes lie furthest from the others
 

@@ -213,6 +213,16 @@ def test_an_outcome_that_hangs_on_the_last_digits_is_said(rocking, tmp_path, eng
         assert hangs == any("the outcome hangs on a change" in said for said in json.loads(out)["warnings"])
 
 
+@pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
+@pytest.mark.parametrize("variant, said", [("first-script", True), ("impact-aware", False)])
+def test_a_run_that_is_off_the_analytic_model_says_so(rocking, engine, variant, said):
+    needs(engine)
+    _, out, _ = rocking("run", "free-rocking-rigid", "--engine", engine, "--variant", variant, "--json", "-")
+    found = [text for text in json.loads(out)["warnings"] if text.startswith("the analytic model says otherwise")]
+    assert len(found) == said
+    assert not said or "missing here: 1" in found[0]
+
+
 def test_failed_run_is_told_and_has_a_status_of_its_own(rocking, monkeypatch, tmp_path):
     class Broken:
         variants, default_variant = {}, None

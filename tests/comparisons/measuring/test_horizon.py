@@ -50,7 +50,7 @@ def test_free_rocking_is_never_parted():
 def test_an_outcome_that_a_small_change_turns_is_said(short, sizes):
     """Let go just short of balance, where a block on rigid ground begins to fall outward."""
     scene = Scene(block=BLOCK, start=Start(tilt=BLOCK.slenderness * (1 - short)))
-    said = {size: list(unsure_outcome(scene, size)) for size in (1e-6, 1e-4)}
+    said = {size: list(unsure_outcome(scene, "rocks", size)) for size in (1e-6, 1e-4)}
     assert {size for size in said if said[size]} == sizes
     for size in sizes:
         assert said[size] == [

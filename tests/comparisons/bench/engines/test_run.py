@@ -1,6 +1,5 @@
 """The wide box and its judgement: what is off is found, what is excused is excused by the model, not by the engine."""
 
-import copy
 import json
 import math
 from functools import partial
@@ -9,20 +8,12 @@ import numpy as np
 import pytest
 
 from analytic import Base, Block, PulseMotion, Scene, Start, simulate
-from analytic.rocking import restitution
-from comparisons.bench.engines import tables, verdicts, wide_box
+from comparisons.bench.engines import tables, wide_box
 from comparisons.bench.engines.figure import draw
-from comparisons.bench.engines.kept import keep
 from comparisons.bench.engines.run import bench_engines, examine, judged
-from comparisons.bench.engines.verdicts import (
-    boundary_copies,
-    findings,
-    judge,
-    lost_impacts,
-    near_copies,
-    range_warnings,
-    rule,
-)
+from comparisons.measuring import verdicts
+from comparisons.measuring.kept import keep
+from comparisons.measuring.verdicts import findings, rule
 from comparisons.running.cases import Case
 from comparisons.running.provenance import json_ready
 from comparisons.running.sweep import Row
@@ -34,15 +25,6 @@ FREE = Scene(
 
 def kept(scene, **options):
     return json_ready(keep(Case(scene), simulate(scene, **options)))
-
-
-def verdict(scene, run):
-    copies = [{name: kept(copy) for name, copy in family(scene).items()} for family in (near_copies, boundary_copies)]
-    return judge(scene, kept(scene), run, *copies)
-
-
-def quantities(found):
-    return {finding["quantity"] for finding in found}
 
 
 @pytest.fixture(scope="module")
@@ -81,104 +63,6 @@ def test_the_model_itself_is_right(ensemble):
         if scene.bearings is None:
             run = kept(scene)
             assert findings(scene, run, kept(scene, tolerance=1e-13)) == []
-
-
-def test_a_restitution_off_by_more_than_a_hundredth_is_found():
-    run, e = kept(FREE), restitution(FREE)
-    for off, expected in ((0.009, set()), (0.011, {"restitution"})):
-        wrong = copy.deepcopy(run)
-        wrong["impacts"][1][2] = (e + off) * wrong["impacts"][1][1]
-        assert quantities(findings(FREE, run, wrong)) == expected
-    wrong["impacts"][1][2] = None  # NaN in JSON
-    assert quantities(findings(FREE, run, wrong)) == {"restitution"}
-
-
-def test_impacts_too_small_to_see_do_not_count():
-    run = kept(FREE)
-    rates = np.abs([rate for _, rate, _ in run["impacts"]])
-    small = next(k for k in range(len(rates)) if rates[k] < 0.1 * rates[0])
-    wrong = copy.deepcopy(run)
-    wrong["impacts"][small][2] *= 0.5
-    assert findings(FREE, run, wrong) == []
-    del wrong["impacts"][small:]
-    assert findings(FREE, run, wrong) == []
-
-
-def test_a_lost_impact_is_found():
-    run = kept(FREE)
-    wrong = copy.deepcopy(run)
-    time = wrong["impacts"].pop(1)[0]
-    assert lost_impacts(FREE, run, wrong) == [time]
-    assert quantities(findings(FREE, run, wrong)) == {"lost impact"}
-
-
-@pytest.mark.parametrize("name, scale", [("tilt", 0.25), ("displacement", 0.25)])
-def test_peaks_count_from_their_least_value_on(name, scale):
-    run = kept(FREE)
-    for factor, expected in ((1.019, set()), (1.021, {name}), (0.979, {name})):
-        assert quantities(findings(FREE, run, {**run, name: factor * run[name]})) == expected
-    least = verdicts.least(FREE)[name]
-    still = {**run, name: 0.0}
-    for value, expected in ((0.99 * least, set()), (1.019 * least, set()), (1.021 * least, {name})):
-        assert quantities(findings(FREE, still, {**run, name: value})) - {"outcome"} == expected
-    assert quantities(findings(FREE, run, {**run, name: None})) >= {name}
-
-
-def pulse(amplitude, duration=4.0):
-    return Scene(
-        block=Block(mass=1.0, radius=1.0, slenderness=0.25),
-        duration=duration,
-        motion=PulseMotion("one-sine", amplitude, 6.0),
-    )
-
-
-@pytest.fixture(scope="module")
-def boundary():
-    """Amplitude [m/s2] at which the block of `pulse` first overturns."""
-    low, high = 3.0, 12.0
-    assert [simulate(pulse(a), history=False).outcome for a in (low, high)] == ["rocks", "overturns"]
-    while high - low > 1e-6:
-        middle = (low + high) / 2
-        low, high = (low, middle) if simulate(pulse(middle), history=False).outcome == "overturns" else (middle, high)
-    return high
-
-
-def test_another_outcome_counts_unless_the_boundary_is_within_a_percent(boundary):
-    near, far = pulse(boundary * 0.9998), pulse(boundary * 0.95)
-    overturns = kept(pulse(boundary * 1.0002))
-    assert verdict(near, overturns) == ([], ["near a boundary"])
-    found, notes = verdict(far, kept(pulse(boundary * 1.01)))
-    assert "outcome" in quantities(found) and notes == []
-
-
-def test_near_a_boundary_the_motion_before_it_still_counts(boundary):
-    near, run = pulse(boundary * 0.9998), kept(pulse(boundary * 1.0002))
-    run["tilts"] = (1.3 * np.array(run["tilts"])).tolist()  # wrong from the first instant on
-    found, notes = verdict(near, run)
-    assert quantities(found) == {"tilt"} and notes == ["near a boundary"]
-
-
-def test_an_ill_conditioned_peak_is_compared_as_long_as_it_is_determined(boundary):
-    close = pulse(boundary * (1 - 2e-6), duration=6.0)  # lingers at the unstable point
-    for factor, expected in ((1 + 3e-5, set()), (1.1, {"tilt"})):
-        run = kept(close.with_(motion=close.motion.scaled(1 - 3e-5)))
-        run["tilts"] = (factor * np.array(run["tilts"])).tolist()
-        run["tilt"] *= 0.95
-        found, notes = verdict(close, run)
-        assert notes == ["ill-conditioned"] and quantities(found) == expected
-
-
-def test_a_well_conditioned_peak_is_not_excused():
-    found, notes = verdict(FREE, {**kept(FREE), "displacement": 0.9 * kept(FREE)["displacement"]})
-    assert quantities(found) == {"displacement"} and notes == []
-
-
-def test_scenes_outside_the_model_are_left_out_by_the_model_alone():
-    run = kept(FREE)
-    assert rule(FREE, run) is None
-    assert rule(FREE, {**run, "normal": -0.1}) == "N <= 0"
-    assert rule(FREE, {**run, "friction": 5.1}) == "friction demand above 5"
-    assert rule(FREE.with_(friction=0.2), {**run, "friction": 0.3}) == "friction demand above 0.2"
 
 
 def rows_of(cases, changes=None, failure=None):
@@ -230,13 +114,6 @@ def test_overturning_is_judged_up_to_the_unstable_point_and_by_its_outcome():
     short = {"outcome": "rocks", "decided": False, "tilt": 1.2 * 0.25}
     (row,) = judged([cut], "exudyn", lambda cases, label: rows_of(cases), partial(rows_of, changes=short))
     assert row["class"] == "right"
-
-
-def test_a_warning_that_the_model_gives_too_is_none_about_the_engine():
-    model, run = ({"warnings": [f"the base slides on at {speed} m/s"]} for speed in ("1e-3", "2e-3"))
-    assert range_warnings(model, run) == []
-    radius = "radius R [m] = 0.001 is below 0.01, the limit of the range verified"
-    assert range_warnings(model, {"warnings": [*run["warnings"], radius]}) == [radius]
 
 
 def test_what_the_model_leaves_out_the_engine_is_not_asked():

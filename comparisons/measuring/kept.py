@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from analytic import Response
+    from analytic import History, Response
 
-    from ...running.cases import Case
+    from ..running.cases import Case
 
 RESOLVED = 0.1  # share of the run's largest rate from which on an impact counts
 GRID, MOST_IMPACTS = 50, 400  # points of the growing peaks, impacts kept
@@ -17,7 +17,7 @@ GRID, MOST_IMPACTS = 50, 400  # points of the growing peaks, impacts kept
 
 def keep(case: Case, response: Response) -> dict[str, Any]:
     """Measure: what the judgement needs of a response with its history, as JSON values."""
-    history = response.history
+    history: History = response.history  # type: ignore[assignment]  # a measure is given one
     steps = (
         np.searchsorted(
             history.time, history.time[1] * (2000 / GRID) * np.arange(1, GRID + 1) * (1 + 1e-9), side="right"

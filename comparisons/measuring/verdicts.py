@@ -1,5 +1,7 @@
 """Is an engine's run of a scene right? Judged against the analytic model, from what `kept.keep` keeps of both.
 
+`judge` tells it for the bench of the engines, `doubts` to a user of one run.
+
 Off is a run with at least one finding, each further from the analytic model than its limit:
 
 - restitution: an impact's rate after over rate before differs from eq. (7) by more than RESTITUTION. Impacts count that
@@ -28,18 +30,18 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from analytic.rocking import RockingModel, restitution
 
-from ...measuring.horizon import changed_copies
+from .horizon import LEAST, PERTURBATION, changed_copies, unsure_outcome
 from .kept import GRID, RESOLVED
 
 if TYPE_CHECKING:
-    from analytic import Scene
+    from analytic import Response, Scene
 
 RESTITUTION, PEAK, APART = 1e-2, 0.02, 0.2
 LEAST_TILT, LEAST_DISPLACEMENT, LEAST_SWING = 1e-4, 1e-5, 1e-3
@@ -206,7 +208,7 @@ def lost_impacts(
 
 def parting(scene: Scene, model: Mapping[str, Any], copies: Iterable[Mapping[str, Any]], share: float) -> float:
     """Time [s] up to which no copy's peaks part from the model's by more than a share; inf where none ever does."""
-    first = math.inf
+    first, piece = math.inf, scene.duration / GRID  # type: ignore[operator]  # scenes of the box have one
     for copy in copies:
         if copy["outcome"] == "failed":
             continue
@@ -214,9 +216,9 @@ def parting(scene: Scene, model: Mapping[str, Any], copies: Iterable[Mapping[str
             other, own = (np.maximum([*kept[f"{name}s"], kept[name]], floor) for kept in (copy, model))
             beyond = np.flatnonzero(np.abs(other / own - 1) > share)
             if len(beyond) and beyond[0] < GRID:
-                first = min(first, beyond[0] * scene.duration / GRID)
+                first = min(first, beyond[0] * piece)
             elif len(beyond):
-                first = min(first, (1 - 1 / GRID) * scene.duration)
+                first = min(first, (GRID - 1) * piece)
     return first
 
 
@@ -254,3 +256,47 @@ def judge(
             if finding["quantity"] != "outcome" or "near a boundary" not in notes
         ]
     return wrong, notes
+
+
+def doubts(scene: Scene, response: Response, model: Response) -> Iterator[str]:
+    """Sentences for whoever sees this response alone: where the analytic model says otherwise, and where the model's
+    own outcome hangs on a change as small as a good solver's errors. model: its response, or `response` itself."""
+    if model is not response:
+        yield from off_the_model(scene, response, model)
+    if response.decided:
+        yield from unsure_outcome(scene, model.outcome, LEAST if model is response else PERTURBATION)
+
+
+def off_the_model(scene: Scene, response: Response, model: Response) -> Iterator[str]:
+    """One sentence on what `findings` finds in an engine's response, or none; nothing is excused.
+
+    Of a block that overturns, in either, no peaks are compared, and of the model's, impacts up to the unstable point.
+    """
+    until: float = model.unstable_time if model.outcome == "overturns" else math.inf  # type: ignore[assignment]  # it fell
+    run, wanted = (
+        {
+            "outcome": one.outcome,
+            "decided": one.decided,
+            "tilt": one.peak_tilt,
+            "displacement": one.peak_base_displacement,
+            "impacts": [(at.time, at.rate_before, at.rate_after) for at in one.impacts if at.time <= until],
+        }
+        for one in (response, model)
+    )
+    ended = scene if scene.duration is not None else scene.with_(duration=model.end.time)
+    falls = "overturns" in (response.outcome, model.outcome)
+    words = {
+        "outcome": f"its block {model.outcome}",
+        "tilt": f"its peak tilt is {model.peak_tilt:.3g} rad, here {response.peak_tilt:.3g}",
+        "displacement": f"its peak displacement is {model.peak_base_displacement:.3g} m, here "
+        f"{response.peak_base_displacement:.3g}",
+        "restitution": "its e is {expected:.3f} at every impact, here off by up to {error:.2g}",
+        "lost impact": "impacts of it that are missing here: {error}",
+    }
+    parts = [
+        words[finding["quantity"]].format(expected=max(restitution(scene), 0.0), error=finding["error"])
+        for finding in findings(ended, wanted, run)
+        if not (falls and finding["quantity"] in least(scene))
+    ]
+    if parts:
+        yield f"the analytic model says otherwise: {'; '.join(parts)}; see rocking compare"
