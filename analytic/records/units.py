@@ -174,9 +174,14 @@ def _spaced(line: str) -> str:
 
 
 def _plain(word: str) -> str:
-    """A unit in one spelling: "CM/SEC**2", "cm/(s²)" and "cm/s^2" are all "cm/s2"."""
+    """A unit in one spelling: "CM/SEC**2", "cm/(s²)" and "cm/s^2" are all "cm/s2".
+
+    A power without its base or number, or an open bracket, stays: such a word is damaged, and no unit.
+    """
     word = word.lower().strip(" .'\"").replace("²", "2").replace("⁻", "-").replace("−", "-").replace("·", ".")
     for pattern, short in LONG_NAMES:
         word = re.sub(rf"{START}(?:{pattern}){_END}", short, word)
-    word = word.replace("**", "").replace("*", ".")
-    return re.sub(r"[\^(){}]", "", word).replace("% ", "%").replace(" ", ".")
+    word = re.sub(r"(?<![({])(?:\^|\*\*)(?=[-({]*[0-9])", "", word).replace("*", ".")
+    if word.count("(") == word.count(")") and word.count("{") == word.count("}"):
+        word = re.sub(r"[(){}]", "", word)
+    return word.replace("% ", "%").replace(" ", ".")

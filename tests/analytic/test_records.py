@@ -100,6 +100,20 @@ def test_a_damaged_letter_leaves_no_unit_behind_it(tmp_path, letter, header):
             np.testing.assert_allclose(read_record(path, units).samples, np.array(VALUES) * 0.01, rtol=1e-15)
 
 
+@pytest.mark.parametrize(
+    "word, known", [("[cm/s2^]", False), ("(cm/s(^2)", False), ("[cm/s^]", False), ("(cm/s^{2})", True)]
+)
+def test_a_power_without_its_number_and_an_open_bracket_are_no_unit(tmp_path, word, known):
+    path = write(
+        tmp_path, f"# time [s] acceleration {word}\n" + "".join(f"{i / 200} {a}\n" for i, a in enumerate(VALUES))
+    )
+    if known:
+        np.testing.assert_allclose(read_record(path).samples, np.array(VALUES) * 0.01, rtol=1e-15)
+    else:
+        with pytest.raises(SceneError, match="missing; the header names no unit|not an acceleration"):
+            read_record(path)
+
+
 def test_a_letter_beyond_ascii_behind_ms_leaves_milliseconds(tmp_path):
     path = write(tmp_path, "time [ms\u0663],acc [g]\n" + "".join(f"{5 * i},{a}\n" for i, a in enumerate(VALUES)))
     assert read_record(path).dt == pytest.approx(0.005, rel=1e-12)
