@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from analytic.rocking import restitution
+
 from ..vibration import base_decay, base_frequency, given_back
 
 if TYPE_CHECKING:
@@ -27,10 +29,11 @@ SLENDER = 0.1
 LIGHT, MOST_RATIO = 0.05, 0.1
 
 # A damper that stops the base about as fast as a corner gives way takes part in the impact: what the base would give
-# back to the block's rate, `given_back`, cannot be told from what the impact left it. That times the base's decay over
-# the corner's frequency: .44: e is off by .011, .86: .011, 1.7: .034, 2.2: .026, 25: 1.3. Such corners are stiffer, for
-# a product of TAKEN, by at most STIFFER; what is left above MOST_TAKEN is said.
-TAKEN, MOST_TAKEN, STIFFER = 0.1, 0.25, 400.0
+# back to the block's rate, `given_back`, cannot be told from what the impact left it; the less that is, the longer the
+# corner is on its way. Over e times the base's decay over the corner's frequency: .31: e is off by .0018, .37: .016,
+# .74: .031 to .066, 2.1: .059, 5: .17. Such corners are stiffer, for a product of TAKEN, by at most STIFFER (4e4: runs
+# fail); what is left above MOST_TAKEN is said. Of an e below LEAST_E not even that much is told.
+TAKEN, MOST_TAKEN, STIFFER, LEAST_E = 0.1, 0.25, 4000.0, 0.02
 
 # An undamped base that vibrates fast keeps what every impact gives it, and errs by the phase in which the next one
 # finds it: m_b/m .1, ratio .028: its displacement is off by 9 %, at .01 by .8 %; .4, .042: 5 %. For bases of up to
@@ -118,7 +121,7 @@ def scaled(scene: Scene, settings: CompliantCorners, share: float, harder: float
     stiffness = settings.stiffness * weight / share * max(1.0, SLENDER / block.slenderness) ** 2
     if scene.base is not None and scene.base.mass >= LIGHT * block.mass:
         slow = math.sqrt(block.mass / stiffness)
-        taken = base_decay(scene) * slow * given_back(scene) / TAKEN
+        taken = _taken(scene, slow) / TAKEN
         vibrating = base_frequency(scene) * slow / VIBRATES if scene.base.mass <= KICKED * block.mass else 0.0
         stiffness *= max(1.0, min(taken**2, STIFFER), min(vibrating**2, STIFFEST))
     share /= harder
@@ -131,6 +134,11 @@ def scaled(scene: Scene, settings: CompliantCorners, share: float, harder: float
         longest_step=settings.longest_step * min(time, 1.0) * math.sqrt(share),
         pivoting_step=settings.pivoting_step * time * math.sqrt(share),
     )
+
+
+def _taken(scene: Scene, slow: float) -> float:
+    """What a damper takes part in an impact, see `TAKEN`; slow: time in which a corner gives way by 1 rad [s]."""
+    return base_decay(scene) * slow * given_back(scene) / max(restitution(scene), LEAST_E)
 
 
 def drift(scene: Scene, settings: CompliantCorners) -> float:
@@ -157,9 +165,9 @@ def unresolved(scene: Scene, settings: CompliantCorners) -> Iterator[str]:
                     f"{MOST_RATIO:g}, the limit verified for bases below {LIGHT:g} block masses: what an impact moves "
                     "it by is not resolved"
                 )
-    elif (taken := base_decay(scene) * slow * given_back(scene)) > MOST_TAKEN:
+    elif (taken := _taken(scene, slow)) > MOST_TAKEN:
         yield (
             "the base's decay by its dampers over the frequency of a corner on it, times what it gives back to the "
-            f"block, = {taken:.4g} is above {MOST_TAKEN:g}, the limit verified: what an impact moves it by is not "
-            "resolved"
+            f"block over what the impact leaves it, = {taken:.4g} is above {MOST_TAKEN:g}, the limit verified: what an "
+            "impact moves it by is not resolved"
         )
