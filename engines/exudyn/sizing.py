@@ -32,8 +32,9 @@ LIGHT, MOST_RATIO = 0.05, 0.1
 # back to the block's rate, `given_back`, cannot be told from what the impact left it; the less that is, the longer the
 # corner is on its way. Over e times the base's decay over the corner's frequency: .31: e is off by .0018, .37: .016,
 # .74: .031 to .066, 2.1: .059, 5: .17. Such corners are stiffer, for a product of TAKEN, by at most STIFFER (4e4: runs
-# fail); what is left above MOST_TAKEN is said. Of an e below LEAST_E not even that much is told.
-TAKEN, MOST_TAKEN, STIFFER, LEAST_E = 0.1, 0.25, 4000.0, 0.02
+# fail), and stick sooner, by at most SOONER of `slip` (e .27: off by .012 at any stiffness without it). What is left
+# above MOST_TAKEN is said. Of an e below LEAST_E not even that much is told.
+TAKEN, MOST_TAKEN, STIFFER, SOONER, LEAST_E = 0.1, 0.25, 4000.0, 0.1, 0.02
 
 # An undamped base that vibrates fast keeps what every impact gives it, and errs by the phase in which the next one
 # finds it: m_b/m .1, ratio .028: its displacement is off by 9 %, at .01 by .8 %; .4, .042: 5 %. For bases of up to
@@ -119,17 +120,22 @@ def scaled(scene: Scene, settings: CompliantCorners, share: float, harder: float
     # a corner of a block with a small moment of inertia gives way easily: the same damping would cost many more steps
     easy = (1 + need) / (1 + 3 * math.sin(block.slenderness) ** 2)
     stiffness = settings.stiffness * weight / share * max(1.0, SLENDER / block.slenderness) ** 2
+    stopped = 1.0
     if scene.base is not None and scene.base.mass >= LIGHT * block.mass:
         slow = math.sqrt(block.mass / stiffness)
-        taken = _taken(scene, slow) / TAKEN
+        stopped = max(1.0, min((_taken(scene, slow) / TAKEN) ** 2, STIFFER))
         vibrating = base_frequency(scene) * slow / VIBRATES if scene.base.mass <= KICKED * block.mass else 0.0
-        stiffness *= max(1.0, min(taken**2, STIFFER), min(vibrating**2, STIFFEST))
+        stiffness *= max(stopped, min(vibrating**2, STIFFEST))
     share /= harder
     return replace(
         settings,
         stiffness=stiffness * harder,
         rebound=settings.rebound * speed * math.sqrt(share * max(1.0, easy)),
-        slip=settings.slip * speed * math.sqrt(share / max(1.0, need)) * min(max(1.0, math.sqrt(0.5 / need)), EASE),
+        slip=settings.slip
+        * speed
+        * math.sqrt(share / max(1.0, need))
+        * min(max(1.0, math.sqrt(0.5 / need)), EASE)
+        * max(stopped**-0.5, SOONER),
         tolerance=settings.tolerance * min(speed, 1 / speed, 1.0) * share,
         longest_step=settings.longest_step * min(time, 1.0) * math.sqrt(share),
         pivoting_step=settings.pivoting_step * time * math.sqrt(share),
