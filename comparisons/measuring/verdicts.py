@@ -13,7 +13,8 @@ Off is a run with at least one finding, each further from the analytic model tha
 - outcome: another one; "rocks" below LEAST_TILT is not told from "stands".
 - lost impact: an impact of the model that counts has none in the engine on its side within half the intervals to its
   neighbours, before the first that the model itself loses for a relative change of 1e-4 of start, amplitude,
-  slenderness or restitution: from there on the motion is not determined.
+  slenderness or restitution: from there on the motion is not determined. Nor does one
+  count that comes in the last EDGE of its swing before the run's end: the engine's may come right after it.
 
 A block that overturns is judged up to its first passage of the slenderness, and by its outcome: falling, every block
 loses the contact that the model assumes. A run cut short before its outcome is decided has none that could be another.
@@ -43,7 +44,7 @@ from .kept import GRID, RESOLVED
 if TYPE_CHECKING:
     from analytic import Response, Scene
 
-RESTITUTION, PEAK, APART = 1e-2, 0.02, 0.2
+RESTITUTION, PEAK, APART, EDGE = 1e-2, 0.02, 0.2, 1e-2
 LEAST_TILT, LEAST_DISPLACEMENT, LEAST_SWING = 1e-4, 1e-5, 1e-3
 FRICTION = 5.0  # of every engine's default, where the scene names none
 SMALL, BOUNDARY = 1e-4, 1e-2  # relative changes of the copies
@@ -198,7 +199,10 @@ def lost_impacts(
         if time > until:
             continue
         earlier, later = every[every < time], every[every > time]
-        low = time - (time - earlier[-1]) / 2 if len(earlier) else -math.inf
+        before_it = time - earlier[-1] if len(earlier) else time
+        if not len(later) and scene.duration - time < EDGE * before_it:  # type: ignore[operator]  # as in `parting`
+            continue
+        low = time - before_it / 2 if len(earlier) else -math.inf
         high = time + (later[0] - time) / 2 if len(later) else math.inf
         near = own[(np.sign(own[:, 1]) == np.sign(before)) & (own[:, 0] >= low) & (own[:, 0] <= high)]
         if not len(near):

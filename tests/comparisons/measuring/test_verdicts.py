@@ -70,6 +70,18 @@ def test_a_lost_impact_is_found():
     assert quantities(findings(FREE, run, wrong)) == {"lost impact"}
 
 
+@pytest.mark.parametrize("share, lost", [(0.005, 0), (0.02, 1)])
+def test_an_impact_right_before_the_end_may_come_after_it(share, lost):
+    first, second = (impact.time for impact in simulate(FREE).impacts[:2])
+    scene = FREE.with_(duration=second + share * (second - first))
+    run = kept(scene)
+    wrong = copy.deepcopy(run)
+    wrong["impacts"].pop()
+    assert len(run["impacts"]) == 2 and len(lost_impacts(scene, run, wrong)) == lost
+    wrong["impacts"].clear()
+    assert len(lost_impacts(scene, run, wrong)) == 1 + lost
+
+
 @pytest.mark.parametrize("name, scale", [("tilt", 0.25), ("displacement", 0.25)])
 def test_peaks_count_from_their_least_value_on(name, scale):
     run = kept(FREE)
