@@ -200,7 +200,7 @@ def lost_impacts(
             continue
         earlier, later = every[every < time], every[every > time]
         before_it = time - earlier[-1] if len(earlier) else time
-        if not len(later) and scene.duration - time < EDGE * before_it:  # type: ignore[operator]  # as in `parting`
+        if not len(later) and scene.duration - time < EDGE * before_it:
             continue
         low = time - before_it / 2 if len(earlier) else -math.inf
         high = time + (later[0] - time) / 2 if len(later) else math.inf
