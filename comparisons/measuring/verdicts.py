@@ -4,17 +4,18 @@
 
 Off is a run with at least one finding, each further from the analytic model than its limit:
 
-- restitution: an impact's rate after over rate before differs from eq. (7) by more than RESTITUTION. Impacts count that
-  meet at least RESOLVED of the largest rate of their run, and that lie between swings that would exceed LEAST_SWING of
-  the slenderness with the ground at rest: smaller ones an engine does not tell from the compliance of its contact.
+- restitution: an impact's rate after over rate before differs from the model's by more than RESTITUTION. Impacts count
+  that meet at least RESOLVED of the largest rate of their run, and that lie between swings that would exceed
+  LEAST_SWING of the slenderness with the ground at rest: smaller ones an engine does not tell from the compliance of
+  its contact.
 - tilt, displacement: a peak differs by more than PEAK of the model's. One below LEAST_TILT of the slenderness (the
   least tilt of the box) or LEAST_DISPLACEMENT of R gamma (3 micrometres for the Caryatid) counts as one of that size:
   a block that stands on compliant corners tilts a little.
 - outcome: another one; "rocks" below LEAST_TILT is not told from "stands".
 - lost impact: an impact of the model that counts has none in the engine on its side within half the intervals to its
   neighbours, before the first that the model itself loses for a relative change of 1e-4 of start, amplitude,
-  slenderness or restitution: from there on the motion is not determined. Nor does one
-  count that comes in the last EDGE of its swing before the run's end: the engine's may come right after it.
+  slenderness or restitution: from there on the motion is not determined. Nor does one count that comes in the last
+  EDGE of its swing before the run's end: the engine's may come right after it.
 
 A block that overturns is judged up to its first passage of the slenderness, and by its outcome: falling, every block
 loses the contact that the model assumes. A run cut short before its outcome is decided has none that could be another.
@@ -36,7 +37,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from analytic.rocking import RockingModel, restitution
+from analytic.rocking import RockingModel
 
 from .horizon import LEAST, PERTURBATION, changed_copies, unsure_outcome
 from .kept import GRID, RESOLVED
@@ -183,7 +184,7 @@ def restitution_error(scene: Scene, run: Mapping[str, Any], until: float = math.
     impacts = resolved(scene, run, until)
     if not len(impacts):
         return 0.0
-    expected = max(restitution(scene), 0.0)
+    expected = RockingModel.of(scene).restitution
     with np.errstate(invalid="ignore", divide="ignore"):
         return float(np.abs(impacts[:, 2] / impacts[:, 1] - expected).max())
 
@@ -298,7 +299,7 @@ def off_the_model(scene: Scene, response: Response, model: Response) -> Iterator
         "lost impact": "impacts of it that are missing here: {error}",
     }
     parts = [
-        words[finding["quantity"]].format(expected=max(restitution(scene), 0.0), error=finding["error"])
+        words[finding["quantity"]].format(expected=RockingModel.of(scene).restitution, error=finding["error"])
         for finding in findings(ended, wanted, run)
         if not (falls and finding["quantity"] in least(scene))
     ]

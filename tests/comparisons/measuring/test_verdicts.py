@@ -191,6 +191,11 @@ def test_a_user_is_told_what_the_analytic_model_says_otherwise():
     assert "its block rocks; its e is" in sentence
 
 
+def test_a_restitution_that_the_scene_gives_is_the_one_that_counts():
+    given = FREE.with_(block={"restitution": 0.5})
+    assert abs(restitution(FREE) - 0.5) > 0.1 and said(given, simulate(given, tolerance=1e-13)) == []
+
+
 def test_a_falling_block_is_doubted_for_its_outcome_and_its_impacts_before_it_alone(boundary):
     far = pulse(boundary * 1.05)
     model = simulate(far)
