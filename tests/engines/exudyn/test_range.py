@@ -332,7 +332,7 @@ def test_small_swings_that_hang_on_the_corners_are_stepped_with_stiffer_ones_or_
 
 
 def test_a_light_base_moves_with_the_block():
-    """m_b/m 9e-4: where it sticks too softly impacts come up to 9e-4 of their time early, and the last ones are lost."""
+    """m_b/m 9e-4: where it sticks too softly impacts come up to 9e-4 of their time early, and late ones are lost."""
     rocking = Scene(
         block=Block(mass=0.001, radius=0.0010575518, slenderness=0.11482425),
         base=Base(mass=8.821054e-07),
