@@ -1,4 +1,4 @@
-"""The wide box and its judgement: what is off is found, what is excused is excused by the model, not by the engine."""
+"""The wide box: its scenes fill it, every one gets its class, tables and figure count them all."""
 
 import json
 import math
