@@ -193,19 +193,20 @@ def impact_aware_run(
     rows, ended = march(bodies, scene, largest, settings.accuracy)
     cpu = time.process_time() - clock
     trace = trace_of(rows, scene, bodies.contact * scene.block.slenderness, smeared=3)
-    return run_of(scene, rows, ended, cpu, trace, largest, drift(scene), warnings)
+    return _run_of(scene, rows, ended, cpu, trace, largest, drift(scene), warnings)
 
 
-def run_of(
-    scene: Scene,
-    rows: np.ndarray,
-    ended: str,
-    cpu: float,
-    trace: Trace,
-    step: float,
-    drift: float,
-    warnings: tuple[str, ...] = (),
+def equal_steps_run(
+    scene: Scene, step: float, march: Callable[[], tuple[np.ndarray, str]], read: Callable[[np.ndarray], Trace]
 ) -> Run:
+    """The `Run` of a scene in equal steps [s]; march: (rows, ended) as of `march`; read: the trace of its rows."""
+    clock = time.process_time()
+    rows, ended = march()
+    cpu = time.process_time() - clock
+    return _run_of(scene, rows, ended, cpu, read(rows), step, drift(scene, step))
+
+
+def _run_of(scene, rows, ended, cpu, trace, step, drift, warnings=()):
     """The `Run` of rows as `engines.leapfrog` has them, and of how they ended; step, drift: as `Run` has them."""
     failure = failure_of(scene, rows, ended)
     if ended not in ENDS:

@@ -15,6 +15,17 @@ RESOLVED = 0.1  # share of the run's largest rate from which on an impact counts
 GRID, MOST_IMPACTS = 50, 400  # points of the growing peaks, impacts kept
 
 
+def ends(response: Response) -> dict[str, Any]:
+    """What is kept of a response without its history and its impacts, as JSON values."""
+    return {
+        "outcome": response.outcome,
+        "decided": response.decided,
+        "unstable": response.unstable_time,
+        "tilt": response.peak_tilt,
+        "displacement": response.peak_base_displacement,
+    }
+
+
 def keep(case: Case, response: Response) -> dict[str, Any]:
     """Measure: what the judgement needs of a response with its history, as JSON values."""
     history: History = response.history  # type: ignore[assignment]  # a measure is given one
@@ -29,11 +40,7 @@ def keep(case: Case, response: Response) -> dict[str, Any]:
         impact for impact, rate in zip(response.impacts, rates, strict=True) if not rate < 0.5 * RESOLVED * rates.max()
     ][:MOST_IMPACTS]
     return {
-        "outcome": response.outcome,
-        "decided": response.decided,
-        "unstable": response.unstable_time,
-        "tilt": response.peak_tilt,
-        "displacement": response.peak_base_displacement,
+        **ends(response),
         "tilts": np.maximum.accumulate(np.abs(history.tilt))[steps],
         "displacements": np.maximum.accumulate(np.abs(history.base_displacement))[steps],
         "impacts": [[impact.time, impact.rate_before, impact.rate_after] for impact in counted],

@@ -40,7 +40,7 @@ import numpy as np
 from analytic.rocking import RockingModel
 
 from .horizon import LEAST, PERTURBATION, changed_copies, unsure_outcome
-from .kept import GRID, RESOLVED
+from .kept import GRID, RESOLVED, ends
 
 if TYPE_CHECKING:
     from analytic import Response, Scene
@@ -118,7 +118,7 @@ def findings(
     error = restitution_error(scene, run, until)
     if not error <= RESTITUTION:
         wrong.append({"quantity": "restitution", "error": error, "limit": RESTITUTION})
-    if lost := lost_impacts(scene, model, run, min(until, math.nextafter(determined, 0.0))):
+    if lost := [time for time in lost_impacts(scene, model, run) if time <= until and time < determined]:
         wrong.append({"quantity": "lost impact", "error": len(lost), "limit": 0})
     return wrong
 
@@ -189,16 +189,12 @@ def restitution_error(scene: Scene, run: Mapping[str, Any], until: float = math.
         return float(np.abs(impacts[:, 2] / impacts[:, 1] - expected).max())
 
 
-def lost_impacts(
-    scene: Scene, model: Mapping[str, Any], run: Mapping[str, Any], until: float = math.inf
-) -> list[float]:
+def lost_impacts(scene: Scene, model: Mapping[str, Any], run: Mapping[str, Any]) -> list[float]:
     """Times [s] of the model's impacts that count and have none in the run."""
     wanted, lost = resolved(scene, model), []
     own = np.array(run["impacts"], dtype=float).reshape(-1, 3)
     every = np.array(model["impacts"], dtype=float).reshape(-1, 3)[:, 0]
     for time, before, _ in wanted:
-        if time > until:
-            continue
         earlier, later = every[every < time], every[every > time]
         before_it = time - earlier[-1] if len(earlier) else time
         if not len(later) and scene.duration - time < EDGE * before_it:
@@ -241,9 +237,7 @@ def judge(
     """
     if not findings(scene, model, run, until):
         return [], []
-    determined = min(
-        (time for copy in small.values() for time in lost_impacts(scene, model, copy, until)), default=math.inf
-    )
+    determined = min((time for copy in small.values() for time in lost_impacts(scene, model, copy)), default=math.inf)
     wrong = findings(scene, model, run, until, determined)
     if not wrong:
         return wrong, ["ill-conditioned"]
@@ -279,13 +273,7 @@ def off_the_model(scene: Scene, response: Response, model: Response) -> Iterator
     """
     until: float = model.unstable_time if model.outcome == "overturns" else math.inf  # type: ignore[assignment]  # it fell
     run, wanted = (
-        {
-            "outcome": one.outcome,
-            "decided": one.decided,
-            "tilt": one.peak_tilt,
-            "displacement": one.peak_base_displacement,
-            "impacts": [(at.time, at.rate_before, at.rate_after) for at in one.impacts if at.time <= until],
-        }
+        {**ends(one), "impacts": [(at.time, at.rate_before, at.rate_after) for at in one.impacts if at.time <= until]}
         for one in (response, model)
     )
     ended = scene if scene.duration is not None else scene.with_(duration=model.end.time)

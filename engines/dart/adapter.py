@@ -18,7 +18,6 @@ next to nothing. What DART needs for a slender block that stands on two corners 
 from __future__ import annotations
 
 import math
-import time
 from typing import TYPE_CHECKING
 
 import dartpy
@@ -27,9 +26,8 @@ from analytic.response import Failure
 
 from ..contract import Mismatch, Run, Variant
 from ..leapfrog import raw_trace_of, trace_of
-from ..planar import EqualSteps, ImpactAware, impact_aware_run, run_of
+from ..planar import EqualSteps, ImpactAware, equal_steps_run, impact_aware_run
 from ..verified import Range
-from ..vibration import drift
 from . import script
 from .scene import build
 from .stepping import DartBodies
@@ -111,8 +109,6 @@ def run(scene: Scene, variant: str, settings: ImpactAware | EqualSteps) -> Run:
         parts = script.build(scene, tuned)
     except Mismatch as error:
         return Run(None, 0, math.nan, Failure("DART does not hold the scene", str(error)))
-    clock = time.process_time()
-    rows, ended = script.run(parts, scene, settings.step)
-    cpu, edge = time.process_time() - clock, PASSING * settings.step * scene.block.slenderness
-    trace = trace_of(rows, scene, edge) if tuned else raw_trace_of(rows, scene, edge)
-    return run_of(scene, rows, ended, cpu, trace, settings.step, drift(scene, settings.step))
+    step, read = settings.step, trace_of if tuned else raw_trace_of
+    edge = PASSING * step * scene.block.slenderness
+    return equal_steps_run(scene, step, lambda: script.run(parts, scene, step), lambda rows: read(rows, scene, edge))

@@ -19,7 +19,6 @@ times as much. All with drake 1.51.1.
 from __future__ import annotations
 
 import math
-import time
 from importlib import metadata
 from typing import TYPE_CHECKING
 
@@ -27,9 +26,8 @@ from analytic.response import Failure
 
 from ..contract import Mismatch, Run, Variant
 from ..leapfrog import raw_trace_of, trace_of
-from ..planar import EqualSteps, ImpactAware, impact_aware_run, run_of
+from ..planar import EqualSteps, ImpactAware, equal_steps_run, impact_aware_run
 from ..verified import Range
-from ..vibration import drift
 from . import script
 from .scene import build
 from .stepping import DrakeBodies
@@ -114,8 +112,6 @@ def run(scene: Scene, variant: str, settings: ImpactAware | EqualSteps) -> Run:
         parts = script.build(scene, settings.step, tuned)
     except Mismatch as error:
         return Run(None, 0, math.nan, Failure("Drake does not hold the scene", str(error)))
-    clock = time.process_time()
-    rows, ended = script.run(parts, scene, settings.step)
-    cpu, edge = time.process_time() - clock, PASSING * settings.step * scene.block.slenderness
-    trace = trace_of(rows, scene, edge) if tuned else raw_trace_of(rows, scene, edge)
-    return run_of(scene, rows, ended, cpu, trace, settings.step, drift(scene, settings.step))
+    step, read = settings.step, trace_of if tuned else raw_trace_of
+    edge = PASSING * step * scene.block.slenderness
+    return equal_steps_run(scene, step, lambda: script.run(parts, scene, step), lambda rows: read(rows, scene, edge))

@@ -175,10 +175,9 @@ def run(scene: Scene, variant: str, settings: ImpactAware | FixedStep | FirstScr
         return Run(None, 0, math.nan, Failure("MuJoCo does not run the scene", str(error)))
     finally:
         mujoco.set_mju_user_warning(handler)
-    slenderness, peak, light = scene.block.slenderness, float(np.nanmax(np.abs(rows[:, 2]))), 0.0
+    slenderness, peak = scene.block.slenderness, float(np.nanmax(np.abs(rows[:, 2])))
     if isinstance(settings, FirstScript):
         trace = replace(raw_trace_of(rows, scene, FIRST_CONTACT_TILT * slenderness), settle=FIRST_SETTLE)
-        light = settings.step
     else:
         trace = trace_of(rows, scene, _contact_tilt(settings, peak, slenderness))
     failure = _failure(scene, rows, ended, "; ".join(line.strip() for line in said))
@@ -189,7 +188,10 @@ def run(scene: Scene, variant: str, settings: ImpactAware | FixedStep | FirstScr
         failure,
         ended if ended == "overturned" else None,
         longest_step(scene, settings),
-        max(drift(scene, light), SINK * slenderness / peak if peak > trace.contact_tilt else 0.0),
+        max(
+            drift(scene, settings.step if isinstance(settings, FirstScript) else 0.0),
+            SINK * slenderness / peak if peak > trace.contact_tilt else 0.0,
+        ),
     )
 
 

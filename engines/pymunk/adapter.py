@@ -18,7 +18,6 @@ second, does not: 0 to 1 give 5e-4 to 6e-4 on rigid ground, 8e-4 to 2.4e-3 on th
 from __future__ import annotations
 
 import math
-import time
 from typing import TYPE_CHECKING
 
 import pymunk
@@ -27,9 +26,8 @@ from analytic.response import Failure
 
 from ..contract import Mismatch, Run, Variant
 from ..leapfrog import raw_trace_of, trace_of
-from ..planar import EqualSteps, ImpactAware, impact_aware_run, run_of
+from ..planar import EqualSteps, ImpactAware, equal_steps_run, impact_aware_run
 from ..verified import Range
-from ..vibration import drift
 from . import script
 from .scene import build
 from .stepping import ChipmunkBodies
@@ -113,12 +111,8 @@ def run(scene: Scene, variant: str, settings: ImpactAware | EqualSteps) -> Run:
             return Run(None, 0, math.nan, Failure("Chipmunk does not hold the scene", str(error)))
         unsure = () if assembly.sure else (UNSURE,)
         return impact_aware_run(scene, settings, lambda largest: ChipmunkBodies(assembly, scene, largest), unsure)
-    tuned, slenderness = VARIANTS[variant].rung == "expert", scene.block.slenderness
+    tuned, step = VARIANTS[variant].rung == "expert", settings.step
     parts = script.build(scene, tuned)
-    clock = time.process_time()
-    rows, ended = script.run(parts, scene, settings.step)
-    cpu = time.process_time() - clock
-    read, edge = (trace_of, SCRIPT_CONTACT) if tuned else (raw_trace_of, FIRST_CONTACT)
-    return run_of(
-        scene, rows, ended, cpu, read(rows, scene, edge * slenderness), settings.step, drift(scene, settings.step)
-    )
+    read, share = (trace_of, SCRIPT_CONTACT) if tuned else (raw_trace_of, FIRST_CONTACT)
+    edge = share * scene.block.slenderness
+    return equal_steps_run(scene, step, lambda: script.run(parts, scene, step), lambda rows: read(rows, scene, edge))

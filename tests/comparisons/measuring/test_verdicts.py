@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from kept_runs import FREE, kept
 
-from analytic import Base, Block, PulseMotion, Scene, Start, simulate
+from analytic import Block, PulseMotion, Scene, simulate
 from analytic.rocking import restitution
 from comparisons.measuring import verdicts
-from comparisons.measuring.kept import keep
 from comparisons.measuring.verdicts import (
     boundary_copies,
     doubts,
@@ -20,16 +20,6 @@ from comparisons.measuring.verdicts import (
     range_warnings,
     rule,
 )
-from comparisons.running.cases import Case
-from comparisons.running.provenance import json_ready
-
-FREE = Scene(
-    block=Block(mass=10.0, radius=1.0, slenderness=0.25), base=Base(mass=5.0), start=Start(tilt=0.15), duration=4.0
-)
-
-
-def kept(scene, **options):
-    return json_ready(keep(Case(scene), simulate(scene, **options)))
 
 
 def verdict(scene, run):

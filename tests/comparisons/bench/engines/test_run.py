@@ -6,25 +6,16 @@ from functools import partial
 
 import numpy as np
 import pytest
+from kept_runs import FREE, kept
 
-from analytic import Base, Block, PulseMotion, Scene, Start, simulate
+from analytic import Block, PulseMotion, Scene
 from comparisons.bench.engines import tables, wide_box
 from comparisons.bench.engines.figure import draw
 from comparisons.bench.engines.run import bench_engines, examine, judged
 from comparisons.measuring import verdicts
-from comparisons.measuring.kept import keep
 from comparisons.measuring.verdicts import findings, rule
-from comparisons.running.cases import Case
 from comparisons.running.provenance import json_ready
 from comparisons.running.sweep import Row
-
-FREE = Scene(
-    block=Block(mass=10.0, radius=1.0, slenderness=0.25), base=Base(mass=5.0), start=Start(tilt=0.15), duration=4.0
-)
-
-
-def kept(scene, **options):
-    return json_ready(keep(Case(scene), simulate(scene, **options)))
 
 
 @pytest.fixture(scope="module")
