@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,6 +30,8 @@ RK_STEPS, CORRECTIONS = 4, 3
 PACE, MOST_STEPS = 0.5, 256
 # Backward in time viscous damping grows: by more than e to this power it would carry nothing but the steps' errors.
 GROWTH = 1.0
+# Ends of the steps back to the edge of contact, over the time since: the sooner after an impact, the more goes on.
+CARRY = (np.arange(31, -1, -1) / 32) ** 3
 # Steps measured at a time: a long run costs the memory of its steps, not that of a dozen arrays derived from them.
 PIECE = 100_000
 
@@ -170,9 +173,9 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
     time, rate, velocity : arrays, shape (n,)
         Time [s], tilt rate [rad/s] and base velocity [m/s] at tilt = 0; NaN where the flight does not reach it.
 
-    The bearings' elastic and hysteretic force is the trace's within the swing, and follows the law outside. Where the
-    base is too fast for that (forward: `MOST_STEPS`, backward: `GROWTH`), all of the force is the trace's, outside the
-    swing along its last two steps.
+    Back to the edge of contact the bearings give the impulse that they gave in the trace; from there on, or from the
+    last step, their force follows the law, or, where the base is too fast for that (forward: `MOST_STEPS`, backward:
+    `GROWTH`), the trace's two steps there. What dampers took before the step that reached the edge stays with contact.
     """
     model = ArrayModel.of(scene)
     law, side = model.bearing, swings.side
@@ -187,20 +190,27 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
     along = _tangent(trace, swings, direction)
     pace, decay = _paces(model)
 
-    def slope(t, tilt, rate, x, v):
-        within = (direction < 0) & (t > trace.time[edge])
-        force = np.where(within, np.interp(t, trace.time, lasting), beyond(x)) + viscous * v
-        if fast.any():
-            given = np.where(within, np.interp(t, trace.time, trace.bearing_force), along(t))
-            force = np.where(fast, given, force)
+    def slope(t, tilt, rate, x, v, force=None):
+        if force is None:
+            unseen = ~carried | ((trace.time[np.maximum(edge - 1, 0)] <= t) & (t <= trace.time[edge]))
+            force = beyond(x) + np.where(unseen, viscous * v, 0.0)
+            if fast.any():
+                force = np.where(fast, along(t), force)
         up = vertical_acceleration(scene.motion, t)
         tilting, sliding = model.accelerations(side, tilt, rate, ground(t), force, up)
         return np.stack([rate, tilting, v, np.broadcast_to(sliding, rate.shape)])
 
-    state, fast = np.stack([tilt, rate, x, v]), np.zeros(len(t), dtype=bool)
+    state, fast, carried = np.stack([tilt, rate, x, v]), np.zeros(len(t), dtype=bool), index != edge
+    if carried.any():
+        impulse, end = _impulse(trace, lasting, viscous), trace.time[edge]
+        for until in end + np.multiply.outer(CARRY, t - end):
+            h = until - t
+            mean = (impulse(until) - impulse(t)) / np.where(h == 0, 1.0, h)
+            t, state = _runge_kutta(partial(slope, force=mean), t, state, h, 1)
+    way = np.where(carried, 0, direction)
     for correction in range(1 + CORRECTIONS):
         pull = side * slope(t, *state)[1]
-        wanted = _time_to_zero(side * state[0], side * state[1], pull, direction if correction == 0 else 0)
+        wanted = _time_to_zero(side * state[0], side * state[1], pull, way * (correction == 0))
         longest = np.nan_to_num(np.abs(wanted), nan=0.0, posinf=0.0)
         if correction == 0:
             fast = (pace * longest > PACE * MOST_STEPS) if direction > 0 else (decay * longest > GROWTH)
@@ -234,6 +244,16 @@ def _paces(model: ArrayModel) -> tuple[float, float]:
     return max(decay, math.sqrt(law.count * (law.kb + law.dk) / mass)), decay
 
 
+def _impulse(trace: Trace, lasting: np.ndarray, viscous: float) -> Callable[[np.ndarray], np.ndarray]:
+    """Impulse of the bearings' force since the start [N s], as function of time [s].
+
+    What dampers take of a base that stops within a step is told by how far it came.
+    """
+    steps = 0.5 * np.diff(trace.time) * (lasting[1:] + lasting[:-1])
+    since = viscous * trace.base_displacement + np.concatenate(([0.0], np.cumsum(steps)))
+    return lambda t: np.interp(t, trace.time, since)
+
+
 def _tangent(trace: Trace, swings: Swings, direction: int) -> Callable[[np.ndarray], np.ndarray]:
     """The bearings' force as function of time [s], along the last (or first) two steps of each swing."""
     end = swings.last if direction > 0 else swings.first
@@ -243,14 +263,14 @@ def _tangent(trace: Trace, swings: Swings, direction: int) -> Callable[[np.ndarr
     return lambda t: trace.bearing_force[end] + rise * (t - trace.time[end])
 
 
-def _time_to_zero(p: np.ndarray, q: np.ndarray, a: np.ndarray, direction: int) -> np.ndarray:
+def _time_to_zero(p: np.ndarray, q: np.ndarray, a: np.ndarray, direction: np.ndarray) -> np.ndarray:
     """Root of p + q h + a h^2/2 on the side of `direction`, the nearer one for 0; NaN where there is none.
 
     Where a alone leaves none, as a stiff bearing's may that swings to and fro, that of p + q h.
     """
     with np.errstate(invalid="ignore", divide="ignore"):
         square = q * q - 2 * a * p
-        sign = direction if direction else np.where(q > 0, -1, 1)
+        sign = np.where(direction != 0, direction, np.where(q > 0, -1, 1))
         root = np.where(square >= 0, sign * 2 * p / (np.sqrt(square) - sign * q), -p / q)
         return np.where(p == 0, 0.0, np.where(root * direction >= 0, root, np.nan))
 
