@@ -195,7 +195,7 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
             unseen = ~carried | ((trace.time[np.maximum(edge - 1, 0)] <= t) & (t <= trace.time[edge]))
             force = beyond(x) + np.where(unseen, viscous * v, 0.0)
             if fast.any():
-                force = np.where(fast, along(t), force)
+                force = np.where(fast & unseen, along(t), force)
         up = vertical_acceleration(scene.motion, t)
         tilting, sliding = model.accelerations(side, tilt, rate, ground(t), force, up)
         return np.stack([rate, tilting, v, np.broadcast_to(sliding, rate.shape)])
