@@ -1,5 +1,4 @@
-"""What impacts add up, or leave unread: a base that still vibrates when the next one kicks it, small swings that grow
-in many, and a run that ends in one."""
+"""What impacts add up: a base that still vibrates when the next one kicks it, and small swings that grow in many."""
 
 from __future__ import annotations
 
@@ -33,7 +32,6 @@ def warnings(scene: Scene, run: Run) -> Iterator[str]:
     swings = find_swings(trace)
     yield from unsure_displacement(scene, trace, swings, drift=run.drift, late=run.late)
     yield from shaken(scene, trace, swings)
-    yield from unread(scene, trace, swings)
 
 
 def unsure_displacement(scene: Scene, trace: Trace, swings: Swings, *, drift: float, late: float) -> Iterator[str]:
@@ -90,13 +88,4 @@ def shaken(scene: Scene, trace: Trace, swings: Swings) -> Iterator[str]:
         yield (
             f"the peak tilt, {size:.2g} slendernesses, comes after {impacts} impacts of a block that the ground hardly "
             "lifts, each with its error: do not trust it"
-        )
-
-
-def unread(scene: Scene, trace: Trace, swings: Swings) -> Iterator[str]:
-    """A sentence where the run ends before a compliant contact has come to rest after its last impact."""
-    if len(swings) > 1 and trace.time[-1] - trace.time[swings.first[-1]] < 2 * trace.settle:
-        yield (
-            f"the run ends at {scene.duration:.6g} s, within {trace.settle:.2g} s of its last impact, while corners "
-            "still give way: do not trust the restitution of this impact, or let the scene run longer"
         )

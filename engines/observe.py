@@ -39,6 +39,7 @@ def observe(
     scene: Scene,
     trace: Trace,
     *,
+    beyond: Trace | None = None,
     history: bool = True,
     failure: Failure | None = None,
     ended: str | None = None,
@@ -52,6 +53,8 @@ def observe(
     scene : Scene
     trace : Trace
         Accepted steps from the start on; a step past overturning is used to find its time, what follows is not.
+    beyond : Trace or None
+        Of the same run, longer: events up to the end of `trace` are read from it, so that the end cuts none short.
     history : bool
         Keep it, on the motion's own grid for a sampled motion, else on 2000 equal intervals.
     failure : Failure or None
@@ -81,7 +84,7 @@ def observe(
         return failed_response(scene, failure, warnings=warnings, **run)
     trace, overturning_time = upto_overturning(scene, finite, ended)
     end = last_state(trace)
-    seen, missed, lifted = _measured(scene, trace, overturning_time)
+    seen, missed, lifted = _measured(scene, trace, beyond or trace, overturning_time)
     failure, warnings = _judged(scene, trace, seen, missed, failure, warnings)
     upright = "rocks" if lifted else "stands"
     response = Response(
@@ -97,10 +100,13 @@ def observe(
     return replace(response, decided=is_decided(scene, response, contact_tilt=trace.contact_tilt))
 
 
-def _measured(scene: Scene, trace: Trace, overturning_time: float | None) -> tuple[dict[str, Any], Any, bool]:
+def _measured(
+    scene: Scene, trace: Trace, beyond: Trace, overturning_time: float | None
+) -> tuple[dict[str, Any], Any, bool]:
     """(numbers and events of a `Response` by their names there, times of missed impacts, whether the block lifted)."""
-    swings = find_swings(trace)
-    impacts, uplifts, rests, missed = find_events(scene, trace, swings)
+    end = trace.time[-1]
+    impacts, *times = find_events(scene, beyond, find_swings(beyond))
+    uplifts, rests, missed = (tuple(time for time in each if time <= end) for each in times)
     demand, normal, acceleration = contact_measures(scene, trace, falls=overturning_time is not None)
     peak = _peak(trace.time, trace.tilt, trace.tilt_rate)
     seen = dict(
@@ -110,13 +116,13 @@ def _measured(scene: Scene, trace: Trace, overturning_time: float | None) -> tup
         peak_tilt_ratio=peak / scene.block.slenderness,
         peak_base_displacement=_peak(trace.time, trace.base_displacement, trace.base_velocity),
         peak_base_acceleration=acceleration,
-        impacts=impacts,
+        impacts=tuple(impact for impact in impacts if impact.time <= end),
         uplifts=uplifts,
         rests=rests,
         friction_demand=demand,
         min_normal_ratio=normal,
     )
-    return seen, missed, len(swings) > 0
+    return seen, missed, len(find_swings(trace)) > 0
 
 
 def _judged(

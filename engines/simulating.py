@@ -13,8 +13,10 @@ from analytic import ending
 from analytic.response import Failure
 
 from . import kicked
+from .endings import finite_part
 from .observe import failed_response, observe
 from .settings import choose, leave_restitution
+from .swings import find_swings
 from .verified import outside
 
 if TYPE_CHECKING:
@@ -22,6 +24,10 @@ if TYPE_CHECKING:
 
     from .contract import Engine, Run, Variant
     from .swings import Trace
+
+# A run that ends this many times a contact's settling time, or this many steps, after a landing or a lift ends in it:
+# an engine that switches within a step, as MuJoCo, has the block on both corners then, and its e would be read as 0.
+SETTLED, STEPS = 2.0, 4
 
 
 def traced(
@@ -53,19 +59,48 @@ def traced(
 
 def _once(engine: Engine, scene: Scene, name: str, chosen: Any, history: bool) -> tuple[Response, Trace | None]:
     run = engine.run(scene, name, chosen)
+    on = _run_on(engine, scene, name, chosen, run)
+    beyond, said = _beyond(scene, on) if on else (None, ())
     given: dict[str, Any] = dict(
         engine=engine.name,
         variant=name,
         settings=asdict(chosen),
         versions=engine.versions(),
-        cpu_seconds=run.cpu_seconds,
-        steps=run.steps,
-        warnings=_warnings(engine.variants[name], scene, run),
+        cpu_seconds=run.cpu_seconds + (on.cpu_seconds if on else 0.0),
+        steps=run.steps + (on.steps if on else 0),
+        warnings=(*_warnings(engine.variants[name], scene, run), *said),
     )
     if run.trace is None:
         failure = run.failure or Failure("the run ended before its first step")
         return failed_response(scene, failure, **given), None
-    return observe(scene, run.trace, history=history, failure=run.failure, ended=run.ended, **given), run.trace
+    seen = observe(scene, run.trace, beyond=beyond, history=history, failure=run.failure, ended=run.ended, **given)
+    return seen, run.trace
+
+
+def _run_on(engine: Engine, scene: Scene, name: str, chosen: Any, run: Run) -> Run | None:
+    """The same run for longer, where the scene's end cuts a change of contact short; else None."""
+    if run.trace is None or run.failure or run.ended:
+        return None
+    time, swings = run.trace.time, find_swings(run.trace)
+    changes = np.append(swings.first[1:], swings.last)
+    changes = changes[changes < len(time) - 1]  # one in flight has not landed
+    after = max(SETTLED * run.trace.settle, STEPS * float(np.diff(time).max()))
+    if not len(changes) or time[-1] - time[changes.max()] >= after:
+        return None
+    longer = scene.with_(duration=scene.duration + after)  # type: ignore[operator]  # a run has one
+    return engine.run(longer, name, chosen)
+
+
+def _beyond(scene: Scene, on: Run) -> tuple[Trace | None, tuple[str, ...]]:
+    """(its sound trace, what is to be said) of a run that went on beyond the scene's end."""
+    trace, failure = finite_part(on.trace, on.failure) if on.trace else (None, on.failure)
+    if trace is not None and failure is None:
+        return trace, ()
+    said = (
+        f"the run ends at {scene.duration:.6g} s in an impact, and fails where it goes on, so that the impact's end is "
+        "not seen: do not trust its restitution"
+    )
+    return None, (said,)
 
 
 def _warnings(variant: Variant, scene: Scene, run: Run) -> tuple[str, ...]:

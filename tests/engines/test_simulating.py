@@ -1,0 +1,86 @@
+"""Runs that end in an impact: what the engine has begun by then is read where it is over."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from engine_cases import every_variant, needs
+from released import scene
+
+from analytic import Start, simulate
+from analytic.response import Failure
+from analytic.rocking import restitution
+from engines import get_engine
+from engines.simulating import traced
+
+RELEASED = {base: scene(0.15, base, 3.0, start=Start(tilt=0.07)) for base in (None, 3172.05)}
+
+
+def cut(base, after):
+    """A scene that ends so long after the second impact of the analytic model, and that impact's time [s]."""
+    impact = simulate(RELEASED[base], history=False).impacts[1]
+    return RELEASED[base].with_(duration=impact.time + after), impact.time
+
+
+@pytest.mark.parametrize("after", [1e-9, 1e-5, 1e-4, 3e-4, 1e-3, 5e-3])
+@pytest.mark.parametrize("base", [None, 3172.05])
+@pytest.mark.parametrize("name", ["exudyn", "pybullet", "mujoco", "pymunk"])
+def test_a_run_that_ends_in_an_impact_reads_it_as_one_that_goes_on(name, base, after):
+    """e was off by .028 (exudyn, with a warning), .017 (PyBullet) and .97 (MuJoCo), in silence."""
+    needs(name)
+    given, _ = cut(base, after)
+    response = get_engine(name).simulate(given, history=False)
+    assert response.outcome == "rocks" and not [each for each in response.warnings if "impact" in each]
+    assert all(impact.time <= given.duration for impact in response.impacts)
+    assert len(response.impacts) == 2 or after < 1e-4  # before the engine's own impact
+    for impact in response.impacts:
+        assert impact.rate_after / impact.rate_before == pytest.approx(restitution(given), abs=2e-3)
+
+
+@every_variant
+def test_only_events_are_read_beyond_the_end(engine, variant):
+    given, _ = cut(3172.05, 1e-4)
+    response, trace = get_engine(engine).traced(given, variant=variant)
+    assert abs(trace.time[-1] - given.duration) <= np.diff(trace.time).max()  # equal steps end at the nearest one
+    assert response.end.time == response.history.time[-1] == trace.time[-1]
+    reached = abs(response.history.base_displacement).max()
+    assert response.peak_base_displacement == pytest.approx(reached, rel=1e-3)
+    for times in (response.uplifts, response.rests, [impact.time for impact in response.impacts]):
+        assert all(time <= response.end.time for time in times)
+
+
+class Counted:
+    """An engine that counts its runs; those longer than a scene's end fail where `sound` is False."""
+
+    def __init__(self, name, sound=True):
+        self.engine, self.sound, self.durations = get_engine(name), sound, []
+        self.name, self.variants, self.versions = name, self.engine.variants, self.engine.versions
+        self.default_variant = self.engine.default_variant
+
+    def run(self, given, variant, settings):
+        self.durations.append(given.duration)
+        ran = self.engine.run(given, variant, settings)
+        if self.sound or given.duration == self.durations[0]:
+            return ran
+        return replace(ran, failure=Failure("the solver gave up", "it is a fake"))
+
+
+@pytest.mark.parametrize("name", ["exudyn", "mujoco"])
+def test_a_run_goes_on_only_where_it_ends_in_an_impact_and_costs_both(name):
+    needs(name)
+    given, at = cut(None, 1e-4)
+    once, twice = Counted(name), Counted(name)
+    plain, _ = traced(once, given.with_(duration=at - 0.1), None, False, {})
+    response, _ = traced(twice, given, None, False, {})
+    assert len(once.durations) == 1 and len(twice.durations) == 2
+    assert twice.durations[0] == given.duration < twice.durations[1] < given.duration + 0.1
+    assert response.steps > 1.8 * plain.steps
+
+
+def test_a_run_that_cannot_go_on_says_that_its_last_impact_is_not_to_be_trusted():
+    needs("exudyn")
+    given, _ = cut(None, 1e-4)
+    response, _ = traced(Counted("exudyn", sound=False), given, None, False, {})
+    assert response.outcome == "rocks"
+    (warning,) = response.warnings
+    assert "in an impact, and fails where it goes on" in warning
