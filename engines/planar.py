@@ -119,7 +119,8 @@ def pace_of(
     standing = 2 * least_pull(model) * model.g * largest * largest / (2 * scene.block.half_width)
     damping, smallest = model.bearing.count * model.bearing.damping, SMALLEST_STEP * size_scale(scene)
     sharpest = VISCOUS * max(accuracy, least_viscous) * model.M / damping if damping else math.inf
-    rule = StepRule(largest, smallest, accuracy, APPROACH, sharpest, standing, True, True, base_decay(scene))
+    moved, decay = scene.motion is not None, base_decay(scene)
+    rule = StepRule(largest, smallest, accuracy, APPROACH, sharpest, standing, True, True, decay, moved)
     return impact_aware(model, scene.start.tilt_rate, rule)
 
 

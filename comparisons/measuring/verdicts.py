@@ -12,8 +12,8 @@ Off is a run with at least one finding, each further from the analytic model tha
   least tilt of the box) or LEAST_DISPLACEMENT of R gamma (3 micrometres for the Caryatid) counts as one of that size:
   a block that stands on compliant corners tilts a little.
 - outcome: another one; "rocks" below LEAST_TILT is not told from "stands".
-- lost impact: an impact of the model that counts has none in the engine on its side within half the intervals to its
-  neighbours, before the first that the model itself loses for a relative change of 1e-4 of start, amplitude,
+- lost impact: an impact of the model that counts has none in the engine on its side within half the intervals to the
+  next ones on that side, before the first that the model itself loses for a relative change of 1e-4 of start, amplitude,
   slenderness or restitution: from there on the motion is not determined. Nor does one count that comes in the last
   EDGE of its swing before the run's end: the engine's may come right after it.
 
@@ -193,16 +193,15 @@ def lost_impacts(scene: Scene, model: Mapping[str, Any], run: Mapping[str, Any])
     """Times [s] of the model's impacts that count and have none in the run."""
     wanted, lost = resolved(scene, model), []
     own = np.array(run["impacts"], dtype=float).reshape(-1, 3)
-    every = np.array(model["impacts"], dtype=float).reshape(-1, 3)[:, 0]
+    every = np.array(model["impacts"], dtype=float).reshape(-1, 3)
     for time, before, _ in wanted:
-        earlier, later = every[every < time], every[every > time]
-        before_it = time - earlier[-1] if len(earlier) else time
-        if not len(later) and scene.duration - time < EDGE * before_it:
+        swing = time - every[every[:, 0] < time, 0].max(initial=0.0)
+        if not (every[:, 0] > time).any() and scene.duration - time < EDGE * swing:
             continue
-        low = time - before_it / 2 if len(earlier) else -math.inf
-        high = time + (later[0] - time) / 2 if len(later) else math.inf
-        near = own[(np.sign(own[:, 1]) == np.sign(before)) & (own[:, 0] >= low) & (own[:, 0] <= high)]
-        if not len(near):
+        side, near = (one[np.sign(one[:, 1]) == np.sign(before), 0] for one in (every, own))
+        low = (time + side[side < time].max(initial=-math.inf)) / 2
+        high = (time + side[side > time].min(initial=math.inf)) / 2
+        if not ((near >= low) & (near <= high)).any():
             lost.append(float(time))
     return lost
 

@@ -93,7 +93,8 @@ def _pace(scene, chosen, largest):
     """Length and purpose of a step as `engines.pace` has them; without an accuracy all are the largest [s]."""
     if not chosen.accuracy:
         return lambda *_: (largest, FLIGHT)
-    rule = StepRule(largest, SMALLEST_STEP * size_scale(scene), chosen.accuracy, APPROACH, decay=base_decay(scene))
+    smallest, moved = SMALLEST_STEP * size_scale(scene), scene.motion is not None
+    rule = StepRule(largest, smallest, chosen.accuracy, APPROACH, decay=base_decay(scene), moved=moved)
     return impact_aware(RockingModel.of(scene), scene.start.tilt_rate, rule)
 
 

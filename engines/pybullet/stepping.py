@@ -111,7 +111,8 @@ def _pace(scene, units, largest, accuracy):
     damping = _damping(model.bearing, units)
     sharpest = VISCOUS * accuracy * model.M / damping if damping else math.inf
     decay = damping / scene.base.mass if damping else 0.0
-    rule = StepRule(largest, SMALLEST_STEP, accuracy, APPROACH, sharpest, standing, True, True, decay)
+    moved = scene.motion is not None
+    rule = StepRule(largest, SMALLEST_STEP, accuracy, APPROACH, sharpest, standing, True, True, decay, moved)
     return impact_aware(model, scene.start.tilt_rate, rule)
 
 

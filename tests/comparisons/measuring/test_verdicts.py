@@ -60,6 +60,18 @@ def test_a_lost_impact_is_found():
     assert quantities(findings(FREE, run, wrong)) == {"lost impact"}
 
 
+def test_impacts_that_come_close_together_may_all_come_late():
+    """Of a period that is off by 7e-4: three impacts 5e-4 s apart, after half a second of rocking."""
+    run = kept(FREE)
+    first, before, after = run["impacts"][0]
+    run["impacts"] = [[first + gap, sign * before, sign * after] for gap, sign in ((0, 1), (0.5, -1), (0.5005, 1))]
+    late = [[time + 4e-4 * (time > first), *rates] for time, *rates in run["impacts"]]
+    assert lost_impacts(FREE, run, {**run, "impacts": late}) == []
+    for k in (1, 2):
+        one_less = {**run, "impacts": late[:k] + late[k + 1 :]}
+        assert lost_impacts(FREE, run, one_less) == [run["impacts"][k][0]]
+
+
 @pytest.mark.parametrize("share, lost", [(0.005, 0), (0.02, 1)])
 def test_an_impact_right_before_the_end_may_come_after_it(share, lost):
     first, second = (impact.time for impact in simulate(FREE).impacts[:2])
