@@ -22,7 +22,7 @@ from analytic.rocking import RockingModel
 from .contract import Run
 from .kicks import pushes
 from .leapfrog import failure_of, row_limit, trace_of
-from .pace import FLAT, REST, ROUNDING, StepRule, impact_aware, least_pull, limits
+from .pace import FLAT, REST, ROUNDING, THROWN, StepRule, impact_aware, least_pull, limits
 from .pivoting import Block
 from .placement import placement
 from .scale import size_scale
@@ -119,8 +119,8 @@ def pace_of(
     standing = 2 * least_pull(model) * model.g * largest * largest / (2 * scene.block.half_width)
     damping, smallest = model.bearing.count * model.bearing.damping, SMALLEST_STEP * size_scale(scene)
     sharpest = VISCOUS * max(accuracy, least_viscous) * model.M / damping if damping else math.inf
-    moved, decay = scene.motion is not None, base_decay(scene)
-    rule = StepRule(largest, smallest, accuracy, APPROACH, sharpest, standing, True, True, decay, moved)
+    thrown, decay = THROWN if scene.motion else 1.0, base_decay(scene)
+    rule = StepRule(largest, smallest, accuracy, APPROACH, sharpest, standing, True, True, decay, thrown)
     return impact_aware(model, scene.start.tilt_rate, rule)
 
 

@@ -13,9 +13,9 @@ Off is a run with at least one finding, each further from the analytic model tha
   a block that stands on compliant corners tilts a little.
 - outcome: another one; "rocks" below LEAST_TILT is not told from "stands".
 - lost impact: an impact of the model that counts has none in the engine on its side within half the intervals to the
-  next ones on that side, before the first that the model itself loses for a relative change of 1e-4 of start, amplitude,
-  slenderness or restitution: from there on the motion is not determined. Nor does one count that comes in the last
-  EDGE of its swing before the run's end: the engine's may come right after it.
+  next ones on that side, before the first that the model itself loses for a relative change of 1e-4 of start,
+  amplitude, slenderness or restitution: from there on the motion is not determined. Nor does one count that comes in
+  the last EDGE of its swing before the run's end: the engine's may come right after it.
 
 A block that overturns is judged up to its first passage of the slenderness, and by its outcome: falling, every block
 loses the contact that the model assumes. A run cut short before its outcome is decided has none that could be another.

@@ -38,9 +38,9 @@ LIGHT, MOST_RATIO = 0.05, 0.1
 TAKEN, MOST_TAKEN, STIFFER, SOONER, LEAST_E = 0.1, 0.25, 4000.0, 0.1, 0.02
 
 # On a base that gives way the other corner is pressed down, see `slip`, the more the less an impact leaves the block.
-# Above NEED of it, on bases of LIGHT to KICKED block masses, corners stick sooner, too, by e^2 (at least SOONER). Without,
-# e is off by .03 (m_b/m .1, e .26 to .38, need .98 to 3.3) and .014 (.5, .46, 5.9); with it by at most .005. Below NEED
-# it changes nothing: .0005 either way for J_O = 4/3 m R^2.
+# Above NEED of it, on bases of LIGHT to KICKED block masses, corners stick sooner, too, by e^2 (at least SOONER).
+# Without, e is off by .03 (m_b/m .1, e .28 and .38, need 3.3 and 1.2) and .014 (.5, .46, 5.9); with it by at most .005.
+# Below NEED it changes nothing: .0005 either way for J_O = 4/3 m R^2.
 NEED = 0.6
 
 # An undamped base that vibrates fast keeps what every impact gives it, and errs by the phase in which the next one

@@ -15,7 +15,7 @@ from analytic.rocking import RockingModel
 
 from ..ground_velocity import ground_velocity
 from ..leapfrog import row_limit
-from ..pace import FLIGHT, ROUNDING, StepRule, impact_aware, limits
+from ..pace import FLIGHT, ROUNDING, THROWN, StepRule, impact_aware, limits
 from ..scale import size_scale
 from ..vibration import base_decay, leapfrog_stiffness
 from .scene import contact_reference, least_mass, recovery_rate
@@ -93,8 +93,8 @@ def _pace(scene, chosen, largest):
     """Length and purpose of a step as `engines.pace` has them; without an accuracy all are the largest [s]."""
     if not chosen.accuracy:
         return lambda *_: (largest, FLIGHT)
-    smallest, moved = SMALLEST_STEP * size_scale(scene), scene.motion is not None
-    rule = StepRule(largest, smallest, chosen.accuracy, APPROACH, decay=base_decay(scene), moved=moved)
+    smallest, thrown = SMALLEST_STEP * size_scale(scene), THROWN if scene.motion else 1.0
+    rule = StepRule(largest, smallest, chosen.accuracy, APPROACH, decay=base_decay(scene), thrown=thrown)
     return impact_aware(RockingModel.of(scene), scene.start.tilt_rate, rule)
 
 

@@ -34,6 +34,8 @@ APPROACH = 0.3  # share of the remaining time to the impact that a step may take
 # [s]; 1e-6 doubles the error of e of the stockiest block on a base, 1e-8 changes nothing.
 SMALLEST_STEP = 1e-7
 
+THROWN = 0.1  # as `engines.pace.THROWN`, see there
+
 # Most iterations at an impact, where both corners may carry. They matter where e is near 0, for stocky blocks: these
 # need fewer to stand. (Slenderness .96, J_O = 1.09 m R^2: e of .03 for 0 with the iterations of one corner.)
 LANDING_ITERATIONS = 100
@@ -111,8 +113,8 @@ def _pace(scene, units, largest, accuracy):
     damping = _damping(model.bearing, units)
     sharpest = VISCOUS * accuracy * model.M / damping if damping else math.inf
     decay = damping / scene.base.mass if damping else 0.0
-    moved = scene.motion is not None
-    rule = StepRule(largest, SMALLEST_STEP, accuracy, APPROACH, sharpest, standing, True, True, decay, moved)
+    thrown = THROWN if scene.motion else 1.0
+    rule = StepRule(largest, SMALLEST_STEP, accuracy, APPROACH, sharpest, standing, True, True, decay, thrown)
     return impact_aware(model, scene.start.tilt_rate, rule)
 
 

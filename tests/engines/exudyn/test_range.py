@@ -433,3 +433,18 @@ def test_slow_impacts_on_a_base_that_its_damper_stops_at_once():
     body = Block(mass=0.333908, radius=0.0458372, slenderness=0.426889)
     bearings = Bearings(count=7, ka=3276.2, kb=80.152, alpha=12.235, damping=23092.5)
     assert restitution_error(released(0.3142, body, Base(mass=0.244717), bearings=bearings, impacts=7)) < 3e-3
+
+
+@pytest.mark.parametrize("inertia, slenderness, base, was", [(1.05, 0.25, 0.1, 0.035), (1.019, 0.254, 0.109, 0.031)])
+def test_a_corner_sticks_in_time_on_a_base_that_gives_way(inertia, slenderness, base, was):
+    """What an impact leaves of the rate, .28 and .38 of it, hung on how late the corner stuck."""
+    body = block(slenderness, inertia)
+    omega = math.sqrt(9.81 / RADIUS / inertia)
+    bearings = Bearings(law="linear", ka=base * MASS * (30 * omega) ** 2)
+    start = Start(tilt=0.28 * slenderness)
+    scene = Scene(block=body, base=Base(mass=base * MASS), bearings=bearings, start=start, duration=12 / omega)
+    impacts = simulate(scene, history=False).impacts
+    fastest = max(abs(impact.rate_before) for impact in impacts)
+    seen = [impact for impact in impacts if abs(impact.rate_before) > 0.3 * fastest]
+    assert len(seen) >= 3
+    assert max(abs(impact.rate_after / impact.rate_before - restitution(scene)) for impact in seen) < was / 5
