@@ -1,5 +1,7 @@
 """Bases that still vibrate when impacts kick them: whose displacement is said to be unsure, and whose is not."""
 
+import re
+
 import numpy as np
 import pytest
 from engine_cases import needs
@@ -104,13 +106,13 @@ def test_mujoco_says_where_small_swings_grow_from_impact_to_impact():
     found = get_engine("mujoco").simulate(shaken, history=False)
     told, after = found.warnings
     assert "impacts of a block that the ground hardly lifts" in after
-    assert "hangs on the steps' length, by 0.025 of itself" in told
+    assert "hangs on the steps' length" in told
     assert found.peak_tilt == pytest.approx(simulate(shaken).peak_tilt, rel=0.025)
     assert not get_engine("mujoco").simulate(shaken.with_(motion=shaken.motion.scaled(3.0)), history=False).warnings
 
 
 def test_mujoco_steps_the_smallest_swings_again():
-    """A peak of .0008 slendernesses was off by 4.4 %."""
+    """A peak of .0008 slendernesses was off by 7.6 % in silence."""
     needs("mujoco")
     scene = Scene(
         block=Block(mass=761.7, radius=0.72485, slenderness=0.35866, corner_inertia=533.61),
@@ -120,8 +122,9 @@ def test_mujoco_steps_the_smallest_swings_again():
         duration=0.8,
     )
     found = get_engine("mujoco").simulate(scene, history=False)
-    assert found.peak_tilt == pytest.approx(simulate(scene).peak_tilt, rel=0.016)
-    assert any("hangs on the steps' length" in warning for warning in found.warnings)
+    (said,) = found.warnings
+    told = float(re.search("long ones moved it by ([0-9.]+) of itself", said)[1])
+    assert abs(found.peak_tilt / simulate(scene).peak_tilt - 1) < min(0.025, told)
 
 
 def test_pybullet_says_where_the_first_impacts_come_late_for_a_base_that_vibrates():
