@@ -105,7 +105,8 @@ def _measured(
 ) -> tuple[dict[str, Any], Any, bool]:
     """(numbers and events of a `Response` by their names there, times of missed impacts, whether the block lifted)."""
     end = trace.time[-1]
-    impacts, *times = find_events(scene, beyond, find_swings(beyond))
+    swings = find_swings(beyond)
+    impacts, *times = find_events(scene, beyond, swings)
     uplifts, rests, missed = (tuple(time for time in each if time <= end) for each in times)
     demand, normal, acceleration = contact_measures(scene, trace, falls=overturning_time is not None)
     peak = _peak(trace.time, trace.tilt, trace.tilt_rate)
@@ -122,7 +123,7 @@ def _measured(
         friction_demand=demand,
         min_normal_ratio=normal,
     )
-    return seen, missed, len(find_swings(trace)) > 0
+    return seen, missed, bool((beyond.time[swings.first] <= end).any())
 
 
 def _judged(

@@ -198,11 +198,11 @@ def impact_aware_run(
 
 
 def equal_steps_run(
-    scene: Scene, step: float, march: Callable[[], tuple[np.ndarray, str]], read: Callable[[np.ndarray], Trace]
+    scene: Scene, step: float, script: Callable[[], tuple[np.ndarray, str]], read: Callable[[np.ndarray], Trace]
 ) -> Run:
-    """The `Run` of a scene in equal steps [s]; march: (rows, ended) as of `march`; read: the trace of its rows."""
+    """The `Run` of a scene in equal steps [s]; script: (rows, ended) as of `march`; read: the trace of its rows."""
     clock = time.process_time()
-    rows, ended = march()
+    rows, ended = script()
     cpu = time.process_time() - clock
     return _run_of(scene, rows, ended, cpu, read(rows), step, drift(scene, step))
 
