@@ -16,10 +16,16 @@ TELLING = 3  # quantities shown for a cause: those in which its scenes lie furth
 
 def causes(row: Mapping[str, Any]) -> list[str]:
     """Why a row is not simply right: words, without numbers, that rows of one cause share."""
-    if row["class"] == "left out" or row["class"] == "failed and said":
-        return [re.sub(r"-?\d[\d.e+-]*", "#", row["cause"]) if row["class"] == "failed and said" else row["cause"]]
+    if row["class"] == "left out":
+        return [row["cause"]]
+    if row["class"] == "failed and said":
+        return [_numberless(row["cause"])]
     words = [f"off: {finding['quantity']}" for finding in row["findings"]]
-    return words + [f"warned: {re.split(r' = | is ', sentence)[0][:60]}" for sentence in row["warnings"]]
+    return words + [f"warned: {_numberless(re.split(r' = | is ', sentence)[0])[:60]}" for sentence in row["warnings"]]
+
+
+def _numberless(words):
+    return re.sub(r"(?<!\S)-?\d[\d.e+-]*", "#", words)  # m R^2 keeps its own
 
 
 def class_table(rows: Sequence[Mapping[str, Any]], title: str) -> Table:

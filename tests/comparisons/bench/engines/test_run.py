@@ -151,6 +151,8 @@ def test_tables_count_every_scene_and_name_every_cause():
         {"class": "failed and said", "cause": "no result within the time limit of 60 s"},
     ]
     rows = [{**common, **change, "index": k} for k, change in enumerate(changes)]
+    one, other = ({**rows[1], "warnings": [f"the base vibrates at {rate} times, of m R^2"]} for rate in ("42", "2e3"))
+    assert tables.causes(one) == tables.causes(other) == ["warned: the base vibrates at # times, of m R^2"]
     assert [tables.causes(row) for row in rows[1:]] == [
         ["warned: radius R [m]"],
         ["off: tilt"],
