@@ -30,8 +30,15 @@ DRIVEN = Scene(
 )
 
 
+# Twice what is measured where the vertical motion adds to it. MuJoCo's errors without it are no scale: half of the
+# tilt's, 3.6e-5 for 7.3e-5, and by chance next to nothing of the displacement's, 2.4e-8 for 3.2e-6.
+OWN = {"mujoco": {"peak tilt": 1.4e-4, "peak displacement": 6.4e-6}}
+
+
 def bound(engine, quantity, scenes):
-    """Of the engine's first variant."""
+    """Of the engine's first variant; its own of this file, where it has one."""
+    if quantity in OWN.get(engine.name, {}):
+        return OWN[engine.name][quantity]
     rows = engine.bounds()[engine.default_variant]
     return next(row.bound for row in rows if (row.quantity, row.scenes) == (quantity, scenes))
 
