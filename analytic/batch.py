@@ -12,6 +12,7 @@ import numpy as np
 from numba import njit
 
 from . import kernel, layout
+from .budget import STEPS, most_steps
 from .decision import CAP_PERIODS, longest_duration
 from .layout import Ground, Vertical
 from .motion import PulseMotion, SampledMotion
@@ -35,7 +36,8 @@ _field = Parameters._fields.index
 class Outcomes:
     """Outcomes of many runs, arrays of one common shape.
 
-    overturns, lifted : bool. failed : bool, the kernel could not go on. peak_tilt [rad]; peak_base_displacement [m].
+    overturns, lifted : bool. failed : bool, the kernel could not go on, or not within its budget. peak_tilt [rad];
+    peak_base_displacement [m], up to the last passage of |tilt| = slenderness where it overturns.
     impacts : int, until the outcome was certain. decided : bool, False where a duration cut it before it was certain.
     friction_demand [-], min_normal_ratio [-]: as in `Response`, if they were asked for, else NaN.
     """
@@ -65,7 +67,7 @@ class Outcomes:
         return cls(
             column(layout.WILL_OVERTURN) > 0,
             column(layout.LIFTED) > 0,
-            (status == layout.STUCK) | (status == layout.NOT_FINITE),
+            (status == layout.STUCK) | (status == layout.NOT_FINITE) | (status == layout.SPENT),
             column(layout.PEAK_TILT),
             column(layout.PEAK_X),
             column(layout.IMPACTS).astype(int),
@@ -157,8 +159,8 @@ def pulse_row(shaking: Ground) -> tuple[float, ...]:
     return shaking.scale, shaking.frequency, shaking.phase, shaking.start, shaking.end, *vertical
 
 
-def _outcome_options(tolerance: float, rest_rate: float, contact: bool = False) -> Options:
-    return options(tolerance, rest_rate=rest_rate, record=contact, decide=True, capacity=0)
+def _outcome_options(tolerance: float, rest_rate: float, steps: int, contact: bool = False) -> Options:
+    return options(tolerance, rest_rate=rest_rate, record=contact, decide=True, capacity=0, steps=steps)
 
 
 def simulate_many(
@@ -178,7 +180,8 @@ def simulate_many(
     """
     scenes = list(scenes)
     factors = np.ones(len(scenes)) if scales is None else np.asarray(scales, dtype=float)
-    chosen = _outcome_options(tolerance, rest_rate, contact)
+    steps = max((most_steps(scene) for scene in scenes), default=0)
+    chosen = _outcome_options(tolerance, rest_rate, steps, contact)
     groups: dict[str | tuple[int, bool], list[int]] = {}
     for index, scene in enumerate(scenes):
         motion = scene.motion
@@ -237,7 +240,7 @@ def overturning_map(
     rows = np.tile(np.array(parameters(scene), dtype=float), (len(pulses), 1))
     if scene.duration is None:
         rows[:, _field("duration")] = pulses[:, 4] + longest_duration(scene.with_(motion=None))
-    totals = run_rows(rows, pulses, pulse(frequencies[0]), _outcome_options(tolerance, REST_RATE), workers)
+    totals = run_rows(rows, pulses, pulse(frequencies[0]), _outcome_options(tolerance, REST_RATE, STEPS), workers)
     return Outcomes.of(totals, (len(amplitudes), len(frequencies)))
 
 
@@ -269,5 +272,6 @@ def rocking_spectrum(
         rows[:, _field("duration")] = motion.end + CAP_PERIODS * periods
     shaking = ground(motion)
     pulses = np.tile(np.array(pulse_row(shaking)), (len(periods), 1))
-    totals = run_rows(rows, pulses, shaking, _outcome_options(tolerance, REST_RATE), workers)
+    chosen = _outcome_options(tolerance, REST_RATE, most_steps(scene))
+    totals = run_rows(rows, pulses, shaking, chosen, workers)
     return Outcomes.of(totals, (len(periods),))

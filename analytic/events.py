@@ -66,14 +66,18 @@ def find_impact(phi, s, order, h, event, work):
 
 
 @njit(cache=True)
-def find_exceedance(phi, s, limit, order, h, event, work):
-    """|tilt| grows beyond `limit`."""
+def upper_bound(phi, s, order, h):
+    """A bound on |tilt| over the step."""
     top, power = s * phi[0], 1.0
     for k in range(1, order + 1):
         power *= h
         top += max(s * phi[k], 0.0) * power
-    if top <= limit:
-        return -1.0
+    return top
+
+
+@njit(cache=True)
+def find_exceedance(phi, s, limit, order, h, event, work):
+    """|tilt| grows beyond `limit`."""
     for k in range(order + 1):
         event[k] = -s * phi[k]
     event[0] += limit

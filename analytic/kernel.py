@@ -59,7 +59,7 @@ def _run(par, ground, vertical, options, totals):
     outputs = int(math.floor(par.duration / options.output_step * (1 + 1e-14))) + 1 if options.output_step > 0 else 0
     history = np.empty((outputs, 6))
     totals[:] = 0.0
-    totals[L.UNSTABLE_TIME], totals[L.NORMAL] = -1.0, 1.0
+    totals[L.UNSTABLE_TIME], totals[L.NORMAL] = 0.0 if abs(par.tilt) >= par.gamma else -1.0, 1.0
     shaking = L.Ground(
         ground.kind,
         ground.dt,
@@ -99,7 +99,8 @@ def _march(par, ground, vertical, options, P, work, impacts, uplifts, rests, his
         mode, s = L.ROCKING, math.copysign(1.0, tilt if tilt != 0 else rate)
     fresh, refused = False, False  # onset just found: phi'' = 0 exactly; onset refused: only touched the threshold
     branch = 0.0, par.x, 1.0  # of the bearings: direction of travel, x_c and D_c of the last reversal
-    peak_tilt, peak_x, will_overturn, held = abs(par.tilt), abs(par.x), False, (0.0, 1.0)
+    peak_tilt, peak_x, will_overturn = abs(par.tilt), abs(par.x), False
+    held = 0.0, 1.0, 0.0, peak_x  # friction demand, N/(m g), peaks of the base: up to |tilt| = gamma
     segment, begin, written, idle, steps = 0, 0.0, 0, 0, 0
     rest_rate = max(options.rest_rate, ELASTIC_REST_RATE) if par.e > NEARLY_ELASTIC else options.rest_rate
     rest_rate *= math.sqrt(par.p2)
@@ -135,10 +136,13 @@ def _march(par, ground, vertical, options, P, work, impacts, uplifts, rests, his
                         totals[L.IMPACTS] += more
                         break
             steps += 1
+            if steps > options.most_steps:
+                status = L.SPENT
+                break
 
-            highest, h = ground_of_step(ground, kind, a0, slope, t, tau, order, h, P[L.GROUND])
+            highest, h = ground_of_step(ground, kind, a0, slope, tau, order, h, P[L.GROUND])
             if vertical is not None:
-                gravity_of_step(ground, vertical, par.g, kind, lift, rise, t, tau, order, P[L.GRAVITY])
+                gravity_of_step(ground, vertical, par.g, kind, lift, rise, tau, order, P[L.GRAVITY])
             gravity = gravity_at(par, vertical, P, highest, 0.0)
             used, factors, corner = order, (0.0, 0.0, 0.0), math.inf
             if par.on_base:
@@ -165,32 +169,36 @@ def _march(par, ground, vertical, options, P, work, impacts, uplifts, rests, his
                 gravity,
                 rocking,
                 s,
+                tilt,
                 inclination,
                 refused,
                 branch[0],
                 corner,
                 used,
                 highest,
-                t,
                 h,
                 P,
-                options.record,
-                totals,
                 work,
             )
-            idle = idle + 1 if t + h <= t else 0
+            idle = idle + 1 if tau + h <= tau else 0
             if idle > PATIENCE:
                 status = L.STUCK
                 break
 
-            written, held = read_step(
-                par, vertical, rocking, s, tilt, used, highest, t, h, P, options, history, written, held, totals
+            written = read_step(
+                par, vertical, rocking, s, used, highest, t, h, P, options, history, written, totals, work
             )
             if rocking:
-                tilt, rate, peak_tilt = end_of_block(s, rate, used, h, P, peak_tilt)
+                tilt, rate, peak_tilt = end_of_block(s, rate, used, h, P, peak_tilt, work)
             if par.on_base:
                 base = end_of_base(par, found, base, branch, corner, used, h, P)
                 peak_x = max(peak_x, abs(base[0]))
+            if found == L.PASSAGE:
+                tilt = s * par.gamma
+                if totals[L.UNSTABLE_TIME] < 0:
+                    totals[L.UNSTABLE_TIME] = t + h
+            if abs(tilt) <= par.gamma:  # what comes later is the last fall, or it comes back
+                held = totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], peak_x
             if h > 0:
                 fresh, refused = False, False
             tau = length if found == L.NONE and h == length - tau else tau + h
@@ -220,7 +228,7 @@ def _march(par, ground, vertical, options, P, work, impacts, uplifts, rests, his
         if mode != L.OVERTURNED and status == L.COMPLETE:
             begin, t = finish, finish
     if mode == L.OVERTURNED:
-        totals[L.FRICTION], totals[L.NORMAL] = held
+        totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], peak_x = held
     totals[L.STATUS], totals[L.MODE], totals[L.TIME], totals[L.STEPS] = status, mode, t, steps
     totals[L.PEAK_TILT], totals[L.PEAK_X], totals[L.WILL_OVERTURN] = peak_tilt, peak_x, will_overturn
     _conclude(par, ground, s, tilt, rate, base, totals)

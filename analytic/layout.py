@@ -5,7 +5,7 @@ from collections import namedtuple
 # Modes of the block.
 CONTACT, ROCKING, OVERTURNED = range(3)
 # How a run ended.
-COMPLETE, DECIDED, STUCK, NOT_FINITE = range(4)
+COMPLETE, DECIDED, STUCK, NOT_FINITE, SPENT = range(5)
 # Slots of the totals a run returns.
 (
     STATUS,
@@ -35,7 +35,7 @@ TOTALS = 20
 (PHI, W, S, C, X, V, Q, F, ABSOLUTE, GROUND, GRAVITY, EVENT, PRODUCT_A, PRODUCT_B) = range(14)
 ROWS = 14
 # Kinds of event inside a step.
-NONE, UPLIFT, IMPACT, REVERSAL, CORNER, OVERTURNING = range(6)
+NONE, UPLIFT, IMPACT, REVERSAL, CORNER, PASSAGE, OVERTURNING = range(7)
 
 # Ground motion: sampled (dt, samples) or a pulse; `kind` is QUIET, LINEAR_GROUND (sampled), HARMONIC
 # (scale sin(phase + frequency (t - start))) or RICKER. A rectangular pulse is HARMONIC with frequency 0.
@@ -44,5 +44,6 @@ NONE, UPLIFT, IMPACT, REVERSAL, CORNER, OVERTURNING = range(6)
 Ground = namedtuple("Ground", "kind dt samples scale frequency phase start end vertical")
 Vertical = namedtuple("Vertical", "samples scale phase")
 # What to do: `record` keeps events (up to `capacity` of a kind), ledger and diagnostics; `decide` stops when
-# the outcome is certain and the peaks are final (decision.py), but not before the time `shortest`.
-Options = namedtuple("Options", "tolerance order rest_rate record decide output_step capacity shortest")
+# the outcome is certain and the peaks are final (decision.py), but not before the time `shortest`; `most_steps` ends a
+# run that does not get on (SPENT).
+Options = namedtuple("Options", "tolerance order rest_rate record decide output_step capacity shortest most_steps")

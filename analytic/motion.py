@@ -29,6 +29,13 @@ def _positive(key: str, value: object, unit: str) -> None:
         raise SceneError(key, value, "not a positive number", f"give a finite value above 0 [{unit}]")
 
 
+def slowest_key(motion: Motion) -> str:
+    """The key of a scene file to which a motion owes most of its length."""
+    if isinstance(motion, SampledMotion):
+        return "motion.dt"
+    return "motion.start" if motion.start > motion.length else "motion.frequency"
+
+
 def vertical_acceleration(motion: Motion | None, t: Values) -> Values:
     """Vertical ground acceleration a_v [m/s2], upward, at time(s) t [s]; 0 where the motion, or None, has none."""
     return motion.vertical.acceleration(t) if motion is not None and motion.vertical is not None else 0.0 * t

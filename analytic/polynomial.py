@@ -88,6 +88,55 @@ def first_root(f, order, h, work):
 
 
 @njit(cache=True)
+def shifted(f, order, t):
+    """Make f the polynomial of the time since t, in place."""
+    for i in range(order):
+        for k in range(order - 1, i - 1, -1):
+            f[k] += t * f[k + 1]
+
+
+@njit(cache=True)
+def derivative(f, order, t):
+    """f'(t)."""
+    total = 0.0
+    for k in range(order, 0, -1):
+        total = total * t + k * f[k]
+    return total
+
+
+@njit(cache=True)
+def bound(f, order, h):
+    """A bound on |f| over [0, h]."""
+    total, power = abs(f[0]), 1.0
+    for k in range(1, order + 1):
+        power *= h
+        total += abs(f[k]) * power
+    return total
+
+
+@njit(cache=True)
+def largest(f, sign, order, h, best, rate, work):
+    """The larger of `best` and the maximum of sign f over [0, h]. rate : scratch for f'."""
+    best = max(best, sign * f[0], sign * value(f, order, h))
+    for k in range(order):
+        rate[k] = sign * (k + 1) * f[k + 1]
+    t, rising = 0.0, True
+    for _ in range(order):
+        root = first_root(rate, order - 1, h - t, work)  # where f no longer rises, and then no longer falls
+        if root < 0:
+            break
+        if rising and root > 0:
+            best = max(best, sign * value(f, order, t + root))
+        if root > 0:
+            shifted(rate, order - 1, root)
+            t, rate[0] = t + root, 0.0
+        for k in range(order):
+            rate[k] = -rate[k]
+        rising = not rising
+    return best
+
+
+@njit(cache=True)
 def _isolated_root(f, first, order, h, work):
     """`first_root` for a polynomial that is not monotone: sign changes of Bernstein coefficients, halved as needed."""
     n = order - first

@@ -25,9 +25,9 @@ from .layout import (
     W,
     X,
 )
-from .polynomial import INVERSE, value
+from .polynomial import INVERSE, bound, derivative, largest, value
 
-# Points inside a step at which friction demand, normal force and acceleration are read.
+# Points inside a step at which friction demand and normal force are read.
 PROBES = 4
 
 
@@ -75,28 +75,44 @@ def gravity_at(par, vertical, P, highest, d):
 
 
 @njit(cache=True)
-def read_contact(par, vertical, s, rocking, P, order, highest, h, totals):
+def _top(a, b, c):
+    """Largest value of the parabola through three readings at equal intervals, between them."""
+    turn, bend = 0.5 * (a - c), a - 2 * b + c
+    if abs(turn) < -bend:  # its vertex is inside
+        return b - 0.5 * turn * turn / bend
+    return max(a, b, c)
+
+
+@njit(cache=True)
+def read_contact(par, vertical, s, rocking, P, order, highest, h, totals, work):
     """Friction demand |H|/N, least N/(m g) and peak absolute base acceleration within the step."""
+    row, last = (ABSOLUTE, order) if par.on_base else (GROUND, highest)
+    level = not rocking and vertical is None  # then |H|/N = |acceleration|/g
+    known = min(totals[PEAK_ACCELERATION], totals[FRICTION] * par.g) if level else totals[PEAK_ACCELERATION]
+    if last >= 0 and bound(P[row], last, h) > known:
+        peak = largest(P[row], 1.0, last, h, known, P[EVENT], work)
+        peak = largest(P[row], -1.0, last, h, peak, P[EVENT], work)
+        totals[PEAK_ACCELERATION] = max(totals[PEAK_ACCELERATION], peak)
+        if level:
+            totals[FRICTION] = max(totals[FRICTION], peak / par.g)
+    if level:
+        return
+    demand, demand_before, lift, lift_before = 0.0, 0.0, 0.0, 0.0
     for probe in range(PROBES + 1):
         d = h * probe / PROBES
-        if par.on_base:
-            acceleration = value(P[ABSOLUTE], order, d)
-        else:
-            acceleration = value(P[GROUND], highest, d) if highest >= 0 else 0.0
-        horizontal, upward = acceleration, gravity_at(par, vertical, P, highest, d)
+        horizontal = value(P[row], last, d) if last >= 0 else 0.0
+        upward = gravity_at(par, vertical, P, highest, d)
         if rocking:
-            rate, second = value(P[W], order, d), 0.0
-            for k in range(order, 0, -1):
-                second = second * d + k * P[W, k]
+            rate, second = value(P[W], order, d), derivative(P[W], order, d)
             angle = s * par.gamma - value(P[PHI], order, d)
             c, n = par.R * math.cos(angle), par.R * math.sin(angle)
             horizontal += c * second + n * rate * rate
             upward += n * second - c * rate * rate
-        if rocking or vertical is not None:
-            totals[NORMAL] = min(totals[NORMAL], upward / par.g)
-        demand = abs(horizontal) / upward if upward > 0 else math.inf
-        totals[FRICTION] = max(totals[FRICTION], demand)
-        totals[PEAK_ACCELERATION] = max(totals[PEAK_ACCELERATION], abs(acceleration))
+        here, low = abs(horizontal) / upward if upward > 0 else math.inf, -upward / par.g
+        if probe > 1:
+            totals[FRICTION] = max(totals[FRICTION], _top(demand_before, demand, here))
+            totals[NORMAL] = min(totals[NORMAL], -_top(lift_before, lift, low))
+        demand_before, demand, lift_before, lift = demand, here, lift, low
 
 
 @njit(cache=True)

@@ -3,15 +3,18 @@
 import hashlib
 import json
 import math
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from .errors import SceneError
 from .laws import LAWS, NUMBERS
-from .motion import PulseMotion, SampledMotion
+from .motion import PulseMotion, SampledMotion, slowest_key
+from .part import Part
 
+# Phase [rad] that may pass between two neighbouring doubles: 1e7 s hold 1/50 of it for the smallest blocks.
+RESOLUTION = 1e-4
 # No quantity of a scene is beyond these in SI units, and their products neither overflow nor vanish.
 LEAST, MOST = 1e-20, 1e20
 
@@ -27,19 +30,15 @@ NotNegative = Annotated[float, Field(ge=0, le=MOST)]
 Number = Annotated[float, Field(ge=-MOST, le=MOST)]
 
 
-class _Part(BaseModel):
-    model_config = ConfigDict(
-        frozen=True, extra="forbid", strict=True, allow_inf_nan=False, arbitrary_types_allowed=True
-    )
-
-
-class Block(_Part):
+class Block(Part):
     """The rigid block.
 
     mass m [kg]; radius R [m], base corner to centre of mass; slenderness gamma [rad], angle of R to the
     vertical; corner_inertia J_O [kg m2] about a base corner, default 4/3 m R^2 (rectangle); restitution
     overrides the e_phi of eq. (7).
     """
+
+    table: ClassVar[str] = "block"
 
     mass: Positive
     radius: Positive
@@ -80,13 +79,15 @@ class Block(_Part):
         return self.radius * math.cos(self.slenderness)
 
 
-class Base(_Part):
+class Base(Part):
     """The isolated base under the block: mass m_b [kg]."""
+
+    table: ClassVar[str] = "base"
 
     mass: Positive
 
 
-class Bearings(_Part):
+class Bearings(Part):
     """The bearings under the base; all stiffnesses and forces per bearing.
 
     algebraic: the hysteretic law of eqs (9)-(14). linear: f = ka x; kb, alpha and delta_k are not used.
@@ -94,6 +95,8 @@ class Bearings(_Part):
     F_y [N], kb after it; its characteristic strength is Q_d = F_y (1 - kb/ka). damping [N s/m] adds a viscous force to
     any of them. x_max [m]: the displacement they are built for; nothing stops them there, but a peak beyond it is said.
     """
+
+    table: ClassVar[str] = "bearings"
 
     law: Literal[*NUMBERS] = "algebraic"  # type: ignore[valid-type]  # the names in `LAWS`
     count: Annotated[int, Field(ge=1, le=10**6)] = 1
@@ -131,11 +134,13 @@ class Bearings(_Part):
         return self
 
 
-class Start(_Part):
+class Start(Part):
     """Initial state: tilt [rad], tilt_rate [rad/s], base_displacement [m], base_velocity [m/s].
 
     An initial base displacement is reached by loading the virgin bearing monotonically to it.
     """
+
+    table: ClassVar[str] = "start"
 
     tilt: Annotated[float, Field(gt=-math.pi / 2, lt=math.pi / 2)] = 0.0
     tilt_rate: Number = 0.0
@@ -143,7 +148,7 @@ class Start(_Part):
     base_velocity: Number = 0.0
 
 
-class Scene(_Part):
+class Scene(Part):
     """One thing to simulate. A part that is None is not modelled at all.
 
     Without a base the block stands on rigid ground; without bearings the base slides freely; without a
@@ -177,6 +182,23 @@ class Scene(_Part):
                     )
         return self
 
+    @model_validator(mode="after")
+    def _times_are_resolved(self) -> Self:
+        """Refuse times so late that two doubles lie too far apart for the block, or for the motion, to move between."""
+        ends = {"run.duration": (self.duration or 0.0, self.rocking_frequency)}
+        if self.motion is not None:
+            fastest = max(self.rocking_frequency, getattr(self.motion, "frequency", 0.0))
+            ends[slowest_key(self.motion)] = (self.motion.end, fastest)
+        for key, (end, rate) in ends.items():
+            if math.ulp(end) * rate > RESOLUTION:
+                raise SceneError(
+                    key,
+                    self.duration if key == "run.duration" else getattr(self.motion, key.partition(".")[2]),
+                    f"times up to {end:.3g} s are known to {math.ulp(end):.1g} s only, too little for {rate:.3g} rad/s",
+                    "give an earlier end" if key != "motion.frequency" else "give a higher one",
+                )
+        return self
+
     @property
     def rocking_frequency(self) -> float:
         """omega_r = sqrt(m g R/J_O) [rad/s], eq. (1)."""
@@ -198,7 +220,7 @@ class Scene(_Part):
         values = {name: getattr(self, name) for name in type(self).model_fields}
         for name, change in changes.items():
             part = values.get(name)
-            if isinstance(change, dict) and isinstance(part, BaseModel):
+            if isinstance(change, dict) and isinstance(part, Part):
                 change = type(part)(**{**part.model_dump(), **change})
             values[name] = change
         return type(self)(**values)

@@ -1,12 +1,11 @@
 """Scene files (TOML) to scenes; every mistake in them becomes one `SceneError`."""
 
-import difflib
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, ValidationError
 
@@ -14,48 +13,18 @@ from .errors import SceneError
 from .files import read_plain
 from .motion import PULSES, PulseMotion, SampledMotion
 from .pairing import paired
+from .part import Part, missing, scene_error
 from .records import UNITS, read_record
-from .scene import Base, Bearings, Block, NotNegative, Number, Positive, Scene, Start, _Part
+from .scene import Base, Bearings, Block, NotNegative, Number, Positive, Scene, Start
 from .synthetic import DEFAULT_SEED, STYLES, synthetic_motion
 
 LARGEST, DEEPEST = 100_000, 100  # bytes of a scene file and dots in a line of it: far more than its keys take
 SHIPPED = Path(__file__).parent / "scenes"
 
-KEY_UNITS = {
-    "gravity": "m/s2",
-    "block.mass": "kg",
-    "block.radius": "m",
-    "block.slenderness": "rad",
-    "block.corner_inertia": "kg m2",
-    "base.mass": "kg",
-    "bearings.ka": "N/m",
-    "bearings.kb": "N/m",
-    "bearings.delta_k": "N/m",
-    "bearings.yield_force": "N",
-    "bearings.damping": "N s/m",
-    "bearings.x_max": "m",
-    "motion.amplitude": "m/s2",
-    "motion.frequency": "rad/s",
-    "motion.start": "s",
-    "motion.dt": "s",
-    "motion.vertical_phase": "rad",
-    "start.tilt": "rad",
-    "start.tilt_rate": "rad/s",
-    "start.base_displacement": "m",
-    "start.base_velocity": "m/s",
-    "run.duration": "s",
-}
 MOTIONS = {
     "record": ("units", "dt", "column", "channel", "vertical", "vertical_column", "vertical_channel"),
     "pulse": ("amplitude", "frequency", "start", "vertical_ratio", "vertical_phase"),
     "synthetic": ("seed", "vertical_ratio", "vertical_seed"),
-}
-
-LIMITS = {
-    "greater_than": "above {:.6g}",
-    "greater_than_equal": "from {:.6g} on",
-    "less_than": "below {:.6g}",
-    "less_than_equal": "up to {:.6g}",
 }
 
 
@@ -64,8 +33,10 @@ def _as_text(found: object) -> object:
     return str(found) if type(found) is int else found
 
 
-class _Motion(_Part):
+class _Motion(Part):
     """The [motion] table: exactly one of record, pulse and synthetic, with the keys that belong to it."""
+
+    table: ClassVar[str] = "motion"
 
     record: str | None = None
     units: Literal[*UNITS] | None = None  # type: ignore[valid-type]  # one list of names, here and where they are read
@@ -124,7 +95,7 @@ class _Motion(_Part):
     def _pulsed(self) -> PulseMotion:
         for key in ("amplitude", "frequency"):
             if getattr(self, key) is None:
-                raise _missing(f"motion.{key}")
+                raise missing(f"motion.{key}")
         level = PulseMotion(self.pulse, self.amplitude, self.frequency, self.start or 0.0)  # type: ignore[arg-type]  # checked above
         if not self.vertical_ratio:
             return level
@@ -164,11 +135,13 @@ class _Motion(_Part):
             raise SceneError(f"motion.{key}", name, where + error.problem, error.remedy) from None
 
 
-class _Run(_Part):
+class _Run(Part):
+    table: ClassVar[str] = "run"
+
     duration: Positive | None = None
 
 
-class _SceneFile(_Part):
+class _SceneFile(Part):
     """A scene file as written; keys are those of the file."""
 
     name: str = ""
@@ -244,57 +217,4 @@ def _scene(table: Mapping[str, Any], path: Path) -> Scene:
             name=file.name or path.stem,
         )
     except ValidationError as error:
-        raise _scene_error(error.errors()) from None
-
-
-def _scene_error(problems: Sequence[Any]) -> SceneError:
-    """The first problem pydantic found as a SceneError; unknown keys first, as they explain missing ones."""
-    problem = min(problems, key=lambda found: found["type"] != "extra_forbidden")
-    loc = [str(part) for part in problem["loc"]]
-    key = ".".join(loc)
-    kind, value, context = problem["type"], problem["input"], problem.get("ctx", {})
-    unit = f" [{KEY_UNITS[key]}]" if key in KEY_UNITS else ""
-    if kind == "value_error":
-        error = context["error"]
-        return error if isinstance(error, SceneError) else SceneError(key, None, str(error), "change it")
-    if kind == "missing":
-        return _missing(key)
-    if kind == "extra_forbidden":
-        return _unknown(loc, value)
-    if kind == "finite_number":
-        return SceneError(key, value, "not finite", f"give a finite number{unit}")
-    if kind == "literal_error":
-        return SceneError(key, value, "not known", f"choose {context['expected']}")
-    if kind in LIMITS:
-        words = LIMITS[kind].format(*context.values())
-        return SceneError(key, value, "out of range", f"give a number {words}{unit}")
-    wanted = {
-        "model_type": f"a table: write [{key}]",
-        "string_type": 'text in "quotes"',
-        "int_type": "a whole number",
-        "int_from_float": "a whole number",
-    }
-    return SceneError(key, value, f"wrong type ({type(value).__name__})", f"give {wanted.get(kind, 'a number')}{unit}")
-
-
-def _missing(key: str) -> SceneError:
-    if key in _SceneFile.model_fields:
-        return SceneError(key, None, "missing", f"add a table [{key}]")
-    unit = f" [{KEY_UNITS[key]}]" if key in KEY_UNITS else ""
-    return SceneError(key, None, "missing", f"add {key.split('.')[-1]} = ...{unit}")
-
-
-def _unknown(loc: Sequence[str], value: object) -> SceneError:
-    *tables, name = loc
-    parts: dict[str, type[_Part]] = {
-        "block": Block,
-        "base": Base,
-        "bearings": Bearings,
-        "motion": _Motion,
-        "start": Start,
-        "run": _Run,
-    }
-    part: type[_Part] = parts[tables[0]] if tables else _SceneFile
-    close = difflib.get_close_matches(name, part.model_fields, 1)
-    hint = f"write {close[0]}" if close else "remove it, known are " + ", ".join(part.model_fields)
-    return SceneError(".".join(loc), value, "unknown key", hint)
+        raise scene_error(error, _SceneFile) from None

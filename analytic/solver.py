@@ -12,6 +12,7 @@ import numpy as np
 
 from . import kernel, layout
 from .bearing import BearingLaw
+from .budget import EVENTS, MOST_ROWS, MOST_STEPS, ROWS, most_steps, too_long
 from .decision import longest_duration, model_warnings, shortest_duration
 from .errors import SettingError
 from .layout import Ground, Options, Vertical
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
 # Chosen by measurement (`rocking bench analytic`): where CPU against error is least.
 ORDER = 18  # free flight and pulses: long steps
-TOLERANCE = 1e-12
+TOLERANCE = 1e-11
 # Impacts are followed down to this fraction of omega_r, then summed to their limit; see kernel.remaining_hops.
 REST_RATE = 1e-8
 # History points where the motion has no sampling interval of its own.
@@ -104,6 +105,7 @@ def options(
     output_step: float = 0.0,
     capacity: int = CAPACITY,
     shortest: float = 0.0,
+    steps: int = MOST_STEPS,
 ) -> Options:
     """The kernel's `Options`, checked.
 
@@ -119,7 +121,7 @@ def options(
     if not 0 < rest_rate <= 1e-2:
         raise SettingError(f"rest_rate = {rest_rate!r}: give a value above 0, up to 1e-2")
     return Options(
-        float(tolerance), order, float(rest_rate), record, decide, float(output_step), capacity, float(shortest)
+        float(tolerance), order, float(rest_rate), record, decide, float(output_step), capacity, float(shortest), steps
     )
 
 
@@ -148,7 +150,8 @@ def simulate(
     rest_rate : float
         Impacts slower than this fraction of omega_r are summed to their limit and end in rest.
     output_step : float or None
-        [s]; by default the sampling interval of the motion, or a 2000th of the (shortest) duration.
+        [s]; by default the sampling interval of the motion, or a 2000th of the (shortest) duration; in a history that
+        would hold more than a million rows a whole number of these.
 
     Returns
     -------
@@ -158,8 +161,11 @@ def simulate(
     ------
     SettingError
         A setting is out of range.
+    SceneError
+        A part of the scene is so stiff, or its motion so long, that the run does not end within its budget (`budget`);
+        names that part.
     """
-    output_step = _output_step(scene, output_step)
+    output_step = _output_step(scene, output_step, history)
     settings = {"tolerance": tolerance, "rest_rate": rest_rate, "order": ORDER, "short_order": SHORT_ORDER}
     chosen = options(
         tolerance,
@@ -167,30 +173,52 @@ def simulate(
         output_step=output_step if history else 0.0,
         decide=scene.duration is None,
         shortest=shortest_duration(scene) if scene.duration is None else 0.0,
+        steps=most_steps(scene),
     )
     par, shaking, totals = parameters(scene), ground(scene.motion), np.zeros(layout.TOTALS)
     _warm(shaking.vertical is not None)
     begin = time.process_time()
     result = kernel.run(par, shaking, chosen, totals)
     most = int(totals[[layout.IMPACTS, layout.UPLIFTS, layout.RESTS]].max())
+    if totals[layout.STATUS] == layout.SPENT:
+        reached = f"{chosen.most_steps:.3g} steps of the analytic model reach only {totals[layout.TIME]:.3g} s"
+        raise too_long(scene, reached)
+    if most > EVENTS:
+        raise too_long(scene, f"{most} impacts, of which no more than {EVENTS} are kept")
     if most > chosen.capacity:
         result = kernel.run(par, shaking, chosen._replace(capacity=most), totals)
     cpu = time.process_time() - begin
     response = _response(scene, par, totals, result, cpu, settings, history)
-    if totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCKING:  # cut while it falls
+    if totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCKING:  # cut on its way to overturning
         later = par._replace(duration=par.duration + longest_duration(scene))
         kernel.run(later, shaking, options(tolerance, rest_rate=rest_rate), totals)
-        response = replace(response, outcome="overturns", overturning_time=float(totals[layout.TIME]))
+        response = replace(
+            response,
+            outcome="overturns",
+            overturning_time=float(totals[layout.TIME]),
+            peak_tilt=0.5 * math.pi,
+            peak_tilt_ratio=0.5 * math.pi / scene.block.slenderness,
+            friction_demand=float(totals[layout.FRICTION]),
+            min_normal_ratio=float(totals[layout.NORMAL]),
+        )
     return response
 
 
-def _output_step(scene, asked):
+def _output_step(scene, asked, history):
     """Interval of the history [s]; by default that of the motion's samples, or a share of the (shortest) duration."""
+    longest = longest_duration(scene) if scene.duration is None else scene.duration
     if asked is None:
         span = shortest_duration(scene) if scene.duration is None else scene.duration
         asked = scene.motion.dt if isinstance(scene.motion, SampledMotion) else span / HISTORY_POINTS
+        return asked * max(1, math.ceil(longest / asked / ROWS))
     if asked <= 0 or not math.isfinite(asked):
         raise SettingError(f"output_step = {asked!r}: give a time above 0 [s]")
+    if history and longest / asked > MOST_ROWS:
+        least = longest / MOST_ROWS
+        raise SettingError(
+            f"output_step = {asked!r}: up to {longest / asked:.3g} rows of history; give at least {least:.3g} s, or "
+            "history=False"
+        )
     return asked
 
 

@@ -17,9 +17,10 @@ from .events import (
     find_reversal,
     find_uplift,
     hop_deceleration,
+    upper_bound,
 )
 from .laws import chosen
-from .polynomial import bracketed_root, value
+from .polynomial import bound, bracketed_root, derivative, largest, value
 from .readings import read_contact, read_energy, read_lifting, write_history
 from .taylor import (
     HARMONIC,
@@ -33,6 +34,9 @@ from .taylor import (
     hop_order,
     rigid_series,
 )
+
+# No step of a rocking block reaches this far [1/omega_r] at a useful tolerance: from here its length is soon found.
+FARTHEST = 4.0
 
 # The bearings' law, see `laws.Law`.
 mark, begin_step, reached = chosen("mark"), chosen("begin"), chosen("reached")
@@ -68,23 +72,23 @@ def stretch_of_ground(ground, vertical, segment, begin, options, duration):
 
 
 @njit(inline="always")
-def ground_of_step(ground, kind, a0, slope, t, tau, order, h, A):
-    """Series of the ground acceleration at time t, `tau` into the stretch: (its highest order, step)."""
+def ground_of_step(ground, kind, a0, slope, tau, order, h, A):
+    """Series of the ground acceleration `tau` into the stretch: (its highest order, step)."""
     if kind == HARMONIC and ground.frequency == 0:
         return ground_series(order, LINEAR_GROUND, a0, 0.0, 0.0, 0.0, A), h
-    phase = ground.phase + ground.frequency * (t - ground.start)
+    phase = ground.phase + ground.frequency * tau  # not by t: late pulses are as exact as early ones
     if kind > LINEAR_GROUND:
         h = min(h, 1.0 / ground.frequency)
     return ground_series(order, kind, a0 + slope * tau, slope, ground.frequency, phase, A), h
 
 
 @njit(inline="always")
-def gravity_of_step(ground, vertical, g, kind, lift, rise, t, tau, order, G):
+def gravity_of_step(ground, vertical, g, kind, lift, rise, tau, order, G):
     """Series of g + a_v, as `ground_of_step`."""
     G[0], G[1] = 0.0, 0.0
     if kind == HARMONIC and ground.frequency == 0:
         kind = LINEAR_GROUND
-    phase = vertical.phase + ground.frequency * (t - ground.start)
+    phase = vertical.phase + ground.frequency * tau
     ground_series(order, kind, lift + rise * tau, rise, ground.frequency, phase, G)
     G[0] += g
 
@@ -127,6 +131,7 @@ def contact_of_step(par, factors, highest, order, tolerance, h, P):
 def rocking_of_step(par, vertical, gravity, kind, s, tilt, rate, fresh, factors, highest, order, tolerance, h, P):
     """Series while rocking; returns (order used, step [s]). gravity : g + a_v [m/s2] at its start."""
     phi, w, S, C, A, v, F = P[L.PHI], P[L.W], P[L.S], P[L.C], P[L.GROUND], P[L.V], P[L.F]
+    h = min(h, FARTHEST / math.sqrt(par.p2))
     angle, used, reach = s * par.gamma - tilt, order, h
     phi[0], w[0], S[0], C[0] = tilt, rate, math.sin(angle), math.cos(angle)
     if tilt == 0 and rate != 0 and kind != LINEAR_GROUND:  # a hop: its length tells the order it needs
@@ -160,7 +165,7 @@ def rocking_of_step(par, vertical, gravity, kind, s, tilt, rate, fresh, factors,
 
 @njit(inline="always")
 def first_event(
-    par, vertical, gravity, rocking, s, slope, refused, direction, corner, order, highest, t, h, P, record, totals, work
+    par, vertical, gravity, rocking, s, tilt, slope, refused, direction, corner, order, highest, h, P, work
 ):
     """(kind of the first event in the step, its time since the start; NONE and h without one).
 
@@ -182,13 +187,15 @@ def first_event(
         root = find_impact(phi, s, order, h, event, work)
         if root >= 0:
             found, h = L.IMPACT, root
-        if record and totals[L.UNSTABLE_TIME] < 0:
+        top = upper_bound(phi, s, order, h)
+        if top > par.gamma > s * tilt:
             root = find_exceedance(phi, s, par.gamma, order, h, event, work)
             if root >= 0:
-                totals[L.UNSTABLE_TIME] = t + root
-        root = find_exceedance(phi, s, 0.5 * math.pi, order, h, event, work)
-        if root >= 0:
-            found, h = L.OVERTURNING, root
+                found, h = L.PASSAGE, root
+        if top > 0.5 * math.pi:
+            root = find_exceedance(phi, s, 0.5 * math.pi, order, h, event, work)
+            if root >= 0:
+                found, h = L.OVERTURNING, root
     if direction != 0:
         root = find_reversal(P[L.V], direction, order, h, event, work)
         if root > 0:
@@ -201,33 +208,31 @@ def first_event(
 
 
 @njit(inline="always")
-def read_step(par, vertical, rocking, s, tilt, order, highest, t, h, P, options, history, written, held, totals):
-    """History, diagnostics and ledger of the step.
-
-    Returns (rows of the history written, friction demand and normal force held since |tilt| was last below gamma).
-    """
+def read_step(par, vertical, rocking, s, order, highest, t, h, P, options, history, written, totals, work):
+    """History, diagnostics and ledger of the step; returns the rows of the history written."""
     if history.shape[0] > 0 and (h > 0 or t == 0):
         written = write_history(history, written, options.output_step, t, h, P, order, par.on_base, rocking)
     if options.record and h > 0:
-        read_contact(par, vertical, s, rocking, P, order, highest, h, totals)
-        if abs(tilt) <= par.gamma:  # what comes later is the last fall, or it comes back
-            held = totals[L.FRICTION], totals[L.NORMAL]
+        read_contact(par, vertical, s, rocking, P, order, highest, h, totals, work)
         if rocking or par.on_base:
             read_energy(par, rocking, P, order, highest, h, totals)
         if vertical is not None and rocking:
             read_lifting(par, P, order, highest, h, totals)
-    return written, held
+    return written
 
 
 @njit(inline="always")
-def end_of_block(s, rate, order, h, P, peak_tilt):
-    """(tilt, rate, peak tilt) at the end of the step; the peak inside it is a root of the rate."""
+def end_of_block(s, rate, order, h, P, peak_tilt, work):
+    """(tilt, rate, peak tilt) at the end of the step; a peak inside it is a root of the rate."""
     phi, w, event = P[L.PHI], P[L.W], P[L.EVENT]
     tilt_end, rate_end = value(phi, order, h), value(w, order, h)
-    if s * rate > 0 and s * rate_end < 0:
+    if s * rate >= 0 and s * rate_end < 0:
         for k in range(order + 1):
             event[k] = s * w[k]
         peak_tilt = max(peak_tilt, abs(value(phi, order, bracketed_root(event, 0, order, 0.0, h))))
+    elif w[1] * rate < 0 and w[1] * derivative(w, order, h) < 0 and bound(phi, order, h) > peak_tilt:
+        # the rate may have changed its sign twice
+        peak_tilt = largest(phi, s, order, h, peak_tilt, event, work)
     return tilt_end, rate_end, max(peak_tilt, abs(tilt_end))
 
 

@@ -18,6 +18,9 @@ SHORT_ORDER = 8
 # A damped motion decays until its numbers have no digits left; below this size [rad, m, ...] it sets no step.
 NEGLIGIBLE = 1e-200
 
+# A step is shortened by no more than this at once: powers of a long one overflow.
+MOST_SHRINK = 1e-3
+
 # Parameters of a run, one scalar each; see RockingModel and BearingLaw for their meaning.
 Parameters = namedtuple(
     "Parameters", "m M J R gamma g p2 e mt on_base law count kb dk alpha d0 f0 damping tilt rate x v z duration"
@@ -32,16 +35,23 @@ QUIET, LINEAR_GROUND, HARMONIC, RICKER = range(4)
 
 @njit(cache=True)
 def allowed_step(f, order, tolerance, h):
-    """Largest step up to h whose last Taylor terms stay below tolerance times the size of f in the step."""
-    size = abs(f[0]) + abs(f[1]) * h + abs(f[2]) * h * h
-    limit = tolerance * max(size, NEGLIGIBLE)
-    last = abs(f[order]) * h**order
-    if last > limit:
-        h *= 0.9 * (limit / last) ** (1.0 / order)
-    before = abs(f[order - 1]) * h ** (order - 1)
-    if before > 4 * limit:  # one of the two may vanish by symmetry
-        h *= 0.9 * (4 * limit / before) ** (1.0 / (order - 1))
-    return h
+    """Largest step up to h whose last Taylor terms stay below tolerance times the size of f in that very step.
+
+    NaN where the series is not finite.
+    """
+    if not math.isfinite(abs(f[order]) + abs(f[order - 1])):
+        return math.nan
+    while True:
+        limit = tolerance * max(abs(f[0]) + abs(f[1]) * h + abs(f[2]) * h * h, NEGLIGIBLE)
+        last, before = abs(f[order]) * h**order, abs(f[order - 1]) * h ** (order - 1)
+        if last <= limit and before <= 4 * limit:  # one of the two may vanish by symmetry
+            return h
+        shrink = 1.0
+        if last > limit:
+            shrink = 0.9 * (limit / last) ** (1.0 / order)
+        if before > 4 * limit:
+            shrink = min(shrink, 0.9 * (4 * limit / before) ** (1.0 / (order - 1)))
+        h *= max(shrink, MOST_SHRINK)
 
 
 @njit(cache=True)

@@ -3,9 +3,8 @@
 import math
 
 import pytest
-from pydantic import ValidationError
 
-from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start
+from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, SceneError, Start
 
 BLOCK = Block(mass=3172.05, radius=1.0884, slenderness=0.28)
 SCENE = Scene(
@@ -33,9 +32,9 @@ def test_with_changes_one_part_and_validates_again():
     thin = SCENE.with_(block={"slenderness": 0.1}, duration=2.0)
     assert (thin.block.slenderness, thin.block.mass, thin.duration) == (0.1, 3172.05, 2.0)
     assert SCENE.block.slenderness == 0.28
-    with pytest.raises(ValidationError):
+    with pytest.raises(SceneError):
         SCENE.with_(block={"slenderness": 2.0})
-    with pytest.raises(ValidationError):
+    with pytest.raises(SceneError):
         SCENE.with_(nothing=1)
 
 
@@ -55,12 +54,21 @@ def test_digest_is_of_the_content():
 @pytest.mark.parametrize(
     "make, message",
     [
-        (lambda: Block(mass=-1, radius=1, slenderness=0.2), "greater than 0"),
-        (lambda: Block(mass=1, radius=1, slenderness=math.pi / 2), "less than"),
+        (
+            lambda: Block(mass=-1, radius=1, slenderness=0.2),
+            "block.mass = -1: out of range; give a number above 0",
+        ),
+        (
+            lambda: Block(mass=1, radius=1, slenderness=math.pi / 2),
+            "out of range; give a number below 1.5708",
+        ),
         (lambda: Block(mass=1, radius=1, slenderness=0.2, corner_inertia=1.0), "less than a point mass would have"),
-        (lambda: Block(mass=1, radius=1, slenderness=0.2, restitution=1.1), "less than or equal to 1"),
+        (
+            lambda: Block(mass=1, radius=1, slenderness=0.2, restitution=1.1),
+            "block.restitution = 1.1: out of range",
+        ),
         (lambda: Bearings(ka=1.0, kb=1.0, alpha=2.0), "not above kb = 1 N/m"),
-        (lambda: Bearings(ka=2.0, kb=1.0, alpha=1.0), "greater than 1"),
+        (lambda: Bearings(ka=2.0, kb=1.0, alpha=1.0), "bearings.alpha = 1.0: out of range; give a number above 1"),
         (lambda: Bearings(ka=2.0, kb=1.0), "bearings.alpha: missing"),
         (lambda: Bearings(ka=2.0, alpha=3.0), "bearings.kb: missing"),
         (lambda: Bearings(ka=2.0, kb=1.0, alpha=2.0, delta_k=1.0), "bearings.delta_k = 1.0: not below ka - kb"),
@@ -69,12 +77,23 @@ def test_digest_is_of_the_content():
             lambda: Scene(block=BLOCK, duration=1.0, start=Start(base_velocity=1.0)),
             "start.base_velocity = 1.0: needs a base",
         ),
-        (lambda: Scene(block=BLOCK, duration=math.nan), "finite number"),
-        (lambda: Scene(block=BLOCK, duration=1.0, motion="quake"), "motion"),
+        (lambda: Scene(block={"mass": 1.0, "radius": 1.0, "slendernes": 0.2}), "block.slendernes = 0.2: unknown key"),
+        (lambda: Scene(), "block: missing; add a table [block]"),
+        (lambda: Scene(block=BLOCK, duration=1e16), "run.duration = 1e+16: times up to 1e+16 s are known to 2 s only"),
+        (
+            lambda: Scene(block=BLOCK, motion=PulseMotion("one-sine", 1.0, 5.0, start=1e16)),
+            "motion.start = 1e+16: times up to 1e+16 s",
+        ),
+        (
+            lambda: Scene(block=BLOCK, motion=PulseMotion("one-sine", 1.0, 1e-20)),
+            "motion.frequency = 1e-20: times up to 6.28e+20 s",
+        ),
+        (lambda: Scene(block=BLOCK, duration=math.nan), "duration = nan: not finite"),
+        (lambda: Scene(block=BLOCK, duration=1.0, motion="quake"), "motion = 'quake': wrong type (str)"),
     ],
 )
 def test_refusals(make, message):
-    with pytest.raises(ValidationError) as caught:
+    with pytest.raises(SceneError) as caught:
         make()
     assert message in str(caught.value)
 

@@ -1,0 +1,106 @@
+"""What parts of a scene have in common: frozen, checked by pydantic, and each mistake told as a `SceneError`."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Sequence
+from typing import Any, ClassVar, get_args
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from .errors import SceneError
+
+UNITS = {
+    "gravity": "m/s2",
+    "block.mass": "kg",
+    "block.radius": "m",
+    "block.slenderness": "rad",
+    "block.corner_inertia": "kg m2",
+    "base.mass": "kg",
+    "bearings.ka": "N/m",
+    "bearings.kb": "N/m",
+    "bearings.delta_k": "N/m",
+    "bearings.yield_force": "N",
+    "bearings.damping": "N s/m",
+    "bearings.x_max": "m",
+    "motion.amplitude": "m/s2",
+    "motion.frequency": "rad/s",
+    "motion.start": "s",
+    "motion.dt": "s",
+    "motion.vertical_phase": "rad",
+    "start.tilt": "rad",
+    "start.tilt_rate": "rad/s",
+    "start.base_displacement": "m",
+    "start.base_velocity": "m/s",
+    "run.duration": "s",
+}
+LIMITS = {
+    "greater_than": "above {:.6g}",
+    "greater_than_equal": "from {:.6g} on",
+    "less_than": "below {:.6g}",
+    "less_than_equal": "up to {:.6g}",
+}
+WANTED = {"string_type": 'text in "quotes"', "int_type": "a whole number", "int_from_float": "a whole number"}
+
+
+class Part(BaseModel):
+    """A part of a scene. `table` is its name in a scene file; no part is made of a mistake: `SceneError`."""
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", strict=True, allow_inf_nan=False, arbitrary_types_allowed=True
+    )
+    table: ClassVar[str] = ""
+
+    def __init__(self, **values: Any) -> None:
+        try:
+            super().__init__(**values)
+        except ValidationError as error:
+            raise scene_error(error, type(self)) from None
+
+    # pydantic makes parts of parts without it, so that their mistakes keep their place in the whole
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+
+def scene_error(error: ValidationError, part: type[Part]) -> SceneError:
+    """The first problem pydantic found in a `part`, as a SceneError; unknown keys first: they explain missing ones."""
+    problem = min(error.errors(), key=lambda found: found["type"] != "extra_forbidden")
+    kind, value, context = problem["type"], problem["input"], problem.get("ctx", {})
+    loc = [str(name) for name in problem["loc"]]
+    if kind.startswith("dataclass"):  # one of several classes, whose name is the last of the place
+        loc, kind = loc[:-1], "model_type"
+    key = ".".join([part.table, *loc] if part.table else loc)
+    unit = f" [{UNITS[key]}]" if key in UNITS else ""
+    if kind == "value_error":
+        found = context["error"]
+        return found if isinstance(found, SceneError) else SceneError(key, None, str(found), "change it")
+    if kind == "missing":
+        return missing(key)
+    if kind == "extra_forbidden":
+        return _unknown(key, loc, value, part)
+    if kind == "finite_number":
+        return SceneError(key, value, "not finite", f"give a finite number{unit}")
+    if kind == "literal_error":
+        return SceneError(key, value, "not known", f"choose {context['expected']}")
+    if kind in LIMITS:
+        words = LIMITS[kind].format(*context.values())
+        return SceneError(key, value, "out of range", f"give a number {words}{unit}")
+    wanted = f"a table: write [{key}]" if kind == "model_type" else WANTED.get(kind, "a number")
+    return SceneError(key, value, f"wrong type ({type(value).__name__})", f"give {wanted}{unit}")
+
+
+def missing(key: str) -> SceneError:
+    """A table or a key that is not there."""
+    if key in {table.table for table in Part.__subclasses__() if table.table}:
+        return SceneError(key, None, "missing", f"add a table [{key}]")
+    unit = f" [{UNITS[key]}]" if key in UNITS else ""
+    return SceneError(key, None, "missing", f"add {key.split('.')[-1]} = ...{unit}")
+
+
+def _unknown(key: str, loc: Sequence[str], value: object, part: type[Part]) -> SceneError:
+    *tables, name = loc
+    for table in tables:
+        kinds = part.model_fields[table].annotation
+        part = next(kind for kind in (kinds, *get_args(kinds)) if isinstance(kind, type) and issubclass(kind, Part))
+    close = difflib.get_close_matches(name, part.model_fields, 1)
+    hint = f"write {close[0]}" if close else "remove it, known are " + ", ".join(part.model_fields)
+    return SceneError(key, value, "unknown key", hint)
