@@ -98,12 +98,13 @@ class Response:
     unstable_time: float | None  # s, first |tilt| = slenderness: a diagnostic, no proof of overturning
     peak_tilt: float  # rad
     peak_tilt_ratio: float  # peak tilt / slenderness
+    # where the block overturns, peaks of the base and forces at the contact are those up to the last passage of |tilt| =
+    # slenderness: beyond it the model falls on about its corner, where a block would slide and jump
     peak_base_displacement: float  # m
     peak_base_acceleration: float  # m/s2, absolute
     impacts: tuple[Impact, ...]
     uplifts: tuple[float, ...]  # s
     rests: tuple[float, ...]  # s, limit times of accumulating impacts
-    # where it overturns, these two stop where |tilt| was last below the slenderness: any falling block loses contact
     friction_demand: float  # max |H|/N at the contact
     min_normal_ratio: float  # min N/(m g) at the contact
     end: State

@@ -258,10 +258,6 @@ def _response(
         outcome = "overturns"
     else:
         outcome = "rocks" if totals[layout.LIFTED] else "stands"
-    if scene.base is None:
-        peak_acceleration = _peak_ground_acceleration(scene.motion, end.time)
-    else:
-        peak_acceleration = float(totals[layout.PEAK_ACCELERATION])
     unstable = float(totals[layout.UNSTABLE_TIME])
     return Response(
         engine="analytic",
@@ -273,7 +269,7 @@ def _response(
         peak_tilt=float(totals[layout.PEAK_TILT]),
         peak_tilt_ratio=float(totals[layout.PEAK_TILT]) / gamma,
         peak_base_displacement=float(totals[layout.PEAK_X]),
-        peak_base_acceleration=peak_acceleration,
+        peak_base_acceleration=float(totals[layout.PEAK_ACCELERATION]),
         impacts=tuple(Impact(*map(float, row)) for row in impacts),
         uplifts=tuple(uplifts.tolist()),
         rests=tuple(rests.tolist()),
@@ -302,15 +298,6 @@ def _warnings(scene: Scene, totals: np.ndarray, velocity: float) -> tuple[str, .
             "peak, the one given is that at the end of the run"
         )
     return tuple(found)
-
-
-def _peak_ground_acceleration(motion: Motion | None, until: float) -> float:
-    if motion is None:
-        return 0.0
-    if motion.end <= until:
-        return motion.peak
-    times = np.append(np.arange(0.0, until, motion.dt if isinstance(motion, SampledMotion) else until / 10000), until)
-    return float(np.abs(motion.acceleration(times)).max())
 
 
 def _energy(scene: Scene, par: Parameters, totals: np.ndarray, end: State) -> Energy:

@@ -130,7 +130,7 @@ def _march(h, ground, gravity, y, block, impact, bearing, rows):
     impacts, uplifts, rests = [(0.0, 0.0, 0.0, 0.0)], [0.0], [0.0]
     impacts.pop(), uplifts.pop(), rests.pop()
     unstable, peak_tilt, peak_x, peak_a, friction, normal = -1.0, abs(tilt), abs(x), 0.0, 0.0, 1.0
-    force, taken, over = 0.0, 0, False
+    force, taken, over, held = 0.0, 0, False, (peak_x, peak_a, friction, normal)
     for k in range(len(ground)):
         taken, t, a, g = k, k * h, ground[k], gravity[k]
         force = count * (kb * x + z + damping * v)
@@ -152,6 +152,8 @@ def _march(h, ground, gravity, y, block, impact, bearing, rows):
         peak_a = max(peak_a, abs(absolute))
         friction = max(friction, abs(horizontal) / vertical if vertical > 0 else math.inf)
         normal = min(normal, vertical / (m * standard))
+        if abs(tilt) <= gamma:  # what comes later is the last fall, or it comes back
+            held = peak_x, peak_a, friction, normal
         if k == len(ground) - 1:
             break
         rate += h * spin
@@ -170,5 +172,7 @@ def _march(h, ground, gravity, y, block, impact, bearing, rows):
                 v += arm * rate
                 tilt, rate, side = 0.0, 0.0, 0.0
                 rests.append(t + h)
+    if over:
+        peak_x, peak_a, friction, normal = held
     extremes, end = (peak_tilt, peak_x, peak_a, friction, normal), (tilt, rate, x, v, force)
     return taken, over, impacts, uplifts, rests, unstable, extremes, end

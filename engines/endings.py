@@ -40,20 +40,8 @@ def upto_overturning(scene: Scene, trace: Trace, ended: str | None) -> tuple[Tra
     limit = math.pi / 2
     over = np.flatnonzero(np.abs(trace.tilt) >= limit)
     if len(over) and over[0] > 0:
-        last = int(over[0])
-        pair = slice(last - 1, last + 1)
-        t = _crossing(trace.time[pair], trace.tilt[pair], trace.tilt_rate[pair], limit * np.sign(trace.tilt[last]))
-        weight = (t - trace.time[last - 1]) / (trace.time[last] - trace.time[last - 1])
-
-        def closed(values, end=None):
-            """The steps before it, and the state at it."""
-            if end is None:
-                end = (1 - weight) * values[last - 1] + weight * values[last]
-            return np.append(values[: last if weight > 0 else last - 1], [end], axis=0)
-
-        columns = {name: closed(getattr(trace, name)) for name in Trace.COLUMNS[2:]}
-        columns.update(time=closed(trace.time, t), tilt=closed(trace.tilt, math.copysign(limit, trace.tilt[last])))
-        return replace(trace, centre=None if trace.centre is None else closed(trace.centre), **columns), t
+        cut = _upto_crossing(trace, int(over[0]), limit)
+        return cut, float(cut.time[-1])
     side = np.sign(trace.tilt[-1])
     if ended == "overturned" and side * trace.tilt_rate[-1] > 0:
         model = ArrayModel.of(scene)
@@ -64,6 +52,36 @@ def upto_overturning(scene: Scene, trace: Trace, ended: str | None) -> tuple[Tra
         q, p = side * trace.tilt_rate[-1], abs(trace.tilt[-1]) - limit
         return trace, float(trace.time[-1] - 2 * p / (q + math.sqrt(max(q * q - 2 * pull * p, 0.0))))
     return trace, None
+
+
+def upright_part(scene: Scene, trace: Trace, falls: bool) -> Trace:
+    """The trace of a block that `falls` up to its last passage of the slenderness; else, and without one, all of it."""
+    if not falls:
+        return trace
+    slenderness = scene.block.slenderness
+    below = np.flatnonzero(np.abs(trace.tilt) <= slenderness)
+    last = int(below[-1]) + 1 if len(below) else 1
+    if last == len(trace.time) or not len(below):
+        return trace.upto(max(last, 2))
+    return _upto_crossing(trace, last, slenderness)
+
+
+def _upto_crossing(trace: Trace, last: int, level: float) -> Trace:
+    """The steps before step `last`, within whose interval |tilt| passes `level`, and the state there as the last."""
+    pair = slice(last - 1, last + 1)
+    tilt = math.copysign(level, trace.tilt[last])
+    t = _crossing(trace.time[pair], trace.tilt[pair], trace.tilt_rate[pair], tilt)
+    weight = (t - trace.time[last - 1]) / (trace.time[last] - trace.time[last - 1])
+
+    def closed(values, end=None):
+        """The steps before it, and the state at it."""
+        if end is None:
+            end = (1 - weight) * values[last - 1] + weight * values[last]
+        return np.append(values[: last if weight > 0 else last - 1], [end], axis=0)
+
+    columns = {name: closed(getattr(trace, name)) for name in Trace.COLUMNS[2:]}
+    columns.update(time=closed(trace.time, t), tilt=closed(trace.tilt, tilt))
+    return replace(trace, centre=None if trace.centre is None else closed(trace.centre), **columns)
 
 
 def _crossing(time: np.ndarray, value: np.ndarray, rate: np.ndarray, level: float) -> float:

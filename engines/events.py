@@ -216,22 +216,14 @@ def _contact_acceleration(model: ArrayModel, scene: Scene, trace: Trace, steps: 
     return scene.motion.acceleration(time) if scene.motion else np.zeros(len(time))
 
 
-def contact_measures(scene: Scene, trace: Trace, falls: bool = False) -> tuple[float, float, float]:
-    """(max |H|/N, min N/(m g), max |absolute base acceleration| [m/s2]) over the steps of a trace.
-
-    Where the block `falls`, the first two end at the last step below the slenderness.
-    """
-    count, begin = len(trace.time), 0
-    if falls and (below := np.flatnonzero(np.abs(trace.tilt) <= scene.block.slenderness)).size:
-        count = int(below[-1]) + 2
+def contact_measures(scene: Scene, trace: Trace) -> tuple[float, float, float]:
+    """(max |H|/N, min N/(m g), max |absolute base acceleration| [m/s2]) over the steps of a trace."""
     demands, normals, peaks = [], [], []
     for piece in trace.pieces():
         demand, normal, absolute = _at_contact(scene, piece)
-        if begin < count:
-            demands.append(demand[: count - begin].max())
-            normals.append(normal[: count - begin].min())
+        demands.append(demand.max())
+        normals.append(normal.min())
         peaks.append(np.abs(absolute).max())
-        begin += len(demand) - 1
     return float(np.max(demands)), float(np.min(normals)), float(np.max(peaks))
 
 

@@ -21,7 +21,7 @@ from analytic.motion import SampledMotion
 from analytic.response import Failure, History, Response
 
 from .checks import check_energy, check_place, energy_gain, replay_bearing
-from .endings import ended_early, finite_part, last_state, unstable_time, upto_overturning
+from .endings import ended_early, finite_part, last_state, unstable_time, upright_part, upto_overturning
 from .events import check_impacts, contact_measures, find_events
 from .momentum import check_impulse
 from .swings import Trace, find_swings
@@ -108,14 +108,15 @@ def _measured(
     swings = find_swings(beyond)
     impacts, *times = find_events(scene, beyond, swings)
     uplifts, rests, missed = (tuple(time for time in each if time <= end) for each in times)
-    demand, normal, acceleration = contact_measures(scene, trace, falls=overturning_time is not None)
+    upright = upright_part(scene, trace, falls=overturning_time is not None)  # any falling block slides and jumps
+    demand, normal, acceleration = contact_measures(scene, upright)
     peak = _peak(trace.time, trace.tilt, trace.tilt_rate)
     seen = dict(
         overturning_time=overturning_time,
         unstable_time=unstable_time(scene, trace),
         peak_tilt=peak,
         peak_tilt_ratio=peak / scene.block.slenderness,
-        peak_base_displacement=_peak(trace.time, trace.base_displacement, trace.base_velocity),
+        peak_base_displacement=_peak(upright.time, upright.base_displacement, upright.base_velocity),
         peak_base_acceleration=acceleration,
         impacts=tuple(impact for impact in impacts if impact.time <= end),
         uplifts=uplifts,

@@ -131,7 +131,7 @@ class Run(Equations):
         if missed is not None and self.t < missed < solution.t[-1]:
             return self.integrate(missed, ground)  # its end now shows the crossing
         self.flight = None
-        for t, y in zip(solution.t, solution.y.T, strict=True):
+        for t, y in self.states(events, solution):
             self.record(t, y, ground(t))
         self.t, self.y = float(solution.t[-1]), solution.y[:, -1].copy()
         if solution.status < 0:
@@ -139,17 +139,22 @@ class Run(Equations):
         terminal = None
         for (name, event), times, states in zip(events, solution.t_events, solution.y_events, strict=True):
             for t, y in zip(times, states, strict=True):
-                if name == "apex":
-                    self.extremes.tilt = max(self.extremes.tilt, float(abs(y[0])))
-                elif name == "reversal":
-                    self.extremes.x = max(self.extremes.x, float(abs(y[2])))
-                elif name == "unstable" and self.unstable is None:
+                if name == "unstable" and self.unstable is None:
                     self.unstable = float(t)
             if event.terminal and len(times):  # type: ignore[attr-defined]  # set in `events`; scipy reports the first terminal event of a stretch only
                 terminal = name
         if terminal:
             getattr(self, "at_" + terminal)(ground(self.t))
         return None
+
+    @staticmethod
+    def states(events: Sequence[tuple[str, Callable[..., float]]], solution: Any) -> list[tuple[float, np.ndarray]]:
+        """(t, y) in order of time: the steps, and between them turns of block and base and passages of the slenderness."""
+        found = list(zip(solution.t, solution.y.T, strict=True))
+        for (_, event), times, states in zip(events, solution.t_events, solution.y_events, strict=True):
+            if not event.terminal:  # type: ignore[attr-defined]  # set in `events`
+                found += zip(times, states, strict=True)
+        return sorted(found, key=lambda each: each[0])
 
     def stepped_over(self, events: Sequence[tuple[str, Callable[..., float]]], solution: Any) -> float | None:
         """Time of the first extreme beyond a threshold that was crossed twice within one step, or None.
@@ -192,8 +197,7 @@ class Run(Equations):
             found.append(("impact", lambda t, y: side * y[0] / (t - lifted) if t > lifted else 1.0, True, -1))
             found.append(("overturning", lambda t, y: side * y[0] - math.pi / 2, True, 1))
             found.append(("apex", lambda t, y: side * y[1], False, 0))
-            if self.unstable is None:
-                found.append(("unstable", lambda t, y: side * y[0] - model.gamma, False, 1))
+            found.append(("unstable", lambda t, y: side * y[0] - model.gamma, False, 1))
         else:
             limit, vertical = model.uplift_limit, self.vertical
             found.append(("uplift", lambda t, y: abs(self.contact_acceleration(y, 0.0)) - limit(vertical(t)), True, 1))
@@ -279,8 +283,8 @@ class Run(Equations):
         outcome = "rocks" if self.rocked else "stands"
         outcome = "failed" if failure else "overturns" if self.overturning is not None else outcome
         extremes = self.extremes
-        if outcome != "overturns":
-            extremes.count_waiting()
+        if outcome == "overturns":
+            extremes.leave_out_the_fall()
         return Response(
             engine="twin",
             variant=self.settings["method"],

@@ -3,7 +3,7 @@
 // its steps, events and decision in JavaScript: Taylor steps whose events are roots of the step's own polynomials.
 const Model = (() => {
   const { value, firstRoot, bracketedRoot } = Polynomial, { P } = Series;
-  const ORDER = 18, SHORT_ORDER = 8, TOLERANCE = 1e-12, REST_RATE = 1e-8, ELASTIC_REST_RATE = 1e-4;
+  const ORDER = 18, SHORT_ORDER = 8, TOLERANCE = 1e-11, REST_RATE = 1e-8, ELASTIC_REST_RATE = 1e-4;
   const LONGEST_LAST_HOP = 1e-3, NEARLY_ELASTIC = 0.999, NO_RATE = 1e-15, TOUCH = 1e-9, ONSET = 1e-9, ROUNDING = 4e-16;
   const MOST_STEPS = 2e5; // a guard: a nearly elastic block hops for ever
 
@@ -54,6 +54,10 @@ const Model = (() => {
       for (let k = 0; k <= order; k++) P.event[k] = st.s * P.phi[k];
       let root = firstRoot(P.event, order, h); // a root at the start is the event just left
       if (root >= 0) [st.found, h] = ["impact", root];
+      if (st.s * st.tilt < par.gamma) {
+        root = findFall(P.phi, -st.s, par.gamma, order, h);
+        if (root >= 0) [st.found, h] = ["passage", root];
+      }
       root = findFall(P.phi, -st.s, 0.5 * Math.PI, order, h);
       if (root >= 0) [st.found, h] = ["overturning", root];
     }
@@ -226,7 +230,7 @@ const Model = (() => {
   function advance(par, st, order, h, result) {
     if (st.s) {
       const tilt = value(P.phi, order, h), rate = value(P.w, order, h);
-      if (st.s * st.rate > 0 && st.s * rate < 0) {
+      if (st.s * st.rate >= 0 && st.s * rate < 0) {
         for (let k = 0; k <= order; k++) P.event[k] = st.s * P.w[k];
         const top = Math.abs(value(P.phi, order, bracketedRoot(P.event, 0, order, 0, h)));
         result.peakTilt = Math.max(result.peakTilt, top);
@@ -242,7 +246,7 @@ const Model = (() => {
       st.power = Math.pow(st.mark + s * (st.x - st.turn), 1 - par.alpha);
       st.z = s * ((par.dk * (st.power - par.d0)) / (1 - par.alpha) + par.f0); // (9), (11)
     }
-    result.peakX = Math.max(result.peakX, Math.abs(st.x));
+    result.widest = Math.max(result.widest, Math.abs(st.x));
   }
 
   function write(par, st, rows, t, d, order) {
@@ -281,6 +285,8 @@ const Model = (() => {
       keep();
       land(par, st, Scene.acceleration(ground, st.t), restRate, result);
       keep();
+    } else if (st.found === "passage") {
+      st.tilt = st.s * par.gamma;
     } else if (st.found === "overturning") {
       st.tilt = st.s * 0.5 * Math.PI;
       [result.peakTilt, result.overturning] = [0.5 * Math.PI, st.t];
@@ -295,7 +301,8 @@ const Model = (() => {
   function simulate(par, ground, given) {
     const options = { tolerance: TOLERANCE, order: ORDER, short: SHORT_ORDER, shortest: 0, outputStep: 0, ...given };
     const rows = options.outputStep > 0 ? [] : null, until = options.shortest || options.duration;
-    const result = { rows, impacts: [], uplifts: [], rests: [], peakTilt: Math.abs(par.tilt), peakX: 0, steps: 0 };
+    const result = { rows, impacts: [], uplifts: [], rests: [], peakTilt: Math.abs(par.tilt), peakX: 0, steps: 0,
+      widest: 0 }; // |x| so far; what it gains in the last fall does not count
     const st = { t: 0, tilt: par.tilt, rate: par.rate, x: 0, v: 0, z: 0, s: 0, direction: 0, turn: 0, mark: 1, power: 0,
       fresh: false, refused: false, found: null, used: 0, coming: 0 };
     if (st.tilt || st.rate) st.s = sign(st.tilt || st.rate);
@@ -327,12 +334,14 @@ const Model = (() => {
         tau = !found && step === length - tau ? length : tau + step;
         st.t = begin + tau;
         happen(par, st, ground, used, step, keep, result);
+        if (Math.abs(st.tilt) <= par.gamma) result.peakX = result.widest;
         if (++result.steps > MOST_STEPS) outcome = "undecided";
         if (found === "overturning") outcome = "overturns";
       }
       begin = finish;
     }
     const lifted = hasLifted(par, result);
+    if (outcome !== "overturns") result.peakX = result.widest;
     if (outcome === null && begin >= ground.end) outcome = decision(par, st, lifted);
     result.outcome = outcome ?? (lifted ? "rocks" : "stands");
     result.coming = st.coming; // impacts still to come before a certain fall

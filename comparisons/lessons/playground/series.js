@@ -5,7 +5,7 @@ const Series = (() => {
   const row = () => new Float64Array(Polynomial.MAX_ORDER + 2);
   const P = { phi: row(), w: row(), S: row(), C: row(), x: row(), v: row(), q: row(), F: row(), absolute: row(),
     ground: row(), event: row() };
-  const NEGLIGIBLE = 1e-200;
+  const NEGLIGIBLE = 1e-200, MOST_SHRINK = 1e-3;
 
   // Highest coefficient of a_g that is not zero, or -1. `a0`, `slope`: between samples; else `a0` sin(u + frequency t).
   function groundSeries(kind, a0, slope, frequency, u, order) {
@@ -101,18 +101,17 @@ const Series = (() => {
     return power;
   }
 
-  // Largest step up to h whose last terms stay below tolerance times the size of f in the step.
+  // Largest step up to h whose last terms stay below tolerance times the size of f in that very step.
   function allowedStep(f, order, tolerance, h) {
-    const limit = tolerance * Math.max(Math.abs(f[0]) + Math.abs(f[1]) * h + Math.abs(f[2]) * h * h, NEGLIGIBLE);
-    let power = raised(h, order - 1);
-    const last = Math.abs(f[order]) * power * h;
-    if (last > limit) {
-      h *= 0.9 * Math.pow(limit / last, 1 / order);
-      power = raised(h, order - 1);
+    for (;;) {
+      const limit = tolerance * Math.max(Math.abs(f[0]) + Math.abs(f[1]) * h + Math.abs(f[2]) * h * h, NEGLIGIBLE);
+      const power = raised(h, order - 1), last = Math.abs(f[order]) * power * h, before = Math.abs(f[order - 1]) * power;
+      let shrink = 1;
+      if (last > limit) shrink = 0.9 * Math.pow(limit / last, 1 / order);
+      if (before > 4 * limit) shrink = Math.min(shrink, 0.9 * Math.pow((4 * limit) / before, 1 / (order - 1)));
+      if (!(shrink < 1)) return h;
+      h *= Math.max(shrink, MOST_SHRINK);
     }
-    const before = Math.abs(f[order - 1]) * power;
-    if (before > 4 * limit) h *= 0.9 * Math.pow((4 * limit) / before, 1 / (order - 1));
-    return h;
   }
 
   // Order that a hop of `length` [1/omega_r] needs.
