@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from .decision import longest_duration
+from .decision import CAP_PERIODS, motion_end, period
 from .errors import SceneError
 from .events import NEARLY_ELASTIC
 from .motion import SampledMotion, slowest_key
@@ -25,7 +25,9 @@ USUAL_EXPONENT = 100.0  # of a bearing's law, whose corner is no stiffer than th
 
 def most_steps(scene: Scene) -> int:
     """Steps after which a run of the scene is given up."""
-    longer = 1.0 if scene.duration is None else max(1.0, scene.duration / longest_duration(scene))
+    longer = 1.0
+    if scene.duration is not None:
+        longer = max(1.0, (scene.duration - motion_end(scene)) / (CAP_PERIODS * period(scene)))
     samples = len(scene.motion.samples) if isinstance(scene.motion, SampledMotion) else 0
     return int(min(STEPS * longer, MOST_STEPS)) + STEPS_PER_SAMPLE * samples
 

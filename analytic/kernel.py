@@ -124,10 +124,11 @@ def _march(par, ground, vertical, options, P, work, impacts, uplifts, rests, his
                 written = write_history(history, written, options.output_step, t, h, P, 0, False, False)
                 t += h
                 break
-            if options.decide and after:
-                if (options.record or par.on_base) and t < options.shortest * (1 - ROUNDING):
+            if after:
+                early = t < options.shortest * (1 - ROUNDING)
+                if options.decide and early and (options.record or par.on_base):
                     h = min(h, options.shortest - t)
-                else:
+                elif options.decide or par.on_base and not early:
                     final, will_overturn, top, more = _is_final(
                         par, options, rocking, s, tilt, rate, base, peak_tilt, peak_x, totals
                     )

@@ -44,6 +44,6 @@ NONE, UPLIFT, IMPACT, REVERSAL, CORNER, PASSAGE, OVERTURNING = range(7)
 Ground = namedtuple("Ground", "kind dt samples scale frequency phase start end vertical")
 Vertical = namedtuple("Vertical", "samples scale phase")
 # What to do: `record` keeps events (up to `capacity` of a kind), ledger and diagnostics; `decide` stops when
-# the outcome is certain and the peaks are final (decision.py), but not before the time `shortest`; `most_steps` ends a
-# run that does not get on (SPENT).
+# the outcome is certain and the peaks are final (decision.py), but not before the time `shortest`; without it that ends
+# a base in full contact alone. `most_steps` ends a run that does not get on (SPENT).
 Options = namedtuple("Options", "tolerance order rest_rate record decide output_step capacity shortest most_steps")

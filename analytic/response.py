@@ -98,8 +98,8 @@ class Response:
     unstable_time: float | None  # s, first |tilt| = slenderness: a diagnostic, no proof of overturning
     peak_tilt: float  # rad
     peak_tilt_ratio: float  # peak tilt / slenderness
-    # where the block overturns, peaks of the base and forces at the contact are those up to the last passage of |tilt| =
-    # slenderness: beyond it the model falls on about its corner, where a block would slide and jump
+    # where the block overturns, peaks of the base and forces at the contact end at the last passage of the slenderness:
+    # from there on the model falls about its corner, where a block would slide and jump
     peak_base_displacement: float  # m
     peak_base_acceleration: float  # m/s2, absolute
     impacts: tuple[Impact, ...]

@@ -135,7 +135,8 @@ def simulate(
 ) -> Response:
     """Simulate a scene with the analytic rocking model.
 
-    Without a duration the run ends when its outcome is decided and its peaks are final (`decision`). Where a duration
+    Without a duration the run ends when its outcome is decided and its peaks are final (`decision`). With one, a base
+    that swings on under a block which will never lift again is followed no further than `longest_duration`. Where it
     cuts it while the block is certain to overturn (rigid ground, after the motion), the outcome says so, and the time
     of overturning lies beyond the end.
 
@@ -172,7 +173,7 @@ def simulate(
         rest_rate=rest_rate,
         output_step=output_step if history else 0.0,
         decide=scene.duration is None,
-        shortest=shortest_duration(scene) if scene.duration is None else 0.0,
+        shortest=(shortest_duration if scene.duration is None else longest_duration)(scene),
         steps=most_steps(scene),
     )
     par, shaking, totals = parameters(scene), ground(scene.motion), np.zeros(layout.TOTALS)
@@ -189,18 +190,10 @@ def simulate(
         result = kernel.run(par, shaking, chosen._replace(capacity=most), totals)
     cpu = time.process_time() - begin
     response = _response(scene, par, totals, result, cpu, settings, history)
-    if totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCKING:  # cut on its way to overturning
+    if totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCKING:  # cut while it falls
         later = par._replace(duration=par.duration + longest_duration(scene))
         kernel.run(later, shaking, options(tolerance, rest_rate=rest_rate), totals)
-        response = replace(
-            response,
-            outcome="overturns",
-            overturning_time=float(totals[layout.TIME]),
-            peak_tilt=0.5 * math.pi,
-            peak_tilt_ratio=0.5 * math.pi / scene.block.slenderness,
-            friction_demand=float(totals[layout.FRICTION]),
-            min_normal_ratio=float(totals[layout.NORMAL]),
-        )
+        response = replace(response, outcome="overturns", overturning_time=float(totals[layout.TIME]))
     return response
 
 

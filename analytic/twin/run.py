@@ -137,10 +137,9 @@ class Run(Equations):
         if solution.status < 0:
             return Failure("the integrator gave up", solution.message, self.state())
         terminal = None
-        for (name, event), times, states in zip(events, solution.t_events, solution.y_events, strict=True):
-            for t, y in zip(times, states, strict=True):
-                if name == "unstable" and self.unstable is None:
-                    self.unstable = float(t)
+        for (name, event), times in zip(events, solution.t_events, strict=True):
+            if name == "unstable" and self.unstable is None and len(times):
+                self.unstable = float(times[0])
             if event.terminal and len(times):  # type: ignore[attr-defined]  # set in `events`; scipy reports the first terminal event of a stretch only
                 terminal = name
         if terminal:
@@ -149,7 +148,7 @@ class Run(Equations):
 
     @staticmethod
     def states(events: Sequence[tuple[str, Callable[..., float]]], solution: Any) -> list[tuple[float, np.ndarray]]:
-        """(t, y) in order of time: the steps, and between them turns of block and base and passages of the slenderness."""
+        """(t, y) in order of time: the steps, and between them turns of block and base, passages of the slenderness."""
         found = list(zip(solution.t, solution.y.T, strict=True))
         for (_, event), times, states in zip(events, solution.t_events, solution.y_events, strict=True):
             if not event.terminal:  # type: ignore[attr-defined]  # set in `events`

@@ -54,19 +54,10 @@ def test_digest_is_of_the_content():
 @pytest.mark.parametrize(
     "make, message",
     [
-        (
-            lambda: Block(mass=-1, radius=1, slenderness=0.2),
-            "block.mass = -1: out of range; give a number above 0",
-        ),
-        (
-            lambda: Block(mass=1, radius=1, slenderness=math.pi / 2),
-            "out of range; give a number below 1.5708",
-        ),
+        (lambda: Block(mass=-1, radius=1, slenderness=0.2), "block.mass = -1: out of range; give a number above 0"),
+        (lambda: Block(mass=1, radius=1, slenderness=math.pi / 2), "out of range; give a number below 1.5708"),
         (lambda: Block(mass=1, radius=1, slenderness=0.2, corner_inertia=1.0), "less than a point mass would have"),
-        (
-            lambda: Block(mass=1, radius=1, slenderness=0.2, restitution=1.1),
-            "block.restitution = 1.1: out of range",
-        ),
+        (lambda: Block(mass=1, radius=1, slenderness=0.2, restitution=1.1), "block.restitution = 1.1: out of range"),
         (lambda: Bearings(ka=1.0, kb=1.0, alpha=2.0), "not above kb = 1 N/m"),
         (lambda: Bearings(ka=2.0, kb=1.0, alpha=1.0), "bearings.alpha = 1.0: out of range; give a number above 1"),
         (lambda: Bearings(ka=2.0, kb=1.0), "bearings.alpha: missing"),

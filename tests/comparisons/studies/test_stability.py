@@ -9,6 +9,7 @@ import pytest
 
 from analytic import PulseMotion, Scene, simulate
 from analytic.response import Failure
+from analytic.solver import TOLERANCE
 from comparisons.running.cases import Case
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.study import Ask, compute
@@ -142,7 +143,7 @@ def test_a_failed_run_keeps_its_evidence():
     assert content["failure"]["reason"] == "the solver gave up"
     assert 500 < len(content["failure"]["message"]) < 700
     assert content["last_state"]["time"] == good.end.time
-    assert content["settings"]["tolerance"] == 1e-12
+    assert content["settings"]["tolerance"] == TOLERANCE
 
 
 def test_columns_cover_every_variant_and_cures_are_settings_they_have():
