@@ -13,7 +13,7 @@ import numpy as np
 from . import kernel, layout
 from .bearing import BearingLaw
 from .budget import EVENTS, MOST_ROWS, MOST_STEPS, ROWS, most_steps, too_long
-from .decision import longest_duration, model_warnings, shortest_duration
+from .decision import longest_duration, model_warnings, peaks_are_final, shortest_duration, will_not_overturn
 from .errors import SettingError
 from .layout import Ground, Options, Vertical
 from .limits import limit_warnings
@@ -177,7 +177,7 @@ def simulate(
         steps=most_steps(scene),
     )
     par, shaking, totals = parameters(scene), ground(scene.motion), np.zeros(layout.TOTALS)
-    _warm(shaking.vertical is not None)
+    compile_kernels(shaking.vertical is not None)
     begin = time.process_time()
     result = kernel.run(par, shaking, chosen, totals)
     most = int(totals[[layout.IMPACTS, layout.UPLIFTS, layout.RESTS]].max())
@@ -216,13 +216,21 @@ def _output_step(scene, asked, history):
 
 
 @functools.cache
-def _warm(vertical: bool) -> None:
-    """Load (or once per machine compile) the kernel, so that cpu_seconds are those of the simulation alone."""
+def compile_kernels(vertical: bool = False) -> None:
+    """Load the compiled functions, or compile them: once per machine, some twenty seconds.
+
+    `simulate` does so before its clock starts, and whoever starts one of his own does so before that. vertical : also
+    for motions with a vertical component.
+    """
     from .scene import Block, Scene
 
     scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.2), duration=1e-3)
     quiet = ground(None)._replace(vertical=Vertical(_NO_SAMPLES, 0.0, 0.0) if vertical else None)
     kernel.run(parameters(scene), quiet, options(output_step=1.0), np.zeros(layout.TOTALS))
+    # what else solvers call from Python
+    BearingLaw.of(None).moved(0.0, 1e-6)
+    will_not_overturn(parameters(scene), False, False, *[0.0] * 5)
+    peaks_are_final(parameters(scene), False, *[0.0] * 8)
 
 
 @functools.cache

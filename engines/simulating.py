@@ -11,6 +11,7 @@ import numpy as np
 import analytic
 from analytic import ending
 from analytic.response import Failure
+from analytic.solver import compile_kernels
 
 from . import kicked
 from .endings import finite_part
@@ -38,6 +39,7 @@ def traced(
     A scene without a duration is first run to where the analytic model's run ends, as engines end alike; an engine
     whose own end state is not decided there goes on for longer (`analytic.ending.until_decided`).
     """
+    compile_kernels()
     name, chosen = choose(engine, variant, settings)
     if not engine.variants[name].takes_restitution:
         leave_restitution(engine, scene)

@@ -61,6 +61,11 @@ def fitting(scene: Scene) -> str:
     return "displacement" if scene.base else "outcome"
 
 
+def lifts(scene: Scene) -> bool:
+    """Whether the block leaves full contact, however long the run."""
+    return simulate(scene.with_(duration=None), history=False).outcome != "stands"
+
+
 def until(scene: Scene, aim: str) -> float:
     """Time [s] up to which a scene is run and compared.
 

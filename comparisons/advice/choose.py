@@ -14,14 +14,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from analytic import Scene
+from analytic import Scene, simulate
 from analytic.errors import SettingError
+from analytic.solver import TOLERANCE
 from engines import available_engines, get_engine
 from engines.verified import speaks_of_range
 
 from ..running.executors import Processes
-from ..running.solving import named_engines
-from .aims import AIMS, Measure, fitting, neighbours, until
+from ..running.solving import ANALYTIC, named_engines
+from .aims import AIMS, Measure, fitting, lifts, neighbours, until
 from .found import Choice, Ladder, Setting
 from .search import Runner, Search, problem, spare
 from .spared import cpu_seconds, spared
@@ -55,7 +56,8 @@ def choose(
     aim : str or None
         One of `aims.AIMS`; None: what the scene shows, see `aims.fitting`.
     engines : iterable of str or None
-        Those to try; None: all that are installed.
+        Those to try; None: all that are installed; none of them is run where, without an aim, the block never lifts:
+        then the analytic model is the answer.
     time_limit : float
         Of one run [s].
     progress : bool
@@ -76,9 +78,15 @@ def choose(
     (True, True)
     """
     names, missing = _asked(error, aim, engines)
+    whatever = aim is None and engines is None
     aim = aim or fitting(scene)
     family, span = _family(scene, aim)
-    answer, best, whole, ladders = _searched(scene, family, names, error, aim, time_limit=time_limit, progress=progress)
+    if whatever and not any(lifts(one) for one in family.values()):
+        answer, whole = _analytic(family)
+        best, ladders = None, []
+    else:
+        options: dict[str, Any] = {"time_limit": time_limit, "progress": progress}
+        answer, best, whole, ladders = _searched(scene, family, names, error, aim, **options)
     asked: dict[str, Any] = {"aim": aim, "error": error, "spare": spare(aim), "neighbours": list(family), "until": span}
     return Choice(
         **asked,
@@ -89,7 +97,7 @@ def choose(
         analytic_cpu_seconds=(own := cpu_seconds(scene)),
         **_instructions(answer, source),
         ladders=ladders,
-        spared=spared(scene, family, error, answer or best, names, own),
+        spared=spared(scene, family, error, answer if ladders else best, names, own),
         missing=missing,
     )
 
@@ -108,6 +116,15 @@ def _family(scene, aim):
     if aim != "outcome":
         family = {factor: cut(factor, one) for factor, one in family.items()}
     return family, span
+
+
+def _analytic(family):
+    """(the analytic model as the `Setting`, CPU seconds of the scene)."""
+    scene = family[1.0]
+    spent = cpu_seconds(scene)
+    how: dict[str, Any] = {"engine": ANALYTIC, "variant": "kernel", "knob": "tolerance", "value": TOLERANCE}
+    how |= {"default": True, "runs": len(family), "error": 0.0, "passes": True, "why": None}
+    return Setting(**how, cpu_per_second=spent / simulate(scene, history=False).end.time), spent
 
 
 def _searched(scene, family, names, error, aim, **options):
@@ -223,14 +240,18 @@ def _instructions(answer, source):
 
 
 def _command(one, source):
+    if one.engine == ANALYTIC:
+        return f"rocking run {source}"
     return f"rocking run {source} --engine {one.engine} --variant {one.variant}{_set(one)}"
 
 
 def _snippet(one, source):
     value = "" if one.default else f", {one.knob}={one.value:g}"
+    head = "from analytic import load_scene\nfrom engines import get_engine\n\n"
+    call = f'get_engine("{one.engine}").simulate(load_scene("{source}"), variant="{one.variant}"{value})'
+    if one.engine == ANALYTIC:
+        head, call = "from analytic import load_scene, simulate\n\n", f'simulate(load_scene("{source}"))'
     return (
-        "from analytic import load_scene\n"
-        "from engines import get_engine\n\n"
-        f'response = get_engine("{one.engine}").simulate(load_scene("{source}"), variant="{one.variant}"{value})\n'
+        f"{head}response = {call}\n"
         "print(response.verdict, response.peak_tilt_ratio, response.peak_base_displacement)\n"
     )

@@ -79,6 +79,7 @@ def _space(scene, engines):
     why = "nothing acts out of the plane"
     part = "third dimension"
     able = [] if scene.bearings is not None else [get_engine(name) for name in engines]
+    scene = scene.with_(duration=simulate(scene, history=False).end.time)
     for engine, variant, kind in [(one, *each) for one in able for each in one.variants.items()]:
         if kind.free_block and kind.step:
             step = kind.default if kind.knob == kind.step else min(kind.ladder)

@@ -51,13 +51,14 @@ def command(
     from ..advice import choose
     from ..advice.aims import fitting
     from ..running.files import check_writable, write_all
-    from ..running.solving import say, stdout_to_stderr
+    from ..running.solving import compile_kernels, say, stdout_to_stderr
 
     check_time_limit(time_limit)
     check_writable([json_file], picture=plot, inputs=[scene])
     what = load_scene(scene)
-    if aim is None and (aim := fitting(what)) != "restitution":
-        say(f"the block of {what.name} never hits what it stands on: there is no restitution; judged by its {aim}")
+    compile_kernels()
+    if aim is None and engine and (shown := fitting(what)) != "restitution":
+        say(f"the block of {what.name} never hits what it stands on: there is no restitution; judged by its {shown}")
     with stdout_to_stderr():  # engines greet on standard output
         choice = choose(
             what, error=error, aim=aim, engines=engine or None, time_limit=time_limit, progress=True, source=scene

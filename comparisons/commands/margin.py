@@ -27,11 +27,12 @@ def command(
     from analytic.scene_file import load_scene
 
     from ..running.files import check_writable, write_all
-    from ..running.solving import spinner
+    from ..running.solving import compile_kernels, spinner
     from ..schemas.advice import Contact, Margin, Margins
 
     check_writable([json_file], picture=plot, inputs=[scene])
     what = load_scene(scene)
+    compile_kernels()
     with spinner(f"{what.name}: margins") as tell:
         nearest = margins(
             what, span=span / 100, step=span / 100 / 400, progress=lambda name: tell(f"{what.name}: {name}")

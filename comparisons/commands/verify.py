@@ -52,11 +52,12 @@ def _verified(name, table, time_limit):
     from engines.guard import alone
 
     from ..measuring.tolerances import measure_all
-    from ..running.solving import say, spinner
+    from ..running.solving import compile_kernels, say, spinner
 
     if not table:
         say(f"{name}: held to no tolerance")
         return []
+    compile_kernels(vertical=True)
     found, failure = alone(
         measure_all, table, time_limit=time_limit, meanwhile=spinner(f"{name}: {len(table)} tolerances")
     )

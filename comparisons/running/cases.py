@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from analytic import Block, Scene, Start
 from engines import ENGINES, get_engine
 
+from .solving import compile_kernels
 from .sources import digest_of, source_digests, version_of
 
 if TYPE_CHECKING:
@@ -25,8 +26,6 @@ SOLVERS = {
     "twin": ("analytic.twin", "simulate_twin"),
     "time-stepping": ("analytic.time_stepping", "simulate_time_stepping"),
 }
-
-COMPILED = {"analytic": {}, "time-stepping": {"step": 0.01}}  # solvers with a kernel, and settings they require
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,15 +83,13 @@ def solver(name: str) -> Callable:
     return getattr(importlib.import_module(module), function)
 
 
-def compile_kernels(names: Iterable[str]) -> None:
-    """Let those of the solvers `names` that have a compiled kernel fill its cache on disk.
-
-    Else every worker process would compile it by itself, within its time limit.
-    """
-    scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), start=Start(tilt=0.1), duration=0.1)
-    needed = {"analytic" if name in ENGINES else name for name in names}  # engines ask it how long to run
-    for name in COMPILED.keys() & needed:
-        solver(name)(scene, **COMPILED[name])
+def compile_for(names: Iterable[str]) -> None:
+    """Fill the cache on disk of what the solvers `names` have compiled: else every worker process would compile it by
+    itself, within its time limit."""
+    compile_kernels()
+    if "time-stepping" in names:
+        scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), start=Start(tilt=0.1), duration=0.1)
+        solver("time-stepping")(scene, step=0.01)
 
 
 def module_of(name: str) -> str:

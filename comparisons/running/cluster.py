@@ -29,7 +29,7 @@ from typing import Any
 
 from analytic.errors import SettingError
 
-from .cases import compile_kernels, module_of, versions
+from .cases import compile_for, module_of, versions
 from .executors import Closing, Done, Processes, Task, number_of
 from .sources import PROJECT, source_digests
 
@@ -258,7 +258,7 @@ def serve(solvers: tuple[str, ...]) -> None:
     threading.Thread(target=_end_with_worker, args=(busy,), daemon=True).start()
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # engines greet on standard output
-    compile_kernels(solvers)
+    compile_for(solvers)
     with Processes(1, solvers) as executor, contextlib.suppress(EOFError):
         while True:
             task = pickle.load(sys.stdin.buffer)

@@ -9,6 +9,7 @@ import json
 import math
 import os
 import sys
+import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 ANALYTIC = "analytic"
 TIME_LIMIT = 300.0  # s, of one run
 TIME_LIMIT_HELP = "A run that takes longer is ended, and counts as failed."
+PATIENCE = 2.0  # s that compiled functions may take to load, without a word
 SHOWN = 60  # characters of what is under way
 
 
@@ -101,6 +103,7 @@ def simulate(
 
     settings = settings or {}
     check_solver(solver)
+    compile_kernels(scene.motion is not None and scene.motion.vertical is not None)
     response, failure = alone(
         _simulate,
         scene,
@@ -240,6 +243,22 @@ def tell_failures(responses: Iterable[Response]) -> None:
         if response.failure:
             evidence = readable(response.failure.message.partition("\n")[0])
             say(f"{response.engine} failed: {response.failure.reason}. {evidence}".rstrip(". ") + ".")
+
+
+def compile_kernels(vertical: bool = False) -> None:
+    """`analytic.solver.compile_kernels` before a clock starts; said where it takes a while.
+
+    vertical : also for motions with a vertical component.
+    """
+    from analytic import solver
+
+    telling = threading.Timer(PATIENCE, say, ["compiling the analytic model: half a minute, once on this machine"])
+    telling.start()
+    try:
+        solver.compile_kernels(vertical)
+    finally:
+        telling.cancel()
+        telling.join()
 
 
 def say(text: str) -> None:

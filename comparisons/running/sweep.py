@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from .cases import Case, compile_kernels, name_of, solver
+from .cases import Case, compile_for, name_of, solver
 from .cluster import workers_at
 from .executors import Done, Executor, Processes, Serial, Task
 from .provenance import json_ready
@@ -107,7 +107,7 @@ def run_sweep(
             store = stack.enter_context(Store(store))
         waiting = {key: case for key, case in zip(keys, cases, strict=True) if not _settled(store.get(key), time_limit)}
         if waiting:
-            compile_kernels({case.solver for case in waiting.values()})
+            compile_for({case.solver for case in waiting.values()})
             advance = _bar(stack, progress, label, len(waiting))
             if executor is None:
                 executor = stack.enter_context(workers_at(scheduler, workers, names))

@@ -28,7 +28,8 @@ ZERO = 1e-12  # an error of 0 is drawn here
 def print_choice(choice: Choice) -> None:
     """Print a choice: the ladders as a table, the answer, and what need not be modelled."""
     console = Console(highlight=False)
-    console.print(_table(choice))
+    if choice.ladders:
+        console.print(_table(choice))
     for line in answer(choice):
         console.print(Text(readable(line)), soft_wrap=True)
     if choice.command:
@@ -53,6 +54,11 @@ def answer(choice: Choice) -> list[str]:
         reached = f"{choice.best.error:.1e} by {named(choice.best)}"
         return [f"No setting passes {choice.error:g} for {choice.aim}. The best reached within its range: {reached}."]
     one = choice.chosen
+    if not choice.ladders:
+        return [
+            f"The analytic model: the block never lifts on {share}, and without contact there is no error of an engine "
+            f"to choose by; {choice.cpu_seconds:.2g} s of CPU time for the whole scene. Engines all the same: --for."
+        ]
     lines = [
         f"{named(one)}: it and all finer settings of its ladder pass {choice.error:g} for {choice.aim} on {share}, the "
         f"worst {one.error:.1e}; {one.cpu_per_second:.2g} s of CPU time per simulated second, {choice.cpu_seconds:.2g} "

@@ -58,7 +58,7 @@ STICKS = 2000.0
 SLOP = 1e-3
 
 
-@njit(cache=True)
+@njit("f8(f8, f8[::1], f8[::1], f8, f8, f8, f8, f8)", cache=True)  # compiled when it is imported
 def _anchor(
     anchor: float, q: np.ndarray, v: np.ndarray, b: float, h: float, stiffness: float, hardening: float, stretch: float
 ) -> float:

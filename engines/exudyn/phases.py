@@ -70,7 +70,7 @@ class Rule:
     settle: float
 
 
-@njit(cache=True)
+@njit("i8(f8[::1], f8, f8, f8)", cache=True)  # compiled when it is imported
 def carrying(q: np.ndarray, b: float, h: float, least: float) -> int:
     """Which corner is deeper than `least` [m] in the ground: -1, 1, BOTH or NEITHER."""
     sin, drop = math.sin(q[2]), h * (math.cos(q[2]) - 1) - q[1]

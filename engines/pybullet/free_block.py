@@ -10,6 +10,7 @@ import numpy as np
 import pybullet
 
 from analytic import Response, Scene
+from analytic.ending import until_decided
 
 from ..leapfrog import trace_of
 from ..observe import observe
@@ -25,7 +26,9 @@ CORRECTION_RATE, MOST_CORRECTION = 30.0, 0.1
 
 
 def simulate(scene: Scene, *, step: float, history: bool = True) -> Response:
-    """The response; step [s]; history: keep it in the response."""
+    """The response; step [s]; history: keep it in the response. Without a duration it runs until it is decided."""
+    if scene.duration is None:
+        return until_decided(lambda cut: simulate(cut, step=step, history=history), scene)
     client = pybullet.connect(pybullet.DIRECT)
     try:
         body, slab = script.build(client, scene, step)
