@@ -39,7 +39,7 @@ def too_long(scene: Scene, spent: str) -> SceneError:
     covered with a hundred rocking periods.
     """
     _, key, value, problem, remedy = max(_parts(scene), key=lambda part: part[0])
-    return SceneError(key, value, f"{problem}: {spent}", remedy)
+    return SceneError(key, value, f"{problem}: {spent}", remedy, scene.name or None)
 
 
 def _parts(scene: Scene) -> list[tuple[float, str, float, str, str]]:

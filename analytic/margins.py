@@ -17,13 +17,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .batch import simulate_many
+from .budget import STEPS_PER_SAMPLE, too_long
 from .errors import SceneError, SettingError
 from .laws import LAWS, NUMBERS
+from .motion import SampledMotion
 from .rocking import RockingModel
 from .scene import Scene
 from .solver import simulate
 
 SPAN, STEP = 0.2, 5e-4
+MOST_STEPS = 2e9  # of all runs, some twenty minutes on two cores
 BISECTIONS = 14  # of a step: boundaries are known to 6e-5 of it
 FINER = 20
 
@@ -192,6 +195,8 @@ def margins(
     ------
     SettingError
         span or step is out of range.
+    SceneError
+        The scene is too stiff or too long for so many runs; names the part.
     """
     if not 0 < span < 1:
         raise SettingError(f"span = {span!r}: give the largest relative change, above 0 and below 1")
@@ -202,11 +207,11 @@ def margins(
     scene = scene.with_(duration=None)
     count = math.floor(span / step * (1 + 1e-12))
     changes = step * np.arange(-count, count + 1)
+    values = {name: value for name, each in QUANTITIES.items() if (value := each.value(scene)) is not None}
+    _check_cost(scene, len(values) * len(changes))
     found = []
-    for name, quantity in QUANTITIES.items():
-        value = quantity.value(scene)
-        if value is None:
-            continue
+    for name, value in values.items():
+        quantity = QUANTITIES[name]
         if progress:
             progress(name)
         margin = Margin(name, float(value), quantity.unit, _bands(scene, name, changes, workers), step)
@@ -214,6 +219,14 @@ def margins(
             margin = replace(margin, bands=_bands(scene, name, _finer(margin, changes), workers))
         found.append(margin)
     return sorted(found, key=lambda margin: math.inf if margin.nearest is None else abs(margin.nearest))
+
+
+def _check_cost(scene, runs):
+    """Refuse a scene that costs too much as often as it is to be run."""
+    steps = simulate(scene, history=False).steps
+    samples = len(scene.motion.samples) if isinstance(scene.motion, SampledMotion) else 0
+    if steps > STEPS_PER_SAMPLE * samples + MOST_STEPS / runs:
+        raise too_long(scene, f"{runs} runs of {steps:.3g} steps are too many")
 
 
 @dataclass(frozen=True)
@@ -274,6 +287,9 @@ def _states(scene, name, changes, scenes, workers):
         scenes = [QUANTITIES[name].changed(scene, 1 + change) for change in changes]
     scales = 1 + changes if name == "motion" else None
     outcomes = simulate_many(scenes, scales=scales, contact=True, workers=workers)
+    for index in np.flatnonzero(outcomes.failed):
+        simulate(scenes[index], history=False)  # raises what is wrong
+        raise SceneError(name, None, f"changed by {changes[index]:.2%} the analytic model cannot go on", "take less")
     limit = math.inf if scene.friction is None else scene.friction
     holds = (outcomes.min_normal_ratio > 0) & ~(outcomes.friction_demand > limit)
     return list(zip(outcomes.names.tolist(), holds.tolist(), strict=True))

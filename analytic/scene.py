@@ -42,7 +42,7 @@ class Block(Part):
 
     mass: Positive
     radius: Positive
-    slenderness: Annotated[float, Field(gt=0, lt=math.pi / 2)]
+    slenderness: Annotated[float, Field(gt=0, lt=math.pi / 2), AfterValidator(_not_vanishing)]
     corner_inertia: Positive | None = None
     restitution: Annotated[float, Field(ge=0, le=1)] | None = None
 
@@ -103,7 +103,7 @@ class Bearings(Part):
     ka: Positive
     kb: NotNegative | None = None
     alpha: Annotated[float, Field(gt=1, le=MOST)] | None = None
-    delta_k: Annotated[float, Field(gt=0, le=MOST)] = 1e-20
+    delta_k: Positive = 1e-20
     yield_force: Positive | None = None
     damping: NotNegative = 0.0
     x_max: Positive | None = None
@@ -131,6 +131,8 @@ class Bearings(Part):
                 "not below ka - kb",
                 "give a small stiffness difference [N/m] such as 1e-20, or leave it out",
             )
+        if "alpha" in law.needs and not law.constants(self)["f0"] > 0:
+            raise SceneError("bearings.alpha", self.alpha, "leaves no hysteretic force, in rounding", "give less")
         return self
 
 
