@@ -9,8 +9,8 @@ from .bearing import BearingLaw
 from .errors import SettingError
 from .scene import Bearings
 
-# The paper's 30 % is the loss W_D over 2 pi E_s; the usual equivalent damping divides by 4 pi E_s and reads half of it.
-DEFINITIONS = {"paper": 2 * math.pi, "equivalent": 4 * math.pi}
+# The usual equivalent damping is the loss W_D over 4 pi E_s; the paper's 30 % divides by 2 pi E_s and reads twice that.
+DEFINITIONS = {"equivalent": 4 * math.pi, "paper": 2 * math.pi}
 # Exponents searched; Table 1(b) has 44.69.
 STEEPEST = 1e4
 # The design equations take the loop on its limit curves; the law's own loop may differ from them by this much.
@@ -97,7 +97,7 @@ def design_bearings(
     *,
     count: int = 4,
     stiffness_ratio: float = 10.0,
-    definition: str = "paper",
+    definition: str = "equivalent",
     delta_k: float = 1e-20,
 ) -> Bearings:
     """Bearings with a given secant period and damping at x_max.
@@ -117,23 +117,34 @@ def design_bearings(
     stiffness_ratio : float
         ka/kb. The paper does not print it; its Table 1(b) has 10.
     definition : str
-        "paper" for W_D/(2 pi E_s), "equivalent" for W_D/(4 pi E_s).
+        "equivalent" for the usual W_D/(4 pi E_s), "paper" for the Caryatid paper's W_D/(2 pi E_s), twice as much.
 
     Returns
     -------
     Bearings
+        With x_max.
 
     Raises
     ------
     SettingError
         A target is out of range or cannot be met; the message says how far it can go.
+    SceneError
+        The targets are met by no bearings that a scene can hold.
     """
     targets = {"mass": mass, "period": period, "damping": damping, "x_max": x_max, "delta_k": delta_k}
     _check(targets, count, stiffness_ratio, definition)
-    divisor, secant = DEFINITIONS[definition], mass * (2 * math.pi / period) ** 2 / count
-    alpha, f0 = _exponent(damping, definition, divisor, secant, x_max, stiffness_ratio)
+    divisor = DEFINITIONS[definition]
+    try:
+        secant = mass * (2 * math.pi / period) ** 2 / count
+        alpha, f0 = _exponent(damping, definition, divisor, secant, x_max, stiffness_ratio)
+    except (ArithmeticError, ValueError) as error:  # scipy's, where numbers leave what a double holds
+        if isinstance(error, SettingError):
+            raise
+        asked = ", ".join(f"{name} = {value:.4g}" for name, value in targets.items() if name != "delta_k")
+        ratio = f"stiffness_ratio = {stiffness_ratio:.4g}"
+        raise SettingError(f"{asked}, {ratio}: no bearings give that; change one of them") from None
     kb = secant - f0 / x_max
-    bearings = Bearings(count=count, ka=stiffness_ratio * kb, kb=kb, alpha=alpha, delta_k=delta_k)
+    bearings = Bearings(count=count, ka=stiffness_ratio * kb, kb=kb, alpha=alpha, delta_k=delta_k, x_max=x_max)
     got = properties(bearings, mass, x_max)
     got_damping = got.damping_paper if definition == "paper" else got.damping_equivalent
     if abs(got.period / period - 1) > LOOP_AGREEMENT or abs(got_damping / damping - 1) > LOOP_AGREEMENT:

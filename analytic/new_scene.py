@@ -126,6 +126,7 @@ def scene_text(
         lines += ["", "[base]", *_rows({"mass": (base.mass, "kg")})]
     if bearings is not None:
         units = {"count": "", "ka": "N/m", "kb": "N/m", "alpha": "", "yield_force": "N", "damping": "N s/m"}
+        units["x_max"] = "m; what they are built for: a run that goes beyond it says so"
         values = bearings.model_dump(exclude_defaults=True)
         known = {key: (values[key], unit) for key, unit in units.items() if key in values}
         lines += ["", "[bearings]  # per bearing", f"law = {_toml(bearings.law)}", *_rows(known)]

@@ -13,7 +13,16 @@ import numpy as np
 from . import kernel, layout
 from .bearing import BearingLaw
 from .budget import EVENTS, MOST_ROWS, MOST_STEPS, ROWS, most_steps, too_long
-from .decision import longest_duration, model_warnings, peaks_are_final, shortest_duration, will_not_overturn
+from .decision import (
+    CAP_PERIODS,
+    PEAK_TOLERANCE,
+    longest_duration,
+    model_warnings,
+    peaks_are_final,
+    period,
+    shortest_duration,
+    will_not_overturn,
+)
 from .errors import SettingError
 from .layout import Ground, Options, Vertical
 from .limits import limit_warnings
@@ -292,8 +301,10 @@ def _response(
 def _warnings(scene: Scene, totals: np.ndarray, velocity: float) -> tuple[str, ...]:
     found = list(getattr(scene.motion, "warnings", ()))
     found += model_warnings(scene, float(totals[layout.FRICTION]), float(totals[layout.NORMAL]))
-    found += limit_warnings(scene, float(totals[layout.PEAK_X]))
-    if scene.base is not None and scene.bearings is None and velocity != 0:
+    peak = float(totals[layout.PEAK_X])
+    found += limit_warnings(scene, peak)
+    drift = abs(velocity) * CAP_PERIODS * period(scene)  # what is left of rounding slides nowhere
+    if scene.base is not None and scene.bearings is None and drift > PEAK_TOLERANCE * peak:
         found.append(
             f"the base slides on at {velocity:.3g} m/s with no bearing to stop it: its displacement has no "
             "peak, the one given is that at the end of the run"

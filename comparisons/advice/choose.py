@@ -252,6 +252,5 @@ def _snippet(one, source):
     if one.engine == ANALYTIC:
         head, call = "from analytic import load_scene, simulate\n\n", f'simulate(load_scene("{source}"))'
     return (
-        f"{head}response = {call}\n"
-        "print(response.verdict, response.peak_tilt_ratio, response.peak_base_displacement)\n"
+        f"{head}response = {call}\nprint(response.verdict, response.peak_tilt_ratio, response.peak_base_displacement)\n"
     )

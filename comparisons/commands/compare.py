@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import nan
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -20,9 +21,6 @@ from ..running.solving import (
     spinner,
     tell_failures,
 )
-
-if TYPE_CHECKING:
-    pass
 
 
 def command(
@@ -78,8 +76,12 @@ def command(
 
 def _responses(scene, asked, time_limit):
     """Of the analytic model and the engines asked for, by default all: one that is not installed only if named."""
-    from analytic.errors import EngineNotInstalled
-    from engines import ENGINES
+    from analytic.errors import EngineNotInstalled, SceneError
+    from analytic.response import Failure
+    from engines import ENGINES, get_engine
+    from engines.observe import failed_response
+
+    from ..running.cases import versions
 
     names = [ANALYTIC, *(name for name in dict.fromkeys(asked or ENGINES) if name != ANALYTIC)]
     responses = []
@@ -90,6 +92,12 @@ def _responses(scene, asked, time_limit):
         except EngineNotInstalled:
             if asked:
                 raise
+        except SceneError as error:  # what this engine alone cannot take, a given restitution say, costs its row
+            if name == ANALYTIC:
+                raise
+            refusal = Failure("it cannot take this scene", str(error))
+            known: dict[str, Any] = {"variant": get_engine(name).default_variant, "settings": {}, "cpu_seconds": nan}
+            responses.append(failed_response(scene, refusal, engine=name, **known, versions=versions(name)))
     return responses
 
 

@@ -5,22 +5,24 @@ from typing import Annotated
 
 import typer
 
+from ..running.options import DEFINITION, OPTIONS, RATIO, told_by_options
+
 
 def command(
     period: Annotated[float, typer.Option(help="Secant period at x_max [s].")],
     damping: Annotated[float, typer.Option(help="Share of critical damping at x_max, e.g. 0.30.")],
     xmax: Annotated[float, typer.Option(help="Design displacement [m].")],
-    mass: Annotated[float, typer.Option(help="Block and base together [kg]; the Caryatid's by default.")] = 3384.05,
+    mass: Annotated[float, typer.Option(help="Block and base together [kg].")],
     count: Annotated[int, typer.Option(help="Number of bearings.")] = 4,
-    ratio: Annotated[float, typer.Option(help="ka/kb; Table 1(b) of the paper has 10.")] = 10.0,
-    definition: Annotated[str, typer.Option(help="paper: W_D/(2 pi E_s); equivalent: W_D/(4 pi E_s).")] = "paper",
+    ratio: Annotated[float, typer.Option(help=RATIO)] = 10.0,
+    definition: Annotated[str, typer.Option(help=DEFINITION)] = "equivalent",
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write the design; - prints it.")
     ] = None,
 ) -> None:
     """Bearing constants for a target period, damping and displacement: Table 1(a) to Table 1(b), and back.
 
-    Example: rocking design --period 2 --damping 0.30 --xmax 0.30
+    Example: rocking design --period 2 --damping 0.30 --definition paper --xmax 0.30 --mass 3384.05
     """
     from rich.console import Console
 
@@ -30,7 +32,10 @@ def command(
     from ..schemas.advice import Constants, Design, Properties
 
     check_writable([json_file])
-    bearings = design_bearings(mass, period, damping, xmax, count=count, stiffness_ratio=ratio, definition=definition)
+    with told_by_options(OPTIONS):
+        bearings = design_bearings(
+            mass, period, damping, xmax, count=count, stiffness_ratio=ratio, definition=definition
+        )
     back = properties(bearings, mass, xmax)
     if json_file:
         constants, given = Constants(**bearings.model_dump()), Properties(**dataclasses.asdict(back))

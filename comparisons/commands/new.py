@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from ..running.options import DEFINITION, OPTIONS, RATIO, told_by_options
 from ..running.record_options import Channel, Column, Step, Units
 
 
@@ -22,8 +23,12 @@ def command(
     base_mass: Annotated[float | None, typer.Option(help="Isolated: mass of the base under the block [kg].")] = None,
     count: Annotated[int, typer.Option(help="Number of bearings.")] = 4,
     period: Annotated[float | None, typer.Option(help="Bearings by design: secant period at --xmax [s].")] = None,
-    damping: Annotated[float, typer.Option(help="By design: W_D/(4 pi E_s) at --xmax.")] = 0.15,
-    xmax: Annotated[float | None, typer.Option(help="By design: displacement [m].")] = None,
+    damping: Annotated[float, typer.Option(help="By design: share of critical damping at --xmax.")] = 0.15,
+    definition: Annotated[str, typer.Option(help=DEFINITION)] = "equivalent",
+    ratio: Annotated[float, typer.Option(help=RATIO)] = 10.0,
+    xmax: Annotated[
+        float | None, typer.Option(help="Displacement the bearings are built for [m]; one beyond it is warned of.")
+    ] = None,
     ka: Annotated[float | None, typer.Option(help="Bearings by constants: stiffness before yielding [N/m].")] = None,
     kb: Annotated[float | None, typer.Option(help="By constants: stiffness after yielding [N/m].")] = None,
     alpha: Annotated[float | None, typer.Option(help="By constants: exponent of eq. (13).")] = None,
@@ -57,18 +62,17 @@ def command(
     width = _asked(width, "width", "Width along the motion [m]")
     if mass is None and density is None and material is None:
         material, mass = _weight()
-    block = block_from(height, width, depth=depth, density=_density(density, material), mass=mass)
-    bearings = None
-    if base_mass is not None:
-        bearings = _bearings(block.mass + base_mass, count, (period, damping, xmax), (ka, kb, alpha))
-    elif any(value is not None for value in (period, xmax, ka, kb, alpha)):
-        raise SettingError("bearings carry a base: give its mass with --base-mass")
-    motion = _motion(file, record, tilt, {"units": units, "dt": dt, "column": column, "channel": channel})
-    base = None if base_mass is None else Base(mass=base_mass)
-    about = f"A block {height:g} m high and {width:g} m wide along the motion; rocking run {Path(file).name}"
-    parts = {"base": base, "bearings": bearings, "motion": motion, "tilt": tilt, "friction": friction}
-    text = scene_text(name or Path(file).stem, block, **parts, about=(about,))  # type: ignore[arg-type]  # as named
-    _write_and_tell(file, text, json_file)
+    with told_by_options(OPTIONS):
+        block = block_from(height, width, depth=depth, density=_density(density, material), mass=mass)
+        base = None if base_mass is None else Base(mass=base_mass)
+        targets = {"period": period, "damping": damping, "stiffness_ratio": ratio, "definition": definition}
+        constants = {"ka": ka, "kb": kb, "alpha": alpha}
+        bearings = _bearings(None if base is None else block.mass + base.mass, count, xmax, targets, constants)
+        motion = _motion(file, record, tilt, {"units": units, "dt": dt, "column": column, "channel": channel})
+        about = f"A block {height:g} m high and {width:g} m wide along the motion; rocking run {Path(file).name}"
+        parts = {"base": base, "bearings": bearings, "motion": motion, "tilt": tilt, "friction": friction}
+        text = scene_text(name or Path(file).stem, block, **parts, about=(about,))
+        _write_and_tell(file, text, json_file)
 
 
 def _asked(value: float | None, option: str, question: str) -> float:
@@ -113,20 +117,25 @@ def _density(density: float | None, material: str | None) -> float | None:
     return MATERIALS[material]
 
 
-def _bearings(carried: float, count: int, design: tuple, constants: tuple) -> Any:
-    """The `Bearings` of a design (period, damping, x_max) or of constants (ka, kb, alpha)."""
+def _bearings(
+    carried: float | None, count: int, xmax: float | None, targets: Mapping[str, Any], constants: Mapping[str, Any]
+) -> Any:
+    """The `Bearings` under what they carry [kg], by design or by constants; None without a base."""
     from analytic.design import design_bearings
     from analytic.errors import SettingError
     from analytic.scene import Bearings
 
-    period, damping, xmax = design
-    ka, kb, alpha = constants
-    by_design, by_constants = (any(v is not None for v in values) for values in ((period, xmax), constants))
-    if by_design == by_constants or None in ((period, xmax) if by_design else constants):
+    by_design, by_constants = targets["period"] is not None, any(value is not None for value in constants.values())
+    if carried is None:
+        if by_design or by_constants or xmax is not None:
+            raise SettingError("bearings carry a base: give its mass with --base-mass")
+        return None
+    needed = (targets["period"], xmax) if by_design else constants.values()
+    if by_design == by_constants or None in needed:
         raise SettingError("give the bearings' --period and --xmax (and --damping), or their --ka, --kb and --alpha")
     if by_constants:
-        return Bearings(count=count, ka=ka, kb=kb, alpha=alpha)
-    return design_bearings(carried, period, damping, xmax, count=count, definition="equivalent")
+        return Bearings(count=count, **constants, x_max=xmax)
+    return design_bearings(carried, x_max=xmax, count=count, **targets)  # type: ignore[arg-type]  # given, see above
 
 
 def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -156,6 +165,7 @@ def _write_and_tell(file: str, text: str, json_file: str | None) -> None:
     from rich.console import Console
     from rich.table import Table
 
+    from analytic.errors import SceneError
     from analytic.new_scene import derived
     from analytic.scene_file import load_scene
 
@@ -166,7 +176,10 @@ def _write_and_tell(file: str, text: str, json_file: str | None) -> None:
     with tempfile.NamedTemporaryFile("w", suffix=".toml", dir=Path(file).resolve().parent, encoding="utf-8") as part:
         part.write(text)
         part.flush()
-        scene = load_scene(part.name)
+        try:
+            scene = load_scene(part.name)
+        except SceneError as error:
+            raise error.in_file(file) from None
     write_text(file, text)
     rows = derived(scene)
     if json_file:

@@ -1,5 +1,6 @@
 """``rocking run``: one scene, one solver."""
 
+import io
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -28,7 +29,7 @@ def command(
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write the result; - prints it.")
     ] = None,
-    csv: Annotated[str | None, typer.Option(metavar="FILE", help="Write the history.")] = None,
+    csv: Annotated[str | None, typer.Option(metavar="FILE", help="Write the history; - prints it.")] = None,
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the history (.png, .svg or .pdf).")] = None,
     time_limit: Annotated[float, typer.Option(metavar="SECONDS", help=TIME_LIMIT_HELP)] = TIME_LIMIT,
 ) -> None:
@@ -38,7 +39,7 @@ def command(
     """
     from analytic.scene_file import load_scene
 
-    from ..running.files import check_writable, write_all
+    from ..running.files import STANDARD_OUTPUT, check_writable, write_all
     from ..schemas.runs import Run
 
     check_time_limit(time_limit)
@@ -63,13 +64,17 @@ def command(
         csv = plot = None
     if csv:
         results[csv] = response.history.to_csv  # type: ignore[union-attr]  # there is one, see above
+    if csv == STANDARD_OUTPUT:
+        table = io.StringIO()
+        response.history.to_csv(table)  # type: ignore[union-attr]  # as above
+        results[csv] = table.getvalue()
     if plot:
         from ..showing.plots import draw_histories, save
 
         figure = draw_histories(what, [response])
         results[plot] = lambda path: save(figure, path)
     problem = write_all(results)
-    if json_file != "-":
+    if STANDARD_OUTPUT not in (json_file, csv):
         from ..showing.tables import show, summary
 
         show(summary(what, response), [response])

@@ -4,7 +4,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..running.solving import TIME_LIMIT, check_time_limit
+from ..running.solving import TIME_LIMIT, check_time_limit, named_engines
 
 
 def command(
@@ -36,7 +36,7 @@ def command(
     if variant is not None and len(engine or ()) != 1:
         raise SettingError(f"--variant {variant}: belongs to one engine; name it with --engine")
     results: list[dict[str, Any]] = []
-    for name in dict.fromkeys(engine or installed_engines()):
+    for name in named_engines(engine or installed_engines()):
         results += _verified(name, rows(name, variant), time_limit)
     if json_file:
         versions = {name: get_engine(name).versions() for name in dict.fromkeys(row["engine"] for row in results)}

@@ -35,6 +35,9 @@ def check_writable(paths: Iterable[str | None], picture: str | None = None, inpu
     """
     if picture and Path(picture).suffix.lower() not in PICTURES:
         raise SettingError(f"{picture}: not a known picture format; end the name in {', '.join(PICTURES)}")
+    paths = list(paths)
+    if paths.count(STANDARD_OUTPUT) > 1:
+        raise SettingError("-: standard output takes one result; give the other a file")
     taken = {os.path.realpath(path): "is read by this command" for path in inputs if "\0" not in path}
     for path in (path for path in [*paths, picture] if path is not None and path != STANDARD_OUTPUT):
         _check_file(path)

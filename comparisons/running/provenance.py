@@ -1,6 +1,8 @@
 """Result files: rows and arrays with the machine, versions, commit, source code and seed they come from."""
 
+import contextlib
 import hashlib
+import io
 import json
 import platform
 import re
@@ -18,12 +20,15 @@ from typing import Any
 import numpy as np
 import psutil
 
+from analytic.files import read_plain
 from engines import ENGINES
 
 from .sources import PROJECT, digests_of_all, source_digests, version_of
 
 NAMED = 3  # modules that a sentence on a stale result names
 SCHEMA = 1  # of the result files; raise it when a reader of the old ones would go wrong
+FORM = {"kind": str, "settings": dict, "rows": list, "provenance": dict}  # of what a result file holds
+LARGEST = 2_000_000_000  # bytes of a result file, or of the arrays beside it
 PROJECT_FOLDER = Path(__file__).parents[2]
 RESULTS = PROJECT_FOLDER / "comparisons" / "results"  # those that the project ships
 PACKAGES = ("numpy", "scipy", "numba", *(engine.package for engine in ENGINES.values()))
@@ -149,31 +154,44 @@ def read_result(path: str | PathLike[str]) -> Result:
     """
     path = Path(path)
     try:
-        content = json.loads(path.read_text())
+        content = json.loads(read_plain(path, LARGEST))
     except FileNotFoundError as error:
         raise ResultError(f"{path.name}: no such result file; run the study that writes it") from error
-    except ValueError as error:
+    except OSError as error:
+        raise ResultError(f"{path.name}: cannot be read ({error.strerror}); give a result file of a study") from error
+    except (ValueError, RecursionError) as error:
         raise ResultError(f"{path.name}: not JSON ({error}); run the study again") from error
     schema = content.get("schema") if isinstance(content, dict) else None
     if schema != SCHEMA:
         raise ResultError(f"{path.name}: schema {schema!r}, this version reads {SCHEMA}; run the study again")
-    arrays = {}
-    if content["arrays"]:
-        beside = path.with_name(content["arrays"]["file"])
-        if not beside.exists() or _digest(beside) != content["arrays"]["digest"]:
-            raise ResultError(
-                f"{beside.name}: missing or not the one {path.name} was written with; run the study again"
-            )
-        with np.load(beside) as stored:
-            arrays = {name: stored[name] for name in stored.files}
-    return Result(content["kind"], content["settings"], content["rows"], content["provenance"], arrays)
+    if wrong := [name for name, kind in FORM.items() if not isinstance(content.get(name), kind)]:
+        raise ResultError(f"{path.name}: no result file of a study, its {wrong[0]} is missing; run the study again")
+    return Result(content["kind"], content["settings"], content["rows"], content["provenance"], _arrays(path, content))
+
+
+def _arrays(path, content):
+    """{name: array} of the file beside a result file, {} where it has none."""
+    stated = content.get("arrays")
+    if not stated:
+        return {}
+    beside, stored = path.with_suffix(".npz"), b""
+    with contextlib.suppress(OSError):
+        stored = read_plain(beside, LARGEST)
+    if not stored or hashlib.sha256(stored).hexdigest() != stated["digest"]:
+        raise ResultError(f"{beside.name}: missing or not the one {path.name} was written with; run the study again")
+    with np.load(io.BytesIO(stored)) as arrays:
+        return {name: arrays[name] for name in arrays.files}
 
 
 def age(result: Result) -> str | None:
-    """In words: None if the code behind `result` is the code here, else what has changed since.
+    """In words: None if code, shipped scenes and packages behind `result` are those here, else what has changed since.
 
-    Code counts, wherever it has moved; comments, docstrings and package versions do not.
+    Code counts wherever it has moved; comments, docstrings and packages that are not installed here do not.
     """
+    return "; ".join(words for words in (_changed(result), _other_versions(result)) if words) or None
+
+
+def _changed(result):
     then = result.provenance["sources"]
     packages = {*PROJECT, *(name.partition(".")[0] for name in then)}
     here = {digest[:16] for digest in digests_of_all(packages)}
@@ -187,6 +205,13 @@ def age(result: Result) -> str | None:
         f"older than the code: computed on {result.provenance['time'][:10]} {origin}; since then changed: "
         f"{', '.join(changed[:NAMED])}{others}"
     )
+
+
+def _other_versions(result):
+    then = result.provenance["packages"]
+    here = {name: version_of(name) for name, version in then.items() if version}
+    found = [f"{name} {then[name]} (here {own})" for name, own in here.items() if own and own != then[name]]
+    return f"computed with other versions than those here: {', '.join(found)}" if found else None
 
 
 def scrub(text: str) -> str:

@@ -4,11 +4,16 @@ import ast
 import functools
 import hashlib
 import importlib.util
+import tomllib
 from collections.abc import Iterable, Mapping
 from importlib.metadata import PackageNotFoundError, packages_distributions, version
 from pathlib import Path
 
+from analytic.scene_file import SHIPPED, shipped_scenes
+
 PROJECT = ("analytic", "engines", "comparisons")
+SCENES = "analytic.scenes."  # and the name of a shipped scene: as modules are called, so are they
+SHIPPED_NAMES = shipped_scenes()
 
 
 def source_digests(modules: Iterable[str]) -> dict[str, str]:
@@ -24,7 +29,8 @@ def source_digests(modules: Iterable[str]) -> dict[str, str]:
     Returns
     -------
     dict
-        Dotted module name -> hexadecimal digest of its code, sorted by name. Comments, docstrings and layout do not
+        Dotted module name -> hexadecimal digest of its code, sorted by name; and so of the scenes that the package
+        ships, where a module names them (``analytic.scenes.caryatid-rigid``). Comments, docstrings and layout do not
         count, nor types, but for the fields of classes; of an import count only the names that it binds: neither
         rewording nor moving nor annotating makes a result stale.
 
@@ -43,6 +49,9 @@ def source_digests(modules: Iterable[str]) -> dict[str, str]:
         name = waiting.pop()
         file = _file(name) if name not in digests else None
         if file is None:
+            continue
+        if file.suffix == ".toml":
+            digests[name] = _scene_digest(file)
             continue
         # The time stamp is part of the cache's key: a file edited meanwhile is read again.
         digests[name], imported = _read(name, str(file), file.stat().st_mtime_ns)
@@ -73,10 +82,17 @@ def digests_of_all(packages: Iterable[str]) -> set[str]:
             continue
         inside = file.parent.rglob("*.py") if file.name == "__init__.py" else [file]
         digests.update(_read(package, str(path), path.stat().st_mtime_ns)[0] for path in inside)
+        digests.update(_scene_digest(path) for path in file.parent.glob("scenes/*.toml"))
     return digests
 
 
+def _scene_digest(path):
+    return hashlib.sha256(repr(tomllib.loads(path.read_text(encoding="utf-8"))).encode()).hexdigest()
+
+
 def _file(name):
+    if name.startswith(SCENES):
+        return SHIPPED / f"{name.removeprefix(SCENES)}.toml"
     try:
         spec = importlib.util.find_spec(name)
     except ModuleNotFoundError:  # `name` is a function or class of a module, not a module
@@ -100,6 +116,8 @@ def _read(name, file, _modified):
                 base = ".".join([*above, base] if base else above)
             imported.add(base)
             imported.update(f"{base}.{alias.name}" for alias in node.names)
+        elif isinstance(node, ast.Constant) and node.value in SHIPPED_NAMES:
+            imported.add(f"{SCENES}{node.value}")
     return hashlib.sha256(_code(tree).encode()).hexdigest(), tuple(sorted(imported))
 
 

@@ -5,15 +5,16 @@ from __future__ import annotations
 import csv
 import math
 from os import PathLike
-from pathlib import Path
 
 from analytic.errors import SceneError
+from analytic.files import read_plain
 
 from .observed import Value, solved
 from .pages import COLUMNS
 from .problems import PROBLEMS, Problem
 from .variants import TIGHTEST, Fault, FaultyRun
 
+LARGEST = 1_000_000  # bytes of a file of answers, a hundred times what the sheet asks for
 LOOSER = 1e-14  # tolerance of the run beside the tightest one
 WORDS = ("stands", "rocks", "overturns")
 
@@ -27,7 +28,10 @@ def read_answers(path: str | PathLike[str]) -> dict[str, dict[str, Value]]:
         A line is not (scene, quantity, value), or names what the sheet does not ask; says file, line and remedy.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")
+        text = read_plain(path, LARGEST).decode("utf-8-sig")
+    except OSError as error:
+        problem = f"cannot be read ({error.strerror})"
+        raise SceneError("answers", str(path), problem, "give the file of answers") from None
     except UnicodeDecodeError as error:
         raise SceneError("answers", str(path), "no text in UTF-8", "save it as CSV in UTF-8") from error
     lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip() and line[0] != "#"]

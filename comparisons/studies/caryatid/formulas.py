@@ -167,7 +167,8 @@ def _target_values(scene):
 
 def _bearing_values(scene):
     """Table 1(b), beside what follows from Table 1(a)."""
-    designed = design_bearings(scene.total_mass, paper.PERIOD, paper.DAMPING, paper.X_MAX, count=paper.COUNT)
+    targets = scene.total_mass, paper.PERIOD, paper.DAMPING, paper.X_MAX
+    designed = design_bearings(*targets, count=paper.COUNT, definition="paper")
     return [
         Value("Table 1(b)", "number of bearings n_d [-]", float(paper.COUNT), float(scene.bearings.count), GIVEN),
         judged("Table 1(b)", "k_a [N/m]", paper.KA, designed.ka, 50.0, "designed from Table 1(a) with k_a/k_b = 10"),
@@ -344,6 +345,6 @@ def _bearing_equations(scene, law, arrays, jump):
             "bearings",
             REPRODUCED,
             "α designed from Table 1(a) [-]",
-            design_bearings(scene.total_mass, paper.PERIOD, paper.DAMPING, paper.X_MAX).alpha,
+            design_bearings(scene.total_mass, paper.PERIOD, paper.DAMPING, paper.X_MAX, definition="paper").alpha,
         ),
     ]

@@ -3,13 +3,16 @@
 import importlib
 import json
 import platform
+import shutil
 import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from analytic.scene_file import SHIPPED
 from comparisons.running import provenance as module
+from comparisons.running import sources
 from comparisons.running.provenance import (
     RESULTS,
     ResultError,
@@ -88,6 +91,28 @@ def test_age_names_the_modules_that_changed(tmp_path, monkeypatch):
     assert words.endswith("since then changed: analytic.scene, analytic.gone")
     result.provenance["commit"] = None
     assert "outside a checkout" in age(result)
+
+
+def test_age_sees_shipped_scenes_and_packages(tmp_path, monkeypatch):
+    modules = ["comparisons.studies.caryatid.study"]
+    result = read_result(write_result(tmp_path / "r.json", "k", {}, [], modules=modules))
+    assert age(result) is None
+    changed = tmp_path / "scenes"
+    shutil.copytree(SHIPPED, changed)
+    scene = changed / "caryatid-rigid.toml"
+    scene.write_text("# another comment\n" + scene.read_text())
+    real = sources.SHIPPED
+    monkeypatch.setattr(sources, "SHIPPED", changed)
+    reworded = sources.source_digests(modules)["analytic.scenes.caryatid-rigid"]
+    assert reworded[:16] == result.provenance["sources"]["analytic.scenes.caryatid-rigid"]
+    scene.write_text(scene.read_text().replace("slenderness = 0.28", "slenderness = 0.29"))
+    later = read_result(write_result(tmp_path / "later.json", "k", {}, [], modules=modules))
+    monkeypatch.setattr(sources, "SHIPPED", real)
+    assert age(later).endswith("since then changed: analytic.scenes.caryatid-rigid")
+    result.provenance["packages"]["numpy"] = "1.0"
+    assert age(result) == f"computed with other versions than those here: numpy 1.0 (here {np.__version__})"
+    result.provenance["packages"]["absent"] = "1.0"
+    assert "absent" not in age(result)
 
 
 def test_a_result_survives_a_rename_but_no_change(tmp_path, monkeypatch):

@@ -1,0 +1,38 @@
+"""Messages that name what a command offers: its options, not the parameters or the keys behind them."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+from collections.abc import Iterator, Mapping
+
+from analytic.errors import SceneError, SettingError
+
+# What `rocking new` and `rocking design` share.
+DEFINITION = "Of the damping. equivalent: W_D/(4 pi E_s), the usual one; paper: W_D/(2 pi E_s), twice as much."
+RATIO = "By design: ka/kb; Table 1(b) of the paper has 10."
+_SAME = ("height", "width", "depth", "density", "mass", "period", "damping", "definition", "count", "friction")
+OPTIONS = {
+    **{name: f"--{name}" for name in _SAME},
+    **{f"bearings.{name}": f"--{name}" for name in ("count", "ka", "kb", "alpha")},
+    **{f"motion.{name}": f"--{name}" for name in ("units", "dt", "column", "channel")},
+    **{"x_max": "--xmax", "bearings.x_max": "--xmax", "stiffness_ratio": "--ratio", "start.tilt": "--tilt"},
+    **{"block.mass": "--mass", "base.mass": "--base-mass"},
+}
+
+
+@contextlib.contextmanager
+def told_by_options(options: Mapping[str, str]) -> Iterator[None]:
+    """Errors raised inside name options; options : {parameter of a function, or key of a scene: option}."""
+    try:
+        yield
+    except SettingError as error:
+        words = str(error)
+        for name, option in options.items():
+            end = r"\b" if "_" in name else "(?= = )"  # a word of a sentence stays one
+            words = re.sub(rf"(?<![\w.-]){re.escape(name)}{end}", option, words)
+        raise SettingError(words) from None
+    except SceneError as error:
+        key = options.get(error.key, error.key)
+        file = None if key in options.values() else error.file
+        raise SceneError(key, error.value, error.problem, error.remedy, file) from None
