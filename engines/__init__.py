@@ -6,13 +6,14 @@ others are declared by their packages (`engines.plugins`).
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from importlib import import_module
 from pkgutil import iter_modules
 from typing import TYPE_CHECKING
 
 from analytic.errors import EngineNotInstalled
 
+from .contract import EXTRA
 from .plugins import find_engines
 
 if TYPE_CHECKING:
@@ -68,6 +69,15 @@ def available_engines(names: Iterable[str] | None = None) -> tuple[tuple[str, ..
         else:
             present.append(name)
     return tuple(present), missing
+
+
+def missing_words(missing: Mapping[str, str]) -> list[str]:
+    """What to say of `missing` engines, {name: why} of `available_engines`: all extras of this project in one line."""
+    extras = [name for name in missing if name in ENGINES and ENGINES[name].install == EXTRA.format(name)]
+    words = [why for name, why in missing.items() if name not in extras]
+    if extras:
+        words.append(f"not installed: {', '.join(extras)}; {EXTRA.format(','.join(extras))}")
+    return words
 
 
 def installed_engines() -> tuple[str, ...]:

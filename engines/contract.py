@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 # How well a variant is set up: as well as is known; with care, but at a known cost in error or generality; as a first
 # script would.
 RUNGS = ("best", "expert", "first script")
+EXTRA = 'pip install -e ".[{}]" in a checkout of this project'  # how to install an engine that is an extra
 STEPS = ("step", "largest_step", "longest_step")  # names of a setting that is the longest step [s]
 
 

@@ -9,12 +9,13 @@ def command() -> None:
     from rich.console import Console
 
     from analytic.errors import EngineBroken, EngineNotInstalled
-    from engines import BROKEN, ENGINES, get_engine
+    from engines import BROKEN, ENGINES, get_engine, missing_words
 
     from ..running.solving import stdout_to_stderr
     from ..showing.tables import engine_text
 
     console = Console(highlight=False, soft_wrap=True)
+    missing: dict[str, str] = {}
     for name in (*ENGINES, *BROKEN):
         try:
             with stdout_to_stderr():  # engines greet on standard output
@@ -22,5 +23,8 @@ def command() -> None:
         except EngineBroken as error:
             text = f"{name}: cannot be used. {error}\n"
         except EngineNotInstalled as error:
-            text = f"{name}: not installed. {error}\n"
+            missing[name] = str(error)
+            continue
         console.print(text, markup=False)
+    for words in missing_words(missing):
+        console.print(f"{words}", markup=False)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from engines import missing_words
+
 from ..showing.parts import number, percent
 
 if TYPE_CHECKING:
@@ -20,8 +22,7 @@ def summary(caryatid: Result, groups: Sequence[Mapping[str, Any]]) -> list[str]:
     for name, scene in caryatid.settings["scenes"].items():
         rows = [row for row in caryatid.rows if row["scene"] == name]
         sentences.append(f"{scene['name']}: {outcomes(rows)}{_times(rows)}{_displacement(rows)}.{_warnings(rows)}")
-    for name, reason in caryatid.settings["missing"].items():
-        sentences.append(f"Not in this report: {name}. {reason}.")
+    sentences += [f"Not in this report: {words}." for words in missing_words(caryatid.settings["missing"])]
     failed = [
         f"{row['solver']} on {row['scene']} ({row['failure']['reason']})" for row in caryatid.rows if row["failure"]
     ]

@@ -35,7 +35,7 @@ from .sources import PROJECT, source_digests
 
 LOCAL = "local:"
 PATIENCE = 5.0  # s, for a scheduler that does not answer
-INSTALL = "pip install 'rocking[cluster]'"
+INSTALL = 'pip install -e ".[cluster]" in a checkout of this project'
 
 
 class ClusterError(RuntimeError):

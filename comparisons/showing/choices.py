@@ -10,6 +10,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from engines import missing_words
+
 from ..running.readable import readable
 from .plots import TITLE_CHARACTERS, marker, style
 
@@ -40,8 +42,8 @@ def print_choice(choice: Choice) -> None:
         cost = f"; all the same it costs {part.cost:.2g} times the CPU time" if part.cost and not part.needed else ""
         cost = f"; it takes {part.cost:.2g} times the CPU time" if part.cost and part.needed else cost
         console.print(Text(f"{part.part.capitalize()} {need}: {part.why}{cost}."), soft_wrap=True)
-    for name, why in choice.missing.items():
-        console.print(Text(f"Not tried: {name}. {why}."), soft_wrap=True)
+    for words in missing_words(choice.missing):
+        console.print(Text(f"Not tried: {words}."), soft_wrap=True)
 
 
 def answer(choice: Choice) -> list[str]:

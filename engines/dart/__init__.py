@@ -1,11 +1,11 @@
 """DART: ``get_engine("dart").simulate(scene, variant=...)``."""
 
-from ..contract import Engine
+from ..contract import EXTRA, Engine
 
 ENGINE = Engine(
     name="dart",
     package="dartpy",
-    install="pip install 'rocking[dart]'",
+    install=EXTRA.format("dart"),
     adapter="engines.dart.adapter",
     tolerances="engines.dart.tolerances",
     colour="#882255",

@@ -1,11 +1,11 @@
 """Drake: ``get_engine("drake").simulate(scene, variant=...)``."""
 
-from ..contract import Engine
+from ..contract import EXTRA, Engine
 
 ENGINE = Engine(
     name="drake",
     package="pydrake",
-    install="pip install 'rocking[drake]'",
+    install=EXTRA.format("drake"),
     adapter="engines.drake.adapter",
     tolerances="engines.drake.tolerances",
     colour="#8C510A",

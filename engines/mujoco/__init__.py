@@ -1,11 +1,11 @@
 """MuJoCo: ``get_engine("mujoco").simulate(scene, variant=...)``."""
 
-from ..contract import Engine
+from ..contract import EXTRA, Engine
 
 ENGINE = Engine(
     name="mujoco",
     package="mujoco",
-    install="pip install 'rocking[mujoco]'",
+    install=EXTRA.format("mujoco"),
     adapter="engines.mujoco.adapter",
     tolerances="engines.mujoco.tolerances",
     colour="#CC79A7",

@@ -1,11 +1,11 @@
 """pymunk (Chipmunk, planar): ``get_engine("pymunk").simulate(scene, variant=...)``."""
 
-from ..contract import Engine
+from ..contract import EXTRA, Engine
 
 ENGINE = Engine(
     name="pymunk",
     package="pymunk",
-    install="pip install 'rocking[pymunk]'",
+    install=EXTRA.format("pymunk"),
     adapter="engines.pymunk.adapter",
     tolerances="engines.pymunk.tolerances",
     colour="#009E73",

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from engines import missing_words
+
 from ...showing.parts import Section, Table, figure_of, number, percent
 from . import paper
 from .figures import drawings
@@ -96,7 +98,7 @@ def _motion(result):
         _cost_text(result),
     ]
     if result.settings["missing"]:
-        text.append("Not installed, and so not compared: " + "; ".join(result.settings["missing"].values()))
+        text.append("Not installed, and so not compared: " + "; ".join(missing_words(result.settings["missing"])))
     tables = [
         _value_table(result, f"Figs 4 to 6 under {label}: paper, this study, difference"),
         _run_table(result),

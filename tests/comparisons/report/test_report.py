@@ -277,8 +277,7 @@ def test_missing_engines_are_named_with_their_remedy(tmp_path, monkeypatch):
     make_results(tmp_path, synthetic_motion(), duration=CUT, slendernesses=(SLENDERNESS,))
     page, all_of_it = Page(write_page(tmp_path, studies=NO_STUDIES)), Page(tmp_path / RUNS)
     assert any(
-        "Not in this report: pybullet. engine 'pybullet' needs the package pybullet: install it so" in item
-        for item in page.items
+        "Not in this report: engine 'pybullet' needs the package pybullet: install it so" in item for item in page.items
     )
     assert all_of_it.table("Caryatid on rigid ground, 7 s")["outcome", "analytic"] == "overturns"
     assert all_of_it.table("Caryatid isolated, 7 s")["outcome", "analytic"] == "undecided (stands so far)"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-dartpy = pytest.importorskip("dartpy", reason="dartpy is not installed: pip install 'rocking[dart]'")
+dartpy = pytest.importorskip("dartpy", reason="dartpy is not installed: see README.md")
 
 from released import impact_errors, scene  # noqa: E402
 

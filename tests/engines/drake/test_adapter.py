@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-pytest.importorskip("pydrake", reason="pydrake is not installed: pip install 'rocking[drake]'")
+pytest.importorskip("pydrake", reason="pydrake is not installed: see README.md")
 
 from released import impact_errors, scene  # noqa: E402
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed: pip install 'rocking[mujoco]'")
+mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed: see README.md")
 
 from released import impact_errors, scene  # noqa: E402
 

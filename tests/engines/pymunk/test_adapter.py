@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("pymunk", reason="pymunk is not installed: pip install 'rocking[pymunk]'")
+pytest.importorskip("pymunk", reason="pymunk is not installed: see README.md")
 
 from analytic import Base, Bearings, Block, Start  # noqa: E402
 from analytic import Scene as AnyScene  # noqa: E402
