@@ -7,8 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from .errors import SceneError
 from .motion import SampledMotion
 
+MOST_SAMPLES = 10_000_000  # of a component: a day at 100 Hz
 SAME_STEP = 1e-9  # relative difference of two steps that are the same, printed to other digits
 
 
@@ -17,9 +19,22 @@ def paired(level: SampledMotion, upright: SampledMotion) -> SampledMotion:
 
     The coarser of the two is resampled to the step of the other, linearly, as a motion is between its samples; the
     shorter one gets zeros at its end. Both is said in the warnings, which also repeat those of `upright`.
+
+    Raises
+    ------
+    SceneError
+        The two together would hold more than `MOST_SAMPLES`.
     """
     said: list[str] = []
     step = min(level.dt, upright.dt)
+    samples = max(level.end, upright.end) / step
+    if samples > MOST_SAMPLES:
+        raise SceneError(
+            "motion.vertical",
+            f"{upright.end:.4g} s at {upright.dt:.4g} s",
+            f"beside {level.end:.4g} s at {level.dt:.4g} s they are {samples:.3g} samples together",
+            f"resample the finer one, to at most {MOST_SAMPLES:.0e} in the longer one's time",
+        )
     first, second = (_resampled(motion, step, said) for motion in (level, upright))
     count = max(len(first), len(second))
     first, second = (

@@ -7,7 +7,6 @@ everywhere, with `aims.SPARE` to spare and without a word of leaving their verif
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,6 +20,7 @@ from engines import available_engines, get_engine
 from engines.verified import speaks_of_range
 
 from ..running.executors import Processes
+from ..running.files import TemporaryFolder
 from ..running.solving import ANALYTIC, named_engines
 from .aims import AIMS, Measure, fitting, lifts, neighbours, until
 from .found import Choice, Ladder, Setting
@@ -130,7 +130,7 @@ def _analytic(family):
 def _searched(scene, family, names, error, aim, **options):
     """(setting chosen or None, the best of none, CPU seconds of the whole scene, ladders); options: of the sweeps."""
     rungs, kinds = _rungs(names, scene), _kinds(names, scene)
-    with tempfile.TemporaryDirectory(prefix="choose-") as folder, Processes(None, ("analytic", *names)) as executor:
+    with TemporaryFolder("choose-") as folder, Processes(None, ("analytic", *names)) as executor:
         go = Runner(Path(folder), executor, Measure(aim), family, **options)
         go(rungs, [1.0], "the scene")
         search = Search(go, error, aim, lambda rung: go.whole(scene, rung))

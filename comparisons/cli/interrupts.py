@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import shutil
 import signal
 import sys
 import threading
@@ -80,6 +81,8 @@ def _end(state, stop):
     state.tell(stop)
     with contextlib.suppress(Exception):
         _end_children()
+    with contextlib.suppress(Exception):
+        _remove_folders()
     os._exit(stop.status)
 
 
@@ -88,6 +91,15 @@ def _end_children():
     for child in psutil.Process().children(recursive=True) if psutil else ():
         with contextlib.suppress(psutil.Error):  # type: ignore[union-attr]  # it was there for the loop
             child.kill()
+
+
+def _remove_folders():
+    """This project's temporary folders, and the one of multiprocessing's sockets: removed at an exit in good order."""
+    files, util = (sys.modules.get(name) for name in ("comparisons.running.files", "multiprocessing.util"))
+    if files is not None:
+        files.remove_temporary_folders()
+    if util is not None:
+        shutil.rmtree(util.get_temp_dir(), ignore_errors=True)
 
 
 def open_streams() -> None:

@@ -6,11 +6,11 @@ import importlib.util
 import shutil
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 from analytic.errors import SettingError
 
+from ..running.files import TemporaryFolder
 from .notebook import notebook_file
 from .topics import lesson
 
@@ -35,7 +35,7 @@ def open_notebook(name: str) -> int:
         raise SettingError(
             f"notebooks need the package marimo: {INSTALL}; rocking lessons export writes pages without it"
         )
-    with tempfile.TemporaryDirectory(prefix="rocking-lesson-") as folder:
+    with TemporaryFolder("rocking-lesson-") as folder:
         copy = Path(shutil.copy(file, folder))
         copy.with_name("pyproject.toml").write_text(SETTINGS, encoding="utf-8")
         return subprocess.call([sys.executable, "-m", "marimo", "edit", str(copy)])

@@ -9,7 +9,6 @@ import os
 import queue
 import signal
 import sys
-import tempfile
 import threading
 import time
 import traceback
@@ -27,6 +26,7 @@ from analytic.errors import SettingError
 from engines.guard import end_with_parent
 
 from .cases import Case, module_of
+from .files import TemporaryFolder
 from .provenance import json_ready, scrub
 
 MOST_BROKEN = 3
@@ -125,7 +125,7 @@ class Processes(Closing):
         self._workers = number_of(workers)
         self.slots = 2 * self._workers
         self._ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
-        self._evidence = tempfile.TemporaryDirectory(prefix="sweep-")
+        self._evidence = TemporaryFolder("sweep-")
         server = "forkserver" in multiprocessing.get_all_start_methods()
         self._context = multiprocessing.get_context("forkserver" if server else "spawn")
         if server:

@@ -14,6 +14,7 @@ from analytic.errors import SettingError
 
 PICTURES = (".png", ".svg", ".pdf")
 STANDARD_OUTPUT = "-"
+_TEMPORARY: set[str] = set()  # folders of this process
 PROBE_BYTES = 4096  # a place without room for this is full
 
 
@@ -198,6 +199,24 @@ def _kept(path, error, writer, suffix):
             with contextlib.suppress(OSError):
                 kept.unlink(missing_ok=True)
     return PlaceError(f"{reason}, nor anywhere else; make room and run again")
+
+
+class TemporaryFolder(tempfile.TemporaryDirectory):
+    """A temporary folder that is removed at a hard end, too (`remove_temporary_folders`)."""
+
+    def __init__(self, prefix: str) -> None:
+        super().__init__(prefix=prefix)
+        _TEMPORARY.add(self.name)
+
+    def cleanup(self) -> None:
+        super().cleanup()
+        _TEMPORARY.discard(self.name)
+
+
+def remove_temporary_folders() -> None:
+    """Before a process ends without clearing up behind itself."""
+    for folder in tuple(_TEMPORARY):
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _temporary():

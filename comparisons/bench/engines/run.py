@@ -14,7 +14,6 @@ import math
 from collections.abc import Callable, Sequence
 from os import PathLike
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from engines import get_engine
@@ -31,7 +30,7 @@ from ...measuring.verdicts import (
     rule,
     span,
 )
-from ...running.files import make_folder
+from ...running.files import TemporaryFolder, make_folder
 from ...running.provenance import write_result
 from ...running.sweep import Case, Processes, Store, run_sweep
 from ..random_scenes import describe
@@ -196,7 +195,7 @@ def examine(
     """(scene, kept analytic values, kept engine values, row of the bench) of one scene, run again; nothing stored."""
     scene, seen = wide_scene(seed, index), {}
     with (
-        TemporaryDirectory() as folder,
+        TemporaryFolder("bench-") as folder,
         Store(Path(folder) / "runs.jsonl") as store,
         Processes(1, ("analytic", engine)) as executor,
     ):
