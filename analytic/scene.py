@@ -103,7 +103,7 @@ class Bearings(Part):
     ka: Positive
     kb: NotNegative | None = None
     alpha: Annotated[float, Field(gt=1, le=MOST)] | None = None
-    delta_k: Positive = 1e-20
+    delta_k: Annotated[float, Field(ge=1e-100, le=MOST)] = 1e-20
     yield_force: Positive | None = None
     damping: NotNegative = 0.0
     x_max: Positive | None = None

@@ -113,10 +113,10 @@ def options(
     decide: bool = False,
     output_step: float = 0.0,
     capacity: int = CAPACITY,
-    shortest: float = 0.0,
+    shortest: float | None = None,
     steps: int = MOST_STEPS,
 ) -> Options:
-    """The kernel's `Options`, checked.
+    """The kernel's `Options`, checked; `shortest` is by default 0 where it is to `decide`, else infinite.
 
     Raises
     ------
@@ -129,6 +129,8 @@ def options(
         raise SettingError(f"order = {order!r}: give an integer from 4 to {MAX_ORDER}")
     if not 0 < rest_rate <= 1e-2:
         raise SettingError(f"rest_rate = {rest_rate!r}: give a value above 0, up to 1e-2")
+    if shortest is None:
+        shortest = 0.0 if decide else math.inf
     return Options(
         float(tolerance), order, float(rest_rate), record, decide, float(output_step), capacity, float(shortest), steps
     )

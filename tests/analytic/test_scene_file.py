@@ -154,7 +154,7 @@ def test_shipped_scenes():
         else:
             assert scene.motion is None
             assert scene.start.tilt == pytest.approx(0.6 * scene.block.slenderness)
-    table_1b = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, delta_k=1e-20)
+    table_1b = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, delta_k=1e-20, x_max=0.30)
     assert scenes["caryatid-isolated"].bearings == scenes["free-rocking-isolated"].bearings == table_1b
 
 
