@@ -84,7 +84,7 @@ def test_the_block_is_where_the_history_says(folder, browser):
     assert [track["who"] for track in tracks] == ["analytic", *installed_engines()]
     slider = page.locator("#stage input")
     for frame in (10, 120, 140):
-        slider.fill(str(frame * data["step"]))
+        slider.fill(f"{frame * data['step']:.10g}")
         for which, track in enumerate(tracks):
             moved = page.locator(f'svg[data-scene="0"] [data-track="{which}"]').get_attribute("transform")
             angle, corner = map(float, re.search(r"rotate\(([-\d.]+) ([-\d.]+)", moved).groups())
