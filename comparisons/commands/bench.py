@@ -74,9 +74,10 @@ def engines(
     from ..bench.engines.tables import cause_table, class_table, off_table
     from ..bench.random_scenes import describe
     from ..running.provenance import json_ready
-    from ..running.solving import named_engines
+    from ..running.solving import check_time_limit, named_engines
 
     named_engines([engine])
+    check_time_limit(time_limit)
     console = Console()
     if index is not None:
         scene, model, run, row = examine(engine, index, seed=seed, time_limit=time_limit)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from sampled_traces import BASE, BEARINGS, EDGE, SCENES, block, sampled, seen, shaking
 
-from analytic import Failure, PulseMotion, Scene, Start, simulate
+from analytic import Base, Bearings, Failure, PulseMotion, Scene, Start, simulate
 from engines.checks import (
     GAIN_LIMIT,
     HEIGHT_TOLERANCE,
@@ -170,6 +170,22 @@ def test_every_uplift_and_rest_under_shaking_is_found_and_no_other(name, toleran
     assert response.uplifts == pytest.approx(reference.uplifts, abs=1e-5)
     # The limit of the impacts below resolution is taken at constant acceleration.
     assert response.rests == pytest.approx(reference.rests, abs=tolerance)
+
+
+@pytest.mark.parametrize("mean_step, tolerance", [(5e-4, 1e-4), (4e-3, 5e-3)])
+def test_peaks_of_the_base_end_at_the_last_passage_of_the_slenderness(mean_step, tolerance):
+    """What the fall from there on adds, 6 % of the displacement here, is not the base's."""
+    motion = PulseMotion("half-sine", 14.0, 4.0)
+    stiff = Bearings(count=4, ka=2e5, kb=2e4, alpha=44.69)
+    scene = Scene(block=block(0.3), base=Base(mass=50.0), bearings=stiff, motion=motion, duration=5.0)
+    trace, reference = sampled(scene, mean_step)
+    response = seen(scene, trace)
+    assert reference.outcome == response.outcome == "overturns"
+    whole = np.abs(reference.history.base_displacement).max()
+    assert whole > 1.04 * reference.peak_base_displacement
+    assert response.peak_base_displacement == pytest.approx(reference.peak_base_displacement, rel=tolerance)
+    assert response.peak_base_acceleration == pytest.approx(reference.peak_base_acceleration, rel=4 * tolerance)
+    assert response.min_normal_ratio == pytest.approx(reference.min_normal_ratio, abs=10 * tolerance)
 
 
 def overturning():

@@ -1,0 +1,149 @@
+"""Every command answers on every scene that a user has: the shipped ones, and what `rocking new` writes."""
+
+import json
+
+import numpy as np
+import pytest
+
+from analytic import load_scene, shipped_scenes
+from analytic.errors import SceneError
+
+ENGINE = "exudyn"
+BUST = ("--height", 1.9, "--width", 0.55, "--material", "marble")
+DESIGN = ("--base-mass", 400, "--period", 2.5, "--xmax", 0.2)
+CONSTANTS = ("--base-mass", 400, "--ka", 3e4, "--kb", 3e3, "--alpha", 50)
+RECORD = ("--record", "own.csv")
+PULSE = 'pulse = "one-sine"\namplitude = 4.0\nfrequency = 6.0\n'
+NEW = {
+    "rigid, synthetic": BUST,
+    "rigid, record": (*BUST, *RECORD),
+    "rigid, pulse": BUST,
+    "rigid, tilted": (*BUST, "--tilt", 0.15),
+    "by design, synthetic": (*BUST, *DESIGN),
+    "by design, record": (*BUST, *DESIGN, *RECORD),
+    "by design, pulse": (*BUST, *DESIGN),
+    "by constants, synthetic": (*BUST, *CONSTANTS, "--friction", 0.6),
+    "by constants, record": (*BUST, *CONSTANTS, *RECORD),
+    "by constants, tilted": (*BUST, *CONSTANTS, "--xmax", 0.3, "--tilt", 0.15),
+}
+SHIPPED = {f"shipped {name}": name for name in shipped_scenes()}
+COMMANDS = {
+    "run": ("run", "SCENE", "--json", "-"),
+    "run in an engine": ("run", "SCENE", "--engine", ENGINE, "--json", "-"),
+    "compare": ("compare", "SCENE", "--engine", ENGINE, "--json", "-"),
+    "margin": ("margin", "SCENE", "--json", "-"),
+    "choose": ("choose", "SCENE", "--json", "-"),
+    "choose an engine": ("choose", "SCENE", "--engine", ENGINE, "--json", "-"),
+    "report": ("report", "SCENE", "--engine", ENGINE, "--output", "page", "--json", "-"),
+}
+# Those that take seconds: with the slow tests on all scenes, here on these.
+DEAR = {
+    "margin": ("rigid, record", "by constants, tilted", "shipped caryatid-isolated"),
+    "choose": ("rigid, record", "by design, synthetic", "by constants, tilted", "shipped caryatid-rigid"),
+    "choose an engine": ("by constants, tilted",),
+    "report": ("by design, record",),
+}
+CASES = [
+    pytest.param(
+        scene,
+        cut,
+        command,
+        marks=[pytest.mark.slow] if command in DEAR and (scene not in DEAR[command] or cut) else [],
+        id=f"{command}: {scene}{', cut' if cut else ''}",
+    )
+    for scene in (*NEW, *SHIPPED)
+    for cut in (False, True)
+    for command in COMMANDS
+]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Holds a record: a second and a half of noise at 50 Hz, 0.4 g."""
+    made = tmp_path_factory.mktemp("scenes")
+    noise = np.random.default_rng(7).normal(size=75)
+    rows = [f"{0.02 * k:.2f},{4.0 * value / np.abs(noise).max():.5f}" for k, value in enumerate(noise)]
+    (made / "own.csv").write_text("time [s],acc [m/s2]\n" + "\n".join(rows) + "\n")
+    return made
+
+
+def scene_file(rocking, folder, name, cut):
+    """The scene's file, as a user has it."""
+    if name in SHIPPED and not cut:
+        return SHIPPED[name]
+    file = folder / f"{name.replace(', ', '-').replace(' ', '-')}{'-cut' if cut else ''}.toml"
+    if file.exists():
+        return file
+    if name in SHIPPED:
+        from analytic.scene_file import SHIPPED as SCENES
+
+        text = (SCENES / f"{SHIPPED[name]}.toml").read_text()
+    else:
+        assert rocking("new", file, *NEW[name])[0] == 0
+        text = file.read_text()
+    if "pulse" in name:
+        text = text.replace('synthetic = "duzce-like"\n', PULSE)
+    if cut and "[run]" not in text:
+        text += "\n[run]\nduration = 2.0\n"
+    file.write_text(text.replace("duration = 10.0", "duration = 2.0") if cut else text)
+    return file
+
+
+@pytest.mark.parametrize("scene, cut, command", CASES)
+def test_it_answers(rocking, folder, monkeypatch, scene, cut, command):
+    monkeypatch.chdir(folder)
+    file = scene_file(rocking, folder, scene, cut)
+    status, out, err = rocking(*(file if word == "SCENE" else word for word in COMMANDS[command]))
+    assert "Traceback" not in err
+    answer = json.loads(out)
+    assert answer["schema"].startswith("rocking ")
+    nothing_passes = command.startswith("choose") and answer["chosen"] is None
+    assert status == int(nothing_passes), err
+    if command in ("run", "run in an engine"):
+        assert answer["outcome"] in ("stands", "rocks", "overturns")
+    if command == "choose" and load_scene(file).bearings and "tilted" not in scene and "free" not in scene:
+        assert answer["chosen"]["engine"] == "analytic"  # nothing lifts
+
+
+@pytest.mark.parametrize("command", ["compare", "report", "choose"])
+def test_a_restitution_that_is_given_costs_an_engine_its_row_and_not_the_answer(rocking, folder, monkeypatch, command):
+    monkeypatch.chdir(folder)
+    file = folder / "given.toml"
+    block = "[block]\nmass = 100.0\nradius = 1.0\nslenderness = 0.25\nrestitution = 0.9\n"
+    file.write_text(block + "[start]\ntilt = 0.1\n[run]\nduration = 2.0\n")
+    more = ("--output", "given") if command == "report" else ()
+    status, out, err = rocking(command, file, "--engine", ENGINE, *more, "--json", "-")
+    answer = json.loads(out)
+    assert status == int(command == "choose" and answer["chosen"] is None) and "Traceback" not in err
+    if command == "compare":
+        model, engine = answer["responses"]
+        assert model["outcome"] == "rocks" and engine["outcome"] == "failed"
+        assert "block.restitution = 0.9" in engine["failure"]["message"] and f"{ENGINE} failed" in err
+
+
+def test_a_base_that_nothing_moves_slides_nowhere(rocking, tmp_path):
+    """Review A12: it was said to slide on at -4e-15 m/s."""
+    file = tmp_path / "base.toml"
+    block = "[block]\nmass = 100.0\nradius = 1.0\nslenderness = 0.25\n[base]\nmass = 50.0\n"
+    file.write_text(block + "[start]\ntilt = 0.1\n")
+    assert json.loads(rocking("run", file, "--json", "-")[1])["warnings"] == []
+    file.write_text(block + "[start]\ntilt = 0.1\nbase_velocity = 0.2\n")
+    (warning,) = json.loads(rocking("run", file, "--json", "-")[1])["warnings"]
+    assert "slides on at" in warning
+
+
+def test_what_new_writes_has_the_limit_that_was_typed(rocking, folder, monkeypatch):
+    """Review A2."""
+    monkeypatch.chdir(folder)
+    for name, limit in (("by design, synthetic", 0.2), ("by constants, tilted", 0.3)):
+        assert load_scene(scene_file(rocking, folder, name, False)).bearings.x_max == limit
+    assert load_scene("caryatid-isolated").bearings.x_max == 0.3
+
+
+def test_a_scene_that_does_not_read_is_not_written(rocking, tmp_path):
+    """Review A16: the message named a temporary file."""
+    file = tmp_path / "bust.toml"
+    status, _, err = rocking("new", file, *BUST, "--tilt", 2)
+    assert status == 2 and err == "Error: --tilt = 2.0: out of range; give a number below 1.5708 [rad]\n"
+    with pytest.raises(SceneError):
+        load_scene(file)

@@ -1,0 +1,99 @@
+"""What README.md tells a user to type is run as it stands there, but for making environments and installing."""
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+# Seconds that `rocking ...` of these words may take; what is not here is quick.
+LONG = {"report": 600, "choose": 600, "lessons export": 1200}
+NOT_RUN = ("venv", "pip", "pytest", "open")  # made, installed or tested elsewhere, or opens a browser
+
+
+def blocks(language):
+    return re.findall(rf"^```{language}\n(.*?)^```", README, re.DOTALL | re.MULTILINE)
+
+
+def commands():
+    """[words of a command line] of the shell blocks, parts joined by && on their own, without .venv/bin/."""
+    found = []
+    for block in blocks("sh"):
+        for line in block.replace("\\\n", " ").splitlines():
+            for part in line.split("&&"):
+                words = [Path(word).name if word.startswith(".venv/") else word for word in shlex.split(part)]
+                if words and not set(NOT_RUN) & set(words):
+                    found.append(words)
+    return found
+
+
+def cases():
+    for words in commands():
+        name = " ".join(words[1:3]) if words[1] == "lessons" else words[1]
+        marks = [pytest.mark.slow, pytest.mark.timeout(1400)] if name in LONG else []
+        yield pytest.param(words, LONG.get(name, 60), marks=marks, id=" ".join(words[1:]))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Where the user's files lie: a record of their own, and one called like the paper's (its values are not)."""
+    made = tmp_path_factory.mktemp("readme")
+    values = 3.0 * np.random.default_rng(5).normal(size=2000) / 4
+    (made / "own.csv").write_text("".join(f"{0.01 * k:.2f},{value:.5f}\n" for k, value in enumerate(values)))
+    text = (made / "own.csv").read_text()
+    (made / "own.csv").write_text("time [s],acc [m/s2]\n" + text)
+    head = "PEER NGA STRONG MOTION DATABASE RECORD\nMade up\nACCELERATION TIME SERIES IN UNITS OF G\n"
+    rows = "\n".join(" ".join(f"{value / 9.81: .7E}" for value in row) for row in values.reshape(-1, 5))
+    (made / "RSN1605_DUZCE_DZC270.AT2").write_text(f"{head}NPTS=   2000, DT=   .0100 SEC\n{rows}\n")
+    return made
+
+
+def test_there_are_commands_to_run():
+    names = {words[1] for words in commands()}
+    assert {"new", "report", "choose", "lessons"} <= names
+    assert all(words[0] == "rocking" for words in commands())
+
+
+@pytest.mark.parametrize("words, seconds", list(cases()))
+def test_a_command_of_the_readme_works_as_it_stands(folder, words, seconds):
+    if any(word == "bust.toml" for word in words) and words[1] != "new" and not (folder / "bust.toml").exists():
+        new = next(other for other in commands() if other[1] == "new")
+        assert rocking(folder, new, 60).returncode == 0
+    if words[1] == "new":
+        (folder / "bust.toml").unlink(missing_ok=True)
+    done = rocking(folder, words, seconds)
+    assert done.returncode == 0, done.stderr[-2000:]
+    assert "Traceback" not in done.stderr
+
+
+def rocking(folder, words, seconds):
+    return subprocess.run(
+        [sys.executable, "-m", "comparisons", *words[1:]], cwd=folder, capture_output=True, text=True, timeout=seconds
+    )
+
+
+@pytest.mark.parametrize("source", blocks("python"))
+def test_its_python_runs(source):
+    done = subprocess.run([sys.executable, "-c", source], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    first, second = map(float, done.stdout.splitlines()[-1].split())
+    assert first == pytest.approx(second, rel=1e-3)  # the two solvers' displacement
+
+
+def test_its_scene_file_reads(tmp_path):
+    from analytic import load_scene
+
+    (source,) = (block for block in blocks("toml") if "[block]" in block)
+    (tmp_path / "scene.toml").write_text(source)
+    scene = load_scene(tmp_path / "scene.toml")
+    assert scene.base is not None and scene.bearings is not None and scene.motion is not None
+
+
+@pytest.mark.parametrize("name", re.findall(r"^\| `rocking (\w+)", README, re.MULTILINE))
+def test_every_command_of_its_table_is_there(name):
+    done = rocking(Path.cwd(), ["rocking", name, "--help"], 60)
+    assert done.returncode == 0 and "Example: rocking" in done.stdout
