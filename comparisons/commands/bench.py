@@ -20,7 +20,7 @@ def _about():
 @app.command()
 def analytic(
     quick: Annotated[bool, typer.Option(help="Fewer settings and rounds: under a minute.")] = False,
-    random: Annotated[int, typer.Option(min=0, help="Random valid scenes to run through the kernel.")] = 0,
+    random: Annotated[int, typer.Option(min=0, max=10**6, help="Random valid scenes to run through the kernel.")] = 0,
     record: Annotated[
         str | None,
         typer.Option(metavar="FILE", help="Record for the isolated Caryatid; without it the shipped synthetic motion."),
@@ -55,11 +55,11 @@ def analytic(
 @app.command()
 def engines(
     engine: Annotated[str, typer.Option(help="Engine, in its default variant.")],
-    scenes: Annotated[int, typer.Option(min=1, help="Scenes of the wide box.")] = 2000,
-    seed: Annotated[int, typer.Option(min=0, help="Of the ensemble.")] = 1,
+    scenes: Annotated[int, typer.Option(min=1, max=10**6, help="Scenes of the wide box.")] = 2000,
+    seed: Annotated[int, typer.Option(min=0, max=2**63, help="Of the ensemble.")] = 1,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; without it one per core.")] = None,
     time_limit: Annotated[float, typer.Option(min=0.1, help="Of an engine's run [s].")] = 60.0,
-    index: Annotated[int | None, typer.Option(min=0, help="Run this scene alone and print it.")] = None,
+    index: Annotated[int | None, typer.Option(min=0, max=10**9, help="Run this scene alone and print it.")] = None,
     output: Annotated[str, typer.Option(metavar="DIR", help="Where runs and results go.")] = "bench-engines",
 ) -> None:
     """An engine against the analytic model on random scenes of a wide box. Status 1: a run was off in silence.

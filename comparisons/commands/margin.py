@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+LEAST_SPAN = 0.1  # per cent
+
 
 def command(
     scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
@@ -23,6 +25,7 @@ def command(
     Each quantity is changed alone, in steps of a four-hundredth of the span, by the analytic model. The vertical
     stiffness of bearings is taken as infinite. Example: rocking margin caryatid-isolated --plot margins.svg
     """
+    from analytic.errors import SettingError
     from analytic.margins import contact_margins, margins
     from analytic.scene_file import load_scene
 
@@ -30,6 +33,8 @@ def command(
     from ..running.solving import compile_kernels, spinner
     from ..schemas.advice import Contact, Margin, Margins
 
+    if not LEAST_SPAN <= span < 100:
+        raise SettingError(f"--span {span:g}: give per cent, from {LEAST_SPAN:g} on and below 100")
     check_writable([json_file], picture=plot, inputs=[scene])
     what = load_scene(scene)
     compile_kernels()

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from ..running.options import RECORD_OPTIONS, told_by_options
 from ..running.record_options import Channel, Column, Step, Units
 
 
@@ -40,7 +41,8 @@ def command(
 
     check_writable([json_file, to], picture=plot, inputs=[file])
     name = Path(file).name
-    channels = read_channels(file, units, dt=dt, column=column, channel=channel)
+    with told_by_options(RECORD_OPTIONS):
+        channels = read_channels(file, units, dt=dt, column=column, channel=channel)
     if to and len(channels) > 1:
         choice = ", ".join(channel_words(one) for one in channels)
         raise SettingError(f"--to {to}: takes one channel; add --channel, one of {choice}")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..running.options import RECORD_OPTIONS, told_by_options
 from ..running.record_options import Channel, Column, Step, Units
 
 if TYPE_CHECKING:
@@ -80,7 +81,8 @@ def _motion(scene, record, said):
 
     if scene and not record and any(value is not None for value in said.values()):
         ground_motion(record, **said)  # says what belongs to a record
-    motion = None if scene and not record else ground_motion(record, **said)
+    with told_by_options(RECORD_OPTIONS):
+        motion = None if scene and not record else ground_motion(record, **said)
     if motion is not None:
         say(f"ground motion: {motion.label}")
     return motion

@@ -8,14 +8,15 @@ from collections.abc import Iterator, Mapping
 
 from analytic.errors import SceneError, SettingError
 
-# What `rocking new` and `rocking design` share.
+# What `rocking new` and `rocking design` share; those of a record, wherever one is read.
 DEFINITION = "Of the damping. equivalent: W_D/(4 pi E_s), the usual one; paper: W_D/(2 pi E_s), twice as much."
 RATIO = "By design: ka/kb; Table 1(b) of the paper has 10."
+RECORD_OPTIONS = {f"motion.{name}": f"--{name}" for name in ("units", "dt", "column", "channel")}
 _SAME = ("height", "width", "depth", "density", "mass", "period", "damping", "definition", "count", "friction")
 OPTIONS = {
     **{name: f"--{name}" for name in _SAME},
     **{f"bearings.{name}": f"--{name}" for name in ("count", "ka", "kb", "alpha")},
-    **{f"motion.{name}": f"--{name}" for name in ("units", "dt", "column", "channel")},
+    **RECORD_OPTIONS,
     **{"x_max": "--xmax", "bearings.x_max": "--xmax", "stiffness_ratio": "--ratio", "start.tilt": "--tilt"},
     **{"block.mass": "--mass", "base.mass": "--base-mass"},
 }
@@ -34,5 +35,6 @@ def told_by_options(options: Mapping[str, str]) -> Iterator[None]:
         raise SettingError(words) from None
     except SceneError as error:
         key = options.get(error.key, error.key)
-        file = None if key in options.values() else error.file
+        of_a_file = key == error.key or error.key in RECORD_OPTIONS
+        file = error.file if of_a_file else None  # other options name no file
         raise SceneError(key, error.value, error.problem, error.remedy, file) from None

@@ -52,7 +52,7 @@ def test_margin_says_when_nothing_flips_the_verdict(rocking, scene_file):
 
 def test_a_span_out_of_range_is_one_message(rocking):
     status, _, err = rocking("margin", "free-rocking-rigid", "--span", "200")
-    assert status == 2 and "span = 2.0" in err and "below 1" in err
+    assert status == 2 and err == "Error: --span 200: give per cent, from 0.1 on and below 100\n"
 
 
 def test_a_frayed_boundary_is_said(capsys):

@@ -134,8 +134,7 @@ def test_other_commands_ask_for_the_channel_too(rocking, tmp_path, command):
     record.write_text(cosmos(VALUES))
     scene = [tmp_path / "scene.toml", "--height", "2", "--width", "0.5", "--mass", "900"] if command == "new" else []
     status, _, err = rocking(command, *scene, "--record", record)
-    key = "--channel" if command == "new" else "motion.channel"
-    assert status == 2 and f"{key}: missing; the file holds channels 1 (340 deg) or 2 (Up)" in err
+    assert status == 2 and "--channel: missing; the file holds channels 1 (340 deg) or 2 (Up)" in err
     if command == "new":
         assert rocking(command, *scene, "--record", record, "--channel", "Up")[0] == 0
         assert 'channel = "Up"' in scene[0].read_text()
