@@ -77,7 +77,10 @@ OTHERS = {
     ),
     "peak_tilt": Quantity("peak_tilt", "angle", "largest |φ| within the duration", "peak_tilt"),
     "peak_displacement": Quantity(
-        "peak_displacement", "length", "largest |x| within the duration", "peak_base_displacement"
+        "peak_displacement",
+        "length",
+        "largest |x| within the duration; of a block that overturns, up to the last time of |φ| = γ",
+        "peak_base_displacement",
     ),
     "uplift": Quantity("uplift_time", "time", "time at which the block first lifts", "uplifts", 1),
     "rest": Quantity(

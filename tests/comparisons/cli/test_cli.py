@@ -5,13 +5,14 @@ import dataclasses
 import json
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 from bad_scenes import BAD, SCENE, write_scene
 from engine_cases import needs
 
-from analytic import EngineNotInstalled, Failure, load_scene, simulate
+from analytic import EngineNotInstalled, Failure, load_scene, simulate, solver
 from comparisons import cli
 from comparisons.measuring.verdicts import resolved
 from comparisons.running import solving
@@ -150,6 +151,17 @@ def test_bad_engine_option(rocking, engine):
         status, out, err = rocking("run", "free-rocking-rigid", "--engine", engine, *arguments)
         assert (status, out) == (2, ""), arguments
         assert arguments[1].partition("=")[0] in err and "Traceback" not in err
+
+
+def test_compiling_is_said_and_is_not_on_the_clock_of_the_run(rocking, monkeypatch):
+    def slowly(vertical=False):
+        time.sleep(2.0)
+
+    monkeypatch.setattr(solving, "PATIENCE", 0.1)
+    monkeypatch.setattr(solver, "compile_kernels", slowly)
+    status, out, err = rocking("run", "free-rocking-rigid", "--time-limit", "2", "--json", "-")
+    assert status == 0 and json.loads(out)["cpu_seconds"] < 1.0
+    assert err == "compiling the analytic model: half a minute, once on this machine\n"
 
 
 def test_setting_reaches_the_solver(rocking):
