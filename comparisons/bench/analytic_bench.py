@@ -49,7 +49,7 @@ def bench_analytic(
     SceneError, SettingError
         The record cannot be read, or the folder cannot be made: before anything runs.
     """
-    motion = read_record(record) if record else synthetic_motion()
+    motion = synthetic_motion() if record is None else read_record(record)
     output = make_folder(output)
     rounds = QUICK_ROUNDS if quick else ROUNDS
     blocks, records = block_problems(), record_problems(motion)

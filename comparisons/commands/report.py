@@ -60,7 +60,7 @@ def command(
 
     check_folder(output)
     shown = _studies(studies)
-    check_writable([json_file], inputs=[*(scene or ()), *([record] if record else ())])
+    check_writable([json_file], inputs=[*(scene or ()), *([record] if record is not None else ())])
     for name in engine or ():
         check_solver(name)
     engines = [name for name in engine if name != ANALYTIC] if engine else None
@@ -79,10 +79,10 @@ def _motion(scene, record, said):
     """The motion of the record, or the shipped one; None where scenes bring theirs."""
     from ..running.solving import ground_motion, say
 
-    if scene and not record and any(value is not None for value in said.values()):
+    if scene and record is None and any(value is not None for value in said.values()):
         ground_motion(record, **said)  # says what belongs to a record
     with told_by_options(RECORD_OPTIONS):
-        motion = None if scene and not record else ground_motion(record, **said)
+        motion = None if scene and record is None else ground_motion(record, **said)
     if motion is not None:
         say(f"ground motion: {motion.label}")
     return motion

@@ -67,7 +67,7 @@ def ground_motion(record: str | PathLike[str] | None = None, **said: Any) -> Sam
     from analytic import synthetic_motion
     from analytic.records import read_record
 
-    if record:
+    if record is not None:
         return read_record(record, **said)
     for name, value in said.items():
         if value is not None:

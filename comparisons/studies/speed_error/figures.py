@@ -43,8 +43,16 @@ def check_axes(*names: str) -> None:
             raise SettingError(f"axis {name!r}: choose one of {', '.join(axis_names())}")
 
 
-Horizontal = Annotated[str, typer.Option(help="Horizontal axis of the figure.")]
-Vertical = Annotated[str, typer.Option(help="Vertical axis; 'error' is each scene's principal measure.")]
+def _checked(name: str) -> str:
+    """The axis, refused before the work if it does not exist."""
+    check_axes(name)
+    return name
+
+
+Horizontal = Annotated[str, typer.Option(help="Horizontal axis of the figure.", callback=_checked)]
+Vertical = Annotated[
+    str, typer.Option(help="Vertical axis; 'error' is each scene's principal measure.", callback=_checked)
+]
 
 
 def figures(result: Result, *, x: Horizontal = "cpu", y: Vertical = "error") -> dict[str, Figure]:

@@ -23,7 +23,7 @@ FEW = 3
 TWIN_TOLERANCE = 1e-13  # of the independent solution each reference is held against
 EVIDENCE = 600  # characters of an engine's message that a row keeps
 
-Repeats = Annotated[int | None, typer.Option(min=1, help="Fresh processes in turn. Default 5, quick 3.")]
+Repeats = Annotated[int | None, typer.Option(min=1, max=1000, help="Fresh processes in turn. Default 5, quick 3.")]
 
 
 def plan(

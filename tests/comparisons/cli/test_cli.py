@@ -2,6 +2,7 @@
 
 import csv
 import dataclasses
+import functools
 import json
 import subprocess
 import sys
@@ -154,6 +155,7 @@ def test_bad_engine_option(rocking, engine):
 
 
 def test_compiling_is_said_and_is_not_on_the_clock_of_the_run(rocking, monkeypatch):
+    @functools.cache
     def slowly(vertical=False):
         time.sleep(2.0)
 
