@@ -3,7 +3,7 @@
 from ._cache import kernel_cache
 from .errors import EngineNotInstalled, SceneError, SettingError
 from .motion import PulseMotion, SampledMotion
-from .response import Energy, Failure, History, Impact, Response, State
+from .response import Caution, Difference, Energy, Failure, History, Impact, Response, State
 from .synthetic import synthetic_motion
 
 with kernel_cache():
@@ -17,6 +17,8 @@ __all__ = [
     "Base",
     "Bearings",
     "Block",
+    "Caution",
+    "Difference",
     "Energy",
     "EngineNotInstalled",
     "Failure",

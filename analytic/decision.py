@@ -28,6 +28,7 @@ from numba import njit
 
 from .bearing import BearingLaw
 from .laws import chosen
+from .response import Caution
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -168,20 +169,22 @@ def longest_duration(scene: Scene) -> float:
     return motion_end(scene) + CAP_PERIODS * period(scene)
 
 
-def model_warnings(scene: Scene, friction_demand: float, min_normal_ratio: float) -> tuple[str, ...]:
-    """Sentences on what the model assumes and this run does not keep: contact that only presses, and no sliding; and on
-    bearings that carry a vertical motion, which are not rigid."""
+def model_warnings(scene: Scene, friction_demand: float, min_normal_ratio: float) -> tuple[Caution, ...]:
+    """What the model assumes and this run does not keep: contact that only presses, no sliding; and bearings that carry
+    a vertical motion, which are not rigid."""
     found = []
     if scene.bearings is not None and scene.motion is not None and scene.motion.vertical is not None:
-        found.append(RIGID_BEARINGS)
+        found.append(Caution("model", RIGID_BEARINGS))
     if min_normal_ratio <= 0:
-        found.append(
-            f"the least normal force at the contact is {min_normal_ratio:.3g} m g: the block would jump, and "
-            "the verdict is outside the model"
+        words = (
+            f"the least normal force at the contact is {min_normal_ratio:.3g} m g: the block would jump, and the "
+            "outcome is outside the model"
         )
+        found.append(Caution("model", words, "min_normal_ratio", min_normal_ratio, 0.0))
     if scene.friction is not None and friction_demand > scene.friction:
-        found.append(
-            f"the friction demand {friction_demand:.3g} is above the scene's friction {scene.friction:.3g}: "
-            "the block would slide, and the verdict is outside the model"
+        words = (
+            f"the friction demand {friction_demand:.3g} is above the scene's friction {scene.friction:.3g}: the block "
+            "would slide, and the outcome is outside the model"
         )
+        found.append(Caution("model", words, "friction_demand", friction_demand, scene.friction))
     return tuple(found)

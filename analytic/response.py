@@ -10,6 +10,19 @@ from typing import Any, Self, TextIO
 import numpy as np
 
 OUTCOMES = ("stands", "rocks", "overturns", "failed")
+# Quantities of a `Difference`, in words. Restitution: of the matched impact that is furthest off; missing and extra
+# impacts: numbers of impacts that count, here and in the model, and have a match.
+DIFFERENCES = {
+    "outcome": "the block {here}, in the analytic model it {model}",
+    "peak_tilt": "peak tilt {here:.4g} rad, in the analytic model {model:.4g}",
+    "peak_base_displacement": "peak base displacement {here:.4g} m, in the analytic model {model:.4g}",
+    "restitution": "restitution {here:.4g} at an impact, in the analytic model {model:.4g}",
+    "missing_impacts": "{here:.0f} of {model:.0f} impacts of the analytic model are found",
+    "extra_impacts": "{here:.0f} impacts, {model:.0f} of them in the analytic model",
+}
+# Whether a run can be compared: "yes", "no" (it was not asked for, or has failed), "on an edge" (a change of 1e-4 of
+# the scene makes such a difference in the model), else the reason why not.
+COMPARED, UNCOMPARED, EDGE = "yes", "no", "on an edge"
 
 
 @dataclass(frozen=True)
@@ -79,6 +92,47 @@ class Energy:
 
 
 @dataclass(frozen=True)
+class Caution:
+    """A warning of a run.
+
+    kind: "record" (odd about the file of the motion), "model" (outside what the model describes), "limit" (outside what
+    a part of the scene is built for) or "engine" (said by an engine or its adapter). quantity, value, limit: what is
+    beyond which limit [SI units], where it is a number. text: a sentence.
+    """
+
+    kind: str
+    text: str
+    quantity: str | None = None
+    value: float | None = None
+    limit: float | None = None
+
+    def __str__(self) -> str:
+        return self.text
+
+
+def about_record(motion: Any) -> tuple[Caution, ...]:
+    """What is odd about the record of a motion (or of None), as warnings; pulses have none."""
+    return tuple(Caution("record", text) for text in getattr(motion, "warnings", ()))
+
+
+@dataclass(frozen=True)
+class Difference:
+    """What an engine's run has other than the analytic model: both values, and the difference that is tolerated.
+
+    quantity: one of `DIFFERENCES`; here, model: an outcome, or a number. limit: of peaks relative to the model's, of the
+    restitution [-] or of a number of impacts absolute; None for an outcome.
+    """
+
+    quantity: str
+    here: str | float
+    model: str | float
+    limit: float | None
+
+    def __str__(self) -> str:
+        return DIFFERENCES[self.quantity].format(here=self.here, model=self.model)
+
+
+@dataclass(frozen=True)
 class Failure:
     """Why a run failed: a reason in plain words, the engine's own message, the last finite state."""
 
@@ -114,7 +168,9 @@ class Response:
     versions: dict
     scene: str = ""  # name
     decided: bool = True  # False: it ended before the outcome was certain; see analytic/decision.py
-    warnings: tuple[str, ...] = ()  # sentences: where the result lies outside what was verified or modelled
+    warnings: tuple[Caution, ...] = ()  # where the result lies outside what is modelled, or is odd
+    differences: tuple[Difference, ...] = ()  # of an engine's run from the analytic model
+    comparable: str = UNCOMPARED  # whether it was compared with the model; see `COMPARED`
     failure: Failure | None = None
     energy: Energy | None = None
     history: History | None = field(default=None, repr=False)
@@ -143,12 +199,10 @@ class Response:
             value = getattr(self, part.name)
             if dataclasses.is_dataclass(value):
                 value = dataclasses.asdict(value)  # type: ignore[arg-type]  # no class is a field's value
-            elif part.name == "impacts":
-                value = [dataclasses.asdict(impact) for impact in value]
-                values["impact_count"] = len(value)
             elif isinstance(value, tuple):
-                value = list(value)
+                value = [dataclasses.asdict(one) if dataclasses.is_dataclass(one) else one for one in value]  # type: ignore[arg-type]  # as above
             values[part.name] = value
+        values["impact_count"] = len(self.impacts)
         return _finite(values)
 
     @classmethod
@@ -169,7 +223,11 @@ class Response:
         if failure is not None:
             failure = Failure(**{**failure, "last_state": failure["last_state"] and _of(State, failure["last_state"])})
         numbers = {part.name: _number(values.get(part.name)) for part in dataclasses.fields(cls) if part.type is float}
-        series = {name: tuple(values[name]) for name in ("uplifts", "rests", "warnings")}
+        series = {name: tuple(values[name]) for name in ("uplifts", "rests")}
+        series |= {
+            name: tuple(kind(**one) for one in values.get(name, ()))
+            for name, kind in (("warnings", Caution), ("differences", Difference))
+        }
         return cls(
             **{
                 **values,

@@ -28,7 +28,7 @@ from .layout import Ground, Options, Vertical
 from .limits import limit_warnings
 from .motion import RICKER_PERIODS, SampledMotion
 from .polynomial import MAX_ORDER
-from .response import Energy, Failure, History, Impact, Response, State
+from .response import Caution, Energy, Failure, History, Impact, Response, State, about_record
 from .rocking import RockingModel
 from .taylor import HARMONIC, LINEAR_GROUND, QUIET, RICKER, SHORT_ORDER, Parameters
 
@@ -300,17 +300,18 @@ def _response(
     )
 
 
-def _warnings(scene: Scene, totals: np.ndarray, velocity: float) -> tuple[str, ...]:
-    found = list(getattr(scene.motion, "warnings", ()))
+def _warnings(scene: Scene, totals: np.ndarray, velocity: float) -> tuple[Caution, ...]:
+    found = [*about_record(scene.motion)]
     found += model_warnings(scene, float(totals[layout.FRICTION]), float(totals[layout.NORMAL]))
     peak = float(totals[layout.PEAK_X])
     found += limit_warnings(scene, peak)
     drift = abs(velocity) * CAP_PERIODS * period(scene)  # what is left of rounding slides nowhere
     if scene.base is not None and scene.bearings is None and drift > PEAK_TOLERANCE * peak:
-        found.append(
-            f"the base slides on at {velocity:.3g} m/s with no bearing to stop it: its displacement has no "
-            "peak, the one given is that at the end of the run"
+        words = (
+            f"the base slides on at {velocity:.3g} m/s with no bearing to stop it: its displacement has no peak, the "
+            "one given is that at the end of the run"
         )
+        found.append(Caution("model", words, "base_velocity", velocity, 0.0))
     return tuple(found)
 
 

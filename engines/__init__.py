@@ -9,15 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from importlib import import_module
 from pkgutil import iter_modules
-from typing import TYPE_CHECKING
 
 from analytic.errors import EngineNotInstalled
 
-from .contract import EXTRA
+from .contract import EXTRA, Engine
 from .plugins import find_engines
-
-if TYPE_CHECKING:
-    from .contract import Engine
+from .simulating import Simulator
 
 # The two that the project began with stand first. Found, and imported by name, not by statement: a result of one engine
 # depends neither on the records of the others nor on which there are.
@@ -27,13 +24,13 @@ BUILT_IN = tuple(
         key=lambda name: (name not in ("exudyn", "pybullet"), name),
     )
 )
-ENGINES = {name: import_module(f"{__name__}.{name}").ENGINE for name in BUILT_IN}
-_found, BROKEN = find_engines(ENGINES)  # BROKEN: the errors of entries that hold no engine, by name
-ENGINES |= _found
+_declared: dict[str, Engine] = {name: import_module(f"{__name__}.{name}").ENGINE for name in BUILT_IN}
+_found, BROKEN = find_engines(_declared)  # BROKEN: the errors of entries that hold no engine, by name
+ENGINES = {name: Simulator.of(engine) for name, engine in (_declared | _found).items()}
 
 
-def get_engine(name: str) -> Engine:
-    """The `Engine` called `name`, with its adapter loaded.
+def get_engine(name: str) -> Simulator:
+    """The engine called `name`, with its adapter loaded.
 
     Raises
     ------

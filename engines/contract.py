@@ -1,4 +1,4 @@
-"""What an engine is: a light record, found by its name, that loads its adapter when it is first asked.
+"""What an engine is, as data: a record, found by its name, that loads its adapter when it is first asked.
 
 A package that offers an engine holds one `Engine`. The adapter, a module of its own, holds
 
@@ -7,33 +7,30 @@ A package that offers an engine holds one `Engine`. The adapter, a module of its
 - ``run(scene, variant, settings)``: a `Run` of a scene with a duration; `variant` is a name, `settings` an instance of
   that variant's dataclass, both checked. Where the motion has a `vertical` one, the block's weight is m (g + a_v).
 
-All else is the same for every engine and is done here and in `engines.simulating`: settings are checked, a scene
-without a duration runs until its outcome is decided, warnings are said, events and peaks are found outside the engine.
+All else is the same for every engine and is done in `engines.simulating`: settings are checked, a scene without a
+duration runs until its outcome is decided, events and peaks are found outside the engine, and the response is compared
+with the analytic model.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from analytic.errors import EngineBroken, EngineNotInstalled
-from analytic.response import Failure
-
-from .verified import NOWHERE, Range
 
 if TYPE_CHECKING:
-    from analytic import Response, Scene
+    from analytic.response import Caution, Failure
 
     from .bounds import Bound
     from .swings import Trace
 
-# How well a variant is set up: as well as is known; with care, but at a known cost in error or generality; as a first
-# script would.
-RUNGS = ("best", "expert", "first script")
+# How far the engine is on its own: "defaults", what a first script gets from the API; "tuned", only the engine moves a
+# body or sets a velocity; "assisted", the adapter sets a velocity, a position or a constraint by the model's event.
+TIERS = ("defaults", "tuned", "assisted")
 EXTRA = 'pip install -e ".[{}]" in a checkout of this project'  # how to install an engine that is an extra
 STEPS = ("step", "largest_step", "longest_step")  # names of a setting that is the longest step [s]
 
@@ -49,24 +46,21 @@ class Variant:
     Parameters
     ----------
     settings : object
-        Instance of a frozen dataclass of numbers above 0, the accuracy knob first. A field ``friction`` yields to the
-        scene's coefficient.
-    rung : str
-        One of `RUNGS`.
+        Instance of a frozen dataclass of numbers above 0, the accuracy parameter first. A field ``friction`` yields to
+        the scene's coefficient.
+    tier : str
+        One of `TIERS`.
     ladder : tuple of float
-        Values of the knob from coarse to fine, the default among them.
-    decides : str
-        Who decides what, engine or adapter, in words.
-    verified : Range or None
-        Where it was held against the analytic model; None: nowhere.
-    caveats : tuple of str
-        Warnings said of every run. Without any, a variant verified nowhere says that.
+        Refinement levels: values of the accuracy parameter from coarse to fine, the default among them.
+    computes, imposes : str
+        What the engine computes, and what the adapter imposes on it beside the bearings' force, the ground's
+        acceleration and the settings; in words.
     takes_restitution : bool
         The adapter, not the engine, applies the impact: a scene may give the restitution.
     finer : tuple of dict
-        Settings that may cure a run that is not right, tried in turn; without any, the ladder beyond the default.
+        Settings that may cure a run that is not right, tried in turn; without any, the levels beyond the default.
     varied : dict
-        {setting: values} of what else, changed alone, tells what the variant's error hangs on.
+        {setting: values} of what else, changed alone, tells what the variant's error depends on.
     friction : float or None
         Coefficient of the contact where a scene gives none, if it is so low that a block may slide.
     flight_damping : float or None
@@ -77,15 +71,14 @@ class Variant:
     Raises
     ------
     ValueError
-        An unknown rung, a ladder without the default, or a value for a setting that does not exist.
+        An unknown tier, levels without the default, or a value for a setting that does not exist.
     """
 
     settings: Any
-    rung: str
+    tier: str
     ladder: tuple[float, ...]
-    decides: str
-    verified: Range | None
-    caveats: tuple[str, ...] = ()
+    computes: str
+    imposes: str
     takes_restitution: bool = False
     finer: tuple[dict[str, float], ...] = ()
     varied: dict[str, tuple[float, ...]] = field(default_factory=dict)
@@ -94,12 +87,10 @@ class Variant:
     free_block: str | None = None
 
     def __post_init__(self) -> None:
-        if self.rung not in RUNGS:
-            raise ValueError(f"rung = {self.rung!r}: choose one of {', '.join(RUNGS)}")
+        if self.tier not in TIERS:
+            raise ValueError(f"tier = {self.tier!r}: choose one of {', '.join(TIERS)}")
         if self.default not in self.ladder:
             raise ValueError(f"ladder = {self.ladder!r}: it lacks the default, {self.knob} = {self.default!r}")
-        if self.verified is None and not self.caveats:
-            object.__setattr__(self, "caveats", (NOWHERE,))
         if not self.finer:
             beyond = self.ladder[self.ladder.index(self.default) + 1 :]
             object.__setattr__(self, "finer", tuple({self.knob: value} for value in beyond))
@@ -109,12 +100,12 @@ class Variant:
 
     @property
     def knob(self) -> str:
-        """Name of the accuracy knob."""
+        """Name of the accuracy parameter."""
         return dataclasses.fields(self.settings)[0].name
 
     @property
     def default(self) -> float:
-        """Value of the knob."""
+        """Value of the accuracy parameter."""
         return getattr(self.settings, self.knob)
 
     @property
@@ -130,9 +121,7 @@ class Run:
 
     trace: the accepted steps, None where there are fewer than two. steps: how many were made. cpu_seconds: of the
     stepping alone. failure: what the engine or the adapter found wrong. ended: "overturned" where the run was stopped
-    at overturning. step: the longest [s], which the verified range asks for; None where it is not known. drift, late:
-    relative error of the time between two impacts or of the frequency of a base that vibrates, and the time [s] by
-    which an impact comes off beside it, as far as they are known (`engines.kicked`). warnings: sentences.
+    at overturning. warnings: what is to be said of the run; a sentence is taken as it is.
     """
 
     trace: Trace | None
@@ -140,10 +129,7 @@ class Run:
     cpu_seconds: float
     failure: Failure | None = None
     ended: str | None = None
-    step: float | None = None
-    drift: float = 0.0
-    late: float = 0.0
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[Caution | str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -243,42 +229,3 @@ class Engine:
     def versions(self) -> dict[str, str]:
         """Versions that determine the result: {package: version}."""
         return self.load().versions()
-
-    def run(self, scene: Scene, variant: str, settings: object) -> Run:
-        """The bare run of a scene that has a duration; settings: of the variant's dataclass, taken as they are."""
-        return self.load().run(scene, variant, settings)
-
-    def simulate(
-        self, scene: Scene, *, variant: str | None = None, history: bool = True, **settings: Mapping[str, Any]
-    ) -> Response:
-        """The response of a scene; a run that went wrong has the outcome "failed" with its evidence.
-
-        Parameters
-        ----------
-        scene : Scene
-            Without a duration it runs until its outcome is decided.
-        variant : str or None
-            One of `variants`; None is the default one.
-        history : bool
-            Keep the history in the response.
-        **settings
-            Fields of the variant's settings, in place of their defaults.
-
-        Raises
-        ------
-        SettingError
-            Unknown variant or setting, or a setting that is not a positive number.
-        SceneError
-            The scene gives the restitution, and the variant decides it.
-        Mismatch
-            exudyn alone: it holds other values than the scene asks for; nothing was run.
-        """
-        return self.traced(scene, variant=variant, history=history, **settings)[0]
-
-    def traced(
-        self, scene: Scene, *, variant: str | None = None, history: bool = True, **settings: Mapping[str, Any]
-    ) -> tuple[Response, Trace | None]:
-        """(response, the steps it was read from or None) of `simulate`."""
-        from .simulating import traced
-
-        return traced(self, scene, variant, history, settings)

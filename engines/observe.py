@@ -18,7 +18,7 @@ from analytic.decision import model_warnings
 from analytic.ending import is_decided
 from analytic.limits import limit_warnings
 from analytic.motion import SampledMotion
-from analytic.response import Failure, History, Response
+from analytic.response import Caution, Failure, History, Response, about_record
 
 from .checks import check_energy, check_place, energy_gain, replay_bearing
 from .endings import ended_early, finite_part, last_state, unstable_time, upright_part, upto_overturning
@@ -43,7 +43,7 @@ def observe(
     history: bool = True,
     failure: Failure | None = None,
     ended: str | None = None,
-    warnings: Iterable[str] = (),
+    warnings: Iterable[Caution | str] = (),
     **run: Any,
 ) -> Response:
     """The response of an engine's run.
@@ -62,9 +62,9 @@ def observe(
     ended : str or None
         "overturned" where the adapter stopped the run: if the last step lies before |tilt| = pi/2, the block is taken
         to fall on at the model's acceleration.
-    warnings : iterable of str
-        Sentences of the engine, as of `engines.verified.outside`; those of the motion's record, and where the run is
-        outside the model (`analytic.decision.model_warnings`), are added.
+    warnings : iterable of Caution or str
+        The engine's; those of the motion's record, and where the run is outside the model
+        (`analytic.decision.model_warnings`), are added.
     **run
         engine, variant, cpu_seconds, steps, settings, versions: kept as they are in the response.
 
@@ -128,8 +128,13 @@ def _measured(
 
 
 def _judged(
-    scene: Scene, trace: Trace, seen: Mapping[str, Any], missed: Any, failure: Failure | None, warnings: Iterable[str]
-) -> tuple[Failure | None, Iterable[str]]:
+    scene: Scene,
+    trace: Trace,
+    seen: Mapping[str, Any],
+    missed: Any,
+    failure: Failure | None,
+    warnings: Iterable[Caution | str],
+) -> tuple[Failure | None, Iterable[Caution | str]]:
     """(failure or None, warnings) of a run: its own failure first, then what its numbers say of it.
 
     That is an end before the scene's duration, a block off its place (`check_place`), a gain of energy
@@ -152,12 +157,14 @@ def _judged(
     if failure and not trace.first_script:
         return failure, warnings
     if failure:
-        warnings = (*warnings, f"{failure.reason}: {failure.message}")
+        warnings = (*warnings, Caution("engine", f"{failure.reason}: {failure.message}"))
     beyond = limit_warnings(scene, seen["peak_base_displacement"])
     return None, (*warnings, *model_warnings(scene, seen["friction_demand"], seen["min_normal_ratio"]), *beyond)
 
 
-def failed_response(scene: Scene, failure: Failure | None, *, warnings: Iterable[str] = (), **run: Any) -> Response:
+def failed_response(
+    scene: Scene, failure: Failure | None, *, warnings: Iterable[Caution | str] = (), **run: Any
+) -> Response:
     """A response of outcome "failed" for a run that left no states: every number is NaN, the evidence is kept.
 
     run: as of `observe`; cpu_seconds and steps may be left out.
@@ -166,10 +173,10 @@ def failed_response(scene: Scene, failure: Failure | None, *, warnings: Iterable
     return Response.unmeasured(outcome="failed", decided=False, scene=scene.name, failure=failure, warnings=said, **run)
 
 
-def _warnings(scene: Scene, warnings: Iterable[str]) -> tuple[str, ...]:
-    """The engine's sentences and those about the record of the motion, each once."""
-    record = getattr(scene.motion, "warnings", ())  # pulses have none
-    return tuple(dict.fromkeys((*record, *warnings)))
+def _warnings(scene: Scene, warnings: Iterable[Caution | str]) -> tuple[Caution, ...]:
+    """The engine's, a sentence as a `Caution`, and those about the record of the motion; each once."""
+    own = (Caution("engine", one) if isinstance(one, str) else one for one in warnings)
+    return tuple(dict.fromkeys((*about_record(scene.motion), *own)))
 
 
 def _check_finite(seen: Mapping[str, Any]) -> Failure | None:

@@ -27,7 +27,7 @@ from .pivoting import Block
 from .placement import placement
 from .scale import size_scale
 from .sliding import SlidingBase
-from .vibration import VISCOUS, base_decay, drift, longest_step
+from .vibration import VISCOUS, base_decay, longest_step
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -194,7 +194,7 @@ def impact_aware_run(
     rows, ended = march(bodies, scene, largest, settings.accuracy)
     cpu = time.process_time() - clock
     trace = trace_of(rows, scene, bodies.contact * scene.block.slenderness, smeared=3)
-    return _run_of(scene, rows, ended, cpu, trace, largest, drift(scene), warnings)
+    return _run_of(scene, rows, ended, cpu, trace, warnings)
 
 
 def equal_steps_run(
@@ -204,14 +204,14 @@ def equal_steps_run(
     clock = time.process_time()
     rows, ended = script()
     cpu = time.process_time() - clock
-    return _run_of(scene, rows, ended, cpu, read(rows), step, drift(scene, step))
+    return _run_of(scene, rows, ended, cpu, read(rows))
 
 
-def _run_of(scene, rows, ended, cpu, trace, step, drift, warnings=()):
-    """The `Run` of rows as `engines.leapfrog` has them, and of how they ended; step, drift: as `Run` has them."""
+def _run_of(scene, rows, ended, cpu, trace, warnings=()):
+    """The `Run` of rows as `engines.leapfrog` has them, and of how they ended."""
     failure = failure_of(scene, rows, ended)
     if ended not in ENDS:
         reason, _, why = ended.partition(": ")
         failure = Failure(reason, f"at step {len(rows) - 1}, t = {rows[-1][0]:.9g} s: {why}")
     overturned = "overturned" if ended == "overturned" else None
-    return Run(trace, len(rows) - 1, cpu, failure, overturned, step, drift, warnings=warnings)
+    return Run(trace, len(rows) - 1, cpu, failure, overturned, warnings=warnings)

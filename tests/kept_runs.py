@@ -1,7 +1,8 @@
 """What the judgement keeps of an analytic run, as it stands in JSON."""
 
-from analytic import Base, Block, Scene, Start, simulate
 from comparisons.measuring.kept import keep
+
+from analytic import Base, Block, Scene, Start, simulate
 from comparisons.running.cases import Case
 from comparisons.running.provenance import json_ready
 

@@ -10,7 +10,6 @@ import numpy as np
 from analytic import Scene, simulate
 from analytic.errors import SettingError
 from analytic.rocking import restitution
-from engines.verified import speaks_of_range
 
 from ..measuring.horizon import sensitivity_horizon
 from ..measuring.measures import impact_time_errors
@@ -98,7 +97,7 @@ def until(scene: Scene, aim: str) -> float:
 
 @dataclass(frozen=True)
 class Measure:
-    """Measure of a run: its error in the sense of `aim`, and whether it says to be outside its verified range."""
+    """Measure of a run: its error in the sense of `aim`."""
 
     aim: str
 
@@ -107,7 +106,6 @@ class Measure:
         return {
             "outcome": response.outcome,
             "error": error(self.aim, case.scene, response, reference),
-            "outside": next((text for text in response.warnings if speaks_of_range(text)), None),
             "simulated": response.end.time,
         }
 

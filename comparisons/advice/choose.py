@@ -2,7 +2,7 @@
 
 Each variant's knob is run along its ladder on the scene; where that passes from some setting on to the finest, those
 settings are run on the neighbours, the cheapest first, until one passes. A setting passes if it and all finer ones do,
-everywhere, with `aims.SPARE` to spare and without a word of leaving their verified range: none passes by luck.
+everywhere, with `aims.SPARE` to spare: none passes by luck.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ from analytic import Scene, simulate
 from analytic.errors import SettingError
 from analytic.solver import TOLERANCE
 from engines import available_engines, get_engine
-from engines.verified import speaks_of_range
 
 from ..running.executors import Processes
 from ..running.files import TemporaryFolder
@@ -154,12 +153,12 @@ def _asked(error, aim, engines):
 
 
 def _kinds(names: Sequence[str], scene: Scene) -> list[tuple[str, str, Variant]]:
-    """(engine, variant, its record) of those that may be chosen: verified somewhere, and able to run the scene."""
+    """(engine, variant, its record) of those that may be chosen: not default settings, and able to run the scene."""
     return [
         (name, variant, kind)
         for name in names
         for variant, kind in get_engine(name).variants.items()
-        if kind.verified is not None and (scene.block.restitution is None or kind.takes_restitution)
+        if kind.tier != "defaults" and (scene.block.restitution is None or kind.takes_restitution)
     ]
 
 
@@ -201,7 +200,7 @@ def _ladder(name, variant, kind, runs, error, aim, size):
     return Ladder(
         engine=name,
         variant=variant,
-        rung=kind.rung,
+        tier=kind.tier,
         applies_impact=kind.takes_restitution,
         order=_order(settings) if aim != "outcome" else None,
         settings=settings,
@@ -224,10 +223,9 @@ def _answer(chosen, ladders):
 
 
 def _best(ladders):
-    """The setting of least error that does not leave its range, None if all do."""
+    """The setting of least error, None without any."""
     known = [one for ladder in ladders for one in ladder.settings if one.error is not None]
-    inside = [one for one in known if one.why is None or not speaks_of_range(one.why)]
-    return min(inside, key=lambda one: one.error, default=None)
+    return min(known, key=lambda one: one.error, default=None)
 
 
 def _set(one):

@@ -30,7 +30,7 @@ class Ladder(Part):
 
     engine: str
     variant: str
-    rung: str
+    tier: str
     applies_impact: bool
     order: float | None
     settings: list[Setting]
@@ -48,10 +48,10 @@ class Spared(Part):
 
 class Choice(Form):
     """The answer. chosen: the cheapest setting at which it and all finer ones pass; None where none does, and `best` is
-    then the one of least error within its verified range. until: time [s] up to which histories were compared, or were
+    then the one of least error of all. until: time [s] up to which histories were compared, or were
     run for their impacts. cpu_seconds: of the chosen setting on the whole scene; of the analytic model."""
 
-    schema_: str = Field(default="rocking choose 1", serialization_alias="schema")
+    schema_: str = Field(default="rocking choose 2", serialization_alias="schema")
     scene: str
     aim: str
     error: float

@@ -43,10 +43,10 @@ class Runner:
         for (rung, factor), row in zip(wanted, found, strict=True):
             self.rows.setdefault(rung, {})[factor] = row
 
-    def whole(self, scene: Scene, rung: Rung) -> tuple[float | None, str | None]:
-        """(CPU seconds of the whole scene, None where it fails; what it says of its range or None)."""
+    def whole(self, scene: Scene, rung: Rung) -> float | None:
+        """CPU seconds of the whole scene, None where it fails."""
         (row,) = self._sweep([case_of(scene, rung)], Measure("outcome"), "the whole scene")
-        return (None, None) if row.failed else (row.cost["cpu_seconds"], row.values["outside"])
+        return None if row.failed else row.cost["cpu_seconds"]
 
     def _sweep(self, cases, measure, label):
         store = self.folder / f"{measure.aim}.jsonl"
@@ -74,9 +74,6 @@ def problem(rows: Mapping[float, Row], limit: float, aim: str) -> tuple[float | 
             return None, f"shows no {aim} at {factor:g} of the scene"
     errors = [row.values["error"] for row in rows.values()]
     found = float(np.mean(errors) if aim == "outcome" else np.max(errors))
-    outside = next((row.values["outside"] for row in rows.values() if row.values["outside"]), None)
-    if outside:
-        return found, outside
     if found * spare(aim) > limit:
         return found, f"error {found:.1e}" + ("" if found > limit else f", less than {SPARE:g} times below")
     return found, None
@@ -85,9 +82,7 @@ def problem(rows: Mapping[float, Row], limit: float, aim: str) -> tuple[float | 
 class Search:
     """Looks for the cheapest rung that passes: the neighbours are run of hopeful ones only, the cheapest first."""
 
-    def __init__(
-        self, go: Runner, error: float, aim: str, whole: Callable[[Rung], tuple[float | None, str | None]]
-    ) -> None:
+    def __init__(self, go: Runner, error: float, aim: str, whole: Callable[[Rung], float | None]) -> None:
         self.go, self.error, self.aim, self.whole = go, error, aim, whole
 
     def cheapest(self, rungs: Sequence[Rung]) -> tuple[Rung | None, float | None]:
@@ -98,10 +93,11 @@ class Search:
             if self._hopeful(rung):  # what was run meanwhile may tell
                 self.go(suffix, missing, f"{rung[0]}, {rung[1]}: neighbours")
             if all(problem(self.go.rows[one], self.error, self.aim)[1] is None for one in suffix):
-                spent, outside = self.whole(rung)
-                if spent is not None and outside is None:
+                spent = self.whole(rung)
+                if spent is not None:
                     return rung, spent
-                self.go.rows[rung][1.0] = _leaving(self.go.rows[rung][1.0], outside or "failed on the whole scene")
+                failed = {"reason": "the whole scene failed"}
+                self.go.rows[rung][1.0] = replace(self.go.rows[rung][1.0], failure=failed)
         return None, None
 
     def _suffix(self, rung):
@@ -112,14 +108,9 @@ class Search:
         """Whether a rung and all finer ones of its variant pass on what they have run."""
         rows = [row for one in self._suffix(rung) for row in self.go.rows[one].values()]
         if self.aim == "outcome":  # one run that differs does not tell a share
-            return not any(row.failed or row.values["outside"] for row in rows)
+            return not any(row.failed for row in rows)
         return all(problem(self.go.rows[one], self.error, self.aim)[1] is None for one in self._suffix(rung))
 
     def _cost(self, rung):
         row = self.go.rows[rung][1.0]
         return row.cost["cpu_seconds"] / row.values["simulated"]
-
-
-def _leaving(row, words):
-    """A row whose run left its range, as the whole scene's did."""
-    return replace(row, values={**row.values, "outside": f"{words} (on the whole scene; not verified)"})

@@ -88,7 +88,7 @@ def _responses(scene, asked, time_limit):
     for number, name in enumerate(names, 1):
         words = f"{scene.name}: {name} ({number} of {len(names)})"
         try:
-            responses.append(simulate(scene, name, history=True, time_limit=time_limit, words=words))
+            responses.append(simulate(scene, name, time_limit=time_limit, words=words, compare=True))
         except EngineNotInstalled:
             if asked:
                 raise

@@ -116,6 +116,8 @@ def _studies(folder):
 
 def form(page: Path) -> Report:
     """What the JSON file holds of a page that lies beside its result files."""
+    from analytic.response import UNCOMPARED
+
     from ..report.own import SCENES_FILE
     from ..report.runs import CARYATID, FREE_ROCKING
     from ..running.provenance import read_result
@@ -126,7 +128,8 @@ def form(page: Path) -> Report:
     rows = []
     for row in result.rows:
         found = {**(row.get("agreement") or {}), **row, "failure": row["failure"] and row["failure"]["reason"]}
-        found["warnings"] = row.get("warnings") or []
+        found |= {name: row.get(name) or [] for name in ("warnings", "differences")}
+        found["comparable"] = row.get("comparable") or UNCOMPARED
         rows.append(Reported.model_validate({name: found.get(name) for name in Reported.model_fields}))
     return Report(page=str(page), results=[str(file) for file in files], missing=result.settings["missing"], rows=rows)
 

@@ -54,7 +54,7 @@ def command(
         history=bool(csv or plot),
         time_limit=time_limit,
         words=f"{what.name}: {engine}",
-        doubt=True,
+        compare=True,
     )
     results: dict[str, str | Callable[[Path], object]] = {}
     if json_file:

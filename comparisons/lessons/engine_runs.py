@@ -27,7 +27,7 @@ class EngineRun:
 
     solver: str
     variant: str
-    rung: str
+    tier: str
     knob: str
     value: float
     default: bool
@@ -76,11 +76,11 @@ def engine_runs() -> tuple[EngineRun, ...]:
         engine = get_engine(name)
         for variant, kind in engine.variants.items():
             for value in kind.ladder:
-                response = engine.simulate(SCENE, variant=variant, history=False, **{kind.knob: value})  # type: ignore[arg-type]  # a number
+                response = engine.simulate(SCENE, variant=variant, history=False, compare=False, **{kind.knob: value})
                 error = None if response.outcome == "failed" else _error(response)
                 found.append(
                     EngineRun(
-                        name, variant, kind.rung, kind.knob, value, value == kind.default, error, response.cpu_seconds
+                        name, variant, kind.tier, kind.knob, value, value == kind.default, error, response.cpu_seconds
                     )
                 )
     return tuple(found)

@@ -83,12 +83,13 @@ def diagnosis(engine: str, variant: str, scene: Scene, which: int = 0, **setting
     Returns
     -------
     dict
-        engine, variant, rung; where the impact can be told: placed, error, cause and words (None below `LEAST`), parts,
+        engine, variant, tier, best (the default variant); where the impact can be told: placed, error, cause and words (None below `LEAST`), parts,
         steps, lasting [s], lost (energy over the kinetic one before), frames, and where the block is placed deepest [m]
         and demand; else why_not.
     """
     record = get_engine(engine)
-    row: dict[str, object] = {"engine": engine, "variant": variant, "rung": record.variants[variant].rung}
+    row: dict[str, object] = {"engine": engine, "variant": variant, "tier": record.variants[variant].tier}
+    row["best"] = variant == record.default_variant
     _, trace = record.traced(scene, variant=variant, history=False, **settings)
     try:
         if trace is None:

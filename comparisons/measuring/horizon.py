@@ -7,14 +7,15 @@ large the solvers' errors are: each solver has its own horizon.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from analytic import simulate
-from analytic.rocking import RockingModel, restitution
+from analytic.response import Caution
+from analytic.rocking import RockingModel
+from engines.comparison import changed_copies
 
 from .measures import state_restitution
 
@@ -55,32 +56,16 @@ class Horizon:
         return any(time is not None for time in self.copies.values())
 
 
-def changed_copies(scene: Scene, perturbation: float = PERTURBATION) -> dict[str, Scene]:
-    """Scenes next to `scene`, by name: restitution, and motion amplitude and start, changed by +-perturbation."""
-    copies = {}
-    e = max(restitution(scene), 0.0) if scene.block.restitution is None else scene.block.restitution
-    start = scene.start
-    for sign, word in ((1, "up"), (-1, "down")):
-        factor = 1 + sign * perturbation
-        if 0 < e * factor <= 1:
-            copies[f"restitution {word}"] = scene.with_(block={"restitution": e * factor})
-        if scene.motion is not None:
-            copies[f"motion {word}"] = scene.with_(motion=scene.motion.scaled(factor))
-        changed = {name: getattr(start, name) * factor for name in type(start).model_fields}
-        if changed != start.model_dump():
-            copies[f"start {word}"] = scene.with_(start=changed)
-    return copies
-
-
-def unsure_outcome(scene: Scene, outcome: str, perturbation: float) -> Iterator[str]:
-    """A sentence where the model's `outcome` is another one for one of the `changed_copies`."""
+def unsure_outcome(scene: Scene, outcome: str, perturbation: float = LEAST) -> Caution | None:
+    """A warning where the model's `outcome` is another one for one of the `changed_copies`, or None."""
     for name, copy in changed_copies(scene, perturbation).items():
         if (other := simulate(copy, history=False).outcome) != outcome:
-            yield (
-                f"the outcome hangs on a change of {perturbation:.0e}: with {name} by that, the analytic model's block "
-                f"{other}, else it {outcome}; do not trust it, and see rocking margin"
+            words = (
+                f"with {name} by {perturbation:.0e} the block {other}, else it {outcome}: the outcome is on an edge; "
+                "see rocking margin"
             )
-            return
+            return Caution("model", words, "outcome", perturbation)
+    return None
 
 
 def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION, spread: float = SPREAD) -> Horizon:

@@ -15,24 +15,23 @@ if TYPE_CHECKING:
 # part: good in all that was tested, and something was not
 LEVELS = {"good": "✓ trust", "part": "✓ as far as tested", "fair": "~ with care", "bad": "✗ do not trust"}
 UNTESTED = Mark("not tested", "none")
-BEST = "best"
 
 
 @dataclass(frozen=True)
 class Row:
     """One way to set an engine up. marks: a `Mark` for each column; verdict: the worst of them.
 
-    limits: the range in which it is verified, in words; cpu: s of CPU time per simulated second, of the runs behind
+    best: it is the engine's default; cpu: s of CPU time per simulated second, of the runs behind
     its restitution.
     """
 
     engine: str
     variant: str
-    rung: str
+    tier: str
+    best: bool
     marks: tuple[Mark, ...]
     verdict: Mark
     cpu: float | None
-    limits: str
     applies_impact: bool
 
     @property
@@ -60,11 +59,11 @@ def rows_of(free: Result, groups: Sequence[Mapping[str, Any]], columns: Sequence
             Row(
                 group["solver"],
                 variant,
-                kind["rung"],
+                kind["tier"],
+                kind["best"],
                 marks,
                 _verdict(marks),
                 group["cpu_per_second"],
-                kind.get("verified", ""),
                 kind["applies_impact"],
             )
         )
@@ -98,8 +97,8 @@ def best_of(rows: Sequence[Row]) -> Row | None:
     return next((row for row in rows if row.verdict.level in ("good", "part") and not row.applies_impact), None)
 
 
-def recommendation(rows: Sequence[Row], reference: Mapping[str, Any] | None) -> list[str]:
-    """What to use, with error, cost and where it stops being valid; list of str."""
+def recommendation(rows: Sequence[Row], reference: Mapping[str, Any] | None, limits: str) -> list[str]:
+    """What to use, with error, cost and limits, the range in words, within which it was tested; list of str."""
     words = [
         "One rigid block, planar, on sharp corners: use the analytic model."
         + (
@@ -122,27 +121,27 @@ def recommendation(rows: Sequence[Row], reference: Mapping[str, Any] | None) -> 
         f"More bodies or contacts: {row.engine} set as “{row.variant}”: restitution within {row.marks[0].words} at "
         f"{number(row.cpu, 2)} s of CPU time per simulated second{ratio}."
     )
-    if row.limits and row.limits != "anywhere":
-        words.append(f"It stops being verified outside {row.limits}; planar, no sliding, no jump.")
+    words.append(f"Tested for {limits}; planar, no sliding, no jump.")
     return words
 
 
 def not_to_do(rows: Sequence[Row]) -> list[str]:
     """Three lines at most."""
-    first = [row for row in rows if row.rung == "first script" and row.marks[0].level != "none"]
+    first = [row for row in rows if row.tier == "defaults" and row.marks[0].level != "none"]
     lines = []
     if first:
         worst = max(first, key=lambda row: list(LEVELS).index(row.verdict.level))
         bad = [row for row in first if row.verdict.level == "bad"]
         lines.append(
-            f"Do not take an engine as it comes: {len(bad)} of {len(first)} first scripts fail (restitution off by "
+            f"Do not use default settings: {len(bad)} of {len(first)} fail (restitution off by "
             f"{', '.join(f'{row.marks[0].words} in {row.engine}' for row in bad or [worst])})."
         )
     lines.append(
-        "Do not take a verdict for sure that lies nearer to its flip than what you do not know: rocking margin SCENE."
+        "Check how near the outcome is to changing (rocking margin SCENE): if your data are less certain than that, it "
+        "decides nothing."
     )
     lines.append(
-        "Do not compare tilt point by point beyond the sensitivity horizon, nor trust a setting before all finer ones "
-        "agree with it."
+        "Do not compare tilt point by point beyond the sensitivity horizon, nor trust a setting until refinement no "
+        "longer changes the result."
     )
     return lines

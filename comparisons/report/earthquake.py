@@ -50,7 +50,7 @@ def earthquake(result: Result) -> Section:
     tables = [_table(result)]
     if warnings:
         tables.append(
-            Table("Warnings: outside what was verified or modelled", ("scene", "solver", "warning"), warnings)
+            Table("Warnings, and differences from the analytic model", ("scene", "solver", "warning"), warnings)
         )
     return Section(
         title,

@@ -63,7 +63,13 @@ def plan(
     histories: folder in which those of the runs are kept meanwhile. variants: of the engines not taken as they come.
     """
     cases = [
-        Case(scene, solver, variants.get(solver), tag={"scene": name})
+        Case(
+            scene,
+            solver,
+            variants.get(solver),
+            settings={"compare": True} if solver in engines else {},
+            tag={"scene": name},
+        )
         for solver in ("analytic", *ask.engines)
         for name, scene in scenes.items()
     ]

@@ -16,7 +16,7 @@ from analytic.closed_form import free_rocking
 from analytic.response import History, Response
 from analytic.rocking import base_jump_length, restitution
 from engines import available_engines, get_engine
-from engines.verified import in_words
+from engines.statue_range import in_words
 
 from ..measuring.horizon import solver_horizon
 from ..measuring.measures import compare
@@ -54,7 +54,7 @@ def plan(
     """The plan of the report's own runs; histories: folder in which those of the Caryatid's are kept meanwhile."""
     scenes = caryatid_scenes(motion, duration)
     caryatid = [
-        Case(scene, solver, tag={"scene": name})
+        Case(scene, solver, settings={"compare": True} if solver in ask.engines else {}, tag={"scene": name})
         for solver in ("analytic", *ask.engines)
         for name, scene in scenes.items()
     ]
@@ -220,19 +220,21 @@ def free_rocking_found(
         "slowest_impact": SLOWEST_IMPACT,
         "bases": bases,
         "variants": described_variants(engines),
+        "range": in_words(),
     }
     return Found(settings, entries, arrays, name=Path(FREE_ROCKING).stem)
 
 
 def described_variants(engines: Sequence[str]) -> dict[str, dict[str, dict[str, Any]]]:
-    """{engine: {variant: its rung, who decides what, whether the adapter applies the impact, verified range}}."""
+    """{engine: {variant: its tier, what the engine computes and the adapter imposes, whether that is the impact}}."""
     return {
         name: {
             variant: {
-                "rung": kind.rung,
-                "decides": kind.decides,
+                "tier": kind.tier,
+                "best": variant == get_engine(name).default_variant,
+                "computes": kind.computes,
+                "imposes": kind.imposes,
                 "applies_impact": kind.takes_restitution,
-                "verified": in_words(kind.verified),
             }
             for variant, kind in get_engine(name).variants.items()
         }
@@ -270,7 +272,7 @@ def _restitution_entry(solver, variant, ground, slenderness, members):
         "runs": len(members),
         "failures": [row.failure for row in members if row.failed],
         "impacts": impacts,
-        "warnings": list(dict.fromkeys(warning for row in sound for warning in row.values["warnings"])),
+        "warnings": list(dict.fromkeys(warning["text"] for row in sound for warning in row.values["warnings"])),
         "bias": _of(errors, np.mean),
         "rms": _of(errors, rms),
         "worst": _of(np.abs(errors), np.max),  # type: ignore[call-overload]  # as above

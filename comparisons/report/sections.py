@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from analytic.response import COMPARED, EDGE, UNCOMPARED, Difference
+
 from ..showing.drawing import draw_scenes
 from ..showing.parts import Section, Table, number
 from ..showing.wording import TRUSTED, USABLE, trust
@@ -88,8 +90,8 @@ def outcome_section(result: Result) -> Section:
             "block that overturns.",
             "A run goes on until its outcome is decided: until nothing that may still come can make the block "
             "overturn or keep it from it. One that ended earlier is “undecided”, with what it was so far. A "
-            "warning names what lies outside the range in which a solver was verified, outside what the model "
-            "describes, or is odd about the record; the outcome beside it is then to be doubted.",
+            "warning names what lies outside what the model describes, or is odd about the record; the outcome "
+            "beside it is then to be doubted. Every engine's run is compared with the analytic model's.",
             "Impact times and tilt graphs are compared up to the end, or up to the solver's sensitivity horizon "
             "where that comes first: beyond it a change of restitution, motion and start as small as the "
             "solver's own errors makes another motion, so that a difference says no more about it. The distance "
@@ -204,19 +206,30 @@ def _span(scene):
 
 
 def warned(result: Result, name: str) -> dict[str, list[str]]:
-    """{warning: the solvers whose runs of a scene carry it}."""
+    """{warning, or difference from the analytic model: the solvers whose runs of a scene carry it}."""
     carried = {}
     for row in result.rows:
         if row["scene"] == name:
-            for warning in row.get("warnings", ()):
-                carried.setdefault(warning, []).append(row["solver"])
+            for words in (*different(row), *(warning["text"] for warning in row.get("warnings", ()))):
+                carried.setdefault(words, []).append(row["solver"])
     return carried
+
+
+def different(row: Mapping[str, Any]) -> list[str]:
+    """In what the run of a row differs from the analytic model, or why it cannot be compared; sentences."""
+    found = "; ".join(str(Difference(**one)) for one in row.get("differences", ()))
+    comparable = row.get("comparable", UNCOMPARED)
+    if comparable == COMPARED:
+        return [f"differs from the analytic model: {found}"] if found else []
+    if comparable == EDGE:
+        return [f"on an edge, where a change of the scene by 1e-4 makes such a difference: {found}"]
+    return [] if comparable == UNCOMPARED else [f"cannot be compared with the analytic model: {comparable}"]
 
 
 def _warnings(name, found):
     """A table of `warned`, none where there is nothing to warn of."""
     rows = [[", ".join(solvers), warning] for warning, solvers in found.items()]
-    return (Table(f"{name}: warnings", ("solver", "outside what was verified or modelled"), rows),) if rows else ()
+    return (Table(f"{name}: warnings", ("solver", "outside what is modelled, or differing"), rows),) if rows else ()
 
 
 def _value(row, key, digits):
@@ -290,9 +303,9 @@ def _impact_section(result):
             "the tilt rate after over that before the impact, from the states in clean flight, carried to the "
             "impact by the model's equations, for every "
             f"impact at least {100 * result.settings['slowest_impact']:g} % as fast as the run's fastest.",
-            "The variants of an engine are ways to set it up: as well as is known here (best), with care but at a "
-            "known cost in error or generality (expert), as a first user would (first script). The table “What "
-            "each engine decides by itself” says which is which.",
+            "The variants of an engine are ways to set it up: as a first script gets it (defaults), well set, but on "
+            "its own (tuned), or with a velocity, position or constraint set by the adapter at the model's event "
+            "(assisted). The table of what each engine computes says which is which.",
         ),
         tuple(_restitution_table(result, ground) for ground in result.settings["bases"]),
         (figures.restitution(result),),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from analytic.response import COMPARED
 from engines import missing_words
 
 from ..showing.parts import number, percent
@@ -43,18 +44,20 @@ def outcomes(rows: Sequence[Mapping[str, Any]]) -> str:
         undecided = not row.get("decided", True) and row["outcome"] != "failed"
         words = f"is {row['verdict']}" if undecided else WORDS.get(row["outcome"], row["outcome"])
         by_outcome.setdefault(words, []).append(row["solver"])
-    if len(by_outcome) == 1:
+    off = [row["solver"] for row in rows if row.get("differences") and row["comparable"] == COMPARED]
+    if len(by_outcome) == 1 and not off:
         ((outcome, solvers),) = by_outcome.items()
         many = {1: solvers[0], 2: "both solvers"}.get(len(solvers), f"all {len(solvers)} solvers")
         return f"in {many} it {outcome}"
-    return "the solvers disagree: " + ", ".join(
-        f"in {' and '.join(solvers)} it {outcome}" for outcome, solvers in by_outcome.items()
-    )
+    words = ", ".join(f"in {' and '.join(solvers)} it {outcome}" for outcome, solvers in by_outcome.items())
+    if len(by_outcome) > 1:
+        words = f"the solvers disagree: {words}"
+    return f"{words}; {' and '.join(off)} differ{'s' * (len(off) == 1)} from the analytic model" if off else words
 
 
 def _warnings(rows):
     """The warnings of a scene's runs, each once; the table beside the outcomes says whose they are."""
-    warnings = list(dict.fromkeys(warning for row in rows for warning in row.get("warnings", ())))
+    warnings = list(dict.fromkeys(warning["text"] for row in rows for warning in row.get("warnings", ())))
     if not warnings:
         return ""
     more = f"; {len(warnings) - MOST_WARNINGS} more in the table of warnings" if len(warnings) > MOST_WARNINGS else ""

@@ -160,7 +160,7 @@ def _answer(scenes: Result, free: Result | None, stored: list[Stored]) -> dict[s
         "headings": ["restitution error, rms", *(column.heading for column in columns)],
         "trusted": f"{TRUSTED:g}",
         "usable": f"{USABLE:g}",
-        "decides": _decides(free or scenes),
+        "computed": _computed(free or scenes),
         "origin": origin_of(scenes),
         "stage": _stage(scenes),
     }
@@ -221,12 +221,12 @@ def _contents(scenes: Result, stored: list[Stored]) -> list[Part]:
     return [*parts, Part("method", "Method and words", None)]
 
 
-def _decides(result: Result) -> Table:
+def _computed(result: Result) -> Table:
     return Table(
-        "What each engine decides by itself",
-        ("engine, setting", "set up as", "what"),
+        "What each engine computes, and what our adapter imposes beside loads and settings",
+        ("engine, variant", "tier", "the engine computes", "the adapter imposes"),
         [
-            [f"{solver}, {variant}", kind["rung"], kind["decides"]]
+            [f"{solver}, {variant}", kind["tier"], kind["computes"], kind["imposes"]]
             for solver, variants in result.settings.get("variants", {}).items()
             for variant, kind in variants.items()
         ],

@@ -63,8 +63,10 @@ class Case:
 
     def run(self) -> Response:
         """Simulate it here and now; returns the `Response`."""
-        variant = {} if self.variant is None else {"variant": self.variant}
-        return solver(self.solver)(self.scene, **variant, **self.settings)
+        options: dict[str, Any] = {} if self.variant is None else {"variant": self.variant}
+        if self.solver in ENGINES:
+            options["compare"] = False  # a study measures by itself; one that wants it sets it
+        return solver(self.solver)(self.scene, **{**options, **self.settings})
 
 
 def solver(name: str) -> Callable:

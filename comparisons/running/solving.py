@@ -83,11 +83,12 @@ def simulate(
     history: bool = True,
     time_limit: float = TIME_LIMIT,
     words: str | None = None,
-    doubt: bool = False,
+    compare: bool = False,
 ) -> Response:
     """The `Response` of the solver called `solver`, run in a process of its own while `words` are shown.
 
-    doubt: whether warnings say where the analytic model says otherwise or is unsure (`measuring.verdicts.doubts`).
+    compare: an engine's run with the analytic model (`engines.comparison`); of the model itself, whether a change as
+    small as its own errors is another outcome.
 
     What is odd about the record stands among its warnings. A run that crashes, or takes more than `time_limit` [s], is
     a response of outcome "failed" with the evidence.
@@ -99,6 +100,7 @@ def simulate(
     EngineNotInstalled
         The engine cannot be imported here; says how to install it.
     """
+    from analytic.response import about_record
     from engines.guard import OUT_OF_TIME, alone
 
     settings = settings or {}
@@ -111,7 +113,7 @@ def simulate(
         variant,
         settings,
         history,
-        doubt,
+        compare,
         time_limit=time_limit,
         meanwhile=words and spinner(words),  # type: ignore[arg-type]  # no words: None or ""
     )
@@ -126,8 +128,8 @@ def simulate(
         response = failed_response(
             scene, failure, engine=solver, variant=variant or "", settings=dict(settings), versions=versions(solver)
         )
-    odd = [text for text in getattr(scene.motion, "warnings", ()) if text not in response.warnings]
-    return dataclasses.replace(response, warnings=(*odd, *response.warnings))
+    odd = dict.fromkeys((*about_record(scene.motion), *response.warnings))
+    return dataclasses.replace(response, warnings=tuple(odd))
 
 
 def check_solver(name: str) -> None:
@@ -171,23 +173,20 @@ def check_time_limit(seconds: float) -> None:
         raise SettingError(f"--{error}".replace("time_limit", "time-limit", 1)) from None
 
 
-def _simulate(scene, solver, variant, settings, history, doubt):
-    if solver == ANALYTIC:
-        response = _analytic(scene, variant, settings, history)
-    else:
+def _simulate(scene, solver, variant, settings, history, compare):
+    if solver != ANALYTIC:
         from engines import get_engine
 
         engine = get_engine(solver)
         _check_types(engine, variant, settings)
-        response = engine.simulate(scene, variant=variant, history=history, **settings)
-    if not doubt or response.failure:
-        return response
-    import analytic
+        return engine.simulate(scene, variant=variant, history=history, compare=compare, **settings)
+    response = _analytic(scene, variant, settings, history)
+    if compare and response.decided:
+        from ..measuring.horizon import unsure_outcome
 
-    from ..measuring.verdicts import doubts
-
-    model = response if solver == ANALYTIC else analytic.simulate(scene, history=False)
-    return dataclasses.replace(response, warnings=(*response.warnings, *doubts(scene, response, model)))
+        doubt = unsure_outcome(scene, response.outcome)
+        return dataclasses.replace(response, warnings=(*response.warnings, *filter(None, [doubt])))
+    return response
 
 
 def _analytic(scene, variant, settings, history):

@@ -7,6 +7,7 @@ from typing import Any, Literal
 from pydantic import Field
 
 from .form import Form, Part
+from .runs import COMPARABLE, Difference, Warned
 
 
 class Tolerance(Part):
@@ -79,13 +80,15 @@ class Reported(Part):
     impact_time_error: float | None
     cpu_seconds: float | None
     failure: str | None
-    warnings: list[str]
+    warnings: list[Warned]
+    differences: list[Difference]
+    comparable: str = Field(description=COMPARABLE)
 
 
 class Report(Form):
     """A page written, and the rows behind its first table. results: the result files it is made from."""
 
-    schema_: str = Field(default="rocking report 1", serialization_alias="schema")
+    schema_: str = Field(default="rocking report 2", serialization_alias="schema")
     page: str
     results: list[str]
     missing: dict[str, str]

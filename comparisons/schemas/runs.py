@@ -48,6 +48,31 @@ class Failure(Part):
     last_state: State | None
 
 
+class Warned(Part):
+    """A warning. kind: record, model, limit or engine; quantity, value, limit: what is beyond which limit; a text."""
+
+    kind: Literal["record", "model", "limit", "engine"]
+    text: str
+    quantity: str | None
+    value: float | None
+    limit: float | None
+
+
+class Difference(Part):
+    """What an engine's run has other than the analytic model, and the difference tolerated: of peaks relative, of the
+    restitution and of numbers of impacts absolute."""
+
+    quantity: Literal[
+        "outcome", "peak_tilt", "peak_base_displacement", "restitution", "missing_impacts", "extra_impacts"
+    ]
+    here: str | float | None
+    model: str | float | None
+    limit: float | None
+
+
+COMPARABLE = 'compared with the analytic model: "yes", "no" (not asked for), "on an edge", else the reason why not'
+
+
 class _Values(Form):
     engine: str
     variant: str
@@ -71,7 +96,9 @@ class _Values(Form):
     steps: int
     settings: dict[str, Any]
     versions: dict[str, Any]
-    warnings: list[str]
+    warnings: list[Warned]
+    differences: list[Difference]
+    comparable: str = Field(description=COMPARABLE)
     failure: Failure | None
     energy: Energy | None
 
@@ -79,7 +106,7 @@ class _Values(Form):
 class Run(_Values):
     """A scene in one solver."""
 
-    schema_: str = Field(default="rocking run 1", serialization_alias="schema")
+    schema_: str = Field(default="rocking run 2", serialization_alias="schema")
 
 
 class Sensitivity(Part):
@@ -92,7 +119,7 @@ class Sensitivity(Part):
 class Comparison(Form):
     """A scene in all solvers. sensitivity_horizon: time [s] up to which point-wise agreement is asked for."""
 
-    schema_: str = Field(default="rocking compare 1", serialization_alias="schema")
+    schema_: str = Field(default="rocking compare 2", serialization_alias="schema")
     scene: str
     sensitivity_horizon: float | None
     sensitivity: dict[str, Sensitivity]

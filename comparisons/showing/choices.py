@@ -51,10 +51,8 @@ def answer(choice: Choice) -> list[str]:
     share = f"{len(choice.neighbours)} scenes (start and motion times {choice.neighbours[0]:g}"
     share = f"{share}, {', '.join(f'{factor:g}' for factor in choice.neighbours[1:])})"
     if choice.chosen is None:
-        if choice.best is None:
-            return ["No setting passes, and none of them stays within the range it is verified in."]
-        reached = f"{choice.best.error:.1e} by {named(choice.best)}"
-        return [f"No setting passes {choice.error:g} for {choice.aim}. The best reached within its range: {reached}."]
+        reached = f"{choice.best.error:.1e} by {named(choice.best)}" if choice.best else "none"
+        return [f"No setting passes {choice.error:g} for {choice.aim}. The best reached: {reached}."]
     one = choice.chosen
     if not choice.ladders:
         return [
@@ -124,7 +122,7 @@ def draw_choice(choice: Choice) -> Figure:
             [place[1] for place, _ in points],
             color=look["color"],
             linewidth=0.8,
-            linestyle="--" if ladder.rung != "best" else "-",
+            linestyle="--" if ladder.tier != "tuned" else "-",
             label=f"{ladder.engine}, {ladder.variant}",
         )
         for place, passes in points:

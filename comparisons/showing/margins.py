@@ -126,7 +126,7 @@ def _flip(margin, change):
 
 def _normal_words(contact):
     if contact.least_normal <= 0:
-        return f"The normal force falls to {contact.least_normal:.3g} m g: the verdict is outside the model."
+        return f"The normal force falls to {contact.least_normal:.3g} m g: the outcome is outside the model."
     return f"The normal force falls to {contact.least_normal:.3g} m g; at 0 the block would jump."
 
 
@@ -135,6 +135,6 @@ def _friction_words(contact):
     if contact.friction is None:
         return f"{demand}; the scene gives no coefficient to hold it against."
     if contact.friction_demand > contact.friction:
-        return f"{demand}, above the scene's {contact.friction:g}: the verdict is outside the model."
+        return f"{demand}, above the scene's {contact.friction:g}: the outcome is outside the model."
     spare = contact.friction / contact.friction_demand if contact.friction_demand else math.inf
     return f"{demand} of the scene's {contact.friction:g}, {spare:.3g} times less."

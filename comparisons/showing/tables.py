@@ -13,6 +13,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from analytic.response import COMPARED, EDGE, UNCOMPARED
+from engines.statue_range import in_words
+
 from ..running.readable import readable
 
 if TYPE_CHECKING:
@@ -107,34 +110,60 @@ def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[st
 
 
 def show(table: Table, responses: Sequence[Response]) -> None:
-    """Print a table of responses, and below it the warnings they carry."""
+    """Print a table of responses, and below it in what each differs from the analytic model, and its warnings."""
     console = Console()
     console.print(table)
     for response in responses:
-        for sentence in response.warnings:
-            console.print(Text(f"Warning, {response.engine}: {readable(sentence)}"), soft_wrap=True)
+        for words in remarks(response):
+            console.print(Text(readable(words)), soft_wrap=True)
+
+
+def remarks(response: Response) -> list[str]:
+    """Sentences: in what a response differs from the analytic model, or why it cannot be compared; and its warnings."""
+    name, found = response.engine, "; ".join(map(str, response.differences))
+    words = []
+    if response.comparable == COMPARED and found:
+        words.append(f"{name} differs from the analytic model: {found}")
+    elif response.comparable == EDGE:
+        words.append(f"{name} is {EDGE}, where a change of the scene by 1e-4 makes such a difference: {found}")
+    elif response.comparable not in (COMPARED, UNCOMPARED):
+        words.append(f"{name} cannot be compared with the analytic model: {response.comparable}")
+    return words + [f"Warning, {name}: {warning}" for warning in response.warnings]
+
+
+def engines_table(engines: Sequence[Engine]) -> Table:
+    """Who does what: of every variant its tier, what the engine computes and what the adapter imposes."""
+    table = Table(
+        box=box.SIMPLE_HEAD,
+        show_edge=False,
+        padding=(0, 1, 0, 0),
+        caption=f"Tested for {in_words()}.\nrocking engines NAME: settings, refinement levels, versions.",
+        caption_justify="left",
+    )
+    for head in ("engine", "variant", "tier", "the engine computes", "the adapter imposes"):
+        table.add_column(head)
+    for engine in engines:
+        for name, variant in engine.variants.items():
+            first = engine.name if name == engine.default_variant else ""
+            table.add_row(*map(Text, (first, name, variant.tier, variant.computes, variant.imposes)))
+    return table
 
 
 def engine_text(engine: Engine) -> str:
-    """What an `Engine` says of itself: versions, and of each variant rung, settings (the knob first), ladder, who
-    decides what, and where it is verified."""
-    from engines.verified import in_words
-
+    """What an `Engine` says of itself: versions, and of each variant tier, settings (the accuracy parameter first),
+    refinement levels, and who does what."""
     versions = ", ".join(f"{package} {version}" for package, version in engine.versions().items())
     lines = [f"{engine.name} ({versions})"]
     for name, variant in engine.variants.items():
         default = "default, " if name == engine.default_variant else ""
-        about = inspect.getdoc(type(variant.settings)).split("\n\n")[0].replace("\n", " ")  # type: ignore[union-attr]  # settings say what they are
-        values = [
-            f"{field}={value:.6g}" if isinstance(value, float) else f"{field}={value}"
-            for field, value in dataclasses.asdict(variant.settings).items()
-        ]
-        values[:1] = [f"{value} (knob)" for value in values[:1]]
+        about = (inspect.getdoc(type(variant.settings)) or name).split("\n\n")[0].replace("\n", " ")
+        values = [f"{field}={value:.6g}" for field, value in dataclasses.asdict(variant.settings).items()]
+        values[:1] = [f"{value} (accuracy parameter)" for value in values[:1]]
         lines += [
-            f"  --variant {name} ({default}{variant.rung}): {about}",
+            f"  --variant {name} ({default}{variant.tier}): {about}",
             f"      settings: {', '.join(values)}",
-            f"      ladder, coarse to fine: {', '.join(f'{value:.4g}' for value in variant.ladder)}",
-            f"      verified: {in_words(variant.verified)}",
-            f"      decides: {variant.decides}",
+            f"      levels, coarse to fine: {', '.join(f'{value:.4g}' for value in variant.ladder)}",
+            f"      the engine computes: {variant.computes}",
+            f"      the adapter imposes: {variant.imposes}",
         ]
     return "\n".join(lines) + "\n"

@@ -68,7 +68,7 @@ def answered(case: Case, response: Response) -> dict[str, Any]:
         "outcome": response.outcome,
         "error": None if missing else max(errors.values()),
         "missing": missing,
-        "warnings": list(response.warnings),
+        "warnings": [warning.text for warning in response.warnings],
     }
 
 

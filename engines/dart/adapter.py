@@ -27,7 +27,6 @@ from analytic.response import Failure
 from ..contract import Mismatch, Run, Variant
 from ..leapfrog import raw_trace_of, trace_of
 from ..planar import EqualSteps, ImpactAware, equal_steps_run, impact_aware_run
-from ..verified import Range
 from . import script
 from .scene import build
 from .stepping import DartBodies
@@ -54,38 +53,24 @@ SCRIPT_DECIDES = (
 VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(accuracy=1e-6, largest_step=1.5e-3),
-        rung="best",
+        tier="tuned",
         ladder=(1e-3, 1e-4, 1e-5, 1e-6),
-        decides=DECIDES,
-        verified=Range(
-            slenderness=(0.03, 1.2), inertia=(1.05, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0), decay=(0.0, 1e3)
-        ),
+        computes="motion, contact, impact, sliding and rest",
+        imposes="nothing",
     ),
     "expert": Variant(
         EqualSteps(2e-4),
-        rung="expert",
+        tier="tuned",
         ladder=(1e-3, 2e-4, 5e-5),
-        decides=SCRIPT_DECIDES,
-        verified=Range(
-            slenderness=(0.05, 0.45),
-            inertia=(1.2, 2.0),
-            base_mass=(0.05, 1.0),
-            radius=(1.0, 10.0),
-            stiffness=(0.0, 0.05),
-            damping=(0.0, 0.1),
-            tilt=(0.3, math.inf),
-        ),
+        computes="motion, contact, impact, sliding and rest",
+        imposes="nothing",
     ),
     "first-script": Variant(
         EqualSteps(1e-3),  # DART's own default
-        rung="first script",
+        tier="defaults",
         ladder=(5e-3, 1e-3, 2e-4),
-        decides=SCRIPT_DECIDES,
-        verified=None,
-        caveats=(
-            "dart first-script is verified in no range: it meets an impact up to a step late, and its restitution is "
-            "off by up to .016 at DART's default of 1 ms",
-        ),
+        computes="motion, contact, impact, sliding and rest",
+        imposes="nothing",
     ),
 }
 
@@ -101,7 +86,7 @@ def versions() -> dict[str, str]:
 
 def run(scene: Scene, variant: str, settings: ImpactAware | EqualSteps) -> Run:
     """The `Run` of a scene."""
-    tuned = VARIANTS[variant].rung == "expert"
+    tuned = variant == "expert"
     try:
         if isinstance(settings, ImpactAware):
             assembly = build(scene)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import platform
 from dataclasses import replace
 from importlib.metadata import version
@@ -15,7 +14,6 @@ from analytic.response import Failure, State
 
 from ..checks import replay_bearing
 from ..contract import Variant
-from ..verified import Range
 from . import corners, joints, native
 
 if TYPE_CHECKING:
@@ -30,13 +28,10 @@ if TYPE_CHECKING:
 REPLAY_LIMIT = 1e-9
 
 _MODULES = {"compliant-corners": corners, "switched-joints": joints, "native-contact": native}
-# verified: held against the analytic model in random scenes. The constants of compliant-corners follow size and start,
-# and its steps bearings of any stiffness and damping, or the run ends as one of too many steps. At the fixed step of
-# switched-joints a base that vibrates faster is off by 3 to 20 %; smaller and flatter swings are too short for it.
 VARIANTS = {
     "compliant-corners": Variant(
         corners.CompliantCorners(),
-        rung="best",
+        tier="tuned",
         ladder=(1e9, 1e10, 2e11, 1e12),
         finer=(
             {"stiffness": 1e12, "pivoting_step": 2e-4},
@@ -49,41 +44,26 @@ VARIANTS = {
             "damping": (0.1, 0.5, 1.0),
             "friction": (0.05, 0.1, 0.15, 0.2, 0.3, 0.6, 5.0),
         },
-        decides="the integration decides contact, impact, sliding and rest; the corners' law, Hunt-Crossley contact "
-        "with Coulomb's friction, is the adapter's: plastic, non-slipping (unless the scene gives a "
-        "coefficient) and planar, as Housner assumes, so that an impact which agrees with him verifies law and "
-        "integration; the adapter says when exudyn steps explicitly, through impacts, and when implicitly",
-        verified=Range(slenderness=(0.03, 1.2), inertia=(1.01, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0)),
+        computes="motion, contact, impact, sliding and rest, by integration",
+        imposes="contact law: ours (Hunt-Crossley with Coulomb's friction, plastic, non-slipping and planar, as Housner "
+        "assumes: an impact that agrees with him verifies law and integration); when steps are explicit or implicit",
     ),
     "switched-joints": Variant(
         joints.SwitchedJoints(),
-        rung="expert",
+        tier="assisted",
         ladder=(1.6e-2, 4e-3, 1e-3),
         finer=({"step": 1e-4},),
         takes_restitution=True,
-        decides="exudyn decides the motion; uplift, impact and rest are the adapter's",
-        verified=Range(
-            slenderness=(0.03, 1.2),
-            inertia=(1.01, 3.0),
-            base_mass=(1e-4, 100.0),
-            radius=(0.05, 30.0),
-            stiffness=(0.0, 0.3),
-            damping=(0.0, 10.0),
-            tilt=(0.01, math.inf),
-        ),
+        computes="motion between events",
+        imposes="uplift, impact, by eqs (7) and (8), and rest",
     ),
     "native-contact": Variant(
         native.NativeContact(),
-        rung="first script",
+        tier="defaults",
         ladder=(1e-3, 3e-4, 1e-4),
         finer=({"step": 5e-5},),
-        decides="exudyn decides contact, impact, sliding and rest through its sphere-triangle contact",
-        verified=Range(
-            slenderness=(0.1, 0.3), inertia=(1.2, 2.0), base_mass=(0.05, 100.0), radius=(0.5, 2.0), tilt=(0.1, math.inf)
-        ),
-        caveats=(
-            "native-contact is set up as a first script would: its restitution is off by 1 to 10 %, whatever the step",
-        ),
+        computes="motion, contact, impact, sliding and rest, by its sphere-triangle contact",
+        imposes="nothing",
     ),
 }
 
@@ -105,7 +85,7 @@ def run(scene: Scene, variant: str, settings: CompliantCorners | SwitchedJoints 
     if ran.trace is None:
         failure = replace(ran.failure or Failure("the run ended before its first step"), last_state=_start(scene))
         return replace(ran, failure=failure, steps=max(ran.steps, 0))
-    return replace(ran, failure=ran.failure or _fault(scene, ran), step=float(np.diff(ran.trace.time).max()))
+    return replace(ran, failure=ran.failure or _fault(scene, ran))
 
 
 def _fault(scene: Scene, run: Run) -> Failure | None:

@@ -15,7 +15,7 @@ from analytic.motion import RICKER_PERIODS, SampledMotion
 if TYPE_CHECKING:
     from analytic.types import Motion
 
-    from .scene import Model
+    from .model import Model
 
 
 def ground_load(motion: Motion) -> Callable[[Any, Any], Any]:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from analytic import Scene
 
     from ..contract import Run
-    from .scene import Model
+    from .model import Model
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from analytic.response import Failure
 
-    from .scene import Model
+    from .model import Model
     from .stepping import Steps
 
 INITIAL = exu.ConfigurationType.Initial
@@ -57,15 +57,14 @@ DIFFERENCE = 0.02  # of a corner's depth, by which exudyn moves a coordinate to 
 class Rule:
     """What a variant asks of its steps.
 
-    explicit: settings of the explicit solver. longest, step, standing: longest explicit step, and implicit ones of a
-    block that pivots and of one that stands [s]. sink: penetration of a corner that carries half the weight [m].
-    settle: time [s] that a change of contact takes to die away.
+    explicit: settings of the explicit solver. longest, step: longest explicit step, and implicit one [s]. sink:
+    penetration of a corner that carries half the weight [m]. settle: time [s] that a change of contact takes to die
+    away.
     """
 
     explicit: exu.SimulationSettings
     longest: float
     step: float
-    standing: float
     sink: float
     settle: float
 
@@ -88,7 +87,7 @@ class Phases:
         rocking = RockingModel.of(scene)
         self.pull = PUSHED * rocking.m * rocking.g * scene.block.half_width / rocking.J
         self.shape = scene.block.half_width, scene.block.half_height
-        self.step, self.standing = (SMOOTH * longest_step(scene, one / SMOOTH) for one in (rule.step, rule.standing))
+        self.step = SMOOTH * longest_step(scene, rule.step / SMOOTH)
         self.worthwhile = self.step >= WORTHWHILE * rule.step
         self.implicit, self.state, self.since, self.anchored, self.refused = False, NEITHER, 0.0, 0.0, -math.inf
         self.ground = Ground(model, rule.longest) if scene.motion else None
@@ -165,8 +164,7 @@ class Phases:
         left = self.ground.begin(t, None if self.implicit else solver.it) if self.ground else duration - t
         integration.startTime, integration.endTime = t, duration
         if self.implicit:
-            step = self.standing if self.state == BOTH else self.step
-            end, count = self.ground.equal(t, step) if self.ground else (duration, math.ceil(left / step))
+            end, count = self.ground.equal(t, self.step) if self.ground else (duration, math.ceil(left / self.step))
             integration.endTime, integration.numberOfSteps = end, count
         else:
             integration.numberOfSteps = math.ceil((duration - t) / self.rule.longest)

@@ -24,7 +24,7 @@ from .scene import read_back
 if TYPE_CHECKING:
     from analytic import Scene
 
-    from .scene import Bearing, Model
+    from .model import Bearing, Model
 
 OVERTURNED = math.pi / 2
 

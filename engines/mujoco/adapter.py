@@ -40,10 +40,8 @@ from analytic.response import Failure
 
 from ..contract import Mismatch, Run, Variant
 from ..leapfrog import failure_of, raw_trace_of, trace_of
-from ..verified import Range
-from ..vibration import drift
 from . import stepping
-from .scene import build, longest_step
+from .scene import build
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -104,47 +102,28 @@ class FirstScript:
 VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(),
-        rung="best",
+        tier="tuned",
         ladder=(1e-3, 1e-4, 5e-6),
         finer=({"largest_step": 1e-4}, {"largest_step": 1e-4, "accuracy": 1e-6}),
         varied={"largest_step": (1.2e-4, 2.4e-4, 4.8e-4, 9.6e-4)},
-        decides=DECIDES,
-        verified=Range(
-            slenderness=(0.03, 1.2),
-            inertia=(1.01, 3.0),
-            base_mass=(1e-5, 100.0),
-            radius=(1e-3, 30.0),
-            stiffness=(0.0, 0.5),
-            decay=(0.0, 3e3),
-        ),
+        computes="motion, contact, impact, sliding and rest",
+        imposes="nothing",
     ),
     "fixed-step": Variant(
         FixedStep(),
-        rung="expert",
+        tier="tuned",
         ladder=(4e-3, 1e-3, 1e-4),
         finer=({"step": 2e-5},),
-        decides=DECIDES,
-        verified=Range(
-            slenderness=(0.03, 0.45),
-            inertia=(1.2, 3.0),
-            base_mass=(0.05, 100.0),
-            radius=(1e-3, 30.0),
-            stiffness=(0.0, 0.15),
-            damping=(0.0, 0.1),
-            tilt=(0.05, math.inf),
-        ),
+        computes="motion, contact, impact, sliding and rest",
+        imposes="nothing",
     ),
     "first-script": Variant(
         FirstScript(),
-        rung="first script",
+        tier="defaults",
         ladder=(1 / 120, 2e-3, 5e-4),
         finer=({"step": 2e-4},),
-        decides=f"{SOLVER_DECIDES}.",
-        verified=None,
-        caveats=(
-            "mujoco first-script is verified in no range: MuJoCo's default contact loses too much or too little "
-            "of the tilt rate, whatever the step",
-        ),
+        computes="motion, contact, impact, sliding and rest",
+        imposes="nothing",
     ),
 }
 
@@ -171,7 +150,7 @@ def run(scene: Scene, variant: str, settings: ImpactAware | FixedStep | FirstScr
     if not isinstance(settings, ImpactAware) or scene.motion is None or not STANDS < size < SMALL:
         return first
     finer = replace(settings, largest_step=settings.largest_step / FINER)
-    if first.failure or longest_step(scene, finer) == first.step:
+    if first.failure:
         return first
     again, finer_size = _run(scene, finer)
     moved = abs(size / finer_size - 1) if finer_size > STANDS else math.inf
@@ -207,18 +186,7 @@ def _run(scene: Scene, settings: ImpactAware | FixedStep | FirstScript) -> tuple
     else:
         trace = trace_of(rows, scene, _contact_tilt(settings, peak, slenderness))
     failure = _failure(scene, rows, ended, "; ".join(line.strip() for line in said))
-    ran = Run(
-        trace,
-        len(rows) - 1,
-        cpu,
-        failure,
-        ended if ended == "overturned" else None,
-        longest_step(scene, settings),
-        max(
-            drift(scene, settings.step if isinstance(settings, FirstScript) else 0.0),
-            SINK * slenderness / peak if peak > trace.contact_tilt else 0.0,
-        ),
-    )
+    ran = Run(trace, len(rows) - 1, cpu, failure, ended if ended == "overturned" else None)
     return ran, peak / slenderness
 
 

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Sequence
+from dataclasses import dataclass
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pybullet
 
-from analytic.response import Failure
+from analytic.response import Caution, Failure
 
 from ..checks import GAIN_LIMIT, HEIGHT_TOLERANCE, energy_gain, pivoting_centre
 from ..contract import Mismatch, Run, Variant
 from ..leapfrog import MOST_ROWS, failure_of, raw_trace_of, trace_of
 from ..pace import FLAT
-from ..verified import Range
-from ..vibration import drift, longest_step
+from ..vibration import longest_step
 from . import first_script, stepping
 from .scene import MOST_FRICTION, MOST_VELOCITY, Units, assemble
 
@@ -71,38 +70,29 @@ class FirstScript:
 VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(),
-        rung="best",
+        tier="tuned",
         ladder=(1e-3, 1e-4, 1e-5, 1e-6),
         finer=({"largest_step": 1e-4}, {"largest_step": 1e-4, "accuracy": 1e-6}),
         varied={"largest_step": (5e-4, 1e-3, 2e-3, 4e-3)},
-        decides=DECIDES,
-        verified=Range(
-            slenderness=(0.03, 1.2), inertia=(1.01, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0), decay=(0.0, 1e5)
-        ),
+        computes="motion, contact, impact, sliding and rest",
+        imposes="nothing",
     ),
     "fixed-step": Variant(
         FixedStep(),
-        rung="expert",
+        tier="tuned",
         ladder=(4e-3, 1e-3, 2.5e-4, 1e-4),
         finer=({"step": 2e-5},),
         free_block="engines.pybullet.free_block:simulate",
-        decides=DECIDES,
-        verified=Range(
-            slenderness=(0.1, 0.45),
-            inertia=(1.2, 3.0),
-            base_mass=(0.05, 100.0),
-            radius=(1e-3, 30.0),
-            damping=(0.0, 1.0),
-            tilt=(0.3, math.inf),
-        ),
+        computes="motion, contact, impact, sliding and rest",
+        imposes="nothing",
     ),
     "first-script": Variant(  # damping that no one asked for: e off by .01 to .5 at every step
         FirstScript(),
-        rung="first script",
+        tier="defaults",
         ladder=(1 / 60, 1 / 240, 1 / 1000),
         finer=({"step": 2e-4},),
-        decides=DECIDES,
-        verified=None,
+        computes="motion, contact, impact, sliding and rest",
+        imposes="nothing",
         friction=0.5 * 0.5,  # the default on either body, which Bullet multiplies
         flight_damping=0.04,  # the default of a multibody
     ),
@@ -124,16 +114,7 @@ def run(scene: Scene, variant: str, settings: ImpactAware | FixedStep | FirstScr
     if failure is None and place is not None and _may_have_left(scene, trace, ended, place):
         # The same run again, with all places of the block: to read them each time costs up to a tenth more.
         trace = _attempt(scene, settings, places=True)[0]
-    return Run(
-        trace,
-        steps,
-        cpu,
-        failure,
-        ended if ended == "overturned" else None,
-        _largest(scene, settings),
-        drift(scene, settings.step if isinstance(settings, FirstScript) else 0.0),
-        warnings=tuple(_beyond(scene, variant, settings)),
-    )
+    return Run(trace, steps, cpu, failure, ended if ended == "overturned" else None, _beyond(scene, variant))
 
 
 def _attempt(scene, chosen, places=False):
@@ -202,14 +183,12 @@ def _largest(scene: Scene, chosen: ImpactAware | FixedStep | FirstScript) -> flo
     return longest_step(scene, units.time * longest)
 
 
-def _beyond(scene: Scene, name: str, chosen: ImpactAware | FixedStep | FirstScript) -> Iterator[str]:
-    """Sentences on settings coarser than those verified, and on what Bullet cannot take as it is given."""
-    for field in fields(chosen):
-        value, usual = getattr(chosen, field.name), getattr(VARIANTS[name].settings, field.name)
-        if value > usual and VARIANTS[name].verified is not None:
-            yield f"{field.name} = {value:.4g} is above {usual:.4g}, the largest verified"
-    if scene.friction is not None and scene.friction > MOST_FRICTION and name != "first-script":
-        yield f"friction = {scene.friction:.4g} is above {MOST_FRICTION:g}: Bullet takes it as {MOST_FRICTION:g}"
+def _beyond(scene: Scene, variant: str) -> tuple[Caution, ...]:
+    """What Bullet cannot take as it is given."""
+    if variant == "first-script" or scene.friction is None or scene.friction <= MOST_FRICTION:
+        return ()
+    words = f"friction = {scene.friction:.4g} is above {MOST_FRICTION:g}: Bullet takes it as {MOST_FRICTION:g}"
+    return (Caution("engine", words, "friction", scene.friction, MOST_FRICTION),)
 
 
 def _may_have_left(scene: Scene, trace: Trace, ended: str | None, place: np.ndarray) -> bool:

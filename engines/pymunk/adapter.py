@@ -27,7 +27,6 @@ from analytic.response import Failure
 from ..contract import Mismatch, Run, Variant
 from ..leapfrog import raw_trace_of, trace_of
 from ..planar import EqualSteps, ImpactAware, equal_steps_run, impact_aware_run
-from ..verified import Range
 from . import script
 from .scene import build
 from .stepping import ChipmunkBodies
@@ -54,37 +53,24 @@ SCRIPT_DECIDES = f"{SOLVER_DECIDES}, in equal steps; a groove joint of Chipmunk'
 VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(accuracy=1e-6, largest_step=1e-3),
-        rung="best",
+        tier="tuned",
         ladder=(1e-3, 1e-4, 1e-5, 1e-6),
-        decides=DECIDES,
-        verified=Range(
-            slenderness=(0.03, 1.2), inertia=(1.05, 3.0), base_mass=(1e-5, 100.0), radius=(1e-3, 30.0), decay=(0.0, 1e3)
-        ),
+        computes="motion, contact, impact, sliding and rest",
+        imposes="nothing",
     ),
     "expert": Variant(
         EqualSteps(1e-4),
-        rung="expert",
+        tier="tuned",
         ladder=(1e-3, 1e-4, 2e-5),
-        decides=SCRIPT_DECIDES,
-        verified=Range(
-            slenderness=(0.05, 0.45),
-            inertia=(1.3, 1.4),
-            base_mass=(0.05, 0.1),
-            radius=(1.0, 1.2),
-            damping=(0.0, 0.1),
-            tilt=(0.3, math.inf),
-        ),
+        computes="motion, contact, impact, sliding and rest",
+        imposes="nothing",
     ),
     "first-script": Variant(
         EqualSteps(1 / 240),  # four a frame: pymunk leaves the step to its user
-        rung="first script",
+        tier="defaults",
         ladder=(1 / 60, 1 / 240, 1e-3),
-        decides=SCRIPT_DECIDES,
-        verified=None,
-        caveats=(
-            "pymunk first-script is verified in no range: Chipmunk's default slop of .1 m lets corners sink, and its "
-            "default iterations leave the base's guide loose, whatever the step",
-        ),
+        computes="motion, contact, impact, sliding and rest",
+        imposes="nothing",
     ),
 }
 
@@ -111,7 +97,7 @@ def run(scene: Scene, variant: str, settings: ImpactAware | EqualSteps) -> Run:
             return Run(None, 0, math.nan, Failure("Chipmunk does not hold the scene", str(error)))
         unsure = () if assembly.sure else (UNSURE,)
         return impact_aware_run(scene, settings, lambda largest: ChipmunkBodies(assembly, scene, largest), unsure)
-    tuned, step = VARIANTS[variant].rung == "expert", settings.step
+    tuned, step = variant == "expert", settings.step
     parts = script.build(scene, tuned)
     read, share = (trace_of, SCRIPT_CONTACT) if tuned else (raw_trace_of, FIRST_CONTACT)
     edge = share * scene.block.slenderness

@@ -153,7 +153,7 @@ def test_a_block_that_would_jump_is_said():
     scene = FREE.with_(motion=heaving(1.2 * G, 9.0), start=Start(tilt=0.05))
     for run in (simulate(scene), simulate_twin(scene)):
         assert run.min_normal_ratio <= 0
-        assert any("the block would jump, and the verdict is outside the model" in text for text in run.warnings)
+        assert any("the block would jump, and the outcome is outside the model" in text for text in run.warnings)
     assert not simulate(scene.with_(motion=heaving(0.2 * G, 9.0))).warnings
 
 

@@ -99,7 +99,7 @@ def engines_table() -> Table:
     rows = [
         [
             run.name,
-            run.rung,
+            run.tier,
             f"{run.knob} = {run.value:g}",
             "no impact" if run.error is None else number(100 * run.error, 2),
         ]
@@ -107,7 +107,7 @@ def engines_table() -> Table:
     ]
     return Table(
         "What the engines installed here make of the same impact",
-        ("engine, variant", "set up as", "setting", "error [%]"),
+        ("engine, variant", "tier", "setting", "error [%]"),
         rows,
     )
 

@@ -72,7 +72,7 @@ def view(step: float) -> View:
         own = ladder[0].solver == own_runs()[0].solver
         colour = THIRD if own else INK if ladder[0].solver == "event-driven" else colour_of(ladder[0])
         known = [run for run in ladder if run.error is not None]
-        first = ladder[0].rung == "first script"
+        first = ladder[0].tier == "defaults"
         axis.loglog(
             [max(100 * (run.error or 0), 100 * FLOOR) for run in known],
             [max(1e3 * run.cpu, 1e-3) for run in known],
@@ -166,7 +166,7 @@ LESSON = Lesson(
     ),
     (Control("step of the fixed-step integrator", tuple(1e3 * step for step in OWN_STEPS), 1.0, "ms", 1),),
     view,
-    "Better is to the right and down. Move the step along its line. Dotted lines: what a first script does.",
+    "Better is to the right and down. Move the step along its line. Dotted lines: default settings.",
     (
         "*Equal step is no fair race.* One engine needs ten times the steps of another for the same error.",
         "*A lucky point is no setting.* Take the coarsest setting below the target whose *finer ones are below it "

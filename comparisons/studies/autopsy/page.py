@@ -15,7 +15,7 @@ from ...showing.plots import style
 if TYPE_CHECKING:
     from ...running.provenance import Result
 
-BEST, FIRST = "best", "first script"
+DEFAULTS = "defaults"
 RIGID = "rigid ground"
 WINDOW = 0.02  # s, about the landing that is drawn
 # frame: (key of its values, unit of the page, times what, label, title)
@@ -35,7 +35,7 @@ def section(result: Result) -> Section:
         draw(result),
         "Four frames of the first impact in every engine, from the landing corner's height to the energy.",
         "The first impact on rigid ground in every engine that tells where the block was. Lines: at its best; dotted: "
-        "its first script.",
+        "its default settings.",
     )
     return Section(
         "Autopsy of an impact",
@@ -49,7 +49,7 @@ def section(result: Result) -> Section:
 def finding(result: Result) -> Section:
     """The `Section` of the report: why engines err at a corner."""
     told = _told(result)
-    at_best = [row for row in told if row["rung"] == BEST]
+    at_best = [row for row in told if row["best"]]
     named = [row for row in told if row["cause"]]
     sound = sum(row["cause"] is None for row in at_best)
     causes = dict.fromkeys(row["cause"] for row in sorted(named, key=lambda row: -abs(row["error"])))
@@ -67,8 +67,8 @@ def finding(result: Result) -> Section:
     shown = sorted(named, key=lambda row: -abs(row["error"])) + [row for row in at_best if row["cause"] is None]
     charts = [_frame(result, name) for name in FRAMES]
     caption = (
-        "The first impact on rigid ground, time from the landing. Coloured: engines at their best; grey: first "
-        "scripts; only those that tell where the block was have frames 2 and 3."
+        "The first impact on rigid ground, time from the landing. Coloured: engines at their best; grey: default "
+        "settings; only those that tell where the block was have frames 2 and 3."
     )
     solvers = [row["engine"] for row in at_best]
     return Section(
@@ -81,7 +81,7 @@ def draw(result: Result) -> Canvas:
     canvas = Canvas(figsize=(9.6, 6.4), layout="constrained")
     for axes, (name, (_, _, label, title)) in zip(canvas.subplots(2, 2).flat, FRAMES.items(), strict=True):
         for row, time, values in _series(result, name):
-            best = row["rung"] == BEST
+            best = row["best"]
             axes.plot(
                 1e3 * time,
                 values,
@@ -96,10 +96,10 @@ def _told(result):
 
 
 def _series(result: Result, name: str) -> Iterator[tuple[dict[str, Any], np.ndarray, np.ndarray]]:
-    """(row, time [s], values) of a frame, first scripts before the best."""
+    """(row, time [s], values) of a frame, default settings before the best."""
     key, unit, _, _ = FRAMES[name]
-    rows = [row for row in _told(result) if row["ground"] == RIGID and row["rung"] in (BEST, FIRST)]
-    for row in sorted(rows, key=lambda row: row["rung"] == BEST):
+    rows = [row for row in _told(result) if row["ground"] == RIGID and (row["best"] or row["tier"] == DEFAULTS)]
+    for row in sorted(rows, key=lambda row: row["best"]):
         frame = row["frames"].get(name)
         if frame is not None:
             time = np.array(frame["time"])
@@ -122,7 +122,7 @@ def _frame(result, name):
         left=70,
     )
     for row, time, one in series:
-        grey = row["rung"] != BEST
+        grey = not row["best"]
         chart.line(1e3 * time, one, row["engine"], grey=grey)
         says = [f"{row['engine']}, {row['variant']}: {number(value, 3)}" for value in one]
         if len(one) <= 40:

@@ -39,7 +39,7 @@ def solvers_of(engines: Sequence[str]) -> list[tuple[str, str | None]]:
             (name, variant)
             for name in engines
             for variant, kind in get_engine(name).variants.items()
-            if kind.rung == "first script"
+            if kind.tier == "defaults"
         ),
     ]
 

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
 ANALYTIC = "analytic"
 CHANGED = "0.25"
-BEST = "best"
 SHADES = {1: "#009E73", 2: "#0072B2", 4: "#CC79A7"}  # of vertical motions so many times as fast
 
 
@@ -29,9 +28,9 @@ def ranked(result: Result, scene: str) -> list[dict[str, Any]]:
     return sorted(rows, key=lambda row: (-row["flips"] / row["runs"], row["change"]))
 
 
-def rung(result: Result, row: dict[str, Any]) -> str | None:
-    """The rung of an engine's variant; None of a change."""
-    return result.settings["rungs"].get(row["change"])
+def at_best(result: Result, row: dict[str, Any]) -> bool:
+    """Whether a row is that of an engine's default variant."""
+    return row["change"] in result.settings["best"]
 
 
 def draw(result: Result) -> Figure:
@@ -54,7 +53,7 @@ def draw(result: Result) -> Figure:
                 color=colour,
                 markersize=5,
                 capsize=2,
-                markerfacecolor=colour if not engine or rung(result, row) == BEST else "white",
+                markerfacecolor=colour if not engine or at_best(result, row) else "white",
             )
         axis.set_xscale("symlog", linthresh=0.1)
         axis.set(title=scene, xlabel="verdicts flipped [%]", xlim=(-0.02, 110), ylim=(-0.7, len(rows) - 0.3))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ...showing.charts import Axis, Chart, figure
 from ...showing.parts import Section, Table, percent
-from .figures import ANALYTIC, BEST, ranked, rung
+from .figures import ANALYTIC, at_best, ranked
 from .page import _answer, _contact, _engines, _vertical
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def finding(result: Result) -> Section:
     """The `Section` of the report about what flips verdicts."""
     scenes = list(result.settings["scenes"])
     first = [_changes(result, scene)[0] for scene in scenes]
-    engines = [row for scene in scenes for row in ranked(result, scene) if rung(result, row) == BEST]
+    engines = [row for scene in scenes for row in ranked(result, scene) if at_best(result, row)]
     flipped = percent(first[0]["flips"] / first[0]["runs"])
     title = f"What matters more than the engine: {first[0]['change']} flips {flipped} of verdicts"
     if engines:
@@ -60,8 +60,8 @@ def _shown(result, scene):
 
 
 def _panel(result, scene):
-    """The changes, and engines at their best; other rungs have too few runs to be looked at."""
-    rows = [row for row in _shown(result, scene) if row["solver"] == ANALYTIC or rung(result, row) == BEST]
+    """The changes, and engines at their best; other variants have too few runs to be looked at."""
+    rows = [row for row in _shown(result, scene) if row["solver"] == ANALYTIC or at_best(result, row)]
     chart = Chart(
         Axis("verdicts flipped [%]", LEAST, 100, "log", TICKS),
         Axis("", len(rows) - 0.5, -0.5, ticks=tuple((k, _short(row["change"])) for k, row in enumerate(rows))),

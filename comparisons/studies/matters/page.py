@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ...measuring.statistics import wilson
 from ...showing.parts import Section, Table, figure_of, number, percent
-from .figures import ANALYTIC, BEST, draw, draw_vertical, parted, ranked, rung, speed
+from .figures import ANALYTIC, at_best, draw, draw_vertical, parted, ranked, speed
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
@@ -31,7 +31,7 @@ def section(result: Result) -> Section:
         draw(result),
         f"Share of verdicts flipped by each change and each engine, ranked, with 95 % intervals. {' '.join(answers)}",
         "Share of verdicts that each change flips, with 95 % Wilson intervals. Grey: changes of the scene in the "
-        "analytic model; coloured: engines on the unchanged scene, filled at their best, open at other rungs.",
+        "analytic model; coloured: engines on the unchanged scene, filled at their best, open in other variants.",
     )
     over = figure_of(
         draw_vertical(result),
@@ -53,12 +53,12 @@ def _scene(name, scene):
 
 def _engines(settings):
     """What engines are given, and what so few runs resolve."""
-    if not settings["rungs"]:
+    if not settings["best"]:
         return "No engine took part."
-    best, others = settings["motions_of_engines"], settings["motions_of_other_rungs"]
+    best, others = settings["motions_of_engines"], settings["motions_of_other_variants"]
     slender = "; ".join(f"{value:g} ({name})" for name, value in settings["slenderness_of_engines"].items())
     return (
-        f"Engines run the first {best} at their best, {others} at other rungs, whose peak is at least "
+        f"Engines run the first {best} at their best, {others} in other variants, whose peak is at least "
         f"{settings['lifting']:g} g tan γ, at slenderness {slender}: without a flip among them, a share up "
         f"to {percent(wilson(0, best)[1])} and {percent(wilson(0, others)[1])} is not excluded."
     )
@@ -105,8 +105,8 @@ def _answer(result, scene):
     """One sentence: the three changes that flip most, and what the best engines flip beside them."""
     rows = ranked(result, scene)
     changed = [row for row in rows if row["solver"] == ANALYTIC]
-    best = [row for row in rows if row["solver"] != ANALYTIC and rung(result, row) == BEST]
-    rest = [row for row in rows if row["solver"] != ANALYTIC and rung(result, row) != BEST]
+    best = [row for row in rows if row["solver"] != ANALYTIC and at_best(result, row)]
+    rest = [row for row in rows if row["solver"] != ANALYTIC and not at_best(result, row)]
     words = f"{scene.capitalize()}: most verdicts are flipped by {'; '.join(_said(row) for row in changed[:3])}."
     if best:
         words += f" Engines at their best: {'; '.join(_said(row) for row in best)}."
@@ -114,7 +114,7 @@ def _answer(result, scene):
         above = [row for row in changed if row["low"] > least]
         words += f" {len(above)} of {len(changed)} changes certainly flip more than the worst of these."
     if rest:
-        words += f" At other rungs up to {_said(rest[0])}."
+        words += f" In other variants up to {_said(rest[0])}."
     return words
 
 

@@ -43,22 +43,22 @@ def defaults_of(engines: Sequence[str]) -> list[tuple[str, str]]:
 
 
 def ladders_of(engines: Sequence[str]) -> list[tuple[str, str, str, tuple[float, ...]]]:
-    """(engine, variant, knob, values) of all variants but first scripts: step, accuracy or stiffness."""
+    """(engine, variant, knob, values) of all variants but default settings: step, accuracy or stiffness."""
     return [
         (name, variant, kind.knob, kind.ladder)
         for name in engines
         for variant, kind in get_engine(name).variants.items()
-        if kind.rung != "first script" and not kind.takes_restitution
+        if kind.tier != "defaults" and not kind.takes_restitution
     ]
 
 
 def first_scripts_of(engines: Sequence[str]) -> list[tuple[str, str, str, tuple[float, ...]]]:
-    """The same of the first scripts, at their default."""
+    """The same of default settings."""
     return [
         (name, variant, kind.knob, (kind.default,))
         for name in engines
         for variant, kind in get_engine(name).variants.items()
-        if kind.rung == "first script"
+        if kind.tier == "defaults"
     ]
 
 

@@ -119,7 +119,7 @@ def fixed_steps_of(engines: Sequence[str]) -> list[tuple[str, str]]:
     fixed = []
     for engine, variant in variants_of(engines):
         kind = get_engine(engine).variants[variant]
-        if kind.rung == "expert" and kind.knob == "step" and not kind.takes_restitution:
+        if kind.tier == "tuned" and kind.knob == "step":
             fixed.append((engine, variant))
     return fixed
 

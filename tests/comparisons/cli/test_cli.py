@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pytest
 from bad_scenes import BAD, SCENE, write_scene
+from comparisons.measuring.verdicts import resolved
 from engine_cases import needs
 
 from analytic import EngineNotInstalled, Failure, load_scene, simulate, solver
 from comparisons import cli
-from comparisons.measuring.verdicts import resolved
 from comparisons.running import solving
 from comparisons.studies import BUILT_IN
 from engines import ENGINES, get_engine, installed_engines

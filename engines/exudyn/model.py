@@ -1,0 +1,183 @@
+"""What an exudyn system of one scene holds: bodies, the bearings with their history, the friction's anchor."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import exudyn as exu
+import numpy as np
+from exudyn.advancedUtilities import CreateSymbolicUserFunction
+from exudyn.itemInterface import MarkerBodyPosition, ObjectConnectorCartesianSpringDamper
+from numba import njit
+
+if TYPE_CHECKING:
+    from analytic import Block, Scene
+    from analytic.bearing import BearingLaw
+    from analytic.types import Motion
+
+Real = exu.symbolic.Real
+
+
+class _Symbols:
+    """What a law's formula is made of, see `Law.expression`."""
+
+    @staticmethod
+    def where(condition: Any, a: Any, b: Any) -> Any:
+        a, b = (Real(one) if isinstance(one, float) else one for one in (a, b))
+        return exu.symbolic.IfThenElse(condition, a, b)
+
+    @staticmethod
+    def power(a: Any, b: float) -> Any:
+        return exu.symbolic.pow(a, Real(b))
+
+    @staticmethod
+    def exp(a: Any) -> Any:
+        return exu.symbolic.exp(a)
+
+
+class Bearing:
+    """All bearings as one force between ground and base: symbolic inside a step, its history committed after it.
+
+    x, z : base displacement [m] and hysteretic force of one bearing [N] at the last accepted step.
+    """
+
+    def __init__(self, law: BearingLaw, displacement: float) -> None:
+        self.law, self.x, self.z, self.connector = law, displacement, law.start(displacement), None
+
+    def memory(self) -> list[float]:
+        """The history as the three numbers the force expression reads."""
+        return [self.x, *self.law.moved(self.z, 0.0)[1:]]
+
+    def commit(self, mbs: exu.MainSystem, x: float) -> float:
+        """Move the history to an accepted displacement; the hysteretic force there."""
+        if self.law.unit.memory:
+            self.z, first, second = self.law.moved(self.z, x - self.x)
+            self.x = x
+            mbs.SetObjectParameter(self.connector, "offset", [x, first, second])
+        return self.z
+
+    def restore(self, mbs: exu.MainSystem, x: float, z: float) -> None:
+        """Take the history back to an earlier step."""
+        self.x, self.z = x, z
+        mbs.SetObjectParameter(self.connector, "offset", self.memory())
+
+    def force(self, displacement: Any, velocity: Any, offset: Any) -> list[Any]:
+        """Symbolic force against the base [N], by the law's formula from the committed point.
+
+        exudyn has already subtracted the offset, here the committed displacement, from the displacement.
+        """
+        law, dx = self.law, displacement[0]
+        z = law.unit.expression(_Symbols, dx, offset[1], offset[2], *law.constants)
+        total = law.kb * (dx + offset[0]) + law.damping * velocity[0] + z
+        return [law.count * total, Real(0.0), Real(0.0)]
+
+
+@njit("f8(f8, f8[::1], f8[::1], f8, f8, f8, f8, f8)", cache=True)  # compiled when it is imported
+def _anchor(
+    anchor: float, q: np.ndarray, v: np.ndarray, b: float, h: float, stiffness: float, hardening: float, stretch: float
+) -> float:
+    """Where the block sticks to its base [m], after a step: moved along as far as every corner that bears has slid.
+
+    stretch: of the sticking spring over the normal force when it slides [m/N]. A block in the air has no anchor: the
+    place of its lower corner.
+    """
+    low, high, lowest, place = math.inf, -math.inf, -math.inf, anchor
+    sin, cos = math.sin(q[2]), math.cos(q[2])
+    x, rate = (q[3], v[3]) if len(q) > 3 else (0.0, 0.0)
+    for side in (-1.0, 1.0):
+        across = q[0] - x + side * b * (cos - 1) + h * sin
+        depth = h * (cos - 1) - q[1] - side * b * sin
+        normal = 0.0
+        if depth > 0:
+            normal = stiffness * depth * (1 - hardening * (v[1] + v[2] * (side * b * cos + h * sin)))
+        if normal > 0:
+            low, high = min(low, across - stretch * normal), max(high, across + stretch * normal)
+        if depth > lowest:
+            lowest, place = depth, across
+    if low > high:
+        return place
+    return min(max(anchor, low), high)
+
+
+class Anchor:
+    """Coulomb's memory: where the block sticks to its base, committed once per accepted step.
+
+    connectors: of the two corners. stiffness [N/m], hardening [s/m]: of their normal force. stretch: of the sticking
+    spring, over the normal force, when it slides [m/N]. slop: change that is not told [m].
+    """
+
+    def __init__(
+        self,
+        block: Block,
+        connectors: tuple[Any, Any],
+        *,
+        stiffness: float,
+        hardening: float,
+        stretch: float,
+        slop: float,
+    ) -> None:
+        self.at, self.connectors, self.slop = 0.0, connectors, slop
+        self.shape = block.half_width, block.half_height, stiffness, hardening, stretch
+
+    def commit(self, mbs: exu.MainSystem, q: np.ndarray, v: np.ndarray) -> None:
+        """Move the anchor after a step to coordinates q and velocities v."""
+        at = _anchor(self.at, q, v, *self.shape)
+        if abs(at - self.at) > self.slop:
+            self.at = at
+            for connector in self.connectors:
+                mbs.SetObjectParameter(connector, "offset", [at, 0.0, 0.0])
+
+
+@dataclass
+class Model:
+    """An exudyn system of one scene. `keep` holds the expression trees, which exudyn does not own."""
+
+    scene: Scene
+    container: exu.SystemContainer
+    mbs: exu.MainSystem
+    ground: exu.ObjectIndex
+    block: exu.ObjectIndex
+    base: exu.ObjectIndex
+    bearing: Bearing | None = None
+    anchor: Anchor | None = None
+    loads: list = field(default_factory=list)  # (number, motion whose segment it follows)
+    connectors: dict = field(default_factory=dict)
+    keep: list = field(default_factory=list)
+    expected: dict = field(default_factory=dict)  # (object number, field): value the variant asked for
+
+    def connect(
+        self, name: str, markers: Sequence[Any], function: Callable[[Any, Any, Any], Any], **parameters: Any
+    ) -> Any:
+        """A Cartesian connector with a symbolic force, kept by name; function(displacement, velocity, offset)."""
+
+        def spring(mbs, t, item, displacement, velocity, stiffness, damping, offset):
+            return function(displacement, velocity, offset)
+
+        item = ObjectConnectorCartesianSpringDamper(markerNumbers=markers, **parameters)
+        number = self.mbs.AddObject(item)
+        self._make_symbolic(number, spring, "springForceUserFunction", self.mbs.SetObjectParameter)
+        self.connectors[name] = number
+        self.expected[number, "activeConnector"] = True
+        return number
+
+    def load(self, item: Any, function: Callable[..., Any], motion: Motion) -> None:
+        """A load with a symbolic value, whose vector holds the segment's parameters of the motion."""
+        number = exu.LoadIndex(self.mbs.AddLoad(item))
+        self._make_symbolic(number, function, "loadVectorUserFunction", self.mbs.SetLoadParameter)
+        self.loads.append((number, motion))
+
+    def _make_symbolic(self, number: Any, function: Callable[..., Any], name: str, setter: Callable[..., Any]) -> None:
+        tree = CreateSymbolicUserFunction(self.mbs, function, name, number)
+        setter(number, name, tree)
+        self.keep.append(tree)
+
+    def corner_markers(self, side: int) -> list[Any]:
+        """Markers of the base point and of the block's bottom corner of that side."""
+        b, h = self.scene.block.half_width, self.scene.block.half_height
+        return [
+            self.mbs.AddMarker(MarkerBodyPosition(bodyNumber=self.base, localPosition=[side * b, 0.0, 0.0])),
+            self.mbs.AddMarker(MarkerBodyPosition(bodyNumber=self.block, localPosition=[side * b, -h, 0.0])),
+        ]
