@@ -119,8 +119,8 @@ def about_record(motion: Any) -> tuple[Caution, ...]:
 class Difference:
     """What an engine's run has other than the analytic model: both values, and the difference that is tolerated.
 
-    quantity: one of `DIFFERENCES`; here, model: an outcome, or a number. limit: of peaks relative to the model's, of the
-    restitution [-] or of a number of impacts absolute; None for an outcome.
+    quantity: one of `DIFFERENCES`; here, model: an outcome, or a number. limit: of peaks relative to the model's, of
+    the restitution [-] or of a number of impacts absolute; None for an outcome.
     """
 
     quantity: str

@@ -8,8 +8,9 @@ A `Difference` is one beyond its limit:
   overturns, in either, peaks are not compared.
 - restitution: an impact's rate after over rate before differs from that of the model's impact that matches it.
 - missing or extra impacts: without a match. Two match that lie on one side, nearer to each other than to the next ones
-  on that side; up to where a match is `OUT_OF_PHASE`. Impacts count from `COUNTED` of the largest rate of their run on, and from swings on of a tenth of
-  `LEAST_TILT`: smaller ones an engine does not tell from the compliance of its contact.
+  on that side; up to where a match is `OUT_OF_PHASE`. Impacts count from `COUNTED` of the largest rate of their run
+  on, and from swings on of a tenth of `LEAST_TILT`: smaller ones an engine does not tell from the compliance of its
+  contact.
 
 A run cannot be compared where the model does not hold (N <= 0, a friction demand that no contact gives), or reaches no
 end. Where it differs the model is run again with start, motion, slenderness and restitution changed by `CHANGE`: what

@@ -83,9 +83,9 @@ def diagnosis(engine: str, variant: str, scene: Scene, which: int = 0, **setting
     Returns
     -------
     dict
-        engine, variant, tier, best (the default variant); where the impact can be told: placed, error, cause and words (None below `LEAST`), parts,
-        steps, lasting [s], lost (energy over the kinetic one before), frames, and where the block is placed deepest [m]
-        and demand; else why_not.
+        engine, variant, tier, best (the default variant); where the impact can be told: placed, error, cause and words
+        (None below `LEAST`), parts, steps, lasting [s], lost (energy over the kinetic one before), frames, and where
+        the block is placed deepest [m] and demand; else why_not.
     """
     record = get_engine(engine)
     row: dict[str, object] = {"engine": engine, "variant": variant, "tier": record.variants[variant].tier}

@@ -71,8 +71,8 @@ GLOSSARY = {
     "analytic model": "the rocking equations solved directly from event to event; its compiled part is the kernel",
     "second implementation": "the same equations written again, independently and plainly, to check the first",
     "accuracy knob": "the one setting of a solver that trades time for error; its ladder: the values tried",
-    "defaults, tuned, assisted": "an engine as a first script gets it; well set, but on its own; with a velocity, position "
-    "or constraint set by the adapter at the model's event",
+    "defaults, tuned, assisted": "an engine as a first script gets it; well set, but on its own; with a velocity, "
+    "position or constraint set by the adapter at the model's event",
     "root mean square (rms)": "root of the mean of squares of all errors",
     "kappa": "Cohen's measure of agreement of two yes-or-no judges: 1 always, 0 as by chance",
     "McNemar's test": "whether two solvers that judge the same motions differ by more than chance; for many tests "

@@ -67,7 +67,7 @@ def plan(
             scene,
             solver,
             variants.get(solver),
-            settings={"compare": True} if solver in engines else {},
+            settings={"compare": True} if solver in ask.engines else {},
             tag={"scene": name},
         )
         for solver in ("analytic", *ask.engines)

@@ -153,7 +153,7 @@ def _answer(scenes: Result, free: Result | None, stored: list[Stored]) -> dict[s
     decision = rows_of(free, groups, columns) if free else []
     reference = next((group for group in groups if group["solver"] == REFERENCE), None)
     return {
-        "recommendation": recommendation(decision, reference) if free else [],
+        "recommendation": recommendation(decision, reference, free.settings["range"]) if free else [],
         "summary": summary(scenes, groups),
         "not_to_do": not_to_do(decision),
         "decision": decision,

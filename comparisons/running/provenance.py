@@ -274,5 +274,10 @@ def _checkout():
         return {"commit": None, "dirty": None}
 
 
+def commit_seed() -> int:
+    """A seed that every commit draws anew; 0 outside a checkout."""
+    return int((_checkout()["commit"] or "0")[:8], 16)
+
+
 def _digest(file):
     return hashlib.sha256(Path(file).read_bytes()).hexdigest()

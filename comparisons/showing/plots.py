@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from analytic import Response, Scene
 
 # colour, dashes, width; the reference lies wide underneath, dots need width to be seen
-REFERENCE = ("#000000", "-", 2.4)
+REFERENCE: tuple[str, str | tuple[float, tuple[float, ...]], float] = ("#000000", "-", 2.4)
 DOTS, LINES = 1.8, 1.4
 TITLE_CHARACTERS = 100
 TILT_RANGE = (0.05, 2.0)  # least and greatest limit of a tilt axis, over slenderness
-SPARE = ("#777777", (0, (5, 1)), 1.3)
+SPARE: tuple[str, str | tuple[float, tuple[float, ...]], float] = ("#777777", (0, (5, 1)), 1.3)
 
 
 def marker(solver: str) -> str:

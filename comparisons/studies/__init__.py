@@ -28,6 +28,7 @@ BUILT_IN = (
     "matters",
     "speed-error",
     "stability",
+    "random-scenes",
     "caryatid",
     "tolerances",
     "sheet",

@@ -45,8 +45,8 @@ VARIANTS = {
             "friction": (0.05, 0.1, 0.15, 0.2, 0.3, 0.6, 5.0),
         },
         computes="motion, contact, impact, sliding and rest, by integration",
-        imposes="contact law: ours (Hunt-Crossley with Coulomb's friction, plastic, non-slipping and planar, as Housner "
-        "assumes: an impact that agrees with him verifies law and integration); when steps are explicit or implicit",
+        imposes="contact law: ours (Hunt-Crossley with Coulomb's friction; plastic, non-slipping and planar, as "
+        "Housner assumes, so that agreement verifies law and integration); when steps are explicit or implicit",
     ),
     "switched-joints": Variant(
         joints.SwitchedJoints(),

@@ -1,4 +1,4 @@
-"""Settings of compliant-corners: what they were measured with, and how they follow a scene's weight, size and gravity."""
+"""Settings of compliant-corners, and how they follow a scene's weight, size and gravity."""
 
 from __future__ import annotations
 

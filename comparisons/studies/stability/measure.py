@@ -13,8 +13,9 @@ from analytic import simulate
 from analytic.closed_form import free_rocking, free_rocking_tilt, rest_time
 from analytic.rocking import restitution
 from analytic.twin import simulate_twin
+from engines.comparison import changed_copies
 
-from ...measuring.horizon import changed_copies, sensitivity_horizon
+from ...measuring.horizon import PERTURBATION, sensitivity_horizon
 from ...measuring.measures import energy_errors
 from .cases import hard_cases
 
@@ -60,7 +61,9 @@ def comparable_until(name: str) -> tuple[float, bool]:
     scene = _case(name).scene
     until = sensitivity_horizon(scene).horizon
     outcome = simulate(scene, history=False).outcome
-    robust = all(simulate(copy, history=False).outcome == outcome for copy in changed_copies(scene).values())
+    robust = all(
+        simulate(copy, history=False).outcome == outcome for copy in changed_copies(scene, PERTURBATION).values()
+    )
     return until, robust
 
 
