@@ -27,7 +27,7 @@ ENGINE = Engine(
 
 @dataclass(frozen=True)
 class Euler:
-    """Equal steps: `step` [s] is the knob."""
+    """Equal steps: `step` [s] is the accuracy parameter."""
 
     step: float = 5e-4
 
@@ -35,12 +35,11 @@ class Euler:
 VARIANTS = {
     "euler": Variant(
         Euler(),
-        rung="best",
+        tier="assisted",
         ladder=(2e-3, 5e-4),
-        verified=None,
         takes_restitution=True,
-        decides="the fake decides motion and uplift, and applies the impact it is given",
-        caveats=("crude is a fake",),
+        computes="motion and uplift",
+        imposes="the impact it is given",
     )
 }
 
@@ -77,4 +76,4 @@ def run(scene, variant, settings):
         failure = Failure("the fake blew up", f"at {rows[-1][0]:.6g} s")
     trace = Trace(*np.array(rows).T, contact_tilt=1e-3 * scene.block.slenderness) if len(rows) > 1 else None
     ended = "overturned" if abs(tilt) >= math.pi / 2 else None
-    return Run(trace, len(rows) - 1, time.process_time() - clock, failure, ended, step)
+    return Run(trace, len(rows) - 1, time.process_time() - clock, failure, ended, ("crude is a fake",))

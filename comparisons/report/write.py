@@ -38,6 +38,7 @@ HERE = Path(__file__).parent
 # Short names of sections in the contents, by the study whose finding it is; studies of others follow.
 SHORT = {
     "restitution": "One impact",
+    "random-scenes": "Random statues",
     "autopsy": "Why engines err",
     "overturning": "Many pulses",
     "fragility": "Many earthquakes",

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from sampled_traces import BASE, BEARINGS, EDGE, SCENES, block, sampled, seen, shaking
 
-from analytic import Base, Bearings, Failure, PulseMotion, Scene, Start, simulate
+from analytic import Base, Bearings, Caution, Failure, PulseMotion, Scene, Start, simulate
 from engines.checks import (
     GAIN_LIMIT,
     HEIGHT_TOLERANCE,
@@ -276,19 +276,21 @@ def test_warnings_of_the_engine_and_of_the_record_reach_the_response_once():
     scene = SCENES["rigid ground, shaken"]
     odd = scene.with_(motion=dataclasses.replace(scene.motion, warnings=("the record is odd",)))
     trace, _ = sampled(scene, 2e-3)
+    said = Caution("record", "the record is odd"), Caution("engine", "soft")
     assert seen(scene, trace).warnings == ()
-    assert seen(odd, trace, warnings=["soft", "soft"]).warnings == ("the record is odd", "soft")
+    assert seen(odd, trace, warnings=["soft", "soft"]).warnings == said
     gone = dataclasses.replace(trace, tilt=np.full_like(trace.tilt, np.nan))
-    assert seen(odd, gone, warnings=("soft",)).warnings == ("the record is odd", "soft")
+    assert seen(odd, gone, warnings=("soft",)).warnings == said
     quiet = SCENES["rigid ground"]
-    assert seen(quiet, sampled(quiet, 2e-3)[0], warnings=("soft",)).warnings == ("soft",)
+    assert seen(quiet, sampled(quiet, 2e-3)[0], warnings=("soft",)).warnings == said[1:]
 
 
 def test_a_run_outside_the_model_is_warned_of_but_not_a_failed_one():
     scene = SCENES["rigid ground, shaken"]
     trace, reference = sampled(scene, 2e-3)
     slippery = scene.with_(friction=0.5 * reference.friction_demand)
-    assert any("friction demand" in line for line in seen(slippery, trace).warnings)
+    (warning,) = seen(slippery, trace).warnings
+    assert (warning.kind, warning.quantity) == ("model", "friction_demand") and warning.value > warning.limit
     assert seen(scene.with_(friction=2 * reference.friction_demand), trace).warnings == ()
     assert seen(slippery, trace, failure=Failure("it broke")).warnings == ()
 

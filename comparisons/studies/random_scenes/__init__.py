@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from analytic import simulate
-from analytic.response import COMPARED, UNCOMPARED, Difference
+from analytic.response import COMPARED, UNCOMPARED
 from engines import get_engine
 from engines.statue_range import RANGE, in_words
 
@@ -105,8 +105,8 @@ def _asked(result: Result) -> str:
         f"{result.settings['scenes']} scenes drawn at random (seed {result.provenance['seed']}, of the commit): "
         f"{result.settings['range']}; let go or under a pulse, until the outcome is decided. "
         f"{result.settings['below_range']} whose peak tilt stays below the range are not run. Left out: the normal "
-        "force falls to 0 or no contact gives the friction demanded, or the scene is on an edge, where a change by 1e-4 "
-        "makes such a difference in the analytic model. A run that differs is told as one wherever it is shown."
+        "force falls to 0 or no contact gives the friction demanded, or the scene is on an edge, where a change by "
+        "1e-4 makes such a difference in the analytic model. A run that differs is told as one wherever it is shown."
     )
 
 

@@ -189,15 +189,21 @@ def test_engines_lists_what_is_there_and_what_is_not(rocking, monkeypatch):
     (line,) = (line for line in out.splitlines() if "mujoco" in line)
     absent = [name for name in ("dart", "drake", "mujoco", "pymunk") if name not in installed_engines()]
     assert line.startswith(f'not installed: {", ".join(absent)}; pip install -e ".[{",".join(absent)}]" in a ')
+    assert max(map(len, out.splitlines()[:-1])) <= 80 and "slenderness [rad] 0.1 to 0.5" in " ".join(out.split())
     for name in installed_engines():
-        engine = get_engine(name)
-        assert f"{name} (" in out and f"--variant {engine.default_variant} (default, best)" in out
-        for variant, one in engine.variants.items():
-            assert f"--variant {variant} (" in out and one.rung in out and f"decides: {one.decides}" in out
-            assert all(f"{setting}=" in out for setting in vars(one.settings))
-            assert f"{one.knob}={one.default:g} (knob)" in out
-            assert f"fine: {', '.join(f'{value:.4g}' for value in one.ladder)}\n" in out
-            assert one.verified is None or f"slenderness [rad] {one.verified.slenderness[0]:g} to" in out
+        assert name in out and all(f" {variant} " in out for variant in get_engine(name).variants)
+
+
+@pytest.mark.parametrize("name", installed_engines())
+def test_engines_with_a_name_tells_all_of_it(rocking, name):
+    engine, (status, out, _) = get_engine(name), rocking("engines", name)
+    assert status == 0 and f"{name} (" in out and f"--variant {engine.default_variant} (default, " in out
+    for variant, one in engine.variants.items():
+        assert f"--variant {variant} (" in out and one.tier in out
+        assert f"the engine computes: {one.computes}" in out and f"the adapter imposes: {one.imposes}" in out
+        assert all(f"{setting}=" in out for setting in vars(one.settings))
+        assert f"{one.knob}={one.default:g} (accuracy parameter)" in out
+        assert f"fine: {', '.join(f'{value:.4g}' for value in one.ladder)}\n" in out
 
 
 def test_compare(rocking, tmp_path):
