@@ -137,11 +137,11 @@ def engines_table(engines: Sequence[Engine]) -> Table:
         box=box.SIMPLE_HEAD,
         show_edge=False,
         padding=(0, 1, 0, 0),
-        caption=f"Tested for {in_words()}.\nrocking engines NAME: settings, refinement levels, versions.",
+        caption=Text(f"Tested for {in_words()}.\nrocking engines NAME: settings, refinement levels, versions."),
         caption_justify="left",
     )
     for head in ("engine", "variant", "tier", "the engine computes", "the adapter imposes"):
-        table.add_column(head)
+        table.add_column(head, no_wrap=head in ("engine", "variant", "tier"))
     for engine in engines:
         for name, variant in engine.variants.items():
             first = engine.name if name == engine.default_variant else ""

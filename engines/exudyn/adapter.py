@@ -44,9 +44,9 @@ VARIANTS = {
             "damping": (0.1, 0.5, 1.0),
             "friction": (0.05, 0.1, 0.15, 0.2, 0.3, 0.6, 5.0),
         },
-        computes="motion, contact, impact, sliding and rest, by integration",
-        imposes="contact law: ours (Hunt-Crossley with Coulomb's friction; plastic, non-slipping and planar, as "
-        "Housner assumes, so that agreement verifies law and integration); when steps are explicit or implicit",
+        computes="motion, contact, impact and rest, by integration",
+        imposes="contact law: ours (Hunt-Crossley, Coulomb; plastic as Housner assumes: agreement verifies law and "
+        "integration); a plane; explicit or implicit steps",
     ),
     "switched-joints": Variant(
         joints.SwitchedJoints(),
@@ -55,15 +55,15 @@ VARIANTS = {
         finer=({"step": 1e-4},),
         takes_restitution=True,
         computes="motion between events",
-        imposes="uplift, impact, by eqs (7) and (8), and rest",
+        imposes="uplift, impact by eqs (7) and (8), rest; a plane",
     ),
     "native-contact": Variant(
         native.NativeContact(),
         tier="defaults",
         ladder=(1e-3, 3e-4, 1e-4),
         finer=({"step": 5e-5},),
-        computes="motion, contact, impact, sliding and rest, by its sphere-triangle contact",
-        imposes="nothing",
+        computes="motion, contact, impact and rest",
+        imposes="a plane",
     ),
 }
 

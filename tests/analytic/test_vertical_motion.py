@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, simulate
+from analytic import Base, Bearings, Block, Caution, PulseMotion, SampledMotion, Scene, Start, simulate
 from analytic.batch import overturning_map, simulate_many
 from analytic.decision import RIGID_BEARINGS
 from analytic.pairing import paired
@@ -153,7 +153,9 @@ def test_a_block_that_would_jump_is_said():
     scene = FREE.with_(motion=heaving(1.2 * G, 9.0), start=Start(tilt=0.05))
     for run in (simulate(scene), simulate_twin(scene)):
         assert run.min_normal_ratio <= 0
-        assert any("the block would jump, and the outcome is outside the model" in text for text in run.warnings)
+        assert any(
+            "the block would jump, and the outcome is outside the model" in warning.text for warning in run.warnings
+        )
     assert not simulate(scene.with_(motion=heaving(0.2 * G, 9.0))).warnings
 
 
@@ -166,9 +168,9 @@ def test_a_weight_that_vanishes_while_the_block_stands_lifts_it_once():
 
 def test_bearings_that_carry_it_are_said():
     scene = SCENES["sine, on bearings"]
-    assert RIGID_BEARINGS in simulate(scene).warnings
+    assert Caution("model", RIGID_BEARINGS) in simulate(scene).warnings
     for other in (scene.with_(motion=replace(scene.motion, vertical=None)), scene.with_(bearings=None)):
-        assert RIGID_BEARINGS not in simulate(other).warnings
+        assert Caution("model", RIGID_BEARINGS) not in simulate(other).warnings
 
 
 def test_it_is_over_before_a_run_may_end():

@@ -37,7 +37,7 @@ class Mutation:
 RANGE, PHYSICS = "tests/engines/exudyn/test_range.py", "tests/engines/test_physics.py"
 MUTATIONS = {
     "exudyn: a corner is drawn back to where it stood": Mutation(
-        "engines.exudyn.corners",
+        "engines.exudyn.model",
         "    return min(max(anchor, low), high)\n",
         "    return anchor\n",
         f"{RANGE}::test_a_block_that_slid_stays_where_it_came_to_rest",
@@ -49,7 +49,7 @@ MUTATIONS = {
         f"{RANGE}::test_a_block_left_alone_does_not_sink",
     ),
     "exudyn: exponents off by 2 %": Mutation(
-        "engines.exudyn.scene",
+        "engines.exudyn.model",
         "exu.symbolic.exp(a)",
         "exu.symbolic.exp(1.02 * a)",
         f"{RANGE}::test_force_within_a_step_is_the_law_in_full",

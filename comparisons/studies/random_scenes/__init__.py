@@ -16,6 +16,7 @@ from ...measuring.statistics import wilson
 from ...running.cases import Case
 from ...running.provenance import commit_seed
 from ...running.study import Batch, Found, Study
+from ...showing.charts import Axis, Chart, figure
 from ...showing.parts import Judgement, Mark, Section, Table, percent
 from .scenes import random_scene
 
@@ -138,7 +139,35 @@ def finding(result: Result) -> Section:
     tuned: Counter = sum((count for (*_, tier), count in _counted(result).items() if tier == "tuned"), Counter())
     judged = sum(tuned[word] for word in CLASSES[:3])
     title = f"Random statues: {tuned['right']} of {judged} runs of tuned engines are right, {tuned['failed']} failed"
-    return Section(title, ("Every run that differs is told as one.",), (_table(result),), measured=(_asked(result),))
+    counted = _counted(result)
+    shown = figure([_chart(counted)], _CAPTION, [engine for engine, *_ in counted])
+    return Section(title, (_TOLD,), (_table(result),), (shown,), measured=(_asked(result),))
+
+
+_TOLD = "Every run that differs is told as one, wherever it is shown."
+_CAPTION = "Share of runs that differ from the analytic model or fail, with 95 % intervals; open: default settings."
+LEAST = 0.1  # % that the axis begins at
+
+
+def _chart(counted: dict[tuple[str, str, str], Counter]) -> Chart:
+    """Share of the runs that are not right, a line each."""
+    names = [f"{engine}, {variant}" for engine, variant, _ in counted]
+    chart = Chart(
+        Axis("runs that differ or fail [%]", LEAST, 100, "log", ((0.1, "≤ 0.1"), (1, "1"), (10, "10"), (100, "100"))),
+        Axis("", len(names) - 0.5, -0.5, ticks=tuple(enumerate(names))),
+        "Share of random scenes in which each engine differs from the analytic model or fails.",
+        left=196,
+        height=90 + 21 * len(names),
+    )
+    for k, ((engine, _, tier), count) in enumerate(counted.items()):
+        judged = sum(count[word] for word in CLASSES[:3])
+        if judged:
+            wrong = judged - count["right"]
+            share, low, high = (max(100 * value, LEAST) for value in (wrong / judged, *wilson(wrong, judged)))
+            chart.reach([share], [k], [low], [high], engine, along="x")
+            says = [f"{names[k]}: {wrong} of {judged}"]
+            chart.dots([share], [k], engine, filled=tier != "defaults", says=says)
+    return chart
 
 
 def judgement(result: Result) -> Judgement:

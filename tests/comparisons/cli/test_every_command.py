@@ -132,7 +132,7 @@ def test_a_base_that_nothing_moves_slides_nowhere(rocking, tmp_path):
     assert json.loads(rocking("run", file, "--json", "-")[1])["warnings"] == []
     file.write_text(block + "[start]\ntilt = 0.1\nbase_velocity = 0.2\n")
     (warning,) = json.loads(rocking("run", file, "--json", "-")[1])["warnings"]
-    assert "slides on at" in warning
+    assert warning["kind"] == "model" and "slides on at" in warning["text"]
 
 
 def test_what_new_writes_has_the_limit_that_was_typed(rocking, folder, monkeypatch):

@@ -25,7 +25,7 @@ BASES = {
     "record": (("record", "own.csv"), ("record", "plain.txt", "--units", "g")),
     "report": (("report", "rigid.toml"), ("report", "--record", "own.csv")),
     "verify": (("verify", "--engine", "exudyn"),),
-    "bench engines": (("bench", "engines", "--engine", "exudyn"),),
+    "study random-scenes": (("study", "random-scenes", "--quick", "--engine", "exudyn"),),
     "study restitution": (("study", "restitution", "--quick"),),
 }
 EXCHANGED = {
@@ -79,8 +79,6 @@ def place(tmp_path, monkeypatch):
         "comparisons.report.write.write_page",
         "comparisons.running.study.compute",
         "comparisons.measuring.tolerances.measure_all",
-        "comparisons.bench.engines.run.bench_engines",
-        "comparisons.bench.engines.run.examine",
         "comparisons.advice.choose",
         "comparisons.measuring.horizon.solver_horizon",
         "analytic.margins.margins",

@@ -230,10 +230,12 @@ def test_an_engine_that_crashes_costs_its_own_row(rocking, monkeypatch):
 def test_warnings_and_undecided_outcomes_are_shown(rocking, monkeypatch, tmp_path):
     import dataclasses
 
-    from analytic import simulate
+    from analytic import Caution, simulate
+
+    odder = Caution("model", "N <= 0 [at 1 s].")
 
     def odd(scene, **_):
-        return dataclasses.replace(simulate(scene, history=False), warnings=("N <= 0 [at 1 s].",), decided=False)
+        return dataclasses.replace(simulate(scene, history=False), warnings=(odder,), decided=False)
 
     monkeypatch.setattr("comparisons.running.solving._analytic", lambda scene, *_: odd(scene))
     _, out, _ = rocking(*QUICK)
@@ -241,7 +243,7 @@ def test_warnings_and_undecided_outcomes_are_shown(rocking, monkeypatch, tmp_pat
     _, out, _ = rocking("compare", "free-rocking-rigid", "--engine", "analytic")
     assert "undecided" in out and "(rocks so far)" in out and "Warning, analytic: N <= 0 [at 1 s]." in out
     result = json.loads(rocking(*QUICK, "--json", "-")[1])
-    assert result["warnings"] == ["N <= 0 [at 1 s]."] and result["decided"] is False
+    assert [one["text"] for one in result["warnings"]] == ["N <= 0 [at 1 s]."] and result["decided"] is False
 
 
 def test_a_store_that_is_damaged_in_use_or_no_file(rocking, tmp_path):

@@ -173,7 +173,7 @@ def test_no_clean_run_is_accused(engine, variant, count):
 def test_diagnosis_is_ready_for_a_page_or_says_why_not():
     needs("pymunk")
     told = diagnosis("pymunk", "expert", released(None), step=4e-3)
-    assert (told["rung"], told["cause"], told["words"]) == ("expert", "step", CAUSES["step"])
+    assert (told["tier"], told["best"], told["cause"], told["words"]) == ("tuned", False, "step", CAUSES["step"])
     assert told["steps"] == 1 and told["deepest"] < 1e-3 and set(told["frames"]) >= {"straddle", "energy"}
     blind = diagnosis("pymunk", "first-script", released(BASE))
     assert not blind["placed"] and blind["words"] == CAUSES["unseen"] and "deepest" not in blind

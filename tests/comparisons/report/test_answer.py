@@ -9,10 +9,10 @@ from comparisons.showing.parts import Judgement, Mark
 
 KINDS = {
     "one": {
-        "fine": {"rung": "best", "applies_impact": False, "verified": "slenderness [rad] 0.1 to 0.5"},
-        "coarse": {"rung": "first script", "applies_impact": False, "verified": "nowhere"},
+        "fine": {"tier": "tuned", "best": True, "applies_impact": False},
+        "coarse": {"tier": "defaults", "best": False, "applies_impact": False},
     },
-    "two": {"given": {"rung": "best", "applies_impact": True, "verified": "anywhere"}},
+    "two": {"given": {"tier": "assisted", "best": True, "applies_impact": True}},
 }
 REFERENCE = {"cpu_per_second": 1e-4}
 
@@ -74,7 +74,7 @@ def test_failed_runs_and_errors_take_trust_away():
 def test_the_recommendation_decides_its_impacts_itself_and_says_where_it_ends():
     rows = decided()
     assert best_of(rows).variant == "fine"  # “given” is cheaper, but its adapter applies the impact
-    words = " ".join(recommendation(rows, REFERENCE))
+    words = " ".join(recommendation(rows, REFERENCE, "slenderness [rad] 0.1 to 0.5"))
     assert "one set as “fine”" in words and "500 times" in words and "slenderness [rad] 0.1 to 0.5" in words
-    assert "no engine that was run here" in " ".join(recommendation(decided(fine=0.1), REFERENCE))
-    assert "1 of 1 first scripts fail" in not_to_do(rows)[0] and len(not_to_do(rows)) == 3
+    assert "no engine that was run here" in " ".join(recommendation(decided(fine=0.1), REFERENCE, ""))
+    assert "Do not use default settings: 1 of 1 fail" in not_to_do(rows)[0] and len(not_to_do(rows)) == 3

@@ -78,7 +78,7 @@ def test_one_that_rocks_gets_its_own_restitution_and_replaces_an_older_report(tm
     assert max(row["rms"] for row in rows) < 1e-9
     assert "Restitution per impact" in page and "sliding base" not in page
     told = json.loads(form(folder / PAGE).text())
-    assert told["schema"] == "rocking report 1" and len(told["results"]) == 2
+    assert told["schema"] == "rocking report 2" and len(told["results"]) == 2
     assert [(row["scene"], row["outcome"]) for row in told["rows"]] == [("bust", "stands"), ("released", "rocks")]
     assert "released: in analytic it rocks and stays upright" in page and "bust: in analytic it never lifts" in page
 

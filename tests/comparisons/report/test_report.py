@@ -185,7 +185,7 @@ def test_summary_follows_the_numbers(folder, copied):
 
 def test_the_decision_table_holds_the_runs_errors_and_the_studies_judgements(copied, studies):
     page = Page(write_page(copied, studies))
-    best = page.table("Engines as well as they can be set")
+    best = page.table("Engines at their best settings")
     groups = {group["name"]: group for group in variant_groups(read_result(copied / runs.FREE_ROCKING))}
     checked = 0
     for (name, head), cell in best.items():
@@ -199,7 +199,7 @@ def test_the_decision_table_holds_the_runs_errors_and_the_studies_judgements(cop
     for name in {name for name, _ in best}:
         known = marks.get(tuple(name.split(", ")))
         assert best[name, "hard cases right"] == (known.words if known else "not tested")
-    bare = Page(write_page(copied, studies=NO_STUDIES)).table("Engines as well as they can be set")
+    bare = Page(write_page(copied, studies=NO_STUDIES)).table("Engines at their best settings")
     assert {head for _, head in bare} & {"boundary shift, worst", "hard cases right"} == set()
 
 
@@ -213,9 +213,7 @@ def test_a_worse_restitution_takes_the_recommendation_and_the_trust_away(copied)
     changed(copied / runs.FREE_ROCKING, spoil)
     page = Page(write_page(copied, studies=NO_STUDIES))
     assert "no engine that was run here may be trusted" in page.source
-    verdicts = [
-        cell for (_, head), cell in page.table("Engines as well as they can be set").items() if head == "verdict"
-    ]
+    verdicts = [cell for (_, head), cell in page.table("Engines at their best settings").items() if head == "verdict"]
     assert verdicts and all(verdict.startswith("✗") for verdict in verdicts)
 
 
@@ -325,9 +323,9 @@ def test_undecided_outcomes_and_warnings_stand_beside_the_outcomes_and_at_the_to
                     overturning_time=None,
                     decided=False,
                     verdict="undecided (rocks so far)",
-                    warnings=["the record peaks at 5 g"],
+                    warnings=[{"kind": "record", "text": "the record peaks at 5 g"}],
                 )
-        content["rows"][-1]["warnings"] = ["the base is light"]
+        content["rows"][-1]["warnings"] = [{"kind": "model", "text": "the base is light"}]
 
     changed(copied / runs.CARYATID, cut)
     changed(copied / runs.FREE_ROCKING, lambda content: content["rows"][-1].update(warnings=["the block is small"]))
@@ -336,7 +334,7 @@ def test_undecided_outcomes_and_warnings_stand_beside_the_outcomes_and_at_the_to
     free, isolated = (page.table(f"Caryatid {name}, until decided") for name in ("on rigid ground", "isolated"))
     assert free["outcome", "analytic"] == "undecided (rocks so far)" and free["warnings [-]", "analytic"] == "1"
     assert isolated["warnings [-]", "analytic"] == "none" and isolated["warnings [-]", last] == "1"
-    words = "outside what was verified or modelled"
+    words = "outside what is modelled, or differing"
     assert page.table("Caryatid isolated: warnings")[last, words] == "the base is light"
     assert "the block is small" in page.table("Free rocking: warnings").values()
     assert any("it is undecided (rocks so far). Warning: the record peaks at 5 g." in item for item in top.items)

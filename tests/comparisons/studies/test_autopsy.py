@@ -12,13 +12,14 @@ from comparisons.studies.autopsy import STUDY
 from comparisons.studies.autopsy.cases import GROUNDS, SECONDS, plan, scene_on
 
 
-def told(engine, variant="fine", rung="best", error=1e-7, cause=None, ground="rigid ground", **more):
+def told(engine, variant="fine", tier="tuned", error=1e-7, cause=None, ground="rigid ground", **more):
     time = [-2e-3, -1e-3, 0.0, 1e-3, 2e-3]
     frames = {
         "straddle": {"time": time, "landing": [2e-3, 1e-3, 0.0, 0.0, 0.0]},
         "energy": {"time": time, "energy": [1.0, 1.0, 0.9, 0.9, 0.9]},
     }
-    row = {"engine": engine, "variant": variant, "rung": rung, "ground": ground, "failure": None, "placed": False}
+    row = {"engine": engine, "variant": variant, "tier": tier, "best": tier == "tuned", "ground": ground}
+    row |= {"failure": None, "placed": False}
     return {**row, "error": error, "cause": cause, "steps": 2, "lasting": 1e-3, "lost": 0.1, "frames": frames, **more}
 
 
@@ -48,7 +49,7 @@ def test_rows_carry_the_diagnosis_or_the_failure():
 
 
 def test_the_finding_counts_the_best_and_names_the_causes_of_the_rest():
-    bad = told("exudyn", "native", "first script", -0.02, "adhesion", deepest=8e-4)
+    bad = told("exudyn", "native", "defaults", -0.02, "adhesion", deepest=8e-4)
     found = STUDY.finding(result(told("exudyn"), told("pymunk"), bad))
     assert found.title.startswith("Why engines err: 2 of 2 impacts at their best") and "adhesion" in found.title
     (table,) = found.tables
@@ -59,7 +60,14 @@ def test_the_finding_counts_the_best_and_names_the_causes_of_the_rest():
 
 
 def test_what_cannot_be_told_is_evidence():
-    silent = {"engine": "pybullet", "variant": "v", "rung": "best", "ground": "rigid ground", "failure": None}
+    silent = {
+        "engine": "pybullet",
+        "variant": "v",
+        "tier": "tuned",
+        "best": True,
+        "ground": "rigid ground",
+        "failure": None,
+    }
     crashed = {"engine": "dart", "variant": "v", "ground": "rigid ground", "failure": {"reason": "a crash"}}
     shown = STUDY.section(result(told("exudyn"), {**silent, "why_not": "no corner is struck"}, crashed))
     assert shown.evidence == (

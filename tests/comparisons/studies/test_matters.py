@@ -199,16 +199,16 @@ def test_the_sentence_ranks_changes_and_says_which_certainly_flip_more_than_the_
         made_up("pybullet, first-script", 25, solver="pybullet"),
         *(row for row in found.rows if row["part"] != "change"),
     ]
-    rungs = {"pybullet, impact-aware": "best", "pybullet, first-script": "first script"}
-    settings = {**found.settings, "rungs": rungs, "motions_of_engines": 60, "changed_while_running": []}
-    settings["motions_of_other_rungs"] = 10
+    settings = {**found.settings, "best": ["pybullet, impact-aware"], "motions_of_engines": 60}
+    settings["changed_while_running"] = []
+    settings["motions_of_other_variants"] = 10
     path = write_result(tmp_path / "matters.json", "matters", settings, rows, modules=["analytic"])
     result = read_result(path)
     page = section(result)
     assert (
         "Isolated: most verdicts are flipped by direction turned by 30° (30 %); vertical motion (12 %); slenderness "
         "±1 % (4.0 %). Engines at their best: pybullet, impact-aware (1.0 %). 2 of 4 changes certainly flip more than "
-        "the worst of these. At other rungs up to pybullet, first-script (25 %)."
+        "the worst of these. In other variants up to pybullet, first-script (25 %)."
     ) in page.text
     assert "a share up to 6.0 % and" in page.text[0]  # Wilson's limit of 0 of 60
     assert [row[0] for row in page.tables[0].rows][:2] == ["direction turned by 30°", "pybullet, first-script"]

@@ -25,6 +25,7 @@ from comparisons.studies.restitution.cases import CARYATID_BASE, Grid
 from comparisons.studies.speed_error import growth
 from comparisons.studies.speed_error.scenes import near_overturning, trials
 from engines.plugins import find_engines
+from engines.simulating import Simulator
 
 ASK = Ask(("crude",), quick=True)
 DECIDING = FAKE_ENGINE.replace("takes_restitution=True,", "").replace("step: float", "span: float")
@@ -38,6 +39,7 @@ SHORT = {
     "fragility": {"scenes": {"free-standing": ("caryatid-rigid", (0.2, 0.3))}, "runs": (40, 6, 2)},
     "matters": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (3, 1, 1)},
     "autopsy": {},
+    "random-scenes": {"seed": 1},
     "stability": {"names": ("uplift 0.99", "critical pulse +0.01")},
     "speed-error": {"keep": lambda entry: entry.family.startswith(("crude", "kernel")), "grow": False, "repeats": 1},
 }
@@ -53,7 +55,7 @@ def crude(request, monkeypatch, tmp_path):
     importlib.invalidate_caches()
     found, broken = find_engines(engines.BUILT_IN)
     assert broken == {}
-    monkeypatch.setitem(engines.ENGINES, "crude", found["crude"])
+    monkeypatch.setitem(engines.ENGINES, "crude", Simulator.of(found["crude"]))
     variant = found["crude"].variants["euler"]
     assert (variant.takes_restitution, variant.knob) == (
         (True, "step") if request.param is FAKE_ENGINE else (False, "span")
