@@ -17,7 +17,7 @@ from ...running.cases import Case
 from ...running.provenance import commit_seed
 from ...running.study import Batch, Found, Study
 from ...showing.charts import Axis, Chart, figure
-from ...showing.parts import Judgement, Mark, Section, Table, percent
+from ...showing.parts import Figure, Judgement, Mark, Section, Table, percent
 from .scenes import random_scene
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ def _asked(result: Result) -> str:
         f"{result.settings['range']}; let go or under a pulse, until the outcome is decided. "
         f"{result.settings['below_range']} whose peak tilt stays below the range are not run. Left out: the normal "
         "force falls to 0 or no contact gives the friction demanded, or the scene is on an edge, where a change by "
-        "1e-4 makes such a difference in the analytic model. A run that differs is told as one wherever it is shown."
+        "1e-4 makes such a difference in the analytic model. "
     )
 
 
@@ -131,7 +131,8 @@ def section(result: Result) -> Section:
         tables.append(
             Table("Runs that differ, but for default settings", ("engine, variant", "scene", "in what"), wrong)
         )
-    return Section("Random scenes", (_asked(result),), tuple(tables), evidence=failed)
+    text = (_asked(result), _words(result), _TOLD)
+    return Section("Random scenes", text, tuple(tables), (_figure(result),), evidence=failed)
 
 
 def finding(result: Result) -> Section:
@@ -139,9 +140,21 @@ def finding(result: Result) -> Section:
     tuned: Counter = sum((count for (*_, tier), count in _counted(result).items() if tier == "tuned"), Counter())
     judged = sum(tuned[word] for word in CLASSES[:3])
     title = f"Random statues: {tuned['right']} of {judged} runs of tuned engines are right, {tuned['failed']} failed"
+    return Section(title, (_TOLD,), (_table(result),), (_figure(result),), measured=(_asked(result),))
+
+
+def _words(result: Result) -> str:
+    """One sentence: how many are right."""
+    told = [
+        f"{engine}, {variant} {count['right']} of {sum(count[word] for word in CLASSES[:3])}"
+        for (engine, variant, _), count in _counted(result).items()
+    ]
+    return f"Right are: {'; '.join(told)}."
+
+
+def _figure(result: Result) -> Figure:
     counted = _counted(result)
-    shown = figure([_chart(counted)], _CAPTION, [engine for engine, *_ in counted])
-    return Section(title, (_TOLD,), (_table(result),), (shown,), measured=(_asked(result),))
+    return figure([_chart(counted)], _CAPTION, [engine for engine, *_ in counted])
 
 
 _TOLD = "Every run that differs is told as one, wherever it is shown."

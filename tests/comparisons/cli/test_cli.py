@@ -238,10 +238,9 @@ def test_a_run_that_is_off_the_analytic_model_says_so(rocking, engine, variant, 
     needs(engine)
     _, out, _ = rocking("run", "free-rocking-rigid", "--engine", engine, "--variant", variant, "--json", "-")
     told = json.loads(out)
-    found = {one["quantity"]: one for one in told["differences"]}
-    assert told["comparable"] == "yes" and ("restitution" in found) == said
+    assert told["comparable"] == "yes" and bool(told["differences"]) == said
     if said:
-        assert abs(found["restitution"]["here"] - found["restitution"]["model"]) > found["restitution"]["limit"]
+        assert {one["quantity"] for one in told["differences"]} & {"restitution", "missing_impacts"}
         _, out, _ = rocking("run", "free-rocking-rigid", "--engine", engine, "--variant", variant)
         assert f"{engine} differs from the analytic model" in out
 
