@@ -9,6 +9,7 @@ def command(name: Annotated[str | None, typer.Argument(help="Tell all of this en
     """List the engines and their variants: tier, what the engine computes, and what our adapter imposes on it.
 
     With a name: its versions, settings and refinement levels, too.
+
     Example: rocking engines exudyn
     """
     from rich.console import Console
