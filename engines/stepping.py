@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from .swings import Trace
 
 SMALLEST_STEP = 1e-6  # s, at `scale.UNIT_RADIUS`; at 1e-7 e is as good, at 1e-5 its error is 2 to 5 times as large
-LANDING = 4.0  # speed of a landing block over slenderness sqrt(g/R), with a reserve for what a motion adds
+LANDING = 1.0  # most speed of a corner that lands, over the slenderness, the width 2 b and sqrt(g/R)
 ENDS = ("done", "overturned", "not finite", "too many steps")  # all others are an engine's words, "what: why"
 
 # tilt [rad], its rate; x, z of the block's centre [m] from the place of a block standing at the origin, x', z'; x, x'
