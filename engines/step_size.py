@@ -41,24 +41,26 @@ def gap_rule(largest: float, smallest: float, gravity: float) -> Rule:
         From the (gap [m], closing speed [m/s]) of each contact point, always the same ones in the same order, to the
         length of the next step [s].
     """
-    step, held, before = smallest, 0, None
+    step, held, before = smallest, 0, ()
 
     def length(points):
         nonlocal step, held, before
-        slow, jump, wanted = SLOW * gravity * step, JUMP * gravity * step, largest
-        for k, (gap, closing) in enumerate(points):
+        wanted, slow, jump = largest, SLOW * gravity * step, JUMP * gravity * step
+        for (gap, closing), (_, was) in zip(points, before or points, strict=True):
             if closing > slow:
                 if gap <= 0:
                     held = HOLD
                 elif SHARE * gap < wanted * closing:
                     wanted = SHARE * gap / closing
-            if before and not -jump < closing - before[k][1] < jump:
+            if not -jump < closing - was < jump:
                 held = HOLD
         before = points
+        longest = step if held else GROWTH * step
         if held:
             held -= 1
-            wanted = min(wanted, step)
-        step = max(min(wanted, GROWTH * step), smallest)
+        step = wanted if wanted < longest else longest
+        if step < smallest:
+            step = smallest
         return step
 
     return length

@@ -25,7 +25,7 @@ from analytic.rocking import RockingModel
 
 from .contract import Mismatch, Run
 from .ground_velocity import ground_velocity
-from .leapfrog import failure_of, row_limit, trace_of
+from .leapfrog import MOST_ROWS, failure_of, row_limit, trace_of
 from .placement import placement
 from .scale import size_scale
 from .step_size import ROUNDING, SLOW, Rule, fixed_rule, gap_rule, limits
@@ -75,7 +75,7 @@ class Bodies(Protocol):
 
 
 def march(
-    bodies: Bodies, scene: Scene, rule: Rule, loads: Loads, largest: float, jumps: Iterable[float] = ()
+    bodies: Bodies, scene: Scene, duration: float, rule: Rule, loads: Loads, largest: float, jumps: Iterable[float] = ()
 ) -> tuple[np.ndarray, str]:
     """Step until the duration is over, the block has overturned, a state is not finite or there is no solution.
 
@@ -84,6 +84,8 @@ def march(
     bodies : Bodies
         At the scene's start.
     scene : Scene
+    duration : float
+        In place of the scene's [s].
     rule : function
         Of `engines.step_size`; its contact points are the bottom corners.
     loads : function
@@ -100,7 +102,6 @@ def march(
         the words of a `NoSolution`.
     """
     law, start, loaded = BearingLaw.of(scene.bearings), scene.start, scene.bearings is not None
-    duration: float = scene.duration  # type: ignore[assignment]  # a run has one
     half, high, fallen = scene.block.half_width, scene.block.half_height, 0.5 * math.pi
     limit, fitted = limits(duration, largest, jumps)
     cos, sin, isfinite, advance, hysteretic = math.cos, math.sin, math.isfinite, bodies.step, law.hysteretic
@@ -183,9 +184,9 @@ def sampled_loads(scene: Scene) -> Loads:
 
 @dataclass(frozen=True)
 class ImpactAware:
-    """Steps by the rule of `engines.step_size`, at most `largest_step` [s] for the Caryatid's R; they go with sqrt(R/g).
+    """Steps by the rule of `engines.step_size`: small where a corner lands, at most `largest_step` [s] elsewhere.
 
-    `largest_step` is the one knob: what flight loses and how late a corner lands that closes slowly.
+    `largest_step` is the one knob. It is given for the Caryatid's R; times go with sqrt(R/g).
     """
 
     largest_step: float = 2e-4
@@ -193,7 +194,7 @@ class ImpactAware:
 
 @dataclass(frozen=True)
 class FixedStep:
-    """The same at one step: `step` [s], for the Caryatid's R, is the one knob."""
+    """The same at one step: `step` [s], given for the Caryatid's R, is the one knob."""
 
     step: float
 
@@ -208,7 +209,7 @@ class FirstScript:
 Settings = ImpactAware | FixedStep | FirstScript
 
 
-def simulate(
+def run_of(
     scene: Scene, settings: Settings, bodies_of: Callable[[float], Bodies], raw: Callable[[np.ndarray], Trace]
 ) -> Run:
     """The `Run` of a scene.
@@ -223,6 +224,10 @@ def simulate(
         From rows to the trace of a first script.
     """
     largest, smallest = step_limits(scene, settings)
+    duration = scene.duration or 0.0  # a run has one
+    if duration / largest > MOST_ROWS:
+        count = f"{duration / largest:.3g} for {duration:.6g} s; at most {MOST_ROWS}"
+        return Run(None, 0, math.nan, Failure("too many steps", f"steps of {largest:.3g} s: {count}"))
     try:
         bodies = bodies_of(largest)
     except Mismatch as error:
@@ -232,8 +237,10 @@ def simulate(
         rule, jumps = gap_rule(largest, smallest, scene.gravity), scene.motion.jumps if scene.motion else ()
     else:
         rule, jumps = fixed_rule(largest), ()
+    if isinstance(settings, FirstScript):  # all steps are the same
+        duration = largest * max(round(duration / largest), 1)
     loads = sampled_loads(scene) if isinstance(settings, FirstScript) else mean_loads(scene, bodies, largest)
-    rows, ended = march(bodies, scene, rule, loads, largest, jumps)
+    rows, ended = march(bodies, scene, duration, rule, loads, largest, jumps)
     cpu = time.process_time() - clock
     if isinstance(settings, FirstScript):
         trace = raw(rows)
@@ -265,4 +272,6 @@ def contact_tilt(scene: Scene, largest: float, smallest: float) -> float:
     a tilt of the slenderness that is about slenderness sqrt(g/R).
     """
     block, g = scene.block, scene.gravity
-    return SLOW * g * largest * largest / block.half_width + LANDING * smallest * block.slenderness * math.sqrt(g / block.radius)
+    return SLOW * g * largest * largest / block.half_width + LANDING * smallest * block.slenderness * math.sqrt(
+        g / block.radius
+    )

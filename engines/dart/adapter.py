@@ -8,7 +8,7 @@ import dartpy
 
 from ..contract import Run, Variant
 from ..leapfrog import raw_trace_of
-from ..stepping import FirstScript, ImpactAware, simulate
+from ..stepping import FirstScript, ImpactAware, run_of
 from ..verified import Range
 from .scene import DartBodies
 
@@ -54,7 +54,7 @@ def versions() -> dict[str, str]:
 def run(scene: Scene, variant: str, settings: ImpactAware | FirstScript) -> Run:
     """The `Run` of a scene."""
     plain = isinstance(settings, FirstScript)
-    return simulate(
+    return run_of(
         scene,
         settings,
         lambda step: DartBodies(scene, plain),

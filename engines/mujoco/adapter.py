@@ -19,7 +19,7 @@ from analytic.response import Failure
 
 from ..contract import Run, Variant
 from ..leapfrog import raw_trace_of
-from ..stepping import FirstScript, FixedStep, ImpactAware, Settings, simulate
+from ..stepping import FirstScript, FixedStep, ImpactAware, Settings, run_of
 from ..verified import Range
 from .scene import build
 
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from analytic import Scene
 
 DECIDES = (
-    "MuJoCo decides when a corner lands, sticks or lifts, what an impact does and how bodies move. The adapter gives it "
-    "the bearings' force, the ground's acceleration, contact stiffness and damping"
+    "MuJoCo decides when a corner lands, sticks or lifts, what an impact does and how bodies move. The adapter gives "
+    "it the bearings' force, the ground's acceleration, contact stiffness and damping"
 )
 
 VARIANTS = {
@@ -78,7 +78,7 @@ def run(scene: Scene, variant: str, settings: Settings) -> Run:
     handler = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(said.append)  # else MuJoCo writes a log file into the working directory
     try:
-        ran = simulate(
+        ran = run_of(
             scene,
             settings,
             lambda step: build(scene, step, isinstance(settings, FirstScript)),

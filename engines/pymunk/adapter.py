@@ -12,7 +12,7 @@ import pymunk
 
 from ..contract import Run, Variant
 from ..leapfrog import raw_trace_of
-from ..stepping import FirstScript, ImpactAware, simulate, step_limits
+from ..stepping import FirstScript, ImpactAware, run_of, step_limits
 from ..verified import Range
 from .scene import ChipmunkBodies
 
@@ -59,7 +59,7 @@ def run(scene: Scene, variant: str, settings: ImpactAware | FirstScript) -> Run:
     """The `Run` of a scene."""
     edge = FIRST_CONTACT * scene.block.slenderness
     first, plain = step_limits(scene, settings)[1], isinstance(settings, FirstScript)
-    return simulate(
+    return run_of(
         scene,
         settings,
         lambda largest: ChipmunkBodies(scene, first, plain),

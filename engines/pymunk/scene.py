@@ -20,8 +20,8 @@ from ..stepping import State
 if TYPE_CHECKING:
     from analytic import Scene
 
-# Stands for the model's "no sliding" where the scene gives none. At 5 Chipmunk's iterations jam where a corner slides: a
-# block that overturns sinks.
+# Stands for the model's "no sliding" where the scene gives none. At 5 Chipmunk's iterations jam where a corner slides:
+# a block that overturns sinks.
 FRICTION = 1.0
 ITERATIONS = 100
 WIDTH = 1e3  # of the groove, shares of R
