@@ -268,10 +268,8 @@ def step_limits(scene: Scene, settings: Settings) -> tuple[float, float]:
 def contact_tilt(scene: Scene, largest: float, smallest: float) -> float:
     """Tilt [rad] below which the block counts as in flat contact: twice the depth at which a corner may land, over 2 b.
 
-    A corner that closes slowly lands SLOW g h^2 deep at most, others at their speed times the smallest step; from
-    a tilt of the slenderness that is about slenderness sqrt(g/R).
+    Where the rule sees it coming it lands at its speed times the smallest step, else below its speed SLOW g h times h.
     """
     block, g = scene.block, scene.gravity
-    return SLOW * g * largest * largest / block.half_width + LANDING * smallest * block.slenderness * math.sqrt(
-        g / block.radius
-    )
+    landing = LANDING * block.slenderness * math.sqrt(g / block.radius) * smallest
+    return landing + SLOW * g * largest * largest / block.half_width
