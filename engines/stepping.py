@@ -210,7 +210,11 @@ Settings = ImpactAware | FixedStep | FirstScript
 
 
 def run_of(
-    scene: Scene, settings: Settings, bodies_of: Callable[[float], Bodies], raw: Callable[[np.ndarray], Trace]
+    scene: Scene,
+    settings: Settings,
+    bodies_of: Callable[[float], Bodies],
+    raw: Callable[[np.ndarray], Trace],
+    depth: float = SLOW,
 ) -> Run:
     """The `Run` of a scene.
 
@@ -222,6 +226,8 @@ def run_of(
         From the longest step [s] to the engine's bodies; it may raise `Mismatch`.
     raw : function
         From rows to the trace of a first script.
+    depth : float
+        To which a corner may sink that closes too slowly for the rule, over g h^2.
     """
     largest, smallest = step_limits(scene, settings)
     duration = scene.duration or 0.0  # a run has one
@@ -245,7 +251,7 @@ def run_of(
     if isinstance(settings, FirstScript):
         trace = raw(rows)
     else:
-        trace = trace_of(rows, scene, contact_tilt(scene, largest, smallest), smeared=3)
+        trace = trace_of(rows, scene, contact_tilt(scene, largest, smallest, depth), smeared=3)
     failure = failure_of(scene, rows, ended)
     if ended not in ENDS:
         reason, _, why = ended.partition(": ")
@@ -265,11 +271,11 @@ def step_limits(scene: Scene, settings: Settings) -> tuple[float, float]:
     return largest, min(largest, SMALLEST_STEP * scale)
 
 
-def contact_tilt(scene: Scene, largest: float, smallest: float) -> float:
-    """Tilt [rad] below which the block counts as in flat contact: twice the depth at which a corner may land, over 2 b.
+def contact_tilt(scene: Scene, largest: float, smallest: float, depth: float) -> float:
+    """Tilt [rad] below which the block counts as in flat contact: twice the depth to which a corner may sink, over 2 b.
 
-    Where the rule sees it coming it lands at its speed times the smallest step, else below its speed SLOW g h times h.
+    Where the rule sees it coming it lands at its speed times the smallest step, else at SLOW g h times h or less.
     """
     block, g = scene.block, scene.gravity
     landing = LANDING * block.slenderness * math.sqrt(g / block.radius) * smallest
-    return landing + SLOW * g * largest * largest / block.half_width
+    return landing + depth * g * largest * largest / block.half_width

@@ -31,11 +31,6 @@ TOLERANCES = {
         Bound("corner lift at rest", "60 s of shaking below uplift, rigid ground", 0.0, 0.0, LEVEL),
         Bound("base drift at rest", "60 s of shaking below uplift, on bearings", 8.5e-7, 4.26e-7, LARGE_STEP),
     ),
-    "expert": (
-        Bound("restitution, rms", "rigid ground, slenderness 0.2", 6.6e-4, 3.32e-4, STEP),
-        Bound("restitution, rms", "sliding base, slenderness 0.2", 2.2e-3, 1.135e-3, STEP),
-        Bound("base velocity jump, rms", "sliding base, slenderness 0.2", 3.9e-4, 1.99e-4, STEP),
-    ),
     "first-script": (
         Bound(
             "restitution from swings, |mean error|",

@@ -21,8 +21,10 @@ VARIANTS = {
         FirstScript(1e-3),  # Drake's own default
         rung="first script",
         ladder=(5e-3, 2e-3, 1e-3),
-        decides="Drake decides when a corner lands, sticks or lifts, what an impact does and how bodies move; the "
-        "block is free in space. The adapter gives it the bearings' force and the ground's acceleration, in equal steps.",
+        decides=(
+            "Drake decides when a corner lands, sticks or lifts, what an impact does and how bodies move; the block is "
+            "free in space. The adapter gives it the bearings' force and the ground's acceleration, in equal steps."
+        ),
         verified=None,
         caveats=(
             "drake first-script is verified in no range: two boxes touch in one point, however they lie, corners sink "

@@ -72,7 +72,11 @@ def run(scene: Scene, variant: str, settings: Settings) -> Run:
     client = pybullet.connect(pybullet.DIRECT)
     try:
         ran = run_of(
-            scene, settings, lambda step: kind(client, scene, step), lambda rows: raw_trace_of(rows, scene, edge)
+            scene,
+            settings,
+            lambda step: kind(client, scene, step),
+            lambda rows: raw_trace_of(rows, scene, edge),
+            depth=0.0,  # its contacts act before they touch
         )
     except pybullet.error as error:
         return Run(None, 0, math.nan, Failure("Bullet raised an error", str(error)))

@@ -35,11 +35,6 @@ TOLERANCES = {
         ),
         Bound("base drift at rest", "60 s of shaking below uplift, on bearings", 4.7e-7, 2.36e-7, LARGE_STEP),
     ),
-    "expert": (
-        Bound("restitution, rms", "rigid ground, slenderness 0.2", 4e-4, 2.03e-4, STEP),
-        Bound("restitution, rms", "sliding base, slenderness 0.2", 6.5e-4, 3.26e-4, STEP),
-        Bound("base velocity jump, rms", "sliding base, slenderness 0.2", 1.2e-4, 6.19e-5, STEP),
-    ),
     "first-script": (
         Bound(
             "restitution from swings, |mean error|",
