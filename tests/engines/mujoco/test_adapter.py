@@ -271,7 +271,7 @@ def test_small_swings_keep_their_rate(slenderness, base):
 
 
 def test_a_pulse_little_above_uplift():
-    """One sine at 1.076 times uplift: it lifts up to a step late, which takes 2.4 % of the peak tilt of .004 slendernesses."""
+    """One sine at 1.076 times uplift: lifting up to a step late takes 2.4 % of the peak, .004 slendernesses."""
     body = Block(mass=7539.3872, radius=3.8157178, slenderness=0.14997602, corner_inertia=169121.3955)
     given = AnyScene(
         block=body, motion=PulseMotion("one-sine", -1.5947104159, 5.8384598, start=0.0344393), duration=5.0
