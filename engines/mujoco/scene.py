@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import mujoco
 
@@ -10,63 +10,17 @@ from ..contract import Mismatch
 from ..placement import placement
 from ..readback import require
 from ..scale import size_scale
-from ..vibration import base_frequency
+from ..stepping import State
 
 if TYPE_CHECKING:
     from analytic import Scene
 
-    from .adapter import FirstScript, FixedStep, ImpactAware
-
-    Settings: TypeAlias = FirstScript | FixedStep | ImpactAware
-
 FRICTION = 5.0  # stands for the model's "no sliding"; of two geoms MuJoCo takes the larger; e is the same with 1
 CORNER_RADIUS = 1e-6  # share of R: the block touches by a sphere at each bottom corner; e is the same with 1e-8
-# Of the contacts, at any depth. Largest error of e at steps up to 4e-4 s: 6.4e-5 at .99, 4.3e-5 at .999, 6.2e-5 at
-# .9999 (one start 2e-3 at a smaller accuracy).
-IMPEDANCE = 0.999
-
-# A sink decays at the variant's rate `recovery`, by at most this share in a step. Landing corners leave it; a small
-# rate lets a slender block land early (gamma .05 on rigid ground: e off by 2.0e-5 at 50, 1.1e-5 at 100, 6e-6 at 150),
-# a large one throws the landing corner up (gamma .45: 8e-6 at 50, 3.0e-5 at 150). At fixed steps of 1e-4 s only the
-# second matters (gamma .45, before the arc: 4e-4 at 30, 1.8e-3 at 150).
-MOST_RECOVERY = 0.1
-# Below this slenderness the rate grows as its inverse, where steps are small at impacts: swings of .002 slendernesses,
-# gamma .03: e off by 8e-3 without, 1.1e-3 with it.
-SLENDER = 0.3
-
-# Most radians of the base's vibration on its bearings in a step (at .15, without the mass of `leapfrog_stiffness`, the
-# phase after 100 periods is off by .6 rad); what it shortens the steps to at most, as a share.
-VIBRATION, MOST_REFINEMENT = 0.07, 40.0
-
-
-def least_mass(scene: Scene) -> float:
-    """Least inertia [kg] that a push on the base meets while the block stands or rocks on it, eqs (3)-(6)."""
-    block = scene.block
-    return scene.total_mass - (block.mass * block.radius) ** 2 / block.inertia
-
-
-def recovery_rate(scene: Scene, chosen: Settings) -> float | None:
-    """Rate [1/s] at which a sink decays, None where MuJoCo's defaults are to stay."""
-    if chosen.recovery is None:
-        return None
-    slender = 1.0 if chosen.accuracy is None else max(1.0, SLENDER / scene.block.slenderness)
-    return chosen.recovery * slender / size_scale(scene)
-
-
-def impedance(scene: Scene) -> float:
-    """Impedance d of the contacts: 1 - d is the share of a landing that they leave, more so where J_O is near m R^2."""
-    block = scene.block
-    return 1 - (1 - IMPEDANCE) * min(1.0, max(0.1, 3 * block.centre_inertia / (block.mass * block.radius**2)))
-
-
-def longest_step(scene: Scene, chosen: Settings) -> float:
-    """Length of the steps in flight and at rest [s]: the variant's, less for a small block and for stiff bearings."""
-    if chosen.recovery is None:
-        return chosen.largest_step
-    step = chosen.largest_step * size_scale(scene)
-    if scene.bearings is None:
-        return step
-    return min(step, max(VIBRATION / base_frequency(scene), step / MOST_REFINEMENT))
+IMPEDANCE = 0.999  # of the contacts, at any depth; 1 - d is the share of a landing that a step leaves
+# A sink decays at RECOVERY [1/s], for the Caryatid's R, by at most MOST_RECOVERY in a step. It must only be undone
+# before the next impact, and gently: what comes back faster throws the corner up.
+RECOVERY, MOST_RECOVERY = 75.0, 0.1
 
 
 def coordinates(scene: Scene) -> tuple[list[float], list[float]]:
@@ -98,28 +52,27 @@ def contact_reference(step: float, recovery: float) -> tuple[float, float]:
     return -min(MOST_RECOVERY / step, recovery) / step, -1.0 / step
 
 
-def build(scene: Scene, chosen: Settings) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    """(model, data) of the block on slide-x, slide-z and hinge-y joints over its ground or base, at the start.
+def build(scene: Scene, step: float, plain: bool) -> MujocoBodies:
+    """The block on slide-x, slide-z and hinge-y joints over its ground or base, at the start; step: the longest [s].
+
+    plain: a box, and all else as MuJoCo has it.
 
     Raises
     ------
     Mismatch
         MuJoCo does not take the scene, or reports other values than it was given.
     """
-    block, step = scene.block, longest_step(scene, chosen)
+    block, recovery = scene.block, None if plain else RECOVERY / size_scale(scene)
     friction = FRICTION if scene.friction is None else scene.friction
     b, h, r, i = block.half_width, block.half_height, CORNER_RADIUS * block.radius, block.centre_inertia
-    if chosen.recovery is None:
+    if recovery is None:
         solref, option, geom = None, "", "" if scene.friction is None else f'friction="{friction!r} 0 0"'
         shape = f'<geom type="box" size="{b!r} {b!r} {h!r}" {geom}/>'
     else:
-        stiffness, damping = solref = contact_reference(step, recovery_rate(scene, chosen))
-        option = 'cone="elliptic"'
-        d = impedance(scene)
+        stiffness, damping = solref = contact_reference(step, recovery)
+        option, d = 'cone="elliptic"', IMPEDANCE
         geom = f'friction="{friction!r} 0 0" solref="{stiffness!r} {damping!r}" solimp="{d!r} {d!r} 1 .5 2"'
         shape = "".join(f'<geom type="sphere" size="{r!r}" pos="{x!r} 0 {r - h!r}" {geom}/>' for x in (-b, b))
-    damped = chosen.recovery is not None and scene.bearings is not None and scene.bearings.damping > 0
-    damper = '<equality><joint joint1="base" active="false"/></equality>' if damped else ""
     try:
         model = mujoco.MjModel.from_xml_string(f"""<mujoco>
             <option timestep="{step!r}" gravity="0 0 {-scene.gravity!r}" {option}>
@@ -127,13 +80,13 @@ def build(scene: Scene, chosen: Settings) -> tuple[mujoco.MjModel, mujoco.MjData
             <worldbody>{_ground(scene, geom)}<body pos="0 0 {h!r}">
               <joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/><joint type="hinge" axis="0 1 0"/>
               <inertial pos="0 0 0" mass="{block.mass!r}" diaginertia="{i!r} {i!r} {i!r}"/>{shape}
-            </body></worldbody>{damper}</mujoco>""")
+            </body></worldbody></mujoco>""")
     except ValueError as error:
         raise Mismatch(str(error)) from error
     data = mujoco.MjData(model)
     check_readback(model, data, scene, step, solref, friction)
     data.qpos[:], data.qvel[:] = coordinates(scene)
-    return model, data
+    return MujocoBodies(model, data, scene, recovery)
 
 
 def check_readback(
@@ -142,7 +95,7 @@ def check_readback(
     scene: Scene,
     step: float,
     solref: tuple[float, float] | None,
-    friction: float | None,
+    friction: float,
 ) -> None:
     """Compare what MuJoCo holds with what the scene needs; raises `Mismatch` naming what differs.
 
@@ -181,8 +134,41 @@ def check_readback(
                 ("contact: dimension", contact.dim, 3),
                 ("contact: solref", contact.solref, solref),
                 ("contact: margin", contact.includemargin, 0.0),
-                ("contact: solimp", contact.solimp, [impedance(scene), impedance(scene), 1, 0.5, 2]),
+                ("contact: solimp", contact.solimp, [IMPEDANCE, IMPEDANCE, 1, 0.5, 2]),
                 ("contact: depth", contact.dist, depth),
             ]
         mujoco.mj_resetData(model, data)
     require(expected)
+
+
+class MujocoBodies:
+    """Model and data; recovery: as `scene.contact_reference` has it, None where the contact is MuJoCo's own."""
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, recovery: float | None) -> None:
+        self.model, self.data, self.recovery, self.used = model, data, recovery, model.opt.timestep
+        self.base = scene.base
+        self.loaded = scene.bearings is not None
+        self.option, self.gravity, self.push = model.opt, model.opt.gravity, data.qfrc_applied
+        self.position, self.velocity = data.qpos.tolist, data.qvel.tolist
+
+    def step(self, step: float, before: float, across: float, up: float, impulse: float) -> State:
+        """A step: see `engines.stepping.Bodies`."""
+        if step != self.used:
+            self.option.timestep = self.used = step
+            if self.recovery:
+                self.model.geom_solref[:] = contact_reference(step, self.recovery)
+        self.gravity[0], self.gravity[2] = across / step, up / step
+        if self.loaded:
+            self.push[0] = impulse / step
+        mujoco.mj_step(self.model, self.data)
+        if self.base is None:
+            x, z, tilt = self.position()
+            vx, vz, rate = self.velocity()
+            return tilt, rate, x, z, vx, vz, 0.0, 0.0
+        base, x, z, tilt = self.position()
+        v, vx, vz, rate = self.velocity()
+        return tilt, rate, x, z, vx, vz, base, v
+
+    def weigh(self, added: float) -> None:
+        """Give the base more mass."""
+        self.model.dof_M0[0] = self.model.body_mass[1] = self.base.mass + added

@@ -4,25 +4,25 @@ The planar chain leaves out three of them; this is the model most scripts begin 
 (damping, contact softness).
 """
 
-import time
+from typing import Any
 
-import numpy as np
 import pybullet
 
 from analytic import Response, Scene
 from analytic.ending import until_decided
 
 from ..leapfrog import trace_of
-from ..observe import observe
-from ..pace import FLAT
-from . import first_script as script
+from ..observe import failed_response, observe
+from ..stepping import FirstScript, run_of
 from .adapter import versions
+from .first_script import FreeBox
 from .links import without_losses
 from .scene import BREAKING_THRESHOLD, FRICTION, iterations
 
 # contactERP of a box on a slab: penetration decays at this rate per second whatever the step. A fixed share of .08 per
 # step leaves the base velocity jump 2 to 5 % off at every step.
 CORRECTION_RATE, MOST_CORRECTION = 30.0, 0.1
+CONTACT = 1e-6  # tilt below which the block counts as in flat contact, over the slenderness
 
 
 def simulate(scene: Scene, *, step: float, history: bool = True) -> Response:
@@ -31,30 +31,30 @@ def simulate(scene: Scene, *, step: float, history: bool = True) -> Response:
         return until_decided(lambda cut: simulate(cut, step=step, history=history), scene)
     client = pybullet.connect(pybullet.DIRECT)
     try:
-        body, slab = script.build(client, scene, step)
-        _undo_defaults(client, scene, body, slab, step)
-        begin = time.process_time()
-        rows, ended = script.run((body, slab), client, scene, step)
-        cpu = time.process_time() - begin
+        run = run_of(
+            scene,
+            FirstScript(step),
+            lambda step: _undone(FreeBox(client, scene, step), scene, step),
+            lambda rows: trace_of(rows, scene, CONTACT * scene.block.slenderness),
+        )
     finally:
         pybullet.disconnect(client)
-    trace = trace_of([tuple(map(float, row)) for row in np.array(rows)], scene, FLAT * scene.block.slenderness)
-    return observe(
-        scene,
-        trace,
+    given: dict[str, Any] = dict(
         engine="pybullet",
         variant="3-D free block",
-        cpu_seconds=cpu,
-        steps=len(rows) - 1,
+        cpu_seconds=run.cpu_seconds,
+        steps=run.steps,
         settings={"step": step},
         versions=versions(),
-        history=history,
-        ended=ended if ended == "overturned" else None,
     )
+    if run.trace is None:
+        return failed_response(scene, run.failure, **given)
+    return observe(scene, run.trace, history=history, failure=run.failure, ended=run.ended, **given)
 
 
-def _undo_defaults(client, scene, body, slab, step):
-    """Contact, damping and friction as the planar variants have them."""
+def _undone(box, scene, step):
+    """The box with contact, damping and friction as the planar variants have them."""
+    client, slab = box.client, box.slab
     pybullet.setPhysicsEngineParameter(
         fixedTimeStep=step,
         numSubSteps=0,
@@ -64,5 +64,6 @@ def _undo_defaults(client, scene, body, slab, step):
         numSolverIterations=iterations(scene, 2),
         physicsClientId=client,
     )
-    for part, link in ((body, -1), (slab, -1), *(((slab, 0),) if scene.base else ())):
+    for part, link in ((box.body, -1), (slab, -1), *(((slab, 0),) if scene.base else ())):
         without_losses(client, part, link, FRICTION)
+    return box

@@ -14,6 +14,7 @@ import pybullet
 
 from ..placement import placement
 from ..readback import require
+from ..stepping import State
 from .links import chain, without_losses
 
 if TYPE_CHECKING:
@@ -223,3 +224,52 @@ def check_readback(assembly: Assembly, scene: Scene, step: float, many: int, rou
         expect(f"joint {joint}: position", value, states[joint][0])
         expect(f"joint {joint}: velocity", rate, states[joint][1])
     require(values)
+
+
+class BulletBodies:
+    """The planar chain of an `Assembly`, its units SI outside.
+
+    Few iterations do while one corner may carry, more while both may: where the higher one is within what its speed or
+    free fall cover in the step.
+    """
+
+    def __init__(self, client: int, scene: Scene, largest: float) -> None:
+        """In a fresh client; largest: longest step [s]."""
+        self.units = Units.of(scene)
+        assembly = assemble(client, self.units.scale(scene), largest / self.units.time)
+        self.client, self.body, self.base = assembly.client, assembly.body, assembly.base
+        self.joints = (0, 1, 2) if assembly.base is None else (0, 1, 2, 3)
+        self.mass, self.loaded = scene.base.mass if scene.base else 0.0, scene.bearings is not None
+        self.sweeps = iterations(scene, 1), iterations(scene, 2)
+        self.fall = scene.gravity / (4 * scene.block.half_width)
+        self.tilt, self.rate = scene.start.tilt, scene.start.tilt_rate
+        self.used, self.gravity = (0.0, 0), (0.0, 0.0)
+
+    def step(self, step: float, before: float, across: float, up: float, impulse: float) -> State:
+        """A step: see `engines.stepping.Bodies`."""
+        client, length, time = self.client, self.units.length, self.units.time
+        used = step, self.sweeps[abs(self.tilt) < step * (self.fall * step + abs(self.rate))]
+        if used != self.used:
+            self.used = used
+            pybullet.setPhysicsEngineParameter(
+                fixedTimeStep=step / time, numSolverIterations=used[1], physicsClientId=client
+            )
+        gravity = across / step, up / step
+        if gravity != self.gravity:
+            self.gravity = gravity
+            pybullet.setGravity(gravity[0], 0.0, gravity[1], client)
+        if self.loaded:  # a force on the base's link is the same as one on its joint, and the call costs half as much
+            force = impulse / step, 0.0, 0.0
+            pybullet.applyExternalForce(self.body, self.base, force, (0.0, 0.0, 0.0), pybullet.LINK_FRAME, client)
+        pybullet.stepSimulation(client)
+        (x, vx, _, _), (z, vz, _, _), (tilt, rate, _, _), *base = pybullet.getJointStates(
+            self.body, self.joints, client
+        )
+        rate, speed = rate / time, length / time
+        self.tilt, self.rate = tilt, rate
+        b, v = base[0][:2] if base else (0.0, 0.0)
+        return tilt, rate, length * x, length * z, speed * vx, speed * vz, length * b, speed * v
+
+    def weigh(self, added: float) -> None:
+        """Give the base more mass."""
+        pybullet.changeDynamics(self.body, self.base, mass=self.mass + added, physicsClientId=self.client)

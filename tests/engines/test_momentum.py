@@ -1,5 +1,6 @@
 """The bearings' force as an engine really applied it: doubled, late or from another law, it is seen from outside."""
 
+import bisect
 import dataclasses
 
 import numpy as np
@@ -10,9 +11,8 @@ from sampled_traces import SCENES, sampled, seen
 
 from analytic import PulseMotion, simulate
 from analytic.bearing import BearingLaw
-from engines import get_engine
+from engines import get_engine, stepping
 from engines.momentum import IMPULSE_LIMIT, bearing_impulse, check_impulse, impulse_error, missing_impulse
-from engines.sliding import SlidingBase
 
 ROCKING = SCENES["isolated"].with_(duration=1.5)
 DRIVEN = ROCKING.with_(
@@ -24,7 +24,6 @@ ENGINES = {
     "mujoco": "impact-aware",
     "pymunk": "impact-aware",
     "dart": "impact-aware",
-    "drake": "impact-aware",
 }
 
 
@@ -102,56 +101,26 @@ def mutate_exudyn(monkeypatch, gain, delay, step):
     force_in_exudyn(monkeypatch, lambda force: force(delay * step, gain))
 
 
-def mutate_pybullet(monkeypatch, gain, delay, step):
-    """Bullet is told another force than the adapter believes: `gain` times as much, `delay` calls later."""
-    from engines.pybullet import stepping
+def mutate_leapfrog(monkeypatch, gain, delay, step):
+    """The engine is given another force than the rows say: `gain` times as much, so many steps [s] later."""
+    mean_loads, told = stepping.mean_loads, []
 
-    apply, told = stepping.pybullet.applyExternalForce, []
+    def changed(*given):
+        loads = mean_loads(*given)
 
-    def changed(body, link, force, *rest):
-        told.append(force)
-        late = told[max(len(told) - 1 - delay, 0)]
-        return apply(body, link, tuple(gain * part for part in late), *rest)
+        def other(t, h, before, v, force):
+            told.append((t, force))
+            times = [time for time, _ in told[-100:]]
+            late = told[-100:][max(bisect.bisect_right(times, t - delay * step) - 1, 0)][1]
+            return loads(t, h, before, v, gain * late)
 
-    monkeypatch.setattr(stepping.pybullet, "applyExternalForce", changed)
+        return other
 
-
-def mutate_mujoco(monkeypatch, gain, delay, step):
-    from engines.mujoco import stepping
-
-    advance, told = stepping.mujoco.mj_step, []
-
-    def changed(model, data):
-        told.append(data.qfrc_applied[0])
-        data.qfrc_applied[0] = gain * told[max(len(told) - 1 - delay, 0)]
-        advance(model, data)
-
-    monkeypatch.setattr(stepping.mujoco, "mj_step", changed)
+    monkeypatch.setattr(stepping, "mean_loads", changed)
 
 
-def mutate_base(monkeypatch, gain, delay, step):
-    """The base is loaded with another force than the adapter believes."""
-    impulse, told = SlidingBase.impulse, []
-
-    def changed(self, *given):
-        told.append(self.force)
-        believed, self.force = self.force, gain * told[max(len(told) - 1 - delay, 0)]
-        given = impulse(self, *given)
-        self.force = believed
-        return given
-
-    monkeypatch.setattr(SlidingBase, "impulse", changed)
-
-
-MUTATE = {
-    "exudyn": mutate_exudyn,
-    "pybullet": mutate_pybullet,
-    "mujoco": mutate_mujoco,
-    "pymunk": mutate_base,
-    "dart": mutate_base,
-    "drake": mutate_base,
-}
-LARGEST_STEP = 1e-3  # s, of the delay in exudyn, whose steps are its own
+MUTATE = {name: mutate_leapfrog for name in ENGINES} | {"exudyn": mutate_exudyn}
+LARGEST_STEP = 1e-3  # s, of the delay
 
 
 def traced(engine, scene):

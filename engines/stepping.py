@@ -1,0 +1,281 @@
+"""The loop that steps a leapfrog engine: lengths and loads of the steps, rows, how a run ends.
+
+Leapfrog: displacements live at the steps' ends t_n, velocities half a step earlier. Between velocities at t_n - h/2
+and t_n + h'/2 lie (h + h')/2 seconds, but an engine multiplies the loads of a step by its h' alone. Loads scaled by
+(h + h')/(2 h') make the scheme of second order for any sequence of steps, the start included (h = 0).
+
+Only the engine moves a body or sets a velocity: it is given loads and the length of the step.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from array import array
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from analytic.bearing import BearingLaw
+from analytic.motion import vertical_acceleration
+from analytic.response import Failure
+from analytic.rocking import RockingModel
+
+from .contract import Mismatch, Run
+from .ground_velocity import ground_velocity
+from .leapfrog import MOST_ROWS, failure_of, row_limit, trace_of
+from .placement import placement
+from .scale import size_scale
+from .step_size import ROUNDING, SLOW, Rule, fixed_rule, gap_rule, limits
+from .vibration import added_mass, driven_mass, leapfrog_stiffness, longest_step
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+    from .swings import Trace
+
+SMALLEST_STEP = 1e-6  # s, at `scale.UNIT_RADIUS`; at 1e-7 e is as good, at 1e-5 its error is 2 to 5 times as large
+LANDING = 1.0  # most speed of a corner that lands, over the slenderness, the width 2 b and sqrt(g/R)
+ENDS = ("done", "overturned", "not finite", "too many steps")  # all others are an engine's words, "what: why"
+
+# tilt [rad], its rate; x, z of the block's centre [m] from the place of a block standing at the origin, x', z'; x, x'
+# of the base
+State = tuple[float, float, float, float, float, float, float, float]
+Loads = Callable[[float, float, float, float, float], tuple[float, float, float]]
+
+
+class NoSolution(RuntimeError):
+    """The engine finds no velocities for a step; "what: why", in its own words."""
+
+
+class Bodies(Protocol):
+    """The block and the base of a scene as an engine holds them."""
+
+    def step(self, step: float, before: float, across: float, up: float, impulse: float) -> State:
+        """Let the engine make a step, and read where its bodies are.
+
+        Parameters
+        ----------
+        step, before : float
+            Length of the step and of the one before it (0: none) [s].
+        across, up : float
+            What gravity and ground give every body in the step [m/s].
+        impulse : float
+            Of the bearings on the base [N s].
+
+        Raises
+        ------
+        NoSolution
+        """
+
+    def weigh(self, added: float) -> None:
+        """Give the base its mass and so much more [kg]."""
+
+
+def march(
+    bodies: Bodies, scene: Scene, duration: float, rule: Rule, loads: Loads, largest: float, jumps: Iterable[float] = ()
+) -> tuple[np.ndarray, str]:
+    """Step until the duration is over, the block has overturned, a state is not finite or there is no solution.
+
+    Parameters
+    ----------
+    bodies : Bodies
+        At the scene's start.
+    scene : Scene
+    duration : float
+        In place of the scene's [s].
+    rule : function
+        Of `engines.step_size`; its contact points are the bottom corners.
+    loads : function
+        (time, step, step before, base velocity, bearings' force without viscous part) -> what `Bodies.step` takes.
+    largest : float
+        Longest step [s].
+    jumps : iterable of float
+        Times [s] of jumps of the ground's acceleration that the steps are to meet.
+
+    Returns
+    -------
+    rows, ended
+        Rows as `engines.leapfrog` has them, the start first; "done", "overturned", "not finite", "too many steps", or
+        the words of a `NoSolution`.
+    """
+    law, start, loaded = BearingLaw.of(scene.bearings), scene.start, scene.bearings is not None
+    half, high, fallen = scene.block.half_width, scene.block.half_height, 0.5 * math.pi
+    limit, fitted = limits(duration, largest, jumps)
+    cos, sin, isfinite, advance, hysteretic = math.cos, math.sin, math.isfinite, bodies.step, law.hysteretic
+    t, h, tilt, rate, base, v = 0.0, 0.0, start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity
+    x, z, vx, vz = placement(scene)
+    history = law.start(base)
+    force = law.force(base, history)
+    rows = array("d", (t, h, tilt, rate, base, v, history, force, x, z, vx, vz))
+    keep, width, end, ended = rows.extend, len(rows), duration - ROUNDING * largest, "too many steps"
+    for _ in range(row_limit(duration, largest)):
+        c, s = cos(tilt), sin(tilt)
+        mean, lower, sinking, turning = z + high * (1 - c), half * s, -vz - high * s * rate, half * c * rate
+        step = rule(((mean - lower, sinking + turning), (mean + lower, sinking - turning)))
+        if t + step >= limit:
+            step, limit = fitted(t, step)
+        across, up, impulse = loads(t, step, h, v, force)
+        if not isfinite(across + up + impulse):  # an engine may go on without a load
+            ended = "not finite"
+            break
+        before = base
+        try:
+            tilt, rate, x, z, vx, vz, base, v = advance(step, h, across, up, impulse)
+        except NoSolution as error:
+            ended = str(error)
+            break
+        if loaded:
+            history = hysteretic(history, base - before)
+            force = law.force(base, history)
+        t, h = t + step, step
+        keep((t, h, tilt, rate, base, v, history, force, x, z, vx, vz))
+        if not -fallen < tilt < fallen or not isfinite(rate + vx + vz):
+            ended = "overturned" if isfinite(tilt + rate + vx + vz) else "not finite"
+            break
+        if t >= end:
+            ended = "done"
+            break
+    return np.frombuffer(rows).reshape(-1, width), ended
+
+
+def mean_loads(scene: Scene, bodies: Bodies, largest: float) -> Loads:
+    """Loads as `march` asks for them, for the mean of two steps; the ground's impulse is exact."""
+    law, model = BearingLaw.of(scene.bearings), RockingModel.of(scene)
+    damping, mass, g = law.count * law.damping, driven_mass(model), model.g
+    heavier = leapfrog_stiffness(law, largest, mass)
+    ground, upright = ground_velocity(scene.motion), ground_velocity(scene.motion and scene.motion.vertical)
+    gained = risen = across = held = added = 0.0
+
+    def loads(t, step, h, v, force):
+        nonlocal gained, risen, across, held, added
+        interval = 0.5 * (step + h)
+        up = -g * interval
+        if ground:
+            before, gained = gained, ground(t + 0.5 * step)
+            across = before - gained
+        if upright:
+            before, risen = risen, upright(t + 0.5 * step)
+            up += before - risen
+        if not (damping or heavier):
+            return across, up, -force * interval
+        if interval != held:
+            held, added = interval, added_mass(damping, interval, mass) + heavier * interval * interval
+            bodies.weigh(added)
+        return across, up, -(force + damping * v) * interval - added * across
+
+    return loads
+
+
+def sampled_loads(scene: Scene) -> Loads:
+    """Loads as `march` asks for them, taken as they are at the start of the step, as a first script takes them."""
+    law, g, motion = BearingLaw.of(scene.bearings), scene.gravity, scene.motion
+    damping = law.count * law.damping
+
+    def loads(t, step, h, v, force):
+        across = -float(motion.acceleration(t)) if motion else 0.0
+        up = -g - float(vertical_acceleration(motion, t))
+        return across * step, up * step, -(force + damping * v) * step
+
+    return loads
+
+
+@dataclass(frozen=True)
+class ImpactAware:
+    """Steps by the rule of `engines.step_size`: small where a corner lands, at most `largest_step` [s] elsewhere.
+
+    `largest_step` is the accuracy parameter. It is given for the Caryatid's R; times go with sqrt(R/g).
+    """
+
+    largest_step: float = 2e-4
+
+
+@dataclass(frozen=True)
+class FixedStep:
+    """The same at one step: `step` [s], given for the Caryatid's R, is the accuracy parameter."""
+
+    step: float
+
+
+@dataclass(frozen=True)
+class FirstScript:
+    """Defaults of the engine, loads and states as they come: `step` [s] is the accuracy parameter."""
+
+    step: float
+
+
+Settings = ImpactAware | FixedStep | FirstScript
+
+
+def run_of(
+    scene: Scene,
+    settings: Settings,
+    bodies_of: Callable[[float], Bodies],
+    raw: Callable[[np.ndarray], Trace],
+    depth: float = SLOW,
+) -> Run:
+    """The `Run` of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    settings : ImpactAware or FixedStep or FirstScript
+    bodies_of : function
+        From the longest step [s] to the engine's bodies; it may raise `Mismatch`.
+    raw : function
+        From rows to the trace of a first script.
+    depth : float
+        To which a corner may sink that closes too slowly for the rule, over g h^2.
+    """
+    largest, smallest = step_limits(scene, settings)
+    duration = scene.duration or 0.0  # a run has one
+    if duration / largest > MOST_ROWS:
+        count = f"{duration / largest:.3g} for {duration:.6g} s; at most {MOST_ROWS}"
+        return Run(None, 0, math.nan, Failure("too many steps", f"steps of {largest:.3g} s: {count}"))
+    try:
+        bodies = bodies_of(largest)
+    except Mismatch as error:
+        return Run(None, 0, math.nan, Failure("the engine does not hold the scene", str(error)))
+    clock = time.process_time()
+    if isinstance(settings, ImpactAware):
+        rule, jumps = gap_rule(largest, smallest, scene.gravity), scene.motion.jumps if scene.motion else ()
+    else:
+        rule, jumps = fixed_rule(largest), ()
+    if isinstance(settings, FirstScript):  # all steps are the same
+        duration = largest * max(round(duration / largest), 1)
+    loads = sampled_loads(scene) if isinstance(settings, FirstScript) else mean_loads(scene, bodies, largest)
+    rows, ended = march(bodies, scene, duration, rule, loads, largest, jumps)
+    cpu = time.process_time() - clock
+    if isinstance(settings, FirstScript):
+        trace = raw(rows)
+    else:
+        trace = trace_of(rows, scene, contact_tilt(scene, largest, smallest, depth), smeared=3)
+    failure = failure_of(scene, rows, ended)
+    if ended not in ENDS:
+        reason, _, why = ended.partition(": ")
+        failure = Failure(reason, f"at step {len(rows) - 1}, t = {rows[-1][0]:.9g} s: {why}")
+    return Run(trace, len(rows) - 1, cpu, failure, "overturned" if ended == "overturned" else None)
+
+
+def step_limits(scene: Scene, settings: Settings) -> tuple[float, float]:
+    """(largest, smallest) step [s] of a scene; stiff bearings may ask for less than the settings say."""
+    if isinstance(settings, FirstScript):
+        return settings.step, settings.step
+    scale = size_scale(scene)
+    if isinstance(settings, FixedStep):
+        step = longest_step(scene, settings.step * scale)
+        return step, step
+    largest = longest_step(scene, settings.largest_step * scale)
+    return largest, min(largest, SMALLEST_STEP * scale)
+
+
+def contact_tilt(scene: Scene, largest: float, smallest: float, depth: float) -> float:
+    """Tilt [rad] below which the block counts as in flat contact: twice the depth to which a corner may sink, over 2 b.
+
+    Where the rule sees it coming it lands at its speed times the smallest step, else at SLOW g h times h or less.
+    """
+    block, g = scene.block, scene.gravity
+    landing = LANDING * block.slenderness * math.sqrt(g / block.radius) * smallest
+    return landing + depth * g * largest * largest / block.half_width

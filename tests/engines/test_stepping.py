@@ -1,0 +1,328 @@
+"""The loop that steps leapfrog engines: its order, what it gives, how runs end; and what holds for all its engines."""
+
+import hashlib
+import math
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from engine_cases import needs
+from released import scene
+
+from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Start
+from analytic import Scene as AnyScene
+from analytic import simulate as exact
+from analytic.bearing import BearingLaw
+from analytic.rocking import restitution
+from comparisons.measuring.restitution import impact_errors, rms
+from engines import get_engine, stepping
+from engines.checks import energy_gain
+from engines.stepping import NoSolution, march, mean_loads, sampled_loads
+
+BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
+LINEAR = Bearings(law="linear", count=1, ka=2e6)
+RULED = ["pybullet", "mujoco", "pymunk", "dart"]
+VARIANTS = [(name, "impact-aware") for name in RULED] + [(name, "fixed-step") for name in RULED[:2]]
+
+
+class Flying:
+    """A block that flies and a base on its bearings, moved exactly as leapfrog has it; nothing touches."""
+
+    def __init__(self, given):
+        self.place, self.speed, self.given = [0.3, 0.0, 5.0, given.start.base_displacement], [0.7, 0.0, 0.0, 0.0], given
+        self.added, self.loads = 0.0, []
+
+    def step(self, step, before, across, up, impulse):
+        mass = self.given.base.mass + self.added
+        gains = 0.0, across, up, across + impulse / mass
+        self.loads.append((step, *gains[1:3], impulse))
+        self.speed = [v + gain for v, gain in zip(self.speed, gains, strict=True)]
+        self.place = [x + step * v for x, v in zip(self.place, self.speed, strict=True)]
+        (tilt, x, z, base), (rate, vx, vz, v) = self.place, self.speed
+        return tilt, rate, x, z, vx, vz, base, v
+
+    def weigh(self, added):
+        self.added = added
+
+
+def flown(given, step, loads=mean_loads, uneven=True):
+    """Rows of a `Flying` block in steps of this length and half of it in turn."""
+    turn, bodies = iter(range(10**9)), Flying(given)
+
+    def rule(points):
+        return step * (0.5 if uneven and next(turn) % 3 else 1.0)
+
+    given_loads = loads(given, bodies, step) if loads is mean_loads else loads(given)
+    rows, ended = march(bodies, given, given.duration, rule, given_loads, step)
+    assert ended == "done"
+    return rows, bodies
+
+
+def vibrating(damping=0.0, mass=212.0):
+    bearings = LINEAR.model_copy(update={"damping": damping})
+    return scene(0.2, mass, 0.2, bearings=bearings, start=Start(base_displacement=0.01))
+
+
+@pytest.mark.parametrize("damping", [0.0, 2e3])
+def test_loads_for_the_mean_of_two_steps_are_of_second_order_in_uneven_steps(monkeypatch, damping):
+    """In uneven steps loads as they are, of one step, are wrong at any length."""
+    monkeypatch.setattr(stepping, "driven_mass", lambda model: 212.0)  # nothing stands on this base
+    given = vibrating(damping)
+    decay, frequency = damping / 424.0, math.sqrt(2e6 / 212.0 - (damping / 424.0) ** 2)
+    wanted = 0.01 * math.exp(-decay * 0.2) * (math.cos(0.2 * frequency) + decay / frequency * math.sin(0.2 * frequency))
+    errors = [abs(flown(given, step)[0][-1, 4] - wanted) for step in (1e-3, 5e-4)]
+    assert 3.3 < errors[0] / errors[1] < 4.7
+    assert abs(flown(given, 5e-4, loads=sampled_loads)[0][-1, 4] - wanted) > 20 * errors[1]
+
+
+def test_the_ground_and_gravity_give_exactly_what_they_have():
+    """Sums of what all steps give: the ground's velocity and g t, at half a step before the end, in any steps."""
+    motion = PulseMotion("one-sine", 3.0, 21.0, start=0.013, vertical=PulseMotion("one-sine", 2.0, 21.0, start=0.013))
+    rows, bodies = flown(scene(0.2, 212.0, 0.2, motion=motion), 7e-3)
+    step, across, up, _ = np.array(bodies.loads).T
+    until = np.cumsum(step) - 0.5 * step
+    fine = np.linspace(0.0, until[-1], 400_001)
+    middle = 0.5 * (fine[1:] + fine[:-1])
+    for sums, level in ((across, motion.acceleration(middle)), (up, motion.vertical.acceleration(middle) + 9.81)):
+        assert -sums.sum() == pytest.approx(level.sum() * (fine[1] - fine[0]), abs=1e-6)
+    assert rows[-1, 0] == pytest.approx(0.2, abs=1e-9)
+
+
+def test_a_damper_of_any_strength_is_stable():
+    """v' under c v alone is v exp(-c t/m): a base set off at 1 m/s comes m/c far."""
+    for damping in (1e4, 1e6, 1e9):
+        bearings = Bearings(law="linear", count=1, ka=1e-3, damping=damping)
+        given = scene(0.2, 212.0, 0.1, bearings=bearings)
+        rows, _ = flown(given, 1e-3)
+        assert np.abs(rows[:, 4]).max() <= 1e-12
+        pushed = given.with_(motion=PulseMotion("rectangular", -2.0, math.pi / 0.1))
+        rows, _ = flown(pushed, 1e-3)
+        assert np.abs(rows[:, 5]).max() <= 2.0 * 212.0 / damping + 2e-3 and np.isfinite(rows).all()
+
+
+def test_how_a_run_ends(monkeypatch):
+    given = scene(0.2, 212.0, 0.1, bearings=LINEAR)
+
+    def ended(bodies, **change):
+        return march(bodies, given.with_(**change), 0.1, lambda points: 1e-3, mean_loads(given, bodies, 1e-3), 1e-3)
+
+    class Lost(Flying):
+        def step(self, *loads):
+            if len(self.loads) == 10:
+                raise NoSolution("no way: the words")
+            return super().step(*loads)
+
+    class Unfinite(Flying):
+        def step(self, *loads):
+            return (math.nan if len(self.loads) == 10 else 0.0, *super().step(*loads)[1:])
+
+    rows, words = ended(Lost(given))
+    assert words == "no way: the words" and len(rows) == 11
+    assert ended(Unfinite(given))[1] == "not finite"
+    flying = Flying(given)
+    flying.speed[0] = 100.0
+    rows, words = ended(flying)
+    assert words == "overturned" and abs(rows[-1, 2]) >= math.pi / 2 > abs(rows[-2, 2])
+    monkeypatch.setattr(stepping, "row_limit", lambda duration, largest: 20)
+    assert ended(Flying(given))[1] == "too many steps"
+
+
+@pytest.fixture(params=VARIANTS, ids=" ".join)
+def variant(request):
+    needs(request.param[0])
+    return request.param
+
+
+@pytest.fixture(params=RULED)
+def engine(request):
+    needs(request.param)
+    return get_engine(request.param)
+
+
+@pytest.mark.parametrize("base, fine, least", [(None, 2e-5, 4.0), (212.0, 5e-5, 1.0)])
+def test_the_error_of_restitution_goes_with_the_largest_step(engine, base, fine, least):
+    """From the energies of swings, which count what flight loses; on a light base something else may be left."""
+    ladder, errors = engine.variants["impact-aware"].ladder, []
+    for step in (ladder[0], ladder[-1]):
+        off = []
+        for start in (0.3, 0.55, 0.8):
+            given = scene(0.2, base, 3.5, start=Start(tilt=start * 0.2))
+            off.append(impact_errors(given, engine.simulate(given, largest_step=step), 2)["swing"])
+        errors.append(rms(np.concatenate(off)))
+    assert errors[1] < fine
+    assert least * errors[1] < errors[0] < 1e-3
+
+
+def test_the_rule_is_worth_a_hundred_times_as_many_equal_steps(engine):
+    """No equal steps that cost as much come near."""
+    given = scene(0.2, duration=2.0, start=Start(tilt=0.1))
+    default = engine.simulate(given, history=False)
+    equal = engine.run(given, "impact-aware", stepping.FixedStep(given.duration / default.steps))
+    ruled = engine.run(given, "impact-aware", engine.variants["impact-aware"].settings)
+    assert ruled.steps == pytest.approx(equal.steps, rel=0.1)
+    peaks = [np.abs(run.trace.tilt[run.trace.tilt < 0]).max() for run in (ruled, equal)]
+    wanted = np.abs(exact(given).history.tilt[exact(given).history.tilt < 0]).max()
+    assert abs(peaks[0] - wanted) < 0.1 * abs(peaks[1] - wanted)
+
+
+def test_a_free_base_and_its_block_keep_their_momentum(variant):
+    """Nothing pushes from outside: m x' + m_b v = 0, through impacts."""
+    name, kind = variant
+    given = scene(0.3, 212.0, 2.0, start=Start(tilt=0.2))
+    trace = get_engine(name).traced(given, variant=kind)[1]
+    momentum = 3172.05 * trace.centre[:, 2] + 212.0 * trace.base_velocity
+    assert np.abs(momentum).max() < 1e-6 * 212.0 * np.abs(trace.base_velocity).max()
+
+
+def test_no_energy_comes_from_nowhere(variant):
+    name, kind = variant
+    for base in (None, 212.0):
+        given = scene(0.3, base, 3.0, start=Start(tilt=0.2))
+        assert energy_gain(given, get_engine(name).traced(given, variant=kind)[1]) < 2e-3
+
+
+def test_the_mirrored_start_moves_mirrored(variant):
+    name, kind = variant
+    ways = [
+        get_engine(name).traced(scene(0.25, 212.0, 1.5, start=Start(tilt=side * 0.15)), variant=kind)[1]
+        for side in (1, -1)
+    ]
+    there = np.interp(ways[0].time, ways[1].time, ways[1].tilt)
+    assert np.abs(ways[0].tilt + there).max() < 1e-6
+
+
+ANSWERED = """
+import hashlib, sys
+from analytic import rocking
+if sys.argv[3] == "wrong":
+    right, impact = rocking.restitution, rocking.RockingModel.impact
+    rocking.restitution = lambda *scene: 0.8 * right(*scene)
+    rocking.RockingModel.impact = lambda self, *rates: tuple(0.8 * value for value in impact(self, *rates))
+from analytic import Base, Bearings, Block, PulseMotion, Scene, Start
+from engines import get_engine
+block, engine = Block(mass=3172.05, radius=1.0884, slenderness=0.25), get_engine(sys.argv[1])
+scenes = (
+    Scene(block=block, start=Start(tilt=0.15), duration=1.2),
+    Scene(block=block, base=Base(mass=212.0), bearings=Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69),
+          motion=PulseMotion("one-sine", 6.0, 6.0), duration=1.5),
+)
+for scene in scenes:
+    trace = engine.run(scene, sys.argv[2], engine.variants[sys.argv[2]].settings).trace
+    print(hashlib.sha256(trace.tilt.tobytes() + trace.base_displacement.tobytes()).hexdigest(), len(trace.time))
+"""
+
+
+@pytest.mark.parametrize("name, kind", [*VARIANTS, ("dart", "first-script"), ("drake", "first-script")])
+def test_nothing_hangs_on_the_answer(name, kind):
+    """With the formula for the restitution replaced by .8 of itself no bit of an engine's motion changes."""
+    needs(name)
+    told = [
+        subprocess.run([sys.executable, "-c", ANSWERED, name, kind, form], capture_output=True, text=True, check=True)
+        for form in ("right", "wrong")
+    ]
+    lines = [[line for line in one.stdout.splitlines() if len(line) > hashlib.sha256().digest_size] for one in told]
+    assert len(lines[0]) == 2 and lines[0] == lines[1]
+
+
+def test_friction_of_the_scene_is_coulombs(engine):
+    """A push of .3 g for .05 s on a block that slides at .2 g: (.1 g t^2/2)(1 + .1/.2), and it stays there."""
+    given = scene(0.45, duration=0.5, friction=0.2, motion=PulseMotion("rectangular", -0.3 * 9.81, math.pi / 0.05))
+    _, trace = engine.traced(given)
+    assert abs(trace.centre[-1, 0]) == pytest.approx(0.5 * 0.1 * 9.81 * 0.05**2 * 1.5, rel=0.02)
+
+
+def test_sliding_block_fails(engine):
+    response = engine.simulate(scene(0.4, friction=0.2, motion=PulseMotion("rectangular", 3.0, 2.0)))
+    assert response.outcome == "failed"
+    assert "slid" in response.failure.reason
+
+
+@pytest.mark.parametrize("base", [160.0, 3e4])
+@pytest.mark.parametrize("damping", [0.0, 300.0, 1e4])
+def test_bases_on_bearings(engine, base, damping):
+    bearings = BEARINGS.model_copy(update={"damping": damping})
+    given = scene(0.28, base, 1.0, bearings=bearings, start=Start(tilt=0.168))
+    model, response = exact(given), engine.simulate(given)
+    assert response.outcome == model.outcome, response.failure
+    assert response.peak_base_displacement == pytest.approx(model.peak_base_displacement, rel=5e-3)
+    assert response.impacts[0].rate_after / response.impacts[0].rate_before == pytest.approx(
+        model.impacts[0].rate_after / model.impacts[0].rate_before, abs=1e-3
+    )
+
+
+@pytest.mark.parametrize("radius", [0.1, 10.0])
+def test_steps_go_with_the_size_of_the_block(engine, radius):
+    mass = 2460.0 * radius**3
+    given = AnyScene(
+        block=Block(mass=mass, radius=radius, slenderness=0.25),
+        base=Base(mass=0.1 * mass),
+        start=Start(tilt=0.15),
+        duration=2.0 * math.sqrt(radius),
+    )
+    response = engine.simulate(given, history=False)
+    assert len(response.impacts) >= 2
+    for impact in response.impacts[:2]:
+        assert impact.rate_after / impact.rate_before == pytest.approx(restitution(given), abs=2e-4)
+
+
+@pytest.mark.parametrize("shape", ["one-cosine", "rectangular"])
+def test_a_pulse_that_begins_with_a_jump_lifts_the_block_at_once(engine, shape):
+    """Where a kick held the jump the block lifted a step late: .03 of the tilt five steps later."""
+    pulse = PulseMotion(shape, 1.3 * 9.81 * math.tan(0.2), 6.0, 0.10037)
+    given = scene(0.2, duration=0.3, motion=pulse)
+    model, response = exact(given), engine.simulate(given)
+    late = [pulse.start + 0.02, pulse.start + 0.1]
+    wanted, found = (np.interp(late, one.history.time, one.history.tilt) for one in (model, response))
+    np.testing.assert_allclose(found, wanted, rtol=1e-3)
+
+
+def test_a_block_comes_to_rest_under_a_motion_below_uplift_and_stays_there(engine):
+    """A push beyond uplift, peak tilt .0033 slendernesses, then .8 of uplift for 6 s: no corner lifts by itself."""
+    time, unit = 0.01 * np.arange(801), 9.81 * math.tan(0.28)
+    level = 0.8 * np.sin(8 * time)
+    level[100:153] += 0.3 * np.sin(12 * (time[100:153] - 1.0))
+    given = AnyScene(
+        block=Block(mass=2000.0, radius=0.989, slenderness=0.28), motion=SampledMotion(0.01, unit * level), duration=8.0
+    )
+    model, (response, trace) = exact(given), engine.traced(given)
+    assert model.peak_tilt > 1e-3 * 0.28
+    assert response.peak_tilt == pytest.approx(model.peak_tilt, rel=2e-2)
+    late = trace.time > model.rests[-1] + 0.2
+    assert np.abs(trace.tilt[late]).max() < 1e-5 * 0.28
+
+
+def test_a_load_that_is_not_finite_fails(engine, monkeypatch):
+    calls = []
+
+    class Breaking(BearingLaw):
+        def hysteretic(self, z, dx):
+            calls.append(dx)
+            return math.nan if len(calls) > 50 else super().hysteretic(z, dx)
+
+    monkeypatch.setattr(stepping, "BearingLaw", Breaking)
+    response = engine.simulate(scene(0.2, 212.0, bearings=BEARINGS, motion=PulseMotion("one-sine", 3.0, 4.0)))
+    assert response.outcome == "failed"
+    assert "finite" in response.failure.reason and math.isfinite(response.failure.last_state.tilt)
+    assert "largest_step" in response.settings
+
+
+def test_run_that_does_not_advance_is_given_up(engine, monkeypatch):
+    monkeypatch.setattr(stepping, "row_limit", lambda duration, largest: 100)
+    response = engine.simulate(scene(0.2, start=Start(tilt=0.1)))
+    assert response.outcome == "failed"
+    assert response.failure.reason == "too many steps"
+
+
+def test_bearings_too_stiff_for_any_number_of_steps_fail_at_once(engine):
+    response = engine.simulate(scene(0.2, 212.0, 1e4, bearings=Bearings(law="linear", ka=1e12)))
+    assert response.outcome == "failed" and response.failure.reason == "too many steps"
+    assert response.cpu_seconds != response.cpu_seconds  # nothing was stepped
+
+
+def test_steps_of_a_first_script_are_all_the_same(engine):
+    settings = engine.variants["first-script"].settings
+    run = engine.run(scene(0.2, duration=0.1234, start=Start(tilt=0.1)), "first-script", replace(settings, step=1e-3))
+    np.testing.assert_allclose(np.diff(run.trace.time), 1e-3, rtol=1e-9)
+    assert run.trace.time[-1] == pytest.approx(0.123)
