@@ -69,7 +69,7 @@ def test_the_motion_of_another_force_fails(factor):
     assert response.outcome == "failed" and "bearings' force" in response.failure.reason
     assert impulse_error(ROCKING, trace) == pytest.approx(abs(factor - 1), rel=0.1)
     warned = seen(ROCKING, dataclasses.replace(trace, first_script=True))
-    assert warned.failure is None and "bearings' force" in warned.warnings[-1]
+    assert warned.failure is None and "bearings' force" in warned.warnings[-1].text
 
 
 def test_a_bearing_too_soft_to_matter_is_not_asked_for():

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from bearing_laws import NAMES
 from engine_cases import (
-    ALSO_ACCURATE,
     BEARINGS,
     PULSE,
     RECORD,
+    accurate,
     accurate_variant,
     bearings,
     every_variant,
@@ -105,7 +105,7 @@ def test_overturning_under_a_pulse_stops_cleanly(engine, variant):
     assert response.end.time == response.history.time[-1] == pytest.approx(response.overturning_time)
     assert abs(response.end.tilt) == response.peak_tilt == pytest.approx(math.pi / 2)
     assert response.unstable_time < response.overturning_time < 5.0
-    if variant == get_engine(engine).default_variant or (engine, variant) in ALSO_ACCURATE:
+    if accurate(engine, variant):
         assert response.overturning_time == pytest.approx(reference.overturning_time, abs=2e-3)
 
 
@@ -149,6 +149,10 @@ def test_bearing_force_is_the_law_on_the_engines_own_path(engine, variant, law, 
     assert np.ptp(trace.bearing_force) > 1e3  # N: it was used
 
 
+# Error of restitution, rms: on a light base a corner of DART lands as far off as it moves in a step.
+IMPACTS = {("dart", "impact-aware"): 2e-4}
+
+
 @accurate_variant
 @pytest.mark.parametrize("base", [None, 212.0])
 @pytest.mark.parametrize("slenderness", [0.1, 0.2, 0.3, 0.45])
@@ -164,7 +168,7 @@ def test_impacts_are_as_momentum_asks(engine, variant, slenderness, base):
             errors.append(impact.rate_after / impact.rate_before - restitution(given))
             if base:
                 jumps.append((impact.base_velocity_jump, RockingModel.of(given).impact(impact.rate_before)[1]))
-    assert np.sqrt(np.mean(np.square(errors))) < 1e-4
+    assert np.sqrt(np.mean(np.square(errors))) < IMPACTS.get((engine, variant), 1e-4)
     if base:
         found, wanted = np.array(jumps).T
         assert np.sqrt(np.mean(np.square(found / wanted - 1))) < 1e-3
@@ -172,7 +176,7 @@ def test_impacts_are_as_momentum_asks(engine, variant, slenderness, base):
 
 
 # Largest error of the tilt [rad].
-TILT, TILT_DEFAULT = {("exudyn", "compliant-corners"): 8e-4}, 3e-4
+TILT, TILT_DEFAULT = {("exudyn", "compliant-corners"): 8e-4, ("dart", "impact-aware"): 6.5e-4}, 3e-4
 
 
 @accurate_variant

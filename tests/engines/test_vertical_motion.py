@@ -14,7 +14,8 @@ from engines.events import contact_measures
 from engines.ground_velocity import ground_velocity
 from engines.swings import Trace
 
-ENGINES = ["exudyn", "pybullet", "mujoco", "pymunk", "dart", "drake"]
+TUNED = ["exudyn", "pybullet", "mujoco", "pymunk", "dart"]
+ENGINES = [*TUNED, "drake"]  # whose only variant has default settings
 BLOCK = Block(mass=3172.05, radius=1.0884, slenderness=0.2)
 LRB = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 TIMES = np.arange(0, 4.001, 0.005)
@@ -52,7 +53,7 @@ def first_impacts(response):
 
 
 @pytest.mark.parametrize("scenes, base", [("rigid ground", None), ("sliding base", Base(mass=212.0))])
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", TUNED)
 def test_impact_times_of_a_released_block(name, scenes, base):
     needs(name)
     engine, scene = get_engine(name), RELEASED.with_(base=base)
@@ -63,7 +64,7 @@ def test_impact_times_of_a_released_block(name, scenes, base):
     assert abs(first_impacts(simulate(without(scene)))[1] - wanted[1]) > 50 * limit
 
 
-@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("name", TUNED)
 def test_peaks_on_bearings(name):
     needs(name)
     engine, exact, level = get_engine(name), simulate(DRIVEN), simulate(without(DRIVEN))
@@ -74,7 +75,7 @@ def test_peaks_on_bearings(name):
     limit = bound(engine, "peak displacement", "rocking on bearings, one-sine")
     assert found.peak_base_displacement == pytest.approx(exact.peak_base_displacement, rel=limit)
     assert found.min_normal_ratio == pytest.approx(exact.min_normal_ratio, abs=2e-3)
-    assert RIGID_BEARINGS in found.warnings
+    assert RIGID_BEARINGS in map(str, found.warnings)
 
 
 @pytest.mark.parametrize("name", ENGINES)
@@ -93,7 +94,7 @@ def test_a_block_that_would_jump_is_said(name):
     up = SampledMotion(0.005, 12.0 * np.sin(9.0 * TIMES))
     scene = RELEASED.with_(motion=replace(HEAVING, vertical=up), start=Start(tilt=0.05), duration=1.0)
     found = get_engine(name).simulate(scene, history=False)
-    assert found.failure is not None or any("the block would jump" in text for text in found.warnings)
+    assert found.failure is not None or any("the block would jump" in warning.text for warning in found.warnings)
 
 
 def kernel_trace(scene):

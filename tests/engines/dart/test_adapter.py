@@ -58,9 +58,3 @@ def test_what_dart_does_not_hold_as_asked_is_refused(monkeypatch, forgets, words
     assert response.outcome == "failed"
     with pytest.raises(Mismatch, match=words):
         built.DartBodies(scene(0.2), plain=False)
-
-
-def test_warnings_name_what_is_outside():
-    assert simulate(scene(0.25, 212.0, 0.5, start=Start(tilt=0.1))).warnings == ()
-    (told,) = simulate(scene(0.25, 212.0, 0.1, start=Start(tilt=0.1)), variant="first-script").warnings
-    assert "verified in no range" in told

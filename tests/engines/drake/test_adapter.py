@@ -42,8 +42,3 @@ def test_a_step_that_drake_does_not_solve_is_a_failure_in_its_words(monkeypatch)
     assert response.outcome == "failed"
     assert response.failure.reason == "Drake found no solution of a step"
     assert "failed to converge" in response.failure.message and "at step 100" in response.failure.message
-
-
-def test_a_first_script_says_that_it_is_verified_nowhere():
-    (told,) = simulate(scene(0.25, 212.0, 0.1, start=Start(tilt=0.1))).warnings
-    assert "verified in no range" in told

@@ -65,12 +65,12 @@ def test_small_swings_on_the_stiff_corners_they_ask_for_are_stepped_implicitly(m
     """Newton's differences must stay within a corner's depth, here 5e-10 m, and its end above rounding errors."""
     motion = PulseMotion("one-sine", 1.1 * 9.81 * math.tan(0.2), 20.0)
     scene = Scene(block=BLOCK, motion=motion, duration=3.0)
-    response, expected = simulate(scene), exact(scene)
+    response, expected = simulate(scene, stiffness=5e13), exact(scene)
     assert 1e-4 < expected.peak_tilt_ratio < 5e-3
-    assert response.peak_tilt == pytest.approx(expected.peak_tilt, rel=1e-3)
+    assert response.peak_tilt == pytest.approx(expected.peak_tilt, rel=0.02)
     assert response.steps < 40_000
     monkeypatch.setattr(phases, "DIFFERENCE", 1e3)
-    assert simulate(scene).steps > 100_000
+    assert simulate(scene, stiffness=5e13).steps > 100_000
 
 
 @pytest.mark.parametrize(

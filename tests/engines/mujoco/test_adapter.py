@@ -279,9 +279,3 @@ def test_a_pulse_little_above_uplift():
     wanted = exact(given, history=False).peak_tilt
     late, less = (abs(simulate(given, largest_step=step).peak_tilt / wanted - 1) for step in (2e-4, 5e-5))
     assert late < 0.05 and less < 0.5 * late
-
-
-def test_warnings_name_what_is_outside():
-    assert simulate(scene(0.25, 212.0, 0.5, start=Start(tilt=0.1))).warnings == ()
-    (told,) = simulate(scene(0.25, 212.0, 0.1, start=Start(tilt=0.1)), variant="first-script").warnings
-    assert "verified in no range" in told

@@ -1,0 +1,68 @@
+"""What a tier says of a variant holds: nothing but an assisted one knows what an impact should do."""
+
+import json
+import subprocess
+import sys
+
+from engines import ENGINES, get_engine, installed_engines
+
+PROGRAM = """
+import hashlib, json, sys
+import analytic.rocking
+
+right = analytic.rocking.restitution
+analytic.rocking.restitution = lambda scene: float(sys.argv[1]) * right(scene)  # before an adapter is imported
+
+from analytic import Base, Bearings, Block, PulseMotion, Scene, Start
+from engines import get_engine, installed_engines
+
+block = Block(mass=3172.05, radius=1.0884, slenderness=0.3)
+bearings = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, damping=300.0)
+scenes = [
+    Scene(block=block, start=Start(tilt=0.15), duration=1.5),
+    Scene(block=block, base=Base(mass=212.0), start=Start(tilt=0.15), duration=1.5),
+    Scene(block=block, base=Base(mass=900.0), bearings=bearings, motion=PulseMotion("one-sine", 6.0, 6.0)).with_(duration=1.5),
+]
+found = {}
+for name in installed_engines():
+    engine = get_engine(name)
+    for variant, kind in engine.variants.items():
+        digest = hashlib.sha256()
+        for scene in scenes:
+            trace = engine.run(scene, variant, kind.settings).trace
+            for column in (*trace.COLUMNS, "centre"):
+                values = getattr(trace, column)
+                digest.update(b"" if values is None else values.tobytes())
+        found[f"{name}, {variant}"] = digest.hexdigest()
+print(json.dumps(found))
+"""
+
+
+def traces(factor):
+    """{variant: digest of its traces} with the formula of the restitution times `factor`."""
+    done = subprocess.run([sys.executable, "-c", PROGRAM, str(factor)], capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def test_nothing_hangs_on_the_answer():
+    right, wrong = traces(1.0), traces(0.8)
+    tiers = {
+        f"{name}, {variant}": kind.tier
+        for name in installed_engines()
+        for variant, kind in get_engine(name).variants.items()
+    }
+    assert right.keys() == wrong.keys() == tiers.keys()
+    assert {name for name in right if right[name] != wrong[name]} <= {
+        name for name, tier in tiers.items() if tier == "assisted"
+    }
+
+
+def test_exudyns_switched_joints_alone_are_assisted():
+    assisted = {
+        (name, variant)
+        for name in installed_engines()
+        for variant, kind in ENGINES[name].variants.items()
+        if kind.tier == "assisted"
+    }
+    assert assisted <= {("exudyn", "switched-joints")}
