@@ -16,8 +16,7 @@ class Bound:
     """`quantity` over `scenes` is at most `bound`; `measured` is the worst found when that was set, `source` says what
     the error comes from.
 
-    least: of a first-script variant, whose error is known and must not vanish unnoticed, the lower end of the band; 0
-    else. Where the source is `ROUNDING` the bound is what is asked for, and the measured value far below.
+    Where the source is `ROUNDING` the bound is what is asked for, and the measured value far below.
     """
 
     quantity: str
@@ -25,4 +24,3 @@ class Bound:
     bound: float
     measured: float
     source: str
-    least: float = 0.0

@@ -7,8 +7,9 @@ is at most twice the `measured` worst (but for round-off); where an engine gets 
 bound is to be tightened.
 """
 
+import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from analytic.errors import SettingError
@@ -24,9 +25,9 @@ SLACK = 2.0  # a bound is no looser than this times the measured worst
 class Tolerance:
     """One row: `quantity` of an engine's variant over `scenes`, measured by `measure`, is at most `bound` [unit].
 
-    measured: the worst found when the bound was set. least: of a first-script variant, whose error is known and must
-    not vanish unnoticed, the lower end of the band; 0 else. round_off: the bound is what is asked for, and the
-    measured value mere round-off, far below. source: what the error comes from.
+    measured: the worst found when the bound was set. round_off: the bound is what is asked for, and the measured value
+    mere round-off, far below. source: what the error comes from. bound, measured: None for an engine that states no
+    tolerances: what is found holds where it is a number.
     """
 
     quantity: str
@@ -34,11 +35,10 @@ class Tolerance:
     engine: str
     variant: str
     scenes: str
-    bound: float
+    bound: float | None
     unit: str
-    measured: float
+    measured: float | None
     source: str
-    least: float = 0.0
     round_off: bool = False
 
     @property
@@ -57,12 +57,12 @@ class Tolerance:
         return self.measure(self.engine, self.variant, self.scenes, {} if runs is None else runs)
 
     def holds(self, value: float) -> bool:
-        """Whether a measured value lies within the bound (and not below the band)."""
-        return self.least <= value <= self.bound
+        """Whether a measured value lies within the bound."""
+        return value <= (math.inf if self.bound is None else self.bound)
 
     def result(self, found: float | None, failure: str | None) -> dict[str, Any]:
         """The row with what was `found`, or why nothing was, as JSON values."""
-        names = "quantity", "engine", "variant", "scenes", "least", "bound", "unit", "measured", "source"
+        names = "quantity", "engine", "variant", "scenes", "bound", "unit", "measured", "source"
         holds = found is not None and self.holds(found)
         return {name: getattr(self, name) for name in names} | {"found": found, "holds": holds, "failure": failure}
 
@@ -81,8 +81,7 @@ class Tolerance:
             As `found`.
         """
         value = self.found(runs)
-        band = f"{self.least:.3g} to " if self.least else ""
-        assert self.holds(value), f"{self.name}: {value:.3g} {self.unit}, tolerated {band}{self.bound:.3g}"
+        assert self.holds(value), f"{self.name}: {value:.3g} {self.unit}, tolerated {self.bound:.3g}"
         return value
 
 
@@ -126,7 +125,6 @@ def _table():
                         unit,
                         bound.measured,
                         bound.source,
-                        bound.least,
                         round_off=bound.source == ROUNDING,
                     )
                 )
@@ -137,7 +135,9 @@ TABLE = _table()
 
 
 def rows(engine: str, variant: str | None = None) -> tuple[Tolerance, ...]:
-    """The rows of an engine's variant, its default one without a name; empty for one that is held to nothing.
+    """The rows of an engine's variant, its default one without a name.
+
+    Of an engine that states no tolerances they are those of the first engine here, without bounds.
 
     Raises
     ------
@@ -155,6 +155,16 @@ def rows(engine: str, variant: str | None = None) -> tuple[Tolerance, ...]:
     variant = variant or known.default_variant
     if variant not in known.variants:
         raise SettingError(f"{engine} has no variant {variant!r}; choose among {', '.join(known.variants)}")
+    if not known.bounds():
+        first = next(iter(ENGINES.values()))
+        usual = rows_of(first.name, next(iter(first.bounds())))
+        free: dict[str, Any] = dict(engine=engine, variant=variant, bound=None, measured=None, source="")
+        return tuple(replace(row, **free) for row in usual)
+    return rows_of(engine, variant)
+
+
+def rows_of(engine: str, variant: str) -> tuple[Tolerance, ...]:
+    """The rows of `TABLE` of an engine's variant."""
     return tuple(row for row in TABLE if (row.engine, row.variant) == (engine, variant))
 
 

@@ -11,14 +11,14 @@ from .runs import COMPARABLE, Difference, Warned
 
 
 class Tolerance(Part):
-    """A row of the tolerance table. found: None where it could not be measured; failure: why, in words."""
+    """A row of the tolerance table. bound, measured: None of an engine that states no tolerances. found: None where it
+    could not be measured; failure: why, in words."""
 
     quantity: str
     engine: str
     variant: str
     scenes: str
-    least: float
-    bound: float
+    bound: float | None
     unit: str
     measured: float | None
     source: str
@@ -30,7 +30,7 @@ class Tolerance(Part):
 class Verification(Form):
     """Engines held against the tolerance table. versions: {engine: its own}."""
 
-    schema_: str = Field(default="rocking verify 1", serialization_alias="schema")
+    schema_: str = Field(default="rocking verify 2", serialization_alias="schema")
     versions: dict[str, Any]
     rows: list[Tolerance]
 

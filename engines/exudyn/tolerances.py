@@ -46,7 +46,6 @@ TOLERANCES = {
             0.04,
             0.0275,
             "the damper pulls at the lifting corner, friction creeps",
-            least=0.02,
         ),
         Bound(
             "restitution from swings, |mean error|",
@@ -54,7 +53,6 @@ TOLERANCES = {
             0.07,
             0.0451,
             "the damper pulls at the lifting corner, friction creeps",
-            least=0.03,
         ),
     ),
 }

@@ -22,7 +22,6 @@ ROWS = pytest.mark.parametrize("row", TABLE, ids=lambda row: row.name)
 def test_bounds_are_no_looser_than_twice_the_measured_worst(row):
     assert row.measured <= row.bound
     assert row.round_off or row.bound <= SLACK * row.measured
-    assert row.least == 0 or row.least >= row.measured / SLACK
 
 
 @ROWS
@@ -37,9 +36,11 @@ def test_rows_are_named_apart():
     assert len({row.name for row in TABLE}) == len(TABLE)
 
 
-def test_every_installed_default_variant_has_its_rows():
+def test_every_installed_tuned_default_variant_has_its_rows():
     for engine in installed_engines():
         default = get_engine(engine).default_variant
+        if get_engine(engine).variants[default].tier != "tuned":
+            continue
         quantities = {row.quantity for row in TABLE if (row.engine, row.variant) == (engine, default)}
         assert quantities == {
             "restitution, rms",
@@ -98,7 +99,6 @@ def test_the_section_shows_every_row_and_says_what_does_not_hold():
             "engine": row.engine,
             "variant": row.variant,
             "scenes": row.scenes,
-            "least": row.least,
             "bound": row.bound,
             "unit": row.unit,
             "measured": row.measured,
