@@ -18,10 +18,11 @@ from engines import get_engine, installed_engines
 
 block = Block(mass=3172.05, radius=1.0884, slenderness=0.3)
 bearings = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69, damping=300.0)
+pulse = PulseMotion("one-sine", 6.0, 6.0)
 scenes = [
     Scene(block=block, start=Start(tilt=0.15), duration=1.5),
     Scene(block=block, base=Base(mass=212.0), start=Start(tilt=0.15), duration=1.5),
-    Scene(block=block, base=Base(mass=900.0), bearings=bearings, motion=PulseMotion("one-sine", 6.0, 6.0)).with_(duration=1.5),
+    Scene(block=block, base=Base(mass=900.0), bearings=bearings, motion=pulse, duration=1.5),
 ]
 found = {}
 for name in installed_engines():
