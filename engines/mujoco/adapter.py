@@ -52,7 +52,7 @@ VARIANTS = {
         rung="first script",
         ladder=(1 / 120, 2e-3, 5e-4),
         finer=({"step": 2e-4},),
-        decides="MuJoCo decides all, with its default contact. The adapter gives it bearing forces and ground motion.",
+        decides="MuJoCo decides all, impacts by its default contact. The adapter gives it the loads, in equal steps.",
         verified=None,
         caveats=(
             "mujoco first-script is verified in no range: MuJoCo's default contact loses too much or too little "

@@ -13,7 +13,17 @@ from importlib import metadata
 
 import numpy as np
 import pytest
-from engine_cases import ALSO_ACCURATE, BEARINGS, PULSE, default_variant, every_variant, scene, shaking, simulate
+from engine_cases import (
+    ALSO_ACCURATE,
+    BEARINGS,
+    FIRST_SCRIPT,
+    PULSE,
+    default_variant,
+    every_variant,
+    scene,
+    shaking,
+    simulate,
+)
 
 import engines
 from analytic import SceneError, SettingError, Start
@@ -130,7 +140,7 @@ def test_history_is_on_equal_intervals_without_a_record_and_can_be_left_out(engi
 
 # The error 0.1 s after a start in flight: tilt [rad], its rate [rad/s], base displacement [m]. The second is of
 # variants that no accuracy is asked of; without its initial velocities a run would be 0.03 rad or 0.01 m off.
-IN_FLIGHT, IN_FLIGHT_ROUGHLY = (8.8e-7, 1.5e-5, 5.8e-7), (1e-3, 1e-2, 1e-3)
+IN_FLIGHT, IN_FLIGHT_ROUGHLY = (8.8e-7, 1.5e-5, 1.4e-6), (1e-3, 1e-2, 1e-3)
 # A block that begins where it touches, and has to sink 1 mm before it is carried.
 IN_FLIGHT_SINKING = {("drake", "first-script"): (9e-3, 2e-2, 9e-3)}
 
@@ -142,7 +152,7 @@ def test_start_in_flight(engine, variant):
     response, reference = simulate(engine, variant, given), exact(given)
     for name in History.COLUMNS:
         assert getattr(response.history, name)[0] == getattr(reference.history, name)[0], name
-    accurate = variant == get_engine(engine).default_variant or (engine, variant) in ALSO_ACCURATE
+    accurate = variant == get_engine(engine).default_variant != FIRST_SCRIPT or (engine, variant) in ALSO_ACCURATE
     bounds = IN_FLIGHT if accurate else IN_FLIGHT_SINKING.get((engine, variant), IN_FLIGHT_ROUGHLY)
     for name, bound in zip(("tilt", "tilt_rate", "base_displacement"), bounds, strict=True):
         assert abs(getattr(response.end, name) - getattr(reference.end, name)) < bound, name
@@ -171,7 +181,7 @@ def test_ground_motion_that_is_not_finite_fails_with_the_last_finite_state(engin
 
 @default_variant
 def test_hang_ends_at_the_time_limit(engine, variant):
-    response = guard.guarded_simulate(engine, scene(0.2, duration=1e4, start=Start(tilt=0.12)), time_limit=4.0)
+    response = guard.guarded_simulate(engine, scene(0.2, duration=3e3, start=Start(tilt=0.12)), time_limit=4.0)
     assert response.outcome == "failed"
     assert "time limit" in response.failure.message
     assert response.versions == get_engine(engine).versions()

@@ -1,7 +1,5 @@
 """Bases that still vibrate when impacts kick them: whose displacement is said to be unsure, and whose is not."""
 
-import re
-
 import numpy as np
 import pytest
 from engine_cases import needs
@@ -15,13 +13,6 @@ from engines.kicked import UNSURE, warnings
 BODY = Block(mass=0.94646, radius=0.09755, slenderness=0.11642, corner_inertia=0.0140705)
 BEARINGS = Bearings(law="linear", count=8, ka=286367.0)
 FAST = Scene(block=BODY, base=Base(mass=0.17814), bearings=BEARINGS, start=Start(tilt=0.06803), duration=1.0945)
-HYSTERETIC = Scene(
-    block=Block(mass=1e6, radius=18.144, slenderness=0.228976),
-    base=Base(mass=142262.0),
-    bearings=Bearings(count=5, ka=1.26913e8, kb=8.76541e6, alpha=2.40194),
-    start=Start(tilt=-0.142957),
-    duration=27.0585,
-)
 # Of a base kicked three times the third impact, not the first, leaves the largest displacement
 THRICE = Scene(
     block=Block(mass=1254.4825, radius=0.48839664, slenderness=0.13554789, corner_inertia=812.979494),
@@ -37,14 +28,6 @@ JUMP = Scene(
     bearings=Bearings(law="bouc-wen", count=1, ka=52797649.0, kb=1271191.5, alpha=3.827835),
     motion=PulseMotion("rectangular", -13.462247, 1.46918),
     duration=11.023727,
-)
-# Swings of .0006 slendernesses, of which MuJoCo's impacts take too much
-TINY = Scene(
-    block=Block(mass=358.6155, radius=1.5000413, slenderness=0.03855732),
-    base=Base(mass=12.665976),
-    bearings=Bearings(law="linear", count=7, ka=1646748.91),
-    start=Start(tilt=-2.3236339e-5),
-    duration=0.6135926,
 )
 
 
@@ -83,59 +66,19 @@ def test_a_soft_base_that_impacts_drive_is_no_vibration():
     assert np.abs(trace.base_velocity).max() > 5 * np.abs(trace.base_displacement).max() * 0.25 * soft.rocking_frequency
 
 
-@pytest.mark.parametrize(
-    "engine, scene",
-    [
-        *[("exudyn", scene) for scene in (FAST, THRICE, JUMP)],
-        ("pybullet", HYSTERETIC),
-        *[("mujoco", scene) for scene in (FAST, TINY)],
-    ],
-)
-def test_engines_say_it(engine, scene):
-    """Displacements were off in silence: by 3.8, 48 and 6.6 % in exudyn, 6.5 % in PyBullet, 4.7 % in MuJoCo."""
-    needs(engine)
-    said = get_engine(engine).simulate(scene, history=False).warnings
+@pytest.mark.parametrize("scene", [FAST, THRICE, JUMP])
+def test_exudyn_says_it(scene):
+    """Displacements were off in silence: by 3.8, 48 and 6.6 %."""
+    needs("exudyn")
+    said = get_engine("exudyn").simulate(scene, history=False).warnings
     assert any("its phase is sure to" in warning for warning in said)
 
 
-def test_mujoco_says_where_small_swings_grow_from_impact_to_impact():
-    """A pulse that begins at 1.07 times uplift: the peak tilt of .0097 slendernesses was off by a third, now .023."""
+def test_where_small_swings_grow_from_impact_to_impact_it_is_said():
+    """A pulse that begins at 1.07 times uplift, whose peak tilt is .0097 slendernesses."""
     needs("mujoco")
     body = Block(mass=3.7233, radius=0.234198, slenderness=0.0955116, corner_inertia=0.235956)
     shaken = Scene(block=body, motion=PulseMotion("one-cosine", -1.009475, 24.767135), duration=1.9)
-    found = get_engine("mujoco").simulate(shaken, history=False)
-    told, after = found.warnings
-    assert "impacts of a block that the ground hardly lifts" in after
-    assert "hangs on the steps' length" in told
-    assert found.peak_tilt == pytest.approx(simulate(shaken).peak_tilt, rel=0.025)
+    (told,) = get_engine("mujoco").simulate(shaken, history=False).warnings
+    assert "impacts of a block that the ground hardly lifts" in told
     assert not get_engine("mujoco").simulate(shaken.with_(motion=shaken.motion.scaled(3.0)), history=False).warnings
-
-
-def test_mujoco_steps_the_smallest_swings_again():
-    """A peak of .0008 slendernesses was off by 7.6 % in silence."""
-    needs("mujoco")
-    scene = Scene(
-        block=Block(mass=761.7, radius=0.72485, slenderness=0.35866, corner_inertia=533.61),
-        base=Base(mass=694.66),
-        bearings=Bearings(count=2, ka=4.533e6, kb=5.6511e4, alpha=12.2986),
-        motion=PulseMotion("one-sine", 3.67183, 10.41),
-        duration=0.8,
-    )
-    found = get_engine("mujoco").simulate(scene, history=False)
-    (said,) = found.warnings
-    told = float(re.search("long ones moved it by ([0-9.]+) of itself", said)[1])
-    assert abs(found.peak_tilt / simulate(scene).peak_tilt - 1) < min(0.025, told)
-
-
-def test_pybullet_says_where_the_first_impacts_come_late_for_a_base_that_vibrates():
-    """On linear bearings under a pulse: the peak displacement was off by 2.7 % in silence."""
-    needs("pybullet")
-    scene = Scene(
-        block=Block(mass=4721.11, radius=1.33149, slenderness=0.37099, corner_inertia=13468.2),
-        base=Base(mass=12314.3),
-        bearings=Bearings(law="linear", count=2, ka=6.2985e8),
-        motion=PulseMotion("rectangular", 4.5604, 20.7095),
-        duration=3.0,
-    )
-    said = get_engine("pybullet").simulate(scene, history=False).warnings
-    assert any("its phase is sure to" in warning for warning in said)
