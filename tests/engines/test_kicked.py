@@ -79,6 +79,6 @@ def test_where_small_swings_grow_from_impact_to_impact_it_is_said():
     needs("mujoco")
     body = Block(mass=3.7233, radius=0.234198, slenderness=0.0955116, corner_inertia=0.235956)
     shaken = Scene(block=body, motion=PulseMotion("one-cosine", -1.009475, 24.767135), duration=1.9)
-    (told,) = get_engine("mujoco").simulate(shaken, history=False).warnings
-    assert "impacts of a block that the ground hardly lifts" in told
-    assert not get_engine("mujoco").simulate(shaken.with_(motion=shaken.motion.scaled(3.0)), history=False).warnings
+    for scale, is_said in ((1.0, True), (3.0, False)):
+        told = get_engine("mujoco").simulate(shaken.with_(motion=shaken.motion.scaled(scale)), history=False).warnings
+        assert any("impacts of a block that the ground hardly lifts" in words for words in told) == is_said
