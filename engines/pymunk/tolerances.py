@@ -52,7 +52,7 @@ TOLERANCES = {
             0.0457,
             0.023,
             "default slop, and too few iterations for the base's guide",
-            least=5.8e-3,
+            least=0.0116,
         ),
     ),
 }
