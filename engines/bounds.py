@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 # What errors come from, where engines share it.
-APPROACH = "share of its speed that the block gains in the step of the impact (accuracy)"
 STEP = "step; first order, by the phase of the impact in it"
 LARGE_STEP = "steps in flight and at rest"
 HELD = "what the contact gives at rest"

@@ -17,14 +17,9 @@ if TYPE_CHECKING:
 
 # Most of a step over the time in which the bearings' vibration advances by 1 rad; stable below 2.
 VIBRATION = 0.2
-# Most that viscous bearings may take of a velocity in a step at an impact, in units of `accuracy`.
-VISCOUS = 10.0
 # Leapfrog vibrates too fast, by (h omega)^2/24; this share of the stiffness times h^2 as mass cures it. Without damping
 # the phase at the next impact decides how far the base goes. Not needed below STIFF = h omega.
 LEAPFROG, STIFF = 1 / 12, 0.02
-# What is left, relative: m_b/m .14 to .42, 100 to 330 omega_r; of a hysteretic bearing the stiffness is a guess.
-# A ground that moves lifts the block a little late: the first impacts come .2e-4/omega_r off, one in ten 1e-4 to 5e-4.
-DRIFT, MOVED_DRIFT, HYSTERETIC_DRIFT = 1e-4, 2.5e-4, 7e-4
 
 
 def base_frequency(scene: Scene) -> float:
@@ -72,16 +67,6 @@ def leapfrog_stiffness(law: BearingLaw, largest: float, mass: float) -> float:
     """
     elastic = law.count * (law.kb + 0.5 * law.dk)
     return LEAPFROG * elastic if largest * math.sqrt(elastic / mass) > STIFF else 0.0
-
-
-def drift(scene: Scene, light: float = 0.0) -> float:
-    """Relative error of the frequency of a base that vibrates, stepped with the mass of `leapfrog_stiffness`.
-
-    light: longest step [s] of a script that goes without that mass.
-    """
-    still = DRIFT if scene.motion is None else MOVED_DRIFT
-    known = HYSTERETIC_DRIFT if BearingLaw.of(scene.bearings).dk else still
-    return max(known, LEAPFROG * (light * base_frequency(scene)) ** 2 / 2)
 
 
 def added_mass(damping: float, interval: float, mass: float) -> float:

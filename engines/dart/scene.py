@@ -39,8 +39,9 @@ class DartBodies:
             friction = scene.friction
         else:
             friction = FIRST_FRICTION if plain else FRICTION
-        self.half_height, self.used = block.half_height, 0.0
+        self.half_height, self.used, self.gravity = block.half_height, 0.0, (0.0, 0.0, 0.0)
         self.world = dartpy.simulation.World()
+        self.world.setGravity(self.gravity)
         self.world.getConstraintSolver().setSplitImpulseEnabled(not plain)
         self.ground = dynamics.Skeleton("ground")
         if scene.base is None:
@@ -73,7 +74,10 @@ class DartBodies:
         if step != self.used:
             world.setTimeStep(step)
             self.used = step
-        world.setGravity((across / step, 0.0, up / step))
+        gravity = across / step, 0.0, up / step
+        if gravity != self.gravity:
+            world.setGravity(gravity)
+            self.gravity = gravity
         if self.loaded:
             self.ground.setForces((impulse / step,))
         world.step()

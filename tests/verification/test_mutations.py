@@ -43,12 +43,11 @@ DEFAULTS = [
     ("mujoco", "impact-aware"),
     ("pymunk", "impact-aware"),
     ("dart", "impact-aware"),
-    ("drake", "impact-aware"),
 ]
 
 
 @pytest.mark.parametrize("engine, variant", DEFAULTS)
-@pytest.mark.parametrize("factor", [1.01, 1.0001])
+@pytest.mark.parametrize("factor", [1.01, 1.0005])
 def test_another_restitution_fails(monkeypatch, engine, variant, factor):
     monkeypatch.setattr(
         agreement, "FREE_ROCKING", {"rigid ground": (None, (0.2,)), "sliding base": (agreement.BASE, (0.2,))}
@@ -160,12 +159,6 @@ def late(law):
     return lagging
 
 
-def lag_pybullet(monkeypatch):
-    from engines.pybullet import stepping
-
-    monkeypatch.setattr(stepping, "hysteretic_force", late(stepping.hysteretic_force))
-
-
 class Lagging(BearingLaw):
     @functools.cached_property
     def hysteretic(self):
@@ -173,14 +166,10 @@ class Lagging(BearingLaw):
 
 
 # exudyn is not among them: it commits inside a compiled call.
-@pytest.mark.parametrize("engine", ["pybullet", "mujoco", "pymunk", "dart", "drake"])
+@pytest.mark.parametrize("engine", ["pybullet", "mujoco", "pymunk", "dart"])
 def test_a_bearing_force_that_lags_one_step_fails(monkeypatch, engine):
     one = row("bearing force replayed", engine, "impact-aware", "isolated Caryatid, synthetic motion")
-    if engine == "pybullet":
-        lag_pybullet(monkeypatch)
-    else:
-        module = "engines.mujoco.stepping" if engine == "mujoco" else "engines.sliding"
-        monkeypatch.setattr(f"{module}.BearingLaw", Lagging)
+    monkeypatch.setattr("engines.stepping.BearingLaw", Lagging)
     with pytest.raises(agreement.Unmeasurable, match="not that of the bearings' force"):  # the run itself says so
         one.found()
 
@@ -232,8 +221,7 @@ def test_the_share_of_a_penetration_that_bullet_takes_back_does_not_matter(monke
             "60 s of shaking below uplift, rigid ground",
         ),
         ("exudyn", "switched-joints", {"step": 4e-3}, "restitution, rms", "rigid ground, slenderness 0.2"),
-        ("pybullet", "impact-aware", {"accuracy": 1e-4}, "restitution, rms", "sliding base"),
-        ("pybullet", "impact-aware", {"accuracy": 1e-4}, "base velocity jump, rms", "sliding base"),
+        ("pybullet", "impact-aware", {"largest_step": 5e-3}, "impact times", "rigid ground"),
         (
             "pybullet",
             "impact-aware",
@@ -255,9 +243,6 @@ def test_the_share_of_a_penetration_that_bullet_takes_back_does_not_matter(monke
             "base drift at rest",
             "60 s of shaking below uplift, on bearings",
         ),
-        ("pybullet", "fixed-step", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
-        ("mujoco", "impact-aware", {"accuracy": 1e-4}, "restitution, rms", "sliding base"),
-        ("mujoco", "impact-aware", {"accuracy": 1e-4}, "base velocity jump, rms", "sliding base"),
         ("mujoco", "impact-aware", {"largest_step": 2e-3}, "impact times", "rigid ground"),
         (
             "mujoco",
@@ -267,26 +252,28 @@ def test_the_share_of_a_penetration_that_bullet_takes_back_does_not_matter(monke
             "one-sine of 3.8 g slenderness, rigid ground",
         ),
         ("mujoco", "impact-aware", {"largest_step": 2e-3}, "peak displacement", "isolated Caryatid, synthetic motion"),
+        ("mujoco", "impact-aware", {"largest_step": 2e-3}, "restitution, rms", "sliding base"),
+        ("pymunk", "impact-aware", {"largest_step": 2e-3}, "impact times", "rigid ground"),
         (
-            "mujoco",
+            "pymunk",
             "impact-aware",
             {"largest_step": 2e-3},
-            "base drift at rest",
-            "60 s of shaking below uplift, on bearings",
+            "overturning time",
+            "one-sine of 3.8 g slenderness, rigid ground",
         ),
+        ("pymunk", "impact-aware", {"largest_step": 2e-3}, "peak displacement", "isolated Caryatid, synthetic motion"),
+        ("pymunk", "impact-aware", {"largest_step": 2e-3}, "restitution, rms", "sliding base"),
+        ("dart", "impact-aware", {"largest_step": 2e-3}, "impact times", "rigid ground"),
+        (
+            "dart",
+            "impact-aware",
+            {"largest_step": 2e-3},
+            "overturning time",
+            "one-sine of 3.8 g slenderness, rigid ground",
+        ),
+        ("dart", "impact-aware", {"largest_step": 2e-3}, "restitution, rms", "sliding base"),
+        ("pybullet", "fixed-step", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
         ("mujoco", "fixed-step", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
-        ("pymunk", "impact-aware", {"accuracy": 1e-4}, "restitution, rms", "sliding base"),
-        ("pymunk", "impact-aware", {"accuracy": 1e-4}, "base velocity jump, rms", "sliding base"),
-        ("pymunk", "impact-aware", {"largest_step": 5e-3}, "impact times", "rigid ground"),
-        ("pymunk", "expert", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
-        ("dart", "impact-aware", {"accuracy": 1e-4}, "restitution, rms", "sliding base"),
-        ("dart", "impact-aware", {"accuracy": 1e-4}, "base velocity jump, rms", "sliding base"),
-        ("dart", "impact-aware", {"largest_step": 1e-2}, "impact times", "rigid ground"),
-        ("dart", "expert", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
-        ("drake", "impact-aware", {"accuracy": 1e-4}, "restitution, rms", "sliding base"),
-        ("drake", "impact-aware", {"accuracy": 1e-4}, "base velocity jump, rms", "sliding base"),
-        ("drake", "impact-aware", {"largest_step": 1e-2}, "impact times", "rigid ground"),
-        ("drake", "expert", {"step": 1e-3}, "restitution, rms", "sliding base, slenderness 0.2"),
     ],
 )
 def test_a_coarse_step_fails(monkeypatch, engine, variant, changes, quantity, scenes):
