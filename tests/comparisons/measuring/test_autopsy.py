@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 from engine_cases import needs, released
+from fixed_steps import fixed_steps
 from sampled_traces import BASE, SCENES, sampled
 
 from analytic.rocking import restitution
@@ -59,12 +60,8 @@ def test_impulse_of_the_landing_corner_turns_the_fall_of_the_centre_into_a_rise(
     [
         ("exudyn", "compliant-corners", {"stiffness": 1e8}),
         ("mujoco", "impact-aware", {}),
-        ("pymunk", "expert", {"step": 4e-3}),
         ("pymunk", "impact-aware", {}),
-        ("dart", "expert", {"step": 1e-3}),
         ("dart", "impact-aware", {}),
-        ("drake", "expert", {"step": 1e-3}),
-        ("drake", "impact-aware", {}),
     ],
 )
 def test_parts_add_up_to_the_error(ground, engine, variant, settings):
@@ -75,13 +72,13 @@ def test_parts_add_up_to_the_error(ground, engine, variant, settings):
 
 
 def test_a_sliding_corner_keeps_the_ratio_of_its_friction():
-    contact = run("pymunk", "expert", released(None).with_(friction=0.05))
+    contact = run("pymunk", "impact-aware", released(None).with_(friction=0.05))
     assert contact.demand == pytest.approx(0.05, rel=0.05)
-    assert run("pymunk", "expert", released(None)).demand == pytest.approx(np.tan(0.2) * 0.73, rel=0.05)
+    assert run("pymunk", "impact-aware", released(None)).demand == pytest.approx(np.tan(0.2) * 0.73, rel=0.05)
 
 
 def test_frames_are_json_and_hold_the_step_that_is_struck():
-    contact = run("pymunk", "expert", released(None))
+    contact = contact_of(released(None), fixed_steps(released(None), 1e-4))
     told = json.loads(json.dumps(frames(contact), allow_nan=False))
     assert sorted(told) == ["energy", "penetration", "rebound", "straddle"]
     begin, end = told["straddle"]["struck"]
@@ -101,8 +98,7 @@ def test_what_cannot_be_told_is_said():
 
 def test_without_its_place_only_the_whole_is_told():
     scene = released(None)
-    needs("pymunk")
-    _, trace = get_engine("pymunk").traced(scene, variant="expert", step=4e-3)
+    trace = fixed_steps(scene, 4e-3)
     seen, blind = contact_of(scene, trace), contact_of(scene, dataclasses.replace(trace, centre=None))
     assert seen.placed and not blind.placed and blind.error == seen.error
     assert list(blind.parts) == ["contact", "flight"]
