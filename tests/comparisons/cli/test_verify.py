@@ -38,7 +38,7 @@ def test_verify_measures_each_row_and_names_the_one_that_fails(verify, tmp_path)
     (line,) = [line for line in out.splitlines() if "FAILS" in line]
     assert "held to nothing" in line
     content = json.loads(file.read_text())
-    assert content["schema"] == "rocking verify 1" and "exudyn" in content["versions"]["exudyn"]
+    assert content["schema"] == "rocking verify 2" and "exudyn" in content["versions"]["exudyn"]
     assert [row["holds"] for row in content["rows"]] == [True, False]
     assert content["rows"][0]["found"] == content["rows"][1]["found"] > 0
 
