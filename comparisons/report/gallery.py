@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 GALLERY, README = Path(__file__).with_name("gallery"), PROJECT_FOLDER / "README.md"
 BEGIN, END = "<!-- findings of the stored studies -->", "<!-- end of findings -->"
-HEADLINES = ("restitution", "random-scenes", "overturning", "matters", "speed-error", "stability")
+HEADLINES = ("restitution", "random-scenes", "overturning", "matters", "speed-error")
 PANELS = {"restitution": 0, "overturning": -1, "matters": 0, "speed-error": -1}  # study: which panel of its finding
 
 

@@ -28,7 +28,8 @@ def finding(result: Result) -> Section:
         if all(cells[case, name][0]["verdict"] != RIGHT for name in engines if (case, name) in cells)
     ]
     are = "is" if len(ill) == 1 else "are"
-    title = f"Where all fail: {len(ill)} of {len(cases)} hard cases {are} right in no engine" + (
+    where = "right in no engine" if len(engines) > 2 else f"not right in {' and '.join(engines)}"
+    title = f"Where all fail: {len(ill)} of {len(cases)} hard cases {are} {where}" + (
         f" ({', '.join(ill[:3])}{' …' if len(ill) > 3 else ''})" if ill else ""
     )
     text = (
