@@ -22,28 +22,6 @@ VIBRATION = 0.2
 LEAPFROG, STIFF = 1 / 12, 0.02
 
 
-def base_frequency(scene: Scene) -> float:
-    """Angular frequency of the base alone on its bearings at their largest stiffness [rad/s]; 0 without any."""
-    bearings = scene.bearings
-    return math.sqrt(bearings.count * bearings.ka / scene.base.mass) if bearings else 0.0  # type: ignore[union-attr]  # bearings have a base
-
-
-def base_decay(scene: Scene) -> float:
-    """Rate at which its dampers alone stop the base, n_d c/m_b [1/s]; 0 without any."""
-    bearings = scene.bearings
-    return bearings.count * bearings.damping / scene.base.mass if bearings else 0.0  # type: ignore[union-attr]  # as above
-
-
-def given_back(scene: Scene) -> float:
-    """Change of the block's rate, over that before an impact, where a base that the impact kicked is stopped, eq. (8).
-
-    J_O times it is m h times the jump of the base's velocity.
-    """
-    model = RockingModel.of(scene)
-    height = model.R * math.cos(model.gamma)
-    return model.m * height * model.impact(1.0)[1] / model.J
-
-
 def longest_step(scene: Scene, largest: float) -> float:
     """The longest step [s], at most `largest`, that follows the base's vibration on its bearings."""
     if scene.bearings is None:

@@ -6,11 +6,11 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from analytic.response import COMPARED, EDGE, UNCOMPARED, Difference
+from analytic.response import UNCOMPARED, Difference
 
 from ..showing.drawing import draw_scenes
 from ..showing.parts import Section, Table, number
-from ..showing.wording import TRUSTED, USABLE, trust
+from ..showing.wording import TRUSTED, USABLE, differing, trust
 from . import figures
 
 if TYPE_CHECKING:
@@ -217,13 +217,8 @@ def warned(result: Result, name: str) -> dict[str, list[str]]:
 
 def different(row: Mapping[str, Any]) -> list[str]:
     """In what the run of a row differs from the analytic model, or why it cannot be compared; sentences."""
-    found = "; ".join(str(Difference(**one)) for one in row.get("differences", ()))
-    comparable = row.get("comparable", UNCOMPARED)
-    if comparable == COMPARED:
-        return [f"differs from the analytic model: {found}"] if found else []
-    if comparable == EDGE:
-        return [f"on an edge, where a change of the scene by 1e-4 makes such a difference: {found}"]
-    return [] if comparable == UNCOMPARED else [f"cannot be compared with the analytic model: {comparable}"]
+    found = [Difference(**one) for one in row.get("differences", ())]
+    return differing(row.get("comparable", UNCOMPARED), found)
 
 
 def _warnings(name, found):

@@ -13,10 +13,10 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from analytic.response import COMPARED, EDGE, UNCOMPARED
 from engines.statue_range import in_words
 
 from ..running.readable import readable
+from .wording import differing
 
 if TYPE_CHECKING:
     from analytic import Response, Scene
@@ -120,15 +120,8 @@ def show(table: Table, responses: Sequence[Response]) -> None:
 
 def remarks(response: Response) -> list[str]:
     """Sentences: in what a response differs from the analytic model, or why it cannot be compared; and its warnings."""
-    name, found = response.engine, "; ".join(map(str, response.differences))
-    words = []
-    if response.comparable == COMPARED and found:
-        words.append(f"{name} differs from the analytic model: {found}")
-    elif response.comparable == EDGE:
-        words.append(f"{name} is {EDGE}, where a change of the scene by 1e-4 makes such a difference: {found}")
-    elif response.comparable not in (COMPARED, UNCOMPARED):
-        words.append(f"{name} cannot be compared with the analytic model: {response.comparable}")
-    return words + [f"Warning, {name}: {warning}" for warning in response.warnings]
+    name, words = response.engine, differing(response.comparable, response.differences)
+    return [f"{name} {one}" for one in words] + [f"Warning, {name}: {warning}" for warning in response.warnings]
 
 
 def engines_table(engines: Sequence[Engine]) -> Table:
