@@ -51,10 +51,10 @@ def block_from(
     for name, value in given.items():
         if value is not None and not (value > 0 and math.isfinite(value)):
             raise SettingError(f"{name} = {value!r}: give a number above 0")
-    if (density is None) == (mass is None):
+    if density is not None and mass is None:
+        mass = density * height * width * (depth or width)
+    elif mass is None or density is not None:
         raise SettingError("give the block's mass [kg], or its density [kg/m3] or material, and not both")
-    if mass is None:
-        mass = density * height * width * (depth or width)  # type: ignore[operator]  # one of the two is given
     return Block(mass=mass, radius=0.5 * math.hypot(height, width), slenderness=math.atan2(width, height))
 
 

@@ -117,14 +117,14 @@ class Bearings(Part):
                 raise SceneError(f"bearings.{name}", None, "missing", f"add it: the {self.law} law needs it")
             if given is not None and name not in law.needs + law.ignores:
                 raise SceneError(f"bearings.{name}", given, f"not used by the {self.law} law", "remove it")
-        if "kb" in law.needs and self.ka <= self.kb:  # type: ignore[operator]  # given where it is needed
+        if "kb" in law.needs and self.ka <= self.given("kb"):
             raise SceneError(
                 "bearings.ka",
                 self.ka,
                 f"not above kb = {self.kb:.6g} N/m",
                 "give the initial stiffness as ka, the smaller one after yielding as kb [N/m]",
             )
-        if "alpha" in law.needs and self.delta_k >= self.ka - self.kb:  # type: ignore[operator]  # as above
+        if "alpha" in law.needs and self.delta_k >= self.ka - self.given("kb"):
             raise SceneError(
                 "bearings.delta_k",
                 self.delta_k,
@@ -134,6 +134,10 @@ class Bearings(Part):
         if "alpha" in law.needs and not law.constants(self)["f0"] > 0:
             raise SceneError("bearings.alpha", self.alpha, "leaves no hysteretic force, in rounding", "give less")
         return self
+
+    def given(self, name: str) -> float:
+        """The number called `name`, one that this law needs."""
+        return float(getattr(self, name))
 
 
 class Start(Part):
@@ -168,6 +172,12 @@ class Scene(Part):
     friction: Positive | None = None
     gravity: Positive = 9.81
     name: str = ""
+
+    @property
+    def end(self) -> float:
+        """When a run ends [s]: the duration, which every scene has that reaches a solver; see `until_decided`."""
+        assert self.duration is not None
+        return self.duration
 
     @model_validator(mode="after")
     def _parts_fit(self) -> Self:

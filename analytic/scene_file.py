@@ -76,7 +76,7 @@ class _Motion(Part):
                     f"motion.{key}", getattr(self, key), "without a vertical motion", "add vertical_ratio = ..."
                 )
         if self.synthetic:
-            return self._synthesised().scaled(self.scale)
+            return self._synthesised(self.synthetic).scaled(self.scale)
         if self.pulse:
             return self._pulsed().scaled(self.scale)
         level = self._recorded(folder, "record")
@@ -84,13 +84,13 @@ class _Motion(Part):
             return level
         return paired(level, self._recorded(folder, "vertical"))
 
-    def _synthesised(self) -> SampledMotion:
+    def _synthesised(self, style: str) -> SampledMotion:
         seed = DEFAULT_SEED if self.seed is None else self.seed
-        level = synthetic_motion(self.synthetic, seed)  # type: ignore[arg-type]  # the one that is given
+        level = synthetic_motion(style, seed)
         if not self.vertical_ratio:
             return level
         other = (seed + 1) % 2**64 if self.vertical_seed is None else self.vertical_seed
-        return paired(level, synthetic_motion(self.synthetic, other).scaled(self.vertical_ratio))  # type: ignore[arg-type]  # as above
+        return paired(level, synthetic_motion(style, other).scaled(self.vertical_ratio))
 
     def _pulsed(self) -> PulseMotion:
         for key in ("amplitude", "frequency"):

@@ -347,4 +347,4 @@ def _history(scene: Scene, table: np.ndarray, end: State) -> History:
         table = np.vstack([table, last])
     columns = np.ascontiguousarray(table.T)
     shaking = np.zeros(len(table)) if scene.motion is None else scene.motion.acceleration(columns[0])
-    return History(*columns, shaking)  # type: ignore[call-arg]  # six columns and the ground's
+    return History(*[*columns, shaking])

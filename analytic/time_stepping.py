@@ -69,7 +69,7 @@ def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -
     response = _response(scene, step, marched, time.process_time() - started)
     if history:
         taken = response.steps
-        kept = History(*rows[: taken + 1].T, ground[: taken + 1])  # type: ignore[call-arg]  # six columns and the ground's
+        kept = History(*[*rows[: taken + 1].T, ground[: taken + 1]])
         response = replace(response, history=kept)
     return replace(response, decided=is_decided(scene, response))
 

@@ -208,7 +208,7 @@ def _peak(time: np.ndarray, value: np.ndarray, rate: np.ndarray) -> float:
 def _history(scene: Scene, trace: Trace) -> History:
     """The steps on an equal grid: tilt and displacement by cubics through the steps, the others linear."""
     end = trace.time[-1]
-    dt = scene.motion.dt if isinstance(scene.motion, SampledMotion) else scene.duration / HISTORY_POINTS  # type: ignore[operator]  # a run has one
+    dt = scene.motion.dt if isinstance(scene.motion, SampledMotion) else scene.end / HISTORY_POINTS
     time = trace.time[0] + dt * np.arange(math.floor((end - trace.time[0]) / dt * (1 + 1e-12)) + 1)
     if time[-1] < end - 1e-9 * dt:
         time = np.append(time, end)

@@ -129,7 +129,7 @@ class Simulator(Engine):
         after = max(SETTLED * run.trace.settle, STEPS * float(np.diff(time).max()))
         if not len(changes) or time[-1] - time[changes.max()] >= after:
             return None
-        longer = scene.with_(duration=scene.duration + after)  # type: ignore[operator]  # a run has one
+        longer = scene.with_(duration=scene.end + after)
         return self.run(longer, name, chosen)
 
 

@@ -219,7 +219,8 @@ def to_contact(scene: Scene, trace: Trace, swings: Swings, direction: int) -> tu
         t, state = _runge_kutta(slope, t, state, wanted / steps, steps)
     # moving out of contact where it should move in, or not there at all
     missed = (side * state[1] * direction > 0) | ~(np.abs(state[0]) <= trace.contact_tilt)
-    return tuple(np.where(missed, np.nan, value) for value in (t, state[1], state[3]))  # type: ignore[return-value]  # three of three
+    at, rate, velocity = np.where(missed, np.nan, (t, state[1], state[3]))
+    return at, rate, velocity
 
 
 def _runge_kutta(slope, t, state, h, steps):

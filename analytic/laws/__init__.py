@@ -27,9 +27,14 @@ def chosen(name: str) -> Callable[..., Any]:
     def choose(law, *arguments):
         return last(*arguments)
 
+    return _nested(_either, before, choose)
+
+
+def _nested(either: Callable[..., Any], before: list[Callable[..., Any]], last: Any) -> Any:
+    """`last`, behind a choice for each of the laws before it."""
     for number, own in reversed(list(enumerate(before))):
-        choose = _either(number, own, choose)  # type: ignore[assignment]  # compiled as well
-    return choose
+        last = either(number, own, last)
+    return last
 
 
 def _either(number: int, own: Callable[..., Any], others: Callable[..., Any]) -> Callable[..., Any]:
@@ -50,9 +55,7 @@ def chosen_term() -> Callable[..., float]:
     def choose(law, k, factors, x, v, q):
         return last(k, factors, x, v, q)
 
-    for number, own in reversed(list(enumerate(before))):
-        choose = _either_term(number, own, choose)  # type: ignore[assignment]  # compiled as well
-    return choose
+    return _nested(_either_term, before, choose)
 
 
 def _either_term(number: int, own: Callable[..., float], others: Callable[..., float]) -> Callable[..., float]:

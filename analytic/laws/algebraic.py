@@ -20,11 +20,12 @@ if TYPE_CHECKING:
 
 
 def constants(bearings: Bearings) -> dict[str, float]:
-    dk, alpha = bearings.ka - bearings.kb, bearings.alpha  # type: ignore[operator]  # `Bearings` has checked that its law's needs are given
-    x0 = 0.5 * ((bearings.delta_k / dk) ** (-1 / alpha) - 1)  # type: ignore[operator]  # as above; (13)
-    d0 = (1 + 2 * x0) ** (1 - alpha)  # type: ignore[operator]  # as above
-    f0 = 0.5 * dk * (d0 - 1) / (1 - alpha)  # type: ignore[operator]  # as above; (14)
-    return {"kb": bearings.kb, "dk": dk, "alpha": alpha, "x0": x0, "d0": d0, "f0": f0}
+    kb, alpha = bearings.given("kb"), bearings.given("alpha")
+    dk = bearings.ka - kb
+    x0 = 0.5 * ((bearings.delta_k / dk) ** (-1 / alpha) - 1)  # (13)
+    d0 = (1 + 2 * x0) ** (1 - alpha)
+    f0 = 0.5 * dk * (d0 - 1) / (1 - alpha)  # (14)
+    return {"kb": kb, "dk": dk, "alpha": alpha, "x0": x0, "d0": d0, "f0": f0}
 
 
 @njit(cache=True)

@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 
 
 def constants(bearings: Bearings) -> dict[str, float]:
-    dk = bearings.ka - bearings.kb  # type: ignore[operator]  # `Bearings` has checked that its law's needs are given
-    return {"kb": bearings.kb, "dk": dk, "f0": bearings.yield_force * (dk / bearings.ka)}  # type: ignore[operator, dict-item]  # as above
+    kb = bearings.given("kb")
+    dk = bearings.ka - kb
+    return {"kb": kb, "dk": dk, "f0": bearings.given("yield_force") * (dk / bearings.ka)}
 
 
 @njit(cache=True)

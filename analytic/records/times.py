@@ -38,9 +38,8 @@ def interval(where: str, token: str, unit: str = "") -> float:
     SceneError
         Not a number, not above 0, or a unit of time that is not known; names `where`.
     """
-    match = _STEP.fullmatch(token)
-    value = number(where, match[1] if match else token)
-    unit = match[2] or unit  # type: ignore[index]  # `number` refused what does not match
+    digits, own = match.groups() if (match := _STEP.fullmatch(token)) else (token, None)
+    value, unit = number(where, digits), own or unit
     if unit.lower() not in PER_SECOND:
         raise SceneError(
             where,
@@ -70,10 +69,12 @@ def resolved_step(stated: float | None, given: float | None) -> float:
     """
     if given is not None:
         given = usable("motion.dt", given)
-    if stated is None and given is None:
-        raise SceneError("motion.dt", None, "missing; the record states no sampling interval", "add dt, the step in s")
     if stated is None:
-        return given  # type: ignore[return-value]  # one of the two is given
+        if given is None:
+            raise SceneError(
+                "motion.dt", None, "missing; the record states no sampling interval", "add dt, the step in s"
+            )
+        return given
     if given is not None and abs(given - stated) > SAME * stated:
         raise SceneError(
             "motion.dt",

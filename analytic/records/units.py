@@ -125,10 +125,10 @@ def resolve(unit: Unit | None, given: str | None, no_unit: str) -> Unit:
     """
     if given is not None and given not in UNITS:
         raise SceneError("motion.units", given, "not a known unit", "choose one of " + ", ".join(UNITS))
-    if unit is None and given is None:
-        raise SceneError("motion.units", None, f"missing; {no_unit}", "add units, one of " + ", ".join(UNITS))
     if unit is None:
-        return Unit(given, UNITS[given], "units")  # type: ignore[arg-type, index]  # one of the two is given
+        if given is None:
+            raise SceneError("motion.units", None, f"missing; {no_unit}", "add units, one of " + ", ".join(UNITS))
+        return Unit(given, UNITS[given], "units")
     if given is not None and UNITS[given] != unit.factor:
         raise SceneError(
             "motion.units",

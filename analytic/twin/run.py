@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import platform
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,6 +29,18 @@ IMPACT_LIMIT = 50_000  # more in one run means impacts that never accumulate (re
 STALL_LIMIT = 50  # events in a row without progress in time
 STAND_POINTS = 33  # of a segment, at which a block that stands is looked at under two motions
 REST_HORIZON = 0.1  # a block rests only if its impacts end within this share of 1/omega_r
+
+
+@dataclass(frozen=True)
+class Event:
+    """A root of function(t, y) as `solve_ivp` reads it: terminal ends the stretch, direction is the slope's sign."""
+
+    function: Callable[..., float]
+    terminal: bool = True
+    direction: int = -1
+
+    def __call__(self, t: float, y: np.ndarray) -> float:
+        return self.function(t, y)
 
 
 class Run(Equations):
@@ -57,8 +70,7 @@ class Run(Equations):
 
     def go(self) -> Failure | None:
         """Run to the end or to overturning; a Failure, or None."""
-        duration: float = self.scene.duration  # type: ignore[assignment]  # `until_decided` gave it one
-        for _, end, ground, vertical in shared_segments(self.scene.motion, duration):
+        for _, end, ground, vertical in shared_segments(self.scene.motion, self.scene.end):
             self.vertical = vertical  # a_v(t) [m/s2] of the segment
             while self.t < end and self.overturning is None:
                 before = self.t
@@ -77,9 +89,11 @@ class Run(Equations):
         if self.side == 0:
             a = self.contact_acceleration(self.y, ground(self.t))
             if abs(a) > self.model.uplift_limit(self.vertical(self.t)):
-                return self.lift(a)  # type: ignore[func-returns-value]  # None: no failure
+                self.lift(a)
+                return None
             if not self.model.on_base:
-                return self.stand(end, ground)  # type: ignore[func-returns-value]  # None: no failure
+                self.stand(end, ground)
+                return None
         return self.integrate(end, ground)
 
     def lift(self, acceleration: float) -> None:
@@ -140,22 +154,22 @@ class Run(Equations):
         for (name, event), times in zip(events, solution.t_events, strict=True):
             if name == "unstable" and self.unstable is None and len(times):
                 self.unstable = float(times[0])
-            if event.terminal and len(times):  # type: ignore[attr-defined]  # set in `events`; scipy reports the first terminal event of a stretch only
+            if event.terminal and len(times):  # scipy reports the first terminal event of a stretch only
                 terminal = name
         if terminal:
             getattr(self, "at_" + terminal)(ground(self.t))
         return None
 
     @staticmethod
-    def states(events: Sequence[tuple[str, Callable[..., float]]], solution: Any) -> list[tuple[float, np.ndarray]]:
+    def states(events: Sequence[tuple[str, Event]], solution: Any) -> list[tuple[float, np.ndarray]]:
         """(t, y) in order of time: the steps, and between them turns of block and base, passages of the slenderness."""
         found = list(zip(solution.t, solution.y.T, strict=True))
         for (_, event), times, states in zip(events, solution.t_events, solution.y_events, strict=True):
-            if not event.terminal:  # type: ignore[attr-defined]  # set in `events`
+            if not event.terminal:
                 found += zip(times, states, strict=True)
         return sorted(found, key=lambda each: each[0])
 
-    def stepped_over(self, events: Sequence[tuple[str, Callable[..., float]]], solution: Any) -> float | None:
+    def stepped_over(self, events: Sequence[tuple[str, Event]], solution: Any) -> float | None:
         """Time of the first extreme beyond a threshold that was crossed twice within one step, or None.
 
         tilt below 0 where its rate is 0; |a_abs| above g tan(gamma), or the bearing beyond its corner, where the base
@@ -188,27 +202,28 @@ class Run(Equations):
 
     # events of the integration; "terminal" ones end a stretch and have an at_ method
 
-    def events(self, direction: float) -> list[tuple[str, Callable[..., float]]]:
+    def events(self, direction: float) -> list[tuple[str, Event]]:
         side, model, lifted, turned = self.side, self.model, self.lifted, self.turned
         found = []
         if side:
             # phi = 0 at take-off is a root too: it is divided out
-            found.append(("impact", lambda t, y: side * y[0] / (t - lifted) if t > lifted else 1.0, True, -1))
-            found.append(("overturning", lambda t, y: side * y[0] - math.pi / 2, True, 1))
-            found.append(("apex", lambda t, y: side * y[1], False, 0))
-            found.append(("unstable", lambda t, y: side * y[0] - model.gamma, False, 1))
+            found.append(("impact", Event(lambda t, y: side * y[0] / (t - lifted) if t > lifted else 1.0)))
+            found.append(("overturning", Event(lambda t, y: side * y[0] - math.pi / 2, direction=1)))
+            found.append(("apex", Event(lambda t, y: side * y[1], terminal=False, direction=0)))
+            found.append(("unstable", Event(lambda t, y: side * y[0] - model.gamma, terminal=False, direction=1)))
         else:
             limit, vertical = model.uplift_limit, self.vertical
-            found.append(("uplift", lambda t, y: abs(self.contact_acceleration(y, 0.0)) - limit(vertical(t)), True, 1))
+            found.append(
+                ("uplift", Event(lambda t, y: abs(self.contact_acceleration(y, 0.0)) - limit(vertical(t)), direction=1))
+            )
         if direction:
-            found.append(("reversal", lambda t, y: direction * y[3] if t > turned else 1.0, self.law.unit.memory, -1))
+            stops = self.law.unit.memory
+            found.append(("reversal", Event(lambda t, y: direction * y[3] if t > turned else 1.0, terminal=stops)))
             ahead = self.law.unit.begin(direction, self.hysteretic_force(self.y), 1.0, *self.law.constants)[2]
             self.corner = corner = direction * ahead
             if ahead < math.inf:
-                found.append(("corner", lambda t, y: direction * (y[4] - corner), True, 1))
-        for _, event, terminal, sense in found:
-            event.terminal, event.direction = terminal, sense  # type: ignore[attr-defined]  # scipy reads them there
-        return [(name, event) for name, event, _, _ in found]
+                found.append(("corner", Event(lambda t, y: direction * (y[4] - corner), direction=1)))
+        return found
 
     def at_overturning(self, ground: GroundFunction) -> None:
         self.overturning = self.t
@@ -276,7 +291,7 @@ class Run(Equations):
     def ledger(self) -> Energy:
         kinetic, potential = (now - then for now, then in zip(self.energies(), self.stored, strict=True))
         work = self.y[-3:].tolist() if self.model.on_base else [float(self.y[-1]), 0.0, 0.0]
-        return Energy(kinetic, potential, *work, float(self.impact_loss))  # type: ignore[call-arg]  # three of work
+        return Energy(*[kinetic, potential, *work, float(self.impact_loss)])
 
     def response(self, cpu_seconds: float, failure: Failure | None) -> Response:
         outcome = "rocks" if self.rocked else "stands"

@@ -89,8 +89,9 @@ def until(scene: Scene, aim: str) -> float:
         return reference.end.time
     cut = scene.with_(duration=reference.end.time)
     history = simulate(cut).history
-    column = np.abs(history.tilt if aim == "tilt" else history.base_displacement)  # type: ignore[union-attr]  # it has one
-    peak = float(history.time[column.argmax()])  # type: ignore[union-attr]  # as above
+    assert history is not None
+    column = np.abs(history.tilt if aim == "tilt" else history.base_displacement)
+    peak = float(history.time[column.argmax()])
     after = PERIODS * 2 * np.pi / scene.rocking_frequency
     return min(sensitivity_horizon(cut).horizon, peak + after)
 

@@ -17,6 +17,7 @@ from analytic.bearing import BearingLaw
 from analytic.motion import SampledMotion
 from analytic.rocking import RockingModel
 from analytic.twin import simulate_twin
+from analytic.twin.run import Event
 
 if TYPE_CHECKING:
     from .problems import Problem
@@ -78,10 +79,16 @@ def block_run(problem: Problem, method: str, rtol: float) -> Callable[[], tuple[
                 def impact(now, z):  # the root at take-off is divided out
                     return side * z[0] / (now - begin) if now > begin else 1.0  # noqa: B023
 
-                impact.terminal, impact.direction = True, -1  # type: ignore[attr-defined]  # scipy reads them there
                 step = {"first_step": min(first, stop - t)} if first else {}
                 solution = solve_ivp(
-                    (forced if pushed else free)(s), (t, stop), y, method, events=impact, rtol=rtol, atol=atol, **step
+                    (forced if pushed else free)(s),
+                    (t, stop),
+                    y,
+                    method,
+                    events=Event(impact),
+                    rtol=rtol,
+                    atol=atol,
+                    **step,
                 )
                 if solution.status < 0:
                     return np.array([math.nan]), impacts
@@ -159,14 +166,12 @@ def contact_run(problem: Problem, method: str, rtol: float) -> Callable[[], tupl
             def uplift(now, state):
                 return threshold - abs(force(state[0])) / M  # noqa: B023
 
-            reversal.terminal, reversal.direction = True, -1  # type: ignore[attr-defined]  # as above
-            uplift.terminal = True  # type: ignore[attr-defined]  # as above
             solution = solve_ivp(
                 derivative,
                 (t, duration),
                 y,
                 method,
-                events=(reversal, uplift),
+                events=(Event(reversal), Event(uplift, direction=0)),
                 rtol=rtol,
                 atol=atol,
                 first_step=min(dt, duration - t),

@@ -88,8 +88,10 @@ def _end(state, stop):
 
 def _end_children():
     psutil = sys.modules.get("psutil")  # where processes are started it has been imported; guarded runs end anyway
-    for child in psutil.Process().children(recursive=True) if psutil else ():
-        with contextlib.suppress(psutil.Error):  # type: ignore[union-attr]  # it was there for the loop
+    if psutil is None:
+        return
+    for child in psutil.Process().children(recursive=True):
+        with contextlib.suppress(psutil.Error):
             child.kill()
 
 

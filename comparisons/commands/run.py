@@ -59,16 +59,17 @@ def command(
     results: dict[str, str | Callable[[Path], object]] = {}
     if json_file:
         results[json_file] = Run(**response.to_json()).text()
-    if (csv or plot) and response.history is None:
+    history = response.history
+    if history is None and (csv or plot):
         print("there is no history to write", file=sys.stderr)
-        csv = plot = None
-    if csv:
-        results[csv] = response.history.to_csv  # type: ignore[union-attr]  # there is one, see above
-    if csv == STANDARD_OUTPUT:
+        csv = None
+    if history is not None and csv:
+        results[csv] = history.to_csv
+    if history is not None and csv == STANDARD_OUTPUT:
         table = io.StringIO()
-        response.history.to_csv(table)  # type: ignore[union-attr]  # as above
+        history.to_csv(table)
         results[csv] = table.getvalue()
-    if plot:
+    if history is not None and plot:
         from ..showing.plots import draw_histories, save
 
         figure = draw_histories(what, [response])

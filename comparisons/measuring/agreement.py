@@ -222,7 +222,7 @@ def first_boundary(*pulse: Any) -> float:
     """
 
     def falls(amplitude):
-        return _overturns("analytic", None, boundary_scene(*pulse, amplitude))  # type: ignore[call-arg]  # slenderness, shape, frequency
+        return _overturns("analytic", None, boundary_scene(*[*pulse, amplitude]))
 
     amplitudes = np.arange(1.0, 12.0, 0.02)
     over = next(k for k, a in enumerate(amplitudes) if falls(float(a)))
@@ -241,7 +241,7 @@ def boundary_shift(engine: str, variant: str, scenes: str, runs: dict[Any, Any])
         exact = first_boundary(slenderness, *pulse)
 
         def falls(shift, exact=exact, pulse=pulse):
-            return _overturns(engine, variant, boundary_scene(slenderness, *pulse, exact * (1 + shift)))  # type: ignore[call-arg]  # shape, frequency
+            return _overturns(engine, variant, boundary_scene(*[slenderness, *pulse, exact * (1 + shift)]))
 
         low, high = -1e-4, 1e-4
         while falls(low):

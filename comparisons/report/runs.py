@@ -203,7 +203,7 @@ def free_rocking_found(
     for row in rows:
         key = (row.case.solver, row.case.variant, row.case.tag["ground"], row.case.tag["slenderness"])
         groups.setdefault(key, []).append(row)
-    entries = [_restitution_entry(*key, members) for key, members in groups.items()]  # type: ignore[call-arg]  # a key has the four before
+    entries = [_restitution_entry(*[*key, members]) for key, members in groups.items()]
     arrays = {"curve/slenderness": np.linspace(0.05, 0.5, 91)}
     for ground in bases:
         scene = next(row.case.scene for row in rows if row.case.tag["ground"] == ground)
@@ -259,7 +259,7 @@ def _restitution_entry(solver, variant, ground, slenderness, members):
             {"start": row.case.tag["start"], "time": float(time), "restitution": float(error) + formula}
             for time, error in zip(times, errors["state"], strict=True)
         ]
-    errors = np.array([impact["restitution"] for impact in impacts]) - formula  # type: ignore[assignment]  # the name's second use
+    missed = np.array([impact["restitution"] for impact in impacts]) - formula
     simulated = sum(row.values["end"]["time"] for row in sound)
     return {
         "solver": solver,
@@ -273,9 +273,9 @@ def _restitution_entry(solver, variant, ground, slenderness, members):
         "failures": [row.failure for row in members if row.failed],
         "impacts": impacts,
         "warnings": list(dict.fromkeys(warning["text"] for row in sound for warning in row.values["warnings"])),
-        "bias": _of(errors, np.mean),
-        "rms": _of(errors, rms),
-        "worst": _of(np.abs(errors), np.max),  # type: ignore[call-overload]  # as above
+        "bias": _of(missed, np.mean),
+        "rms": _of(missed, rms),
+        "worst": _of(np.abs(missed), np.max),
         "jump_rms": _of(jumps, rms) if scene.base else None,
         "time_rms": _of(time_errors, rms),
         "settings": sound[0].values["settings"] if sound else None,

@@ -108,10 +108,11 @@ class Serial(Closing):
 
 def number_of(workers: int | None) -> int:
     """How many worker processes that is, one per core for None; raises `SettingError` if they are too many or few."""
-    most, number = max(MOST_WORKERS, os.cpu_count()), os.cpu_count() if workers is None else workers  # type: ignore[type-var]  # no system hides its cores
-    if not 1 <= number <= most:  # type: ignore[operator]  # as above
+    cores = os.cpu_count() or 1
+    most, number = max(MOST_WORKERS, cores), cores if workers is None else workers
+    if not 1 <= number <= most:
         raise SettingError(f"{workers} worker processes: give 1 to {most}")
-    return number  # type: ignore[return-value]  # as above
+    return number
 
 
 class Processes(Closing):

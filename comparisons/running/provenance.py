@@ -138,7 +138,7 @@ def write_result(
     path.parent.mkdir(parents=True, exist_ok=True)
     if arrays:
         beside = path.with_suffix(".npz")
-        np.savez_compressed(beside, **arrays)  # type: ignore[arg-type]  # no array is called allow_pickle
+        np.savez_compressed(beside, **dict(arrays))  # type: ignore[arg-type]  # no array is called allow_pickle
         content["arrays"] = {"file": beside.name, "digest": _digest(beside)}
     path.write_text(_layout(content))
     return path

@@ -115,7 +115,7 @@ def simulate(
         history,
         compare,
         time_limit=time_limit,
-        meanwhile=words and spinner(words),  # type: ignore[arg-type]  # no words: None or ""
+        meanwhile=spinner(words) if words else None,
     )
     if failure:
         from engines.observe import failed_response

@@ -59,10 +59,10 @@ def of_response(problem: Problem, response: Response) -> Observed:
     """What a `Response` with a history shows."""
     history = response.history
     states = {}
-    for t in problem.times if history is not None else ():
-        if t <= history.time[-1]:  # type: ignore[union-attr]  # there is one, see above
+    for t in problem.times:
+        if history is not None and t <= history.time[-1]:
             columns = (getattr(history, name) for name in State.__dataclass_fields__ if name != "time")
-            states[t] = State(t, *(float(np.interp(t, history.time, column)) for column in columns))  # type: ignore[union-attr]  # as above
+            states[t] = State(t, *(float(np.interp(t, history.time, column)) for column in columns))
     return Observed(
         response.outcome,
         response.impacts,

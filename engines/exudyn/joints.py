@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import time
+from array import array
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -220,7 +221,7 @@ def run(scene: Scene, settings: SwitchedJoints) -> Run:
     finally:
         release(stepper.model.mbs)
     cpu = time.process_time() - began
-    columns = map(np.array, zip(*stepper.rows, strict=True))
-    trace = make_trace(scene, *columns, stepper.z, stepper.model.bearing, 1e-9, 0.0)  # type: ignore[call-arg, arg-type]  # t, q and v
+    t, q, v = map(np.array, zip(*stepper.rows, strict=True))
+    trace = make_trace(scene, t, q, v, array("d", stepper.z), stepper.model.bearing, 1e-9, 0.0)
     ended = "overturned" if trace is not None and abs(trace.tilt[-1]) >= OVERTURNED else None
     return Run(trace, len(stepper.rows) - 1, cpu, failure, ended)

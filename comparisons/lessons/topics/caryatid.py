@@ -30,7 +30,7 @@ def scene_of(slenderness: float, stiffness: float | None, motion: Motion) -> Sce
     block = caryatid_block(slenderness)
     if stiffness is None:
         return Scene(block=block, motion=motion)
-    bearings = BEARINGS.model_copy(update={"ka": stiffness * BEARINGS.ka, "kb": stiffness * BEARINGS.kb})  # type: ignore[operator]  # kb is given
+    bearings = BEARINGS.model_copy(update={"ka": stiffness * BEARINGS.ka, "kb": stiffness * BEARINGS.given("kb")})
     return Scene(block=block, base=BASE, bearings=bearings, motion=motion)
 
 

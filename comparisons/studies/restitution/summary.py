@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 from analytic import simulate
 from analytic.caryatid import MASS, RADIUS
 from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
+from analytic.twin.run import Event
 from engines import get_engine
 
 from ...measuring.restitution import SLOWEST_IMPACT, impact_errors, rms, strong_impacts, worst
@@ -234,7 +235,8 @@ def _summaries(pooled, engines, grid):
                 if (points := pools(value, grid.ladder))
             ]
             points = [(row["value"], row["rms"]) for row in ladder if row["rms"]]
-            order = np.polyfit(*np.log(np.transpose(points)), 1)[0] if len(points) > 1 else None  # type: ignore[call-overload]  # of x and y
+            steps, errors = np.log(np.transpose(points)) if points else ((), ())
+            order = np.polyfit(steps, errors, 1)[0] if len(points) > 1 else None
             entries += [*ladder, {"part": "order", **given, "order": order and float(order)}]
     return entries
 
@@ -334,16 +336,14 @@ def damped_error(scene: Scene, damping: float) -> np.ndarray:
     def peak(t, y):
         return y[1]
 
-    landing.terminal = peak.terminal = True  # type: ignore[attr-defined]  # scipy reads them there
-    landing.direction = peak.direction = -1  # type: ignore[attr-defined]  # as above
     tilt, energies = abs(scene.start.tilt), []
     for _ in range(IMPACTS + 1):
         energies.append(math.cos(gamma - tilt) - math.cos(gamma))
-        down = solve_ivp(fall, (0, 30), (tilt, 0.0), events=landing, rtol=1e-9, atol=1e-12)
-        up = solve_ivp(fall, (0, 30), (1e-12, -e * down.y[1, -1]), events=peak, rtol=1e-9, atol=1e-12)
+        down = solve_ivp(fall, (0, 30), (tilt, 0.0), events=Event(landing), rtol=1e-9, atol=1e-12)
+        up = solve_ivp(fall, (0, 30), (1e-12, -e * down.y[1, -1]), events=Event(peak), rtol=1e-9, atol=1e-12)
         tilt = up.y[0, -1]
-    energies = np.array(energies)  # type: ignore[assignment]  # the list, as an array
-    return np.sqrt(energies[1:] / energies[:-1]) - e  # type: ignore[operator]  # as above
+    kept = np.array(energies)
+    return np.sqrt(kept[1:] / kept[:-1]) - e
 
 
 def friction_needed(scene: Scene) -> float:

@@ -84,7 +84,8 @@ def margin(scene: Scene, end: State | Mapping[str, Any]) -> float:
 
 def at_amplitude(scene: Scene, amplitude: float) -> Scene:
     """The scene with its pulse at another amplitude [m/s2]."""
-    return scene.with_(motion=replace(scene.motion, amplitude=float(amplitude)))  # type: ignore[arg-type]  # a pulse
+    assert isinstance(scene.motion, PulseMotion)
+    return scene.with_(motion=replace(scene.motion, amplitude=float(amplitude)))
 
 
 def trials() -> list[Trial]:
