@@ -1,10 +1,13 @@
-"""How far is a verdict from its nearest flip, in each quantity that is only known so well?
+"""By how much must a quantity change before a scene reaches another limit state, or its outcome changes?
 
-A verdict need not flip once: resonances leave narrow bands of another outcome far from the first boundary, and safe
-gaps beyond it. So each quantity is scanned, one at a time, at even relative changes, and every boundary between two
-changes is bisected. A band narrower than the scan's `step` may be missed; one of twice the step never is. Where such
-narrow bands show, the boundary is frayed (as a fractal is): the safe gap about the scene is then scanned again in steps
-`FINER` times smaller, and the margin says so, as still narrower bands may lie in it.
+A limit state is reached where the block lifts, where its peak tilt exceeds a share of the slenderness, where the base
+goes beyond the x_max of its bearings, or where the block overturns.
+
+An outcome need not change only once: resonances leave narrow bands of another outcome far from the first boundary, and
+safe gaps beyond it. So each quantity is scanned, one at a time, at even relative changes, and every boundary between
+two changes is bisected. A band narrower than the scan's `step` may be missed; one of twice the step never is. Where
+narrow bands of outcomes alternate, the boundary is frayed (as a fractal is): the safe gap about the scene is then
+scanned again in steps `FINER` times smaller, and the margin says so, as still narrower bands may lie in it.
 """
 
 from __future__ import annotations
@@ -25,7 +28,10 @@ from .rocking import RockingModel
 from .scene import Scene
 from .solver import simulate
 
+LIMIT_STATES = ("lifts", "tilt", "stroke", "overturns")
+TILT = 0.5  # share of the slenderness
 SPAN, STEP = 0.2, 5e-4
+LARGEST_SPAN = 9.0  # ten times the motion: a record of 0.1 g then has 1 g
 MOST_STEPS = 2e9  # of all runs, some twenty minutes on two cores
 BISECTIONS = 14  # of a step: boundaries are known to 6e-5 of it
 FINER = 20
@@ -33,17 +39,27 @@ FINER = 20
 
 @dataclass(frozen=True)
 class Band:
-    """Changes from `low` to `high` [relative] of a quantity with one outcome; `holds`: N > 0, and no sliding."""
+    """Changes from `low` to `high` [relative] of a quantity that reach the same of LIMIT_STATES.
+
+    holds: N > 0, and no sliding.
+    """
 
     low: float
     high: float
-    outcome: str
+    reached: tuple[str, ...]
     holds: bool
+
+    @property
+    def outcome(self) -> str:
+        """As `Response.outcome` names it."""
+        if "overturns" in self.reached:
+            return "overturns"
+        return "rocks" if "lifts" in self.reached else "stands"
 
 
 @dataclass(frozen=True)
 class Margin:
-    """What relative changes of one quantity do to the outcome; `value` is the scene's own, `bands` from low to high.
+    """What relative changes of one quantity do; `value` is the scene's own, `bands` from low to high.
 
     step: of the scan.
     """
@@ -62,43 +78,73 @@ class Margin:
     @property
     def down(self) -> float | None:
         """The nearest change below 0 with another outcome, None if there is none in the range scanned."""
-        return max((band.high for band in self._others if band.high <= 0), default=None)
+        return self._edges(_outcome)[0]
 
     @property
     def up(self) -> float | None:
         """The nearest change above 0 with another outcome, None if there is none in the range scanned."""
-        return min((band.low for band in self._others if band.low >= 0), default=None)
+        return self._edges(_outcome)[1]
 
     @property
     def nearest(self) -> float | None:
         """The nearer of `down` and `up`."""
-        return min((change for change in (self.down, self.up) if change is not None), key=abs, default=None)
+        return _nearer(self._edges(_outcome))
+
+    def reached(self, state: str) -> bool:
+        """Whether the scene as it is reaches one of LIMIT_STATES."""
+        return state in self._own.reached
+
+    def change(self, state: str) -> float | None:
+        """The nearest change at which one of LIMIT_STATES becomes reached, or is no longer; None as in `down`."""
+        return _nearer(self._edges(lambda band: state in band.reached))
 
     @property
     def leaves_model(self) -> float | None:
         """The nearest change at which the model no longer holds (N <= 0, or sliding); 0 where it does not hold now."""
-        outside = [band for band in self.bands if not band.holds]
-        changes = (0.0 if band.low <= 0 <= band.high else band.low if band.low > 0 else band.high for band in outside)
-        return min(changes, key=abs, default=None)
+        return _nearer(self._edges(lambda band: band.holds)) if self._own.holds else 0.0
+
+    @property
+    def outcomes(self) -> list[tuple[float, float, str]]:
+        """[(low, high, outcome)]: the bands, neighbours of one outcome as one."""
+        grouped = [(outcome, list(group)) for outcome, group in itertools.groupby(self.bands, _outcome)]
+        return [(group[0].low, group[-1].high, outcome) for outcome, group in grouped]
 
     @property
     def frayed(self) -> bool:
-        """Whether the outcome changes and changes back within two steps: a flip may lie nearer than `nearest` says."""
-        grouped = [list(group) for _, group in itertools.groupby(self.bands, lambda band: band.outcome)]
-        return any(group[-1].high - group[0].low < 2 * self.step for group in grouped[1:-1])
+        """Whether the outcome changes and changes back within two steps: it may change nearer than `nearest` says.
+
+        To rock on the way from standing to overturning is no such change, however short the way.
+        """
+        found = self.outcomes
+        return any(
+            high - low < 2 * self.step and not (outcome == "rocks" and before != after)
+            for (_, _, before), (low, high, outcome), (_, _, after) in zip(found, found[1:], found[2:], strict=False)
+        )
 
     def beyond(self, change: float) -> str:
         """The outcome on the far side of a boundary."""
-        edge = next(b for b in self._others if change in (b.low, b.high) and change * (b.low + b.high) > 0)
+        edge = next(b for b in self.bands if b.outcome != self.outcome and change == (b.low if change > 0 else b.high))
         return edge.outcome
 
     @property
     def _own(self):
         return next(band for band in self.bands if band.low <= 0 <= band.high)
 
-    @property
-    def _others(self):
-        return [band for band in self.bands if band.outcome != self.outcome]
+    def _edges(self, kind):
+        """The nearest changes below and above 0 at which the `kind` of a band is not that of the scene, or None."""
+        others = [band for band in self.bands if kind(band) != kind(self._own)]
+        return (
+            max((band.high for band in others if band.high <= 0), default=None),
+            min((band.low for band in others if band.low >= 0), default=None),
+        )
+
+
+def _outcome(band):
+    return band.outcome
+
+
+def _nearer(edges):
+    return min((change for change in edges if change is not None), key=abs, default=None)
 
 
 @dataclass(frozen=True)
@@ -170,22 +216,32 @@ QUANTITIES = {
 }
 
 
+def limit_states(scene: Scene) -> tuple[str, ...]:
+    """Those of LIMIT_STATES that a scene can reach: "stroke" needs bearings with an x_max."""
+    stroke = scene.bearings is not None and scene.bearings.x_max is not None
+    return tuple(state for state in LIMIT_STATES if stroke or state != "stroke")
+
+
 def margins(
     scene: Scene,
     *,
+    tilt: float = TILT,
     span: float = SPAN,
     step: float = STEP,
     workers: int | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> list[Margin]:
-    """How each quantity's relative changes of up to `span` change the outcome; a `Margin` each, the nearest first.
+    """What each quantity's relative changes of up to `span` do; a `Margin` each, the nearest change of outcome first.
 
-    Every run goes on until its outcome is decided. Changes that are no scene (e above 1, ka below kb) end the range.
+    Every run goes on until its outcome is decided. Changes that are no scene (e above 1, ka below kb) end the range;
+    downwards the last step clear of -1 does.
 
     Parameters
     ----------
+    tilt : float
+        Share of the slenderness that the peak tilt exceeds in the limit state "tilt"; above 0, up to 1.
     span, step : float
-        Largest relative change, and how far the scanned ones lie apart.
+        Largest relative change, up to 9, and how far the scanned ones lie apart.
     workers : int or None
         Threads; without it one per core. The result does not depend on it.
     progress : callable or None
@@ -194,12 +250,14 @@ def margins(
     Raises
     ------
     SettingError
-        span or step is out of range.
+        tilt, span or step is out of range.
     SceneError
         The scene is too stiff or too long for so many runs; names the part.
     """
-    if not 0 < span < 1:
-        raise SettingError(f"span = {span!r}: give the largest relative change, above 0 and below 1")
+    if not 0 < tilt <= 1:
+        raise SettingError(f"tilt = {tilt!r}: give a share of the slenderness, above 0 and up to 1")
+    if not 0 < span <= LARGEST_SPAN:
+        raise SettingError(f"span = {span!r}: give the largest relative change, above 0 and up to {LARGEST_SPAN:g}")
     if not 1e-6 <= step <= span:
         raise SettingError(
             f"step = {step!r}: give the relative distance of two changes, from 1e-6 to the span {span:g}"
@@ -207,6 +265,7 @@ def margins(
     scene = scene.with_(duration=None)
     count = math.floor(span / step * (1 + 1e-12))
     changes = step * np.arange(-count, count + 1)
+    changes = changes[1 + changes > 0.5 * step]  # nearer to -1 next to nothing is left of the quantity
     values = {name: value for name, each in QUANTITIES.items() if (value := each.value(scene)) is not None}
     _check_cost(scene, len(values) * len(changes))
     found = []
@@ -214,9 +273,9 @@ def margins(
         quantity = QUANTITIES[name]
         if progress:
             progress(name)
-        margin = Margin(name, float(value), quantity.unit, _bands(scene, name, changes, workers), step)
+        margin = Margin(name, float(value), quantity.unit, _bands(scene, name, changes, tilt, workers), step)
         if margin.frayed:
-            margin = replace(margin, bands=_bands(scene, name, _finer(margin, changes), workers))
+            margin = replace(margin, bands=_bands(scene, name, _finer(margin, changes), tilt, workers))
         found.append(margin)
     return sorted(found, key=lambda margin: math.inf if margin.nearest is None else abs(margin.nearest))
 
@@ -245,26 +304,31 @@ def contact_margins(scene: Scene) -> Contact:
 
 
 def _finer(margin, changes):
-    """The changes, and between the nearest flips steps `FINER` times smaller."""
-    low, high = (end if flip is None else flip for end, flip in ((changes[0], margin.down), (changes[-1], margin.up)))
+    """The changes, and between the nearest changes of the outcome steps `FINER` times smaller."""
+    low = changes[0] if margin.down is None else margin.down
+    high = changes[-1] if margin.up is None else margin.up
     counts = np.arange(math.ceil(FINER * low / margin.step), FINER * high / margin.step)
     return np.union1d(changes, margin.step / FINER * counts[counts % FINER != 0])
 
 
-def _bands(scene, name, changes, workers):
-    """Tuple of `Band` over the changes, their boundaries bisected."""
+def _bands(scene, name, changes, tilt, workers):
+    """Tuple of `Band` over the changes. Each state has its boundaries bisected: two may lie within one step."""
     changes, scenes = _scenes(scene, name, changes)
-    states = _states(scene, name, changes, scenes, workers)
-    edges = np.flatnonzero([one != other for one, other in zip(states[:-1], states[1:], strict=True)])
-    low, high = changes[edges], changes[edges + 1]
-    before = [states[edge] for edge in edges]
+    states = _states(scene, name, changes, scenes, tilt, workers)
+    edges, columns = np.nonzero(states[1:] != states[:-1])
+    low, high, before = changes[edges], changes[edges + 1], states[edges, columns]
     for _ in range(BISECTIONS if len(edges) else 0):
         middle = 0.5 * (low + high)
-        same = np.array([a == b for a, b in zip(_states(scene, name, middle, None, workers), before, strict=True)])
+        points, where = np.unique(middle, return_inverse=True)
+        same = _states(scene, name, points, None, tilt, workers)[where, columns] == before
         low, high = np.where(same, middle, low), np.where(same, high, middle)
-    limits = [changes[0], *(0.5 * (low + high)), changes[-1]]
-    kinds = [states[0], *(states[edge + 1] for edge in edges)]
-    return tuple(Band(float(a), float(b), *kind) for a, b, kind in zip(limits[:-1], limits[1:], kinds, strict=True))
+    boundaries = 0.5 * (low + high)
+    bands, state = [], states[0]
+    for a, b in itertools.pairwise([changes[0], *np.unique(boundaries), changes[-1]]):
+        state = state ^ np.isin(np.arange(len(state)), columns[boundaries == a])
+        reached = tuple(itertools.compress(LIMIT_STATES, state))
+        bands.append(Band(float(a), float(b), reached, bool(state[-1])))
+    return tuple(bands)
 
 
 def _scenes(scene, name, changes):
@@ -281,8 +345,8 @@ def _scenes(scene, name, changes):
     return np.array(ordered), [kept[change] for change in ordered]
 
 
-def _states(scene, name, changes, scenes, workers):
-    """[(outcome, whether the model holds)] at each change."""
+def _states(scene, name, changes, scenes, tilt, workers):
+    """(changes, LIMIT_STATES and one more): which are reached, and whether the model holds."""
     if scenes is None:
         scenes = [QUANTITIES[name].changed(scene, 1 + change) for change in changes]
     scales = 1 + changes if name == "motion" else None
@@ -290,6 +354,15 @@ def _states(scene, name, changes, scenes, workers):
     for index in np.flatnonzero(outcomes.failed):
         simulate(scenes[index], history=False)  # raises what is wrong
         raise SceneError(name, None, f"changed by {changes[index]:.2%} the analytic model cannot go on", "take less")
+    slenderness = np.array([each.block.slenderness for each in scenes])
+    farthest = scene.bearings.x_max if "stroke" in limit_states(scene) else math.inf
     limit = math.inf if scene.friction is None else scene.friction
-    holds = (outcomes.min_normal_ratio > 0) & ~(outcomes.friction_demand > limit)
-    return list(zip(outcomes.names.tolist(), holds.tolist(), strict=True))
+    return np.column_stack(
+        [
+            outcomes.lifted | outcomes.overturns,
+            (outcomes.peak_tilt > tilt * slenderness) | outcomes.overturns,  # a fall is not followed to its end
+            outcomes.peak_base_displacement > farthest,
+            outcomes.overturns,
+            (outcomes.min_normal_ratio > 0) & ~(outcomes.friction_demand > limit),
+        ]
+    )

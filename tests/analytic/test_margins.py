@@ -1,13 +1,26 @@
 """Margins against closed forms, and against scans by full runs."""
 
 import contextlib
+import itertools
 import math
 
 import numpy as np
 import pytest
 
 from analytic import Block, PulseMotion, Scene, SettingError, Start, load_scene, simulate
-from analytic.margins import FINER, QUANTITIES, STEP, Band, Margin, _finer, contact_margins, margins
+from analytic.margins import (
+    BISECTIONS,
+    FINER,
+    LIMIT_STATES,
+    QUANTITIES,
+    STEP,
+    Band,
+    Margin,
+    _finer,
+    contact_margins,
+    limit_states,
+    margins,
+)
 from comparisons.bench.random_scenes import random_scene
 from comparisons.studies.stability.cases import BLOCK, GAP, THRESHOLD
 
@@ -23,7 +36,7 @@ def by_name(scene, **keywords):
     return {margin.quantity: margin for margin in margins(scene, **keywords)}
 
 
-def test_a_released_block_flips_where_its_tilt_reaches_the_slenderness():
+def test_a_released_block_overturns_where_its_tilt_reaches_the_slenderness():
     scene = block_scene(start=Start(tilt=0.26))
     found = by_name(scene)
     assert found["start"].outcome == "rocks"
@@ -32,11 +45,23 @@ def test_a_released_block_flips_where_its_tilt_reaches_the_slenderness():
     assert found["start"].down is None
     assert found["slenderness"].down == pytest.approx(0.26 / 0.28 - 1, abs=1e-7)
     assert found["size"].nearest is None and len(found["size"].bands) == 1
+    assert found["size"].reached("tilt") and not found["size"].reached("overturns")
+    assert found["start"].change("tilt") is None and found["start"].change("lifts") is None
     assert "motion" not in found and "ka" not in found and "base mass" not in found
     assert next(iter(found.values())).nearest == found["slenderness"].nearest, "the nearest comes first"
 
 
-def test_a_standing_block_flips_at_its_uplift_acceleration():
+def test_a_released_block_keeps_within_a_limit_that_its_start_keeps():
+    """Each swing is smaller than the one before."""
+    scene = block_scene(start=Start(tilt=0.08))
+    found = by_name(scene, tilt=0.3)
+    assert not found["start"].reached("tilt")
+    assert found["start"].change("tilt") == pytest.approx(0.3 * 0.28 / 0.08 - 1, abs=1e-7)
+    assert found["slenderness"].change("tilt") == pytest.approx(0.08 / (0.3 * 0.28) - 1, abs=1e-7)
+    assert found["size"].change("tilt") is None and len(found["size"].bands) == 1
+
+
+def test_a_standing_block_rocks_from_its_uplift_acceleration_on():
     """The uplift acceleration of a block on rigid ground is g tan(slenderness); its friction demand is a/g."""
     a = 2.5
     scene = block_scene(motion=PulseMotion("rectangular", a, 12.0), friction=0.26)
@@ -46,6 +71,82 @@ def test_a_standing_block_flips_at_its_uplift_acceleration():
     assert found["slenderness"].down == pytest.approx(math.atan(a / G) / 0.28 - 1, abs=1e-7)
     assert found["motion"].leaves_model == pytest.approx(0.26 * G / a - 1, abs=1e-7)
     assert contact_margins(scene).friction_demand == pytest.approx(a / G, rel=1e-12)
+
+
+def test_a_wide_span_finds_the_uplift_at_several_times_the_motion():
+    """In one step the friction is overcome, the block lifts, exceeds half its slenderness and overturns."""
+    a, step = 0.5, 9.0 / 400
+    lift = G * math.tan(0.28) / a - 1
+    scene = block_scene(motion=PulseMotion("rectangular", a, 1.0), friction=math.tan(0.28) - 1e-4)
+    margin = by_name(scene, span=9.0, step=step)["motion"]
+    assert 4 < lift < 5 and margin.outcome == "stands" and not any(map(margin.reached, LIMIT_STATES))
+    assert margin.change("lifts") == margin.up == pytest.approx(lift, abs=step / 2**BISECTIONS)
+    assert margin.leaves_model == pytest.approx(scene.friction * G / a - 1, abs=step / 2**BISECTIONS)
+    assert margin.leaves_model < lift < margin.change("tilt") < margin.change("overturns") < lift + step
+    assert [outcome for _, _, outcome in margin.outcomes] == ["stands", "rocks", "overturns"] and not margin.frayed
+    assert margin.bands[0].low == pytest.approx(-43 * step, abs=1e-9), "44 leave less than half a step"
+    assert margin.bands[-1].high == 9.0
+
+
+@pytest.mark.parametrize("span, step", [(1.0, 0.0025), (2.0, 1 / 49), (9.0, 0.1)])
+def test_no_quantity_comes_to_nothing(span, step):
+    margin = by_name(block_scene(start=Start(tilt=0.05)), span=span, step=step)["start"]
+    assert margin.bands[0].low == pytest.approx(step - 1, abs=1e-9)
+
+
+@pytest.fixture(scope="module")
+def isolated():
+    """Under 1.6 times the shipped motion, where it rocks: (scene, {quantity: margin})."""
+    scene = load_scene("caryatid-isolated")
+    scene = scene.with_(motion=scene.motion.scaled(1.6), duration=None)
+    return scene, by_name(scene, tilt=0.3, span=0.8, step=0.02)
+
+
+def direct(scene, state, tilt):
+    """Whether a run of its own reaches a limit state."""
+    response = simulate(scene, history=False)
+    return {
+        "lifts": response.outcome != "stands",
+        "tilt": response.peak_tilt > tilt * scene.block.slenderness or response.outcome == "overturns",
+        "stroke": scene.bearings is not None and response.peak_base_displacement > scene.bearings.x_max,
+        "overturns": response.outcome == "overturns",
+    }[state]
+
+
+def changed(scene, name, change):
+    if name == "motion":
+        return scene.with_(motion=scene.motion.scaled(1 + change))
+    return QUANTITIES[name].changed(scene, 1 + change)
+
+
+@pytest.mark.parametrize("state", LIMIT_STATES)
+def test_runs_on_either_side_of_a_change_disagree(isolated, state):
+    scene, found = isolated
+    seen = {name: change for name, margin in found.items() if (change := margin.change(state)) is not None}
+    assert "motion" in seen and len(seen) > 1
+    for name, change in seen.items():
+        assert found[name].reached(state) == direct(scene, state, 0.3)
+        near, far = (direct(changed(scene, name, change * (1 + shift)), state, 0.3) for shift in (-1e-4, 1e-4))
+        assert (near, far) == (found[name].reached(state), not near), name
+
+
+def test_bands_are_what_runs_in_their_middle_reach(isolated):
+    scene, found = isolated
+    for name, margin in found.items():
+        for band in margin.bands:
+            middle = changed(scene, name, 0.5 * (band.low + band.high))
+            assert band.reached == tuple(state for state in LIMIT_STATES if direct(middle, state, 0.3)), name
+        for one, other in itertools.pairwise(margin.bands):
+            assert one.high == other.low and (one.reached, one.holds) != (other.reached, other.holds)
+
+
+def test_only_bearings_with_a_limit_have_a_stroke():
+    scene = load_scene("caryatid-isolated")
+    assert limit_states(scene) == LIMIT_STATES
+    without = scene.with_(bearings={"x_max": None})
+    assert limit_states(without) == limit_states(load_scene("caryatid-rigid")) == ("lifts", "tilt", "overturns")
+    wide = without.with_(motion=without.motion.scaled(3.0))
+    assert not any(margin.reached("stroke") for margin in margins(wide, span=0.01, step=5e-3))
 
 
 def test_changes_that_are_no_scene_end_the_range():
@@ -60,7 +161,10 @@ def test_an_isolated_scene_has_the_quantities_of_its_bearings():
     assert {"base mass", "ka", "kb", "alpha"} < set(found) and "yield force" not in found
 
 
-@pytest.mark.parametrize("keywords", [{"span": 0.0}, {"span": 1.0}, {"step": 0.0}, {"span": 0.01, "step": 0.1}])
+@pytest.mark.parametrize(
+    "keywords",
+    [{"span": 0.0}, {"span": 9.01}, {"step": 0.0}, {"span": 0.01, "step": 0.1}, {"tilt": 0.0}, {"tilt": 1.01}],
+)
 def test_settings_out_of_range_are_refused(keywords):
     with pytest.raises(SettingError):
         margins(block_scene(start=Start(tilt=0.1)), **keywords)
@@ -71,14 +175,48 @@ def test_a_narrow_band_frays_the_boundary():
     scene = Scene(block=BLOCK, motion=PulseMotion("one-sine", 1.1 * GAP * THRESHOLD, 7.8))
     fine = by_name(scene, span=0.16)["motion"]
     coarse = by_name(scene, span=0.16, step=0.04)["motion"]
-    assert [band.outcome for band in fine.bands] == ["overturns", "rocks", "overturns"] and not fine.frayed
+    assert [outcome for _, _, outcome in fine.outcomes] == ["overturns", "rocks", "overturns"] and not fine.frayed
     assert coarse.frayed and coarse.nearest == pytest.approx(fine.nearest, abs=3e-6)
     assert coarse.nearest == coarse.down and coarse.up is None
 
 
+STANDS, ROCKS, TILTS, OVERTURNS = (), ("lifts",), ("lifts", "tilt"), ("lifts", "tilt", "overturns")
+
+
+def banded(*bands):
+    """A margin with bands of (low, reached), the last up to 0.2."""
+    ends = [low for low, _ in bands[1:]] + [0.2]
+    parts = (Band(low, high, reached, holds=True) for (low, reached), high in zip(bands, ends, strict=True))
+    return Margin("size", 1.0, "m", tuple(parts))
+
+
+@pytest.mark.parametrize(
+    "second, third, fourth, frayed",
+    [
+        (ROCKS, STANDS, ROCKS, True),
+        (OVERTURNS, ROCKS, OVERTURNS, True),
+        (ROCKS, STANDS, OVERTURNS, True),
+        (STANDS, ROCKS, OVERTURNS, False),  # on the way
+        (OVERTURNS, ROCKS, STANDS, False),
+        (ROCKS, TILTS, ROCKS, False),  # one outcome
+    ],
+)
+def test_outcomes_that_alternate_fray_a_boundary(second, third, fourth, frayed):
+    margin = banded((-0.2, second), (0.05, third), (0.0504, fourth))
+    assert margin.frayed == frayed
+    assert len(margin.outcomes) == (1 if third is TILTS else 3)
+
+
+def test_changes_of_other_states_are_no_change_of_the_outcome():
+    margin = banded((-0.2, OVERTURNS), (-0.1, TILTS), (-0.05, ROCKS), (0.1, TILTS), (0.15, OVERTURNS))
+    assert (margin.down, margin.up, margin.nearest) == (-0.1, 0.15, -0.1)
+    assert margin.change("tilt") == -0.05 and margin.change("overturns") == -0.1 and margin.change("lifts") is None
+    assert margin.beyond(-0.1) == margin.beyond(0.15) == "overturns"
+    assert [outcome for _, _, outcome in margin.outcomes] == ["overturns", "rocks", "overturns"]
+
+
 def test_before_a_frayed_boundary_the_scan_is_finer():
-    bands = ((-0.2, -0.1, "overturns"), (-0.1, 0.05, "rocks"), (0.05, 0.0504, "overturns"), (0.0504, 0.2, "rocks"))
-    margin = Margin("size", 1.0, "m", tuple(Band(*band, holds=True) for band in bands))
+    margin = banded((-0.2, OVERTURNS), (-0.1, ROCKS), (0.05, OVERTURNS), (0.0504, ROCKS))
     assert margin.frayed
     coarse = STEP * np.arange(-400, 401)
     finer = _finer(margin, coarse)
@@ -89,11 +227,7 @@ def test_before_a_frayed_boundary_the_scan_is_finer():
 
 def run_at(scene, name, change):
     """The outcome of a full run with one quantity changed; ValueError where that is no scene."""
-    if name == "motion":
-        other = scene.with_(motion=scene.motion.scaled(1 + change))
-    else:
-        other = QUANTITIES[name].changed(scene, 1 + change)
-    return simulate(other, history=False).outcome
+    return simulate(changed(scene, name, change), history=False).outcome
 
 
 def scanned(scene, name, count, span=0.2):
@@ -106,9 +240,9 @@ def scanned(scene, name, count, span=0.2):
 
 
 def assert_scan_agrees(scene, margin, changes, outcomes):
-    """The nearest flip within 1 %, every gap of the scan wider than .1 % in the bands, each flip named a true one.
+    """The nearest change within 1 %, every gap of the scan wider than .1 % in the bands, each change named a true one.
 
-    At a frayed boundary both find bands between the other's runs: there no flip of the scan is nearer by 1 %, and no
+    At a frayed boundary both find bands between the other's runs: there no change of the scan is nearer by 1 %, and no
     stretch of it above .1 % is told otherwise.
     """
     bands = margin.bands
@@ -131,9 +265,9 @@ def assert_scan_agrees(scene, margin, changes, outcomes):
         assert margin.nearest is not None
         farther = abs(margin.nearest) - abs(nearest)
         assert (farther if margin.frayed else abs(farther)) <= max(0.01 * abs(nearest), spacing)
-    for flip in (margin.down, margin.up):
-        if flip is not None:  # nearer than the scan's, perhaps: between two of its runs
-            band = next(band for band in bands if flip in (band.low, band.high) and band.outcome != margin.outcome)
+    for edge in (margin.down, margin.up):
+        if edge is not None:  # nearer than the scan's, perhaps: between two of its runs
+            band = next(band for band in bands if edge in (band.low, band.high) and band.outcome != margin.outcome)
             assert run_at(scene, margin.quantity, 0.5 * (band.low + band.high)) == band.outcome
 
 
