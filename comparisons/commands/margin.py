@@ -1,4 +1,4 @@
-"""``rocking margin``: how far the verdict on a scene is from its nearest flip."""
+"""``rocking margin``: how far a scene is from other limit states and another outcome."""
 
 import dataclasses
 from collections.abc import Callable
@@ -12,7 +12,12 @@ LEAST_SPAN = 0.1  # per cent
 
 def command(
     scene: Annotated[str, typer.Argument(help="Scene file (TOML), or the name of a shipped scene.")],
-    span: Annotated[float, typer.Option(metavar="PERCENT", help="Largest change of a quantity.")] = 20.0,
+    span: Annotated[
+        float, typer.Option(metavar="PERCENT", help="Largest change of a quantity; up to 900, ten times its value.")
+    ] = 20.0,
+    tilt: Annotated[
+        float, typer.Option(metavar="SHARE", help="Limit of the peak tilt, as a share of the slenderness.")
+    ] = 0.5,
     plot: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw the outcomes over the changes (.png, .svg or .pdf).")
     ] = None,
@@ -20,45 +25,54 @@ def command(
         str | None, typer.Option("--json", metavar="FILE", help="Write the margins; - prints them.")
     ] = None,
 ) -> None:
-    """By how much must slenderness, restitution, motion, bearings ... change until the verdict flips?
+    """By how much must slenderness, restitution, motion, bearings ... change until the block lifts or overturns?
 
-    Each quantity is changed alone, in steps of a four-hundredth of the span, by the analytic model. The vertical
-    stiffness of bearings is taken as infinite. Example: rocking margin caryatid-isolated --plot margins.svg
+    Two limit states beside these are a peak tilt above --tilt, and a base beyond the x_max of its bearings.
+    Each quantity is changed alone, in steps of a four-hundredth of the span, by the analytic model. Changes that give
+    no scene (a restitution above 1, ka below kb) end its range. The vertical stiffness of bearings is taken as
+    infinite. Example: rocking margin caryatid-isolated --plot margins.svg
     """
     from analytic.errors import SettingError
-    from analytic.margins import contact_margins, margins
+    from analytic.margins import LARGEST_SPAN, contact_margins, limit_states, margins
     from analytic.scene_file import load_scene
 
     from ..running.files import check_writable, write_all
     from ..running.solving import compile_kernels, spinner
     from ..schemas.advice import Contact, Margin, Margins
 
-    if not LEAST_SPAN <= span < 100:
-        raise SettingError(f"--span {span:g}: give per cent, from {LEAST_SPAN:g} on and below 100")
+    if not LEAST_SPAN <= span <= 100 * LARGEST_SPAN:
+        raise SettingError(f"--span {span:g}: give per cent, from {LEAST_SPAN:g} to {100 * LARGEST_SPAN:g}")
+    if not 0 < tilt <= 1:
+        raise SettingError(f"--tilt {tilt:g}: give a share of the slenderness, above 0 and up to 1")
     check_writable([json_file], picture=plot, inputs=[scene])
     what = load_scene(scene)
     compile_kernels()
     with spinner(f"{what.name}: margins") as tell:
         nearest = margins(
-            what, span=span / 100, step=span / 100 / 400, progress=lambda name: tell(f"{what.name}: {name}")
+            what, tilt=tilt, span=span / 100, step=span / 100 / 400, progress=lambda name: tell(f"{what.name}: {name}")
         )
         contact = contact_margins(what)
     results: dict[str, str | Callable[[Path], object]] = {}
     if json_file:
-        found = [Margin.model_validate(margin, from_attributes=True) for margin in nearest]
-        spared = Contact(**dataclasses.asdict(contact))
-        form = Margins(scene=what.name, outcome=nearest[0].outcome, span=span / 100, margins=found, contact=spared)
+        form = Margins(
+            scene=what.name,
+            outcome=nearest[0].outcome,
+            tilt=tilt,
+            span=span / 100,
+            margins=[Margin.of(margin, limit_states(what)) for margin in nearest],
+            contact=Contact(**dataclasses.asdict(contact)),
+        )
         results[json_file] = form.text()
     if plot:
         from ..showing.margins import draw_margins
         from ..showing.plots import save
 
-        figure = draw_margins(what, nearest)
+        figure = draw_margins(what, nearest, tilt)
         results[plot] = lambda path: save(figure, path)
     problem = write_all(results)
     if json_file != "-":
         from ..showing.margins import print_margins
 
-        print_margins(what, nearest, contact, span)
+        print_margins(what, nearest, contact, span, tilt)
     if problem:
         raise problem

@@ -2,34 +2,52 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Self
+
 from pydantic import Field
 
 from .form import Form, Part
 
+if TYPE_CHECKING:
+    from analytic import margins
+
 
 class Band(Part):
-    """Relative changes from low to high with one outcome; holds: the contact holds as the model has it."""
+    """Relative changes from low to high. reached: the limit states there, of "lifts", "tilt" (the peak tilt exceeds
+    its share of the slenderness), "stroke" (the base goes beyond x_max) and "overturns"; holds: the contact holds as
+    the model has it."""
 
     low: float
     high: float
+    reached: list[str]
     outcome: str
     holds: bool
 
 
 class Margin(Part):
-    """Of one quantity, `value` as the scene has it. down, up: nearest change with another outcome; leaves_model:
-    nearest change at which the model no longer holds; null where there is none in the range scanned. frayed: the
-    outcome changes and changes back within two steps of the scan: a flip in a narrower band may lie nearer."""
+    """Of one quantity, `value` as the scene has it. changes: for each limit state of the scene the nearest change at
+    which it becomes reached, or is no longer; down, up: nearest change with another outcome; leaves_model: nearest
+    change at which the model no longer holds; null where there is none in the range scanned. frayed: the outcome
+    changes and changes back within two steps of the scan: it may change nearer, in a narrower band."""
 
     quantity: str
     value: float
     unit: str
     bands: list[Band]
+    changes: dict[str, float | None]
     down: float | None
     up: float | None
     nearest: float | None
     leaves_model: float | None
     frayed: bool
+
+    @classmethod
+    def of(cls, margin: margins.Margin, states: Sequence[str]) -> Self:
+        """The part of an `analytic.margins.Margin` with its changes of these limit states."""
+        own = {name: getattr(margin, name) for name in cls.model_fields if name != "changes"}
+        changes = {state: margin.change(state) for state in states}
+        return cls.model_validate({**own, "changes": changes}, from_attributes=True)
 
 
 class Contact(Part):
@@ -41,11 +59,13 @@ class Contact(Part):
 
 
 class Margins(Form):
-    """How far a scene's verdict is from its nearest flips. span: relative changes scanned, down and up."""
+    """How far a scene is from other limit states. tilt: the limit, a share of the slenderness; span: largest relative
+    change scanned, up and, above -1, down."""
 
-    schema_: str = Field(default="rocking margin 1", serialization_alias="schema")
+    schema_: str = Field(default="rocking margin 2", serialization_alias="schema")
     scene: str
     outcome: str
+    tilt: float
     span: float
     margins: list[Margin]
     contact: Contact

@@ -1,4 +1,4 @@
-"""The margins of a verdict, as a table for the terminal and as a picture."""
+"""The margins of a scene, as a table for the terminal and as a picture."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from analytic.margins import limit_states
+
 from ..running.readable import readable
 from .plots import TITLE_CHARACTERS
 
@@ -20,55 +22,75 @@ if TYPE_CHECKING:
     from analytic import Scene
     from analytic.margins import Contact, Margin
 
-# Okabe and Ito; the hatches tell them apart in print.
+# Okabe and Ito; hatches, and the lines' places, tell them apart in print.
 COLOURS = {"stands": ("#009E73", ""), "rocks": ("#F0E442", ".."), "overturns": ("#D55E00", "//"), "failed": ("0.4", "")}
 
+# Lines along a strip: colour, and where they begin.
+OUTSIDE, TILT, STROKE = ("#CC79A7", -0.43), ("#0072B2", 0.35), ("#56B4E9", 0.43)
 
-def print_margins(scene: Scene, margins: Sequence[Margin], contact: Contact, span: float) -> None:
-    """Print a row for each `Margin`, the nearest first, and what the contact has to spare."""
-    outcome, nearest = margins[0].outcome, margins[0]
-    table = Table(
-        title=Text(f"{readable(scene.name, TITLE_CHARACTERS)}: {outcome}"), box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0)
-    )
-    for name in ("quantity", "value", "flips below at", "flips above at", "flips", "left at"):
-        table.add_column(Text(name), justify="left" if name == "quantity" else "right", no_wrap=True)
-    table.caption = (
-        "Each quantity alone: slenderness at fixed R, mass and J_O; size at fixed mass and shape.\n"
-        f"flips: boundaries within ± {span:g} %; left at: from there on the model does not hold."
-    )
-    for margin in margins:
-        table.add_row(
-            margin.quantity,
-            f"{margin.value:.5g}" + (f" {margin.unit}" if margin.unit != "-" else ""),
-            _flip(margin, margin.down),
-            _flip(margin, margin.up),
-            str(sum(a.outcome != b.outcome for a, b in zip(margin.bands[:-1], margin.bands[1:], strict=True))),
-            _percent(margin.leaves_model),
+
+def print_margins(scene: Scene, margins: Sequence[Margin], contact: Contact, span: float, tilt: float) -> None:
+    """Print a row for each `Margin` that changes something, in its order, and what the contact has to spare."""
+    console, nearest = Console(highlight=False, markup=False), margins[0]
+    names = {state: name for state, name in _names(tilt).items() if state in limit_states(scene)}
+    now = ", ".join(name for state, name in names.items() if nearest.reached(state))
+    console.print(f"{readable(scene.name, TITLE_CHARACTERS)}: {nearest.outcome}\nnow: {now or 'no limit state'}")
+    rows = {margin: [margin.change(state) for state in names] for margin in margins}
+    rows = {margin: changes for margin, changes in rows.items() if any([*changes, margin.leaves_model])}
+    if rows:
+        console.print(_table(names, rows))
+        console.print(
+            "Each quantity alone, to the nearest change at which a limit state becomes reached, or no longer is. "
+            "Slenderness at fixed R, mass and J_O; size at fixed mass and shape."
+            + (" Left at: from there on the model does not hold." if _leaves(rows) else "")
         )
-    console = Console(highlight=False)
-    console.print(table)
+    if still := ", ".join(margin.quantity for margin in margins if margin not in rows):
+        console.print(f"No change of up to {span:g} % of {still} changes any of these: {', '.join(names.values())}.")
     if nearest.nearest is None:
-        console.print(f"No change of up to {span:g} % of any one quantity flips the verdict.", soft_wrap=True)
+        console.print(f"No change of up to {span:g} % of any one quantity changes the outcome.")
     else:
         console.print(
-            f"Nearest flip: {nearest.quantity} {_percent(nearest.nearest)}, the block then "
-            f"{nearest.beyond(nearest.nearest)}.",
-            soft_wrap=True,
+            f"Nearest change of the outcome: {nearest.quantity} {_percent(nearest.nearest)}, the block then "
+            f"{nearest.beyond(nearest.nearest)}."
         )
     if frayed := [margin for margin in margins if margin.frayed]:
         console.print(
-            f"Frayed in {', '.join(margin.quantity for margin in frayed)}: bands narrower than "
-            f"{200 * frayed[0].step:.2g} % alternate there, and still narrower ones may lie nearer than the flip that "
-            "is given: do not rest a decision on this margin.",
-            soft_wrap=True,
+            f"The outcomes are interleaved in {', '.join(margin.quantity for margin in frayed)}: bands narrower than "
+            f"{200 * frayed[0].step:.2g} % alternate there. Still narrower ones may lie nearer than the change that is "
+            "given: do not rest a decision on this margin."
         )
-    console.print(f"{_normal_words(contact)} {_friction_words(contact)}", soft_wrap=True)
+    console.print(f"{_normal_words(contact)} {_friction_words(contact)}")
     if scene.bearings is not None:
-        console.print("Assumed: the bearings are stiff vertically (real ones sway at 10 to 20 Hz).", soft_wrap=True)
+        console.print("Assumed: the bearings are stiff vertically (real ones sway at 10 to 20 Hz).")
 
 
-def draw_margins(scene: Scene, margins: Sequence[Margin]) -> Figure:
-    """Outcomes over the relative change of each quantity, a strip for each `Margin`: a matplotlib Figure."""
+def _names(tilt):
+    """{limit state: as it is called here}."""
+    return {"lifts": "lifts", "tilt": f"tilt > {tilt:g} γ", "stroke": "base > x_max", "overturns": "overturns"}
+
+
+def _leaves(margins):
+    return any(margin.leaves_model is not None for margin in margins)
+
+
+def _table(names, rows):
+    """rows: {margin: its change of each limit state}."""
+    outside = _leaves(rows)
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for name in ("quantity", "value", *names.values(), *(["left at"] if outside else [])):
+        heading = Text(name.replace(" > ", "\n> "))  # in two lines: 80 columns hold the widest numbers
+        table.add_column(heading, justify="left" if name == "quantity" else "right", no_wrap=True)
+    for margin, changes in rows.items():
+        value = f"{margin.value:.5g}" + (f" {margin.unit}" if margin.unit != "-" else "")
+        table.add_row(margin.quantity, value, *map(_percent, [*changes, *([margin.leaves_model] if outside else [])]))
+    return table
+
+
+def draw_margins(scene: Scene, margins: Sequence[Margin], tilt: float) -> Figure:
+    """Outcomes over the relative change of each quantity, a strip for each `Margin`: a matplotlib Figure.
+
+    Lines along a strip: where the peak tilt exceeds its limit, the base its own, and where the model does not hold.
+    """
     figure = Figure(figsize=(8, 1.5 + 0.42 * len(margins)), layout="constrained")
     axis = figure.subplots()
     for row, margin in enumerate(margins):
@@ -76,8 +98,8 @@ def draw_margins(scene: Scene, margins: Sequence[Margin]) -> Figure:
             colour, hatch = COLOURS[band.outcome]
             left, width = 100 * band.low, 100 * (band.high - band.low)
             axis.barh(row, width, left=left, height=0.7, color=colour, hatch=hatch, edgecolor="0.25", linewidth=0)
-            if not band.holds:
-                axis.barh(row - 0.39, width, left=left, height=0.08, color="#CC79A7")
+            for colour, place in _lines(band):
+                axis.barh(row + place, width, left=left, height=0.08, color=colour, align="edge")
         for change in (margin.down, margin.up):
             if change is not None:
                 _label(axis, row, change)
@@ -95,10 +117,18 @@ def draw_margins(scene: Scene, margins: Sequence[Margin]) -> Figure:
         for name, (colour, hatch) in COLOURS.items()
         if name in shown
     ]
-    if any(not band.holds for margin in margins for band in margin.bands):
-        handles.append(Patch(facecolor="#CC79A7", label="outside the model (N ≤ 0, or sliding)"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False)
+    names = _names(tilt)
+    labels = {TILT: names["tilt"], STROKE: names["stroke"], OUTSIDE: "outside the model (N ≤ 0, or sliding)"}
+    drawn = {line for margin in margins for band in margin.bands for line in _lines(band)}
+    handles += [Patch(facecolor=line[0], label=label) for line, label in labels.items() if line in drawn]
+    figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False)
     return figure
+
+
+def _lines(band):
+    """Those of OUTSIDE, TILT and STROKE that a band has."""
+    found = {OUTSIDE: not band.holds, TILT: "tilt" in band.reached, STROKE: "stroke" in band.reached}
+    return [line for line, shown in found.items() if shown]
 
 
 def _label(axis, row, change):
@@ -118,10 +148,6 @@ def _percent(change):
     if change is None:
         return ""
     return "now" if change == 0 else f"{100 * change:+.3g} %"
-
-
-def _flip(margin, change):
-    return "" if change is None else f"{_percent(change)} {margin.beyond(change)}"
 
 
 def _normal_words(contact):

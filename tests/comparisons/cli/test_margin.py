@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from analytic import PulseMotion, Scene
-from analytic.margins import contact_margins, margins
-from comparisons.showing.margins import print_margins
+from analytic import PulseMotion, Scene, load_scene, shipped_scenes
+from analytic.margins import Band, Margin, contact_margins, margins
+from comparisons.showing.margins import draw_margins, print_margins
 from comparisons.studies.stability.cases import BLOCK, GAP, THRESHOLD
 
 RELEASED = """
@@ -30,35 +30,112 @@ def scene_file(tmp_path):
     return write
 
 
-def test_margin_names_the_nearest_flip_and_draws_it(rocking, tmp_path, scene_file):
+def test_margin_names_the_nearest_change_of_the_outcome_and_draws_it(rocking, tmp_path, scene_file):
     picture, file = tmp_path / "margin.png", tmp_path / "margin.json"
     status, out, _ = rocking("margin", scene_file(0.26), "--plot", picture, "--json", file)
     assert status == 0
-    assert "Nearest flip: slenderness -7.14 %, the block then overturns" in " ".join(out.split())
+    words = " ".join(out.split())
+    assert "Nearest change of the outcome: slenderness -7.14 %, the block then overturns." in words
+    assert "released: rocks now: lifts, tilt > 0.5 γ" in words
+    assert "No change of up to 20 % of restitution, size changes any of these: lifts, tilt > 0.5 γ, overturns." in words
+    assert [line.split()[0] for line in out.splitlines() if "-7.14 %" in line or "+7.69 %" in line] == [
+        "slenderness",
+        "start",
+        "Nearest",
+    ]
     assert picture.read_bytes().startswith(b"\x89PNG")
     content = json.loads(file.read_text())
-    assert content["schema"] == "rocking margin 1" and content["outcome"] == "rocks"
+    assert content["schema"] == "rocking margin 2" and content["outcome"] == "rocks"
+    assert content["tilt"] == 0.5
     nearest = content["margins"][0]
     assert nearest["quantity"] == "slenderness"
     assert nearest["nearest"] == pytest.approx(0.26 / 0.28 - 1, abs=1e-7)
+    assert nearest["changes"] == {"lifts": None, "tilt": None, "overturns": nearest["nearest"]}
+    assert [(band["reached"], band["outcome"]) for band in nearest["bands"]] == [
+        (["lifts", "tilt", "overturns"], "overturns"),
+        (["lifts", "tilt"], "rocks"),
+    ]
     assert content["contact"]["friction"] == 0.3 and 0 < content["contact"]["friction_demand"] < 0.3
 
 
-def test_margin_says_when_nothing_flips_the_verdict(rocking, scene_file):
+def test_margin_says_when_nothing_changes_the_outcome(rocking, scene_file):
     status, out, _ = rocking("margin", scene_file(0.01), "--span", "5")
     assert status == 0
-    assert "No change of up to 5 % of any one quantity flips the verdict" in " ".join(out.split())
+    words = " ".join(out.split())
+    assert "No change of up to 5 % of any one quantity changes the outcome." in words
+    assert "No change of up to 5 % of slenderness, restitution, size, start changes any of these" in words
+
+
+def test_a_limit_of_the_tilt_is_ones_own(rocking, scene_file):
+    status, out, _ = rocking("margin", scene_file(0.03), "--tilt", "0.1")
+    assert status == 0
+    words = " ".join(out.split())
+    assert "released: rocks now: lifts, tilt > 0.1 γ" in words
+    assert "start 0.03 rad, rad/s -6.67 %" in words and "slenderness 0.28 rad +7.14 %" in words
 
 
 def test_a_span_out_of_range_is_one_message(rocking):
-    status, _, err = rocking("margin", "free-rocking-rigid", "--span", "200")
-    assert status == 2 and err == "Error: --span 200: give per cent, from 0.1 on and below 100\n"
+    status, _, err = rocking("margin", "free-rocking-rigid", "--span", "901")
+    assert status == 2 and err == "Error: --span 901: give per cent, from 0.1 to 900\n"
 
 
-def test_a_frayed_boundary_is_said(capsys):
+@pytest.mark.parametrize("share", ["0", "-0.5", "1.01", "nan"])
+def test_a_tilt_out_of_range_is_one_message(rocking, share):
+    status, _, err = rocking("margin", "free-rocking-rigid", "--tilt", share)
+    assert status == 2
+    assert err == f"Error: --tilt {float(share):g}: give a share of the slenderness, above 0 and up to 1\n"
+
+
+@pytest.mark.parametrize("name", shipped_scenes())
+@pytest.mark.parametrize("span", [0.2, 9.0])
+def test_what_is_printed_fits_80_columns(capsys, monkeypatch, name, span):
+    """Nothing is cut for it, either."""
+    monkeypatch.setenv("COLUMNS", "80")
+    scene = load_scene(name)
+    found = margins(scene, span=span, step=span / 8)
+    print_margins(scene, found, contact_margins(scene), 100 * span, 0.25)
+    shown = capsys.readouterr().out
+    assert max(map(len, shown.splitlines())) <= 80 and "…" not in shown
+
+
+def test_every_limit_state_has_its_column_and_the_widest_numbers_fit(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    scene = load_scene("caryatid-isolated")
+    found = Margin(
+        "yield force",
+        1.2345e-11,
+        "kg",
+        (
+            Band(-0.9, -0.12345, ("lifts",), False),
+            Band(-0.12345, -0.0012345, ("stroke", "tilt"), True),
+            Band(-0.0012345, 1.2345, ("lifts",), True),
+            Band(1.2345, 9.0, ("lifts", "tilt", "stroke", "overturns"), True),
+        ),
+    )
+    print_margins(scene, [found], contact_margins(scene), 900.0, 0.25)
+    shown = capsys.readouterr().out
+    assert max(map(len, shown.splitlines())) <= 80 and "…" not in shown
+    assert "now: lifts\n" in shown and "quantity value lifts > 0.25 γ > x_max overturns left at" in " ".join(
+        shown.split()
+    )
+    row = "yield force 1.2345e-11 kg -0.123 % -0.123 % -0.123 % +123 % -12.3 %"
+    assert row in " ".join(shown.split())
+
+
+def test_interleaved_outcomes_are_said(capsys):
     scene = Scene(block=BLOCK, motion=PulseMotion("one-sine", 1.1 * GAP * THRESHOLD, 7.8))
     for step, frayed in ((0.04, True), (0.01, False)):
         found = [margin for margin in margins(scene, span=0.16, step=step) if margin.quantity == "motion"]
-        print_margins(scene, found, contact_margins(scene), 16.0)
+        print_margins(scene, found, contact_margins(scene), 16.0, 0.5)
         words = " ".join(capsys.readouterr().out.split())
-        assert ("Frayed in motion: bands narrower than 8 % alternate" in words) == frayed
+        assert ("The outcomes are interleaved in motion: bands narrower than 8 % alternate" in words) == frayed
+
+
+def test_the_picture_marks_limit_states_where_they_are_reached():
+    reached = ((), ("lifts", "tilt"), ("lifts", "tilt", "stroke", "overturns"))
+    bands = [Band(low, low + 0.2, states, True) for low, states in zip((-0.1, 0.1, 0.3), reached, strict=True)]
+    figure = draw_margins(load_scene("caryatid-isolated"), [Margin("ka", 1.0, "N/m", tuple(bands))], 0.25)
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels == ["stands", "rocks", "overturns", "tilt > 0.25 γ", "base > x_max"]
+    lines = [patch for patch in figure.axes[0].patches if patch.get_height() < 0.1]
+    assert sorted((round(patch.get_x()), round(patch.get_width())) for patch in lines) == [(10, 20), (30, 20), (30, 20)]
