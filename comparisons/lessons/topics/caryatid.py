@@ -130,7 +130,7 @@ LESSON = Lesson(
         "*Isolation can do harm.* A long pulse that a free-standing statue does not even feel brings the base into "
         "resonance: "
         "choose the long pulse, with and without bearings.",
-        "*“Stands” is not “safe”.* Ask how much slenderness, motion or stiffness may change until the verdict flips: "
+        "*“Stands” is not “safe”.* Ask how much slenderness, motion or stiffness may change until the block lifts: "
         "`rocking margin caryatid-isolated` does.",
         "*One record is one record.* The same scale of another motion may give another verdict.",
     ),
