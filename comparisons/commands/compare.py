@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from math import nan
 from pathlib import Path
 from typing import Annotated, Any
@@ -16,6 +17,7 @@ from ..running.solving import (
     TIME_LIMIT_HELP,
     check_solver,
     check_time_limit,
+    near_motion,
     say,
     simulate,
     spinner,
@@ -48,7 +50,8 @@ def command(
     for name in engine or ():
         check_solver(name)
     what = load_scene(scene)
-    responses = _responses(what, engine, time_limit)
+    first, *others = _responses(what, engine, time_limit)
+    responses = [replace(first, warnings=(*first.warnings, *near_motion(what))), *others]
     horizons = {} if responses[0].failure else _sensitivity(what, responses, time_limit)
     horizon = min((each.horizon for each in horizons.values() if each.parts), default=None)
     results: dict[str, str | Callable[[Path], object]] = {}

@@ -3,6 +3,7 @@
 import io
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -13,6 +14,7 @@ from ..running.solving import (
     TIME_LIMIT_HELP,
     check_solver,
     check_time_limit,
+    near_motion,
     parse_settings,
     simulate,
     tell_failures,
@@ -56,6 +58,7 @@ def command(
         words=f"{what.name}: {engine}",
         compare=True,
     )
+    response = replace(response, warnings=(*response.warnings, *near_motion(what)))
     results: dict[str, str | Callable[[Path], object]] = {}
     if json_file:
         results[json_file] = Run(**response.to_json()).text()

@@ -19,7 +19,7 @@ from analytic.errors import SettingError
 from .readable import readable
 
 if TYPE_CHECKING:
-    from analytic import Response, SampledMotion, Scene
+    from analytic import Caution, Response, SampledMotion, Scene
 
 ANALYTIC = "analytic"
 TIME_LIMIT = 300.0  # s, of one run
@@ -130,6 +130,21 @@ def simulate(
         )
     odd = dict.fromkeys((*about_record(scene.motion), *response.warnings))
     return dataclasses.replace(response, warnings=tuple(odd))
+
+
+def near_motion(scene: Scene) -> tuple[Caution, ...]:
+    """`analytic.nearby.cliffs` of a scene with a motion, or that it was not looked for; none without a motion."""
+    from analytic.errors import SceneError
+    from analytic.nearby import SHARE, cliffs, nearby
+    from analytic.response import Caution
+
+    if scene.motion is None:
+        return ()
+    with spinner(f"{scene.name}: within {SHARE:.0%} of the motion"):
+        try:
+            return cliffs(scene, *nearby(scene))
+        except SceneError as error:
+            return (Caution("motion", f"What {SHARE:.0%} of the motion change was not looked for: {error.remedy}."),)
 
 
 def check_solver(name: str) -> None:

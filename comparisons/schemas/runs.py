@@ -49,9 +49,9 @@ class Failure(Part):
 
 
 class Warned(Part):
-    """A warning. kind: record, model, limit or engine; quantity, value, limit: what is beyond which limit; a text."""
+    """A warning. kind: record, model, limit, motion or engine; quantity, value, limit: what is beyond which limit; a text."""
 
-    kind: Literal["record", "model", "limit", "engine"]
+    kind: Literal["record", "model", "limit", "motion", "engine"]
     text: str
     quantity: str | None
     value: float | None

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from ..measuring.horizon import Horizon
 
 TITLE_CHARACTERS = 100
+MOTION = "motion"  # the kind of warning that is of the scene, not of a solver
 
 
 def _number(value, form=".4g"):
@@ -110,18 +111,24 @@ def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[st
 
 
 def show(table: Table, responses: Sequence[Response]) -> None:
-    """Print a table of responses, and below it in what each differs from the analytic model, and its warnings."""
+    """Print a table of responses, and below it in what each differs from the analytic model, and its warnings.
+
+    Where the result depends on little of the motion, that stands last, in bold.
+    """
     console = Console()
     console.print(table)
     for response in responses:
         for words in remarks(response):
             console.print(Text(readable(words)), soft_wrap=True)
+    for warning in (warning for response in responses for warning in response.warnings if warning.kind == MOTION):
+        console.print(Text(readable(str(warning)), "bold"), soft_wrap=True)
 
 
 def remarks(response: Response) -> list[str]:
     """Sentences: in what a response differs from the analytic model, or why it cannot be compared; and its warnings."""
     name, words = response.engine, differing(response.comparable, response.differences)
-    return [f"{name} {one}" for one in words] + [f"Warning, {name}: {warning}" for warning in response.warnings]
+    warnings = [warning for warning in response.warnings if warning.kind != MOTION]
+    return [f"{name} {one}" for one in words] + [f"Warning, {name}: {warning}" for warning in warnings]
 
 
 def engines_table(engines: Sequence[Engine]) -> Table:

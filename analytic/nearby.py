@@ -1,0 +1,74 @@
+"""What a run does where its motion is a few per cent weaker or stronger: does the outcome, or the peak tilt, depend on it?
+
+The motion at hand is one of many that could have come, and its scale is known to some per cent at best.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .batch import Outcomes, simulate_many
+from .budget import STEPS_PER_SAMPLE, too_long
+from .motion import SampledMotion
+from .response import Caution
+from .solver import simulate
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+SHARE = 0.05  # of the motion, either way: what the scale of a recorded motion is seldom known better than
+STEP = 5e-4  # between two changes, as in `margins`
+FOLD = 5.0  # a peak tilt that grows or falls so many times within SHARE is said to depend on it ...
+SEEN = 0.01  # ... unless it stays below this share of the slenderness, where no range is promised to an engine either
+MOST_STEPS = 1e8  # of all runs: a minute on two cores
+
+
+def nearby(scene: Scene, *, workers: int | None = None) -> tuple[np.ndarray, Outcomes]:
+    """(relative changes of the motion from -SHARE to SHARE, shape (n,); the `Outcomes` at each), 0 in the middle.
+
+    Raises
+    ------
+    SceneError
+        The scene costs too much to be run so often.
+    """
+    count = round(SHARE / STEP)
+    changes = STEP * np.arange(-count, count + 1)
+    steps = simulate(scene, history=False).steps
+    samples = len(scene.motion.samples) if isinstance(scene.motion, SampledMotion) else 0
+    if steps > STEPS_PER_SAMPLE * samples + MOST_STEPS / len(changes):
+        raise too_long(scene, f"{len(changes)} runs of {steps:.3g} steps are too many")
+    return changes, simulate_many([scene] * len(changes), scales=1 + changes, workers=workers)
+
+
+def cliffs(scene: Scene, changes: np.ndarray, found: Outcomes) -> tuple[Caution, ...]:
+    """Cautions where the outcome, or the peak tilt by `FOLD` times, depends on less than `SHARE` of the motion.
+
+    changes, found : as of `nearby`. value of a `Caution` is the nearest such change; none where nothing depends on it.
+    """
+    own = len(changes) // 2
+    names, ratios = found.names, found.peak_tilt / scene.block.slenderness
+    said = []
+    other = _nearest(changes, names != names[own])
+    if other is not None:
+        text = (
+            f"The outcome depends on less than {SHARE:.0%} of the motion: as it is the block {names[own]}, at "
+            f"{changes[other]:+.2%} it {names[other]}."
+        )
+        said.append(Caution("motion", text, "outcome", float(changes[other]), SHARE))
+    upright = (names != "overturns") & (names != "failed")
+    low, high = np.minimum(ratios, ratios[own]), np.maximum(ratios, ratios[own])
+    apart = _nearest(changes, upright & upright[own] & (high >= np.maximum(FOLD * low, SEEN)))
+    if apart is not None:
+        text = (
+            f"The peak tilt depends on less than {SHARE:.0%} of the motion: it is {ratios[own]:.3g} of the slenderness, and "
+            f"{ratios[apart]:.3g} at {changes[apart]:+.2%}."
+        )
+        said.append(Caution("motion", text, "peak tilt", float(changes[apart]), SHARE))
+    return tuple(said)
+
+
+def _nearest(changes: np.ndarray, wanted: np.ndarray) -> int | None:
+    """Index of the smallest change among those wanted, None if there is none."""
+    return min(np.flatnonzero(wanted).tolist(), key=lambda index: (abs(changes[index]), changes[index]), default=None)
