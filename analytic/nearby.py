@@ -1,4 +1,4 @@
-"""What a run does where its motion is a few per cent weaker or stronger: does the outcome, or the peak tilt, depend on it?
+"""What a run does where its motion is a little weaker or stronger: do outcome and peak tilt depend on it?
 
 The motion at hand is one of many that could have come, and its scale is known to some per cent at best.
 """
@@ -62,8 +62,8 @@ def cliffs(scene: Scene, changes: np.ndarray, found: Outcomes) -> tuple[Caution,
     apart = _nearest(changes, upright & upright[own] & (high >= np.maximum(FOLD * low, SEEN)))
     if apart is not None:
         text = (
-            f"The peak tilt depends on less than {SHARE:.0%} of the motion: it is {ratios[own]:.3g} of the slenderness, and "
-            f"{ratios[apart]:.3g} at {changes[apart]:+.2%}."
+            f"The peak tilt depends on less than {SHARE:.0%} of the motion: {ratios[own]:.3g} of the slenderness, "
+            f"and {ratios[apart]:.3g} at {changes[apart]:+.2%}."
         )
         said.append(Caution("motion", text, "peak tilt", float(changes[apart]), SHARE))
     return tuple(said)

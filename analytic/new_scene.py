@@ -125,16 +125,38 @@ def scene_text(
     if base is not None:
         lines += ["", "[base]", *_rows({"mass": (base.mass, "kg")})]
     if bearings is not None:
-        units = {"count": "", "ka": "N/m", "kb": "N/m", "alpha": "", "yield_force": "N", "damping": "N s/m"}
-        units["x_max"] = "m; what they are built for: a run that goes beyond it says so"
-        values = bearings.model_dump(exclude_defaults=True)
-        known = {key: (values[key], unit) for key, unit in units.items() if key in values}
-        lines += ["", "[bearings]  # per bearing", f"law = {_toml(bearings.law)}", *_rows(known)]
+        lines += ["", *_bearings(bearings)]
     if motion:
         lines += ["", "[motion]", *(f"{key} = {_toml(value)}" for key, value in motion.items())]
     if tilt is not None:
         lines += ["", "[start]", *_rows({"tilt": (tilt, "rad")})]
     return "\n".join(lines) + "\n"
+
+
+def with_bearings(text: str, bearings: Bearings) -> str:
+    """The text of a scene file with other bearings: its table [bearings] is replaced, or put at its end.
+
+    Examples
+    --------
+    >>> one = Bearings(law="linear", ka=1e4)
+    >>> "ka = 10000.0" in with_bearings("[base]\\nmass = 400.0\\n", one)
+    True
+    """
+    lines = text.rstrip().split("\n")
+    heads = [number for number, line in enumerate(lines) if line.lstrip().startswith("[")] + [len(lines)]
+    own = next((number for number in heads[:-1] if lines[number].split("#")[0].strip() == "[bearings]"), len(lines))
+    following = next((number for number in heads if number > own), len(lines))
+    before = lines[:own] if own < len(lines) else [*lines, ""]
+    after = ["", *lines[following:]] if following < len(lines) else []
+    return "\n".join([*before, *_bearings(bearings), *after]) + "\n"
+
+
+def _bearings(bearings):
+    units = {"count": "", "ka": "N/m", "kb": "N/m", "alpha": "", "yield_force": "N", "damping": "N s/m"}
+    units["x_max"] = "m; what they are built for: a run that goes beyond it says so"
+    values = bearings.model_dump(exclude_defaults=True)
+    known = {key: (values[key], unit) for key, unit in units.items() if key in values}
+    return ["[bearings]  # per bearing", f"law = {_toml(bearings.law)}", *_rows(known)]
 
 
 def _rows(values):

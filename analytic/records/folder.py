@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from ..errors import SceneError, SettingError
 from ..motion import SampledMotion
@@ -18,13 +15,14 @@ from ..pairing import paired
 
 if TYPE_CHECKING:
     from ..types import Motion
-    from . import Channel
 
 VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "dwn", "ver", "v", "z", "u")  # how files call it
 AXES = (("e", "ew", "e-w", "x", "1", "h1"), ("n", "ns", "n-s", "y", "2", "h2"))  # and the two horizontal components
 # The component in a file's name: a word of its own, after the letters of an instrument (HNE), or an azimuth.
-_WORD = re.compile(r"(?<![A-Za-z])(?:[BEHS][HNLG])?(E-?W|N-?S|U-?D|UP|VERT|VER|DWN|H[12]|[ENZXYUV12])(?![A-Za-z0-9])", re.I)
-_AZIMUTH = re.compile(r"(?<!\d)(\d{3})(?!\d)(?=[^\d]*$)")
+_WORD = re.compile(
+    r"(?<![A-Za-z])(?:[BEHS][HNLG])?(E-?W|N-?S|U-?D|UP|VERT|VER|DWN|H[12]|[ENZXYUV12])(?![A-Za-z0-9])", re.I
+)
+_AZIMUTH = re.compile(r"(?<!\d)(\d{3})(?=(\.\w+)*$)")
 
 
 def turned(first: SampledMotion, second: SampledMotion, angle: float, name: str) -> SampledMotion:
@@ -53,9 +51,11 @@ def directions_of(first: SampledMotion, second: SampledMotion, count: int, name:
 
 def reversed_sign(motion: Motion) -> Motion:
     """The horizontal motion with its sign changed; the vertical one stays."""
-    return replace(motion.scaled(-1.0), label=f"{motion.label}, reversed", vertical=motion.vertical) if isinstance(
-        motion, SampledMotion
-    ) else replace(motion, amplitude=-motion.amplitude)
+    return (
+        replace(motion.scaled(-1.0), label=f"{motion.label}, reversed", vertical=motion.vertical)
+        if isinstance(motion, SampledMotion)
+        else replace(motion, amplitude=-motion.amplitude)
+    )
 
 
 def folder_motions(
@@ -96,10 +96,12 @@ def folder_motions(
         elif [len(axis) for axis in axes] == [1, 1]:
             found[record] = directions_of(axes[0][0], axes[1][0], directions, record)
         else:
-            left += [f"{record}: no pair of horizontal components, so its direction stays"]
-            found[record] = whole
+            left += [f"{motion.label}: no pair of horizontal components, so its direction stays" for motion in whole]
+            found |= {motion.label: [motion] for motion in whole}
     if not found:
-        raise SettingError(f"--records {folder}: no horizontal ground motion in it; " + "; ".join(left[:3] or ["empty"]))
+        raise SettingError(
+            f"--records {folder}: no horizontal ground motion in it; " + "; ".join(left[:3] or ["empty"])
+        )
     return found, left
 
 

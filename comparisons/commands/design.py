@@ -1,18 +1,51 @@
-"""``rocking design``: bearings from target period, damping and displacement."""
+"""``rocking design``: bearings from target period, damping and displacement, or those that a scene needs."""
+
+from __future__ import annotations
 
 import dataclasses
-from typing import Annotated
+import math
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from ..running.motion_options import BothSigns, Directions, Records, motions_of
 from ..running.options import DEFINITION, OPTIONS, RATIO, told_by_options
+from ..running.record_options import Units
+
+if TYPE_CHECKING:
+    from analytic.bearing_scan import BearingScan
+
+LEAST, SOFTEST = "least-stroke", "softest"
+WRITTEN = ("ka", "kb", "alpha")  # numbers that a file holds to six digits
 
 
 def command(
-    period: Annotated[float, typer.Option(help="Secant period at x_max [s].")],
-    damping: Annotated[float, typer.Option(help="Share of critical damping at x_max, e.g. 0.30.")],
-    xmax: Annotated[float, typer.Option(help="Design displacement [m].")],
-    mass: Annotated[float, typer.Option(help="Block and base together [kg].")],
+    scene: Annotated[
+        str | None, typer.Argument(help="Scene file: the bearings it needs are looked for. Else give four targets.")
+    ] = None,
+    stroke: Annotated[float | None, typer.Option(help="Scene: largest displacement of the base [m].")] = None,
+    tilt: Annotated[
+        float, typer.Option(help="Scene: largest peak tilt over the slenderness; 0: the block must not lift.")
+    ] = 0.0,
+    write: Annotated[
+        Literal["least-stroke", "softest"] | None, typer.Option(help="Write these bearings into the scene file.")
+    ] = None,
+    plot: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Scene: draw the bearings that hold (.png, .svg or .pdf).")
+    ] = None,
+    records: Records = None,
+    both_signs: BothSigns = False,
+    directions: Directions = None,
+    units: Units = None,
+    period: Annotated[float | None, typer.Option(help="Target: secant period at x_max [s].")] = None,
+    damping: Annotated[
+        float | None, typer.Option(help="Target: share of critical damping at x_max, e.g. 0.30.")
+    ] = None,
+    xmax: Annotated[float | None, typer.Option(help="Target: design displacement [m].")] = None,
+    mass: Annotated[float | None, typer.Option(help="Target: block and base together [kg].")] = None,
     count: Annotated[int, typer.Option(help="Number of bearings.")] = 4,
     ratio: Annotated[float, typer.Option(help=RATIO)] = 10.0,
     definition: Annotated[str, typer.Option(help=DEFINITION)] = "equivalent",
@@ -20,10 +53,36 @@ def command(
         str | None, typer.Option("--json", metavar="FILE", help="Write the design; - prints it.")
     ] = None,
 ) -> None:
-    """Bearing constants for a target period, damping and displacement: Table 1(a) to Table 1(b), and back.
+    """Which bearings? Those that a scene needs within a stroke, or the constants for a period and damping.
 
+    Example: rocking design bust.toml --stroke 0.25 --plot bearings.svg --write least-stroke
     Example: rocking design --period 2 --damping 0.30 --definition paper --xmax 0.30 --mass 3384.05
     """
+    from analytic.errors import SettingError
+
+    targets = {"period": period, "damping": damping, "xmax": xmax, "mass": mass}
+    given = [f"--{name}" for name, value in targets.items() if value is not None]
+    made: dict[str, Any] = {"count": count, "stiffness_ratio": ratio, "definition": definition}
+    if scene is None:
+        of_scene = {"--stroke": stroke, "--write": write, "--plot": plot, "--records": records, "--tilt": tilt or None}
+        wrong = [name for name, value in of_scene.items() if value is not None]
+        if wrong:
+            raise SettingError(f"{wrong[0]}: belongs to a scene; rocking design SCENE --stroke METRES")
+        if len(given) < len(targets):
+            missing = next(f"--{name}" for name, value in targets.items() if value is None)
+            raise SettingError(f"{missing} is missing; give all four targets, or a scene and --stroke")
+        _by_targets(targets, made, json_file)
+        return
+    if given:
+        raise SettingError(f"{given[0]}: a target, which a scene leaves open; give --stroke alone")
+    if stroke is None:
+        raise SettingError("--stroke is missing: give the largest displacement of the base [m]")
+    many = {"records": records, "both_signs": both_signs, "directions": directions, "units": units}
+    _for_scene(scene, stroke, tilt, made, many, write, plot, json_file)
+
+
+def _by_targets(targets, made, json_file):
+    """Constants for four targets."""
     from rich.console import Console
 
     from analytic.design import design_bearings, properties
@@ -32,10 +91,9 @@ def command(
     from ..schemas.advice import Constants, Design, Properties
 
     check_writable([json_file])
+    mass, xmax = targets["mass"], targets["xmax"]
     with told_by_options(OPTIONS):
-        bearings = design_bearings(
-            mass, period, damping, xmax, count=count, stiffness_ratio=ratio, definition=definition
-        )
+        bearings = design_bearings(mass, targets["period"], targets["damping"], xmax, **made)
     back = properties(bearings, mass, xmax)
     if json_file:
         constants, given = Constants(**bearings.model_dump()), Properties(**dataclasses.asdict(back))
@@ -45,11 +103,118 @@ def command(
     console = Console(highlight=False, soft_wrap=True)
     console.print(
         f"[bold]ka[/bold] = {bearings.ka:.5g} N/m   [bold]kb[/bold] = {bearings.kb:.5g} N/m   "
-        f"[bold]alpha[/bold] = {bearings.alpha:.4f}   for each of {count} bearings"
+        f"[bold]alpha[/bold] = {bearings.alpha:.4f}   for each of {bearings.count} bearings"
     )
     console.print(
         f"back: secant period {back.period:.5g} s at {xmax:g} m ({back.period_kb:.4g} s with kb alone); "
         f"damping {back.damping_paper:.2%} as W_D/(2 pi E_s), "
         f"{back.damping_equivalent:.2%} as W_D/(4 pi E_s); "
         f"loss {back.cycle_loss:.5g} J a cycle and bearing"
+    )
+
+
+def _for_scene(place, stroke, tilt, made, many, write, plot, json_file):
+    """The bearings that hold, found by a scan; shown, drawn, written."""
+    from analytic.bearing_scan import scan_bearings
+    from analytic.errors import SettingError
+    from analytic.scene_file import load_scene, shipped_scenes
+
+    from ..running.files import check_writable, write_all
+    from ..running.solving import bar, compile_kernels
+    from ..showing.bearings import draw_bearings, nothing_holds, print_bearings
+
+    check_writable([json_file], picture=plot, inputs=[place])
+    scene = load_scene(place)
+    if write and place in shipped_scenes() and not Path(place).exists():
+        raise SettingError(f"--write: {place} comes with the package; give a scene file of your own")
+    groups = motions_of(scene, **many)
+    motions = [motion for group in groups.values() for motion in group]
+    compile_kernels(any(motion.vertical for motion in motions))
+    with bar(f"{scene.name}: bearings") as progress, told_by_options(OPTIONS | {"tilt": "--tilt"}):
+        scan = scan_bearings(scene, motions, stroke, tilt=tilt, **made, progress=progress)
+    chosen = {name: _chosen(scene, scan, point, motions) for name, point in _points(scan).items()}
+    if write and write not in chosen:
+        raise SettingError(f"--write: {nothing_holds(scan, stroke)}")
+    results: dict[str, str | Callable[[Path], object]] = {}
+    if json_file:
+        results[json_file] = _form(scene, stroke, tilt, motions, scan, chosen).text()
+    if plot:
+        from ..showing.plots import save
+
+        figure = draw_bearings(scene, scan, stroke, tilt)
+        results[plot] = lambda path: save(figure, path)
+    if write:
+        results[place] = _written(place, chosen[write]["bearings"])
+    problem = write_all(results)
+    if json_file != "-":
+        print_bearings(scene, scan, stroke, tilt, len(motions), chosen)
+        if write and not problem:
+            print(f"written into {place}: {write}")
+    if problem:
+        raise problem
+
+
+def _points(scan: BearingScan) -> dict[str, tuple[float, float]]:
+    """{name: (period, damping)} of the bearings that are named, none where none hold."""
+    points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}
+    return {name: point for name, point in points.items() if point is not None}
+
+
+def _chosen(scene, scan, point, motions):
+    """The bearings at a point, as they are written into a file, and what they do under the worst motion; run anew."""
+    from analytic import simulate_many
+    from analytic.scene import Bearings
+
+    exact = scan.made(*point)
+    bearings = Bearings(**{**exact.model_dump(), **{name: float(f"{exact.given(name):.6g}") for name in WRITTEN}})
+    runs = [scene.with_(bearings=bearings, motion=motion, duration=None) for motion in motions]
+    found = simulate_many(runs, contact=True)
+    uplift = found.friction_demand / math.tan(scene.block.slenderness)
+    return {
+        "period": point[0],
+        "damping": point[1],
+        "bearings": bearings,
+        "stroke": float(found.peak_base_displacement.max()),
+        "lifts": int(found.lifted.sum()),
+        "uplift": float(uplift.max()),
+        "tilt": float(found.peak_tilt.max()) / scene.block.slenderness,
+        "worst": motions[int(found.peak_base_displacement.argmax())].label,
+    }
+
+
+def _written(place, bearings):
+    """The text of the scene file with these bearings; refused where the file holds them in another form."""
+    from analytic.errors import SceneError, SettingError
+    from analytic.new_scene import with_bearings
+    from analytic.scene_file import load_scene
+
+    text = with_bearings(Path(place).read_text(encoding="utf-8-sig"), bearings)
+    with tempfile.NamedTemporaryFile("w", suffix=".toml", dir=Path(place).resolve().parent, encoding="utf-8") as part:
+        part.write(text)
+        part.flush()
+        try:
+            same = load_scene(part.name).bearings == bearings
+        except SceneError:
+            same = False
+    if not same:
+        raise SettingError(f"--write: {place} holds its bearings in another form; write them as a table [bearings]")
+    return text
+
+
+def _form(scene, stroke, tilt, motions, scan, chosen):
+    """What the JSON file holds."""
+    from ..schemas.advice import Constants, Suited, SuitedBearings
+
+    return SuitedBearings(
+        scene=scene.name,
+        stroke=stroke,
+        tilt=tilt,
+        motions=[motion.label for motion in motions],
+        periods=scan.periods.tolist(),
+        dampings=scan.dampings.tolist(),
+        holds=(scan.demand <= 1).tolist(),
+        chosen={
+            name: Suited(**{**one, "bearings": Constants(**one["bearings"].model_dump())})
+            for name, one in chosen.items()
+        },
     )

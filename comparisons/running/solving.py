@@ -294,6 +294,18 @@ def spinner(text: str) -> Iterator[Callable[[str], None]]:
 
 
 @contextlib.contextmanager
+def bar(text: str) -> Iterator[Callable[[int, int], None]]:
+    """A bar on standard error that is told (done, known of) while something runs; nothing where that is no terminal."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    console = Console(stderr=True)
+    with Progress(transient=True, console=console, disable=not console.is_terminal) as progress:
+        task = progress.add_task(readable(text, SHOWN), total=None)
+        yield lambda done, total: progress.update(task, completed=done, total=total)
+
+
+@contextlib.contextmanager
 def stdout_to_stderr() -> Iterator[None]:
     """What this process prints to standard output, compiled code included, goes to standard error."""
     sys.stdout.flush()

@@ -103,3 +103,34 @@ class Design(Form):
     schema_: str = Field(default="rocking design 1", serialization_alias="schema")
     bearings: Constants
     properties: Properties
+
+
+class Suited(Part):
+    """Bearings that hold under all motions: period [s] and equivalent damping at the stroke, and what the worst motion
+    does."""
+
+    period: float = Field(description="s, secant at the stroke")
+    damping: float = Field(description="share of critical at the stroke")
+    bearings: Constants
+    stroke: float = Field(description="m, peak base displacement")
+    lifts: int = Field(description="motions under which the block lifts")
+    uplift: float = Field(description="acceleration at the block's foot over that of uplift; at least 1 where it lifts")
+    tilt: float = Field(description="peak tilt over the slenderness")
+    worst: str = Field(description="motion of the largest displacement")
+
+
+class SuitedBearings(Form):
+    """Which bearings keep a scene's block from lifting (or its tilt within a limit) and its base within a stroke.
+
+    holds: a row for each damping, a column for each period [s]. chosen: "least-stroke" and "softest", none where
+    nothing holds."""
+
+    schema_: str = Field(default="rocking bearings 1", serialization_alias="schema")
+    scene: str
+    stroke: float = Field(description="m, allowed")
+    tilt: float = Field(description="allowed, over the slenderness; 0: no lift")
+    motions: list[str]
+    periods: list[float]
+    dampings: list[float]
+    holds: list[list[bool]]
+    chosen: dict[str, Suited]

@@ -49,7 +49,7 @@ class Failure(Part):
 
 
 class Warned(Part):
-    """A warning. kind: record, model, limit, motion or engine; quantity, value, limit: what is beyond which limit; a text."""
+    """A warning. kind: record, model, limit, motion or engine; quantity, value, limit: what is beyond which limit."""
 
     kind: Literal["record", "model", "limit", "motion", "engine"]
     text: str

@@ -6,14 +6,14 @@ import pytest
 
 from comparisons.advice import Choice
 from comparisons.running.provenance import PROJECT_FOLDER
-from comparisons.schemas.advice import Design, Margins
+from comparisons.schemas.advice import Design, Margins, SuitedBearings
 from comparisons.schemas.inputs import New, Record
 from comparisons.schemas.results import Report, Sheet, Verification
 from comparisons.schemas.runs import Comparison, Run
 from comparisons.sheet.score import Score
 
 FOLDER = PROJECT_FOLDER / "comparisons" / "schemas"
-FORMS = (Choice, Comparison, Design, Margins, New, Record, Report, Run, Score, Sheet, Verification)
+FORMS = (Choice, Comparison, Design, Margins, New, Record, Report, Run, Score, Sheet, SuitedBearings, Verification)
 
 
 def name(form):

@@ -1,0 +1,51 @@
+"""The many motions a scene is tried under, the same options in every command."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from analytic import Scene
+    from analytic.types import Motion
+
+Records = Annotated[
+    str | None, typer.Option(metavar="FOLDER", help="Also under the records in this folder, as they are recorded.")
+]
+BothSigns = Annotated[bool, typer.Option("--both-signs", help="Also under every motion with its sign changed.")]
+Directions = Annotated[
+    int | None,
+    typer.Option(
+        metavar="NUMBER", help="Under so many directions of each record's two horizontal components, over half a turn."
+    ),
+]
+
+
+def motions_of(
+    scene: Scene, records: str | None, both_signs: bool, directions: int | None, units: str | None = None
+) -> dict[str, list[Motion]]:
+    """{record: its motions}, the scene's own first; what is left out of a folder is said.
+
+    Raises
+    ------
+    SettingError
+        No such folder, no motion in it, or directions without a folder.
+    """
+    from analytic.errors import SettingError
+    from analytic.records.folder import folder_motions, reversed_sign
+
+    from .solving import say
+
+    if directions is not None and records is None:
+        raise SettingError(f"--directions {directions}: give the folder of the records with --records")
+    found: dict[str, list[Motion]] = {} if scene.motion is None else {scene.motion.label: [scene.motion]}
+    if records is not None:
+        others, left = folder_motions(records, directions=directions, units=units)
+        for line in left:
+            say(line)
+        for name, motions in others.items():
+            found.setdefault(name, []).extend(motions)
+    if both_signs:
+        found = {name: [*motions, *map(reversed_sign, motions)] for name, motions in found.items()}
+    return found

@@ -1,0 +1,99 @@
+"""The bearings that a scene needs, as a table for the terminal and as a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from ..running.readable import readable
+from .plots import TITLE_CHARACTERS
+
+if TYPE_CHECKING:
+    from analytic import Scene
+    from analytic.bearing_scan import BearingScan
+
+HELD, LIMIT = "#009E73", "#D55E00"  # Okabe and Ito
+
+
+def print_bearings(
+    scene: Scene, scan: BearingScan, stroke: float, tilt: float, motions: int, chosen: Mapping[str, Mapping[str, Any]]
+) -> None:
+    """Print the bearings named, a column each, or how near the best ones come where none hold."""
+    console = Console(highlight=False)
+    console.print(Text(f"{readable(scene.name, TITLE_CHARACTERS)}: {_wanted(stroke, tilt)}; motions: {motions}"))
+    if not chosen:
+        console.print(nothing_holds(scan, stroke))
+        return
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    table.add_column("bearings")
+    if len({(one["period"], one["damping"]) for one in chosen.values()}) == 1:
+        chosen = {" and ".join(chosen): next(iter(chosen.values()))}
+    for name in chosen:
+        table.add_column(name, justify="right")
+    rows = {
+        "secant period at the stroke [s]": "{period:.3g}",
+        "equivalent damping at the stroke": "{damping:.3g}",
+        "ka of each [N/m]": "{bearings.ka:.6g}",
+        "kb of each [N/m]": "{bearings.kb:.6g}",
+        "alpha": "{bearings.alpha:.6g}",
+        "base displacement, worst motion [m]": "{stroke:.4g}",
+        "acceleration over that of uplift": "{uplift:.3g}",
+        "peak tilt / slenderness": "{tilt:.3g}",
+    }
+    for label, form in rows.items():
+        table.add_row(Text(label), *(form.format(**one) for one in chosen.values()))
+    console.print(table)
+    console.print(
+        f"Of bearings with {scan.periods[0]:g} to {scan.periods[-1]:g} s and {scan.dampings[0]:.0%} to "
+        f"{scan.dampings[-1]:.0%}, {np.mean(scan.demand <= 1):.0%} hold."
+    )
+
+
+def nothing_holds(scan: BearingScan, stroke: float) -> str:
+    """That no bearings hold, and which come nearest."""
+    period, damping = scan.nearest
+    row, column = np.abs(scan.dampings - damping).argmin(), np.abs(scan.periods - period).argmin()
+    return (
+        f"no bearings of {scan.periods[0]:g} to {scan.periods[-1]:g} s and {scan.dampings[0]:.0%} to "
+        f"{scan.dampings[-1]:.0%} hold. Nearest: {period:.3g} s with {damping:.3g}, at {scan.demand[row, column]:.3g} "
+        f"times a limit, the base moving {scan.stroke[row, column]:.3g} m of {stroke:g}. Allow more stroke, or --tilt."
+    )
+
+
+def draw_bearings(scene: Scene, scan: BearingScan, stroke: float, tilt: float) -> Figure:
+    """The region of period and damping that holds, and the points named: a matplotlib Figure."""
+    figure = Figure(figsize=(7, 4.5), layout="constrained")
+    axis = figure.subplots()
+    shown = np.clip(scan.demand, 0, 3)
+    axis.contourf(scan.periods, 100 * scan.dampings, shown, [0, 1], colors=[HELD], alpha=0.35)
+    axis.contour(scan.periods, 100 * scan.dampings, shown, [1], colors=[HELD], linewidths=1.5)
+    lines = axis.contour(scan.periods, 100 * scan.dampings, shown, [1.25, 1.5, 2], colors="0.5", linewidths=0.8)
+    axis.clabel(lines, fmt="%g", fontsize="small")
+    for name, point, marker in (("least stroke", scan.least_stroke, "o"), ("softest", scan.softest, "D")):
+        if point is not None:
+            label = f"{name}: {point[0]:.3g} s, {point[1]:.1%}"
+            axis.plot(point[0], 100 * point[1], marker, color="black", fillstyle="none", label=label, clip_on=False)
+    axis.set_xscale("log")
+    ticks = [t for t in (0.3, 0.5, 0.7, 1, 1.5, 2, 3, 4, 5, 7, 10) if scan.periods[0] <= t <= scan.periods[-1] * 1.001]
+    axis.set_xticks(ticks, [f"{tick:g}" for tick in ticks], minor=False)
+    axis.minorticks_off()
+    axis.set_xlabel(f"secant period at {stroke:g} m [s]")
+    axis.set_ylabel(f"equivalent damping at {stroke:g} m [%]")
+    axis.set_title(f"{readable(scene.name, TITLE_CHARACTERS)}: {_wanted(stroke, tilt)}", loc="left", fontsize="medium")
+    handles = [Patch(facecolor=HELD, alpha=0.35, label="hold"), *axis.get_legend_handles_labels()[0]]
+    lines_label = Patch(facecolor="none", edgecolor="0.5", label="times the nearer limit")
+    figure.legend(handles=[*handles, lines_label], loc="outside lower center", ncols=4, frameon=False, fontsize="small")
+    return figure
+
+
+def _wanted(stroke, tilt):
+    limit = "no uplift" if tilt == 0 else f"tilt up to {tilt:g} of the slenderness"
+    return f"bearings for {limit} within {stroke:g} m"

@@ -1,0 +1,114 @@
+"""The bearings that hold, against single runs at random points."""
+
+import math
+
+import numpy as np
+import pytest
+
+from analytic import Bearings, SceneError, SettingError, load_scene, simulate, simulate_many, synthetic_motion
+from analytic.bearing_scan import DAMPING_STEP, PERIOD_STEP, scan_bearings
+from analytic.design import design_bearings, properties
+from comparisons.running.provenance import commit_seed
+
+SCENE = load_scene("caryatid-isolated")
+POINTS = 400
+
+
+def held(scene, motions, points, stroke, tilt=0.0):
+    """Whether bearings designed anew for each (period, damping) hold under all motions."""
+    holds = np.ones(len(points), dtype=bool)
+    designs = [design_bearings(scene.total_mass, period, damping, stroke) for period, damping in points]
+    for motion in motions:
+        found = simulate_many([scene.with_(bearings=one, motion=motion, duration=None) for one in designs])
+        calm = ~found.lifted if tilt == 0 else found.peak_tilt <= tilt * scene.block.slenderness
+        holds &= calm & ~found.failed & (found.peak_base_displacement <= stroke)
+    return holds
+
+
+@pytest.mark.parametrize(("stroke", "tilt", "scale"), [(0.25, 0.0, 1.0), (0.3, 0.0, 1.2), (0.3, 0.2, 1.5)])
+def test_the_region_is_that_of_single_runs_but_within_one_per_cent_of_its_edge(stroke, tilt, scale):
+    motions = [synthetic_motion().scaled(scale), synthetic_motion(seed=7).scaled(scale)]
+    scan = scan_bearings(SCENE, motions, stroke, tilt=tilt)
+    random = np.random.default_rng(commit_seed())
+    ends = np.log(scan.periods[[0, -1]])
+    points = np.column_stack(
+        [np.exp(random.uniform(*ends, POINTS)), random.uniform(scan.dampings[0], scan.dampings[-1], POINTS)]
+    )
+    truth = held(SCENE, motions, points, stroke, tilt)
+    assert 0.02 * POINTS < truth.sum() < 0.98 * POINTS
+    for (period, damping), holds in zip(points, truth, strict=True):
+        if scan.holds(period, damping) != holds:
+            about = [
+                scan.holds(period * (1 + PERIOD_STEP * i), damping + DAMPING_STEP * k)
+                for i in (-1, 0, 1)
+                for k in (-1, 0, 1)
+            ]
+            assert holds in about
+
+
+@pytest.mark.parametrize("name", ["least_stroke", "softest"])
+def test_the_bearings_named_hold_in_a_run_of_their_own(name):
+    scan = scan_bearings(SCENE, [SCENE.motion], 0.25)
+    point = getattr(scan, name)
+    bearings = scan.made(*point)
+    assert properties(bearings, SCENE.total_mass, 0.25).period == pytest.approx(point[0], rel=1e-3)
+    assert properties(bearings, SCENE.total_mass, 0.25).damping_equivalent == pytest.approx(point[1], rel=1e-3)
+    response = simulate(SCENE.with_(bearings=bearings, duration=None), history=False)
+    assert response.outcome == "stands"
+    assert response.peak_base_displacement <= 0.25
+
+
+def test_least_stroke_is_the_least_and_softest_the_longest():
+    scan = scan_bearings(SCENE, [SCENE.motion], 0.25)
+    run = ~np.isnan(scan.stroke) & (scan.demand <= 1)
+    period, damping = scan.least_stroke
+    row, column = int(np.abs(scan.dampings - damping).argmin()), int(np.abs(scan.periods - period).argmin())
+    assert scan.stroke[row, column] == scan.stroke[run].min()
+    assert scan.softest[0] == scan.periods[run.any(axis=0)].max()
+
+
+def test_one_more_motion_leaves_no_more_bearings():
+    one = scan_bearings(SCENE, [SCENE.motion], 0.25).demand
+    both = scan_bearings(SCENE, [SCENE.motion, synthetic_motion(seed=3).scaled(1.3)], 0.25).demand
+    assert ((both <= 1) & (one > 1)).sum() == 0
+    assert ((both > 1) & (one <= 1)).sum() > 0
+
+
+def test_where_nothing_holds_the_nearest_is_named():
+    scan = scan_bearings(SCENE, [SCENE.motion], 0.02)
+    assert scan.least_stroke is scan.softest is None
+    row = int(np.abs(scan.dampings - scan.nearest[1]).argmin())
+    column = int(np.abs(scan.periods - scan.nearest[0]).argmin())
+    assert scan.demand[row, column] > 1
+    assert not scan.holds(*scan.nearest)
+    assert not scan.holds(99.0, 0.1)
+
+
+def test_progress_ends_at_the_number_of_runs():
+    told = []
+    scan_bearings(SCENE, [SCENE.motion], 0.25, progress=lambda done, known: told.append((done, known)))
+    assert told[-1][0] == told[-1][1]
+    assert all(done <= known for done, known in told)
+
+
+@pytest.mark.parametrize(
+    ("scene", "motions", "options", "words"),
+    [
+        (load_scene("caryatid-rigid"), 1, {}, "base"),
+        (SCENE, 0, {}, "no motion"),
+        (SCENE, 1, {"stroke": -1.0}, "stroke"),
+        (SCENE, 1, {"stroke": math.nan}, "stroke"),
+        (SCENE, 1, {"tilt": 2.0}, "tilt"),
+        (SCENE, 1, {"periods": (2.0, 1.0)}, "periods"),
+        (SCENE, 1, {"count": 0}, "count"),
+    ],
+)
+def test_what_is_out_of_range_is_refused(scene, motions, options, words):
+    with pytest.raises((SceneError, SettingError), match=words):
+        scan_bearings(scene, [SCENE.motion] * motions, **{"stroke": 0.25, **options})
+
+
+def test_bearings_of_the_scene_do_not_matter():
+    other = SCENE.with_(bearings=Bearings(law="linear", ka=1e5))
+    one, two = (scan_bearings(scene, [SCENE.motion], 0.25).demand for scene in (SCENE, other))
+    assert (one == two).all()

@@ -1,0 +1,81 @@
+"""The motions of a folder: which files make a pair, what is left out, and turned components."""
+
+import math
+
+import numpy as np
+import pytest
+
+from analytic import PulseMotion, SettingError
+from analytic.motion import SampledMotion
+from analytic.records.folder import directions_of, folder_motions, reversed_sign, turned
+
+FIRST, SECOND = np.array([0.0, 1.0, -2.0, 0.5]), np.array([0.0, 0.5, 1.5, -1.0])
+
+
+def write(folder, name, values=FIRST):
+    (folder / name).write_text("t [s],a [m/s2]\n" + "".join(f"{0.01 * k:.2f},{a}\n" for k, a in enumerate(values)))
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("RSN1_DUZCE_DZC180.csv", "RSN1_DUZCE_DZC270.csv"),
+        ("AOM001.EW", "AOM001.NS"),
+        ("HL.DLFA..HNE.D.csv", "HL.DLFA..HNN.D.csv"),
+        ("1999_RawAcc_E.asc", "1999_RawAcc_N.asc"),
+        ("site-H1.csv", "site-H2.csv"),
+    ],
+)
+def test_two_files_that_differ_in_the_component_are_a_pair(tmp_path, names):
+    write(tmp_path, names[0])
+    write(tmp_path, names[1], SECOND)
+    found, left = folder_motions(tmp_path, directions=4)
+    ((_, motions),) = found.items()
+    assert len(motions) == 4
+    assert left == []
+    assert motions[0].samples == pytest.approx(FIRST)
+    assert motions[2].samples == pytest.approx(SECOND)
+
+
+@pytest.mark.parametrize("names", [("record1.csv", "record2.csv"), ("A_000.csv", "A_045.csv"), ("A_N.csv", "B_E.csv")])
+def test_other_files_are_no_pair_and_that_is_said(tmp_path, names):
+    for name in names:
+        write(tmp_path, name)
+    found, left = folder_motions(tmp_path, directions=4)
+    assert [len(motions) for motions in found.values()] == [1, 1]
+    assert len(left) == 2
+    assert all("no pair" in line for line in left)
+
+
+def test_a_vertical_motion_and_what_is_no_record_are_left_out_and_said(tmp_path):
+    write(tmp_path, "RSN1_A000.csv")
+    write(tmp_path, "RSN1_A-UP.csv")
+    (tmp_path / "README.md").write_text("# notes\n")
+    (tmp_path / "sub").mkdir()
+    found, left = folder_motions(tmp_path)
+    assert len(found) == 1
+    assert sorted(line.split(":")[0] for line in left) == ["README.md", "RSN1_A-UP.csv"]
+
+
+def test_an_empty_folder_and_none_are_refused(tmp_path):
+    for folder in (tmp_path, tmp_path / "none"):
+        with pytest.raises(SettingError, match="--records"):
+            folder_motions(folder)
+
+
+def test_turned_components_keep_their_sum_of_squares_and_half_a_turn_mirrors():
+    first, second = SampledMotion(0.01, FIRST), SampledMotion(0.01, SECOND)
+    here, across = (turned(first, second, angle, "pair") for angle in (0.3, 0.3 + math.pi / 2))
+    assert here.samples**2 + across.samples**2 == pytest.approx(FIRST**2 + SECOND**2)
+    assert turned(first, second, 0.3 + math.pi, "pair").samples == pytest.approx(reversed_sign(here).samples)
+    with pytest.raises(SettingError, match="directions"):
+        directions_of(first, second, 0, "pair")
+
+
+def test_the_sign_of_a_motion_changes_and_its_vertical_one_stays():
+    level = PulseMotion("one-sine", 2.0, 5.0)
+    assert reversed_sign(level).acceleration(0.1) == -level.acceleration(0.1)
+    up = SampledMotion(0.01, SECOND)
+    both = SampledMotion(0.01, FIRST, vertical=up)
+    assert (reversed_sign(both).samples == -FIRST).all()
+    assert (reversed_sign(both).vertical.samples == SECOND).all()

@@ -1,0 +1,98 @@
+"""rocking design SCENE: what it names, draws and writes holds."""
+
+import json
+
+import pytest
+
+from analytic import load_scene, simulate
+
+TEXT = """# my own words
+name = "bust"
+[block]
+mass = 1551.83
+radius = 0.989002
+slenderness = 0.281772
+[base]
+mass = 400.0
+{bearings}
+[motion]  # and these
+synthetic = "duzce-like"
+"""
+BEARINGS = '[bearings]\nlaw = "linear"\nka = 2e5\n'
+
+
+@pytest.mark.parametrize("bearings", ["", BEARINGS])
+@pytest.mark.parametrize("name", ["least-stroke", "softest"])
+def test_the_scene_it_writes_does_not_lift_and_stays_within_the_stroke(rocking, tmp_path, bearings, name):
+    file, found = tmp_path / "bust.toml", tmp_path / "found.json"
+    file.write_text(TEXT.format(bearings=bearings))
+    status, out, err = rocking(
+        "design", file, "--stroke", "0.2", "--write", name, "--json", found, "--plot", tmp_path / "b.svg"
+    )
+    assert status == 0, err
+    assert f"written into {file}" in out
+    assert (tmp_path / "b.svg").stat().st_size > 1000
+    scene = load_scene(file)
+    response = simulate(scene, history=False)
+    assert response.outcome == "stands"
+    assert response.peak_base_displacement <= scene.bearings.x_max == 0.2
+    assert "# my own words" in file.read_text()
+    assert "[motion]  # and these" in file.read_text()
+    form = json.loads(found.read_text())
+    chosen = form["chosen"][name]
+    assert chosen["stroke"] == response.peak_base_displacement
+    assert chosen["bearings"]["ka"] == scene.bearings.ka
+    assert chosen["lifts"] == 0
+    assert len(form["holds"]) == len(form["dampings"])
+    assert {len(row) for row in form["holds"]} == {len(form["periods"])}
+
+
+def test_where_nothing_holds_it_says_what_comes_nearest_and_writes_nothing(rocking, tmp_path):
+    file = tmp_path / "bust.toml"
+    file.write_text(TEXT.format(bearings=""))
+    status, out, _ = rocking("design", file, "--stroke", "0.01")
+    assert status == 0
+    assert "Nearest" in out
+    status, _, err = rocking("design", file, "--stroke", "0.01", "--write", "softest")
+    assert status == 2
+    assert "--write" in err
+    assert file.read_text() == TEXT.format(bearings="")
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["caryatid-isolated"], "--stroke"),
+        (["caryatid-isolated", "--stroke", "0.2", "--period", "2"], "--period"),
+        (["caryatid-isolated", "--stroke", "0.2", "--write", "softest"], "own"),
+        (["caryatid-rigid", "--stroke", "0.2"], "base"),
+        (["--stroke", "0.2"], "--stroke"),
+        (["--period", "2"], "--damping"),
+        (["caryatid-isolated", "--stroke", "0.2", "--directions", "3"], "--records"),
+    ],
+)
+def test_what_does_not_go_together_is_refused(rocking, options, words):
+    status, out, err = rocking("design", *options)
+    assert status == 2
+    assert words in err
+    assert out == ""
+
+
+def test_a_folder_of_records_adds_motions(rocking, tmp_path):
+    for name, sign in (("A000.csv", 1), ("A090.csv", -1)):
+        lines = ["t [s],a [m/s2]", *(f"{0.01 * k:.2f},{sign * 2.0 * ((k // 40) % 2 - 0.5)}" for k in range(400))]
+        (tmp_path / name).write_text("\n".join(lines))
+    options = (
+        "design",
+        "caryatid-isolated",
+        "--stroke",
+        "0.3",
+        "--records",
+        tmp_path,
+        "--directions",
+        "2",
+        "--both-signs",
+    )
+    status, out, err = rocking(*options)
+    assert status == 0, err
+    assert "motions: 6" in out
