@@ -72,7 +72,7 @@ def command(
         about = f"A block {height:g} m high and {width:g} m wide along the motion; rocking run {Path(file).name}"
         parts = {"base": base, "bearings": bearings, "motion": motion, "tilt": tilt, "friction": friction}
         text = scene_text(name or Path(file).stem, block, **parts, about=(about,))
-        _write_and_tell(file, text, json_file)
+        _write_and_tell(file, text, json_file, {} if period is None else _asked_for(period, damping, definition))
 
 
 def _asked(value: float | None, option: str, question: str) -> float:
@@ -138,6 +138,14 @@ def _bearings(
     return design_bearings(carried, x_max=xmax, count=count, **targets)  # type: ignore[arg-type]  # given, see above
 
 
+def _asked_for(period: float, damping: float, definition: str) -> dict[str, str]:
+    """{row of what follows: what was asked for}."""
+    from analytic.new_scene import DAMPING, PERIOD
+
+    of = "" if definition == "equivalent" else " (paper: twice as much)"
+    return {PERIOD: f"asked {period:g} s", DAMPING: f"asked {damping:g}{of}"}
+
+
 def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str, Any]) -> dict[str, Any] | None:
     """The table [motion]; a record is named as seen from the scene file. `said`: what it does not say itself."""
     from analytic.errors import SettingError
@@ -157,8 +165,8 @@ def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str
     return {"record": place, **said}
 
 
-def _write_and_tell(file: str, text: str, json_file: str | None) -> None:
-    """Write the file if it makes a scene, and print or write what follows from it."""
+def _write_and_tell(file: str, text: str, json_file: str | None, asked: Mapping[str, str]) -> None:
+    """Write the file if it makes a scene, and print or write what follows from it beside what was asked for."""
     import tempfile
 
     from rich import box
@@ -189,5 +197,6 @@ def _write_and_tell(file: str, text: str, json_file: str | None) -> None:
         return
     table = Table(title=f"{file}: {scene.name}", box=box.SIMPLE, show_header=False)
     for label, value, unit in rows:
+        label = f"{label}, {asked[label]}" if label in asked else label
         table.add_row(label, f"{value:.5g}" + ("" if unit == "-" else f" {unit}"))
     Console(highlight=False).print(table)

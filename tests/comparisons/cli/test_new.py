@@ -20,6 +20,29 @@ def test_new_writes_a_scene_and_says_what_follows(rocking, tmp_path):
         assert words in out
 
 
+ISOLATED = (*BUST, "--base-mass", "400")
+CONSTANTS = (*ISOLATED, "--ka", "1e5", "--kb", "1e4", "--alpha", "44")
+
+
+@pytest.mark.parametrize(
+    "definition, damping, asked",
+    [("equivalent", 0.15, "asked 0.15 "), ("paper", 0.3, "asked 0.3 (paper: twice as much)")],
+)
+def test_what_was_asked_for_stands_beside_what_follows(rocking, tmp_path, definition, damping, asked):
+    design = ("--period", 2.5, "--xmax", 0.2, "--damping", damping, "--definition", definition, "--ratio", 20)
+    status, out, _ = rocking("new", tmp_path / "bust.toml", *ISOLATED, *design)
+    assert status == 0
+    assert "secant period at x_max, asked 2.5 s " in out and f"equivalent damping at x_max, {asked}" in out
+    bearings = load_scene(tmp_path / "bust.toml").bearings
+    assert bearings.ka / bearings.kb == pytest.approx(20, rel=1e-5)
+
+
+def test_bearings_by_constants_keep_their_x_max_and_say_what_they_give_there(rocking, tmp_path):
+    status, out, _ = rocking("new", tmp_path / "bust.toml", *CONSTANTS, "--xmax", 0.2)
+    assert status == 0 and load_scene(tmp_path / "bust.toml").bearings.x_max == 0.2
+    assert "secant period at x_max " in out and "equivalent damping at x_max " in out and "asked" not in out
+
+
 def test_new_names_a_record_as_seen_from_the_scene(rocking, tmp_path):
     (tmp_path / "records").mkdir()
     record = tmp_path / "records" / "own.csv"

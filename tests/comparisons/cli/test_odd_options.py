@@ -105,9 +105,9 @@ def ended(rocking, arguments):
 
 
 def told(status, text):
-    """Answered, or refused by one message without a traceback."""
+    """Answered, or refused by one message without a traceback; two numbers of a block or bearings take a line each."""
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith(("Usage:", "Try '"))]
-    return status in (0, 1) or status == 2 and len(lines) == 1 and len(lines[0]) < 800
+    return status in (0, 1) or status == 2 and len(lines) in (1, 2) and max(map(len, lines)) < 800
 
 
 def test_there_are_options_enough():
