@@ -26,8 +26,9 @@ MATERIALS = {
     "wood": 600.0,
 }
 
-# Rows of `derived` that bearings by design are asked for.
+# Rows of `derived` that are held against what was asked for, and against each other.
 PERIOD, DAMPING = "secant period at x_max", "equivalent damping at x_max"
+UPLIFT, YIELD = "uplift acceleration g tan(slenderness)", "acceleration at which the bearings yield"
 
 
 def block_from(
@@ -77,7 +78,7 @@ def derived(scene: Scene) -> list[tuple[str, float, str]]:
         ("moment of inertia J_O about a corner", block.inertia, "kg m2"),
         ("rocking frequency omega_r, eq. (1)", scene.rocking_frequency, "rad/s"),
         ("restitution e_phi, eq. (7)", model.restitution, "-"),
-        ("uplift acceleration g tan(slenderness)", uplift, "m/s2"),
+        (UPLIFT, uplift, "m/s2"),
     ]
     if scene.bearings is not None:
         law, x_max = BearingLaw.of(scene.bearings), scene.bearings.x_max
@@ -90,7 +91,7 @@ def derived(scene: Scene) -> list[tuple[str, float, str]]:
                 rows.append((f"isolation period {name}", period, "s"))
         if law.f0 > 0:
             force = law.count * law.f0 / scene.total_mass
-            rows.append(("acceleration at which the bearings yield", force, "m/s2"))
+            rows.append((YIELD, force, "m/s2"))
     return rows
 
 

@@ -50,6 +50,8 @@ def _status(arguments):
     except MemoryError as error:
         return _mistake(f"not enough memory ({error}); ask for less")
     except Exception as error:
+        if type(error).__name__ == "Abort":  # click's as well, of a question
+            return _mistake("the input ended where an answer was wanted; give options instead")
         if hasattr(error, "format_message"):  # click's, wherever Typer keeps it: a usage error or a help page
             return _usage(error)
         if isinstance(error, mendable()):

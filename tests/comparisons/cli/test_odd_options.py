@@ -8,7 +8,7 @@ import typer
 from comparisons.cli.application import app
 
 VALUES = ("-1", "0", "nan", "inf", "1e308", "1e-320", "1e20", "100000000000000000000", "")
-BUST = ("new", "NEW", "--height", "1.9", "--width", "0.55", "--mass", "500")
+BUST = ("new", "NEW", "--anyway", "--height", "1.9", "--width", "0.55", "--mass", "500")
 ISOLATED = (*BUST, "--base-mass", "400")
 BASES = {
     "new": (
