@@ -5,6 +5,7 @@ from __future__ import annotations
 from os import PathLike
 
 KEY_LENGTH, VALUE_LENGTH, TEXT_LENGTH, FILE_LENGTH = 100, 120, 500, 400  # characters of a message's parts
+MOST_LINES = 20  # mistakes in one message, which leave its first lines on a screen; further ones are counted
 
 
 def cut(text: object, length: int) -> str:
@@ -40,14 +41,34 @@ class SceneError(ValueError):
         What is wrong with it, and what to write instead.
     file : str or None
         The scene file or record, where there is one.
+    others : tuple of SceneError
+        Further mistakes found with this one, none of which has others.
     """
 
-    def __init__(self, key: str, value: object, problem: str, remedy: str, file: str | None = None) -> None:
+    def __init__(
+        self,
+        key: str,
+        value: object,
+        problem: str,
+        remedy: str,
+        file: str | None = None,
+        others: tuple[SceneError, ...] = (),
+    ) -> None:
         self.key, self.value, self.problem, self.remedy, self.file = key, value, problem, remedy, file
-        super().__init__(key, value, problem, remedy, file)
+        self.others = others
+        super().__init__(key, value, problem, remedy, file, others)  # all of them, for pickle
 
     def __str__(self) -> str:
-        """One line of readable length, whatever was found."""
+        return "\n".join(self.lines)
+
+    @property
+    def lines(self) -> list[str]:
+        """The message: a line of readable length for each mistake, whatever was found."""
+        lines = [mistake._line() for mistake in (self, *self.others)[:MOST_LINES]]
+        left = len(self.others) + 1 - len(lines)
+        return [*lines, f"and {left} more"] if left else lines
+
+    def _line(self) -> str:
         where = f"{cut(self.file, FILE_LENGTH)}: " if self.file else ""
         found = "" if self.value is None else f" = {_shown(self.value)}"
         problem, remedy = cut(self.problem, TEXT_LENGTH), cut(self.remedy, TEXT_LENGTH)
@@ -55,7 +76,8 @@ class SceneError(ValueError):
 
     def in_file(self, file: str | PathLike[str]) -> SceneError:
         """The same error, naming the file it was found in."""
-        return SceneError(self.key, self.value, self.problem, self.remedy, str(file))
+        others = tuple(other.in_file(file) for other in self.others)
+        return SceneError(self.key, self.value, self.problem, self.remedy, str(file), others)
 
 
 class EngineNotInstalled(ImportError):

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from .bearing import BearingLaw
+from .design import properties
 from .errors import SettingError
 from .rocking import RockingModel
 from .scene import Base, Bearings, Block, Scene
@@ -24,6 +25,10 @@ MATERIALS = {
     "bronze": 8800.0,
     "wood": 600.0,
 }
+
+# Rows of `derived` that are held against what was asked for, and against each other.
+PERIOD, DAMPING = "secant period at x_max", "equivalent damping at x_max"
+UPLIFT, YIELD = "uplift acceleration g tan(slenderness)", "acceleration at which the bearings yield"
 
 
 def block_from(
@@ -59,7 +64,11 @@ def block_from(
 
 
 def derived(scene: Scene) -> list[tuple[str, float, str]]:
-    """What follows from a scene: rows of (name, value, unit)."""
+    """What follows from a scene: rows of (name, value, unit).
+
+    Secant period and equivalent damping, W_D/(4 pi E_s) of the hysteresis alone, are given at an x_max at which the
+    bearings yield: below it, the loss is lost in rounding.
+    """
     block, model = scene.block, RockingModel.of(scene)
     uplift = scene.gravity * math.tan(block.slenderness)
     rows = [
@@ -69,17 +78,20 @@ def derived(scene: Scene) -> list[tuple[str, float, str]]:
         ("moment of inertia J_O about a corner", block.inertia, "kg m2"),
         ("rocking frequency omega_r, eq. (1)", scene.rocking_frequency, "rad/s"),
         ("restitution e_phi, eq. (7)", model.restitution, "-"),
-        ("uplift acceleration g tan(slenderness)", uplift, "m/s2"),
+        (UPLIFT, uplift, "m/s2"),
     ]
     if scene.bearings is not None:
-        law = BearingLaw.of(scene.bearings)
+        law, x_max = BearingLaw.of(scene.bearings), scene.bearings.x_max
+        if x_max is not None and law.dk * x_max >= law.f0:
+            at_x_max = properties(scene.bearings, scene.total_mass, x_max)
+            rows += [(PERIOD, at_x_max.period, "s"), (DAMPING, at_x_max.damping_equivalent, "-")]
         for name, stiffness in (("before yielding", law.kb + law.dk), ("after yielding", law.kb)):
             if stiffness > 0:
                 period = 2 * math.pi * math.sqrt(scene.total_mass / (law.count * stiffness))
                 rows.append((f"isolation period {name}", period, "s"))
         if law.f0 > 0:
             force = law.count * law.f0 / scene.total_mass
-            rows.append(("acceleration at which the bearings yield", force, "m/s2"))
+            rows.append((YIELD, force, "m/s2"))
     return rows
 
 

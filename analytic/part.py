@@ -1,4 +1,4 @@
-"""What parts of a scene have in common: frozen, checked by pydantic, and each mistake told as a `SceneError`."""
+"""What parts of a scene have in common: frozen, checked by pydantic, and all mistakes told in a `SceneError`."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any, ClassVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic_core import ErrorDetails
 
 from .errors import SceneError
 
@@ -41,6 +42,18 @@ LIMITS = {
     "less_than_equal": "up to {:.6g}",
 }
 WANTED = {"string_type": 'text in "quotes"', "int_type": "a whole number", "int_from_float": "a whole number"}
+# What one measures or asks for is no key of a scene; `rocking new` computes what is.
+MEASURED = {
+    **dict.fromkeys(("block.height", "block.width"), ("radius and slenderness", "--height ... --width ...")),
+    **dict.fromkeys(
+        ("block.depth", "block.density", "block.material"),
+        ("mass", "--height ... --width ... --depth ... --material ... (or --density ...)"),
+    ),
+    "bearings.period": (
+        "ka, kb and alpha",
+        "--height ... --width ... --mass ... --base-mass ... --period ... --xmax ...",
+    ),
+}
 
 
 class Part(BaseModel):
@@ -62,8 +75,17 @@ class Part(BaseModel):
 
 
 def scene_error(error: ValidationError, part: type[Part]) -> SceneError:
-    """The first problem pydantic found in a `part`, as a SceneError; unknown keys first: they explain missing ones."""
-    problem = min(error.errors(), key=lambda found: found["type"] != "extra_forbidden")
+    """All that pydantic found in a `part`, one mistake a key; unknown keys first: they explain missing ones."""
+    found: dict[str, SceneError] = {}
+    for problem in sorted(error.errors(), key=lambda problem: problem["type"] != "extra_forbidden"):
+        mistake = _mistake(problem, part)
+        found.setdefault(mistake.key, mistake)
+    first, *others = found.values()
+    return SceneError(first.key, first.value, first.problem, first.remedy, first.file, tuple(others))
+
+
+def _mistake(problem: ErrorDetails, part: type[Part]) -> SceneError:
+    """One of the problems that pydantic found."""
     kind, value, context = problem["type"], problem["input"], problem.get("ctx", {})
     loc = [str(name) for name in problem["loc"]]
     if kind.startswith("dataclass"):  # one of several classes, whose name is the last of the place
@@ -71,8 +93,8 @@ def scene_error(error: ValidationError, part: type[Part]) -> SceneError:
     key = ".".join([part.table, *loc] if part.table else loc)
     unit = f" [{UNITS[key]}]" if key in UNITS else ""
     if kind == "value_error":
-        found = context["error"]
-        return found if isinstance(found, SceneError) else SceneError(key, None, str(found), "change it")
+        raised = context["error"]
+        return raised if isinstance(raised, SceneError) else SceneError(key, None, str(raised), "change it")
     if kind == "missing":
         return missing(key)
     if kind == "extra_forbidden":
@@ -97,6 +119,9 @@ def missing(key: str) -> SceneError:
 
 
 def _unknown(key: str, loc: Sequence[str], value: object, part: type[Part]) -> SceneError:
+    if key in MEASURED:
+        instead, options = MEASURED[key]
+        return SceneError(key, value, "unknown key", f"give {instead}, which `rocking new FILE {options}` computes")
     *tables, name = loc
     for table in tables:
         kinds = part.model_fields[table].annotation

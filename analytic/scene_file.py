@@ -1,4 +1,4 @@
-"""Scene files (TOML) to scenes; every mistake in them becomes one `SceneError`."""
+"""Scene files (TOML) to scenes; the mistakes in them become one `SceneError`."""
 
 import tomllib
 from collections.abc import Mapping
@@ -166,7 +166,8 @@ def load_scene(path: str | PathLike[str]) -> Scene:
     Raises
     ------
     SceneError
-        Names the file, the key, what was found there and the remedy; the first mistake only.
+        Names the file, the key, what was found there and the remedy. It tells all mistakes in keys and their values;
+        how the parts fit together is checked once each of them is right.
     """
     path = Path(path)
     if str(path) in shipped_scenes() and not path.exists():

@@ -50,18 +50,20 @@ def _status(arguments):
     except MemoryError as error:
         return _mistake(f"not enough memory ({error}); ask for less")
     except Exception as error:
+        if type(error).__name__ == "Abort":  # click's as well, of a question
+            return _mistake("the input ended where an answer was wanted; give options instead")
         if hasattr(error, "format_message"):  # click's, wherever Typer keeps it: a usage error or a help page
             return _usage(error)
         if isinstance(error, mendable()):
-            return _mistake(error)
+            return _mistake(*getattr(error, "lines", [error]))  # a scene's mistakes, one a line
         raise
 
 
-def _mistake(message):
+def _mistake(*lines):
     from ..running.readable import readable
 
     with contextlib.suppress(OSError):
-        print(f"Error: {readable(message)}", file=sys.stderr, flush=True)
+        print("Error: " + "\n".join(map(readable, lines)), file=sys.stderr, flush=True)
     _silence(only_if_broken=True)
     return 2
 

@@ -41,11 +41,14 @@ def command(
     channel: Channel = None,
     tilt: Annotated[float | None, typer.Option(help="Released from this tilt [rad], without a motion.")] = None,
     friction: Annotated[float | None, typer.Option(help="Coefficient between the block and what it stands on.")] = None,
+    anyway: Annotated[bool, typer.Option("--anyway", help="Write also what cannot well be a statue.")] = False,
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write what follows from the scene; - prints it.")
     ] = None,
 ) -> None:
-    """Write a commented scene file, and print what follows from it. What is missing is asked for in a terminal.
+    """Write a commented scene file, and print what follows from it.
+
+    In a terminal it asks for what is missing, and back on what cannot well be.
 
     Example: rocking new bust.toml --height 1.9 --width 0.55 --material marble --base-mass 400 --period 2.5 --xmax 0.2
     """
@@ -53,7 +56,8 @@ def command(
     from analytic.new_scene import block_from, scene_text
     from analytic.scene import Base
 
-    from ..running.files import check_writable
+    from ..running.files import check_writable, write_text
+    from ..running.plausible import ask_back, doubts
 
     check_writable([file, json_file])
     if Path(file).exists():
@@ -72,7 +76,12 @@ def command(
         about = f"A block {height:g} m high and {width:g} m wide along the motion; rocking run {Path(file).name}"
         parts = {"base": base, "bearings": bearings, "motion": motion, "tilt": tilt, "friction": friction}
         text = scene_text(name or Path(file).stem, block, **parts, about=(about,))
-        _write_and_tell(file, text, json_file)
+        scene = _scene(file, text)
+        if not anyway:
+            given = {"weighed": mass is not None, "designed": period is not None}
+            ask_back(doubts(scene, height, width, depth, **given))
+        write_text(file, text)
+        _tell(file, scene, json_file, {} if period is None else _asked_for(period, damping, definition))
 
 
 def _asked(value: float | None, option: str, question: str) -> float:
@@ -138,6 +147,14 @@ def _bearings(
     return design_bearings(carried, x_max=xmax, count=count, **targets)  # type: ignore[arg-type]  # given, see above
 
 
+def _asked_for(period: float, damping: float, definition: str) -> dict[str, str]:
+    """{row of what follows: what was asked for}."""
+    from analytic.new_scene import DAMPING, PERIOD
+
+    of = "" if definition == "equivalent" else " (paper: twice as much)"
+    return {PERIOD: f"asked {period:g} s", DAMPING: f"asked {damping:g}{of}"}
+
+
 def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str, Any]) -> dict[str, Any] | None:
     """The table [motion]; a record is named as seen from the scene file. `said`: what it does not say itself."""
     from analytic.errors import SettingError
@@ -157,30 +174,34 @@ def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str
     return {"record": place, **said}
 
 
-def _write_and_tell(file: str, text: str, json_file: str | None) -> None:
-    """Write the file if it makes a scene, and print or write what follows from it."""
+def _scene(file: str, text: str) -> Any:
+    """The `Scene` that the text makes as `file`."""
     import tempfile
 
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
     from analytic.errors import SceneError
-    from analytic.new_scene import derived
     from analytic.scene_file import load_scene
-
-    from ..running.files import write_text
-    from ..schemas.inputs import Derived, New
 
     # read before it is kept: a record that cannot be read, say, leaves no file behind
     with tempfile.NamedTemporaryFile("w", suffix=".toml", dir=Path(file).resolve().parent, encoding="utf-8") as part:
         part.write(text)
         part.flush()
         try:
-            scene = load_scene(part.name)
+            return load_scene(part.name)
         except SceneError as error:
             raise error.in_file(file) from None
-    write_text(file, text)
+
+
+def _tell(file: str, scene: Any, json_file: str | None, asked: Mapping[str, str]) -> None:
+    """Print or write what follows from a scene, beside what was asked for."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    from analytic.new_scene import derived
+
+    from ..running.files import write_text
+    from ..schemas.inputs import Derived, New
+
     rows = derived(scene)
     if json_file:
         found = [Derived(name=label, value=value, unit=unit) for label, value, unit in rows]
@@ -189,5 +210,6 @@ def _write_and_tell(file: str, text: str, json_file: str | None) -> None:
         return
     table = Table(title=f"{file}: {scene.name}", box=box.SIMPLE, show_header=False)
     for label, value, unit in rows:
+        label = f"{label}, {asked[label]}" if label in asked else label
         table.add_row(label, f"{value:.5g}" + ("" if unit == "-" else f" {unit}"))
     Console(highlight=False).print(table)

@@ -34,7 +34,13 @@ def told_by_options(options: Mapping[str, str]) -> Iterator[None]:
             words = re.sub(rf"(?<![\w.-]){re.escape(name)}{end}", option, words)
         raise SettingError(words) from None
     except SceneError as error:
-        key = options.get(error.key, error.key)
-        of_a_file = key == error.key or error.key in RECORD_OPTIONS
-        file = error.file if of_a_file else None  # other options name no file
-        raise SceneError(key, error.value, error.problem, error.remedy, file) from None
+        raise _by_options(error, options) from None
+
+
+def _by_options(error: SceneError, options: Mapping[str, str]) -> SceneError:
+    """The same mistakes, naming options."""
+    key = options.get(error.key, error.key)
+    of_a_file = key == error.key or error.key in RECORD_OPTIONS
+    file = error.file if of_a_file else None  # other options name no file
+    others = tuple(_by_options(other, options) for other in error.others)
+    return SceneError(key, error.value, error.problem, error.remedy, file, others)

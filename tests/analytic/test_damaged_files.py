@@ -41,8 +41,8 @@ def judged(kind, path, content, said):
         found = read_record(path, **said) if kind == "record" else load_scene(path)
     except SceneError as error:
         found = None
-        message = str(error)
-        assert message.startswith(f"{path}: ") and message.isprintable() and len(message) < LONGEST_MESSAGE
+        for line in str(error).split("\n"):
+            assert line.startswith((f"{path}: ", "and ")) and line.isprintable() and len(line) < LONGEST_MESSAGE
         assert error.key is not None and error.remedy
     assert time.process_time() - begin < HANG
     try:

@@ -5,7 +5,8 @@ import math
 import pytest
 
 from analytic import Base, Bearings, Scene, SettingError, load_scene
-from analytic.new_scene import MATERIALS, block_from, derived, scene_text
+from analytic.design import design_bearings
+from analytic.new_scene import DAMPING, MATERIALS, PERIOD, block_from, derived, scene_text
 
 BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 
@@ -46,6 +47,18 @@ def test_derived_numbers_are_the_closed_forms():
     share = 1500 / 1900
     expected = 1 - 2 * math.sin(gamma) ** 2 / (4 / 3 - share * math.cos(gamma) ** 2)
     assert rows["restitution e_phi, eq. (7)"] == pytest.approx(expected, rel=1e-13)
+
+
+def test_what_bearings_give_at_x_max_is_derived():
+    parts = {"block": block_from(1.9, 0.55, mass=1500.0), "base": Base(mass=400.0)}
+    designed = Scene(**parts, bearings=design_bearings(1900.0, 2.5, 0.15, 0.2))
+    rows = {name: value for name, value, _ in derived(designed)}
+    assert rows[PERIOD] == pytest.approx(2.5, rel=1e-3) and rows[DAMPING] == pytest.approx(0.15, rel=1e-3)
+    linear = Scene(**parts, bearings=Bearings(law="linear", ka=1e4, x_max=0.2))
+    rows = {name: value for name, value, _ in derived(linear)}
+    assert rows[PERIOD] == pytest.approx(2 * math.pi * math.sqrt(0.19), rel=1e-13) and rows[DAMPING] == 0
+    for bearings in (BEARINGS, Bearings(**{**BEARINGS.model_dump(), "x_max": 1e-20})):  # none, and one without yielding
+        assert PERIOD not in {name for name, *_ in derived(Scene(**parts, bearings=bearings))}
 
 
 @pytest.mark.parametrize(

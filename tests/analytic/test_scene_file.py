@@ -1,6 +1,7 @@
 """Scene files: what they give, and one clear message for every mistake."""
 
 import math
+import pickle
 from pathlib import Path
 
 import pytest
@@ -172,6 +173,42 @@ def test_bad_file(tmp_path, change, message):
     error = caught.value
     assert str(error).startswith(f"{path}: {message}")
     assert error.file == str(path) and error.key and error.remedy
+
+
+def test_all_mistakes_of_a_file_are_told_at_once(tmp_path):
+    text = SCENE.replace("3172.05", "-1.0").replace("212.0", '"light"').replace("20.0", "20.0\nend = 3")
+    path = write_scene(tmp_path, text)
+    with pytest.raises(SceneError) as caught:
+        load_scene(path)
+    error = pickle.loads(pickle.dumps(caught.value))  # as it comes from another process
+    assert [mistake.key for mistake in (error, *error.others)] == ["run.end", "block.mass", "base.mass"]
+    assert error.key == "run.end" and {other.file for other in error.others} == {str(path)}
+    first, *rest = str(error).splitlines()
+    assert first == f"{path}: run.end = 3: unknown key; remove it, known are duration"
+    assert rest == [
+        f"{path}: block.mass = -1.0: out of range; give a number above 0 [kg]",
+        f"{path}: base.mass = 'light': wrong type (str); give a number [kg]",
+    ]
+
+
+def test_the_lines_of_a_message_are_no_more_than_a_screen_holds(tmp_path):
+    with pytest.raises(SceneError) as caught:
+        load_scene(write_scene(tmp_path, "".join(f"a{n} = 1\n" for n in range(100)) + SCENE))
+    assert len(caught.value.others) == 99 and str(caught.value).splitlines()[20:] == ["and 80 more"]
+
+
+@pytest.mark.parametrize("key", ["height", "width", "depth", "density", "material"])
+def test_a_measured_key_of_the_block_leads_to_the_command_that_computes_it(tmp_path, key):
+    with pytest.raises(
+        SceneError, match=r"unknown key; give .*, which `rocking new FILE --height .* computes"
+    ) as caught:
+        load_scene(write_scene(tmp_path, SCENE.replace("[block]", f"[block]\n{key} = 2")))
+    assert caught.value.key == f"block.{key}"
+
+
+def test_the_period_of_bearings_leads_to_the_command_that_designs_them(tmp_path):
+    with pytest.raises(SceneError, match=r"give ka, kb and alpha, which `rocking new .* --period"):
+        load_scene(write_scene(tmp_path, SCENE.replace("[bearings]", "[bearings]\nperiod = 2.5")))
 
 
 def test_the_file_before_any_change_is_good(tmp_path):

@@ -96,13 +96,22 @@ def test_module_and_status_in_a_new_process(tmp_path):
     assert done.stderr == f"Error: {path}: block.mass = -1: out of range; give a number above 0 [kg]\n"
 
 
+def test_all_mistakes_of_a_scene_are_told_one_a_line(rocking, tmp_path):
+    path = write_scene(tmp_path, SCENE.replace("3172.05", "-1").replace("212.0", "0").replace("20.0", "nan"))
+    status, out, err = rocking("run", path)
+    assert status == 2 and out == "" and len(err.splitlines()) == 3
+    for key in ("block.mass = -1", "base.mass = 0", "run.duration = nan"):
+        assert f"{path}: {key}: " in err
+
+
 @pytest.mark.parametrize("change, message", BAD.values(), ids=BAD)
 def test_bad_scene(rocking, tmp_path, change, message):
     path = write_scene(tmp_path, change(SCENE))
     status, out, err = rocking("run", path)
     assert status == 2
     assert err.startswith(f"Error: {path}: {message}")
-    assert out == "" and "Traceback" not in err and err.count("\n") == 1
+    assert out == "" and "Traceback" not in err
+    assert all(f"{path}: " in line for line in err.splitlines())  # one a mistake: a misspelt key is missing, too
 
 
 @pytest.mark.parametrize("command", ["run", "compare"])

@@ -1,5 +1,6 @@
 """``rocking new`` as a user calls it."""
 
+import io
 import json
 
 import pytest
@@ -18,6 +19,29 @@ def test_new_writes_a_scene_and_says_what_follows(rocking, tmp_path):
     assert scene.bearings.count == 4 and scene.motion.dt == 0.005
     for words in ("slenderness", "0.28177 rad", "uplift acceleration", "isolation period after yielding"):
         assert words in out
+
+
+ISOLATED = (*BUST, "--base-mass", "400")
+CONSTANTS = (*ISOLATED, "--ka", "1e5", "--kb", "1e4", "--alpha", "44")
+
+
+@pytest.mark.parametrize(
+    "definition, damping, asked",
+    [("equivalent", 0.15, "asked 0.15 "), ("paper", 0.3, "asked 0.3 (paper: twice as much)")],
+)
+def test_what_was_asked_for_stands_beside_what_follows(rocking, tmp_path, definition, damping, asked):
+    design = ("--period", 2.5, "--xmax", 0.2, "--damping", damping, "--definition", definition, "--ratio", 20)
+    status, out, _ = rocking("new", tmp_path / "bust.toml", *ISOLATED, *design)
+    assert status == 0
+    assert "secant period at x_max, asked 2.5 s " in out and f"equivalent damping at x_max, {asked}" in out
+    bearings = load_scene(tmp_path / "bust.toml").bearings
+    assert bearings.ka / bearings.kb == pytest.approx(20, rel=1e-5)
+
+
+def test_bearings_by_constants_keep_their_x_max_and_say_what_they_give_there(rocking, tmp_path):
+    status, out, _ = rocking("new", tmp_path / "bust.toml", *CONSTANTS, "--xmax", 0.2)
+    assert status == 0 and load_scene(tmp_path / "bust.toml").bearings.x_max == 0.2
+    assert "secant period at x_max " in out and "equivalent damping at x_max " in out and "asked" not in out
 
 
 def test_new_names_a_record_as_seen_from_the_scene(rocking, tmp_path):
@@ -56,6 +80,57 @@ def test_what_makes_no_scene_is_one_message_and_no_file(rocking, tmp_path, argum
     status, _, err = rocking("new", file, *arguments)
     assert status == 2 and words in err and len(err.splitlines()) == 1
     assert not file.exists()
+
+
+IMPLAUSIBLE = {
+    "centimetres": (
+        ("--height", "190", "--width", "55", "--mass", "1500"),
+        ("--height 190", "0.1 to 10 m", "--height 1.9 --width 0.55 (from cm)?"),
+    ),
+    "one of them": (
+        ("--height", "1.9", "--width", "55", "--mass", "1500"),
+        ("0.1 to 10 m", "did you mean --height 1.9 --width 0.55 (from cm)?"),
+    ),
+    "exchanged": (
+        ("--height", "0.55", "--width", "1.9", "--material", "marble"),
+        ("1.29 rad", "0.1 to 0.5 rad", "exchange them"),
+    ),
+    "tonnes": ((*BUST[:4], "--mass", "1.5"), ("--mass 1.5", "2.61 kg/m3", "100", "8800", "in kg")),
+    "g/cm3": ((*BUST[:4], "--density", "2.7"), ("--density", "2.7 kg/m3", "100", "8800")),
+    "stiff bearings": (
+        (*ISOLATED, "--ka", "1e6", "--kb", "1e4", "--alpha", "44"),
+        ("yield at 23.6 m/s2", "lifts at 2.84 m/s2", "a lower --ka"),
+    ),
+    "a short period": (
+        (*ISOLATED, "--period", "0.5", "--xmax", "0.2"),
+        ("yield at 8.07 m/s2", "lifts at 2.84 m/s2", "a longer --period or a lower --damping"),
+    ),
+}
+
+
+@pytest.mark.parametrize("arguments, words", IMPLAUSIBLE.values(), ids=IMPLAUSIBLE)
+def test_what_cannot_well_be_is_refused_unless_wanted(rocking, tmp_path, arguments, words):
+    file = tmp_path / "bust.toml"
+    status, _, err = rocking("new", file, *arguments)
+    assert status == 2 and not file.exists() and len(err.splitlines()) == 1
+    assert all(word in err for word in (*words, "--anyway"))
+    assert rocking("new", file, *arguments, "--anyway")[0] == 0 and load_scene(file)
+
+
+@pytest.mark.parametrize("answer, status", [("y\n", 0), ("n\n", 2), ("\n", 2), ("", 2)])
+def test_in_a_terminal_it_asks_back(rocking, tmp_path, monkeypatch, answer, status):
+    terminal = io.StringIO(answer)
+    monkeypatch.setattr(terminal, "isatty", lambda: True)
+    monkeypatch.setattr("sys.stdin", terminal)
+    file = tmp_path / "bust.toml"
+    ended, _, err = rocking("new", file, *IMPLAUSIBLE["centimetres"][0])
+    assert ended == status and file.exists() == (status == 0)
+    assert "Write it anyway? [y/N]" in err and "Traceback" not in err
+
+
+def test_hollow_bronze_and_wood_are_taken(rocking, tmp_path):
+    for number, mass in enumerate((100, 4000)):  # 174 and 6960 kg/m3
+        assert rocking("new", tmp_path / f"{number}.toml", *BUST[:4], "--mass", mass)[0] == 0
 
 
 def test_new_overwrites_nothing(rocking, tmp_path):
