@@ -180,16 +180,17 @@ def _designs(mass, stroke, count, ratio, definition):
     def design(damping):
         return _design(mass, stroke, damping, count, ratio, definition)
 
-    low, most = DAMPINGS
-    design(low)  # where there are none of the least damping, that is said
-    while most > low + DAMPING_STEP:
+    made = []
+    for damping in np.arange(DAMPINGS[0], DAMPINGS[1], DAMPING_STEP):
         try:
-            design(most)
-            break
-        except SettingError:
-            most -= DAMPING_STEP
-    number = COARSE * max(1, math.ceil((most - low) / DAMPING_STEP / COARSE))
-    dampings = np.linspace(low, most, number + 1)
+            design(float(damping))
+            made.append(float(damping))
+        except SettingError as error:
+            problem = error
+    if len(made) < 2:
+        raise SettingError(f"no bearings of {DAMPINGS[0]:g} to {DAMPINGS[1]:g} of critical damping: {problem}")
+    number = COARSE * math.ceil((made[-1] - made[0]) / DAMPING_STEP / COARSE)
+    dampings = np.linspace(made[0], made[-1], number + 1)
     return dampings, [design(float(damping)) for damping in dampings]
 
 
