@@ -92,7 +92,7 @@ def folder_motions(
     for record, axes in components.items():
         whole = [motion for axis in axes for motion in axis]
         if directions is None:
-            found[record] = whole
+            found[whole[0].label if len(whole) == 1 else record] = whole
         elif [len(axis) for axis in axes] == [1, 1]:
             found[record] = directions_of(axes[0][0], axes[1][0], directions, record)
         else:

@@ -134,10 +134,15 @@ def _bearings(
     from analytic.errors import SettingError
     from analytic.scene import Bearings
 
+    from ..running.solving import say
+
     by_design, by_constants = targets["period"] is not None, any(value is not None for value in constants.values())
     if carried is None:
         if by_design or by_constants or xmax is not None:
             raise SettingError("bearings carry a base: give its mass with --base-mass")
+        return None
+    if not by_design and not by_constants and xmax is None:
+        say("no bearings: the base slides freely; --period and --xmax, or --ka, --kb and --alpha, put it on bearings")
         return None
     needed = (targets["period"], xmax) if by_design else constants.values()
     if by_design == by_constants or None in needed:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..running.motion_options import BothSigns, Directions, Records, motions_of
 from ..running.options import RECORD_OPTIONS, told_by_options
 from ..running.record_options import Channel, Column, Step, Units
 
@@ -38,6 +39,9 @@ def command(
     variant: Annotated[
         str | None, typer.Option(help="Of the one engine, for the scenes given; its default, if not given.")
     ] = None,
+    records: Records = None,
+    both_signs: BothSigns = False,
+    directions: Directions = None,
     output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the page and its result files.")] = "report",
     studies: Annotated[
         str | None,
@@ -54,6 +58,8 @@ def command(
     A record given with scenes takes the place of their motions. The stored studies follow as background.
     Example: rocking report bust.toml --output bust
     """
+    from analytic.errors import SettingError
+
     from ..report.write import write_page
     from ..running.files import check_folder, check_writable, write_text
     from ..running.solving import ANALYTIC, check_solver, say
@@ -66,7 +72,9 @@ def command(
     engines = [name for name in engine if name != ANALYTIC] if engine else None
     variants = _variants(variant, engines or [], scene)
     motion = _motion(scene, record, {"units": units, "dt": dt, "column": column, "channel": channel})
-    _simulate(output, scene, motion, engines, variants)
+    if not scene and (records is not None or both_signs or directions is not None):
+        raise SettingError("--records, --both-signs and --directions belong to scenes of your own; name one")
+    _simulate(output, scene, motion, engines, variants, (records, both_signs, directions, units))
     say("the page")
     page = write_page(output, shown)
     if json_file:
@@ -88,7 +96,7 @@ def _motion(scene, record, said):
     return motion
 
 
-def _simulate(output, scene, motion, engines, variants):
+def _simulate(output, scene, motion, engines, variants, many):
     """The result files of the page."""
     from ..report.own import load_scenes
     from ..report.study import make_own_results, make_results
@@ -96,9 +104,16 @@ def _simulate(output, scene, motion, engines, variants):
 
     with stdout_to_stderr():  # engines greet on standard output
         if scene:
-            make_own_results(output, load_scenes(scene, motion), engines=engines, variants=variants)
+            scenes = load_scenes(scene, motion)
+            motions = {name: _others(one, many) for name, one in scenes.items()}
+            make_own_results(output, scenes, engines=engines, variants=variants, motions=motions)
         else:
             make_results(output, motion, engines=engines)
+
+
+def _others(scene, many):
+    """The motions of a scene besides its own; none where nothing is asked for."""
+    return motions_of(scene, *many) if any(many[:3]) else {}
 
 
 def _studies(folder):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +13,7 @@ from analytic import Block, load_scene
 from analytic.caryatid import RADIUS
 
 from ..running.cases import Case
+from ..running.solving import spinner
 from ..running.study import Batch, say
 from ..showing.drawing import draw_scenes
 from ..showing.parts import Section
@@ -29,9 +31,11 @@ from .runs import (
     scenes_found,
 )
 from .sections import outcome_section, parameters, tilt_limits
+from .statue import statue_of
 
 if TYPE_CHECKING:
     from analytic import SampledMotion, Scene
+    from analytic.types import Motion
 
     from ..running.provenance import Result
     from ..running.study import Ask, Plan
@@ -56,11 +60,16 @@ def load_scenes(places: list[str], motion: SampledMotion | None = None) -> dict[
 
 
 def plan(
-    ask: Ask, scenes: Mapping[str, Scene], histories: str | PathLike[str], variants: Mapping[str, str | None]
+    ask: Ask,
+    scenes: Mapping[str, Scene],
+    histories: str | PathLike[str],
+    variants: Mapping[str, str | None],
+    motions: Mapping[str, Mapping[str, Sequence[Motion]]],
 ) -> Plan:
     """The plan of a report's runs: the scenes in every solver and, where a block rocks, its restitution.
 
     histories: folder in which those of the runs are kept meanwhile. variants: of the engines not taken as they come.
+    motions: of each scene, {record: its motions} besides its own.
     """
     cases = [
         Case(
@@ -78,7 +87,12 @@ def plan(
     limit = TIME_LIMIT + LIMIT_PER_SECOND * longest + LIMIT_PER_SAMPLE * samples
     say(f"{', '.join(scenes)} in {', '.join(('the analytic model', *ask.engines))}")
     rows = yield Batch(cases, ToFile(str(Path(histories).resolve())), "scenes", limit)
-    found = scenes_found(Path(histories), rows, scenes, SCENES_FILE, variants=described_variants(ask.engines))
+    statues = {}
+    for name, scene in scenes.items():
+        with spinner(f"{scene.name}: the analytic model") as tell:
+            statues[name] = statue_of(scene, motions.get(name, {}), partial(_tell, tell, scene.name))
+    described = {"variants": described_variants(ask.engines), "statues": statues}
+    found = scenes_found(Path(histories), rows, scenes, SCENES_FILE, **described)
     rocking = [row.case.scene for row in rows if row.case.solver == "analytic" and row.values["outcome"] != "stands"]
     if not rocking:
         return found
@@ -90,6 +104,10 @@ def plan(
     cases = free_rocking_cases(ask.engines, (block.slenderness,), plain, bases, seconds)
     rows = yield Batch(cases, impacts_only, "restitution", limit)
     return free_rocking_found(rows, ask.engines, bases, seconds)
+
+
+def _tell(tell, name, quantity):
+    tell(f"{name}: margin of {quantity}")
 
 
 def _bases(scenes):

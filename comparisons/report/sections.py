@@ -261,14 +261,16 @@ def _agreement(result, name):
         ["distance of the tilt graphs [-]", *(number(agreement["graph_distance"], 2) for agreement in agreements)],
     ]
     if scene["base"]:
-        work = next(row["bearing_work"] for row in result.rows if row["scene"] == name and row["solver"] == "analytic")
         measures += [
             [
                 "peak base displacement [%]",
                 *(number(100 * agreement["peak_displacement_error"], 2) for agreement in agreements),
-            ],
-            ["work of the bearings [%]", *(number(100 * (row["bearing_work"] / work - 1), 2) for row in rows)],
+            ]
         ]
+    if scene["bearings"]:
+        work = next(row["bearing_work"] for row in result.rows if row["scene"] == name and row["solver"] == "analytic")
+        errors = (100 * (row["bearing_work"] / work - 1) if work else None for row in rows)
+        measures += [["work of the bearings [%]", *(number(error, 2) for error in errors)]]
     return (
         Table(
             f"{scene['name']}: engine minus analytic model", ("difference", *(row["solver"] for row in rows)), measures

@@ -33,10 +33,12 @@ def make_own_results(
     *,
     engines: Sequence[str] | None = None,
     variants: Mapping[str, str | None] | None = None,
+    motions: Mapping[str, Mapping[str, Sequence[Motion]]] | None = None,
 ) -> None:
     """Simulate what the report on one's own scenes shows, {name: scene}, and write its result files into `folder`.
 
-    engines: those to compare, all that are installed without it; variants: of those not taken as they come.
+    engines: those to compare, all that are installed without it; variants: of those not taken as they come; motions: of
+    each scene, {record: its motions} besides its own.
 
     >>> from tempfile import mkdtemp
     >>> from analytic import load_scene
@@ -47,7 +49,7 @@ def make_own_results(
     'report.html'
     """
     samples = max((len(getattr(scene.motion, "samples", ())) for scene in scenes.values()), default=0)
-    _make(folder, OWN, samples, engines, scenes=scenes, variants=dict(variants or {}))
+    _make(folder, OWN, samples, engines, scenes=scenes, variants=dict(variants or {}), motions=dict(motions or {}))
 
 
 def make_results(

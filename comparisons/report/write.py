@@ -27,6 +27,7 @@ from .earthquake import earthquake
 from .own import SCENES_FILE, own_sections
 from .runs import CARYATID, FREE_ROCKING
 from .sections import caryatid_sections, restitution_sections, variant_groups
+from .statue import card_of
 from .studies import Stored, commit_of, origin_of, stored_studies
 from .summary import summary
 
@@ -84,6 +85,7 @@ def write_page(folder: str | PathLike[str], studies: Path = RESULTS) -> Path:
         environment.get_template("page.html").render(
             **_answer(scenes, free, stored),
             **_assets(),
+            cards=[card_of(scenes, name) for name in scenes.settings["scenes"]] if own else [],
             motion=scenes.settings["motion"]["label"] if scenes.settings["motion"] else "no motion",
             contents=_contents(scenes, stored),
             explained="autopsy" if any(one.name == "autopsy" for one in stored) else "impact",

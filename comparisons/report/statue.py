@@ -1,0 +1,360 @@
+"""The card of a statue: what the analytic model says of one's own scene, on one page that can be filed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from markupsafe import Markup
+
+from analytic import simulate, simulate_many
+from analytic.errors import SceneError
+from analytic.margins import SPAN, TILT, limit_states, margins
+from analytic.nearby import SHARE, cliffs, nearby
+from analytic.response import COMPARED, UNCOMPARED, about_record
+
+from ..measuring.statistics import wilson
+from ..showing.parts import Table, number
+
+if TYPE_CHECKING:
+    from analytic import Scene
+    from analytic.types import Motion
+
+    from ..running.provenance import Result
+
+WORDS = {
+    "stands": "does not lift",
+    "rocks": "rocks and stays upright",
+    "overturns": "overturns",
+    "failed": "leaves the model",
+}
+STATES = {"tilt": f"Tilt above {TILT:g} γ", "stroke": "Base beyond x_max"}  # beside the outcome
+SHADES = {"stands": "right", "rocks": "degraded", "overturns": "wrong", "failed": "failed"}
+
+
+@dataclass(frozen=True)
+class Card:
+    """title: name and outcome. loud: sentences as important as that. drawing, bar: inline SVG; bar may be empty.
+
+    said: (heading, sentence) pairs. tables: page parts.
+    """
+
+    title: str
+    loud: list
+    drawing: Markup
+    bar: Markup
+    said: list
+    tables: list
+
+
+def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: Any = None) -> dict[str, Any]:
+    """What the model says of a scene, ready for a result file.
+
+    motions : {record: its motions}, besides the scene's own.
+    """
+    found: dict[str, Any] = {"own": _figures(scene), "cautions": [], "near": [], "margins": [], "motions": []}
+    if scene.base is not None and scene.bearings is not None:
+        start = {"base_displacement": 0.0, "base_velocity": 0.0}
+        found["free"] = _figures(scene.with_(base=None, bearings=None, start=start))
+    try:
+        if scene.motion is not None:
+            changes, outcomes = nearby(scene)
+            found["cautions"] = [str(caution) for caution in cliffs(scene, changes, outcomes)]
+            found["near"] = _near(scene, changes, outcomes)
+        found["margins"] = [
+            {
+                "quantity": margin.quantity,
+                "nearest": margin.nearest,
+                "then": None if margin.nearest is None else margin.beyond(margin.nearest),
+                "bands": margin.outcomes,
+                "frayed": margin.frayed,
+                "states": {state: [margin.reached(state), margin.change(state)] for state in limit_states(scene)},
+            }
+            for margin in margins(scene, progress=progress)
+        ]
+    except SceneError as error:  # too long to be run so often
+        found["cautions"].append(f"How near another outcome is was not looked for: {error.remedy}.")
+    found["symmetric"] = not any(scene.start.model_dump().values())
+    if scene.motion is not None and not found["symmetric"]:
+        found["reversed"] = _figures(scene.with_(motion=scene.motion.scaled(-1.0)))
+    found["motions"] = [_under(scene, record, group) for record, group in motions.items()]
+    return found
+
+
+def _figures(scene):
+    """The numbers of one run."""
+    response = simulate(scene, history=False)
+    warnings = (*about_record(scene.motion), *response.warnings)
+    return {
+        "outcome": response.outcome,
+        "verdict": response.verdict,
+        "decided": response.decided,
+        "pga": scene.motion and scene.motion.peak,
+        "uplift": scene.gravity * math.tan(scene.block.slenderness),
+        "gravity": scene.gravity,
+        "tilt": response.peak_tilt_ratio,
+        "stroke": response.peak_base_displacement if scene.base else None,
+        "x_max": scene.bearings and scene.bearings.x_max,
+        "demand": response.friction_demand,
+        "friction": scene.friction,
+        "normal": response.min_normal_ratio,
+        "warnings": list(dict.fromkeys(str(warning) for warning in warnings)),
+    }
+
+
+def _near(scene, changes, found):
+    """[{change, outcome, tilt, stroke}] at -SHARE, 0, SHARE; and what is largest between them."""
+    rows = [
+        {
+            "change": float(changes[at]),
+            "outcome": str(found.names[at]),
+            "tilt": float(found.peak_tilt[at]) / scene.block.slenderness,
+            "stroke": float(found.peak_base_displacement[at]),
+        }
+        for at in (0, len(changes) // 2, len(changes) - 1)
+    ]
+    worst = {
+        "change": None,
+        "outcome": ", ".join(dict.fromkeys(found.names.tolist())),
+        "tilt": float(found.peak_tilt.max()) / scene.block.slenderness,
+        "stroke": float(found.peak_base_displacement.max()),
+    }
+    return [*rows, worst]
+
+
+def _under(scene, record, motions):
+    """What the motions of one record do."""
+    found = simulate_many([scene.with_(motion=motion, duration=None) for motion in motions])
+    return {
+        "record": record,
+        "motions": len(motions),
+        "pga": max(motion.peak for motion in motions),
+        "lifts": int(found.lifted.sum()),
+        "overturns": int(found.overturns.sum()),
+        "tilt": float(found.peak_tilt.max()) / scene.block.slenderness,
+        "stroke": float(found.peak_base_displacement.max()),
+    }
+
+
+def odds(rows: Iterable[Mapping[str, Any]], state: str = "overturns") -> str:
+    """In how many records the block lifts or overturns in some direction or sign, with the interval of the share."""
+    rows = list(rows)
+    count = sum(row[state] > 0 for row in rows)
+    low, high = wilson(count, len(rows))
+    return f"{state} under {count} of {len(rows)} records ({100 * low:.0f} to {100 * high:.0f} % at 95 %)"
+
+
+def card_of(result: Result, name: str) -> Card:
+    """The `Card` of one of the scenes of a result."""
+    scene, found = result.settings["scenes"][name], result.settings["statues"][name]
+    own = found["own"]
+    undecided = "" if own["decided"] else " (not decided when the run ended)"
+    title = f"{scene['name']}: the block {WORDS[own['outcome']]}{undecided}"
+    said = [*_isolation(found), *_nearest(found["margins"]), *_signs(found), *_odds(found)]
+    said += [("Warning", text) for text in own["warnings"]]
+    said.append(("Engines", _engines([row for row in result.rows if row["scene"] == name])))
+    tables = [_main(found)]
+    if found["near"]:
+        tables.append(_near_table(found["near"], scene))
+    if found["motions"]:
+        tables.append(_motion_table(found["motions"], scene))
+    return Card(title, found["cautions"], _drawing(scene), _bar(found["margins"]), said, tables)
+
+
+def _isolation(found):
+    if "free" not in found:
+        return []
+    return [("Without isolation", f"Free-standing, the block {WORDS[found['free']['outcome']]}.")]
+
+
+def _nearest(found):
+    """What the smallest change of one quantity changes: the outcome, and the limit states beside it."""
+    if not found:
+        return []
+    first, span = found[0], f"{100 * SPAN:g} %"
+    if first["nearest"] is None:
+        said = [("Nearest change", f"No change of one quantity by up to {span} changes the outcome.")]
+    else:
+        text = f"{first['quantity']} {_signed(first['nearest'])}: the block then {WORDS[first['then']]}."
+        if first["frayed"]:
+            text += " Outcomes alternate there: do not rest a decision on this distance."
+        said = [("Nearest change", text)]
+    for state, label in STATES.items():
+        known = [(one["quantity"], *one["states"][state]) for one in found if state in one["states"]]
+        changing = [one for one in known if one[2] is not None]
+        if changing:
+            quantity, reached, change = min(changing, key=lambda one: abs(one[2]))
+            said.append((label, f"{'No longer from' if reached else 'From'} {quantity} {_signed(change)} on."))
+    return said
+
+
+def _signs(found):
+    if "reversed" in found:
+        return [("Motion reversed", f"the block {WORDS[found['reversed']['outcome']]}")]
+    if found["near"]:
+        return [("Motion reversed", "The same, mirrored: block and start are symmetric.")]
+    return []
+
+
+def _odds(found):
+    rows = found["motions"]
+    if not rows:
+        return []
+    return [("Records", f"The block {odds(rows, 'lifts')}, and {odds(rows)}.")]
+
+
+def _engines(rows):
+    engines = [row for row in rows if row["solver"] != "analytic"]
+    if not engines:
+        return "None was run."
+    failed = [row["solver"] for row in engines if row["failure"]]
+    off = [row["solver"] for row in engines if row.get("differences") and row["comparable"] == COMPARED]
+    silent = [
+        row["solver"]
+        for row in engines
+        if row["solver"] not in (*failed, *off) and row.get("comparable", UNCOMPARED) != COMPARED
+    ]
+    agreed = [row["solver"] for row in engines if row["solver"] not in (*failed, *off, *silent)]
+    groups = (("agree", agreed), ("differ", off), ("cannot be compared", silent), ("failed", failed))
+    parts = [f"{' and '.join(names)} {_verb(words, len(names))}" for words, names in groups if names]
+    return "With the analytic model: " + "; ".join(parts) + "."
+
+
+def _verb(words, count):
+    return f"{words}s" if count == 1 and words in ("agree", "differ") else words
+
+
+def _main(found):
+    columns = {"this scene": found["own"]} | ({"free-standing": found["free"]} if "free" in found else {})
+
+    def row(label, pick):
+        return [label, *(pick(one) for one in columns.values())]
+
+    def share(value, limit, digits=3):
+        return number(value, digits) if limit is None else f"{number(value, digits)} of {number(limit, digits)}"
+
+    moves = row("base displacement, of x_max [m]", lambda one: share(one["stroke"], one["x_max"]))
+    base = [moves] if found["own"]["stroke"] is not None else []
+    rows = [
+        row("outcome", lambda one: one["outcome"]),
+        row("peak tilt over slenderness [-]", lambda one: _tilt(one["outcome"], one["tilt"])),
+        row("peak ground acceleration [g]", lambda one: number(one["pga"] and one["pga"] / one["gravity"], 3)),
+        row("uplift acceleration g tan γ [g]", lambda one: number(one["uplift"] / one["gravity"], 3)),
+        *base,
+        row("friction demand, of the coefficient [-]", lambda one: share(one["demand"], one["friction"])),
+        row("least normal force N/(m g) [-]", lambda one: number(one["normal"], 3)),
+    ]
+    return Table("The analytic model", ("quantity", *columns), rows)
+
+
+def _tilt(outcome, value):
+    return "overturned" if "overturns" in outcome else number(value)
+
+
+def _near_table(near, scene):
+    heads = ["change of the motion", "outcome", "peak tilt over slenderness [-]"]
+    heads += ["base displacement [m]"] if scene["base"] else []
+    rows = []
+    for one in near:
+        label = "anywhere between" if one["change"] is None else _signed(one["change"])
+        row = [label, one["outcome"], _tilt(one["outcome"], one["tilt"])]
+        rows.append(row + ([number(one["stroke"], 3)] if scene["base"] else []))
+    return Table(f"Within {100 * SHARE:g} % of the motion", tuple(heads), rows)
+
+
+def _motion_table(motions, scene):
+    heads = ["record", "motions", "largest peak [g]", "lifts", "overturns", "largest tilt over slenderness [-]"]
+    heads += ["largest base displacement [m]"] if scene["base"] else []
+    rows = [
+        [
+            one["record"],
+            str(one["motions"]),
+            number(one["pga"] / scene["gravity"], 3),
+            str(one["lifts"]),
+            str(one["overturns"]),
+            "overturned" if one["overturns"] else number(one["tilt"]),
+            *([number(one["stroke"], 3)] if scene["base"] else []),
+        ]
+        for one in motions
+    ]
+    return Table("Under other motions", tuple(heads), rows)
+
+
+def _signed(change):
+    return "as it is" if change == 0 else f"{'+' if change > 0 else '−'}{number(abs(100 * change), 3)} %"
+
+
+def _bar(found):
+    """The outcomes over the change of the quantity whose outcome changes nearest; nothing where none does."""
+    if not found or found[0]["nearest"] is None:
+        return Markup("")
+    first = found[0]
+    low, high = first["bands"][0][0], first["bands"][-1][1]
+    width, left = 360.0, 20.0
+
+    def at(change):
+        return round(left + width * (change - low) / (high - low), 2)
+
+    strips = "".join(
+        f'<rect class="{SHADES[outcome]}" x="{at(a)}" y="18" width="{round(at(b) - at(a), 2)}" height="20"/>'
+        for a, b, outcome in first["bands"]
+    )
+    marks = {low: "start", 0.0: "middle", high: "end"}
+    ticks = "".join(
+        f'<text class="soft" x="{at(change)}" y="54" text-anchor="{anchor}">{_signed(change)}</text>'
+        for change, anchor in marks.items()
+    )
+    names = list(dict.fromkeys(outcome for _, _, outcome in first["bands"]))
+    key = "".join(
+        f'<rect class="{SHADES[outcome]}" x="{20 + 120 * k}" y="62" width="12" height="12"/>'
+        f'<text x="{36 + 120 * k}" y="72">{outcome}</text>'
+        for k, outcome in enumerate(names)
+    )
+    says = f"Outcome over the change of {first['quantity']}"
+    return Markup(
+        f'<svg class="chart" viewBox="0 0 400 80" role="img" aria-label="{escape(says)}">'
+        f'<text class="title" x="20" y="12">{escape(says)}</text>{strips}'
+        f'<path d="M{at(0.0)} 14V42" style="stroke: var(--ink); stroke-width: 2"/>{ticks}{key}</svg>'
+    )
+
+
+def _drawing(scene):
+    """The block to scale with its height and width, on its base and bearings if it has them."""
+    width, height = 2 * scene["half_width"], 2 * scene["half_height"]
+    unit = max(width, height)
+    slab, rubber = (0.08 * unit, 0.1 * unit) if scene["base"] else (0.0, 0.0)
+    bearing = rubber if scene["bearings"] else 0.0
+    floor, side, font = slab + bearing, 0.5 * width + 0.15 * unit, 0.065 * unit
+    parts = [f'<path class="floor" d="M{-1.3 * side - 0.2 * unit:.4f} 0H{1.3 * side + 0.2 * unit:.4f}"/>']
+    if scene["base"]:
+        parts.append(
+            f'<rect class="steel" x="{-side:.4f}" y="{-floor:.4f}" width="{2 * side:.4f}" height="{slab:.4f}"/>'
+        )
+    if scene["bearings"]:
+        for place in (-0.7 * side, 0.7 * side):
+            parts.append(
+                f'<rect class="rubber" x="{place - 0.06 * unit:.4f}" y="{-bearing:.4f}" width="{0.12 * unit:.4f}" '
+                f'height="{bearing:.4f}"/>'
+            )
+    top, across = -floor - height, 0.5 * width
+    parts.append(
+        f'<rect class="stone" x="{-across:.4f}" y="{top:.4f}" width="{width:.4f}" height="{height:.4f}"/>'
+        f'<text x="{across + 0.06 * unit:.4f}" y="{top + 0.5 * height:.4f}">{number(height, 3)} m</text>'
+        f'<text x="0" y="{top - 0.05 * unit:.4f}" text-anchor="middle">{number(width, 3)} m</text>'
+        f'<text x="{across + 0.06 * unit:.4f}" y="{top + 0.5 * height + 1.4 * font:.4f}">'
+        f"{number(scene['block']['mass'], 4)} kg</text>"
+    )
+    if scene["base"]:
+        words = f"base {number(scene['base']['mass'], 4)} kg"
+        words += f", {scene['bearings']['count']} bearings" if scene["bearings"] else ", free to slide"
+        parts.append(f'<text x="0" y="{1.6 * font:.4f}" text-anchor="middle">{escape(words)}</text>')
+    reach = max(1.3 * side + 0.2 * unit, across + 0.45 * unit)
+    box = f"{-reach:.4f} {top - 2.2 * font:.4f} {2 * reach:.4f} {floor + height + 5 * font:.4f}"
+    says = f"{scene['name']}: a block {number(height, 3)} m high and {number(width, 3)} m wide"
+    return Markup(
+        f'<svg viewBox="{box}" role="img" aria-label="{escape(says)}" style="font-size: {font:.4f}px">'
+        f"{''.join(parts)}</svg>"
+    )
