@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -228,6 +228,7 @@ def margins(
     tilt: float = TILT,
     span: float = SPAN,
     step: float = STEP,
+    only: Collection[str] = (),
     workers: int | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> list[Margin]:
@@ -242,6 +243,8 @@ def margins(
         Share of the slenderness that the peak tilt exceeds in the limit state "tilt"; above 0, up to 1.
     span, step : float
         Largest relative change, up to 9, and how far the scanned ones lie apart.
+    only : collection of str
+        Of QUANTITIES; without it all that the scene has.
     workers : int or None
         Threads; without it one per core. The result does not depend on it.
     progress : callable or None
@@ -267,6 +270,7 @@ def margins(
     changes = step * np.arange(-count, count + 1)
     changes = changes[1 + changes > 0.5 * step]  # nearer to -1 next to nothing is left of the quantity
     values = {name: value for name, each in QUANTITIES.items() if (value := each.value(scene)) is not None}
+    values = {name: value for name, value in values.items() if not only or name in only}
     _check_cost(scene, len(values) * len(changes))
     found = []
     for name, value in values.items():

@@ -7,6 +7,9 @@ from typing import Annotated
 
 import typer
 
+from ..running.motion_options import BothSigns, Directions, Records, motions_of
+from ..running.record_options import Units
+
 LEAST_SPAN = 0.1  # per cent
 
 
@@ -21,6 +24,10 @@ def command(
     plot: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw the outcomes over the changes (.png, .svg or .pdf).")
     ] = None,
+    records: Records = None,
+    both_signs: BothSigns = False,
+    directions: Directions = None,
+    units: Units = None,
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write the margins; - prints them.")
     ] = None,
@@ -38,7 +45,7 @@ def command(
 
     from ..running.files import check_writable, write_all
     from ..running.solving import compile_kernels, spinner
-    from ..schemas.advice import Contact, Margin, Margins
+    from ..schemas.advice import Contact, Margin, Margins, MotionMargin
 
     if not LEAST_SPAN <= span <= 100 * LARGEST_SPAN:
         raise SettingError(f"--span {span:g}: give per cent, from {LEAST_SPAN:g} to {100 * LARGEST_SPAN:g}")
@@ -46,12 +53,15 @@ def command(
         raise SettingError(f"--tilt {tilt:g}: give a share of the slenderness, above 0 and up to 1")
     check_writable([json_file], picture=plot, inputs=[scene])
     what = load_scene(scene)
+    many = records is not None or both_signs
+    groups = motions_of(what, records, both_signs, directions, units) if many or directions is not None else {}
     compile_kernels()
     with spinner(f"{what.name}: margins") as tell:
         nearest = margins(
             what, tilt=tilt, span=span / 100, step=span / 100 / 400, progress=lambda name: tell(f"{what.name}: {name}")
         )
         contact = contact_margins(what)
+    rows = [row for name, motions in groups.items() for row in _under(what, name, motions, span, tilt)]
     results: dict[str, str | Callable[[Path], object]] = {}
     if json_file:
         form = Margins(
@@ -61,6 +71,7 @@ def command(
             span=span / 100,
             margins=[Margin.of(margin, limit_states(what)) for margin in nearest],
             contact=Contact(**dataclasses.asdict(contact)),
+            motions=[MotionMargin(**row) for row in rows],
         )
         results[json_file] = form.text()
     if plot:
@@ -71,8 +82,36 @@ def command(
         results[plot] = lambda path: save(figure, path)
     problem = write_all(results)
     if json_file != "-":
-        from ..showing.margins import print_margins
+        from ..showing.margins import named, print_margins
 
         print_margins(what, nearest, contact, span, tilt)
+        if rows:
+            from ..showing.motions import print_motions
+
+            print_motions(what, [{**row, "changes": named(row["changes"], tilt)} for row in rows])
     if problem:
         raise problem
+
+
+def _under(scene, record, motions, span, tilt):
+    """A row for each motion of a record: its outcome, and the change of the motion that reaches each limit state."""
+    from analytic.margins import limit_states, margins
+
+    from ..running.solving import spinner
+
+    rows = []
+    for motion in motions:
+        with spinner(f"{scene.name}: {motion.label}"):
+            (found,) = margins(
+                scene.with_(motion=motion), tilt=tilt, span=span / 100, step=span / 100 / 400, only=("motion",)
+            )
+        rows.append(
+            {
+                "record": record,
+                "motion": motion.label,
+                "peak": motion.peak,
+                "outcome": found.outcome,
+                "changes": {state: found.change(state) for state in limit_states(scene)},
+            }
+        )
+    return rows

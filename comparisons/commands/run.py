@@ -9,6 +9,8 @@ from typing import Annotated
 
 import typer
 
+from ..running.motion_options import BothSigns, Directions, Records, motions_of, rows_of
+from ..running.record_options import Units
 from ..running.solving import (
     TIME_LIMIT,
     TIME_LIMIT_HELP,
@@ -28,6 +30,10 @@ def command(
     settings: Annotated[
         list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A setting of the solver; may be repeated.")
     ] = None,
+    records: Records = None,
+    both_signs: BothSigns = False,
+    directions: Directions = None,
+    units: Units = None,
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write the result; - prints it.")
     ] = None,
@@ -42,7 +48,7 @@ def command(
     from analytic.scene_file import load_scene
 
     from ..running.files import STANDARD_OUTPUT, check_writable, write_all
-    from ..schemas.runs import Run
+    from ..schemas.runs import MotionRun, Run
 
     check_time_limit(time_limit)
     check_writable([json_file, csv], picture=plot, inputs=[scene])
@@ -58,10 +64,15 @@ def command(
         words=f"{what.name}: {engine}",
         compare=True,
     )
+    rows = []
+    if records is not None or both_signs or directions is not None:
+        many = motions_of(what, records, both_signs, directions, units)
+        chosen = engine, variant, parse_settings(settings or []), False, time_limit
+        rows = rows_of(what, many, lambda one: simulate(one, *chosen))
     response = replace(response, warnings=(*response.warnings, *near_motion(what)))
     results: dict[str, str | Callable[[Path], object]] = {}
     if json_file:
-        results[json_file] = Run(**response.to_json()).text()
+        results[json_file] = Run(**response.to_json(), motions=[MotionRun(**row) for row in rows]).text()
     history = response.history
     if history is None and (csv or plot):
         print("there is no history to write", file=sys.stderr)
@@ -82,6 +93,10 @@ def command(
         from ..showing.tables import show, summary
 
         show(summary(what, response), [response])
+        if rows:
+            from ..showing.motions import print_motions
+
+            print_motions(what, rows)
     tell_failures([response])
     if problem:
         raise problem

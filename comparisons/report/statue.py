@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -16,7 +16,7 @@ from analytic.margins import SPAN, TILT, limit_states, margins
 from analytic.nearby import SHARE, cliffs, nearby
 from analytic.response import COMPARED, UNCOMPARED, about_record
 
-from ..measuring.statistics import wilson
+from ..showing.motions import LIFTED, odds
 from ..showing.parts import Table, number
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from ..running.provenance import Result
 
+WORST = ("stands", "rocks", "failed", "overturns")  # of a record's motions, from the best to the worst
 WORDS = {
     "stands": "does not lift",
     "rocks": "rocks and stays upright",
@@ -132,19 +133,12 @@ def _under(scene, record, motions):
         "record": record,
         "motions": len(motions),
         "pga": max(motion.peak for motion in motions),
+        "outcome": max(found.names.tolist(), key=WORST.index),
         "lifts": int(found.lifted.sum()),
         "overturns": int(found.overturns.sum()),
         "tilt": float(found.peak_tilt.max()) / scene.block.slenderness,
         "stroke": float(found.peak_base_displacement.max()),
     }
-
-
-def odds(rows: Iterable[Mapping[str, Any]], state: str = "overturns") -> str:
-    """In how many records the block lifts or overturns in some direction or sign, with the interval of the share."""
-    rows = list(rows)
-    count = sum(row[state] > 0 for row in rows)
-    low, high = wilson(count, len(rows))
-    return f"{state} under {count} of {len(rows)} records ({100 * low:.0f} to {100 * high:.0f} % at 95 %)"
 
 
 def card_of(result: Result, name: str) -> Card:
@@ -203,7 +197,7 @@ def _odds(found):
     rows = found["motions"]
     if not rows:
         return []
-    return [("Records", f"The block {odds(rows, 'lifts')}, and {odds(rows)}.")]
+    return [("Records", f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}.")]
 
 
 def _engines(rows):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 if TYPE_CHECKING:
-    from analytic import Scene
+    from analytic import Response, Scene
     from analytic.types import Motion
 
 Records = Annotated[
@@ -49,3 +50,28 @@ def motions_of(
     if both_signs:
         found = {name: [*motions, *map(reversed_sign, motions)] for name, motions in found.items()}
     return found
+
+
+def rows_of(
+    scene: Scene, groups: Mapping[str, Sequence[Motion]], simulate: Callable[[Scene], Response]
+) -> list[dict[str, Any]]:
+    """A row for each motion: record, motion, peak [m/s2], outcome, tilt over slenderness, base displacement [m]."""
+    from .solving import bar
+
+    pairs = [(record, motion) for record, motions in groups.items() for motion in motions]
+    rows = []
+    with bar(f"{scene.name}: motions") as progress:
+        for number, (record, motion) in enumerate(pairs, 1):
+            response = simulate(scene.with_(motion=motion))
+            rows.append(
+                {
+                    "record": record,
+                    "motion": motion.label,
+                    "peak": motion.peak,
+                    "outcome": response.outcome,
+                    "tilt": response.peak_tilt_ratio,
+                    "stroke": response.peak_base_displacement if scene.base else None,
+                }
+            )
+            progress(number, len(pairs))
+    return rows

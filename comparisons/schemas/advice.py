@@ -58,6 +58,17 @@ class Contact(Part):
     friction: float | None
 
 
+class MotionMargin(Part):
+    """Under one of many motions: the outcome, and the nearest relative changes of the motion at which each limit state
+    becomes reached, or no longer is."""
+
+    record: str
+    motion: str
+    peak: float = Field(description="m/s2")
+    outcome: str
+    changes: dict[str, float | None]
+
+
 class Margins(Form):
     """How far a scene is from other limit states. tilt: the limit, a share of the slenderness; span: largest relative
     change scanned, up and, above -1, down."""
@@ -69,6 +80,7 @@ class Margins(Form):
     span: float
     margins: list[Margin]
     contact: Contact
+    motions: list[MotionMargin]
 
 
 class Constants(Part):

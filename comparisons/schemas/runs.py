@@ -40,6 +40,17 @@ class Energy(Part):
     impact_loss: float | None
 
 
+class MotionRun(Part):
+    """Under one of many motions: the outcome and the peaks; tilt over slenderness, displacement null without a base."""
+
+    record: str
+    motion: str
+    peak: float = Field(description="m/s2")
+    outcome: str
+    tilt: float | None
+    stroke: float | None = Field(description="m")
+
+
 class Failure(Part):
     """Why a run failed: in plain words, the engine's own message, the last finite state."""
 
@@ -107,6 +118,7 @@ class Run(_Values):
     """A scene in one solver."""
 
     schema_: str = Field(default="rocking run 2", serialization_alias="schema")
+    motions: list[MotionRun] = Field(default=[], description="where --records, --both-signs or --directions are given")
 
 
 class Sensitivity(Part):

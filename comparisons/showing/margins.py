@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
@@ -67,6 +67,11 @@ def print_margins(scene: Scene, margins: Sequence[Margin], contact: Contact, spa
 def _names(tilt):
     """{limit state: as it is called here}."""
     return {"lifts": "lifts", "tilt": f"tilt > {tilt:g} γ", "stroke": "base > x_max", "overturns": "overturns"}
+
+
+def named(changes: Mapping[str, float | None], tilt: float) -> dict[str, float | None]:
+    """{limit state as tables call it: change} of {limit state: change}."""
+    return {_names(tilt)[state]: change for state, change in changes.items()}
 
 
 def _leaves(margins):

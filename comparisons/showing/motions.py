@@ -1,0 +1,59 @@
+"""What a scene does under many motions: a table for the terminal, and the odds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from ..measuring.statistics import wilson
+from ..running.readable import readable
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+LIFTED = ("rocks", "overturns")
+
+
+def print_motions(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Print a row for each motion, and how many records lift and overturn the block. rows : as of `rows_of`, and for
+    each more column of a `Mapping` called changes a name and a relative change."""
+    more = list(dict.fromkeys(name for row in rows for name in row.get("changes", ())))
+    more_heads = [name.replace(" > ", " >\n") for name in more]
+    heads = ["motion", "peak\n[g]", "outcome", *(["tilt\n[-]"] if "tilt" in rows[0] else []), *more_heads]
+    heads += ["base\n[m]"] if rows[0].get("stroke") is not None else []
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for head in heads:
+        first = head == "motion"
+        table.add_column(Text(head), justify="left" if first else "right", no_wrap=not first, overflow="fold")
+    for row in rows:
+        cells = [Text(readable(row["motion"])), f"{row['peak'] / scene.gravity:.3g}", row["outcome"]]
+        cells += [f"{row['tilt']:.3g}"] if "tilt" in row else []
+        cells += ["" if row["changes"][name] is None else f"{100 * row['changes'][name]:+.3g} %" for name in more]
+        table.add_row(*cells, *([f"{row['stroke']:.3g}"] if row.get("stroke") is not None else []))
+    console = Console(highlight=False)
+    console.print(table)
+    console.print(f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}.")
+
+
+def odds(rows: Iterable[Mapping[str, Any]], outcomes: Sequence[str], word: str) -> str:
+    """Under how many records the block comes to one of these outcomes, in some direction or sign at least.
+
+    The interval of the share is Wilson's, of records: motions of one record are no sample. A record under which no
+    motion does so and one failed is left out.
+    """
+    found: dict[str, float] = {}
+    for row in rows:
+        hit = 1.0 if row["outcome"] in outcomes else math.nan if row["outcome"] == "failed" else 0.0
+        before = found.get(row["record"], 0.0)
+        found[row["record"]] = 1.0 if 1.0 in (hit, before) else before + hit
+    known = [hit for hit in found.values() if not math.isnan(hit)]
+    if not known:
+        return f"{word} under no record that could be run"
+    low, high = wilson(int(sum(known)), len(known))
+    return f"{word} under {sum(known):.0f} of {len(known)} records ({100 * low:.0f} to {100 * high:.0f} % at 95 %)"

@@ -1,0 +1,82 @@
+"""run and margin under many motions: a row for each, as single runs find them, and the odds by record."""
+
+import json
+
+import numpy as np
+import pytest
+
+from analytic import SampledMotion, load_scene, simulate
+from comparisons.measuring.statistics import wilson
+from comparisons.showing.motions import LIFTED, odds
+
+TIME = 0.01 * np.arange(300)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A pair of components, a weak single one, and a file that is none."""
+    (tmp_path / "records").mkdir()
+    for name, peak in (("A000.csv", 4.0), ("A090.csv", 2.0), ("weak.csv", 0.1)):
+        rows = (f"{t:.2f},{peak * np.sin(6 * t):.8f}" for t in TIME)
+        (tmp_path / "records" / name).write_text("\n".join(["t [s],a [m/s2]", *rows]))
+    (tmp_path / "records" / "notes.txt").write_text("words\n")
+    return tmp_path / "records"
+
+
+def test_run_tells_every_motion_as_a_run_of_its_own_does(rocking, folder):
+    status, out, err = rocking(
+        "run", "caryatid-rigid", "--records", folder, "--directions", 2, "--both-signs", "--json", "-"
+    )
+    assert status == 0, err
+    assert "notes.txt: left out" in err
+    rows = json.loads(out)["motions"]
+    assert len(rows) == 2 * (1 + 2 + 1)
+    scene = load_scene("caryatid-rigid")
+    for row, peak in zip(rows[2:4], (4.0, 2.0), strict=True):
+        found = simulate(scene.with_(motion=SampledMotion(0.01, np.round(peak * np.sin(6 * TIME), 8))), history=False)
+        assert row["outcome"] == found.outcome
+        assert row["tilt"] == pytest.approx(found.peak_tilt_ratio, rel=1e-9)
+    assert [row["outcome"] for row in rows[4:6]] == [row["outcome"] for row in rows[2:4]]  # a symmetric block
+    assert rows[-1]["outcome"] == "stands"
+
+
+def test_run_prints_the_odds_of_records_and_not_of_motions(rocking, folder):
+    status, out, _ = rocking("run", "caryatid-isolated", "--records", folder, "--both-signs")
+    assert status == 0
+    low, high = wilson(0, 3)
+    assert f"under 0 of 3 records ({100 * low:.0f} to {100 * high:.0f} % at 95 %)" in " ".join(out.split())
+
+
+def test_margin_tells_for_each_motion_what_change_of_it_lifts_the_block(rocking, folder):
+    status, out, err = rocking("margin", "caryatid-rigid", "--records", folder, "--span", 900, "--json", "-")
+    assert status == 0, err
+    rows = {row["motion"]: row for row in json.loads(out)["motions"]}
+    weak = rows["weak.csv"]
+    assert weak["outcome"] == "stands"
+    scene = load_scene("caryatid-rigid")
+    limit = scene.gravity * np.tan(scene.block.slenderness)
+    assert weak["peak"] * 10 < limit
+    assert weak["changes"]["lifts"] is None  # ten times .1 m/s2 do not lift it
+    assert max(map(len, out.splitlines())) < 400
+
+
+@pytest.mark.parametrize("command", ["run", "margin"])
+def test_directions_without_a_folder_are_refused(rocking, command):
+    status, out, err = rocking(command, "caryatid-rigid", "--directions", 3)
+    assert (status, out) == (2, "")
+    assert "--records" in err
+
+
+@pytest.mark.parametrize(
+    ("outcomes", "words"),
+    [
+        ([("a", "rocks"), ("a", "stands"), ("b", "stands")], "1 of 2"),
+        ([("a", "rocks"), ("a", "failed"), ("b", "stands")], "1 of 2"),
+        ([("a", "stands"), ("a", "failed"), ("b", "stands")], "0 of 1"),
+        ([("a", "overturns"), ("b", "rocks"), ("c", "failed")], "2 of 2"),
+        ([("a", "failed")], "no record"),
+    ],
+)
+def test_a_record_counts_once_and_a_failed_one_not_at_all(outcomes, words):
+    rows = [{"record": record, "outcome": outcome} for record, outcome in outcomes]
+    assert f"lifts under {words}" in odds(rows, LIFTED, "lifts")

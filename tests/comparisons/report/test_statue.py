@@ -1,0 +1,146 @@
+"""The card of a statue: each of its sentences against runs."""
+
+import re
+
+import numpy as np
+import pytest
+
+from analytic import load_scene, simulate, synthetic_motion
+from comparisons.report.own import load_scenes
+from comparisons.report.statue import statue_of
+from comparisons.report.study import make_own_results
+from comparisons.report.write import write_page
+
+BRONZE = """
+[block]
+mass = 739.2
+radius = 0.61612
+slenderness = 0.22923
+[motion]
+synthetic = "duzce-like"
+scale = 0.62
+"""
+BUST = """
+[block]
+mass = 1551.83
+radius = 0.989002
+slenderness = 0.281772
+[base]
+mass = 400.0
+[bearings]
+ka = 22950.5
+kb = 2295.05
+alpha = 66.6021
+count = 4
+x_max = 0.2
+[motion]
+synthetic = "duzce-like"
+"""
+CABINET = """
+friction = 0.4
+[block]
+mass = 220.0
+radius = 0.94868
+slenderness = 0.32175
+[base]
+mass = 60.0
+[start]
+tilt = 0.05
+[motion]
+pulse = "one-sine"
+amplitude = 2.0
+frequency = 6.0
+"""
+TEXTS = {"bronze": BRONZE, "bust": BUST, "cabinet": CABINET}
+
+
+@pytest.fixture(scope="module")
+def scenes(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("scenes")
+    for name, text in TEXTS.items():
+        (folder / f"{name}.toml").write_text(text)
+    return load_scenes([str(folder / f"{name}.toml") for name in TEXTS])
+
+
+@pytest.fixture(scope="module")
+def page(scenes, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("page")
+    motions = {"bust": {"other": [synthetic_motion(seed=7), synthetic_motion(seed=8).scaled(2.5)]}}
+    make_own_results(folder, scenes, engines=[], motions=motions)
+    return write_page(folder).read_text()
+
+
+def cards(page):
+    return [
+        " ".join(re.sub("<[^>]+>", " ", card).split())
+        for card in re.findall(r'<section class="statue">(.*?)</section>', page, flags=re.DOTALL)
+    ]
+
+
+def test_each_scene_has_its_card_first_with_its_outcome_in_the_title(page, scenes):
+    found = cards(page)
+    assert len(found) == len(scenes)
+    for card, (name, scene) in zip(found, scenes.items(), strict=True):
+        outcome = simulate(scene, history=False).outcome
+        words = {"stands": "does not lift", "rocks": "rocks and stays upright", "overturns": "overturns"}[outcome]
+        assert card.startswith(f"{name}: the block {words}")
+        assert f"{name}: the block {words}" in page[: page.index("</title>")]
+    assert page.index('class="statue"') < page.index("Which engine may be trusted")
+
+
+def test_the_cliff_is_said_loudly_and_only_where_it_is(page):
+    bronze, bust, _ = cards(page)
+    assert "depends on less than 5%" in bronze
+    assert "depends on" not in bust
+
+
+def test_the_nearest_change_is_where_single_runs_change(scenes):
+    scene = scenes["bronze"]
+    first = statue_of(scene, {})["margins"][0]
+    assert first["quantity"] == "slenderness"
+    own = simulate(scene, history=False).outcome
+    for way, outcome in ((-1e-4, own), (1e-4, first["then"])):
+        changed = scene.with_(block={"slenderness": scene.block.slenderness * (1 + first["nearest"] + way)})
+        assert simulate(changed, history=False).outcome == outcome
+
+
+def test_five_per_cent_of_the_motion_are_runs_of_their_own(scenes):
+    scene = scenes["bust"]
+    rows = statue_of(scene, {})["near"]
+    for row in rows[:3]:
+        found = simulate(scene.with_(motion=scene.motion.scaled(1 + row["change"])), history=False)
+        assert row["outcome"] == found.outcome
+        assert row["stroke"] == pytest.approx(found.peak_base_displacement, rel=1e-9)
+    assert rows[3]["stroke"] >= max(row["stroke"] for row in rows[:3])
+
+
+def test_a_symmetric_scene_is_the_same_reversed_and_another_is_run(scenes):
+    assert "reversed" not in statue_of(scenes["bust"], {})
+    scene = scenes["cabinet"]
+    found = statue_of(scene, {})["reversed"]
+    mirrored = simulate(scene.with_(start={"tilt": -scene.start.tilt}), history=False)
+    assert found["outcome"] == mirrored.outcome
+    assert found["tilt"] == pytest.approx(mirrored.peak_tilt_ratio, rel=1e-6)
+
+
+def test_free_standing_beside_isolated(page, scenes):
+    found = statue_of(scenes["bust"], {})
+    free = simulate(scenes["bust"].with_(base=None, bearings=None), history=False)
+    assert found["free"]["outcome"] == free.outcome == "overturns"
+    assert "Free-standing, the block overturns." in cards(page)[1]
+    assert "free" not in statue_of(load_scene("caryatid-rigid"), {})
+
+
+def test_other_motions_are_counted_by_record(page, scenes):
+    bust = cards(page)[1]
+    found = [
+        simulate(scenes["bust"].with_(motion=motion, duration=None), history=False)
+        for motion in (synthetic_motion(seed=7), synthetic_motion(seed=8).scaled(2.5))
+    ]
+    lifts = any(response.outcome != "stands" for response in found)
+    assert f"lifts under {int(lifts)} of 1 records" in bust
+    assert f"{np.max([response.peak_base_displacement for response in found]):.3f}" in bust
+
+
+def test_the_card_needs_no_engine(page):
+    assert all("Engines None was run." in card for card in cards(page))
