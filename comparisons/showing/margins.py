@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -167,5 +166,4 @@ def _friction_words(contact):
         return f"{demand}; the scene gives no coefficient to hold it against."
     if contact.friction_demand > contact.friction:
         return f"{demand}, above the scene's {contact.friction:g}: the outcome is outside the model."
-    spare = contact.friction / contact.friction_demand if contact.friction_demand else math.inf
-    return f"{demand} of the scene's {contact.friction:g}, {spare:.3g} times less."
+    return f"{demand}, the scene's coefficient {contact.friction:g}."
