@@ -74,6 +74,11 @@ class SceneError(ValueError):
         problem, remedy = cut(self.problem, TEXT_LENGTH), cut(self.remedy, TEXT_LENGTH)
         return f"{where}{cut(self.key, KEY_LENGTH)}{found}: {problem}; {remedy}"
 
+    def with_others(self, *mistakes: SceneError) -> SceneError:
+        """The same error, telling further mistakes and their others too."""
+        others = (*self.others, *(one for mistake in mistakes for one in (mistake, *mistake.others)))
+        return SceneError(self.key, self.value, self.problem, self.remedy, self.file, others)
+
     def in_file(self, file: str | PathLike[str]) -> SceneError:
         """The same error, naming the file it was found in."""
         others = tuple(other.in_file(file) for other in self.others)

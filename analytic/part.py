@@ -81,7 +81,7 @@ def scene_error(error: ValidationError, part: type[Part]) -> SceneError:
         mistake = _mistake(problem, part)
         found.setdefault(mistake.key, mistake)
     first, *others = found.values()
-    return SceneError(first.key, first.value, first.problem, first.remedy, first.file, tuple(others))
+    return first.with_others(*others)
 
 
 def _mistake(problem: ErrorDetails, part: type[Part]) -> SceneError:

@@ -203,19 +203,43 @@ def _parse(path: Path) -> dict[str, Any]:
 
 
 def _scene(table: Mapping[str, Any], path: Path) -> Scene:
+    """The scene of a file's tables; their mistakes, those of the motion and of parts that do not fit at once."""
+    mistakes: list[SceneError] = []
+    file = motion = None
+    scene: Scene | None = None
     try:
-        file = _SceneFile(**table)
-        motion = file.motion.motion(path.parent) if file.motion else None
-        return Scene(
-            block=file.block,
-            base=file.base,
-            bearings=file.bearings,
-            motion=motion,
-            start=file.start,
-            duration=file.run.duration,
-            gravity=file.gravity,
-            friction=file.friction,
-            name=file.name or path.stem,
-        )
+        file = _SceneFile.model_validate(table)  # not **table: a key may be called self
+        said = file.motion
     except ValidationError as error:
-        raise scene_error(error, _SceneFile) from None
+        mistakes.append(scene_error(error, _SceneFile))
+        said = _motion_alone(table)
+    try:
+        motion = said.motion(path.parent) if said else None
+    except SceneError as error:
+        mistakes.append(error)
+    try:
+        if file is not None:
+            scene = Scene(
+                block=file.block,
+                base=file.base,
+                bearings=file.bearings,
+                motion=motion,
+                start=file.start,
+                duration=file.run.duration,
+                gravity=file.gravity,
+                friction=file.friction,
+                name=file.name or path.stem,
+            )
+    except SceneError as error:
+        mistakes.append(error)
+    if mistakes or scene is None:
+        raise mistakes[0].with_others(*mistakes[1:])
+    return scene
+
+
+def _motion_alone(table: Mapping[str, Any]) -> _Motion | None:
+    """The table [motion] of a file with mistakes elsewhere; None where it is missing or has mistakes itself."""
+    try:
+        return _Motion.model_validate(table.get("motion"))
+    except ValidationError:
+        return None

@@ -12,6 +12,7 @@ from ..running.record_options import Channel, Column, Step, Units
 
 
 def command(
+    ctx: typer.Context,
     file: Annotated[str, typer.Argument(help="Scene file to write (.toml); must not exist.")],
     height: Annotated[float | None, typer.Option(help="Of the block [m].")] = None,
     width: Annotated[float | None, typer.Option(help="Of the block along the motion [m].")] = None,
@@ -71,6 +72,9 @@ def command(
         base = None if base_mass is None else Base(mass=base_mass)
         targets = {"period": period, "damping": damping, "stiffness_ratio": ratio, "definition": definition}
         constants = {"ka": ka, "kb": kb, "alpha": alpha}
+        for option in ("damping", "definition", "ratio"):
+            if period is None and str(ctx.get_parameter_source(option)).endswith("COMMANDLINE"):
+                raise SettingError(f"--{option} belongs to bearings by design; give --period and --xmax, or remove it")
         bearings = _bearings(None if base is None else block.mass + base.mass, count, xmax, targets, constants)
         motion = _motion(file, record, tilt, {"units": units, "dt": dt, "column": column, "channel": channel})
         about = f"A block {height:g} m high and {width:g} m wide along the motion; rocking run {Path(file).name}"
@@ -152,12 +156,14 @@ def _bearings(
     return design_bearings(carried, x_max=xmax, count=count, **targets)  # type: ignore[arg-type]  # given, see above
 
 
-def _asked_for(period: float, damping: float, definition: str) -> dict[str, str]:
-    """{row of what follows: what was asked for}."""
+def _asked_for(period: float, damping: float, definition: str) -> dict[str, tuple[float, str]]:
+    """{row of what follows: (what was asked for, in the sense of that row, and in words)}."""
+    from analytic.design import DEFINITIONS
     from analytic.new_scene import DAMPING, PERIOD
 
+    equivalent = damping * DEFINITIONS[definition] / DEFINITIONS["equivalent"]
     of = "" if definition == "equivalent" else " (paper: twice as much)"
-    return {PERIOD: f"asked {period:g} s", DAMPING: f"asked {damping:g}{of}"}
+    return {PERIOD: (period, f"asked {period:g} s"), DAMPING: (equivalent, f"asked {damping:g}{of}")}
 
 
 def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -196,7 +202,7 @@ def _scene(file: str, text: str) -> Any:
             raise error.in_file(file) from None
 
 
-def _tell(file: str, scene: Any, json_file: str | None, asked: Mapping[str, str]) -> None:
+def _tell(file: str, scene: Any, json_file: str | None, asked: Mapping[str, tuple[float, str]]) -> None:
     """Print or write what follows from a scene, beside what was asked for."""
     from rich import box
     from rich.console import Console
@@ -209,12 +215,14 @@ def _tell(file: str, scene: Any, json_file: str | None, asked: Mapping[str, str]
 
     rows = derived(scene)
     if json_file:
-        found = [Derived(name=label, value=value, unit=unit) for label, value, unit in rows]
+        found = [
+            Derived(name=name, value=value, unit=unit, asked=asked.get(name, (None,))[0]) for name, value, unit in rows
+        ]
         write_text(json_file, New(file=file, scene=scene.name, derived=found).text())
     if json_file == "-":
         return
     table = Table(title=f"{file}: {scene.name}", box=box.SIMPLE, show_header=False)
     for label, value, unit in rows:
-        label = f"{label}, {asked[label]}" if label in asked else label
+        label = f"{label}, {asked[label][1]}" if label in asked else label
         table.add_row(label, f"{value:.5g}" + ("" if unit == "-" else f" {unit}"))
     Console(highlight=False).print(table)

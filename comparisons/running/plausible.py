@@ -46,6 +46,10 @@ def doubts(
             f"a width of {math.tan(least):.2g} to {math.tan(most):.2g} of the height; "
             + ("exchange them" if least <= math.pi / 2 - block.slenderness <= most else "correct one")
         )
+    if depth is not None and depth > 2 * RANGE["radius"][1]:  # a side of the largest statue is 2 R at most
+        found.append(
+            f"--depth {depth:g} is longer than any side of a statue, {2 * RANGE['radius'][1]:g} m; give it in m"
+        )
     density = block.mass / (height * width * (depth or width))
     least, most = HOLLOW * min(MATERIALS.values()), max(MATERIALS.values())  # the densest one, solid
     if not least <= density <= most:
@@ -57,7 +61,11 @@ def doubts(
     values = {name: value for name, value, _ in derived(scene)}
     if values.get(YIELD, 0.0) >= values[UPLIFT]:  # until they yield they are stiff, and the block is lifted before that
         given = "--period, --damping and --xmax" if designed else "--ka, --kb and --alpha"
-        remedy = "give a longer --period or a lower --damping" if designed else "give a lower --ka or a higher --alpha"
+        remedy = (
+            "give a longer --period, a lower --damping or a smaller --xmax"
+            if designed
+            else "give a lower --ka or a higher --alpha"
+        )
         found.append(
             f"{given} give bearings that yield at {values[YIELD]:.3g} m/s2, and so do not isolate before the block "
             f"lifts at {values[UPLIFT]:.3g} m/s2: they should yield below that; {remedy}"

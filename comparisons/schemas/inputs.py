@@ -8,11 +8,12 @@ from .form import Form, Part
 
 
 class Derived(Part):
-    """A number that follows from the scene; unit "-" where it has none."""
+    """A number that follows from the scene; unit "-" where it has none. asked: what was asked for, in its sense."""
 
     name: str
     value: float
     unit: str
+    asked: float | None
 
 
 class New(Form):

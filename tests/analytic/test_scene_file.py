@@ -228,3 +228,29 @@ def test_no_such_scene():
 def test_folder(tmp_path):
     with pytest.raises(SceneError, match="cannot be read"):
         load_scene(tmp_path)
+
+
+def test_the_motion_is_told_with_the_mistakes_of_other_tables(tmp_path):
+    text = SCENE.replace("3172.05", "-1").replace('synthetic = "duzce-like"', 'record = "no.AT2"')
+    with pytest.raises(SceneError) as caught:
+        load_scene(write_scene(tmp_path, text))
+    assert [one.key for one in (caught.value, *caught.value.others)] == ["block.mass", "motion.record"]
+
+
+def test_the_motion_is_told_with_parts_that_do_not_fit(tmp_path):
+    text = SCENE.replace("[base]\nmass = 212.0\n", "").replace('synthetic = "duzce-like"', 'record = "no.AT2"')
+    with pytest.raises(SceneError) as caught:
+        load_scene(write_scene(tmp_path, text))
+    assert [one.key for one in (caught.value, *caught.value.others)] == ["motion.record", "bearings"]
+
+
+def test_a_mistake_of_the_motion_is_told_once(tmp_path):
+    text = SCENE.replace("3172.05", "-1").replace('"duzce-like"', '"kobe"')
+    with pytest.raises(SceneError) as caught:
+        load_scene(write_scene(tmp_path, text))
+    assert [one.key for one in (caught.value, *caught.value.others)] == ["block.mass", "motion.synthetic"]
+
+
+def test_a_key_called_self_is_unknown(tmp_path):
+    with pytest.raises(SceneError, match="self = 1: unknown key"):
+        load_scene(write_scene(tmp_path, "self = 1\n" + SCENE))

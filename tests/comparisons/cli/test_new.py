@@ -103,7 +103,7 @@ IMPLAUSIBLE = {
     ),
     "a short period": (
         (*ISOLATED, "--period", "0.5", "--xmax", "0.2"),
-        ("yield at 8.07 m/s2", "lifts at 2.84 m/s2", "a longer --period or a lower --damping"),
+        ("yield at 8.07 m/s2", "lifts at 2.84 m/s2", "a longer --period, a lower --damping or a smaller --xmax"),
     ),
 }
 
@@ -138,3 +138,26 @@ def test_new_overwrites_nothing(rocking, tmp_path):
     file.write_text("mine")
     status, _, err = rocking("new", file, *BUST)
     assert status == 2 and "exists" in err and file.read_text() == "mine"
+
+
+@pytest.mark.parametrize("option, value", [("--ratio", 3), ("--damping", 0.2), ("--definition", "paper")])
+def test_what_belongs_to_a_design_is_refused_with_constants(rocking, tmp_path, option, value):
+    constants = ("--base-mass", 400, "--ka", 3e4, "--kb", 3e3, "--alpha", 50)
+    status, _, err = rocking("new", tmp_path / "bust.toml", *BUST, *constants, option, value)
+    assert status == 2 and f"{option} belongs to bearings by design" in err
+    assert not (tmp_path / "bust.toml").exists()
+
+
+def test_a_depth_in_cm_is_asked_about(rocking, tmp_path):
+    status, _, err = rocking("new", tmp_path / "bust.toml", *BUST, "--depth", 55)
+    assert status == 2 and "--depth 55 is longer than any side of a statue, 20 m" in err
+
+
+def test_what_was_asked_for_is_in_the_json_in_the_sense_of_its_row(rocking, tmp_path):
+    design = ("--base-mass", 400, "--period", 2, "--damping", 0.3, "--definition", "paper", "--xmax", 0.2)
+    rows = json.loads(rocking("new", tmp_path / "bust.toml", *BUST, *design, "--json", "-")[1])["derived"]
+    asked = {row["name"]: (row["asked"], row["value"]) for row in rows if row["asked"] is not None}
+    assert set(asked) == {"secant period at x_max", "equivalent damping at x_max"}
+    assert asked["equivalent damping at x_max"][0] == 0.15
+    for wanted, value in asked.values():
+        assert value == pytest.approx(wanted, rel=1e-3)
