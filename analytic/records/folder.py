@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
@@ -17,10 +18,12 @@ if TYPE_CHECKING:
     from ..types import Motion
 
 VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "dwn", "ver", "v", "z", "u")  # how files call it
-AXES = (("e", "ew", "e-w", "x", "1", "h1"), ("n", "ns", "n-s", "y", "2", "h2"))  # and the two horizontal components
-# The component in a file's name: a word of its own, after the letters of an instrument (HNE), or an azimuth.
+PAIRS = (("e", "n"), ("ew", "ns"), ("e-w", "n-s"), ("x", "y"), ("1", "2"))  # and the two horizontal components
+# The component in a file's name: a word of its own, after the letters of an instrument (HNE), a number after such
+# letters (H1, HN2; of itself it counts files), or an azimuth.
 _WORD = re.compile(
-    r"(?<![A-Za-z])(?:[BEHS][HNLG])?(E-?W|N-?S|U-?D|UP|VERT|VER|DWN|H[12]|[ENZXYUV12])(?![A-Za-z0-9])", re.I
+    r"(?<![A-Za-z])(?:(?:[BEHS][HNLG])?(E-?W|N-?S|U-?D|UP|VERT|VER|DWN|[ENZXYUV])|[BEHS][HNLG]?([12]))(?![A-Za-z0-9])",
+    re.I,
 )
 _AZIMUTH = re.compile(r"(?<!\d)(\d{3})(?=(\.\w+)*$)")
 
@@ -51,11 +54,9 @@ def directions_of(first: SampledMotion, second: SampledMotion, count: int, name:
 
 def reversed_sign(motion: Motion) -> Motion:
     """The horizontal motion with its sign changed; the vertical one stays."""
-    return (
-        replace(motion.scaled(-1.0), label=f"{motion.label}, reversed", vertical=motion.vertical)
-        if isinstance(motion, SampledMotion)
-        else replace(motion, amplitude=-motion.amplitude)
-    )
+    if isinstance(motion, SampledMotion):
+        return replace(motion, samples=-motion.samples, label=f"{motion.label}, reversed")
+    return replace(motion, amplitude=-motion.amplitude)
 
 
 def folder_motions(
@@ -87,17 +88,16 @@ def folder_motions(
     folder = Path(folder)
     if not folder.is_dir():
         raise SettingError(f"--records {folder}: no folder; give one with record files")
-    components, left = _components(folder, said)
+    groups, left = _components(folder, said)
     found: dict[str, list[SampledMotion]] = {}
-    for record, axes in components.items():
-        whole = [motion for axis in axes for motion in axis]
-        if directions is None:
-            found[whole[0].label if len(whole) == 1 else record] = whole
-        elif [len(axis) for axis in axes] == [1, 1]:
-            found[record] = directions_of(axes[0][0], axes[1][0], directions, record)
+    for record, components in groups.items():
+        motions = [motion for _, motion in components]
+        if not is_pair([word for word, _ in components]):
+            found |= {motion.label: [motion] for motion in motions}
+            if directions is not None:
+                left += [f"{motion.label}: no pair of horizontal components, it is not turned" for motion in motions]
         else:
-            left += [f"{motion.label}: no pair of horizontal components, so its direction stays" for motion in whole]
-            found |= {motion.label: [motion] for motion in whole}
+            found[record] = motions if directions is None else directions_of(motions[0], motions[1], directions, record)
     if not found:
         raise SettingError(
             f"--records {folder}: no horizontal ground motion in it; " + "; ".join(left[:3] or ["empty"])
@@ -105,51 +105,40 @@ def folder_motions(
     return found, left
 
 
-def _components(folder: Path, said: dict) -> tuple[dict[str, tuple[list, list]], list[str]]:
-    """{record: (motions of its first axis, of its second)}, and what was left out."""
+def _components(folder: Path, said: dict) -> tuple[dict[str, list[tuple[str, SampledMotion]]], list[str]]:
+    """{record: [(component, its horizontal motion)]}, and what was left out."""
     from . import read_channels
 
-    found: dict[str, tuple[list, list]] = {}
+    found: dict[str, list[tuple[str, SampledMotion]]] = {}
     left = []
-    azimuths: dict[str, float] = {}
-    for path in sorted(folder.iterdir()):
-        if not path.is_file():
-            continue
+    for path in sorted(path for path in folder.iterdir() if path.is_file()):
         try:
             channels = read_channels(path, **said)
         except (SceneError, OSError) as error:
             left.append(f"{path.name}: left out, {getattr(error, 'problem', error)}")
             continue
-        level = [channel for channel in channels if not is_vertical(channel.direction)]
-        stem, word = _named(path.name) if len(channels) == 1 else (path.name, "")
-        if not level or is_vertical(word):
+        level = [channel.motion for channel in channels if channel.direction.casefold() not in VERTICAL]
+        record, word = _named(path.name) if len(channels) == 1 else (path.name, "")
+        if not level or word in VERTICAL:
             left.append(f"{path.name}: left out, a vertical motion")
             continue
-        for number, channel in enumerate(level):
-            axis = number if len(level) == 2 else _axis(word, stem, azimuths)
-            key = stem if axis is not None else path.name
-            found.setdefault(key, ([], []))[axis or 0].append(channel.motion)
+        words = PAIRS[0] if len(level) == 2 else [word] * len(level)
+        found.setdefault(record, []).extend(zip(words, level, strict=True))
     return found, left
 
 
-def is_vertical(word: str) -> bool:
-    """Whether a file means the vertical component by this word."""
-    return word.casefold() in VERTICAL
+def is_pair(words: Sequence[str]) -> bool:
+    """Whether components called so are the two horizontal ones of a record: PAIRS, or azimuths at right angles."""
+    if len(words) == 2 and all(word.isdigit() and len(word) == 3 for word in words):
+        return (int(words[0]) - int(words[1])) % 180 == 90
+    return tuple(sorted(words)) in PAIRS
 
 
 def _named(name: str) -> tuple[str, str]:
-    """(the name with its component replaced by *, the component); ("" where the name holds none)."""
+    """(the name with its component replaced by *, the component in small letters, "" where the name holds none)."""
     words = list(_WORD.finditer(name)) or list(_AZIMUTH.finditer(name))
     if not words:
         return name, ""
-    start, end = words[-1].span(1)
-    return f"{name[:start]}*{name[end:]}", words[-1][1]
-
-
-def _axis(word: str, stem: str, azimuths: dict[str, float]) -> int | None:
-    """0 or 1: which horizontal axis of the record a component is; None where its name says nothing."""
-    if word.isdigit() and len(word) == 3:
-        first = azimuths.setdefault(stem, float(word))
-        turn = (float(word) - first) % 180
-        return {0.0: 0, 90.0: 1}.get(turn)
-    return next((number for number, names in enumerate(AXES) if word.casefold() in names), None)
+    group = 1 if words[-1][1] else 2
+    start, end = words[-1].span(group)
+    return f"{name[:start]}*{name[end:]}", words[-1][group].casefold()

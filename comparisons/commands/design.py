@@ -165,7 +165,7 @@ def _chosen(scene, scan, point, motions):
     from analytic import simulate_many
     from analytic.scene import Bearings
 
-    exact = scan.made(*point)
+    exact = scan.bearings(*point)
     bearings = Bearings(**{**exact.model_dump(), **{name: float(f"{exact.given(name):.6g}") for name in WRITTEN}})
     runs = [scene.with_(bearings=bearings, motion=motion, duration=None) for motion in motions]
     found = simulate_many(runs, contact=True)

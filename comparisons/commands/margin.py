@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..running.motion_options import BothSigns, Directions, Records, motions_of
+from ..running.motion_options import BothSigns, Directions, Records, other_motions
 from ..running.record_options import Units
 
 LEAST_SPAN = 0.1  # per cent
@@ -40,12 +40,11 @@ def command(
     infinite. Example: rocking margin caryatid-isolated --plot margins.svg
     """
     from analytic.errors import SettingError
-    from analytic.margins import LARGEST_SPAN, contact_margins, limit_states, margins
+    from analytic.margins import LARGEST_SPAN, contact_margins, margins
     from analytic.scene_file import load_scene
 
     from ..running.files import check_writable, write_all
     from ..running.solving import compile_kernels, spinner
-    from ..schemas.advice import Contact, Margin, Margins, MotionMargin
 
     if not LEAST_SPAN <= span <= 100 * LARGEST_SPAN:
         raise SettingError(f"--span {span:g}: give per cent, from {LEAST_SPAN:g} to {100 * LARGEST_SPAN:g}")
@@ -53,8 +52,7 @@ def command(
         raise SettingError(f"--tilt {tilt:g}: give a share of the slenderness, above 0 and up to 1")
     check_writable([json_file], picture=plot, inputs=[scene])
     what = load_scene(scene)
-    many = records is not None or both_signs
-    groups = motions_of(what, records, both_signs, directions, units) if many or directions is not None else {}
+    groups = other_motions(what, records, both_signs, directions, units)
     compile_kernels()
     with spinner(f"{what.name}: margins") as tell:
         nearest = margins(
@@ -64,16 +62,7 @@ def command(
     rows = [row for name, motions in groups.items() for row in _under(what, name, motions, span, tilt)]
     results: dict[str, str | Callable[[Path], object]] = {}
     if json_file:
-        form = Margins(
-            scene=what.name,
-            outcome=nearest[0].outcome,
-            tilt=tilt,
-            span=span / 100,
-            margins=[Margin.of(margin, limit_states(what)) for margin in nearest],
-            contact=Contact(**dataclasses.asdict(contact)),
-            motions=[MotionMargin(**row) for row in rows],
-        )
-        results[json_file] = form.text()
+        results[json_file] = _form(what, nearest, contact, rows, span, tilt).text()
     if plot:
         from ..showing.margins import draw_margins
         from ..showing.plots import save
@@ -91,6 +80,23 @@ def command(
             print_motions(what, [{**row, "changes": named(row["changes"], tilt)} for row in rows])
     if problem:
         raise problem
+
+
+def _form(scene, nearest, contact, rows, span, tilt):
+    """What the JSON file holds."""
+    from analytic.margins import limit_states
+
+    from ..schemas.advice import Contact, Margin, Margins, MotionMargin
+
+    return Margins(
+        scene=scene.name,
+        outcome=nearest[0].outcome,
+        tilt=tilt,
+        span=span / 100,
+        margins=[Margin.of(margin, limit_states(scene)) for margin in nearest],
+        contact=Contact(**dataclasses.asdict(contact)),
+        motions=[MotionMargin(**row) for row in rows],
+    )
 
 
 def _under(scene, record, motions, span, tilt):

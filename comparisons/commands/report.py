@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..running.motion_options import BothSigns, Directions, Records, motions_of
+from ..running.motion_options import BothSigns, Directions, Records, other_motions
 from ..running.options import RECORD_OPTIONS, told_by_options
 from ..running.record_options import Channel, Column, Step, Units
 
@@ -105,15 +105,10 @@ def _simulate(output, scene, motion, engines, variants, many):
     with stdout_to_stderr():  # engines greet on standard output
         if scene:
             scenes = load_scenes(scene, motion)
-            motions = {name: _others(one, many) for name, one in scenes.items()}
+            motions = {name: other_motions(one, *many) for name, one in scenes.items()}
             make_own_results(output, scenes, engines=engines, variants=variants, motions=motions)
         else:
             make_results(output, motion, engines=engines)
-
-
-def _others(scene, many):
-    """The motions of a scene besides its own; none where nothing is asked for."""
-    return motions_of(scene, *many) if any(many[:3]) else {}
 
 
 def _studies(folder):

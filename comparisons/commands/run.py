@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from ..running.motion_options import BothSigns, Directions, Records, motions_of, rows_of
+from ..running.motion_options import BothSigns, Directions, Records, other_motions, rows_of
 from ..running.record_options import Units
 from ..running.solving import (
     TIME_LIMIT,
@@ -53,41 +53,27 @@ def command(
     check_time_limit(time_limit)
     check_writable([json_file, csv], picture=plot, inputs=[scene])
     check_solver(engine)
-    what = load_scene(scene)
+    what, chosen = load_scene(scene), parse_settings(settings or [])
     response = simulate(
         what,
         engine,
         variant,
-        parse_settings(settings or []),
+        chosen,
         history=bool(csv or plot),
         time_limit=time_limit,
         words=f"{what.name}: {engine}",
         compare=True,
     )
-    rows = []
-    if records is not None or both_signs or directions is not None:
-        many = motions_of(what, records, both_signs, directions, units)
-        chosen = engine, variant, parse_settings(settings or []), False, time_limit
-        rows = rows_of(what, many, lambda one: simulate(one, *chosen))
+    groups = other_motions(what, records, both_signs, directions, units)
+    rows = rows_of(what, groups, lambda one: simulate(one, engine, variant, chosen, False, time_limit))
     response = replace(response, warnings=(*response.warnings, *near_motion(what)))
-    results: dict[str, str | Callable[[Path], object]] = {}
-    if json_file:
-        results[json_file] = Run(**response.to_json(), motions=[MotionRun(**row) for row in rows]).text()
-    history = response.history
-    if history is None and (csv or plot):
+    if response.history is None and (csv or plot):
         print("there is no history to write", file=sys.stderr)
-        csv = None
-    if history is not None and csv:
-        results[csv] = history.to_csv
-    if history is not None and csv == STANDARD_OUTPUT:
-        table = io.StringIO()
-        history.to_csv(table)
-        results[csv] = table.getvalue()
-    if history is not None and plot:
-        from ..showing.plots import draw_histories, save
-
-        figure = draw_histories(what, [response])
-        results[plot] = lambda path: save(figure, path)
+        csv = plot = None
+    results = _history_files(what, response, csv, plot)
+    if json_file:
+        form = Run(**response.to_json(), motions=[MotionRun(**row) for row in rows])
+        results = {json_file: form.text()} | results
     problem = write_all(results)
     if STANDARD_OUTPUT not in (json_file, csv):
         from ..showing.tables import show, summary
@@ -102,3 +88,23 @@ def command(
         raise problem
     if response.failure:
         raise typer.Exit(1)
+
+
+def _history_files(scene, response, csv, plot):
+    """{file: what goes into it} of the files of the history that are asked for."""
+    from ..running.files import STANDARD_OUTPUT
+
+    results: dict[str, str | Callable[[Path], object]] = {}
+    history = response.history
+    if history is not None and csv == STANDARD_OUTPUT:
+        table = io.StringIO()
+        history.to_csv(table)
+        results[csv] = table.getvalue()
+    elif history is not None and csv:
+        results[csv] = history.to_csv
+    if plot:
+        from ..showing.plots import draw_histories, save
+
+        figure = draw_histories(scene, [response])
+        results[plot] = lambda path: save(figure, path)
+    return results

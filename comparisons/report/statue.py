@@ -14,10 +14,12 @@ from analytic import simulate, simulate_many
 from analytic.errors import SceneError
 from analytic.margins import SPAN, TILT, limit_states, margins
 from analytic.nearby import SHARE, cliffs, nearby
-from analytic.response import COMPARED, UNCOMPARED, about_record
+from analytic.records.folder import reversed_sign
+from analytic.response import COMPARED, about_record
 
 from ..showing.motions import LIFTED, odds
 from ..showing.parts import Table, number
+from .sections import different
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -56,7 +58,7 @@ def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: A
 
     motions : {record: its motions}, besides the scene's own.
     """
-    found: dict[str, Any] = {"own": _figures(scene), "cautions": [], "near": [], "margins": [], "motions": []}
+    found: dict[str, Any] = {"own": _figures(scene), "cautions": [], "near": [], "margins": []}
     if scene.base is not None and scene.bearings is not None:
         start = {"base_displacement": 0.0, "base_velocity": 0.0}
         found["free"] = _figures(scene.with_(base=None, bearings=None, start=start))
@@ -78,9 +80,8 @@ def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: A
         ]
     except SceneError as error:  # too long to be run so often
         found["cautions"].append(f"How near another outcome is was not looked for: {error.remedy}.")
-    found["symmetric"] = not any(scene.start.model_dump().values())
-    if scene.motion is not None and not found["symmetric"]:
-        found["reversed"] = _figures(scene.with_(motion=scene.motion.scaled(-1.0)))
+    if scene.motion is not None and any(scene.start.model_dump().values()):  # else it is the mirrored run
+        found["reversed"] = _figures(scene.with_(motion=reversed_sign(scene.motion)))
     found["motions"] = [_under(scene, record, group) for record, group in motions.items()]
     return found
 
@@ -91,7 +92,6 @@ def _figures(scene):
     warnings = (*about_record(scene.motion), *response.warnings)
     return {
         "outcome": response.outcome,
-        "verdict": response.verdict,
         "decided": response.decided,
         "pga": scene.motion and scene.motion.peak,
         "uplift": scene.gravity * math.tan(scene.block.slenderness),
@@ -201,24 +201,17 @@ def _odds(found):
 
 
 def _engines(rows):
+    """Which engines agree with the model, and in what the others differ or why they failed."""
     engines = [row for row in rows if row["solver"] != "analytic"]
     if not engines:
         return "None was run."
-    failed = [row["solver"] for row in engines if row["failure"]]
-    off = [row["solver"] for row in engines if row.get("differences") and row["comparable"] == COMPARED]
-    silent = [
-        row["solver"]
-        for row in engines
-        if row["solver"] not in (*failed, *off) and row.get("comparable", UNCOMPARED) != COMPARED
-    ]
-    agreed = [row["solver"] for row in engines if row["solver"] not in (*failed, *off, *silent)]
-    groups = (("agree", agreed), ("differ", off), ("cannot be compared", silent), ("failed", failed))
-    parts = [f"{' and '.join(names)} {_verb(words, len(names))}" for words, names in groups if names]
-    return "With the analytic model: " + "; ".join(parts) + "."
-
-
-def _verb(words, count):
-    return f"{words}s" if count == 1 and words in ("agree", "differ") else words
+    agree = [row["solver"] for row in engines if row.get("comparable") == COMPARED and not row.get("differences")]
+    said = [f"{' and '.join(agree)} agree{'s' * (len(agree) == 1)} with the analytic model"] if agree else []
+    for row in engines:
+        words = [f"failed: {row['failure']['reason']}"] if row["failure"] else different(row)
+        words = words if row["solver"] in agree else words or ["was not compared"]
+        said += [f"{row['solver']} {sentence}" for sentence in words]
+    return "; ".join(said) + "."
 
 
 def _main(found):
@@ -227,8 +220,8 @@ def _main(found):
     def row(label, pick):
         return [label, *(pick(one) for one in columns.values())]
 
-    def share(value, limit, digits=3):
-        return number(value, digits) if limit is None else f"{number(value, digits)} of {number(limit, digits)}"
+    def share(value, limit):
+        return number(value) if limit is None else f"{number(value)} of {number(limit)}"
 
     moves = row("base displacement, of x_max [m]", lambda one: share(one["stroke"], one["x_max"]))
     base = [moves] if found["own"]["stroke"] is not None else []

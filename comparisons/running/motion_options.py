@@ -52,6 +52,14 @@ def motions_of(
     return found
 
 
+def other_motions(
+    scene: Scene, records: str | None, both_signs: bool, directions: int | None, units: str | None = None
+) -> dict[str, list[Motion]]:
+    """`motions_of` where one of the options is given, else none."""
+    given = records is not None or both_signs or directions is not None
+    return motions_of(scene, records, both_signs, directions, units) if given else {}
+
+
 def rows_of(
     scene: Scene, groups: Mapping[str, Sequence[Motion]], simulate: Callable[[Scene], Response]
 ) -> list[dict[str, Any]]:

@@ -24,6 +24,7 @@ def write(folder, name, values=FIRST):
         ("HL.DLFA..HNE.D.csv", "HL.DLFA..HNN.D.csv"),
         ("1999_RawAcc_E.asc", "1999_RawAcc_N.asc"),
         ("site-H1.csv", "site-H2.csv"),
+        ("BK.HN1.csv", "BK.HN2.csv"),
     ],
 )
 def test_two_files_that_differ_in_the_component_are_a_pair(tmp_path, names):
@@ -37,13 +38,23 @@ def test_two_files_that_differ_in_the_component_are_a_pair(tmp_path, names):
     assert motions[2].samples == pytest.approx(SECOND)
 
 
-@pytest.mark.parametrize("names", [("record1.csv", "record2.csv"), ("A_000.csv", "A_045.csv"), ("A_N.csv", "B_E.csv")])
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("record1.csv", "record2.csv"),
+        ("record_1.csv", "record_2.csv"),
+        ("A_000.csv", "A_045.csv"),
+        ("A_N.csv", "B_E.csv"),
+        ("A_001.csv", "A_002.csv", "A_091.csv"),  # a count
+        ("A_N.csv", "A_Y.csv"),
+    ],
+)
 def test_other_files_are_no_pair_and_that_is_said(tmp_path, names):
     for name in names:
         write(tmp_path, name)
     found, left = folder_motions(tmp_path, directions=4)
-    assert [len(motions) for motions in found.values()] == [1, 1]
-    assert len(left) == 2
+    assert [len(motions) for motions in found.values()] == [1] * len(names)
+    assert len(left) == len(names)
     assert all("no pair" in line for line in left)
 
 

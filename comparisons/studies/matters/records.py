@@ -17,6 +17,7 @@ from analytic import SampledMotion, simulate_many
 from analytic.errors import SceneError, SettingError
 from analytic.pairing import paired
 from analytic.records import read_channels
+from analytic.records.folder import VERTICAL, turned
 from analytic.synthetic import PEAK
 
 from ...running.cases import Case
@@ -25,7 +26,6 @@ from ...running.study import say
 if TYPE_CHECKING:
     from analytic import Scene
 
-VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "z")  # how files call it
 DIRECTIONS = 12  # of the block's plane, over half a turn; the other half is the same, mirrored
 TURNED = 2  # of these steps, 30 degrees: what the two horizontal components are turned by
 TRIED = np.geomspace(0.1, 10.0, 40)  # factors among which the one is found that overturns half of the directions
@@ -57,9 +57,7 @@ class Triple:
 
     def turned(self, step: int) -> SampledMotion:
         """The horizontal motion in the plane of this direction."""
-        angle = math.pi * step / DIRECTIONS
-        samples = math.cos(angle) * self.first.samples + math.sin(angle) * self.second.samples
-        return SampledMotion(self.first.dt, samples, f"{self.name}, direction {step}")
+        return turned(self.first, self.second, math.pi * step / DIRECTIONS, self.name)
 
 
 def triples(folder: str | None) -> list[Triple]:

@@ -4,38 +4,21 @@ import re
 
 import numpy as np
 import pytest
+from own_scenes import BRONZE, BUST, CLIFF
 
 from analytic import load_scene, simulate, synthetic_motion
+from analytic.response import COMPARED, EDGE
 from comparisons.report.own import load_scenes
-from comparisons.report.statue import statue_of
+from comparisons.report.statue import _engines, statue_of
 from comparisons.report.study import make_own_results
 from comparisons.report.write import write_page
 
-BRONZE = """
-[block]
-mass = 739.2
-radius = 0.61612
-slenderness = 0.22923
-[motion]
-synthetic = "duzce-like"
-scale = 0.62
-"""
-BUST = """
-[block]
-mass = 1551.83
-radius = 0.989002
-slenderness = 0.281772
-[base]
-mass = 400.0
-[bearings]
+BEARINGS = """[bearings]
 ka = 22950.5
 kb = 2295.05
 alpha = 66.6021
 count = 4
-x_max = 0.2
-[motion]
-synthetic = "duzce-like"
-"""
+x_max = 0.2"""
 CABINET = """
 friction = 0.4
 [block]
@@ -51,7 +34,7 @@ pulse = "one-sine"
 amplitude = 2.0
 frequency = 6.0
 """
-TEXTS = {"bronze": BRONZE, "bust": BUST, "cabinet": CABINET}
+TEXTS = {"bronze": BRONZE.format(scale=CLIFF), "bust": BUST.format(bearings=BEARINGS), "cabinet": CABINET}
 
 
 @pytest.fixture(scope="module")
@@ -144,3 +127,25 @@ def test_other_motions_are_counted_by_record(page, scenes):
 
 def test_the_card_needs_no_engine(page):
     assert all("Engines None was run." in card for card in cards(page))
+
+
+def test_the_engines_that_agree_and_what_the_others_have_other():
+    fell = {"quantity": "outcome", "here": "overturns", "model": "rocks", "limit": None}
+    rows = [
+        {"solver": solver, "failure": failure, "comparable": comparable, "differences": differences}
+        for solver, failure, comparable, differences in (
+            ("analytic", None, COMPARED, []),
+            ("one", None, COMPARED, []),
+            ("two", None, COMPARED, [fell]),
+            ("three", None, EDGE, [fell]),
+            ("four", None, "N <= 0", []),
+            ("five", {"reason": "it gave up"}, "no", []),
+            ("six", None, "no", []),
+        )
+    ]
+    said = _engines(rows).split("; ")
+    assert said[0] == "one agrees with the analytic model"
+    assert said[1].startswith("two differs from the analytic model: the block overturns")
+    assert said[2].startswith(f"three is {EDGE}")
+    assert said[3].startswith("four cannot be compared with the analytic model: N <= 0")
+    assert said[4:] == ["five failed: it gave up", "six was not compared."]
