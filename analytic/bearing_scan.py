@@ -8,14 +8,15 @@ that of uplift (or of peak tilt over its limit), and of peak base displacement o
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
-from .batch import simulate_many
+from .batch import Outcomes, simulate_many
 from .design import design_bearings
 from .errors import SceneError, SettingError
 from .scene import Bearings, Scene
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 PERIODS = (0.3, 5.0)  # s, secant at the stroke: those of a statue's bearings
 DAMPINGS = (0.02, 0.5)  # share of critical, equivalent, at the stroke: rubber alone to more than lead gives
 PERIOD_STEP, DAMPING_STEP = 0.01, 0.005  # relative, absolute: what bearings are never known better than
+CHUNK = 200  # runs between two words on how far it is
 COARSE = 4  # of these steps, of the first scan; cells that the limit may cross are run at every step
 
 
@@ -34,15 +36,15 @@ class BearingScan:
     """What bearings of each damping (rows) and period (columns) do under the worst of the motions.
 
     periods [s], dampings [-] : shapes (p,), (d,). demand : (d, p), 1 at the limit, see above; interpolated where the
-    limit is far. stroke [m] : (d, p), peak base displacement; NaN where nothing was run. made : (period, damping) ->
-    `Bearings`.
+    limit is far. stroke [m] : (d, p), peak base displacement; NaN where nothing was run. designs : of each damping, for
+    a period of 1 s.
     """
 
     periods: np.ndarray
     dampings: np.ndarray
     demand: np.ndarray
     stroke: np.ndarray
-    made: Callable[[float, float], Bearings]
+    designs: list[Bearings]
 
     def holds(self, period: float, damping: float) -> bool:
         """Whether bearings of this period [s] and damping [-] hold; False outside the range scanned."""
@@ -50,32 +52,39 @@ class BearingScan:
         found = RegularGridInterpolator(axes, self.demand, bounds_error=False, fill_value=math.inf)
         return bool(found((damping, math.log(period))) <= 1)
 
+    def bearings(self, period: float, damping: float) -> Bearings:
+        """Those of a period [s] and of one of the dampings scanned [-]."""
+        return softened(self.designs[int(np.abs(self.dampings - damping).argmin())], period)
+
     @property
     def least_stroke(self) -> tuple[float, float] | None:
         """(period, damping) of those run that hold with the least stroke; None where none holds."""
-        return self._first(self.stroke)
+        return self._least(np.where(self.demand <= 1, self.stroke, np.nan))
 
     @property
     def softest(self) -> tuple[float, float] | None:
         """(period, damping) of the longest period that holds, there of the least stroke; None where none holds."""
-        held = ~np.isnan(self.stroke) & (self.demand <= 1)
-        longest = self.periods[held.any(axis=0)].max(initial=0.0)
-        return self._first(np.where(self.periods == longest, self.stroke, np.nan))
+        held = np.where(self.demand <= 1, self.stroke, np.nan)
+        longest = self.periods[~np.isnan(held).all(axis=0)].max(initial=0.0)
+        return self._least(np.where(self.periods == longest, held, np.nan))
 
     @property
     def nearest(self) -> tuple[float, float]:
-        """(period, damping) of the least demand, whether it holds or not."""
-        row, column = np.unravel_index(
-            np.nanargmin(np.where(np.isnan(self.stroke), np.nan, self.demand)), self.demand.shape
-        )
+        """(period, damping) of those run with the least demand, whether they hold or not."""
+        point = self._least(np.where(np.isnan(self.stroke), np.nan, self.demand))
+        assert point is not None  # the first scan ran some
+        return point
+
+    def _least(self, values):
+        if np.isnan(values).all():
+            return None
+        row, column = np.unravel_index(np.nanargmin(values), values.shape)
         return float(self.periods[column]), float(self.dampings[row])
 
-    def _first(self, order):
-        order = np.where(self.demand <= 1, order, np.nan)
-        if np.isnan(order).all():
-            return None
-        row, column = np.unravel_index(np.nanargmin(order), order.shape)
-        return float(self.periods[column]), float(self.dampings[row])
+
+def softened(design: Bearings, period: float) -> Bearings:
+    """Bearings designed for 1 s at another period [s]: at one displacement all forces go with the stiffness."""
+    return design.model_copy(update={"ka": design.ka / period**2, "kb": design.given("kb") / period**2})
 
 
 def scan_bearings(
@@ -84,12 +93,10 @@ def scan_bearings(
     stroke: float,
     *,
     tilt: float = 0.0,
-    count: int = 4,
-    stiffness_ratio: float = 10.0,
-    definition: str = "equivalent",
     periods: tuple[float, float] = PERIODS,
     workers: int | None = None,
     progress: Callable[[int, int], None] | None = None,
+    **design: Any,
 ) -> BearingScan:
     """Run the scene on bearings of each period and damping under each of the motions.
 
@@ -103,12 +110,12 @@ def scan_bearings(
         Largest displacement of the base [m]; period and damping are those at this displacement.
     tilt : float
         Largest peak tilt over the slenderness; 0: the block must not lift.
-    count, stiffness_ratio, definition
-        Of the bearings, see `design_bearings`.
     periods : (float, float)
         Range scanned [s].
     progress : callable or None
-        Is told (runs done, runs known of).
+        Is told (runs done, all runs) in each of two scans.
+    design : count, stiffness_ratio, definition
+        Of the bearings, see `design_bearings`.
 
     Raises
     ------
@@ -118,47 +125,41 @@ def scan_bearings(
         A number is out of range, there is no motion, or no bearings of any damping can be designed.
     """
     _check(scene, motions, stroke, tilt, periods)
-    dampings, unit = _designs(scene.total_mass, stroke, count, stiffness_ratio, definition)
+    dampings, designs = _designs(scene.total_mass, stroke, design)
     number = COARSE * math.ceil(math.log(periods[1] / periods[0]) / PERIOD_STEP / COARSE)
     columns = np.geomspace(*periods, number + 1)
     shape = len(dampings), len(columns)
-    demand, moved = np.full(shape, np.nan), np.full(shape, np.nan)
-    limit, runs = math.tan(scene.block.slenderness), {"done": 0, "known": 0}
+    scan = BearingScan(columns, dampings, np.full(shape, np.nan), np.full(shape, np.nan), designs)
+    run = partial(_fill, scan, scene, motions, stroke, tilt, workers, progress)
+    coarse = np.zeros(shape, dtype=bool)
+    coarse[::COARSE, ::COARSE] = True
+    run(coarse)
+    run(_crossed(scan.demand[::COARSE, ::COARSE], shape) & ~coarse)
+    return replace(scan, demand=np.where(np.isnan(scan.stroke), _between(scan.demand), scan.demand))
 
-    def made(period: float, damping: float) -> Bearings:
-        row = int(np.abs(dampings - damping).argmin())
-        exact = dampings[row] == damping
-        one = unit[row] if exact else _design(scene.total_mass, stroke, damping, count, stiffness_ratio, definition)
-        softer = 1 / period**2  # of a design for 1 s: forces at one displacement go with the stiffness
-        return one.model_copy(update={"ka": one.ka * softer, "kb": one.given("kb") * softer})
 
-    def run(wanted: np.ndarray) -> None:
-        places = np.argwhere(wanted & np.isnan(demand))
-        scenes = [scene.with_(bearings=made(columns[k], dampings[i]), duration=None) for i, k in places]
-        worst, peak = np.zeros(len(places)), np.zeros(len(places))
-        runs["known"] += len(places) * len(motions)
-        for motion in motions:
-            for part in np.array_split(np.arange(len(places)), max(1, len(places) // 200)):
-                found = simulate_many([scenes[j].with_(motion=motion) for j in part], contact=True, workers=workers)
-                lift = found.friction_demand / limit if tilt == 0 else found.peak_tilt / scene.block.slenderness / tilt
-                lift = np.where(found.failed | (tilt > 0) & found.overturns, math.inf, lift)
-                lift = np.where((tilt == 0) & found.lifted, np.maximum(lift, np.nextafter(1.0, 2.0)), lift)
-                worst[part] = np.maximum.reduce([worst[part], lift, found.peak_base_displacement / stroke])
-                peak[part] = np.maximum(peak[part], found.peak_base_displacement)
-                runs["done"] += len(part)
-                if progress:
-                    progress(runs["done"], runs["known"])
-        demand[tuple(places.T)], moved[tuple(places.T)] = worst, peak
+def _fill(scan, scene, motions, stroke, tilt, workers, progress, wanted):
+    """Run the nodes wanted and put what the worst motion does into the arrays of the scan."""
+    places = np.argwhere(wanted)
+    scenes = [scene.with_(bearings=softened(scan.designs[i], scan.periods[k]), duration=None) for i, k in places]
+    demand, moved, done = np.zeros(len(places)), np.zeros(len(places)), 0
+    for motion in motions:
+        for part in np.array_split(np.arange(len(places)), 1 + len(places) // CHUNK):
+            found = simulate_many([scenes[j].with_(motion=motion) for j in part], contact=True, workers=workers)
+            moved[part] = np.maximum(moved[part], found.peak_base_displacement)
+            demand[part] = np.maximum(demand[part], _lift(found, scene.block.slenderness, tilt))
+            done += len(part)
+            if progress:
+                progress(done, len(places) * len(motions))
+    scan.demand[wanted], scan.stroke[wanted] = np.maximum(demand, moved / stroke), moved
 
-    first = np.zeros(shape, dtype=bool)
-    first[::COARSE, ::COARSE] = True
-    run(first)
-    rows = np.arange(0, shape[0], COARSE), np.arange(0, shape[1], COARSE)
-    coarse = demand[::COARSE, ::COARSE]
-    run(_crossed(coarse, shape))
-    finite = np.where(np.isinf(coarse), np.max(coarse, where=np.isfinite(coarse), initial=2.0), coarse)
-    between = RegularGridInterpolator(rows, finite)(tuple(np.indices(shape)))
-    return BearingScan(columns, dampings, np.where(np.isnan(demand), between, demand), moved, made)
+
+def _lift(found: Outcomes, slenderness: float, tilt: float) -> np.ndarray:
+    """Acceleration over that of uplift, above 1 where the block lifts; or peak tilt over its limit."""
+    if tilt == 0:
+        lifting = np.where(found.lifted, np.nextafter(1.0, 2.0), 0.0)
+        return np.where(found.failed, math.inf, np.maximum(found.friction_demand / math.tan(slenderness), lifting))
+    return np.where(found.failed | found.overturns, math.inf, found.peak_tilt / slenderness / tilt)
 
 
 def _crossed(coarse: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
@@ -174,28 +175,32 @@ def _crossed(coarse: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
     return wanted
 
 
-def _designs(mass, stroke, count, ratio, definition):
-    """(the dampings of which there are bearings, those for a period of 1 s)."""
+def _between(demand: np.ndarray) -> np.ndarray:
+    """The demand at every node, from those of the first scan; an infinite one counts as the largest that is not."""
+    coarse = demand[::COARSE, ::COARSE]
+    finite = np.where(np.isinf(coarse), np.max(coarse, where=np.isfinite(coarse), initial=2.0), coarse)
+    axes = tuple(np.arange(0, length, COARSE) for length in demand.shape)
+    return RegularGridInterpolator(axes, finite)(tuple(np.indices(demand.shape)))
 
-    def design(damping):
-        return _design(mass, stroke, damping, count, ratio, definition)
 
-    made = []
+def _designs(mass: float, stroke: float, design: Mapping[str, Any]) -> tuple[np.ndarray, list[Bearings]]:
+    """(dampings of which there are bearings, evenly between the least and the most, their designs for 1 s)."""
+
+    def made(damping):
+        return design_bearings(mass, 1.0, float(damping), stroke, **design)
+
+    possible = []
     for damping in np.arange(DAMPINGS[0], DAMPINGS[1], DAMPING_STEP):
         try:
-            design(float(damping))
-            made.append(float(damping))
+            made(damping)
+            possible.append(damping)
         except SettingError as error:
             problem = error
-    if len(made) < 2:
+    if len(possible) < 2:
         raise SettingError(f"no bearings of {DAMPINGS[0]:g} to {DAMPINGS[1]:g} of critical damping: {problem}")
-    number = COARSE * math.ceil((made[-1] - made[0]) / DAMPING_STEP / COARSE)
-    dampings = np.linspace(made[0], made[-1], number + 1)
-    return dampings, [design(float(damping)) for damping in dampings]
-
-
-def _design(mass, stroke, damping, count, ratio, definition):
-    return design_bearings(mass, 1.0, damping, stroke, count=count, stiffness_ratio=ratio, definition=definition)
+    number = COARSE * math.ceil((possible[-1] - possible[0]) / DAMPING_STEP / COARSE)
+    dampings = np.linspace(possible[0], possible[-1], number + 1)
+    return dampings, [made(damping) for damping in dampings]
 
 
 def _check(scene, motions, stroke, tilt, periods):

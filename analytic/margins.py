@@ -271,7 +271,7 @@ def margins(
     changes = changes[1 + changes > 0.5 * step]  # nearer to -1 next to nothing is left of the quantity
     values = {name: value for name, each in QUANTITIES.items() if (value := each.value(scene)) is not None}
     values = {name: value for name, value in values.items() if not only or name in only}
-    _check_cost(scene, len(values) * len(changes))
+    check_cost(scene, len(values) * len(changes))
     found = []
     for name, value in values.items():
         quantity = QUANTITIES[name]
@@ -284,11 +284,11 @@ def margins(
     return sorted(found, key=lambda margin: math.inf if margin.nearest is None else abs(margin.nearest))
 
 
-def _check_cost(scene, runs):
-    """Refuse a scene that costs too much as often as it is to be run."""
+def check_cost(scene: Scene, runs: int, most: float = MOST_STEPS) -> None:
+    """Raise `SceneError` for a scene that takes more than `most` steps in so many runs, beside those of its record."""
     steps = simulate(scene, history=False).steps
     samples = len(scene.motion.samples) if isinstance(scene.motion, SampledMotion) else 0
-    if steps > STEPS_PER_SAMPLE * samples + MOST_STEPS / runs:
+    if steps > STEPS_PER_SAMPLE * samples + most / runs:
         raise too_long(scene, f"{runs} runs of {steps:.3g} steps are too many")
 
 

@@ -10,16 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .batch import Outcomes, simulate_many
-from .budget import STEPS_PER_SAMPLE, too_long
-from .motion import SampledMotion
+from .margins import STEP, check_cost
 from .response import Caution
-from .solver import simulate
 
 if TYPE_CHECKING:
     from .scene import Scene
 
 SHARE = 0.05  # of the motion, either way: what the scale of a recorded motion is seldom known better than
-STEP = 5e-4  # between two changes, as in `margins`
 FOLD = 5.0  # a peak tilt that grows or falls so many times within SHARE is said to depend on it ...
 SEEN = 0.01  # ... unless it stays below this share of the slenderness, where no range is promised to an engine either
 MOST_STEPS = 1e8  # of all runs: a minute on two cores
@@ -35,10 +32,7 @@ def nearby(scene: Scene, *, workers: int | None = None) -> tuple[np.ndarray, Out
     """
     count = round(SHARE / STEP)
     changes = STEP * np.arange(-count, count + 1)
-    steps = simulate(scene, history=False).steps
-    samples = len(scene.motion.samples) if isinstance(scene.motion, SampledMotion) else 0
-    if steps > STEPS_PER_SAMPLE * samples + MOST_STEPS / len(changes):
-        raise too_long(scene, f"{len(changes)} runs of {steps:.3g} steps are too many")
+    check_cost(scene, len(changes), MOST_STEPS)
     return changes, simulate_many([scene] * len(changes), scales=1 + changes, workers=workers)
 
 

@@ -166,8 +166,8 @@ def load_scene(path: str | PathLike[str]) -> Scene:
     Raises
     ------
     SceneError
-        Names the file, the key, what was found there and the remedy. It tells all mistakes in keys and their values;
-        how the parts fit together is checked once each of them is right.
+        Names the file, the key, what was found there and the remedy. It tells all mistakes in keys and their values,
+        and those of the motion; how the parts fit together is checked once each of them is right.
     """
     path = Path(path)
     if str(path) in shipped_scenes() and not path.exists():

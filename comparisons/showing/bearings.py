@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from analytic import Scene
     from analytic.bearing_scan import BearingScan
 
-HELD, LIMIT = "#009E73", "#D55E00"  # Okabe and Ito
+HELD = "#009E73"  # Okabe and Ito
 
 
 def print_bearings(

@@ -50,7 +50,7 @@ def test_the_region_is_that_of_single_runs_but_within_one_per_cent_of_its_edge(s
 def test_the_bearings_named_hold_in_a_run_of_their_own(name):
     scan = scan_bearings(SCENE, [SCENE.motion], 0.25)
     point = getattr(scan, name)
-    bearings = scan.made(*point)
+    bearings = scan.bearings(*point)
     assert properties(bearings, SCENE.total_mass, 0.25).period == pytest.approx(point[0], rel=1e-3)
     assert properties(bearings, SCENE.total_mass, 0.25).damping_equivalent == pytest.approx(point[1], rel=1e-3)
     response = simulate(SCENE.with_(bearings=bearings, duration=None), history=False)

@@ -230,25 +230,25 @@ def test_folder(tmp_path):
         load_scene(tmp_path)
 
 
-def test_the_motion_is_told_with_the_mistakes_of_other_tables(tmp_path):
-    text = SCENE.replace("3172.05", "-1").replace('synthetic = "duzce-like"', 'record = "no.AT2"')
+@pytest.mark.parametrize(
+    ("changes", "keys"),
+    [
+        ({"3172.05": "-1", 'synthetic = "duzce-like"': 'record = "no.AT2"'}, ["block.mass", "motion.record"]),
+        (
+            {"[base]\nmass = 212.0\n": "", 'synthetic = "duzce-like"': 'record = "no.AT2"'},
+            ["motion.record", "bearings"],
+        ),
+        ({"3172.05": "-1", '"duzce-like"': '"kobe"'}, ["block.mass", "motion.synthetic"]),  # told once
+    ],
+)
+def test_the_motion_is_told_with_other_mistakes(tmp_path, changes, keys):
+    text = SCENE
+    for before, after in changes.items():
+        assert before in text
+        text = text.replace(before, after)
     with pytest.raises(SceneError) as caught:
         load_scene(write_scene(tmp_path, text))
-    assert [one.key for one in (caught.value, *caught.value.others)] == ["block.mass", "motion.record"]
-
-
-def test_the_motion_is_told_with_parts_that_do_not_fit(tmp_path):
-    text = SCENE.replace("[base]\nmass = 212.0\n", "").replace('synthetic = "duzce-like"', 'record = "no.AT2"')
-    with pytest.raises(SceneError) as caught:
-        load_scene(write_scene(tmp_path, text))
-    assert [one.key for one in (caught.value, *caught.value.others)] == ["motion.record", "bearings"]
-
-
-def test_a_mistake_of_the_motion_is_told_once(tmp_path):
-    text = SCENE.replace("3172.05", "-1").replace('"duzce-like"', '"kobe"')
-    with pytest.raises(SceneError) as caught:
-        load_scene(write_scene(tmp_path, text))
-    assert [one.key for one in (caught.value, *caught.value.others)] == ["block.mass", "motion.synthetic"]
+    assert [one.key for one in (caught.value, *caught.value.others)] == keys
 
 
 def test_a_key_called_self_is_unknown(tmp_path):

@@ -3,19 +3,11 @@
 import json
 
 import pytest
+from own_scenes import BRONZE, CLIFF
 
 from analytic import load_scene, simulate
 
-BRONZE = """
-[block]
-mass = 739.2
-radius = 0.61612
-slenderness = 0.22923
-[motion]
-synthetic = "duzce-like"
-scale = {scale}
-"""
-CLIFF, CALM = 0.62, 0.27  # the second peaks at six tenths of uplift
+CALM = 0.27  # scale at which it peaks at six tenths of uplift
 
 
 def scene(tmp_path, scale):

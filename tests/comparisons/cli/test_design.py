@@ -3,21 +3,10 @@
 import json
 
 import pytest
+from own_scenes import BUST
 
 from analytic import load_scene, simulate
 
-TEXT = """# my own words
-name = "bust"
-[block]
-mass = 1551.83
-radius = 0.989002
-slenderness = 0.281772
-[base]
-mass = 400.0
-{bearings}
-[motion]  # and these
-synthetic = "duzce-like"
-"""
 BEARINGS = '[bearings]\nlaw = "linear"\nka = 2e5\n'
 
 
@@ -25,7 +14,7 @@ BEARINGS = '[bearings]\nlaw = "linear"\nka = 2e5\n'
 @pytest.mark.parametrize("name", ["least-stroke", "softest"])
 def test_the_scene_it_writes_does_not_lift_and_stays_within_the_stroke(rocking, tmp_path, bearings, name):
     file, found = tmp_path / "bust.toml", tmp_path / "found.json"
-    file.write_text(TEXT.format(bearings=bearings))
+    file.write_text(BUST.format(bearings=bearings))
     status, out, err = rocking(
         "design", file, "--stroke", "0.2", "--write", name, "--json", found, "--plot", tmp_path / "b.svg"
     )
@@ -49,14 +38,14 @@ def test_the_scene_it_writes_does_not_lift_and_stays_within_the_stroke(rocking, 
 
 def test_where_nothing_holds_it_says_what_comes_nearest_and_writes_nothing(rocking, tmp_path):
     file = tmp_path / "bust.toml"
-    file.write_text(TEXT.format(bearings=""))
+    file.write_text(BUST.format(bearings=""))
     status, out, _ = rocking("design", file, "--stroke", "0.01")
     assert status == 0
     assert "Nearest" in out
     status, _, err = rocking("design", file, "--stroke", "0.01", "--write", "softest")
     assert status == 2
     assert "--write" in err
-    assert file.read_text() == TEXT.format(bearings="")
+    assert file.read_text() == BUST.format(bearings="")
 
 
 @pytest.mark.parametrize(
