@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["FORMATS", "G", "UNITS", "Channel", "read_channels", "read_record"]
 
 # The first that recognises the lines reads them.
-FORMATS: tuple[Format, ...] = (peer, dyna, csmip, cosmos, knet, smc, foreign, columns)
+FORMATS: tuple[Format, ...] = (foreign, peer, dyna, csmip, cosmos, knet, smc, columns)
 NOT_ACCELERATIONS = {".vt2": "velocities", ".dt2": "displacements"}
 USUAL_PEAK = (1e-4 * G, 3 * G)  # m/s2
 USUAL_STEP = (1e-4, 0.1)  # s
@@ -62,7 +62,7 @@ def read_record(
     scale: float = 1.0,
     *,
     dt: float | None = None,
-    column: int | None = None,
+    column: int | str | None = None,
     channel: int | str | None = None,
 ) -> SampledMotion:
     """The ground motion in a record file; the format is recognised from the content.
@@ -71,15 +71,16 @@ def read_record(
     ----------
     path : str or Path
         PEER AT2, ESM/DYNA 1.2 ASCII (also as AFAD writes it), CSMIP volume 2, COSMOS, K-NET, KiK-net, USGS SMC, or
-        columns of numbers (CSV, value lists); or gzip or zip of one of them.
-    units : {"m/s2", "cm/s2", "g"}, optional
+        columns of numbers (CSV, value lists, Taiwan's CWA, Japan's JMA, Turkey's AFAD); or gzip or zip of one of them.
+    units : {"m/s2", "cm/s2", "g", "gal", "mm/s2", "%g"}, optional
         Unit of a record whose own words state none; must not contradict them.
     scale : float
         Factor on the accelerations.
     dt : float, optional
         Sampling interval [s] of a record whose own words state none; must not contradict them.
-    column : int, optional
-        Which of several columns holds the accelerations, counted from 1; the first one holds the times, if any does.
+    column : int or str, optional
+        Which of several columns holds the accelerations: its number, from 1 on, or its title ("N-S"). The first one
+        holds the times where it rises evenly.
     channel : int or str, optional
         Number (3) or direction ("Up") of one of the channels of a file that has several.
 
@@ -95,8 +96,9 @@ def read_record(
     """
     found = read_channels(path, units, scale, dt=dt, column=column, channel=channel)
     if len(found) > 1:
-        problem = "missing; the file holds channels " + " or ".join(_words(one.number, one.direction) for one in found)
-        raise SceneError("motion.channel", None, problem, "add channel, one of these").in_file(path)
+        kind = "column" if found[0].format == columns.NAME else "channel"
+        problem = f"missing; the file holds {kind}s " + " or ".join(_words(one.number, one.direction) for one in found)
+        raise SceneError(f"motion.{kind}", None, problem, f"add {kind}, one of these").in_file(path)
     return found[0].motion
 
 
@@ -106,7 +108,7 @@ def read_channels(
     scale: float = 1.0,
     *,
     dt: float | None = None,
-    column: int | None = None,
+    column: int | str | None = None,
     channel: int | str | None = None,
 ) -> tuple[Channel, ...]:
     """All channels of a record file, or the chosen one alone; parameters and errors as those of `read_record`.
@@ -123,7 +125,7 @@ def read_channels(
     path = Path(path)
     try:
         form, contents = _contents(path, Asked(dt, column))
-        chosen = contents if channel is None else [_chosen(contents, channel)]
+        chosen = contents if channel is None else [_chosen(form, contents, channel)]
         return tuple(_channel(form.NAME, content, path.name, units, scale, dt) for content in chosen)
     except SceneError as error:
         raise error.in_file(path) from None
@@ -143,14 +145,14 @@ def _contents(path: Path, asked: Asked) -> tuple[Format, Sequence[Content]]:
     if not any(line.strip() for line in lines):
         raise SceneError("record", None, "is empty", "give a record with at least two accelerations")
     form = next(form for form in FORMATS if form.recognises(lines))
-    if asked.column is not None and form is not columns:
+    if asked.column is not None and form not in (columns, foreign):
         raise SceneError("motion.column", asked.column, f"but the file is {form.NAME}", "remove column")
     return form, form.read(lines, asked)
 
 
-def _chosen(contents: Sequence[Content], channel: int | str) -> Content:
+def _chosen(form: Format, contents: Sequence[Content], channel: int | str) -> Content:
     """The one of a file's contents that `channel`, a number or a direction, names."""
-    if not contents[0].channel:
+    if form is columns or not contents[0].channel:
         raise SceneError("motion.channel", channel, "but the file has no several channels", "remove channel")
     word = " ".join(str(channel).split()).casefold()
     found = [content for content in contents if content.channel == word] or [
@@ -180,10 +182,12 @@ def _channel(form: str, content: Content, name: str, units: str | None, scale: f
         raise SceneError("record", None, f"its peak of {peak / G:.3g} g is no ground motion", "mend the damaged number")
     if not abs(scale) * peak <= LARGEST_PEAK:
         raise SceneError("motion.scale", scale, f"makes a peak of {abs(scale) * peak / G:.3g} g", "give a smaller one")
-    label = f"{name}, channel {_words(content.channel, content.direction)}" if content.channel else name
+    kind = "column" if form == columns.NAME else "channel"
+    label = f"{name}, {kind} {_words(content.channel, content.direction)}" if content.channel else name
     label = f"{label} ({content.note})" if content.note else label
     label = label if scale == 1 else f"{label} x {scale:g}"
-    odd = tuple(f"{name}: {sentence}" for sentence in _odd(peak, dt, unit) + content.warnings)
+    unread = content.unread if content.dt is None else ()
+    odd = tuple(f"{name}: {sentence}" for sentence in _odd(peak, dt, unit) + content.warnings + unread)
     motion = SampledMotion(dt, samples * scale, label, odd)
     return Channel(form, content.channel, content.direction, content.note, unit, motion)
 

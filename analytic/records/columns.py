@@ -1,7 +1,8 @@
-"""Columns of numbers, time [s] and accelerations, or accelerations alone at a step that is stated or given.
+"""Columns of numbers: times [s] and accelerations, or accelerations alone at a step that is stated or given.
 
-Parted by blanks, tabs, semicolons or commas, with a header or without. Accelerations alone may stand several a line,
-one after the other, as OpenSees and other programs read them.
+Parted by blanks, tabs, semicolons or commas, with a header or without; so do loggers write them, and the networks of
+Taiwan (CWA), Japan (JMA) and Turkey (AFAD). Accelerations alone may stand several a line, one after the other, as
+OpenSees and other programs read them.
 """
 
 import itertools
@@ -12,9 +13,9 @@ import numpy as np
 
 from ..errors import SceneError
 from .content import HEADER_WIDTH, UNKNOWN, Asked, Content
-from .numbers import NUMBER, number
-from .times import PER_SECOND, SAME, interval, uniform_step, usable
-from .units import START, stated_unit
+from .numbers import check_last, number
+from .statements import Statements, read_statements
+from .times import SAME, uniform_step, usable
 
 NAME = "columns"
 # A line that begins like a number is data and must be read, or else damage would pass as a header.
@@ -22,9 +23,8 @@ DATA = re.compile(r"\s*(?:[-+.,;0-9]|(?:nan|inf|infinity)\b)", re.I)
 COMMENT = ("#", "%", "!", "//")
 HEADER_LINES = 200
 NUMERIC = re.compile(r"[-+]?[.,]?[0-9]")
-TIME = re.compile(rf"{START}(?:time|t)[ ,:=_/(\[]+(?:in |units?[ :=]+)?[(\[]?(µs|[a-z]+)(?![a-z0-9_])", re.I)
-STEP = re.compile(rf"{START}dt ?(?:[(\[] ?([a-zµ]+) ?[)\]] ?)?[:=] ?(?:({NUMBER})(?![0-9.]|,[0-9]) ?([a-zµ]*))?", re.I)
-OTHER_TIMES = {"us", "µs", "usec", "ns", "min", "minute", "minutes", "h", "hour", "hours", "samples"}
+SEQUENCE = re.compile(r"datasequence:", re.I)  # Taiwan's line of titles
+TIME_TITLE = re.compile(r"(?:time|t|zeit|tiempo|temps|zaman)\b", re.I)
 REMEDY = "write time [s] and acceleration, two numbers a line"
 # Of numbers one after the other, neighbours in a line are no rougher than those a line apart, wherever in the line they
 # stand; in columns of their own they are, or some of them are.
@@ -39,43 +39,51 @@ def recognises(lines: Sequence[str]) -> bool:
 
 
 def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
-    """The `Content` of one of the columns, or of accelerations alone.
+    """The `Content` of each column of accelerations, or of the one asked for, or of accelerations alone.
 
     Raises
     ------
     SceneError
         Lines of unlike length, an unreadable number, decimal commas that cannot be told from separators, times that
-        are not uniform or contradict a stated step, no acceleration, or several columns and none chosen.
+        are not uniform or contradict a stated step, a statement inside the data, or no acceleration.
     """
     header, rows = _split(lines)
     separator, decimal = _dialect(rows)
-    titles = _titles(header, separator)
-    stated = _stated_step(header)
+    last = _last_line(header, separator)
     table = [(at, _fields(row.replace(",", ".") if decimal == "," else row, separator)) for at, row in rows]
-    known = asked.dt is not None or stated is not None
-    timed = len(table[0][1]) > 1 and not (known and not _rises(table))
-    printed = None
-    if timed or asked.column is not None:
-        column = _column(table, rows, asked.column, timed)
-        values = [number(f"line {at}", fields[column]) for at, fields in table]
-        if timed:
-            printed = _printed_step(table) / _per_second(header)
-    else:
-        values = _one_after_the_other(table, rows, known)
-    if printed is not None and stated is not None and abs(printed - stated) > SAME * printed:
-        raise SceneError("dt", stated, f"but the times have a step of {printed:.9g} s", "correct the wrong one")
-    words = [(at, line[:HEADER_WIDTH]) for at, line in header]
-    if asked.column is not None and titles is not None:
-        words[-1] = titles, _title(words[-1][1], separator, len(table[0][1]), asked.column)
-    return (
-        Content(
-            stated if printed is None or stated is not None else usable("time", printed),
-            np.array(values),
-            stated_unit(words, titles),
-            "the header names no unit" if header else "columns of numbers carry no unit",
-            note="" if asked.column is None else f"column {asked.column}",
-        ),
-    )
+    width = len(table[0][1])
+    titles_at, titles = _titles(header, separator, width)
+    words = [(at, line[:HEADER_WIDTH]) for at, line in header if at != titles_at]
+    # What the other titles say of their columns is not said of the times.
+    stated = read_statements([*words, (titles_at, titles[0])] if titles else words, titles_at or last)
+    if lines[-1].strip():
+        check_last(f"line {table[-1][0]}", [fields for _, fields in table])
+    known = asked.dt is not None or stated.step is not None
+    timed = width > 1 and (_rises(table) or (_is_time(titles[0]) if titles else not known))
+    step = _step(table, stated) if timed else stated.step
+    no_unit = "the header names no unit" if header else "columns of numbers carry no unit"
+    if not timed and asked.column is None and not titles[1:]:
+        values = np.array(_one_after_the_other(table, rows, known))
+        return (Content(step, values, stated.unit, no_unit, unread=stated.unread),)
+    _check_widths(table, rows)
+    names = [f"{place + 1} ({_name(titles[place])})" if titles else str(place + 1) for place in range(width)]
+    places = _places(titles, names, asked.column, timed)
+
+    def content(place: int) -> Content:
+        unit = read_statements([*words, (titles_at, titles[place])], titles_at).unit if titles else stated.unit
+        values = np.array([number(f"line {at}", fields[place]) for at, fields in table])
+        if asked.column is None and width == 2 and timed:
+            return Content(step, values, unit, no_unit, unread=stated.unread)
+        name = _name(titles[place]) if titles else ""
+        return Content(step, values, unit, no_unit, channel=str(place + 1), direction=name, unread=stated.unread)
+
+    try:
+        return tuple(content(place) for place in places)
+    except SceneError as error:
+        if len(places) == 1:
+            raise
+        problem = f"missing; not all columns are accelerations ({error.key}: {error.problem})"
+        raise SceneError("motion.column", None, problem, f"add column, {' or '.join(names[timed:])}") from None
 
 
 def _rises(table: Table) -> bool:
@@ -84,20 +92,27 @@ def _rises(table: Table) -> bool:
     return len(first) > 1 and all(before < after for before, after in itertools.pairwise(first))
 
 
-def _column(table: Table, rows: Sequence[tuple[int, str]], wanted: int | None, timed: bool) -> int:
-    """Index of the column of accelerations; `timed`: the first one holds the times."""
-    width, first = len(table[0][1]), 2 if timed else 1
+def _check_widths(table: Table, rows: Sequence[tuple[int, str]]) -> None:
+    width = len(table[0][1])
     for (at, fields), (_, row) in zip(table, rows, strict=True):
         if len(fields) != width:
             raise SceneError(f"line {at}", row, f"holds {len(fields)} columns, the first line {width}", REMEDY)
-    choice = f"{first} to {width}" if first < width else f"{width}"
-    if wanted is None and width > 2:
-        raise SceneError("motion.column", None, f"missing; the file has {width} columns", f"add column, {choice}")
-    wanted = 2 if wanted is None else wanted
-    if not first <= wanted <= width:
-        problem = "is the time" if wanted == 1 else f"but the file has {width} columns"
-        raise SceneError("motion.column", wanted, problem, f"give column, {choice}")
-    return wanted - 1
+
+
+def _places(titles: Sequence[str], names: Sequence[str], wanted: int | str | None, timed: bool) -> Sequence[int]:
+    """Indices of the columns of accelerations, or of the one wanted; `timed`: the first one holds the times."""
+    places = range(int(timed), len(names))
+    if wanted is None:
+        return places
+    word = str(wanted).strip().casefold()
+    found = [place for place in range(len(names)) if word == str(place + 1)] or [
+        place for place, title in enumerate(titles) if word in (_name(title).casefold(), title.strip().casefold())
+    ]
+    if len(found) == 1 and found[0] in places:
+        return found
+    problem = "names several columns" if found else f"but the file has {len(names)} columns"
+    problem = "is the time" if found == [0] else problem
+    raise SceneError("motion.column", wanted, problem, f"give column, {' or '.join(names[timed:])}")
 
 
 def _one_after_the_other(table: Table, rows: Sequence[tuple[int, str]], known: bool) -> list[float]:
@@ -124,15 +139,19 @@ def _one_after_the_other(table: Table, rows: Sequence[tuple[int, str]], known: b
 
 
 def _split(lines: Sequence[str]) -> tuple[list[tuple[int, str]], list[tuple[int, str]]]:
-    """(line number, text) of the header and of the rows of data, without comments and blank lines."""
-    header: list[tuple[int, str]]
-    rows: list[tuple[int, str]]
-    header, rows = [], []
+    """(line number, text) of the header and of the rows of data, without comments and blank lines.
+
+    A comment inside the data that states a step or a unit is refused: there a second record begins.
+    """
+    header: list[tuple[int, str]] = []
+    rows: list[tuple[int, str]] = []
     for at, line in enumerate(lines, 1):
         text = line.strip()
         if text.startswith(COMMENT):
             if not rows:
                 header.append((at, text))
+            elif (found := read_statements([(at, text[:HEADER_WIDTH])])).step or found.unit:
+                raise SceneError(f"line {at}", text, "a statement inside the data", "give one record of the file")
         elif text and not rows and not DATA.match(text):
             header.append((at, text))
         elif text:
@@ -179,8 +198,8 @@ def _fields(row: str, separator: str | None) -> list[str]:
     return row.split() if separator is None else [field.strip() for field in row.split(separator)]
 
 
-def _titles(header: Sequence[tuple[int, str]], separator: str | None) -> int | None:
-    """Line number of the column titles, the last line before the data; refused if it may be a damaged row."""
+def _last_line(header: Sequence[tuple[int, str]], separator: str | None) -> int | None:
+    """Number of the last line of the header; refused if it may be a damaged row."""
     if not header:
         return None
     at, text = header[-1]
@@ -199,46 +218,36 @@ def _titles(header: Sequence[tuple[int, str]], separator: str | None) -> int | N
     return at
 
 
-def _title(line: str, separator: str | None, width: int, column: int) -> str:
-    """The title of a column; the whole line where it cannot be told which word belongs to which column."""
-    separator = "\t" if separator is None else separator
-    titles = line.split(separator)
-    return titles[column - 1] if len(titles) == width else line
+def _titles(header: Sequence[tuple[int, str]], separator: str | None, width: int) -> tuple[int, list[str]]:
+    """(line number, titles) of the line that titles the columns; (0, none) where none does."""
+    named = [(at, found.string[found.end() :]) for at, line in header if (found := SEQUENCE.match(line.lstrip(" #")))]
+    for at, line in named or header[-1:]:
+        line = line[:HEADER_WIDTH].lstrip("#%!/ ")
+        for parting in (*([re.escape(separator)] if separator else []), "[;,]", r"\t", " {2,}", "[;, ]+"):
+            titles = [title.strip(" \"'") for title in re.split(parting, line.strip())]
+            if len(titles) == width and all(re.search(r"[^\W\d_]", title) for title in titles):
+                return at, titles
+    return 0, []
 
 
-def _stated_step(header: Sequence[tuple[int, str]]) -> float | None:
-    """The sampling interval [s] that a line of the header states, dt = .01 s; None without one."""
-    found = {}
-    for at, line in header:
-        for match in STEP.finditer(" ".join(line[:HEADER_WIDTH].split())):
-            if match[2] is None:
-                raise SceneError(f"line {at}", line, "its dt is no number", "write dt = .01 s")
-            word = (match[3] or match[1] or "").lower()
-            unit = word if word in PER_SECOND or word in OTHER_TIMES else match[1] or ""
-            found[interval(f"line {at}, dt", match[2], unit)] = at
-    if len(found) > 1:
-        raise SceneError(f"line {max(found.values())}", None, "dt is stated twice", "correct the wrong one")
-    return next(iter(found), None)
+def _name(title: str) -> str:
+    """A title without what stands in brackets: U(+) is U."""
+    return " ".join(re.sub(r"[(\[][^)\]]*[)\]]?", " ", title).split()) or title
 
 
-def _printed_step(table: Table) -> float:
-    """The interval of the times in the first column, in their own unit."""
+def _is_time(title: str) -> bool:
+    return bool(TIME_TITLE.match(title))
+
+
+def _step(table: Table, stated: Statements) -> float:
+    """The step [s] of the times in the first column, or that which the header states where the two agree."""
     tokens = [fields[0] for _, fields in table]
     for at, fields in table:
         number(f"line {at}", fields[0])
-    return uniform_step(tokens) if len(tokens) > 1 else 1.0  # one sample is refused by the caller
-
-
-def _per_second(header: Sequence[tuple[int, str]]) -> float:
-    """Units of time in a second, from the words of the header."""
-    found = {}
-    for at, line in header:
-        for match in TIME.finditer(" ".join(line[:HEADER_WIDTH].split())):
-            word = match[1].lower()
-            if word in OTHER_TIMES:
-                raise SceneError(f"line {at}", match[0], "not a time in s or ms", "write the times in seconds")
-            if word in PER_SECOND:
-                found[PER_SECOND[word]] = at
-    if len(found) > 1:
-        raise SceneError(f"line {max(found.values())}", None, "times in s and in ms", "correct the wrong unit of time")
-    return next(iter(found), 1)
+    # One sample is refused by the caller.
+    printed = (uniform_step(tokens) if len(tokens) > 1 else 1.0) / stated.per_second
+    if stated.step is None:
+        return usable("time", printed)
+    if abs(printed - stated.step) > SAME * printed:
+        raise SceneError("dt", stated.step, f"but the times have a step of {printed:.9g} s", "correct the wrong one")
+    return stated.step

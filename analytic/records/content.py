@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import SceneError
 from ..files import read_plain
+from .foreign import refuse_binary
 from .packed import unpacked
 from .units import Unit
 
@@ -27,19 +28,19 @@ class Asked:
 
     dt : float or None
         Sampling interval [s].
-    column : int or None
-        The column of the accelerations, from 1 on.
+    column : int or str or None
+        The column of the accelerations, from 1 on, or its title.
     """
 
     dt: float | None = None
-    column: int | None = None
+    column: int | str | None = None
 
 
 @dataclass(frozen=True)
 class Content:
     """One channel of a record as read: sampling interval dt [s] and unit as its own words state them (None: they do
     not), values as printed, shape (n,), what to say of a missing unit, sentences on what is odd, number and direction
-    of the channel, and what was done to the values."""
+    of the channel, what was done to the values, and sentences on words about the sampling that are not understood."""
 
     dt: float | None
     values: np.ndarray
@@ -49,6 +50,7 @@ class Content:
     channel: str = ""
     direction: str = ""
     note: str = ""
+    unread: tuple[str, ...] = ()
 
 
 def read_lines(path: str | PathLike[str]) -> tuple[list[str], str]:
@@ -69,6 +71,7 @@ def read_lines(path: str | PathLike[str]) -> tuple[list[str], str]:
             "give the path of a record, relative to the scene file",
         ) from error
     content, name = unpacked(content, Path(path).name, LARGEST)
+    refuse_binary(content)
     # Ctrl-Z ended DOS files. CR CR LF is what a DOS text becomes after one more conversion.
     lines = re.sub(r"\r++\n?+", "\n", _text(content).rstrip("\x1a")).split("\n")
     for number, line in enumerate(lines, 1):

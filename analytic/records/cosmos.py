@@ -24,7 +24,10 @@ HEADERS = tuple(
     for kind in ("integer", "real")
 )
 COMMENTS = re.compile(r"\s*([0-9]{1,4}) +comment line", re.I)
-DATA = re.compile(r"\s*([0-9]{1,9}) +([a-z]+) pts,.*?\bunits *= *([^,(]*[^,( ]) *(?:\(0*([0-9]+) *\))? *,", re.I)
+# CESMD writes no comma before the format in its files of volume 1.
+DATA = re.compile(
+    r"\s*([0-9]{1,9}) +([a-z]+) pts,.*?\bunits *= *([^,(]*?[^,( ]) *(?:\(0*([0-9]+) *\))? *,? *\bformat *=", re.I
+)
 CHANNEL = re.compile(r"\s*sta chan? *:? *([0-9]{1,4}|\?) *: *([^(]*)", re.I)
 END = re.compile(r"\s*(?:end-of-data\b|/&)", re.I)
 MEASURED, STEP, LENGTH, PEAK = 1, 61, 62, 63

@@ -15,8 +15,8 @@ from ..errors import SceneError
 from .content import HEADER_WIDTH, Asked, Content
 from .fixed import DAMAGED, Layout, fixed_values, stated_layout
 from .numbers import NUMBER, number, odd_peak
+from .statements import stated_unit
 from .times import interval
-from .units import stated_unit
 
 NAME = "CSMIP volume 2"
 FIRST = re.compile(r"\s*corrected accelerogram\b", re.I)

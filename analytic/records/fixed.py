@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SceneError
-from .numbers import number
+from .numbers import form_of, number
 
 DAMAGED = "the file is cut or damaged: fetch it again"
 _FORMAT = re.compile(r"\( *([1-9][0-9]?) *[A-Z]{1,2}([1-9][0-9]?)\.([0-9]{1,2})(?:E[0-9]?)? *\)", re.I)
@@ -44,7 +44,7 @@ def fixed_values(lines: Sequence[str], begin: int, count: int, layout: Layout) -
         ends, or other digits after the point; names the line.
     """
     values: list[float] = []
-    decimals, at = layout.decimals, begin
+    usual, at = None, begin
     while len(values) < count:
         wanted = min(layout.per_line, count - len(values))
         text = lines[at].rstrip(" ") if at < len(lines) else ""
@@ -55,15 +55,9 @@ def fixed_values(lines: Sequence[str], begin: int, count: int, layout: Layout) -
         for left in range(0, len(text), layout.width):
             field = text[left : left + layout.width].lstrip(" ")
             values.append(number(where, field))
-            found = _decimals(field)
-            decimals = found if decimals is None else decimals
-            if found is None or found != decimals:
-                raise SceneError(where, field, f"not a number of {decimals} decimals, as the others", DAMAGED)
+            found = form_of(field)
+            usual = found if usual is None else usual
+            if found is None or found != usual or layout.decimals not in (None, found[0]):
+                raise SceneError(where, field, "not printed as the other numbers are: a damaged number", DAMAGED)
         at += 1
     return np.array(values), next((index for index in range(at, len(lines)) if lines[index].strip()), len(lines))
-
-
-def _decimals(field: str) -> int | None:
-    """Digits after the point of a number; None without a point."""
-    _, point, behind = re.split(r"[EeDd]", field)[0].partition(".")
-    return len(behind) if point else None

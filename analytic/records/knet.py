@@ -51,6 +51,7 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     for key, value in (("Sampling Freq(Hz)", frequency), ("Scale Factor", gal), ("Scale Factor", steps)):
         if not value:
             raise SceneError(key, value, "not above 0", REMEDY)
+    _check_places(lines[end + 1 :], end + 2)
     counts = [_count(at, token) for at, line in enumerate(lines[end + 1 :], end + 2) for token in line.split()]
     if len(counts) != round(duration * frequency):
         raise SceneError("Duration Time(s)", duration, f"but {len(counts)} samples follow at {frequency:g} Hz", DAMAGED)
@@ -85,3 +86,11 @@ def _count(at: int, token: str) -> int:
     if not COUNT.fullmatch(token):
         raise SceneError(f"line {at}", token, "not a whole number", DAMAGED)
     return int(token)
+
+
+def _check_places(lines: Sequence[str], first: int) -> None:
+    """Refuse a line whose counts end elsewhere than those of the first one: a digit slipped in or was lost."""
+    usual = {found.end() for found in re.finditer(r"\S+", lines[0])} if lines else set()
+    for at, line in enumerate(lines, first):
+        if not {found.end() for found in re.finditer(r"\S+", line)} <= usual:
+            raise SceneError(f"line {at}", line, "its counts do not stand below those of the first line", DAMAGED)

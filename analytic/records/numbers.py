@@ -16,9 +16,8 @@ LONGEST = 100  # characters of a number
 # repetition is possessive (++, *+), so that no text takes more than one pass.
 NUMBER = r"[+-]?(?:[0-9]++(?:\.[0-9]*+)?+|\.[0-9]++)(?:[EeDd][+-]?[0-9]{1,3}+)?+"
 _NUMBER = re.compile(NUMBER)
-_PRINTED = re.compile(r"[+-]?[0-9]*+\.([0-9]*+)(?:[EeDd][+-]?([0-9]{1,3}+))?+")  # decimals, digits of the exponent
-_LONG_EXPONENT = re.compile(r"[EeDd][+-]?([0-9])[0-9]{2}")
-_SHORT_EXPONENT = re.compile(r"[EeDd][+-]?[0-9]{1,2}(?![0-9])")
+# Digits before and after the point, digits of the exponent.
+_PRINTED = re.compile(r"[+-]?([0-9]*+)\.([0-9]*+)(?:[EeDd][+-]?([0-9]{1,3}+))?+")
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.I)
 
 
@@ -38,54 +37,65 @@ def number(where: str, token: str) -> float:
     raise SceneError(where, token, "not finite" if _NOT_FINITE.fullmatch(token) else "not a number", REMEDY)
 
 
-def numbers(where: str, line: str) -> list[float]:
-    """All numbers of a line in Fortran's columns, shape (n,): parted by blanks, or stuck together by their signs."""
-    values = []
-    for token in line.split():
-        if len(token) <= LONGEST and _NUMBER.fullmatch(token):
-            values.append(number(where, token))
-        else:
-            values += _stuck(where, token)
-    return values
-
-
 def fortran_values(lines: Sequence[str], begin: int) -> np.ndarray:
-    """All numbers from the line of index `begin` on, shape (n,).
+    """All numbers from the line of index `begin` on, shape (n,), which one Fortran format printed.
 
     Raises
     ------
     SceneError
-        What is not a number, and an exponent of three digits where the others have two and it is no tiny number in a
-        line of the usual width: a digit slipped in, or two numbers ran together.
+        What is not a number, or one of another form or in a line of another width than all others: damage.
     """
-    values = [value for at, line in enumerate(lines[begin:], begin + 1) for value in numbers(f"line {at}", line)]
-    long = [(at, line.rstrip()) for at, line in enumerate(lines[begin:], begin + 1) if _LONG_EXPONENT.search(line)]
-    if long and any(_SHORT_EXPONENT.search(line) for line in lines[begin:]):
-        usual = Counter(len(line.rstrip()) for line in lines[begin:] if line.strip()).most_common(1)[0][0]
-        for at, line in long:
-            if len(line) != usual or _LONG_EXPONENT.search(line)[1] == "0":  # type: ignore[index]  # the lines with one
-                raise SceneError(f"line {at}", line, "an exponent of three digits among others of two", REMEDY)
-    return np.array(values)
+    rows = [(f"line {at}", line.rstrip()) for at, line in enumerate(lines[begin:], begin + 1) if line.strip()]
+    tokens = [(where, token) for where, line in rows for part in line.split() for token in _parted(where, part)]
+    values = np.array([number(where, token) for where, token in tokens])
+    forms = Counter(form_of(token) for _, token in tokens)
+    # The last line may be shorter.
+    widths = Counter(len(line) for _, line in rows[:-1])
+    usual = max(forms, key=forms.__getitem__, default=None)
+    for where, token in tokens:
+        if (form := form_of(token)) != usual and not _tiny(form, usual, token):
+            raise SceneError(where, token, "not printed as the other numbers are: a damaged number", REMEDY)
+    if len(widths) == 2 and min(widths.values()) == 1 < max(widths.values()):
+        where, line = next((where, line) for where, line in rows if widths[len(line)] == 1)
+        raise SceneError(where, line, "not as long as all other lines: a damaged number", REMEDY)
+    return values
 
 
-def _stuck(where: str, token: str) -> list[float]:
-    """Numbers without blanks, where a sign fills the column: "-.1230E+00-.4560E+00".
+def check_last(where: str, table: Sequence[Sequence[str]]) -> None:
+    """Refuse the last number of a file that ends without the end of a line, if all others of its column share a form
+    that it has not: it is cut. `table`: the fields of all lines."""
+    *others, last = table
+    place = len(last) - 1
+    forms = {form_of(row[place]) for row in others if place < len(row)}
+    if len(others) > 1 and len(forms) == 1 and form_of(last[place]) not in forms:
+        raise SceneError(where, last[place], "the last number is cut", "fetch the file again, or end its last line")
 
-    One Fortran format printed them, so all have a point, as many decimals, and exponents of as many digits; else a
-    blank or a digit was lost ("-.10-100" may be an exponent without its letter) and they are refused.
+
+def _parted(where: str, text: str) -> list[str]:
+    """Numbers that blanks do not part, because a sign fills the column: "-.1230E+00-.4560E+00".
+
+    "-.10-100" may be an exponent without its letter: numbers in a row have points.
     """
-    parts = _NUMBER.findall(token)
-    if len(parts) < 2 or "".join(parts) != token or any(part[0] not in "+-" for part in parts[1:]):
-        number(where, token)  # refuses, and knows why
-    if len({_form(part) for part in parts}) != 1 or "." not in parts[0]:
-        raise SceneError(where, token, "numbers of unlike form without a blank between them", "part or mend them")
-    return [number(where, part) for part in parts]
+    parts = _NUMBER.findall(text) if len(text) <= LONGEST or "-" in text[1:] else [text]
+    if len(parts) < 2:
+        return [text]
+    if "".join(parts) != text or any(part[0] not in "+-" or "." not in part for part in parts[1:]):
+        raise SceneError(where, text, "numbers without a blank between them", "part or mend them")
+    return parts
 
 
-def _form(part: str) -> tuple[int, int] | None:
-    """Digits after the point and of the exponent; None without a point."""
-    match = _PRINTED.fullmatch(part)
-    return match and (len(match[1]), len(match[2] or ""))
+def form_of(token: str) -> tuple[int, int, bool] | None:
+    """Digits after the point and of the exponent, and whether several stand before the point of a number that has an
+    exponent; None without a point."""
+    match = _PRINTED.fullmatch(token)
+    return match and (len(match[2]), len(match[3] or ""), bool(match[3]) and len(match[1]) > 1)
+
+
+def _tiny(form: tuple[int, int, bool] | None, usual: tuple[int, int, bool] | None, token: str) -> bool:
+    """Whether a number has the usual form but for an exponent of three digits, as tiny ones have: "1.2E-105"."""
+    if form is None or usual is None or (form[1], usual[1]) != (3, 2):
+        return False
+    return (form[0], form[2]) == (usual[0], usual[2]) and token[-3] != "0" and token[-4] == "-"
 
 
 def odd_peak(stated: float, unit: str, values: Sequence[float] | np.ndarray) -> tuple[str, ...]:

@@ -9,21 +9,12 @@ import numpy as np
 from ..errors import SceneError
 from .numbers import NUMBER, number
 
-PER_SECOND = {
-    "": 1,
-    "s": 1,
-    "sec": 1,
-    "secs": 1,
-    "second": 1,
-    "seconds": 1,
-    "ms": 1000,
-    "msec": 1000,
-    "msecs": 1000,
-    "millisec": 1000,
-    "millisecs": 1000,
-    "millisecond": 1000,
-    "milliseconds": 1000,
-}
+_SECONDS = ("s", "sec", "secs", "second", "seconds", "seg", "segundo", "segundos", "sek", "sekunde", "sekunden")
+_SECONDS += ("seconde", "secondes", "sn", "saniye")
+_MILLISECONDS = ("ms", "msec", "msecs", "millisec", "millisecs", "millisecond", "milliseconds", "milisegundo")
+_MILLISECONDS += ("milisegundos", "millisekunde", "millisekunden", "milliseconde", "millisecondes", "milisaniye")
+PER_SECOND = dict.fromkeys(("", *_SECONDS), 1) | dict.fromkeys(_MILLISECONDS, 1000)
+OTHER_TIMES = {"us", "µs", "usec", "ns", "min", "minute", "minutes", "h", "hour", "hours", "samples"}
 USABLE = (1e-7, 1e3)  # s: beyond it no step is one of a ground motion
 SAME = 1e-6  # of a step: two that differ by less are one, printed twice
 JITTER = 0.01  # of the step: clocks and single precision

@@ -1,0 +1,288 @@
+"""What the header of a record states: sampling interval, unit of its values, unit of its times.
+
+A step is stated by a word for it, in English, Spanish, German, French or Turkish, with accents or without, then a
+number with a point or a comma, its unit before or behind: "Sampling rate: 100 Hz", "INTERVALO DE MUESTREO (s): 0,01",
+"Abtastrate 200", "dt [ms] = 5", "200 samples/s". A rate without a unit is in Hz, an interval in seconds.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from ..errors import SceneError
+from .numbers import NUMBER, number
+from .times import OTHER_TIMES, PER_SECOND, SAME, usable
+from .units import NOT_ACCELERATIONS, WORDS, Unit, factor_of, plain
+
+# A word begins and ends where no letter of any alphabet is.
+START, END = r"(?<![^\W\d_])", r"(?![^\W\d_])"
+_RATE = "|".join(
+    (
+        r"(?:sampl(?:e|ing)|digiti[sz](?:ing|ation)) ?-?(?:rate|freq(?:uency)?)",
+        r"fs|sampled at",
+        r"(?:tasa|frecuencia|velocidad) de muestreo",
+        r"(?:abtast|sampling) ?-?(?:rate|frequenz)",
+        r"(?:frequence|taux|cadence) d.?echantillonnage",
+        r"ornekleme (?:frekansi|hizi|orani)",
+    )
+)
+_INTERVAL = "|".join(
+    (
+        r"dt|delta ?-?t|equally ?-?spaced at|intervals? of",
+        r"sampl(?:e|ing) ?-?(?:interval|period|step|time|spacing)",
+        r"time ?-?(?:step|interval|increment|spacing)",
+        r"(?:intervalo|periodo|paso) de (?:muestreo|tiempo)",
+        r"(?:abtast|zeit) ?-?(?:intervall|periode|zeit|schritt|schrittweite|inkrement)",
+        r"(?:pas|intervalle|periode) (?:de temps|d.?echantillonnage)",
+        r"(?:ornekleme|zaman) (?:araligi|periyodu|adimi)",
+    )
+)
+_SAMPLES = (
+    "sps|(?:sample|muestra|abtastwert|wert|echantillon|ornek|point)(?:s|e)?(?:/| per | por | pro | par )"
+    "(?:s|sec|second|segundo|sekunde|seconde|saniye)"
+)
+_HERTZ = f"hz|hertz|1/s(?:ec)?|{_SAMPLES}"
+_PRINTED = rf"({NUMBER}|[+-]?[0-9]+,[0-9]+)(?![0-9]|[.,][0-9])"
+_STEP = re.compile(
+    rf"{START}(?:(?P<rate>{_RATE})|{_INTERVAL}){END}"
+    rf" ?[(\[]? ?(?P<before>(?!(?:is|of|at){END})(?:{_HERTZ}|[a-zµ]+){END})? ?[)\]]?"
+    rf" ?(?P<sign>[:=]|(?:is|of|at){END})? ?"
+    rf"(?:(?P<value>{_PRINTED})(?: ?[(\[]? ?(?P<behind>{_HERTZ}|[a-zµ]+){END}| ?(?=$|[,;|)\]])))?"
+    rf"|(?P<samples>{_PRINTED}) ?(?:{_SAMPLES}){END}"
+)
+_FREQUENCY = re.compile(rf"{NUMBER} ?k?hz{END}")
+_TIME = re.compile(
+    rf"{START}(?:time|t|zeit|tiempo|temps|zaman)[ ,:=/(\[]+(?:in |units?[ :=]+)?[(\[]?(µs|[a-z]+)(?![a-z0-9])"
+)
+
+_LENGTH = "(?:mm|cm|m|in|ft|inch(?:es)?|feet|foot|(?:milli|centi)?met(?:er|re)s?)"
+# A length by a time is a unit wherever it stands, except after a number ("Vs30 = 360 m/s" is a value).
+_BY = r"(?:/|[ .*·](?=s(?:ec)?(?:\^|\*\*)?[-−⁻(])|(?=s-2))"  # "cm/s2", "cm s^-2", "cms-2"
+# What may stand before it is listed: behind other signs, or a letter of any alphabet, it is the rest of a damaged word.
+_APART = r"""(?:(?<![^\s,;:=(\[{<'"|])|(?<=^[#!])|(?<=[^\W_][_-]))"""
+_QUOTIENT = re.compile(rf"{_APART}({_LENGTH}{_BY}[^\s,;:\]=]+)", re.I)
+_AFTER_NUMBER = re.compile(r"[0-9.] ?$")
+_WORD = r"((?:% ?)?[a-z][^\s,;:\]=]*)"
+# Short words are units only where a header introduces one.
+_INTRODUCED = re.compile(
+    rf"(?:[a-z]*unit(?:s|es|[eé]s?)?|unidad(?:es)?|einheit(?:en)?|birimi?){END}"
+    rf"(?: (?:of|in|is|are|de los datos)(?=[ :=(\[]))?[ :=]*[(\[]?{_WORD}",
+    re.I,
+)
+_SUGGESTED = re.compile(rf"(?:\bin |[(\[] ?|\b(?:acceleration|accel|acc)\.? (?!in )){_WORD}", re.I)
+_GALS = re.compile(r"[(\[] ?(gals?) ?[)\]]", re.I)  # nothing else is called so
+_SUFFIX = re.compile(rf"(?<=[^\W_])_({'|'.join(word for word in WORDS if word.isalpha())}){END}", re.I)
+_ACCELERATION = re.compile(
+    rf"{START}(?:acc(?:el|elerations?|elerograms?)?|pga|aceleracion(?:es)?|beschleunigung(?:en)?|ivme){END}"
+)
+# Behind a damaged sign these still refuse a record.
+_OTHER = re.compile(
+    r"(?<![a-z])(?:velocit(?:y|ies)|veloc|vel|displacements?|displ|disp|velocidad(?:es)?|desplazamientos?"
+    r"|geschwindigkeit(?:en)?|verschiebung(?:en)?|vitesses?|deplacements?)(?![a-z])"
+)
+
+
+@dataclass(frozen=True)
+class Statements:
+    """Of a header: sampling interval [s] and unit of the values, None where not stated; units of its times in a second;
+    and sentences on words about sampling that are not understood."""
+
+    step: float | None
+    unit: Unit | None
+    per_second: int
+    unread: tuple[str, ...]
+
+
+def read_statements(header: Iterable[tuple[int, str]], titles: int | None = None) -> Statements:
+    """The `Statements` of the lines of a header.
+
+    Parameters
+    ----------
+    header : iterable of (int, str)
+        Line numbers and lines.
+    titles : int, optional
+        The line that names the columns: there "(g)" and "NS_g" hold units; elsewhere only beside the word acceleration.
+
+    Raises
+    ------
+    SceneError
+        Two steps or units, a step that is no number or in a unit that is not known, a velocity, a displacement, or a
+        unit that is not known.
+    """
+    steps: list[_Step] = []
+    unread, rest = [], []
+    for at, line in header:
+        line = unicodedata.normalize("NFC", " ".join(line.split()))
+        text, taken = _folded(line), line
+        for match in _STEP.finditer(text):
+            step = _step(f"line {at}", line, match)
+            if step is not None:
+                steps.append(step)
+                taken = taken[: match.start()] + " " * len(match[0]) + taken[match.end() :]
+            else:
+                unread.append(f"line {at} speaks of sampling in words that are not understood: {line[:60]}")
+        if _FREQUENCY.search(_folded(taken)):
+            unread.append(f"line {at} names a frequency that is not understood: {line[:60]}")
+        rest.append((at, taken))
+    return Statements(_only(steps), stated_unit(rest, titles), _per_second(rest), tuple(unread))
+
+
+def _folded(line: str) -> str:
+    """A line in lower case without accents, as long as the line itself; underscores part words."""
+    plain = "".join("i" if sign == "ı" else unicodedata.normalize("NFD", sign)[0] for sign in line)
+    return "".join(sign.lower() if len(sign.lower()) == 1 else sign for sign in plain).replace("_", " ")
+
+
+@dataclass(frozen=True)
+class _Step:
+    """A step as stated: [s], where, and the half of its last printed digit [s], 0 of a rate."""
+
+    seconds: float
+    where: str
+    half: float
+
+
+def _step(where: str, line: str, match: re.Match[str]) -> _Step | None:
+    """The step that a match states; None of a mere word, without a number."""
+    if match["samples"]:
+        return _Step(usable(where, 1 / _positive(where, match["samples"])), where, 0.0)
+    before, behind = match["before"] or "", match["behind"] or ""
+    known = next((word for word in (behind, before) if _kind(word)), "")
+    if match["value"] is None or not (known or not before or behind):
+        if match["sign"] in (":", "="):
+            raise SceneError(where, line, "its sampling interval or rate is no number", "write dt = .01 s")
+        return None
+    value = _positive(where, match["value"])
+    if not known and behind:
+        raise SceneError(
+            where, f"{match['value']} {behind}", "not a time in s or ms, nor a rate in Hz", "write dt = .01 s"
+        )
+    if _kind(known) == "rate" or (not known and match["rate"]):
+        if not known and value < 1:
+            raise SceneError(where, line, "a rate below 1, without a unit", "write a rate in Hz, or dt = .01 s")
+        return _Step(usable(where, 1 / value), where, 0.0)
+    decimals = len(re.split("[ed]", match["value"])[0].replace(",", ".").partition(".")[2])
+    per_second = PER_SECOND[known]
+    return _Step(usable(where, value / per_second), where, 0.5 * 10.0**-decimals / per_second)
+
+
+def _kind(word: str) -> str:
+    """Whether a word is a unit of a rate or of an interval; "" of another."""
+    if not word:
+        return ""
+    return "interval" if word in PER_SECOND else "rate" if re.fullmatch(_HERTZ, word) else ""
+
+
+def _positive(where: str, token: str) -> float:
+    """The number of a header, above 0; "1,000" is refused: its comma may stand for thousands."""
+    if re.fullmatch(r"[+-]?[1-9][0-9]*,[0-9]{3}", token):
+        raise SceneError(where, token, "its comma may part thousands or be a decimal sign", "write a decimal point")
+    value = number(where, token.replace(",", "."))
+    if value <= 0:
+        raise SceneError(where, value, "not a sampling interval or rate", "give one above 0")
+    return value
+
+
+def _only(steps: Sequence[_Step]) -> float | None:
+    """The one step [s] that all state; an interval may be that of a rate, rounded as printed."""
+    if not steps:
+        return None
+    exact = next((step for step in steps if not step.half), steps[0])
+    for step in steps:
+        rounding = 0.0 if exact.half else step.half
+        if abs(step.seconds - exact.seconds) > rounding + SAME * exact.seconds:
+            raise SceneError(
+                step.where,
+                step.seconds,
+                f"but {exact.where} states a step of {exact.seconds:.9g} s",
+                "correct the wrong one",
+            )
+    return exact.seconds
+
+
+def _per_second(header: Iterable[tuple[int, str]]) -> int:
+    """Units of time in a second, from the words of the header."""
+    found = {}
+    for at, line in header:
+        for match in _TIME.finditer(_folded(line)):
+            word = match[1]
+            if word in OTHER_TIMES:
+                raise SceneError(f"line {at}", match[0], "not a time in s or ms", "write the times in seconds")
+            if word in PER_SECOND:
+                found[PER_SECOND[word]] = at
+    if len(found) > 1:
+        raise SceneError(f"line {max(found.values())}", None, "times in s and in ms", "correct the wrong unit of time")
+    return next(iter(found), 1)
+
+
+def stated_unit(header: Iterable[tuple[int, str]], titles: int | None = None) -> Unit | None:
+    """The unit that the lines of a header state, or None; parameters and errors as those of `read_statements`."""
+    found = acceleration = other = None
+    for number_of_line, line in header:
+        line = _spaced(line)
+        names = _ACCELERATION.search(_folded(line)), _OTHER.search(_folded(line))
+        acceleration = acceleration or names[0]
+        other = other or names[1] and (number_of_line, names[1][0])
+        for key, word in _units_in(line, number_of_line == titles, any(names)):
+            factor = factor_of(word)
+            if factor is None:
+                raise SceneError(
+                    f"line {number_of_line}, {key}",
+                    word,
+                    "not an acceleration in g",
+                    "give the acceleration file (.AT2) of this record, in g, cm/s2 or m/s2",
+                )
+            if found and found.factor != factor:
+                raise SceneError(
+                    f"line {number_of_line}, {key}",
+                    word,
+                    f"but {found.where} says {found.word}",
+                    "correct the wrong one",
+                )
+            found = found or Unit(word, factor, f"line {number_of_line}")
+    if other and not acceleration:
+        raise SceneError(
+            f"line {other[0]}",
+            other[1],
+            "not an acceleration",
+            "give the acceleration file of this record; if it is one, let its header say so",
+        )
+    return found
+
+
+def _units_in(line: str, titles: bool, named: bool) -> Iterator[tuple[str, str]]:
+    """(key, word) of every unit in a line as `_spaced` writes it; named: an acceleration or the like is named."""
+    quotients = {
+        match.start(1): _word(match)
+        for match in _QUOTIENT.finditer(line)
+        if not _AFTER_NUMBER.search(line[: match.start()])
+    }
+    for match in _INTRODUCED.finditer(line):
+        word = quotients.pop(match.start(1), _word(match))
+        if plain(word) not in PER_SECOND:
+            yield "UNITS OF", word
+    for word in quotients.values():
+        yield "unit", word
+    suggested = _SUGGESTED if titles or named else _GALS
+    for match in (*suggested.finditer(line), *(_SUFFIX.finditer(line) if titles else ())):
+        if plain(_word(match)) in {*WORDS, *NOT_ACCELERATIONS} and match.start(1) not in quotients:
+            yield "unit", _word(match)
+
+
+def _word(match: re.Match[str]) -> str:
+    """The unit matched, without what a sentence or a bracket put behind it."""
+    word = match[1]
+    if word.count(")") > word.count("("):
+        word = word[: word.rindex(")")] if word.count("(") else word[: word.index(")")]
+    return word.rstrip(".'\"")
+
+
+def _spaced(line: str) -> str:
+    """The line with single blanks, none of them beside a sign of division or power."""
+    line = " ".join(line.split())
+    line = re.sub(r" ?\bper ", "/", line, flags=re.I)
+    line = re.sub(r" squared\b| square\b", "2", line, flags=re.I)
+    return re.sub(r" ?(/|\^|\*\*) ?", r"\1", line)
