@@ -29,7 +29,7 @@ MOTIONS = {
 
 
 def _as_text(found: object) -> object:
-    """A number of a channel or column as text."""
+    """A channel's number as text."""
     return str(found) if type(found) is int else found
 
 
@@ -41,7 +41,7 @@ class _Motion(Part):
     record: str | None = None
     units: Literal[*UNITS] | None = None  # type: ignore[valid-type]  # one list of names, here and where they are read
     dt: Positive | None = None
-    column: Annotated[str, BeforeValidator(_as_text)] | None = None
+    column: int | str | None = None
     channel: Annotated[str, BeforeValidator(_as_text)] | None = None
     pulse: Literal[*PULSES] | None = None  # type: ignore[valid-type]  # as above
     amplitude: Number | None = None
@@ -50,7 +50,7 @@ class _Motion(Part):
     synthetic: Literal[*STYLES] | None = None  # type: ignore[valid-type]  # as above
     seed: Annotated[int, Field(ge=0, lt=2**64)] | None = None
     vertical: str | None = None
-    vertical_column: Annotated[str, BeforeValidator(_as_text)] | None = None
+    vertical_column: int | str | None = None
     vertical_channel: Annotated[str, BeforeValidator(_as_text)] | None = None
     vertical_ratio: Number | None = None
     vertical_phase: Number | None = None

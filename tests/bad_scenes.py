@@ -86,7 +86,7 @@ BAD = {
     "unknown synthetic": (motion('synthetic = "kobe"'), "motion.synthetic = 'kobe': not known; choose 'duzce-like'"),
     "unknown units": (
         motion('record = "two.txt"\nunits = "inch"'),
-        "motion.units = 'inch': not known; choose 'm/s2', 'cm/s2' or 'g'",
+        "motion.units = 'inch': not known; choose 'm/s2', 'cm/s2', 'g', 'gal'",
     ),
     # missing
     "no mass": (replaced("mass = 3172.05\n", ""), "block.mass: missing; add mass = ... [kg]"),
@@ -288,7 +288,7 @@ BAD = {
     ),
     "column that is none": (
         motion('record = "two.txt"\ncolumn = 0'),
-        "motion.column = 0: out of range; give a number fr",
+        "motion.column = 0: but the file has 2 columns (two.txt); give column, 2",
     ),
     "other step than that of the record": (
         motion('record = "good.AT2"\ndt = 0.5'),

@@ -60,6 +60,8 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
         check_last(f"line {table[-1][0]}", [fields for _, fields in table])
     known = asked.dt is not None or stated.step is not None
     timed = width > 1 and (_rises(table) or (_is_time(titles[0]) if titles else not known))
+    if timed:
+        _check_widths(table, rows)
     step = _step(table, stated) if timed else stated.step
     no_unit = "the header names no unit" if header else "columns of numbers carry no unit"
     if not timed and asked.column is None and not titles[1:]:
@@ -220,6 +222,8 @@ def _last_line(header: Sequence[tuple[int, str]], separator: str | None) -> int 
 
 def _titles(header: Sequence[tuple[int, str]], separator: str | None, width: int) -> tuple[int, list[str]]:
     """(line number, titles) of the line that titles the columns; (0, none) where none does."""
+    if width == 1:
+        return 0, []
     named = [(at, found.string[found.end() :]) for at, line in header if (found := SEQUENCE.match(line.lstrip(" #")))]
     for at, line in named or header[-1:]:
         line = line[:HEADER_WIDTH].lstrip("#%!/ ")

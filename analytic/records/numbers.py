@@ -49,8 +49,8 @@ def fortran_values(lines: Sequence[str], begin: int) -> np.ndarray:
     tokens = [(where, token) for where, line in rows for part in line.split() for token in _parted(where, part)]
     values = np.array([number(where, token) for where, token in tokens])
     forms = Counter(form_of(token) for _, token in tokens)
-    # The last line may be shorter.
-    widths = Counter(len(line) for _, line in rows[:-1])
+    # The last line may be shorter; lines of one number are as long as that is.
+    widths = Counter(len(line) for _, line in rows[:-1] if len(line.split()) > 1)
     usual = max(forms, key=forms.__getitem__, default=None)
     for where, token in tokens:
         if (form := form_of(token)) != usual and not _tiny(form, usual, token):
@@ -76,10 +76,10 @@ def _parted(where: str, text: str) -> list[str]:
 
     "-.10-100" may be an exponent without its letter: numbers in a row have points.
     """
-    parts = _NUMBER.findall(text) if len(text) <= LONGEST or "-" in text[1:] else [text]
-    if len(parts) < 2:
+    parts = _NUMBER.findall(text)
+    if len(parts) < 2 or "".join(parts) != text:
         return [text]
-    if "".join(parts) != text or any(part[0] not in "+-" or "." not in part for part in parts[1:]):
+    if any(part[0] not in "+-" or "." not in part for part in parts[1:]):
         raise SceneError(where, text, "numbers without a blank between them", "part or mend them")
     return parts
 

@@ -118,7 +118,7 @@ def read_statements(header: Iterable[tuple[int, str]], titles: int | None = None
         line = unicodedata.normalize("NFC", " ".join(line.split()))
         text, taken = _folded(line), line
         for match in _STEP.finditer(text):
-            step = _step(f"line {at}", line, match)
+            step = _step(f"line {at}, step", line, match)
             if step is not None:
                 steps.append(step)
                 taken = taken[: match.start()] + " " * len(match[0]) + taken[match.end() :]
@@ -197,7 +197,7 @@ def _only(steps: Sequence[_Step]) -> float | None:
             raise SceneError(
                 step.where,
                 step.seconds,
-                f"but {exact.where} states a step of {exact.seconds:.9g} s",
+                f"but {exact.where.removesuffix(', step')} states a step of {exact.seconds:.9g} s",
                 "correct the wrong one",
             )
     return exact.seconds

@@ -9,9 +9,30 @@ import numpy as np
 from ..errors import SceneError
 from .numbers import NUMBER, number
 
-_SECONDS = ("s", "sec", "secs", "second", "seconds", "seg", "segundo", "segundos", "sek", "sekunde", "sekunden")
+_SECONDS: tuple[str, ...] = (
+    "s",
+    "sec",
+    "secs",
+    "second",
+    "seconds",
+    "seg",
+    "segundo",
+    "segundos",
+    "sek",
+    "sekunde",
+    "sekunden",
+)
 _SECONDS += ("seconde", "secondes", "sn", "saniye")
-_MILLISECONDS = ("ms", "msec", "msecs", "millisec", "millisecs", "millisecond", "milliseconds", "milisegundo")
+_MILLISECONDS: tuple[str, ...] = (
+    "ms",
+    "msec",
+    "msecs",
+    "millisec",
+    "millisecs",
+    "millisecond",
+    "milliseconds",
+    "milisegundo",
+)
 _MILLISECONDS += ("milisegundos", "millisekunde", "millisekunden", "milliseconde", "millisecondes", "milisaniye")
 PER_SECOND = dict.fromkeys(("", *_SECONDS), 1) | dict.fromkeys(_MILLISECONDS, 1000)
 OTHER_TIMES = {"us", "µs", "usec", "ns", "min", "minute", "minutes", "h", "hour", "hours", "samples"}

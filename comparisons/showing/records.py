@@ -58,8 +58,9 @@ def print_channels(name: str, channels: Sequence[Channel]) -> None:
         box=box.SIMPLE_HEAD,
         padding=(0, 1, 0, 0),
     )
-    for head in ("channel", "units", "dt [s]", "samples", "end [s]", "peak [m/s2]", "peak [g]", "at [s]"):
-        table.add_column(Text(head), justify="left" if head in ("channel", "units") else "right", no_wrap=True)
+    kind = "column" if channels[0].format == "columns" else "channel"
+    for head in (kind, "units", "dt [s]", "samples", "end [s]", "peak [m/s2]", "peak [g]", "at [s]"):
+        table.add_column(Text(head), justify="left" if head in (kind, "units") else "right", no_wrap=True)
     for channel in channels:
         motion = channel.motion
         words = [channel_words(channel), channel.unit.word, f"{motion.dt:.9g}", str(len(motion.samples))]

@@ -28,7 +28,7 @@ def table(by, decimal=".", digits=4):
 def test_one_of_several_columns_in_the_unit_of_its_own_title(tmp_path, by, decimal, column, factor):
     motion = read_record(write(tmp_path, TITLES.format(by) + table(by, decimal)), column=column)
     np.testing.assert_allclose(motion.samples, np.array(VALUES) * factor, rtol=1e-14)
-    assert (motion.dt, motion.label) == (0.005, f"record.csv (column {column})")
+    assert motion.dt == 0.005 and motion.label.startswith(f"record.csv, column {column}")
 
 
 def test_columns_parted_by_blanks_without_titles(tmp_path):
@@ -72,9 +72,9 @@ def test_a_step_of_the_header_goes_before_what_the_times_round(tmp_path):
 STEEP = "".join(f"{a} {-2 * a} {0.5 - a}\n" for a in SMOOTH)  # three channels side by side
 COPIES = "".join(f"{a} {a}\n" for a in SMOOTH)
 BAD = {
-    "several columns": (table(";"), {}, "motion.column: missing; the file has 4 columns; add column, 2 to 4"),
-    "the time": (table(";"), {"column": 1}, "motion.column = 1: is the time; give column, 2 to 4"),
-    "beyond": (table(";"), {"column": 5}, "motion.column = 5: but the file has 4 columns; give column, 2 to 4"),
+    "several columns": (table(";"), {}, "motion.column: missing; the file holds columns 2 or 3 or 4; add column"),
+    "the time": (table(";"), {"column": 1}, "motion.column = 1: is the time; give column, 2 or 3 or 4"),
+    "beyond": (table(";"), {"column": 5}, "motion.column = 5: but the file has 4 columns; give column, 2 or 3 or 4"),
     "a velocity": (
         TITLES.format(";") + table(";"),
         {"column": 4, "units": None},
@@ -95,11 +95,14 @@ BAD = {
     ),
     "a number lost": ("3 2 1\n4 5\n2 5 4\n", {"dt": 0.01}, "line 2 = '4 5': holds 2 numbers, the first line 3"),
     "two steps": ("# dt = .02\n0 1\n.01 2\n.02 3\n", {}, "dt = 0.02: but the times have a step of 0.01 s; correct the"),
-    "two headers": ("# dt = .02\n# dt = 10 ms\n1\n2\n", {}, "line 2: dt is stated twice"),
+    "two headers": ("# dt = .02\n# dt = 10 ms\n1\n2\n", {}, "line 2, step = 0.01: but line 1 states a step of 0.02 s"),
     "step of the user": ("0 1\n.01 2\n", {"dt": 0.02}, "motion.dt = 0.02: but the step of the record itself is 0.01 s"),
-    "no number": ("# dt = fine\n1\n2\n", {}, "line 1 = '# dt = fine': its dt is no number; write dt = .01 s"),
-    "decimal comma": ("# dt = 0,02\n1\n2\n", {}, "line 1 = '# dt = 0,02': its dt is no number; write dt = .01 s"),
-    "hours": ("# dt = 2 h\n1\n2\n", {}, "line 1, dt = '2 h': not a time in s or ms"),
+    "no number": (
+        "# dt = fine\n1\n2\n",
+        {},
+        "line 1, step = '# dt = fine': its sampling interval or rate is no number",
+    ),
+    "hours": ("# dt = 2 h\n1\n2\n", {}, "line 1, step = '2 h': not a time in s or ms"),
     "negative step": ("1\n2\n", {"dt": -0.1}, "motion.dt = -0.1: not a sampling interval; give a step above 0 s"),
 }
 

@@ -59,7 +59,7 @@ BAD = {
         "not 8 numbers of 10 characters; 12 samples are stated; the file is cut",
     ),
     "a digit moved": ({"channel": 1}, " -45.60000", " -45.6000 ", "line 47 = '-45.6000 ': not a number"),
-    "another digit behind": ({"channel": 1}, " -45.60000", "  -45.6000", "not a number of 5 decimals, as the others"),
+    "another digit behind": ({"channel": 1}, " -45.60000", "  -45.6000", "not printed as the other numbers are"),
     "stars": ({"channel": 1}, " -45.60000", "**********", "= '**********': not a number"),
     "cut": ({"channel": 1}, "/&  ----------  End of data for channel  3", "/ 3", "channel 3 has no last line /&"),
     "two steps": ({"channel": 1}, "spaced at .005", "spaced at .010", "line 40, step = 0.005: but line 46 says 0.01 s"),

@@ -116,7 +116,7 @@ def test_vertical_channel_of_the_same_file_or_another(tmp_path, file):
 def test_columns_of_a_logger_at_a_step_that_is_given(tmp_path):
     (tmp_path / "r.csv").write_text("x;y;z\n" + "".join(f"{a};{-a};{0.5 * a}\n" for a in VALUES))
     motion = with_motion(tmp_path, 'record = "r.csv"\nunits = "g"\ndt = 0.02\ncolumn = 2\nvertical_column = 3')
-    assert (motion.dt, motion.label) == (0.02, "r.csv (column 2), vertical r.csv (column 3)")
+    assert (motion.dt, motion.label) == (0.02, "r.csv, column 2 (y), vertical r.csv, column 3 (z)")
     assert motion.samples[1] == pytest.approx(-9.81 * VALUES[1])
     assert motion.vertical.samples[1] == pytest.approx(0.5 * 9.81 * VALUES[1])
 

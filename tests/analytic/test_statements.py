@@ -1,0 +1,252 @@
+"""What headers say of step and unit in other words, formats by networks, and files that are refused by their names."""
+
+import numpy as np
+import pytest
+from mutated_files import VALUES
+
+from analytic.errors import SceneError
+from analytic.records import read_channels, read_record
+from analytic.records.statements import read_statements
+
+ONE_COLUMN = "".join(f"{value:.4f}\n" for value in VALUES)
+THREE = "".join(f"{value:9.3f} {-2 * value:9.3f} {value / 2:9.3f}\n" for value in VALUES)
+
+
+def write(folder, text, name="record"):
+    path = folder / name
+    path.write_bytes(text) if isinstance(text, bytes) else path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    "words, step",
+    [
+        ("Sampling rate: 200 Hz", 0.005),
+        ("sample_rate_hz = 200", 0.005),
+        ("SampleRate(Hz): 200", 0.005),
+        ("SAMPLING FREQUENCY 200.0 HZ", 0.005),
+        ("Digitization rate (samples/s): 200", 0.005),
+        ("200 samples per second", 0.005),
+        ("recorded at 200 sps", 0.005),
+        ("fs=200", 0.005),
+        ("Sampled at 200 Hz, filtered", 0.005),
+        ("Time step: 5 ms", 0.005),
+        ("TIME INTERVAL (SEC) .005", 0.005),
+        ("DELTA T = 0.005 SEC", 0.005),
+        ("delta_t [ms]: 5", 0.005),
+        ("sampling period is 0,005 s", 0.005),
+        ("equally spaced at .005 sec", 0.005),
+        ("Frecuencia de muestreo: 200 Hz", 0.005),
+        ("INTERVALO DE MUESTREO (s) : 0,005", 0.005),
+        ("Paso de tiempo = 5 milisegundos", 0.005),
+        ("Tasa de muestreo: 200 muestras por segundo", 0.005),
+        ("Abtastrate: 200 Hz", 0.005),
+        ("Zeitschritt: 0,005 s", 0.005),
+        ("Abtastintervall [ms] 5,0", 0.005),
+        ("Fréquence d'échantillonnage : 200 Hz", 0.005),
+        ("Frequence d’echantillonnage: 200 Hz", 0.005),
+        ("pas de temps (s) 0,005", 0.005),
+        ("Örnekleme frekansı: 200 Hz", 0.005),
+        ("ÖRNEKLEME ARALIĞI (sn) : 0,005", 0.005),
+        ("zaman adimi: 0.005 saniye", 0.005),
+        ("sampling rate .005 sec", 0.005),
+        ("Sampling rate: 120 Hz, dt = 0.0083 s", 1 / 120),
+    ],
+)
+def test_a_step_in_words(tmp_path, words, step):
+    path = write(tmp_path, f"# {words}\n{ONE_COLUMN}")
+    motion = read_record(path, "m/s2")
+    assert motion.dt == step and motion.samples.tolist() == VALUES and not motion.warnings
+    with pytest.raises(SceneError, match="motion.dt = 0.01: but the step of the record itself is"):
+        read_record(path, "m/s2", dt=0.01)
+
+
+@pytest.mark.parametrize(
+    "words, problem",
+    [
+        ("Sampling rate: fast", "no number"),
+        ("Sampling rate: 1,000 Hz", "thousands"),
+        ("Sampling rate: 0.5", "a rate below 1, without a unit"),
+        ("Sampling interval: 5 m", "not a time in s or ms"),
+        ("Sampling interval: 0 s", "give one above 0"),
+        ("Sampling rate: 100 Hz, dt = 0.02 s", "states a step of 0.01 s"),
+        ("dt = 0.02 s, dt = 0.0204 s", "states a step of 0.02 s"),
+    ],
+)
+def test_a_faulty_statement_is_refused(tmp_path, words, problem):
+    with pytest.raises(SceneError, match=problem):
+        read_record(write(tmp_path, f"# {words}\n{ONE_COLUMN}"), "m/s2", dt=0.01)
+
+
+@pytest.mark.parametrize("words", ["corner at 200 Hz", "Sampling interval of channel 2, in s: 0.005"])
+def test_what_is_not_understood_of_the_sampling_is_a_warning_where_the_user_gives_the_step(tmp_path, words):
+    path = write(tmp_path, f"# {words}\n{ONE_COLUMN}")
+    (warning,) = read_record(path, "m/s2", dt=0.01).warnings
+    assert "line 1" in warning and "not understood" in warning
+    stated = write(tmp_path, f"# {words}\n# dt = .01 s\n{ONE_COLUMN}")
+    assert not read_record(stated, "m/s2").warnings
+
+
+@pytest.mark.parametrize("comment, problem", [("# Sampling rate: 50 Hz", "inside"), ("# acceleration [g]", "inside")])
+def test_a_statement_inside_the_data_is_refused(tmp_path, comment, problem):
+    head = f"# dt = .01 s, acceleration [m/s2]\n{ONE_COLUMN}"
+    with pytest.raises(SceneError, match=problem):
+        read_record(write(tmp_path, f"{head}{comment}\n{ONE_COLUMN}"))
+    assert len(read_record(write(tmp_path, f"{head}# a remark\n{ONE_COLUMN}")).samples) == 2 * len(VALUES)
+
+
+@pytest.mark.parametrize(
+    "line, titles, word",
+    [
+        ("AmplitudeUnit:  gal. DCoffset(corr)", None, "gal"),
+        ("UNIT  = gal(cm/s/s)", None, "gal(cm/s/s)"),
+        ("RAW PGA VALUES (gal) : (N-S) 12.5", None, "gal"),
+        ("Unidades: cm/s2", None, "cm/s2"),
+        ("Einheit: mm/s²", None, "mm/s²"),
+        ("Birim: gal", None, "gal"),
+        ("Ivme (g)", None, "g"),
+        ("NS_gal", 1, "gal"),
+        ("acc_g", 1, "g"),
+        ("NS_gal", None, None),
+        ("mass (g)", None, None),
+    ],
+)
+def test_units_in_words(line, titles, word):
+    unit = read_statements([(1, line)], titles).unit
+    assert (unit and unit.word) == word
+
+
+def test_two_names_of_one_unit_must_agree():
+    with pytest.raises(SceneError, match="not an acceleration"):
+        read_statements([(1, "UNIT = gal(m/s/s)")])
+
+
+JMA = "SITE CODE= 1\nLAT.= 35.0\nSAMPLING RATE= 100Hz\nUNIT  = gal(cm/s/s)\nINITIAL TIME = 2000\n NS,EW,UD\n"
+CWA = (
+    "#SampleRate(Hz): 200\n#AmplitudeUnit:  gal. DCoffset(corr)\n#DataSequence: Time U(+); N(+); E(+)\n#Data: 4F10.3\n"
+)
+AFAD = "PLACE : TEST\nSAMPLING INTERVAL (sec) : 0.005\nRAW PGA VALUES (gal) : (N-S) 1.5\n    N-S       E-W       U-D\n"
+NETWORKS = {
+    "Japan": (
+        JMA + "".join(",".join(line.split()) + "\n" for line in THREE.splitlines()),
+        ("NS", "EW", "UD"),
+        0.01,
+        "",
+    ),
+    "Taiwan": (
+        CWA + "".join(f"{0.005 * i:10.3f} {line}\n" for i, line in enumerate(THREE.splitlines())),
+        ("U", "N", "E"),
+        0.005,
+        "time",
+    ),
+    "Turkey": (AFAD + THREE, ("N-S", "E-W", "U-D"), 0.005, ""),
+}
+
+
+@pytest.mark.parametrize("text, names, step, first", NETWORKS.values(), ids=NETWORKS)
+def test_columns_of_networks(tmp_path, text, names, step, first):
+    path = write(tmp_path, text)
+    channels = read_channels(path)
+    assert tuple(channel.direction for channel in channels) == names
+    assert {(channel.motion.dt, channel.unit.factor) for channel in channels} == {(step, 0.01)}
+    for place, (name, factor) in enumerate(zip(names, (1, -2, 0.5), strict=True), 2 if first else 1):
+        for column in (place, str(place), name, name.lower()):
+            found = read_record(path, column=column).samples
+            np.testing.assert_allclose(found, np.array(VALUES) * factor * 0.01, atol=0.5e-5 + 1e-12)
+    with pytest.raises(SceneError, match="motion.column: missing; the file holds columns"):
+        read_record(path)
+    with pytest.raises(SceneError, match="motion.column = 'Z': but the file has . columns; give column, ."):
+        read_record(path, column="Z")
+    with pytest.raises(SceneError, match="motion.units = 'g': but the record carries its own unit, gal"):
+        read_record(path, "g", column=3)
+
+
+@pytest.mark.parametrize("units, factor", [("gal", 0.01), ("mm/s2", 1e-3), ("%g", 0.0981)])
+def test_units_that_the_user_gives(tmp_path, units, factor):
+    motion = read_record(write(tmp_path, ONE_COLUMN), units, dt=0.01)
+    np.testing.assert_allclose(motion.samples, np.array(VALUES) * factor, rtol=1e-15)
+
+
+def test_a_table_with_velocities_names_its_columns(tmp_path):
+    rows = "".join(f"{0.01 * i:.2f},{a:.3f},{a:.3f}\n" for i, a in enumerate(VALUES))
+    path = write(tmp_path, "Time (s),x (g),v (cm/s)\n" + rows)
+    with pytest.raises(SceneError, match=r"motion.column: missing; not all columns .*add column, 2 \(x\) or 3 \(v\)"):
+        read_channels(path)
+    assert read_record(path, column="x").dt == 0.01
+
+
+CUT = ONE_COLUMN.rstrip("\n")
+
+
+def test_a_number_that_the_end_of_the_file_cuts_is_refused(tmp_path):
+    assert len(read_record(write(tmp_path, CUT), "g", dt=0.01).samples) == len(VALUES)
+    with pytest.raises(SceneError, match="the last number is cut"):
+        read_record(write(tmp_path, CUT[:-2]), "g", dt=0.01)
+
+
+def test_numbers_of_many_forms_are_read_as_ever(tmp_path):
+    text = "0,0.00012\n0.01,9.5e-05\n0.02,0.25\n0.03,0"
+    assert read_record(write(tmp_path, text), "m/s2").samples.tolist() == [0.00012, 9.5e-05, 0.25, 0.0]
+
+
+AT2 = "PEER\nMADE UP\nACCELERATION TIME HISTORY IN UNITS OF G\nNPTS= 4, DT= .01 SEC\n .1250E+00 -.2500E-01  .1000E+00 "
+DYNA = "EVENT_NAME: X\nSAMPLING_INTERVAL_S: 0.01\nUNITS: cm/s^2\nNDATA: 4\n1.250000\n-2.500000\n1.000000\n"
+KNET = (
+    "Origin Time 0\nSampling Freq(Hz)100Hz\nDuration Time(s)  0.06\nDir. E-W\n"
+    "Scale Factor 2000(gal)/8000000\nMemo.\n   12500     -300      120 \n"
+)
+
+
+@pytest.mark.parametrize(
+    "head, sound, broken",
+    [
+        (
+            AT2,
+            " .3750E+00\n",
+            [" .3750\n", " .375E+00\n", " .3750E+0", " .37505E+00\n", "3.37.50E+00\n", "12.3750E+00\n"],
+        ),
+        (DYNA, "3.750000\n", ["3.75", "3.7500000\n", "3.750000E1\n", "3\n"]),
+        (KNET, "   12500     -300      120 ", ["   12500     -300      12", "   12500     -30      120 "]),
+    ],
+    ids=["PEER", "DYNA", "K-NET"],
+)
+def test_a_damaged_number_is_told_by_the_form_of_the_others(tmp_path, head, sound, broken):
+    read_record(write(tmp_path, head + sound))
+    for text in broken:
+        with pytest.raises(SceneError, match="damaged|cut|not a number|without a blank"):
+            read_record(write(tmp_path, head + text))
+
+
+def test_a_sign_that_is_lost_from_a_column_is_told_by_the_length_of_the_line(tmp_path):
+    rows = [" .1250E+00 -.2500E-01  .1000E+00\n"] * 4
+    text = "PEER\nMADE UP\nACCELERATION TIME HISTORY IN UNITS OF G\nNPTS= 12, DT= .01 SEC\n"
+    assert len(read_record(write(tmp_path, text + "".join(rows))).samples) == 12
+    rows[1] = rows[1].replace("-.25", ".25")
+    with pytest.raises(SceneError, match="line 6 = .*not as long as all other lines"):
+        read_record(write(tmp_path, text + "".join(rows)))
+
+
+@pytest.mark.parametrize(
+    "name, text",
+    [
+        ("GeoNet", "Uncorrected accelerogram 20160214_001343_NBLC_20 GNS Science\nSite NBLC\n1 2\n"),
+        ("GeoNet", "Corrected accelerogram   20160214_001343_NBLC_20 GNS Science\nSite NBLC\n1 2\n"),
+        ("UNAM/ASA", "*******\n  INSTITUTE\n*******\nARCHIVO ESTANDAR DE ACELERACION:\n1 2\n"),
+        ("BHRC", "* VOL1DS FILE:  0000/01\n1 2\n"),
+        ("SAC", b"\0" * 304 + b"\x06\0\0\0" + b"\0" * 400),
+        ("miniSEED", b"000001D ABC  00HNE" + b"\0" * 500),
+        ("miniSEED", b"MS\x03\x00" + b"\0" * 500),
+        (
+            "SLIST",
+            "TIMESERIES XX_AA_20_HNE_D, 4 samples, 50 sps, 2001-01-01T00:00:00.0, SLIST, FLOAT, M/S**2\n1 2 3 4\n",
+        ),
+        ("GeoCSV", "# dataset: GeoCSV 2.0\n# delimiter: ,\nTime, Sample\n"),
+        ("CSMIP volume 1", "UNCORRECTED ACCELEROGRAM DATA\n1 2\n"),
+        ("CSMIP volume 3", "Response Spectra  00000-X0000\n1 2\n"),
+        ("CSMIP volume 3", "RESPONSE AND FOURIER AMPLITUDE SPECTRA\n1 2\n"),
+        ("COSMOS volume 0", "Raw acceleration counts   (Format v01.20 with 13 text lines)\n1 2\n"),
+    ],
+)
+def test_a_known_format_that_is_not_read_is_refused_by_its_name(tmp_path, name, text):
+    with pytest.raises(SceneError, match=f"is a {name} file, which is not read; .+"):
+        read_record(write(tmp_path, text), "g", dt=0.01)
