@@ -29,7 +29,9 @@ def command(
     """Show what is read of a record: format, channels, units, step, samples, duration, peak, and what is odd.
 
     Formats: PEER AT2, ESM/DYNA 1.2, CSMIP volume 2, COSMOS, K-NET and KiK-net, USGS SMC, columns of numbers (also those
-    of Taiwan, Japan and Turkey) and lists of values. Example: rocking record station.v2 --channel Up --plot up.png --to up.txt
+    of Taiwan, Japan and Turkey) and lists of values.
+
+    Example: rocking record station.v2 --channel Up --plot up.png --to up.txt
     """
     from analytic.errors import SettingError
     from analytic.records import read_channels
