@@ -11,9 +11,8 @@ from analytic import Scene, simulate
 from analytic.errors import SettingError
 from analytic.rocking import restitution
 
+from ..measuring.errors import impact_errors, impact_time_errors, rate_restitution, rms, strong_impacts
 from ..measuring.horizon import sensitivity_horizon
-from ..measuring.measures import impact_time_errors
-from ..measuring.restitution import impact_errors, rate_restitution, rms, strong_impacts
 
 if TYPE_CHECKING:
     from analytic import Response

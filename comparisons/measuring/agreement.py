@@ -17,8 +17,7 @@ from analytic.caryatid import BASE, BEARINGS, caryatid_block
 from engines import get_engine
 from engines.momentum import impulse_error
 
-from .measures import compare
-from .restitution import impact_errors, rms
+from .errors import compare, impact_errors, rms
 
 if TYPE_CHECKING:
     from analytic import Response

@@ -17,7 +17,7 @@ from analytic.response import Caution
 from analytic.rocking import RockingModel
 from engines.comparison import changed_copies
 
-from .measures import state_restitution
+from .errors import state_restitution
 
 if TYPE_CHECKING:
     from analytic import Response, Scene

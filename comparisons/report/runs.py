@@ -18,9 +18,8 @@ from analytic.rocking import base_jump_length, restitution
 from engines import available_engines, get_engine
 from engines.statue_range import in_words
 
+from ..measuring.errors import SLOWEST_IMPACT, compare, impact_errors, rms
 from ..measuring.horizon import solver_horizon
-from ..measuring.measures import compare
-from ..measuring.restitution import SLOWEST_IMPACT, impact_errors, rms
 from ..running.cases import Case
 from ..running.study import Batch, Found, say
 from .histories import ToFile, differences, response_of, thinned

@@ -16,7 +16,7 @@ from analytic import Scene as AnyScene
 from analytic import simulate as exact
 from analytic.bearing import BearingLaw
 from analytic.rocking import restitution
-from comparisons.measuring.restitution import impact_errors, rms
+from comparisons.measuring.errors import impact_errors, rms
 from engines import get_engine, stepping
 from engines.checks import energy_gain
 from engines.stepping import NoSolution, march, mean_loads, sampled_loads

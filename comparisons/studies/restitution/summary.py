@@ -15,7 +15,7 @@ from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as
 from analytic.twin.run import Event
 from engines import get_engine
 
-from ...measuring.restitution import SLOWEST_IMPACT, impact_errors, rms, strong_impacts, worst
+from ...measuring.errors import SLOWEST_IMPACT, impact_errors, rms, strong_impacts, worst
 from ...running.study import Batch, Found
 from .cases import (
     CARYATID_BASE,

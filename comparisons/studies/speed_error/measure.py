@@ -11,8 +11,14 @@ import numpy as np
 from analytic.response import Impact
 from analytic.rocking import restitution
 
-from ...measuring.measures import impact_time_errors, state_restitution
-from ...measuring.restitution import SLOWEST_IMPACT, rate_restitution, rms, strong_impacts
+from ...measuring.errors import (
+    SLOWEST_IMPACT,
+    impact_time_errors,
+    rate_restitution,
+    rms,
+    state_restitution,
+    strong_impacts,
+)
 
 if TYPE_CHECKING:
     from .scenes import Trial

@@ -15,8 +15,8 @@ from analytic.rocking import restitution
 from analytic.twin import simulate_twin
 from engines.comparison import changed_copies
 
+from ...measuring.errors import energy_errors
 from ...measuring.horizon import PERTURBATION, sensitivity_horizon
-from ...measuring.measures import energy_errors
 from .cases import hard_cases
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ pytest.importorskip("pydrake", reason="pydrake is not installed: see README.md")
 from released import scene  # noqa: E402
 
 from analytic import PulseMotion, Start  # noqa: E402
-from comparisons.measuring.restitution import impact_errors as impact_quantities  # noqa: E402
+from comparisons.measuring.errors import impact_errors as impact_quantities  # noqa: E402
 from engines import get_engine  # noqa: E402
 from engines.drake import scene as built  # noqa: E402
 

@@ -1,7 +1,13 @@
-"""How a response is measured, the same for every solver: nothing here knows which engine made it."""
+"""Errors of a response, the same for every solver and in every command, study and page.
+
+Restitution: from the swings around each impact (`swing_restitution`: what a student measures, and the headline's), from
+the states at it (`state_restitution`: under forces too) and from successive rates (`rate_restitution`: no history is
+needed). Base velocity jump, impact times, lost impacts, distance of the tilt graphs, energy.
+"""
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -9,13 +15,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numba import njit
 
+from analytic.rocking import base_jump_length, base_jump_length_as_printed, restitution
 from engines.checks import energy_balance, energy_gain
 from engines.swings import Trace
 
 if TYPE_CHECKING:
-    from analytic import Response, Scene
+    import numpy.typing as npt
+
+    from analytic import Impact, Response, Scene
     from analytic.types import Values
 
+# Of the run's fastest: slower impacts are no swings but an engine's own chatter on its way to rest.
+SLOWEST_IMPACT = 0.1
 # Time after an impact that belongs to it [s]: exudyn's compliant corners relax for 6 ms.
 SETTLE = 0.01
 
@@ -90,6 +101,63 @@ def base_jump_error(scene: Scene, response: Response) -> np.ndarray:
     return jumps / expected - 1
 
 
+def strong_impacts(response: Response) -> tuple[Impact, ...]:
+    """The impacts of a response that are at least `SLOWEST_IMPACT` as fast as its fastest."""
+    fastest = max((abs(impact.rate_before) for impact in response.impacts), default=0.0)
+    return tuple(impact for impact in response.impacts if abs(impact.rate_before) >= SLOWEST_IMPACT * fastest)
+
+
+def impact_errors(scene: Scene, response: Response, most: int | None = None) -> dict[str, np.ndarray]:
+    """Errors of the strong impacts of a run, of the first `most` of them.
+
+    Returns
+    -------
+    dict
+        Arrays of shape (impacts,): state, restitution less eq. (7), from the states at the impact; time [s]; for free
+        rocking with a history also swing, the same from the energies of the swings, NaN where a swing has no peak;
+        on a base also jump, of the base velocity, relative: against momentum with the run's own rates (jump), against
+        e_x of eq. (8) corrected (jump_8) and as printed (jump_8_printed).
+    """
+    response = dataclasses.replace(response, impacts=strong_impacts(response))
+    expected = restitution(scene)
+    errors = {
+        "state": state_restitution(response) - expected,
+        "time": np.array([impact.time for impact in response.impacts]),
+    }
+    if scene.motion is None and scene.bearings is None and response.history is not None:
+        errors["swing"] = swing_restitution(scene, response) - expected
+    if scene.base is not None:
+        rates = np.array([impact.rate_before for impact in response.impacts])
+        jumps = np.array([impact.base_velocity_jump for impact in response.impacts])
+        errors["jump"] = base_jump_error(scene, response)
+        errors["jump_8"] = jumps / (-base_jump_length(scene) * rates) - 1
+        errors["jump_8_printed"] = jumps / (-base_jump_length_as_printed(scene) * rates) - 1
+    return {name: values[:most] for name, values in errors.items()}
+
+
+def rate_restitution(response: Response) -> np.ndarray:
+    """Restitution of each strong impact of free rocking from successive rates, shape (impacts kept,).
+
+    The swing between two impacts keeps its energy (and the base's momentum), so the rate before the next impact is the
+    rate after this one: a solver that applies eq. (7) exactly is judged by what it does to the swing. No history is
+    needed.
+    """
+    before = np.array([impact.rate_before for impact in response.impacts])
+    fast = np.abs(before) >= SLOWEST_IMPACT * np.abs(before).max(initial=0.0)
+    kept = fast[:-1] & fast[1:] & (before[:-1] * before[1:] < 0)
+    return np.abs(before[1:] / before[:-1])[kept]
+
+
+def rms(values: npt.ArrayLike) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def worst(values: npt.ArrayLike) -> float:
+    """Largest absolute value."""
+    return float(np.abs(values).max())
+
+
 def impact_time_errors(response: Response, reference: Response) -> np.ndarray:
     """Time of the impact minus that of the reference's [s], shape (reference impacts,); NaN for a lost one.
 
@@ -109,6 +177,18 @@ def impact_time_errors(response: Response, reference: Response) -> np.ndarray:
             if -gaps[i] / 2 <= error <= gaps[i + 1] / 2:
                 errors[i] = error
     return errors
+
+
+def strong_time_errors(response: Response, reference: Response, until: float = math.inf) -> np.ndarray:
+    """`impact_time_errors` of the reference's strong impacts up to `until` [s]: NaN where one is lost."""
+    strong = {impact.time for impact in strong_impacts(reference) if impact.time <= until}
+    kept = [impact.time in strong for impact in reference.impacts]
+    return impact_time_errors(response, reference)[kept]
+
+
+def lost_impacts(response: Response, reference: Response, until: float = math.inf) -> int:
+    """Number of strong impacts of the reference up to `until` [s] that the response lacks."""
+    return int(np.isnan(strong_time_errors(response, reference, until)).sum())
 
 
 def graph_distance(
@@ -212,8 +292,7 @@ class Agreement:
 def compare(scene: Scene, response: Response, reference: Response, *, until: float = math.inf) -> Agreement:
     """The `Agreement` of two responses of one scene, trajectories up to the sensitivity horizon `until` [s].
 
-    Tilt is scaled by the slenderness and time by 2 pi/omega_r. An impact of the reference counts as
-    lost only where its rate is at least 1 % of the largest: engines rest where the model still chatters.
+    Tilt is scaled by the slenderness and time by 2 pi/omega_r.
     """
     overturning = None
     if response.overturning_time is not None and reference.overturning_time is not None:
@@ -221,11 +300,8 @@ def compare(scene: Scene, response: Response, reference: Response, *, until: flo
     displacement = None
     if scene.base is not None and reference.peak_base_displacement > 0:
         displacement = response.peak_base_displacement / reference.peak_base_displacement - 1
-    errors = impact_time_errors(response, reference)
-    rates = np.abs(_rates(reference)[:, 0])
-    kept = np.array([impact.time <= until for impact in reference.impacts], dtype=bool)
-    kept &= rates >= 0.01 * rates.max(initial=0.0)
-    known = errors[kept & np.isfinite(errors)]
+    errors = strong_time_errors(response, reference, until)
+    known = errors[np.isfinite(errors)]
     distance = None
     if response.history is not None and reference.history is not None:
         distance = graph_distance(
@@ -241,7 +317,7 @@ def compare(scene: Scene, response: Response, reference: Response, *, until: flo
         peak_tilt_error=(response.peak_tilt - reference.peak_tilt) / scene.block.slenderness,
         peak_displacement_error=displacement,
         impact_time_error=float(np.sqrt(np.mean(known**2))) if len(known) else None,
-        lost_impacts=int(kept.sum() - len(known)),
+        lost_impacts=len(errors) - len(known),
         graph_distance=distance,
         until=until,
     )
