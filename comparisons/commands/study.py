@@ -11,7 +11,7 @@ from typer.core import TyperGroup
 
 from analytic.errors import SettingError
 
-from ..studies import BUILT_IN, StudyBroken, draw, get_study, study_names
+from ..studies import BUILT_IN, StudyBroken, get_study, study_names
 
 if TYPE_CHECKING:
     from ..running.study import Study
@@ -21,7 +21,7 @@ Output = Annotated[
     str | None,
     typer.Option(
         metavar="DIR",
-        help="Folder for the result file, the figures and the runs "
+        help="Folder for the result file, its page and the runs "
         "from which an interrupted study resumes. Default: "
         "NAME-study.",
     ),
@@ -41,7 +41,7 @@ Scheduler = Annotated[
     ),
 ]
 EVERY = "all"
-Replot = Annotated[str | None, typer.Option(metavar="FILE", help="Run nothing, draw only, from this result file.")]
+Replot = Annotated[str | None, typer.Option(metavar="FILE", help="Run nothing, show this result file again.")]
 
 
 def _options(function):
@@ -71,14 +71,14 @@ def command_of(study: Study) -> Callable[..., None]:
         folder = f"{study.name}-study" if output is None else output
         check_folder(folder)
         if replot is not None:
-            return _tell(draw(study, replot, output, **shown))
+            return _tell(_show(study, replot, output, shown))
         given = {name: value for name, value in options.items() if name not in drawing}
         problems = []
         if scheduler is not None and workers is not None:
             raise SettingError("--workers: are those of --scheduler; give one of the two")
         place = dict(workers=workers, scheduler=scheduler)
         for path in compute(study, folder, engines=engine or None, quick=quick, **place, **given):
-            _tell([path, *draw(study, path, **shown)])
+            _tell([path, *_show(study, path, None, shown)])
             result = read_result(path)
             for paragraph in study.section(result).text:
                 typer.echo(paragraph, err=True)
@@ -104,6 +104,17 @@ def command_of(study: Study) -> Callable[..., None]:
     command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
     command.__doc__ = f"{study.question}\n\nExample: rocking study {study.name} --quick"
     return command
+
+
+def _show(study, path, folder, options):
+    """Write the page of a result file, or save the figures of a study that has no page yet; returns the paths."""
+    if study.page is None:
+        from ..studies import draw
+
+        return draw(study, path, folder, **options)
+    from ..report.detail import write_study
+
+    return [write_study(study, path, folder)]
 
 
 def _tell(lines):
@@ -176,7 +187,7 @@ app = typer.Typer(cls=_Studies, add_completion=False, rich_markup_mode=None, no_
 
 @app.callback()
 def _about():
-    """Compute one study's result file and figures; interrupted, it resumes where it stopped.
+    """Compute one study's result file and its page; interrupted, it resumes where it stopped.
 
     Example: rocking study restitution --quick
     """

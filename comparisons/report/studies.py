@@ -83,8 +83,11 @@ def _stored(file):
         return Stored(file.stem, Section(f"Study {file.stem}", (f"{file.name} cannot be shown: {error}",)))
     try:
         study = get_study(result.kind)
-        section = study.section(result)
-        finding = study.finding(result) if study.finding else None
+        if study.page:
+            page = study.page(result)  # drawn once
+            section, finding = page.whole(), page.opening()
+        else:
+            section, finding = study.section(result), study.finding(result) if study.finding else None
         judgement = study.judgement(result) if study.judgement else None
     except (KeyError, StudyBroken) as error:
         words = f"{file.name} cannot be shown: {error.args[0]}."

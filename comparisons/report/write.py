@@ -4,25 +4,23 @@ from __future__ import annotations
 
 import json
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from ..running.provenance import PACKAGES, RESULTS, age, read_result
 from ..showing import diagrams
-from ..showing.charts import REFERENCE, STYLE, colour, key_of
-from ..showing.mathml import mathml
-from ..showing.parts import Section, Table, number
-from ..showing.templates import templates
+from ..showing.charts import REFERENCE
+from ..showing.parts import Section, Table
 from ..showing.wording import TRUSTED, USABLE
 from . import equations
 from .animation import animation
 from .answer import not_to_do, recommendation, rows_of
+from .detail import assets, detail, environment
 from .earthquake import earthquake
 from .own import SCENES_FILE, own_sections
 from .runs import CARYATID, FREE_ROCKING
@@ -77,14 +75,15 @@ def write_page(folder: str | PathLike[str], studies: Path = RESULTS) -> Path:
     free = read_result(folder / FREE_ROCKING) if not own or (folder / FREE_ROCKING).exists() else None
     read = {main: scenes} | ({FREE_ROCKING: free} if free else {})
     stored = stored_studies(studies)
-    pages = [("runs", "The report’s own runs"), *((one.name, one.section.title) for one in stored)]
+    pages = [("runs", "The report’s own runs"), *((one.name, one.section.title.partition(":")[0]) for one in stored)]
     listed = [{"file": f"{PAGES}/{name}.html", "title": title} for name, title in pages]
-    environment = _environment()
     path = folder / PAGE
     path.write_text(
-        environment.get_template("page.html").render(
+        environment()
+        .get_template("page.html")
+        .render(
             **_answer(scenes, free, stored),
-            **_assets(),
+            **assets(),
             cards=[card_of(scenes, name) for name in scenes.settings["scenes"]] if own else [],
             motion=scenes.settings["motion"]["label"] if scenes.settings["motion"] else "no motion",
             contents=_contents(scenes, stored),
@@ -107,46 +106,9 @@ def write_page(folder: str | PathLike[str], studies: Path = RESULTS) -> Path:
         ("runs", "The report’s own runs", own_runs, origin_of(scenes)),
         *((one.name, one.section.title, [one.section], one.origin) for one in stored),
     ):
-        html = environment.get_template("detail.html").render(
-            title=title, sections=sections, origin=origin, pages=listed, home=PAGE, **_assets()
-        )
+        html = detail(title, sections, origin, pages=listed, home=PAGE, file=f"{PAGES}/{name}.html")
         (folder / PAGES / f"{name}.html").write_text(html, encoding="utf-8")
     return path
-
-
-def _environment():
-    environment = templates(HERE)
-    known = {re.sub(" [^ ]$", "", word): meaning for word, meaning in equations.GLOSSARY.items()}
-    words = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sorted(known, key=len, reverse=True)))
-
-    def glossed(text):
-        """The text, its first use of each word of the glossary explained."""
-        seen = set()
-
-        def explained(found):
-            if found[0] in seen:
-                return found[0]
-            seen.add(found[0])
-            return f'<abbr title="{escape(known[found[0]])}">{found[0]}</abbr>'
-
-        return Markup(words.sub(explained, str(escape(text))))
-
-    environment.filters |= {
-        "math": lambda tex: Markup(mathml(tex, display=True)),
-        "glossed": glossed,
-        "number": lambda value: number(value, 2),
-        "key": lambda who: Markup(key_of(who)),
-        "colour": colour,
-    }
-    return environment
-
-
-def _assets() -> dict[str, Markup]:
-    return {
-        "style": Markup(STYLE.read_text(encoding="utf-8") + (HERE / "style.css").read_text(encoding="utf-8")),
-        "script": Markup((HERE / "page.js").read_text(encoding="utf-8")),
-        "animation": Markup((HERE / "animation.js").read_text(encoding="utf-8")),
-    }
 
 
 def _answer(scenes: Result, free: Result | None, stored: list[Stored]) -> dict[str, Any]:

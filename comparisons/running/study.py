@@ -1,6 +1,6 @@
 """A study: a question, the runs that answer it, what is measured in each, and how the answer is shown.
 
-    STUDY = Study("outcomes", "Who overturns?", plan, figures, section)
+    STUDY = Study("outcomes", "Who overturns?", plan, page=page)
 
     def plan(ask):
         rows = yield Batch([Case(scene, solver) for solver in ("analytic", *ask.engines)], outcome, "outcomes")
@@ -8,7 +8,8 @@
 
 `plan` is a generator: it yields a `Batch` of cases and is sent their rows, as often as it needs (a search asks again
 where the answers point, a timing turn by turn). A `Found` that it yields is written at once: whole as far as it goes;
-the last one is returned. What runs, stores, resumes, draws and writes is `compute`, the same for every study.
+the last one is returned. What runs, stores, resumes and writes is `compute`, the same for every study. How to write a
+study, from the first file to its page: `comparisons.studies`.
 """
 
 import contextlib
@@ -83,23 +84,32 @@ class Study:
     """A study, as commands, report and `compute` know it.
 
     name: on the command line, of its files, and the kind of its result. question: one line, the command's help.
-    plan: ``(ask, **options)`` -> generator, see above. figures: ``(result, **options)`` -> {suffix: Figure}. section:
-    result -> `comparisons.showing.parts.Section`, all that is known. finding: result -> `Section`, the answer in one
-    figure and one short table, for the report's first page; judgement: result -> `comparisons.showing.parts.Judgement`,
-    a column of its decision table. problems: result -> sentences that end the command with status 1.
-    all_engines: whether all that are installed take part where none is asked for. Keyword-only parameters of plan and
-    figures, annotated as Typer wants them, become options of the command.
+    plan: ``(ask, **options)`` -> generator, see above; its keyword-only parameters, annotated as Typer wants them, are
+    options of the command. page: result -> `comparisons.showing.parts.Page`, all that is shown of it. judgement:
+    result -> `comparisons.showing.parts.Judgement`, a column of the report's decision table. problems: result ->
+    sentences that end the command with status 1. all_engines: whether all that are installed take part where none is
+    asked for.
+
+    Of a study without a page: figures, ``(result, **options)`` -> {suffix: Figure}, saved as pictures; section, result
+    -> `comparisons.showing.parts.Section`, all that is known; finding, result -> `Section`, for the report's first
+    page. A page gives both.
     """
 
     name: str
     question: str
     plan: Callable[..., Plan]
-    figures: Callable[..., dict]
-    section: Callable[[Result], Any]
+    figures: Callable[..., dict] = lambda result: {}  # these two, finding and __post_init__ go with the last such study
+    section: Callable[[Result], Any] = None  # type: ignore[assignment]  # one of page and section is given
     problems: Callable[[Result], list] = lambda result: []
     all_engines: bool = True
     finding: Callable[[Result], Any] | None = None
     judgement: Callable[[Result], Any] | None = None
+    page: Callable[[Result], Any] | None = None
+
+    def __post_init__(self) -> None:
+        if (page := self.page) is not None:
+            object.__setattr__(self, "section", lambda result: page(result).whole())
+            object.__setattr__(self, "finding", lambda result: page(result).opening())
 
 
 def compute(

@@ -1,19 +1,22 @@
 """Charts of the page as inline SVG: text is text, colours are the page's, and a script can read values back.
 
 Solvers keep colour, dashes and marker everywhere (`engines.ENGINES`); a group of the class "who" with ``data-who`` can
-be hidden by its name. Sizes are in units of which `WIDTH` fill a phone: lettering of 13 is 11.6 px at 390 px.
+be hidden by its name, which begins with the engine's: "exudyn" or "exudyn, native-contact". What is drawn of rows is
+made by `comparisons.showing.figures`. Sizes are in units of which `WIDTH` fill a phone: lettering of 13 is 11.6 px at
+390 px.
 """
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
 import numpy as np
+from markupsafe import Markup
 from matplotlib.ticker import LogLocator, MaxNLocator
 
 from engines import ENGINES
@@ -25,6 +28,8 @@ STYLE = Path(__file__).with_name("charts.css")  # colours of pages, light and da
 WIDTH = 400
 LETTER = 13
 REFERENCE = "analytic"
+INK = 25  # % of the page's ink in a solver's colour: so much gives each a contrast of 3.4 or more, light and dark
+NEAR, ASIDE = 6.0, (0, 7, -7, 14, -14)  # marks nearer than this cover each other; where to put one instead
 DASHES = {"-": "", "--": "7 4", ":": "2 3.5", "-.": "8 3 2 3"}
 SHAPES = {
     "o": "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0z",
@@ -79,7 +84,7 @@ def log_axis(label: str, values: Iterable[float]) -> Axis:
 
 
 class Chart:
-    """One panel; says: what it shows, for those who cannot see it. left, right, foot: room beside and below."""
+    """One panel; says: what it shows, for those who cannot see it. left, right, head, foot: room around."""
 
     def __init__(
         self,
@@ -91,13 +96,15 @@ class Chart:
         left: int = 64,
         right: int = 14,
         foot: int | None = None,
+        head: int = 0,
         title: str = "",
     ) -> None:
         self.x, self.y, self.says, self.title = x, y, says, title
         self.left, self.right = left, WIDTH - right
-        self.top, self.bottom = 30 if title else 12, height - (foot or (46 if x.label else 28))
+        self.top, self.bottom = (30 if title else 12) + head, height - (foot or (46 if x.label else 28))
         self.height, self.parts, self.over = height, list[str](), list[str]()
         self.ends: list[tuple[float, str, str, str]] = []
+        self.taken, self.moved = list[tuple[float, float]](), False  # places of marks; whether one gave way
 
     def at(self, xs: Sequence[float] | np.ndarray, ys: Sequence[float] | np.ndarray) -> np.ndarray:
         """Places, shape (points, 2), of values."""
@@ -133,20 +140,23 @@ class Chart:
         who: str = "",
         *,
         filled: bool = True,
+        small: bool = False,
         grey: bool = False,
         says: Sequence[str] | None = None,
         mark: str | None = None,
         tone: str = "",
+        apart: bool = False,
     ) -> None:
-        """Marks of one solver; says: what each tells under the pointer."""
-        shape = SHAPES.get(mark or marker(who), SHAPES["o"])
-        kind = "dot" if filled else "dot open"
+        """Marks of one solver; says: what each tells under the pointer. apart: one that would cover another stands
+        beside it.
+        """
+        shape, kind = _mark(who, filled, mark), "dot" if filled else "dot open"
         told = says or [""] * len(xs)
-        marks = [
-            f'<path class="{kind}" transform="translate({x:.1f} {y:.1f})" d="{shape}"{_told(words)}/>'
-            for (x, y), words in zip(self.at(xs, ys), told, strict=True)
-            if self.left - 1 <= x <= self.right + 1 and self.top - 1 <= y <= self.bottom + 1
-        ]
+        marks = []
+        for (x, y), words in zip(self.at(xs, ys), told, strict=True):
+            if self.left - 1 <= x <= self.right + 1 and self.top - 1 <= y <= self.bottom + 1:
+                place = self._free(x, y) if apart else x
+                marks.append(f'<path class="{kind}" transform="{_placed(place, y, small)}" d="{shape}"{_told(words)}/>')
         self.over.append(f"{_group(who, grey, tone)}{''.join(marks)}</g>")
 
     def reach(self, xs: Sequence[float], ys: Sequence[float], lows: Sequence[float], highs: Sequence[float],
@@ -155,6 +165,14 @@ class Chart:
         begins, ends = (self.at(xs, one) if along == "y" else self.at(one, ys) for one in (lows, highs))
         path = "".join(f"M{a[0]:.1f} {a[1]:.1f}L{b[0]:.1f} {b[1]:.1f}" for a, b in zip(begins, ends, strict=True))
         self.parts.append(f'{_group(who, grey, tone)}<path class="reach" d="{path}"/></g>')
+
+    def _free(self, x, y):
+        """The x near it where a mark covers no other one."""
+        free = (x + by for by in ASIDE if all(math.hypot(x + by - a, y - b) >= NEAR for a, b in self.taken))
+        place = next(free, x)
+        self.taken.append((place, y))
+        self.moved = self.moved or place != x
+        return place
 
     def area(self, xs: Sequence[float], ys: Sequence[float], kind: str) -> None:
         """A filled polygon; kind: its class."""
@@ -171,6 +189,14 @@ class Chart:
             y = self.at([self.x.low], [value])[0][1]
             self.parts.append(f'<path class="rule" d="M{self.left} {y:.1f}H{self.right}"/>')
             self.over.append(f'<text x="{self.left + 4}" y="{y - 4:.1f}" class="soft clear">{escape(words)}</text>')
+
+    def heading(self, x: float, words: str, line: int = 0) -> None:
+        """Words above the panel, where x has a value, so many lines up; they take room there (head)."""
+        place, height = self.at([x], [self.y.low])[0][0], self.top - 5 - line * (LETTER + 3)
+        anchor = "middle" if self.left + 60 < place < self.right - 60 else "start" if place < self.right - 60 else "end"
+        self.over.append(
+            f'<text x="{place:.1f}" y="{height}" class="soft" text-anchor="{anchor}">{escape(words)}</text>'
+        )
 
     def label(self, y: float, text: str, who: str = "", tone: str = "") -> None:
         """Name of a line, in the right margin at the height where it ends."""
@@ -247,27 +273,39 @@ class Chart:
 
 def colour(who: str) -> str:
     """Colour of a solver, as a style has it; the model's is the page's ink."""
-    return ENGINES[who].colour if who in ENGINES else "var(--ink)" if who == REFERENCE else "var(--soft)"
+    engine = engine_of(who)
+    if engine in ENGINES:
+        return f"color-mix(in srgb, {ENGINES[engine].colour} {100 - INK}%, var(--ink))"
+    return "var(--ink)" if engine == REFERENCE else "var(--soft)"
 
 
-def key_of(who: str) -> str:
+def engine_of(who: str) -> str:
+    """The engine of a name as "exudyn, native-contact"."""
+    return who.partition(", ")[0]
+
+
+def key_of(who: str, *, filled: bool = True, small: bool = False, joined: bool = True) -> str:
     """A small picture of a solver's line and marker, for a legend."""
-    shape = SHAPES.get(marker(who), SHAPES["o"])
-    mark = "" if who == REFERENCE else f'<path class="dot" transform="translate(16 7)" d="{shape}"/>'
+    kind = "dot" if filled else "dot open"
+    mark = f'<path class="{kind}" transform="{_placed(16, 7, small)}" d="{_mark(who, filled)}"/>'
+    line = '<path class="line" d="M1 7H31"/>' if joined else ""
     return (
         f'<svg class="chart mini" viewBox="0 0 32 14" aria-hidden="true">{_group(who, False)}'
-        f'<path class="line" d="M1 7H31"/>{mark}</g></svg>'
+        f"{line}{'' if engine_of(who) == REFERENCE else mark}</g></svg>"
     )
 
 
-def figure(charts: Sequence[Chart], caption: str, solvers: Iterable[str] = ()) -> Figure:
-    """The `Figure` of one or more panels; solvers: those in its legend."""
+def figure(
+    charts: Sequence[Chart], caption: str, solvers: Iterable[str] = (), keys: Mapping[str, str] | None = None
+) -> Figure:
+    """The `Figure` of one or more panels; solvers: those in its legend; keys: their pictures, if not as `key_of`."""
     return Figure(
         "".join(chart.svg() for chart in charts).encode(),
         " ".join(chart.says for chart in charts),
         caption,
         wide=len(charts) > 1,
         solvers=tuple(dict.fromkeys(solvers)),
+        keys={name: Markup(key) for name, key in (keys or {}).items()},
     )
 
 
@@ -287,11 +325,22 @@ def _told(words):
     return f' data-says="{escape(words)}"' if words else ""
 
 
+def _mark(who, filled, mark=None):
+    """The shape of a solver's mark; a cross has no inside to leave open and is a disc then."""
+    shape = mark or marker(engine_of(who))
+    return SHAPES["o" if shape == "x" and not filled else shape] if shape in SHAPES else SHAPES["o"]
+
+
+def _placed(x, y, small):
+    return f"translate({x:.1f} {y:.1f})" + ("scale(.55)" if small else "")
+
+
 def _group(who, grey, tone=""):
     """The beginning of a group in a solver's colour and dashes, or in another colour."""
     if not who:
         return f'<g class="who" style="--c:{tone}">' if tone else '<g class="who">'
-    drawn, dashes = "var(--faint)" if grey else colour(who), _dashes(who) if who in ENGINES else ""
+    engine = engine_of(who)
+    drawn, dashes = "var(--faint)" if grey else colour(who), _dashes(engine) if engine in ENGINES else ""
     return f'<g class="who" data-who="{escape(who)}" style="--c:{drawn};--d:{dashes or "none"}">'
 
 

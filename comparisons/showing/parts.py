@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from html import escape
 from typing import TYPE_CHECKING, Any
 
@@ -38,7 +38,8 @@ class Table:
 class Figure:
     """svg: the picture. alt: what it shows, for those who cannot see it. caption: what to look at.
 
-    wide: it takes the whole width of the page. solvers: those whose lines can be told apart and hidden.
+    wide: it takes the whole width of the page. solvers: those whose lines can be told apart and hidden; keys: {one of
+    them: the picture of its line}, where it is not as everywhere.
     """
 
     svg: bytes
@@ -46,6 +47,7 @@ class Figure:
     caption: str
     wide: bool = False
     solvers: tuple = ()
+    keys: dict = field(default_factory=dict)
 
     @property
     def element(self) -> Markup:
@@ -77,7 +79,8 @@ class Section:
     """title: heading. text: paragraphs, plain text. age: None, or how the result is older than the code.
 
     evidence: (heading, text) pairs, folded away: raw messages of runs that failed. measured: paragraphs, folded: how
-    the figures were obtained.
+    the figures were obtained. parts: figures, tables, paragraphs and `Head`s in their order, in place of all figures
+    above all tables.
     """
 
     title: str
@@ -87,6 +90,51 @@ class Section:
     age: str | None = None
     evidence: tuple = ()
     measured: tuple = ()
+    parts: tuple = ()
+
+    @property
+    def shown(self) -> tuple:
+        """What stands below the text, in order."""
+        return self.parts or (*self.figures, *self.tables)
+
+
+@dataclass(frozen=True)
+class Head:
+    """A heading between the parts of a page."""
+
+    words: str
+
+
+@dataclass(frozen=True)
+class Page:
+    """What a study shows of its result, told once: `opening` for the report's first page, `whole` for its own page.
+
+    title: "subject: what was found", without a full stop. lead: one or two short paragraphs. first: the figure and the
+    table of the answer; none: the study is not on the report's first page. more: what else there is, in order: figures,
+    tables, `Head`s, and str, a paragraph. What is None, and a table without rows, is left out. how: paragraphs, folded:
+    what was run and how it was measured. evidence: (heading, text) pairs, folded: messages of runs that failed.
+    """
+
+    title: str
+    lead: tuple[str, ...]
+    first: tuple = ()
+    more: tuple = ()
+    how: tuple[str, ...] = ()
+    evidence: tuple[tuple[str, str], ...] = ()
+
+    def opening(self) -> Section | None:
+        """The `Section` of the report's first page."""
+        return self._section(self.first) if self.first else None
+
+    def whole(self) -> Section:
+        """The `Section` of the study's own page."""
+        return replace(self._section((*self.first, *self.more)), evidence=self.evidence)
+
+    def _section(self, parts):
+        parts = tuple(part for part in parts if part is not None and not (isinstance(part, Table) and not part.rows))
+        tables = tuple(part for part in parts if isinstance(part, Table))
+        figures = tuple(part for part in parts if isinstance(part, Figure))
+        return Section(self.title, self.lead, tables, figures, measured=self.how, parts=parts)
 
 
 # Width [inch] from which a figure would be unreadable in half of the page.
@@ -159,6 +207,12 @@ def number(value: float | None, digits: int = 3) -> str:
         return f"{value:.{max(digits - 1 - exponent, 0)}f}".replace("-", "−")
     mantissa, power = f"{value:.{digits - 1}e}".split("e")
     return f"{mantissa}·10{str(int(power)).translate(MINUS_DIGITS)}".replace("-", "−")
+
+
+def short(value: float | None) -> str:
+    """A number that was chosen, in three digits at most: 0.3, 10, 2·10¹¹."""
+    digits, point, power = number(value).partition("·")
+    return (digits.rstrip("0").rstrip(".") if "." in digits else digits) + point + power
 
 
 def percent(fraction: float | None, digits: int = 2) -> str:

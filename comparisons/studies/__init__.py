@@ -1,5 +1,32 @@
 """The studies: each asks one question of many runs and holds one `comparisons.running.study.Study` called ``STUDY``.
 
+A study is two files in a folder of its name, as `restitution`; another file only for another noun (its cases).
+
+``study.py`` computes and imports nothing that shows: a ``plan(ask)`` that yields a `Batch` of cases with their
+``measure`` and returns `Found`, plain rows and settings (`comparisons.running.study`). All rows of all studies say
+``engine``, ``variant`` and ``part`` (what the row is), ``level`` for a value of the accuracy parameter, ``lost`` for
+impacts that a run has not; settings list ``variants``, each with engine, variant, tier, parameter, default and levels.
+
+``page.py`` shows: one function from a `Result` to a `comparisons.showing.parts.Page`. The report's first page takes
+title, lead and first, the study's own page all of it; nothing is told or drawn twice.
+
+    ERROR = Column("error of restitution, rms [-]", "rms")  # a column of tables and an axis of figures
+
+    def page(result):
+        rows = where(result.rows, part="summary")
+        return Page(
+            "One impact: 6 of 13 settings keep restitution within 0.001",
+            ("What the question is, in two sentences.",),
+            first=(lines(rows, SLENDERNESS, ERROR, "What to look at.", panel="ground", log="y"),
+                   table("Least error first", rows, NAME, ERROR, Column("failed", "{failed} of {runs}"))),
+            more=(Head("Base mass"), shades(rows, BASE, SLENDERNESS, ERROR, "...", bounds=(1e-3, 1e-2), panel=NAME.of)),
+            how=("What was run, and how it is measured.",),
+        )
+
+The layer: `comparisons.showing.rows` (where, grouped, Column, table), `comparisons.showing.figures` (lines, shades,
+beside); what they cannot draw is a `comparisons.showing.charts.Chart`. ``__init__.py`` holds ``STUDY`` and imports the
+page only where it is shown.
+
 Other packages declare theirs in the entry point group `rocking.studies`; an entry resolves to a `Study` of its name.
 """
 
@@ -68,7 +95,10 @@ def get_study(name: str) -> Study:
 def draw(
     study: Study, path: str | PathLike[str], folder: str | PathLike[str] | None = None, **options: Any
 ) -> list[Path]:
-    """Draw the figures of the result file at `path` into `folder`, by default beside it; returns their paths."""
+    """Draw the figures of the result file at `path` into `folder`, by default beside it; returns their paths.
+
+    Of studies without a page, and gone with the last of them.
+    """
     from ..running.provenance import read_result
     from ..showing.plots import save
 

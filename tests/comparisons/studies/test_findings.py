@@ -1,28 +1,46 @@
 """What the report's first page takes of the studies: each number from the stored rows, no lucky setting, no silence."""
 
+import re
+
 import pytest
 from page_numbers import number_in
 
+from comparisons.report.write import SHORT
 from comparisons.running.provenance import RESULTS, Result, read_result
+from comparisons.showing.parts import Head
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.overturning.finding import judgement as boundaries
 from comparisons.studies.speed_error.finding import passing
 from comparisons.studies.stability.finding import judgement as hard_cases
-
-WITH_FINDING = [name for name in BUILT_IN if get_study(name).finding is not None]
 
 
 def stored(name):
     return read_result(RESULTS / f"{name}.json")
 
 
-@pytest.mark.parametrize("name", WITH_FINDING)
+@pytest.mark.parametrize("name", SHORT)
 def test_a_finding_is_one_sentence_one_figure_and_short_tables(name):
     found = get_study(name).finding(stored(name))
     assert 20 < len(found.title) < 200 and len(found.figures) == 1 and found.measured
     assert sum(len(paragraph.split()) for paragraph in found.text) < 200
     for table in found.tables:
         assert table.rows and all(len(row) == len(table.columns) for row in table.rows)
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in BUILT_IN if get_study(name).page and (RESULTS / f"{name}.json").exists()]
+)
+def test_a_page_writes_numbers_and_symbols_as_a_reader_does(name):
+    whole = get_study(name).page(stored(name)).whole()
+    words = [whole.title, *whole.text, *whole.measured, *(part for part in whole.shown if isinstance(part, str))]
+    words += [part.words for part in whole.shown if isinstance(part, Head)]
+    words += [
+        text
+        for figure in whole.figures
+        for text in (figure.alt, figure.caption, re.sub("<[^>]*>", " ", figure.svg.decode()))
+    ]
+    words += [cell for table in whole.tables for row in ([table.caption], table.columns, *table.rows) for cell in row]
+    assert not [text for text in words if re.search(r"\d[eE][-+]?\d|\b[a-zA-Z]_[a-zA-Z]\b|\bNone\b|\bnan\b", text)]
 
 
 def test_the_errors_of_restitution_are_the_worse_of_both_grounds():

@@ -1,6 +1,5 @@
 """The restitution study: its measures on responses whose error is known, and a small run from end to end."""
 
-import json
 import math
 
 import numpy as np
@@ -8,12 +7,15 @@ import pytest
 
 from analytic import simulate
 from analytic.rocking import restitution
+from comparisons.report.detail import write_study
 from comparisons.running.provenance import read_result
+from comparisons.running.sources import source_digests
 from comparisons.running.study import compute
-from comparisons.studies import draw
+from comparisons.showing.parts import Figure, Table
+from comparisons.showing.rows import where
 from comparisons.studies.restitution import STUDY
 from comparisons.studies.restitution.cases import CARYATID_BASE, FULL, QUICK, Grid, free_scene, grid_cases
-from comparisons.studies.restitution.summary import damped_error, friction_needed
+from comparisons.studies.restitution.study import damped_error, friction_needed
 
 pytestmark = pytest.mark.xdist_group("restitution study")  # the small study is run once
 
@@ -66,50 +68,56 @@ def small(tmp_path_factory):
     folder = tmp_path_factory.mktemp("study")
     grid = Grid((0.2,), (None, CARYATID_BASE), (0.5, 0.7), ((0.2, None),), 8)
     (path,) = compute(STUDY, folder, engines=("pybullet",), workers=2, progress=False, grid=grid)
-    return folder, grid, path, draw(STUDY, path)
+    return folder, grid, path
 
 
 def test_a_small_study_finds_what_is_known(small):
     result = read_result(small[2])
 
     def one(part, **wanted):
-        (row,) = [
-            row
-            for row in result.rows
-            if row["part"] == part and all(row[key] == value for key, value in wanted.items())
-        ]
+        (row,) = where(result.rows, part=part, **wanted)
         return row
 
     aware = one("summary", scope="all", variant="impact-aware", ground="rigid ground")
     assert aware["rms"] < 1e-4 and aware["impacts"] == 6 and aware["failed"] == aware["lost"] == 0
     assert 0.8 < one("order", variant="fixed-step", ground="rigid ground")["order"] < 1.2
     assert one("phase", engine="pybullet", step=1e-3)["explained"] > 0.95
-    damped = one("flight damping", value=1e-3)
+    damped = one("flight damping", level=1e-3)
     assert damped["measured"] == pytest.approx(damped["predicted"], rel=0.15)
     large = one("experiment", experiment="size", value=4.0)
     assert large["jump_8"] < 1e-3 and large["jump_8_printed"] > 0.5
     assert all(row["cpu_per_second"] > 0 for row in result.rows if row["part"] == "cell")
 
 
-def test_figures_and_section_come_from_the_result_alone(small):
-    folder, _, path, figures = small
-    assert len(figures) == 5 and all(figure.stat().st_size > 10_000 for figure in figures)
-    section = STUDY.section(read_result(path))
-    words = " ".join(section.text)
-    assert "pybullet impact-aware: may be trusted." in words
-    assert "pybullet first-script: not to be trusted." in words and "Step phase." in words and "Eq. (8)." in words
-    for table in section.tables:
+def test_the_page_comes_from_the_result_alone(small):
+    page = STUDY.page(read_result(small[2]))
+    opening, whole = page.opening(), page.whole()
+    assert whole.parts[:2] == opening.parts and list(map(type, opening.parts)) == [Figure, Table]
+    for table in whole.tables:
         assert table.rows and all(len(row) == len(table.columns) for row in table.rows)
-    verdicts = {row[0]: row[1:] for row in section.tables[0].rows}
-    (aware,) = (name for name in verdicts if name.startswith("pybullet, impact-aware"))
-    assert "0.0010" in aware and verdicts[aware][0] == "may be trusted"
-    assert verdicts["pybullet, first-script (step = 0.0042 s)"][0] == "is not to be trusted"
-    assert len(section.figures) == 5 and all(figure.alt and figure.caption for figure in section.figures)
-    json.dumps([section.title, section.text])
+    ratings = {row[0]: row[1] for row in opening.tables[0].rows}
+    assert ratings["pybullet, impact-aware"] == "trusted" and ratings["pybullet, first-script"] == "not to be trusted"
+    settings = {row[0]: row[3] for row in whole.tables[1].rows}
+    assert settings["pybullet, first-script"] == "step = 0.00417 s"
+    # first; both maps; levels and cost; step phase; damping; eq. (8): this engine names no setting to change alone
+    assert len(whole.figures) == 7 and all(figure.alt and figure.caption for figure in whole.figures)
+
+
+def test_its_own_page_needs_no_other_file(small, tmp_path):
+    file = write_study(STUDY, small[2], tmp_path / "shown")
+    text = file.read_text()
+    assert file == tmp_path / "shown" / "restitution.html" and "<style>" in text and "pybullet, impact-aware" in text
+    assert not [link for link in ("src=", "href=", "<link", "@import") if link in text]
+
+
+def test_what_shows_is_no_part_of_what_a_result_depends_on():
+    behind = source_digests([STUDY.plan.__module__])
+    assert f"{STUDY.plan.__module__.removesuffix('study')}cases" in behind
+    assert not [name for name in behind if name.endswith(".page") or ".showing" in name or "matplotlib" in name]
 
 
 def test_a_broken_off_study_resumes_to_the_same_result(small):
-    folder, grid, path, _ = small
+    folder, grid, path = small
     before = read_result(path)
     store = folder / "runs.jsonl"
     lines = store.read_text().splitlines(keepends=True)

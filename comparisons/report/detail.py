@@ -1,0 +1,98 @@
+"""A page of its own: of one study's result, or of what else the report folds away."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from markupsafe import Markup, escape
+
+from ..running.provenance import age, read_result
+from ..showing.charts import STYLE, colour, key_of
+from ..showing.mathml import mathml
+from ..showing.parts import Section, number
+from ..showing.templates import templates
+from . import equations
+from .studies import origin_of
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+    from ..running.study import Study
+
+HERE = Path(__file__).parent
+
+
+def write_study(study: Study, path: str | PathLike[str], folder: str | PathLike[str] | None = None) -> Path:
+    """Write the page of the result file at `path` into `folder`, by default beside it; returns the page's path.
+
+    Raises
+    ------
+    ResultError
+        The result file is missing or damaged.
+    """
+    result = read_result(path)
+    page = study.page(result).whole()
+    into = (Path(path) if folder is None else Path(folder) / Path(path).name).with_suffix(".html")
+    into.parent.mkdir(parents=True, exist_ok=True)
+    html = detail(page.title, [replace(page, age=age(result))], origin_of(result))
+    into.write_text(html, encoding="utf-8")
+    return into
+
+
+def detail(
+    title: str,
+    sections: Iterable[Section],
+    origin: str,
+    *,
+    pages: Sequence[Mapping[str, str]] = (),
+    home: str = "",
+    file: str = "",
+) -> str:
+    """The HTML of a page that needs no other file; pages: {"file", "title"} of those beside it, it being one of them,
+    and home, the report's own; none: it stands alone.
+    """
+    template = environment().get_template("detail.html")
+    shown = {"title": title, "sections": sections, "origin": origin}
+    return template.render(**shown, pages=pages, home=home, file=file, **assets())
+
+
+def environment() -> Environment:
+    """The templates, with what they write numbers, formulas and the glossary's words by."""
+    found = templates(HERE)
+    known = {re.sub(" [^ ]$", "", word): meaning for word, meaning in equations.GLOSSARY.items()}
+    words = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sorted(known, key=len, reverse=True)))
+
+    def glossed(text):
+        """The text, its first use of each word of the glossary explained."""
+        seen = set()
+
+        def explained(found):
+            if found[0] in seen:
+                return found[0]
+            seen.add(found[0])
+            return f'<abbr title="{escape(known[found[0]])}">{found[0]}</abbr>'
+
+        return Markup(words.sub(explained, str(escape(text))))
+
+    found.filters |= {
+        "math": lambda tex: Markup(mathml(tex, display=True)),
+        "glossed": glossed,
+        "number": lambda value: number(value, 2),
+        "key": lambda who: Markup(key_of(who)),
+        "colour": colour,
+    }
+    return found
+
+
+def assets() -> dict[str, Markup]:
+    """Style and scripts, to stand on the page itself."""
+    return {
+        "style": Markup(STYLE.read_text(encoding="utf-8") + (HERE / "style.css").read_text(encoding="utf-8")),
+        "script": Markup((HERE / "page.js").read_text(encoding="utf-8")),
+        "animation": Markup((HERE / "animation.js").read_text(encoding="utf-8")),
+    }

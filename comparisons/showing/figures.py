@@ -1,0 +1,213 @@
+"""From a study's rows to figures: lines and marks by engine and variant, and maps of a quantity over two coordinates.
+
+lines(rows, Column("slenderness γ [rad]", "slenderness"), Column("error, rms [-]", "rms"), "Error of ...",
+      panel="ground", log="y", rules=[("y", 1e-3, "trusted")])
+shades(rows, Column("base over block mass [-]", "ratio"), Column("slenderness γ [rad]", "slenderness"),
+       Column("error, rms [-]", "rms", digits=1), "Error of ...", bounds=(1e-4, 1e-3, 1e-2), panel=NAME.of)
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+from matplotlib.ticker import MaxNLocator
+
+from .charts import REFERENCE, Axis, Chart, figure, key_of, log_axis
+from .parts import Figure
+from .rows import Column, Key, Row, grouped, value_of
+
+# Of the first, second, ... series of one engine; all have the engine's colour, dashes and shape of marks.
+LOOKS: tuple[dict[str, bool], ...] = (
+    {"filled": True, "small": False},
+    {"filled": False, "small": False},
+    {"filled": True, "small": True},
+    {"filled": False, "small": True},
+)
+MOVED = " Marks that would cover each other stand side by side."
+Rule = tuple[str, float, str]
+
+
+def lines(
+    rows: Iterable[Row],
+    x: Column,
+    y: Column,
+    caption: str,
+    *,
+    panel: Key = lambda row: "",
+    by: Key = "variant",
+    grey: Callable[[Row], bool] = lambda row: False,
+    log: str = "",
+    rules: Sequence[Rule] = (),
+    says: Callable[[Row], str] | None = None,
+    joined: bool = True,
+) -> Figure | None:
+    """Panels of lines and marks, one series for each engine and what tells its series apart; None: nothing to draw.
+
+    Parameters
+    ----------
+    rows : iterable of dict
+        In the order in which a line joins them, each with its ``engine`` ("analytic": the model, a line without marks).
+        Rows whose x or y is None, or not positive on a logarithmic axis, are left out.
+    x, y : Column
+        Their heads label the axes, which all panels share.
+    panel : key
+        Title of a row's panel.
+    by : key
+        What tells the series of an engine apart: a name, part of the legend's "engine, name".
+    grey : function
+        Rows whose series stand behind in grey, out of the legend, named under the pointer alone.
+    log : str
+        The logarithmic axes: "", "x", "y" or "xy".
+    rules : sequence of (axis, value, words)
+        Values to compare with: ("y", 1e-3, "trusted"). Words stand outside the plot, where no line crosses them.
+    says : function
+        What a row's mark tells under the pointer; without it series, y and x.
+    joined : bool
+        Whether a line joins the marks.
+    """
+    kept = [row for row in rows if _drawn(x.of(row), "x" in log) and _drawn(y.of(row), "y" in log)]
+    if not kept:
+        return None
+
+    def name(row):
+        return ", ".join(filter(None, (row["engine"], str(value_of(row, by)))))
+
+    def axis(which, column):
+        values = [column.of(row) for row in kept] + [value for along, value, _ in rules if along == which]
+        return log_axis(column.head, values) if which in log else _linear_axis(column.head, values)
+
+    coloured = list(grouped((row for row in kept if not grey(row)), "engine", name))
+    looks = {pair[1]: LOOKS[rank % len(LOOKS)] for pair, rank in _ranks(coloured)}
+    panels = grouped(kept, panel)
+    ends = joined and len({engine for engine, _ in coloured}) == len(coloured)
+    charts = []
+    for (title,), members in panels.items():
+        series = grouped(members, lambda row: not grey(row), "engine", name)
+        chart = Chart(
+            axis("x", x),
+            axis("y", y),
+            f"{title + ': ' if title else ''}{y.head} over {x.head}; {', '.join(who for *_, who in series)}.",
+            title=str(title),
+            height=300 + 20 * (not title),
+            right=92 if ends or any(along == "y" for along, *_ in rules) else 14,
+            head=16 * len(rules) * any(along == "x" for along, *_ in rules),
+        )
+        for line, (along, value, words) in enumerate(rules):
+            chart.rule(value, along)
+            if along == "y":
+                chart.label(value, words, tone="var(--soft)")
+            else:
+                chart.heading(value, words, line)
+        for (shown, engine, who), points in sorted(series.items(), key=lambda item: item[0][0]):
+            places = [x.of(row) for row in points], [y.of(row) for row in points]
+            told = [says(row) if says else f"{who}: {y.text(row)} at {x.text(row)}" for row in points]
+            look = looks[who] if shown else LOOKS[1]
+            if joined:
+                chart.line(*places, who, grey=not shown)
+            if engine != REFERENCE:
+                chart.dots(*places, who, grey=not shown, says=told, apart=shown and joined, **look)
+            if ends and shown:
+                chart.label(places[1][-1], engine, who)
+        charts.append(chart)
+    keys = {who: key_of(who, joined=joined, **looks[who]) for _, who in coloured}
+    return figure(charts, caption + MOVED if any(chart.moved for chart in charts) else caption, keys, keys)
+
+
+def beside(*figures: Figure | None) -> Figure | None:
+    """Figures as one, panel beside panel, one caption after the other; None: none is there."""
+    found = [one for one in figures if one is not None]
+    if not found:
+        return None
+    keys = {who: key for one in found for who, key in one.keys.items()}
+    svg, alt = b"".join(one.svg for one in found), " ".join(one.alt for one in found)
+    caption = " ".join(one.caption.removesuffix(MOVED) for one in found)
+    moved = MOVED if any(one.caption.endswith(MOVED) for one in found) else ""
+    return Figure(svg, alt, caption + moved, True, tuple(keys), keys)
+
+
+def _drawn(value: Any, log: bool) -> bool:
+    return value is not None and math.isfinite(value) and (value > 0 or not log)
+
+
+def _ranks(pairs):
+    """(pair, which of its engine's it is) of (engine, name)."""
+    seen: dict[str, int] = {}
+    for pair in pairs:
+        seen[pair[0]] = seen.get(pair[0], -1) + 1
+        yield pair, seen[pair[0]]
+
+
+def _linear_axis(label, values):
+    """An axis from tick to tick about the values."""
+    ticks = MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]).tick_values(min(values), max(values))
+    return Axis(label, float(ticks[0]), float(ticks[-1]))
+
+
+def shades(
+    rows: Iterable[Row],
+    x: Column,
+    y: Column,
+    value: Column,
+    caption: str,
+    *,
+    bounds: Sequence[float],
+    panel: Key = lambda row: "",
+    failed: Callable[[Row], str] = lambda row: "",
+) -> Figure | None:
+    """Maps of a quantity: a cell for each row, shaded by the bounds that its value passes; None: no rows.
+
+    Parameters
+    ----------
+    rows : iterable of dict
+        One for each panel and cell; coordinates stand in the order in which they come first, y upward.
+    x, y : Column
+        Coordinates, as their texts.
+    value : Column
+        The shaded quantity, its number in the cell; a dash where it is None.
+    bounds : sequence of float
+        At most five, ascending: the scale, drawn as the last panel.
+    panel : key
+        Title of a row's panel.
+    failed : function
+        What failed in a row, in a word or two that take the number's place beside a cross; "": nothing.
+    """
+    rows = list(rows)
+    if not rows:
+        return None
+    across, up = ([text for (text,) in grouped(rows, column.text)] for column in (x, y))
+    charts = []
+    for (title,), members in grouped(rows, panel).items():
+        chart = Chart(
+            _places(x.head, across),
+            _places(y.head, up),
+            f"{title + ': ' if title else ''}{value.head} over {x.head} and {y.head}.",
+            title=str(title),
+            height=78 + 25 * len(up),
+        )
+        for row in members:
+            lost, found, size = failed(row), value.text(row), value.of(row)
+            kind = "shade" if size is None else f"shade s{bisect_right(bounds, size)}"
+            words = f"{y.text(row)}, {x.text(row)}: {found}" + (f"; failed: {lost}" if lost else "")
+            sign = f"✗ {lost}" if lost else found
+            chart.cell(across.index(x.text(row)), up.index(y.text(row)), f"{kind} lost" if lost else kind, sign, words)
+        charts.append(chart)
+    return figure([*charts, _scale(value, bounds)], caption)
+
+
+def _places(label, words):
+    return Axis(label, -0.5, len(words) - 0.5, ticks=tuple(enumerate(words)))
+
+
+def _scale(value, bounds):
+    """The shades with the bounds between them."""
+    ticks = tuple((k + 0.5, value.words(bound)) for k, bound in enumerate(bounds))
+    scale = Chart(
+        Axis(value.head, -0.5, len(bounds) + 0.5, ticks=ticks), Axis("", -0.5, 0.5, ticks=()),
+        f"Scale of the shades: {value.head}.", height=100, title="scale",
+    )  # fmt: skip
+    for k in range(len(bounds) + 1):
+        scale.cell(k, 0, f"shade s{k}", "", "")
+    return scale

@@ -1,0 +1,106 @@
+"""From a study's rows to tables: choose rows, group them, say once what a column is.
+
+    default = where(result.rows, part="summary", scope="all")
+    table("Restitution", default, NAME, Column("error, rms [-]", "rms"), Column("failed", "{failed} of {runs}"))
+
+The same `Column` is an axis of a figure (`comparisons.showing.figures`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from .parts import Table, number, percent, short
+
+Row = Mapping[str, Any]
+Key = str | Callable[[Row], Any]
+
+
+def where(rows: Iterable[Row], **wanted: Any) -> list[Any]:
+    """The rows with these values, in order; a set means any of its members. A row without the column is not chosen.
+
+    >>> where([{"part": "a", "x": 1}, {"part": "b"}, {"part": "a", "x": 2}], part="a", x={2, 3})
+    [{'part': 'a', 'x': 2}]
+    """
+
+    def chosen(row, key, value):
+        return key in row and (row[key] in value if isinstance(value, set | frozenset) else row[key] == value)
+
+    return [row for row in rows if all(chosen(row, key, value) for key, value in wanted.items())]
+
+
+def grouped(rows: Iterable[Row], *keys: Key) -> dict[tuple[Any, ...], list[Any]]:
+    """{values of the keys: their rows}, in the order in which they come; a key is a column or a function of a row.
+
+    >>> grouped([{"x": 2, "y": 1}, {"x": 1, "y": 2}, {"x": 2, "y": 3}], "x")
+    {(2,): [{'x': 2, 'y': 1}, {'x': 2, 'y': 3}], (1,): [{'x': 1, 'y': 2}]}
+    """
+    groups: dict[tuple[Any, ...], list[Any]] = {}
+    for row in rows:
+        groups.setdefault(tuple(value_of(row, key) for key in keys), []).append(row)
+    return groups
+
+
+def value_of(row: Row, key: Key) -> Any:
+    """What a function makes of a row, or its value in the column of that name.
+
+    Raises
+    ------
+    KeyError
+        The row has no such column.
+    """
+    return key(row) if callable(key) else row[key]
+
+
+@dataclass(frozen=True)
+class Column:
+    """One quantity of rows, as a column of a table or as an axis.
+
+    Parameters
+    ----------
+    head : str
+        With its unit: "error, rms [-]".
+    value : str or function
+        Name of the rows' column; a pattern of several, as "{failed} of {runs}"; or a function of a row.
+    digits : int or None
+        Significant digits of numbers that are not whole; None: those of a number that was chosen, as 0.3.
+    percent : bool
+        A fraction, written in per cent.
+    """
+
+    head: str
+    value: Key
+    digits: int | None = 2
+    percent: bool = False
+
+    def of(self, row: Row) -> Any:
+        """The value itself, what `text` writes; of a pattern the text."""
+        if isinstance(self.value, str) and "{" in self.value:
+            return self.value.format_map({key: self.words(value) for key, value in row.items()})
+        return value_of(row, self.value)
+
+    def text(self, row: Row) -> str:
+        """The cell of a row: text as it is, whole numbers as they are, others to `digits`, a dash for None."""
+        return self.words(self.of(row))
+
+    def words(self, value: Any) -> str:
+        """A value of this column as its cells have it."""
+        if isinstance(value, str):
+            return value
+        if isinstance(value, list | tuple):
+            return ", ".join(map(self.words, value)) or "–"
+        if self.digits is None or isinstance(value, int):
+            return short(value) if self.digits is None else str(value)
+        return percent(value, self.digits) if self.percent else number(value, self.digits)
+
+
+NAME = Column("engine, variant", "{engine}, {variant}")
+
+
+def table(caption: str, rows: Iterable[Row], *columns: Column) -> Table:
+    """The `Table` of these rows; the first column names them."""
+    return Table(
+        caption, tuple(column.head for column in columns), [[column.text(row) for column in columns] for row in rows]
+    )

@@ -1,0 +1,191 @@
+"""Figures from rows: every row is drawn where it belongs, series are told apart, numbers stand in their cells."""
+
+import json
+import math
+import re
+from xml.etree import ElementTree
+
+import pytest
+
+from comparisons.showing.charts import INK, NEAR, STYLE
+from comparisons.showing.figures import MOVED, beside, lines, shades
+from comparisons.showing.rows import NAME, Column
+from engines import ENGINES
+
+X, Y = Column("slenderness γ [rad]", "x", digits=None), Column("error [-]", "y")
+FIRST, SECOND = list(ENGINES)[:2]
+
+
+def row(engine, variant, x, y, ground="rigid"):
+    return {"engine": engine, "variant": variant, "x": x, "y": y, "ground": ground}
+
+
+ROWS = [
+    row(FIRST, "fine", 0.1, 1e-5),
+    row(FIRST, "fine", 0.2, 1e-4),
+    row(FIRST, "coarse", 0.1, 1e-2),
+    row(FIRST, "coarse", 0.2, None),
+    row(SECOND, "fine", 0.2, 1e-3, "sliding"),
+    row(SECOND, "fine", 0.3, 0.0, "sliding"),
+]
+
+
+def panels(figure):
+    return list(ElementTree.fromstring(f"<all>{figure.svg.decode()}</all>"))
+
+
+def groups(panel):
+    """{series: (its lines, its marks)} of a panel, those in the margin aside."""
+    found = {}
+    for group in panel.iter("g"):
+        if group.get("data-who") and not list(group.iter("text")):
+            kinds = [part.get("class") for part in group.iter("path")]
+            lines, marks = found.get(group.get("data-who"), (0, 0))
+            found[group.get("data-who")] = lines + kinds.count("line"), marks + sum("dot" in kind for kind in kinds)
+    return found
+
+
+def test_each_panel_holds_its_series_and_every_row_that_can_be_drawn():
+    made = lines(ROWS, X, Y, "Errors.", panel="ground", log="y")
+    rigid, sliding = panels(made)
+    assert groups(rigid) == {f"{FIRST}, fine": (1, 2), f"{FIRST}, coarse": (1, 1)}
+    assert groups(sliding) == {f"{SECOND}, fine": (1, 1)}  # nothing at 0 on a logarithmic axis
+    assert json.loads(rigid.get("data-read")) == json.loads(sliding.get("data-read"))  # one pair of axes
+    assert made.solvers == (f"{FIRST}, fine", f"{FIRST}, coarse", f"{SECOND}, fine") and set(made.keys) == set(
+        made.solvers
+    )
+    assert lines([ROWS[3]], X, Y, "Errors.") is None
+
+
+def test_a_mark_stands_where_its_values_are_and_tells_them():
+    (panel,) = panels(lines(ROWS[:2], X, Y, "Errors.", log="y"))
+    read = json.loads(panel.get("data-read"))
+    for mark, one in zip((part for part in panel.iter("path") if part.get("data-says")), ROWS, strict=False):
+        x, y = map(float, re.findall(r"[\d.]+", mark.get("transform"))[:2])
+        share = [(x - read["x"]["at"][0]), (y - read["y"]["at"][0])]
+        share = [part / (read[key]["at"][1] - read[key]["at"][0]) for part, key in zip(share, "xy", strict=True)]
+        assert read["x"]["low"] + share[0] * (read["x"]["high"] - read["x"]["low"]) == pytest.approx(one["x"], abs=1e-3)
+        assert math.log10(read["y"]["low"] * (read["y"]["high"] / read["y"]["low"]) ** share[1]) == pytest.approx(
+            math.log10(one["y"]), abs=0.01
+        )
+        assert mark.get("data-says") == f"{FIRST}, fine: {Y.text(one)} at {one['x']:g}"
+
+
+def test_variants_of_an_engine_share_its_colour_and_differ_in_their_marks():
+    made = lines(ROWS, X, Y, "Errors.", log="y")
+    fine, coarse = (made.keys[f"{FIRST}, {variant}"] for variant in ("fine", "coarse"))
+    assert ENGINES[FIRST].colour in fine and ENGINES[FIRST].colour in coarse
+    assert 'class="dot"' in fine and 'class="dot open"' in coarse
+    many = [row(FIRST, f"variant {k}", 0.1, 10.0**-k) for k in range(4)]
+    marks = {
+        re.sub(r".*?<path class=\"(dot[^>]*)>.*", r"\1", str(key))
+        for key in lines(many, X, Y, "", log="y").keys.values()
+    }
+    assert len(marks) == 4
+
+
+def test_grey_series_stand_behind_and_are_in_no_legend():
+    made = lines(ROWS, X, Y, "Errors.", grey=lambda one: one["variant"] == "coarse", log="y")
+    assert made.solvers == (f"{FIRST}, fine", f"{SECOND}, fine")
+    (panel,) = panels(made)
+    whole = ElementTree.tostring(panel, encoding="unicode")
+    assert whole.index("--faint") < whole.index(ENGINES[FIRST].colour) and f"{FIRST}, coarse" in whole
+    # with one coloured series an engine, each is named where it ends
+    assert {FIRST, SECOND} <= {text.text for text in panel.iter("text")}
+
+
+def test_marks_that_would_cover_each_other_stand_side_by_side():
+    same = [row(FIRST, f"variant {k}", 0.2, 1e-3) for k in range(4)]
+    made = lines(same, X, Y, "Errors.", log="y")
+    (panel,) = panels(made)
+    found = [part.get("transform") for part in panel.iter("path") if (part.get("class") or "").startswith("dot")]
+    places = sorted(float(re.search(r"translate\(([\d.]+)", one)[1]) for one in found)
+    assert len(places) == 4 and min(b - a for a, b in zip(places, places[1:], strict=False)) >= NEAR
+    assert made.caption.endswith(MOVED) and not lines(same[:1], X, Y, "Errors.", log="y").caption.endswith(MOVED)
+
+
+def test_rules_are_named_outside_the_plot():
+    made = lines(ROWS, X, Y, "Errors.", log="y", rules=[("y", 1e-3, "trusted"), ("x", 0.15, "needed")])
+    (panel,) = panels(made)
+    (inside,) = panel.findall("svg")
+    left, top, width, _ = (float(inside.get(key)) for key in ("x", "y", "width", "height"))
+    words = {text.text: text for text in panel.iter("text") if text.text in ("trusted", "needed")}
+    assert float(words["trusted"].get("x")) > left + width and float(words["needed"].get("y")) < top
+    assert len([part for part in inside.iter("path") if part.get("class") == "rule"]) == 2
+
+
+def test_the_model_is_a_line_without_marks():
+    (panel,) = panels(lines([row("analytic", "damped", 0.1, 1.0), row("analytic", "damped", 0.2, 2.0)], X, Y, ""))
+    assert groups(panel) == {"analytic, damped": (1, 0)}
+
+
+def test_figures_beside_each_other_share_legend_and_caption():
+    one, two = lines(ROWS[:2], X, Y, "One."), lines(ROWS, X, Y, "Two.", panel="ground")
+    both = beside(one, None, two)
+    assert len(panels(both)) == 3 and both.caption == "One. Two." and both.wide
+    assert both.solvers == two.solvers and beside(None) is None
+
+
+CELLS = [
+    {"engine": "one", "variant": "fine", "ratio": ratio, "gamma": gamma, "rms": rms, "failed": failed}
+    for ratio, gamma, rms, failed in (
+        (10.0, 0.1, 2e-5, 0),
+        (10.0, 0.2, 3e-3, 0),
+        (0.5, 0.1, 0.4, 1),
+        (0.5, 0.2, None, 4),
+    )
+]
+RATIO, GAMMA = Column("base over block mass [-]", "ratio", digits=None), Column("γ [rad]", "gamma", digits=None)
+
+
+def test_cells_hold_their_numbers_shades_and_failures():
+    made = shades(
+        CELLS,
+        RATIO,
+        GAMMA,
+        Column("rms [-]", "rms", digits=1),
+        "Map.",
+        bounds=(1e-4, 1e-2),
+        panel=NAME.of,
+        failed=lambda one: f"{one['failed']}/4" if one["failed"] else "",
+    )
+    cells, scale = panels(made)
+    signs = [text.text for text in cells.iter("text") if "sign" in text.get("class", "")]
+    assert signs == ["2·10⁻⁵", "0.003", "✗ 1/4", "✗ 4/4"]
+    assert [part.get("class") for part in cells.iter("rect")] == ["shade s0", "shade s1", "shade s2 lost", "shade lost"]
+    told = [part.get("data-says") for part in cells.iter("rect")]
+    assert told[2] == "0.1, 0.5: 0.4; failed: 1/4" and told[3] == "0.2, 0.5: –; failed: 4/4"
+    corners = [(float(part.get("x")), float(part.get("y"))) for part in cells.iter("rect")]
+    assert corners[0][0] == corners[1][0] < corners[2][0] and corners[1][1] < corners[0][1] == corners[2][1]
+    assert [part.get("class") for part in scale.iter("rect")] == ["shade s0", "shade s1", "shade s2"]
+    assert {"1·10⁻⁴", "0.01"} <= {text.text for text in scale.iter("text")}
+    assert shades([], RATIO, GAMMA, Column("rms [-]", "rms"), "Map.", bounds=(1.0,)) is None
+
+
+def luminance(colour):
+    parts = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
+    parts = [part / 12.92 if part <= 0.03928 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+    return 0.2126 * parts[0] + 0.7152 * parts[1] + 0.0722 * parts[2]
+
+
+def contrast(one, other):
+    low, high = sorted((luminance(one), luminance(other)))
+    return (high + 0.05) / (low + 0.05)
+
+
+def mixed(colour, ink):
+    """What a browser makes of the share of ink in a colour."""
+    parts = [(int(colour[k : k + 2], 16) * (100 - INK) + int(ink[k : k + 2], 16) * INK) / 100 for k in (1, 3, 5)]
+    return "#" + "".join(f"{round(part):02x}" for part in parts)
+
+
+@pytest.mark.parametrize("scheme", [0, 1], ids=["light", "dark"])
+def test_lines_and_shades_can_be_told_from_the_page(scheme):
+    style = STYLE.read_text(encoding="utf-8")
+    known = [dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6})", part)) for part in style.split("@media")[:2]]
+    colours = known[0] | known[scheme]
+    for engine in ENGINES.values():
+        assert contrast(mixed(engine.colour, colours["ink"]), colours["paper"]) >= 3, engine.name
+    assert contrast(colours["faint"], colours["paper"]) >= 3
+    for shade in range(6):
+        assert contrast(colours["ink"], colours[f"s{shade}"]) >= 4.5

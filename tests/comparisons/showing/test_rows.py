@@ -1,0 +1,77 @@
+"""Rows: chosen, grouped, and written as cells; a page says once what the report and the study's own page show."""
+
+import doctest
+
+import pytest
+from page_numbers import number_in
+
+from comparisons.showing import rows as module
+from comparisons.showing.parts import Figure, Head, Page, short
+from comparisons.showing.rows import NAME, Column, grouped, table, where
+
+ROWS = [
+    {"part": "cell", "engine": "one", "variant": "fine", "ratio": None, "rms": 1.234e-5, "failed": 0, "runs": 4},
+    {"part": "cell", "engine": "two", "variant": "fine", "ratio": 0.5, "rms": None, "failed": 4, "runs": 4},
+    {"part": "order", "engine": "one", "variant": "fine", "order": 2.0},
+    {"part": "cell", "engine": "one", "variant": "coarse", "ratio": 0.5, "rms": 0.25, "failed": 1, "runs": 4},
+]
+
+
+def test_the_examples():
+    found = doctest.testmod(module)
+    assert found.attempted and not found.failed
+
+
+def test_a_row_without_the_column_is_chosen_for_no_value():
+    assert where(ROWS, ratio=None) == ROWS[:1]
+    assert where(ROWS, part="cell", ratio={None, 0.5}, engine="one") == [ROWS[0], ROWS[3]]
+    assert where(ROWS, part="none") == [] and where(ROWS) == ROWS
+
+
+def test_groups_keep_the_order_of_rows_and_of_keys():
+    groups = grouped(ROWS, "engine", lambda row: row["part"])
+    assert list(groups) == [("one", "cell"), ("two", "cell"), ("one", "order")]
+    assert groups["one", "cell"] == [ROWS[0], ROWS[3]]
+    with pytest.raises(KeyError, match="rms"):
+        grouped(ROWS, "rms")
+
+
+@pytest.mark.parametrize(
+    "column, cells",
+    [
+        (Column("rms", "rms"), ["1.2·10⁻⁵", "–", "0.25"]),
+        (Column("rms", "rms", digits=3), ["1.23·10⁻⁵", "–", "0.250"]),
+        (Column("rms", "rms", digits=None), ["1.23·10⁻⁵", "–", "0.25"]),
+        (Column("share", lambda row: row["failed"] / row["runs"], percent=True), ["0 %", "100 %", "25 %"]),
+        (Column("failed", "{failed} of {runs}"), ["0 of 4", "4 of 4", "1 of 4"]),
+        (Column("both", lambda row: [row["runs"], row["rms"]]), ["4, 1.2·10⁻⁵", "4, –", "4, 0.25"]),
+        (NAME, ["one, fine", "two, fine", "one, coarse"]),
+    ],
+)
+def test_cells(column, cells):
+    assert [column.text(row) for row in where(ROWS, part="cell")] == cells
+
+
+def test_a_table_names_its_rows_first_and_asks_for_its_columns():
+    made = table("Errors", where(ROWS, part="cell"), NAME, Column("error [-]", "rms"))
+    assert made.columns == ("engine, variant", "error [-]") and made.rows[0] == ["one, fine", "1.2·10⁻⁵"]
+    assert number_in(made.rows[2][1]) == 0.25
+    with pytest.raises(KeyError, match="rms"):
+        table("Errors", ROWS, Column("error [-]", "rms"))
+
+
+@pytest.mark.parametrize("value, words", [(10.0, "10"), (0.3, "0.3"), (2e11, "2·10¹¹"), (1e-4, "1·10⁻⁴"), (100, "100")])
+def test_chosen_numbers_are_as_short_as_they_are(value, words):
+    assert short(value) == words
+
+
+def test_a_page_opens_the_report_and_leaves_out_what_is_not_there():
+    figure, tables = Figure(b"<svg/>", "A line.", "Look."), [table(str(k), ROWS, NAME) for k in range(2)]
+    empty = table("None", [], NAME)
+    more = (Head("More"), "Words.", tables[1], None, empty)
+    page = Page("Subject: found", ("Lead.",), (figure, tables[0]), more, ("How.",), (("reason", "message"),))
+    opening, whole = page.opening(), page.whole()
+    assert opening.shown == (figure, tables[0]) and opening.evidence == () and opening.measured == ("How.",)
+    assert whole.shown == (figure, tables[0], Head("More"), "Words.", tables[1])
+    assert whole.tables == tuple(tables) and whole.figures == (figure,) and whole.evidence == (("reason", "message"),)
+    assert Page("Subject: found", ("Lead.",), more=more).opening() is None
