@@ -29,6 +29,7 @@ BUILT_IN = (
     "speed-error",
     "stability",
     "random-scenes",
+    "kernel",
     "caryatid",
     "tolerances",
     "sheet",
