@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from analytic import Scene
 from analytic.problems import problem_a, problem_b
@@ -47,39 +48,21 @@ class Problem:
         return abs(abs(tilt) - self.reference) / self.gamma
 
 
-def _problem(
-    scene: Scene, horizon: float, rest: float, impacts: int, reference: float, begin: float, side: float
-) -> Problem:
-    """rest: rest_rate over omega_r."""
+def _problem(scene: Scene, rest: float, **known: Any) -> Problem:
+    """rest: rest_rate over omega_r; known: what the scene does not say."""
     model, omega, pulse = RockingModel.of(scene), scene.rocking_frequency, scene.motion
-    forced = (pulse.amplitude / scene.gravity, pulse.frequency, pulse.end) if pulse else (0.0, 0.0, 0.0)
-    a, frequency, pulse_end = forced
+    if pulse is None:
+        a, frequency, pulse_end, begin, side = 0.0, 0.0, 0.0, 0.0, math.copysign(1.0, scene.start.tilt)
+    else:  # it lifts where the pulse first reaches g tan(gamma), to the left
+        a, frequency, pulse_end, side = pulse.amplitude / scene.gravity, pulse.frequency, pulse.end, -1.0
+        begin = math.asin(1 / (pulse.amplitude / (scene.gravity * math.tan(scene.block.slenderness)))) / frequency
     return Problem(
-        scene,
-        horizon,
-        rest * omega,
-        impacts,
-        reference,
-        omega**2,
-        model.gamma,
-        model.restitution,
-        a,
-        frequency,
-        begin,
-        scene.start.tilt,
-        side,
-        pulse_end,
-    )
+        scene=scene, rest_rate=rest * omega, p2=omega**2, gamma=model.gamma, restitution=model.restitution, a=a,
+        frequency=frequency, begin=begin, tilt=scene.start.tilt, side=side, pulse_end=pulse_end, **known,
+    )  # fmt: skip
 
 
-def _problems():
-    a, b = problem_a(duration=7.0), problem_b(duration=9.2)
-    ratio = b.motion.amplitude / (b.gravity * math.tan(b.block.slenderness))
-    lifts = math.asin(1 / ratio) / b.motion.frequency  # s, to the left
-    return (
-        _problem(a, 7.0, REST_RATE, 10, 0.01588089793859602683756374, 0.0, math.copysign(1.0, a.start.tilt)),
-        _problem(b, 6.0, 1e-4, 81, 0.01186179747282689895957273, lifts, -1.0),
-    )
-
-
-PROBLEMS = {problem.scene.name: problem for problem in _problems()}
+A = dict(horizon=7.0, impacts=10, reference=0.01588089793859602683756374)
+B = dict(horizon=6.0, impacts=81, reference=0.01186179747282689895957273)
+SOLVED = _problem(problem_a(duration=7.0), REST_RATE, **A), _problem(problem_b(duration=9.2), 1e-4, **B)
+PROBLEMS = {problem.scene.name: problem for problem in SOLVED}
