@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from .scene import Scene
     from .types import Motion
 
-# Chosen by measurement (`rocking bench analytic`): where CPU against error is least.
+# Chosen by measurement (`rocking study kernel`): where CPU against error is least.
 ORDER = 18  # free flight and pulses: long steps
 TOLERANCE = 1e-11
 # Impacts are followed down to this fraction of omega_r, then summed to their limit; see kernel.remaining_hops.

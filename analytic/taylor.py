@@ -12,7 +12,7 @@ from numba import njit
 from .laws import NUMBERS, chosen_term
 from .polynomial import INVERSE
 
-# Order of the series between the samples of a record, where steps end anyway (`rocking bench analytic`).
+# Order of the series between the samples of a record, where steps end anyway (`rocking study kernel`).
 SHORT_ORDER = 8
 
 # A damped motion decays until its numbers have no digits left; below this size [rad, m, ...] it sets no step.

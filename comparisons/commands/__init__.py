@@ -9,6 +9,6 @@ GROUPS = {
     "To read and learn": ("report", "lessons"),
     "For advice on a scene": ("choose", "margin", "design"),
     "For makers of engines and codes": ("verify", "sheet", "score"),
-    "For research": ("study", "bench"),
+    "For research": ("study",),
     "Input": ("record", "new"),
 }

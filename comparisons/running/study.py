@@ -36,7 +36,7 @@ from .sweep import Row, run_sweep
 
 RUNS = "runs.jsonl"  # rows of single runs, beside the result
 TIME_LIMIT = 300.0  # s, of one run
-SHOWN = 30  # runs from which on a batch shows its progress; a bisection has many small ones
+SHOWN = 30  # runs from which on a batch shows its progress; a bisection has many small ones, what is timed takes long
 
 
 @dataclass(frozen=True)
@@ -228,7 +228,7 @@ def _packages(study):
 
 
 def _run(batch, store, pool, progress):
-    shown = progress and len(batch.cases) >= SHOWN
+    shown = progress and len(batch.cases) >= (2 if batch.alone else SHOWN)
     options = dict(store=store, measure=batch.measure, time_limit=batch.time_limit, progress=shown, label=batch.label)
     if not batch.alone:
         return run_sweep(batch.cases, executor=pool, **options)

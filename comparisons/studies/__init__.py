@@ -56,6 +56,7 @@ BUILT_IN = (
     "speed-error",
     "stability",
     "random-scenes",
+    "kernel",
     "caryatid",
     "tolerances",
     "sheet",

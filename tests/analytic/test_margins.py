@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from random_scenes import random_scene
 
 from analytic import Block, PulseMotion, Scene, SettingError, Start, load_scene, simulate
 from analytic.margins import (
@@ -21,7 +22,6 @@ from analytic.margins import (
     limit_states,
     margins,
 )
-from comparisons.bench.random_scenes import random_scene
 from comparisons.studies.stability.cases import BLOCK, GAP, THRESHOLD
 
 G = 9.81

@@ -17,7 +17,7 @@ from comparisons.studies import BUILT_IN
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(1400), pytest.mark.xdist_group("new engine")]
 # Studies that answer in several files
 STEMS = {"caryatid": ("caryatid-paper", "caryatid-under-synthetic", "caryatid-under-synthetic-histories")}
-WITHOUT = ("caryatid-paper",)  # what needs no run at all
+WITHOUT = ("caryatid-paper", "kernel")  # what runs no engine
 SILENT = ("equations",)  # sections of the first page that need no run
 
 

@@ -8,7 +8,7 @@ from .summary import plan
 
 STUDY = Study(
     "speed-error",
-    "Error and CPU time of the same runs: kernel, scipy, time stepping, Bouc-Wen, engines and variants, peers.",
+    "Error and CPU time of the same runs: kernel, scipy, time stepping, Bouc-Wen, engines and variants.",
     plan,
     figures,
     section,

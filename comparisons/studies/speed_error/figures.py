@@ -18,7 +18,7 @@ from .tables import growths, ladder, principal
 
 # Okabe and Ito: kind of solver by colour, member of it by marker.
 COLOURS = {"kernel": "#000000", "scipy": "#56B4E9", "time-stepping": "#777777"}
-PEER_COLOUR = "#D55E00"
+OTHER_COLOUR = "#D55E00"
 MARKERS = "osD^vPX*"
 COSTS = {
     "cpu": ("CPU time of one run [s]", "cpu_seconds"),
@@ -89,7 +89,7 @@ def _looks(families):
             styles[family] = {**styles[base], "linestyle": (0, (3, 2)), "markersize": 4}
             continue
         kind = family.replace(",", "").split()[0]
-        colour = ENGINES[kind].colour if kind in ENGINES else COLOURS.get(kind, PEER_COLOUR)
+        colour = ENGINES[kind].colour if kind in ENGINES else COLOURS.get(kind, OTHER_COLOUR)
         number = counts[colour] = counts.get(colour, -1) + 1
         styles[family] = {
             "color": colour,

@@ -148,5 +148,5 @@ def _how(result):
     return (
         f"{s['rounds']} fresh processes one after the other, in each every solver has its turn after a warm-up; "
         "medians of the CPU time of the simulation alone: no import, compilation or building of the scene. Other "
-        "scenes, orders, growth with duration and the peers are on the study's page."
+        "scenes, orders and growth with duration are on the study's page."
     )

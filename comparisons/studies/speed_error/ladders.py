@@ -9,16 +9,14 @@ from typing import TYPE_CHECKING
 
 from engines import get_engine
 
-from ...bench import peers
 from ...measuring import models
 from ...running.cases import Case
 from .scenes import Trial
-from .timing import PEER
 
 if TYPE_CHECKING:
     from analytic import Scene
 
-TRANSPARENT = ("free-rigid", "near-overturning")  # scenes without base or record: what the peers are written for
+TRANSPARENT = ("free-rigid", "near-overturning")  # scenes without base or record
 SAMPLED = ("isolated-standing", "isolated-rocking")
 
 NEEDED = "as needed"
@@ -50,14 +48,12 @@ class Entry:
 
     def case(self, turn: int) -> Case:
         """The measurement of one round as a `Case`."""
-        boundary, settings = self.trial.boundary, {**self.settings, self.knob: self.value}
-        if self.solver != PEER:
-            settings["history"] = False
+        boundary = self.trial.boundary
         return Case(
             self.scene,
             self.solver,
             self.variant,
-            settings,
+            {**self.settings, self.knob: self.value, "history": False},
             {"boundary": boundary and [boundary.amplitude, boundary.slope], "round": turn},
         )
 
@@ -82,11 +78,6 @@ TWIN_SAMPLED = {
     "LSODA": (powers(-6), ()),
     "Radau": (powers(-3), ()),
 }
-PEER_LADDERS = {
-    "heyoka": (powers(-6, -9, -12, -15), powers(-9)),
-    "CyRK DOP853": (powers(-6, -9, -12, -14), powers(-9)),
-    "CVODE Adams": (powers(-6, -9, -12), powers(-9)),
-}
 TWIN_SETTINGS = {"energy": False}
 
 
@@ -102,8 +93,6 @@ def entries(trials: Sequence[Trial], engines: Sequence[str], quick: bool) -> lis
     groups = []
     for trial in trials:
         here = _analytic(trial, pick) + _engines(trial, engines, pick)
-        if trial.name in TRANSPARENT:
-            here += _peers(trial, pick)
         if trial.name in SAMPLED:
             here += _bouc_wen(trial, pick)
         groups.append(here + _extras(trial, engines, pick))
@@ -139,14 +128,6 @@ def applied_impacts(engines: Sequence[str]) -> dict[str, str]:
         for variant, kind in get_engine(name).variants.items()
         if kind.takes_restitution
     }
-
-
-def _peers(trial, pick):
-    return [
-        Entry(trial, name, PEER, "tolerance", value, settings={"name": name})
-        for name in peers.installed()
-        for value in PEER_LADDERS[name][pick]
-    ]
 
 
 def _bouc_wen(trial, pick):

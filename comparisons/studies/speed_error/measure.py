@@ -50,14 +50,12 @@ def errors(trial: Trial, values: Mapping[str, Any], shifts: Sequence[float | Non
         Relative position of the boundary against the reference's, one per run of the search. A solver without a
         boundary nearby has no error "boundary_shift".
     """
-    errors = {}
     impacts = SimpleNamespace(impacts=[Impact(**impact) for impact in values["impacts"]])
-    if values.get("knows_impacts", True):
-        errors["lost_impacts"] = _lost(impacts, trial.reference)
-        if "restitution" in trial.measures:
-            errors["restitution"] = _restitution_error(trial.scene, impacts)
-        if "impact_time" in trial.measures:
-            errors["impact_time"] = _impact_time_error(impacts, trial.reference)
+    errors = {"lost_impacts": _lost(impacts, trial.reference)}
+    if "restitution" in trial.measures:
+        errors["restitution"] = _restitution_error(trial.scene, impacts)
+    if "impact_time" in trial.measures:
+        errors["impact_time"] = _impact_time_error(impacts, trial.reference)
     gamma = trial.scene.block.slenderness
     if "peak_tilt" in trial.measures and values["peak_tilt"] is not None:
         errors["peak_tilt"] = abs(values["peak_tilt"] - trial.reference.peak_tilt) / gamma

@@ -10,7 +10,6 @@ import typer
 
 from analytic.twin import simulate_twin
 
-from ...bench.analytic_bench import peer_versions
 from ...running.study import Ask, Batch, Found, Plan
 from . import growth, timing
 from .ladders import Entry, applied_impacts, entries
@@ -72,7 +71,6 @@ def plan(
             trial.name: description(trial) | {"reference_difference": reference_difference(trial)} for trial in scenes
         },
         "laws": _laws(scenes),
-        "peers": peer_versions(),
         "applied_impacts": applied_impacts(ask.engines),
     }
     return Found(settings, rows, {"cpu_seconds": seconds})

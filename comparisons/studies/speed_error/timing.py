@@ -3,24 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
-import functools
 import math
-import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
-
-from analytic.response import Response, State
 
 from .scenes import BOUNDARY_RUNS, Boundary, at_amplitude, margin
 
 if TYPE_CHECKING:
-    from analytic import Scene
+    from analytic import Response, Scene
 
     from ...running.cases import Case
 
-PEER = "comparisons.studies.speed_error.timing:peer_response"
 TICK = 4e-3  # s of CPU: shorter measurements are repeated until they took as long, and the mean counts
 MOST_REPEATS = 200
 LONG = 0.5  # s of CPU: next to it what is loaded in a first run is nothing, and it is not run again
@@ -48,7 +41,6 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
     return {
         **response.to_json(),
         "boundary_shifts": shifts,
-        "knows_impacts": case.solver != PEER,
         "cost": {"cpu_seconds": cpu / (BOUNDARY_RUNS if goal else 1), "repeats": repeats},
     }
 
@@ -92,34 +84,3 @@ def _next(known, last):
     if below > above:  # not monotone here: stay
         return last
     return below + (above - below) * min(max(-known[below] / (known[above] - known[below]), 0.1), 0.9)
-
-
-@functools.lru_cache(maxsize=64)
-def _peer_run(name, tolerance, scene):
-    """The peer's function for a scene, compiled and run once."""
-    from ...bench.peers import RUNS
-    from ...bench.problems import Problem
-
-    unit = np.ones(1)
-    run = RUNS[name](Problem(scene.name, scene, scene.duration, 1e-8, 0, unit, unit), tolerance)
-    run()
-    return run
-
-
-def peer_response(scene: Scene, *, name: str, tolerance: float) -> Response:
-    """What a peer of the benchmark found: its end state only; it keeps no impacts and counts no steps."""
-    run = _peer_run(name, tolerance, scene)
-    begin = time.process_time()
-    state, impacts = run()
-    cpu = time.process_time() - begin
-    rate = float(state[1]) if len(state) > 1 else math.nan
-    end = State(scene.duration, float(state[0]), rate, 0.0, 0.0, 0.0)
-    return Response.unmeasured(
-        engine=name,
-        variant="",
-        outcome="rocks",
-        end=end,
-        cpu_seconds=cpu,
-        settings={"tolerance": tolerance, "impacts": impacts},
-        versions={},
-    )

@@ -40,7 +40,6 @@ EXCHANGED = {
     "a tilt and a record": (*BUST, "--tilt", "0.1", "--record", "own.csv"),
     "mass and density": (*BUST, "--density", "2700"),
     "an unknown engine": ("verify", "--engine", "nope"),
-    "an unknown engine of a bench": ("bench", "engines", "--engine", "nope"),
     "an unknown engine of a report": ("report", "rigid.toml", "--engine", "nope"),
     "two results on standard output": ("run", "rigid.toml", "--csv", "-", "--json", "-"),
     "design without a mass": ("design", "--period", "2", "--damping", "0.1", "--xmax", "0.3"),

@@ -134,7 +134,7 @@ def test_a_result_does_not_overwrite_what_is_read_nor_another_result(rocking, tm
 
 
 @pytest.mark.parametrize(
-    "command", [("report",), ("study", "fragility"), ("study", "restitution"), ("bench", "analytic")]
+    "command", [("report",), ("study", "fragility"), ("study", "restitution"), ("study", "kernel")]
 )
 def test_folders_where_nothing_can_be_written_are_refused_before_the_work(rocking, tmp_path, command):
     os.mkfifo(tmp_path / "fifo")
@@ -393,8 +393,7 @@ COMMANDS = (
     ["study"],
     ["study", "fragility", "--workers"],
     ["study", "overturning", "--output"],
-    ["bench", "analytic", "--output", "/proc/x"],
-    ["bench"],
+    ["study", "kernel", "--output"],
     [],
 )
 DESIGN = ("--period", "--damping", "--xmax", "--mass", "--count", "--ratio", "--definition")

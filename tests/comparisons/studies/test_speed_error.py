@@ -22,7 +22,7 @@ from comparisons.studies.speed_error.measure import errors
 from comparisons.studies.speed_error.page import section
 from comparisons.studies.speed_error.scenes import margin, trials
 from comparisons.studies.speed_error.tables import cost_at_error, extras, orders, ranking_stability
-from comparisons.studies.speed_error.timing import PEER, measure, searched
+from comparisons.studies.speed_error.timing import measure, searched
 from engines import get_engine
 
 
@@ -119,14 +119,6 @@ def test_error_and_cpu_time_are_of_the_same_runs(free):
     assert values["impacts"] == alone.to_json()["impacts"]
     assert values["cost"]["cpu_seconds"] > 0
     assert values["cost"]["repeats"] > 1  # a run this short is repeated
-
-
-def test_peers_give_their_end_state(free):
-    pytest.importorskip("CyRK")
-    case = Case(free.scene, PEER, None, {"name": "CyRK DOP853", "tolerance": 1e-10}, {"boundary": None})
-    found = errors(free, measure(case, case.run()))
-    assert set(found) == {"end_tilt"}
-    assert found["end_tilt"] < 1e-7
 
 
 def test_a_heavy_base_errs_by_its_mass_ratio(free):

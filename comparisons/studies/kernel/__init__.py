@@ -1,0 +1,14 @@
+"""The kernel of the analytic model against other integrators, and what it costs at its work."""
+
+from ...running.study import Study
+from .page import section
+from .study import plan
+
+STUDY = Study(
+    "kernel",
+    "The analytic model's kernel against other integrators: error and CPU time of the same runs, and throughput.",
+    plan,
+    lambda result: {},
+    section,
+    all_engines=False,
+)

@@ -1,0 +1,70 @@
+"""What is run of an ensemble of random scenes, and the class of each run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from analytic import simulate
+from analytic.response import COMPARED, UNCOMPARED
+from engines import get_engine
+from engines.statue_range import RANGE, in_words
+
+from ...running.cases import Case
+from ...running.provenance import commit_seed
+from ...running.study import Batch, Found
+from .scenes import random_scene
+
+if TYPE_CHECKING:
+    from analytic import Response
+
+    from ...running.study import Ask, Plan
+
+SCENES, QUICK_SCENES = 500, 20  # of the engines' default variants
+FEWER = 5  # other variants run one scene in so many, and at least so many
+
+Seed = Annotated[int | None, typer.Option(min=0, max=2**63, help="Of the scenes; without it of the commit.")]
+Number = Annotated[int | None, typer.Option(min=1, max=10**6, help="How many are drawn. Default 500, quick 20.")]
+
+
+def plan(ask: Ask, *, seed: Seed = None, scenes: Number = None) -> Plan:
+    """The plan of the study: scenes of an ensemble that every commit draws anew; seed: of another one."""
+    seed = commit_seed() if seed is None else seed
+    most = scenes or (QUICK_SCENES if ask.quick else SCENES)
+    drawn = [random_scene(seed, index) for index in range(most)]
+    reached = [simulate(scene, history=False).peak_tilt_ratio >= RANGE["tilt"][0] for scene in drawn]
+    cases = []
+    for name in ask.engines:
+        engine = get_engine(name)
+        for variant in engine.variants:
+            count = most if variant == engine.default_variant else min(most, max(FEWER, most // FEWER))
+            cases += [
+                Case(drawn[k], name, variant, {"history": False, "compare": True}, {"index": k})
+                for k in range(count)
+                if reached[k]
+            ]
+    rows = yield Batch(cases, compared, "random scenes")
+    found = [
+        {
+            "engine": row.case.solver,
+            "variant": row.case.variant,
+            "tier": get_engine(row.case.solver).variants[row.case.variant or ""].tier,
+            **row.case.tag,
+            **({"class": "failed", "failure": row.failure} if row.failed else row.values),
+        }
+        for row in rows
+    ]
+    settings = {"scenes": most, "below_range": reached.count(False), "range": in_words(), "quick": ask.quick}
+    return Found(settings, found, seed=seed)
+
+
+def compared(case: Case, response: Response) -> dict[str, Any]:
+    """Measure: the class of a run, and in what it differs, or why it is left out."""
+    word = "left out" if response.comparable not in (COMPARED, UNCOMPARED) else "right"
+    return {
+        "class": "differs" if response.differences and word == "right" else word,
+        "comparable": response.comparable,
+        "differences": [str(one) for one in response.differences],
+        "quantities": [one.quantity for one in response.differences],
+    }

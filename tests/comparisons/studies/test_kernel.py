@@ -1,0 +1,154 @@
+"""The kernel study: every integrator solves the problems, and error and time are of the same runs."""
+
+import math
+
+import pytest
+from answered import answered, by_runs
+
+from analytic.twin import METHODS as OFFERED
+from comparisons.running.provenance import read_result, write_result
+from comparisons.running.study import Ask
+from comparisons.studies import get_study
+from comparisons.studies.kernel import page, peers, study
+from comparisons.studies.kernel.integrators import METHODS
+from comparisons.studies.kernel.problems import PROBLEMS
+from comparisons.studies.kernel.study import KERNEL, measured, run_of
+
+SCIPY = [("DOP853", 1e-11, 1e-8), ("RK45", 1e-9, 2e-8), ("LSODA", 1e-11, 1e-8), ("Radau", 1e-6, 1e-5)]
+
+
+def solved(problem, engine, variant, tolerance):
+    """Error of an integrator that finds every impact."""
+    tilt, impacts = run_of(variant, engine, problem, tolerance)()
+    assert impacts == PROBLEMS[problem].impacts
+    return PROBLEMS[problem].error(tilt)
+
+
+@pytest.mark.parametrize("problem", PROBLEMS)
+def test_the_kernel_reaches_the_reference_with_all_impacts(problem):
+    assert solved(problem, *KERNEL, 1e-16) < 1e-13
+
+
+@pytest.mark.parametrize("problem", PROBLEMS)
+@pytest.mark.parametrize("method, rtol, most", SCIPY)
+def test_scipy_reaches_the_reference_with_all_impacts(problem, method, rtol, most):
+    assert solved(problem, "scipy", method, rtol) < most
+
+
+@pytest.mark.parametrize("problem", PROBLEMS)
+@pytest.mark.parametrize("name", peers.PEERS)
+def test_peers_reach_the_reference_with_all_impacts(problem, name):
+    pytest.importorskip(peers.PEERS[name][0], reason=f"{name[0]} comes with the extra `peers`")
+    assert name in peers.installed()
+    assert solved(problem, *name, 1e-12) < 1e-9
+
+
+def test_methods_are_those_the_twin_offers():
+    assert set(METHODS) == set(OFFERED)
+
+
+def test_an_error_is_that_of_the_size_of_the_tilt():
+    problem = PROBLEMS["problem A"]
+    for side in (-1, 1):
+        assert problem.error(side * problem.reference) == 0
+        assert problem.error(side * (problem.reference + 1e-3)) == pytest.approx(1e-3 / 0.25, rel=1e-12)
+    assert math.isnan(problem.error(math.nan))
+
+
+@pytest.fixture
+def few(monkeypatch):
+    """The study with two integrators at a setting each, that gives up when it is told to, and one work."""
+    chosen = {KERNEL: 2 * ((1e-12,),), ("scipy", "DOP853"): 2 * ((1e-11, 1e-10),)}
+    monkeypatch.setattr(study, "TOLERANCES", chosen)
+    monkeypatch.setattr(study, "WORK", {"process": study.WORK["process"]})
+    run_of.cache_clear()
+    yield
+    run_of.cache_clear()
+
+
+def found(folder, run=None):
+    """The study's `Result`, by runs in this process."""
+    answer = answered(study.plan(Ask(quick=True)), run or by_runs(folder))[-1]
+    path = folder / "kernel.json"
+    settings = {**answer.settings, "changed_while_running": []}
+    return read_result(write_result(path, "kernel", settings, answer.rows, modules=[study.__name__]))
+
+
+def test_error_and_time_are_of_the_same_runs(few):
+    case = next(case for case in study._cases(True, {}, 0) if case.settings["engine"] == "scipy")
+    called = []
+
+    def run():
+        called.append(None)
+        return PROBLEMS["problem A"].reference + 0.25 * len(called), 10
+
+    run_of.cache_clear()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(study.INTEGRATORS, ("scipy", "DOP853"), lambda *_: run)
+        values = measured(case, None)
+    assert values["error"] == pytest.approx(len(called))  # of the last timed run
+    assert values["impacts"] == 10 and values["cost"]["cpu_seconds"] > 0
+    assert len(called) > 100  # a run this short is repeated
+
+
+def test_the_study_runs_and_shows_ratios_side_by_side(few, tmp_path):
+    result = found(tmp_path)
+    rows = [row for row in result.rows if row["part"] == "work-precision"]
+    assert len(rows) == 6 and all(row["repeatable"] and not row["failure"] for row in rows)
+    assert all(row["timings"] == 3 and row["cpu_low"] <= row["cpu_seconds"] <= row["cpu_high"] for row in rows)
+    (process,) = (row for row in result.rows if row["part"] == "throughput")
+    assert process["problem"] == "process" and process["elapsed_seconds"] > process["cpu_seconds"]
+    cheapest = page.passing(rows, "problem A", 1e-9)
+    ratio = cheapest["scipy", "DOP853"]["cpu_seconds"] / cheapest[KERNEL]["cpu_seconds"]
+    assert list(cheapest) == [KERNEL, ("scipy", "DOP853")] and ratio > 20  # some 300 on a machine left alone
+    section = get_study("kernel").section(result)
+    table = section.tables[0]
+    (cell,) = (row[2] for row in table.rows if row[0] == "scipy, DOP853")
+    assert f"{page.number(ratio, 3)} ×" in cell
+    assert all(len(row) == len(one.columns) for one in section.tables for row in one.rows)
+    assert len(section.figures) == 1 and not section.evidence
+
+
+def test_an_integrator_that_gives_up_is_reported_and_not_timed(few, monkeypatch, tmp_path):
+    def gives_up(problem, tolerance):
+        raise ValueError("f(a) and f(b) must have different signs")
+
+    monkeypatch.setitem(study.INTEGRATORS, ("scipy", "DOP853"), gives_up)
+    result = found(tmp_path)
+    lost = [row for row in result.rows if row["engine"] == "scipy"]
+    assert len(lost) == 4 and all(row["failure"] and "cpu_seconds" not in row for row in lost)
+    section = get_study("kernel").section(result)
+    assert len(section.evidence) == 4 and "different signs" in section.evidence[0][1]
+    assert {row[1] for row in section.tables[0].rows if row[0] == "scipy, DOP853"} == {"–"}
+
+
+def row(tolerance, error, seconds, impacts=10, variant="DOP853"):
+    known = {"problem": "problem A", "engine": "scipy", "failure": None, "expected_impacts": 10}
+    return {
+        **known, "variant": variant, "tolerance": tolerance, "error": error, "impacts": impacts, "cpu_seconds": seconds
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "rows, chosen",
+    [
+        ([row(1e-9, 1e-12, 1.0, impacts=9), row(1e-10, 1e-12, 2.0)], 1e-10),  # a wrong count is never the cheapest
+        ([row(1e-8, 1e-12, 1.0), row(1e-9, 1e-6, 2.0), row(1e-10, 1e-12, 3.0)], 1e-10),  # nor a lucky point
+        ([row(1e-9, 1e-12, 3.0), row(1e-10, 1e-12, 2.0)], 1e-10),  # a finer one may be cheaper
+        ([row(1e-9, 1e-12, 1.0), row(1e-10, None, 2.0)], None),  # the finest is no number
+    ],
+)
+def test_the_cheapest_setting_is_one_that_no_finer_one_contradicts(rows, chosen):
+    cheapest = page.passing(rows, "problem A", 1e-9)
+    assert [one["tolerance"] for one in cheapest.values()] == ([] if chosen is None else [chosen])
+
+
+def test_a_stored_run_is_known_by_the_version_of_its_peer(monkeypatch):
+    name = next(iter(peers.PEERS))
+    keys = {
+        case.key(measured)
+        for version in ("1.0", "2.0")
+        for case in study._cases(True, {name: version}, 0)
+        if case.settings["engine"] == name[0]
+    }
+    assert len(keys) == 2 * len(PROBLEMS) * len(study.TOLERANCES[name][1])
