@@ -43,6 +43,16 @@ Scheduler = Annotated[
 EVERY = "all"
 Replot = Annotated[str | None, typer.Option(metavar="FILE", help="Run nothing, draw only, from this result file.")]
 
+Check = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        min=1,
+        help="Compute nothing new: do N of the runs stored with the result again, drawn at random, and say how many "
+        "hold; of this project's results, or with --output of those in DIR. Status 1: not all hold.",
+    ),
+]
+
 
 def _options(function):
     """The keyword-only parameters of a plan or of figures, with annotations that Typer can read."""
@@ -62,11 +72,19 @@ def command_of(study: Study) -> Callable[..., None]:
     """A function that Typer makes the study's command of."""
     drawing = {parameter.name for parameter in _options(study.figures)}
 
-    def command(quick=False, output=None, engine=None, workers=None, scheduler=None, replot=None, **options):
+    def command(
+        quick=False, output=None, engine=None, workers=None, scheduler=None, replot=None, check=None, **options
+    ):
         from ..running.files import check_folder
         from ..running.provenance import read_result
         from ..running.study import compute
 
+        if check is not None:
+            if quick or engine or scheduler or replot:
+                raise SettingError(
+                    "--check: takes a result as it is; leave --quick, --engine, --scheduler, --replot out"
+                )
+            return _check(study.name, output, check, workers)
         shown = {name: value for name, value in options.items() if name in drawing}
         folder = f"{study.name}-study" if output is None else output
         check_folder(folder)
@@ -97,6 +115,7 @@ def command_of(study: Study) -> Callable[..., None]:
         option("workers", Workers, None),
         option("scheduler", Scheduler, None),
         option("replot", Replot, None),
+        option("check", Check, None),
         *_options(study.plan),
         *_options(study.figures),
     ]
@@ -104,6 +123,20 @@ def command_of(study: Study) -> Callable[..., None]:
     command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
     command.__doc__ = f"{study.question}\n\nExample: rocking study {study.name} --quick"
     return command
+
+
+def _check(name, output, number, workers):
+    """Check the stored results of a study; status 1 if a run does not hold."""
+    from ..running.check import check_all
+    from ..running.provenance import RESULTS, commit_seed
+    from ..running.solving import stdout_to_stderr
+
+    with stdout_to_stderr():  # engines greet on standard output
+        checks = check_all(name, RESULTS if output is None else output, number, commit_seed(), workers=workers)
+    for check in checks:
+        _tell([check.words(), *(f"  does not hold: {words}" for words in check.differences)])
+    if any(check.differences for check in checks):
+        raise typer.Exit(1)
 
 
 def _tell(lines):

@@ -10,7 +10,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..running.provenance import RESULTS, ResultError, age, read_result
+from ..running.provenance import RESULTS, ResultError, age, last_check, read_result
 from ..showing.parts import Judgement, Section
 from ..studies import StudyBroken, get_study, study_names
 
@@ -51,10 +51,11 @@ def stored_studies(folder: Path = RESULTS) -> list[Stored]:
 
 
 def origin_of(result: Result) -> str:
-    """Machine, versions, date and commit, in one line."""
+    """Date, commit, machine, versions and the last check, in one line."""
     origin = result.provenance
-    packages = ", ".join(f"{name} {version}" for name, version in origin["packages"].items() if version)
-    return f"{origin['time'][:10]}, commit {commit_of(origin)}, {origin['machine']['processor']}, {packages}"
+    packages = [f"{name} {version}" for name, version in origin["packages"].items() if version]
+    first = (origin["time"][:10], f"commit {commit_of(origin)}", origin["machine"]["processor"])
+    return ", ".join((*first, *packages)) + (f"; {last}" if (last := last_check(result)) else "")
 
 
 def commit_of(origin: Mapping[str, Any]) -> str:

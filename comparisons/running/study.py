@@ -28,6 +28,7 @@ from .cluster import workers_at
 from .executors import Processes, number_of
 from .files import check_folder
 from .provenance import Result, write_result
+from .run_sample import sample_of
 from .solving import named_engines, stdout_to_stderr
 from .sources import PROJECT, digests_of_all, source_digests
 from .store import Store
@@ -160,7 +161,8 @@ def compute(
 
 def _carry_out(study, plan, folder, ask, store, pool, progress):
     """Run what the plan asks for and write what it finds; returns the paths written."""
-    written, counts, answer, ended = {}, {True: 0, False: 0}, None, False
+    done: list[tuple[Batch, Row]] = []
+    written, answer, ended = {}, None, False
     solvers, code = dict.fromkeys(("analytic", *ask.engines)), digests_of_all(_packages(study))
     while not ended:
         try:
@@ -174,16 +176,15 @@ def _carry_out(study, plan, folder, ask, store, pool, progress):
             path = folder / f"{step.name or study.name}.json"
             edited = [name for name, digest in source_digests(modules).items() if digest not in code]
             settings = {**step.settings, "changed_while_running": edited}  # its numbers are of the code before
-            written[path] = write_result(
-                path, study.name, settings, step.rows, step.arrays, modules=modules, seed=step.seed
-            )
+            origin: dict[str, Any] = dict(modules=modules, seed=step.seed, runs=sample_of(done), run_count=len(done))
+            written[path] = write_result(path, study.name, settings, step.rows, step.arrays, **origin)
             continue
         answer = _run(step, store, pool, progress)
         solvers.update(dict.fromkeys(case.solver for case in step.cases))
-        for row in answer:
-            counts[row.reused] += 1
+        done += [(step, row) for row in answer]
     if progress:
-        say(f"{counts[False]} runs done, {counts[True]} found in {folder.name}/{RUNS}")
+        found = sum(row.reused for _, row in done)
+        say(f"{len(done) - found} runs done, {found} found in {folder.name}/{RUNS}")
     return list(written)
 
 
