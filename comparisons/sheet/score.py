@@ -56,8 +56,8 @@ class FirstWrong(Part):
 
 
 class Score(Form):
-    """A file's scores. first_wrong: where the solver first goes wrong, None if nowhere. stored: where the solvers beside
-    it come from; cause: the one mistake that explains all that is wrong, if there is one."""
+    """A file's scores. first_wrong: where the solver first goes wrong, None if nowhere. stored: where the solvers
+    beside it come from; cause: the one mistake that explains all that is wrong, if there is one."""
 
     schema_: str = Field(default="rocking score 2", serialization_alias="schema")
     sheet: int = VERSION
