@@ -8,6 +8,7 @@ it and all finer ones do, everywhere, with `criteria.safety` to spare: none pass
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +21,7 @@ from engines import available_engines, get_engine
 
 from ..running.executors import Processes
 from ..running.files import TemporaryFolder
-from ..running.solving import ANALYTIC, named_engines
+from ..running.solving import ANALYTIC, named_engines, spinner
 from .answer import Choice, Level, VariantLevels
 from .criteria import CRITERIA, Measure, fitting, lifts, neighbours, safety, until
 from .search import Runner, Search, problem
@@ -82,9 +83,10 @@ def choose(
         raise SettingError(f"--error {error!r}: give a number above 0 and below 1")
     names, missing = available_engines() if engines is None else (named_engines(engines), {})
     nothing_asked = criterion is None and engines is None
-    criterion = criterion or fitting(scene)
-    family, span = _family(scene, criterion)
-    own = cpu_seconds(scene)
+    with _shown(progress, f"{scene.name}: the analytic model"):
+        criterion = criterion or fitting(scene)
+        family, span = _family(scene, criterion)
+        own = cpu_seconds(scene)
     variants: list[VariantLevels] = []
     if nothing_asked and not any(lifts(one) for one in family.values()):
         chosen: Level | None = _analytic(family)
@@ -96,6 +98,9 @@ def choose(
         chosen = next((one for one in levels if (one.engine, one.variant, one.value) == key), None)
         known = [one for one in levels if one.error is not None and not chosen]
         best = min(known, key=lambda one: one.error or 0.0, default=None)
+    found = (chosen if variants else None) or best
+    with _shown(progress, f"{scene.name}: what need not be modelled"):
+        parts = model_parts(scene, family, error, found, names, own)
     return Choice(
         scene=scene.name,
         criterion=criterion,
@@ -110,9 +115,13 @@ def choose(
         command=_command(chosen, source) if chosen else None,
         snippet=_snippet(chosen, source) if chosen else None,
         variants=variants,
-        parts=model_parts(scene, family, error, (chosen if variants else None) or best, names, own),
+        parts=parts,
         missing=missing,
     )
+
+
+def _shown(progress, words):
+    return spinner(words) if progress else nullcontext()
 
 
 def _family(scene, criterion):

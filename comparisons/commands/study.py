@@ -77,6 +77,7 @@ def command_of(study: Study) -> Callable[..., None]:
     ):
         from ..running.files import check_folder
         from ..running.provenance import read_result
+        from ..running.solving import spinner
         from ..running.study import compute
 
         if check is not None:
@@ -96,7 +97,9 @@ def command_of(study: Study) -> Callable[..., None]:
             raise SettingError("--workers: are those of --scheduler; give one of the two")
         place = dict(workers=workers, scheduler=scheduler)
         for path in compute(study, folder, engines=engine or None, quick=quick, **place, **given):
-            _tell([path, *draw(study, path, **shown)])
+            with spinner(f"{path.name}: figures"):
+                figures = draw(study, path, **shown)
+            _tell([path, *figures])
             result = read_result(path)
             for paragraph in study.section(result).text:
                 typer.echo(paragraph, err=True)
