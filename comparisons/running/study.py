@@ -29,7 +29,7 @@ from .executors import Processes, number_of
 from .files import check_folder
 from .provenance import Result, write_result
 from .run_sample import sample_of
-from .solving import named_engines, stdout_to_stderr
+from .solving import named_engines, spinner, stdout_to_stderr
 from .sources import PROJECT, digests_of_all, source_digests
 from .store import Store
 from .sweep import Row, run_sweep
@@ -154,16 +154,18 @@ def compute(
         stack.enter_context(stdout_to_stderr())  # engines greet on standard output
         store = stack.enter_context(Store(folder / RUNS))
         stack.callback(_leave_nothing_empty, folder)
-        ask = _asked(study, engines, quick)  # loads engines: after what is wrong with the place was found
+        with spinner(f"{study.name}: engines and code") if progress else contextlib.nullcontext():
+            ask = _asked(study, engines, quick)  # loads engines: after what is wrong with the place was found
+            code = digests_of_all(_packages(study))
         pool = stack.enter_context(workers_at(scheduler, workers, ("analytic", *ask.engines)))
-        return _carry_out(study, study.plan(ask, **options), folder, ask, store, pool, progress)
+        return _carry_out(study, study.plan(ask, **options), folder, ask, code, store, pool, progress)
 
 
-def _carry_out(study, plan, folder, ask, store, pool, progress):
+def _carry_out(study, plan, folder, ask, code, store, pool, progress):
     """Run what the plan asks for and write what it finds; returns the paths written."""
     done: list[tuple[Batch, Row]] = []
     written, answer, ended = {}, None, False
-    solvers, code = dict.fromkeys(("analytic", *ask.engines)), digests_of_all(_packages(study))
+    solvers = dict.fromkeys(("analytic", *ask.engines))
     while not ended:
         try:
             step = plan.send(answer)
