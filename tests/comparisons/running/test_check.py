@@ -8,6 +8,7 @@ import pytest
 
 from analytic import PulseMotion, SampledMotion, synthetic_motion
 from analytic.pairing import paired
+from comparisons.report.studies import origin_of
 from comparisons.running import check as module
 from comparisons.running import run_sample
 from comparisons.running.check import check, check_all
@@ -50,7 +51,7 @@ def test_unchanged_code_holds_and_the_result_says_when_it_was_checked(result):
     read = read_result(result)
     last = read.provenance["check"]
     assert (last["runs"], last["held"], last["seed"]) == (12, 12, 1)
-    assert "12 of 12 runs hold" in last_check(read)
+    assert "12 of 12 runs hold" in last_check(read) and last_check(read) in origin_of(read)
     read.provenance["sources"]["analytic.scene"] = "0" * 16
     assert age(read).endswith(last_check(read))
     assert check(result, 5, 2, workers=1, progress=False).runs == 5
