@@ -23,7 +23,7 @@ from .run_sample import case_of, outcome_of
 from .sweep import run_sweep
 
 RELATIVE, ABSOLUTE = 1e-9, 1e-12  # numbers this near are equal: another processor rounds otherwise
-NOT_COMPARED = ("cpu_seconds", "versions")
+NOT_COMPARED = ("cpu_seconds", "traced_bytes", "resident_bytes", "versions")  # costs, and what they were paid with
 SHOWN = 3  # differences named of a run
 
 
@@ -128,7 +128,9 @@ def _differ(run: Mapping[str, Any], now: Any) -> str | None:
     """In a sentence what a stored run has otherwise than today's; None where nothing."""
     if isinstance(now, str):
         return f"{_named(run)}: {now}"
-    found = [each for part in ("digest", "failure", "values") for each in _differences(part, run[part], now[part])]
+    if run["failure"] != now["failure"]:
+        return f"{_named(run)}: {_state(run['failure'])} when stored, now {_state(now['failure'])}"
+    found = [each for part in ("digest", "values") for each in _differences(part, run[part], now[part])]
     shown = "; ".join(f"{where}: stored {_short(then)}, now {_short(here)}" for where, then, here in found[:SHOWN])
     more = f"; and {len(found) - SHOWN} more" if len(found) > SHOWN else ""
     return f"{_named(run)}: {shown}{more}" if found else None
@@ -151,6 +153,10 @@ def _equal(stored, now):
     if type(stored) is float and isinstance(now, int | float) and type(now) is not bool:
         return math.isclose(stored, now, rel_tol=RELATIVE, abs_tol=ABSOLUTE)
     return type(stored) is type(now) and stored == now
+
+
+def _state(failure):
+    return f"{failure['kind']}: {failure['reason']}" if failure else "sound"
 
 
 def _named(run):

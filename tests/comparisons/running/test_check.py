@@ -74,12 +74,8 @@ def test_a_run_that_differs_is_named_with_both_numbers(result):
     [
         ("solver", "nosuchengine", "cannot be run any more (unknown solver 'nosuchengine'"),
         ("measure", "fake_solvers:gone", "cannot be run any more (module 'fake_solvers' has no attribute 'gone'"),
-        ("settings", {"spring": 1.0}, "failure: stored None, now {'kind': 'exception'"),
-        (
-            "failure",
-            {"kind": "crash", "reason": "killed"},
-            "failure: stored {'kind': 'crash', 'reason': 'killed'}, now",
-        ),
+        ("settings", {"spring": 1.0}, "sound when stored, now exception: TypeError"),
+        ("failure", {"kind": "crash", "reason": "killed"}, "crash: killed when stored, now sound"),
         ("digest", "0", "digest: stored 0, now"),
     ],
 )
@@ -167,7 +163,7 @@ def test_few_long_motions_and_few_runs_are_stored():
         (0.0, 0, []),
         ([1, 2], [1], ["x[1]"]),
         ({"a": {"b": 1}}, {"a": {"b": 2}}, ["x.a.b"]),
-        ({"cpu_seconds": 1.0}, {"cpu_seconds": 2.0}, []),
+        ({"cpu_seconds": 1.0, "resident_bytes": 1}, {"cpu_seconds": 2.0, "resident_bytes": 2}, []),
         (None, 0.0, ["x"]),
     ],
 )
