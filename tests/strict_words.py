@@ -1,5 +1,6 @@
 """Numbers and units for the second reader of records (`strict_records`), which says what it is for."""
 
+import unicodedata
 from fractions import Fraction
 
 G = Fraction("9.81")
@@ -24,7 +25,18 @@ TIME_WORDS = {
     "millisecond": 1000,
     "milliseconds": 1000,
 }
-GIVEN = {"g": G, "m/s2": Fraction(1), "cm/s2": Fraction(1, 100)}
+TIME_WORDS |= dict.fromkeys("seg segundo segundos sek sekunde sekunden seconde secondes sn saniye".split(), 1)
+TIME_WORDS |= dict.fromkeys(
+    "milisegundo milisegundos millisekunde millisekunden milliseconde millisecondes milisaniye".split(), 1000
+)
+GIVEN = {
+    "g": G,
+    "m/s2": Fraction(1),
+    "cm/s2": Fraction(1, 100),
+    "gal": Fraction(1, 100),
+    "mm/s2": Fraction(1, 1000),
+    "%g": G / 100,
+}
 DIGITS, LETTERS = "0123456789", "abcdefghijklmnopqrstuvwxyz"
 QUANTITIES = {
     "acc": "acceleration",
@@ -37,6 +49,14 @@ QUANTITIES = {
     "displacement": "other",
     "disp": "other",
 }
+ACCELERATIONS = "pga aceleracion aceleraciones beschleunigung beschleunigungen ivme".split()
+QUANTITIES |= dict.fromkeys(ACCELERATIONS, "acceleration")
+QUANTITIES |= dict.fromkeys(
+    "velocidad velocidades desplazamiento desplazamientos geschwindigkeit geschwindigkeiten verschiebung"
+    " verschiebungen vitesse vitesses deplacement deplacements".split(),
+    "other",
+)
+UNIT_WORDS = ("unit", "units", "unites", "unidad", "unidades", "einheit", "einheiten", "birim", "birimi")
 
 
 class Refused(Exception):
@@ -92,34 +112,43 @@ def single(token):
     return found[0]
 
 
+def form_of(token):
+    """None of a number without a point, else (decimals, digits of the exponent, several digits before the point)."""
+    found = scan(token, 0)
+    if found[1] is None:
+        return None
+    before = token.lstrip("+-").partition(".")[0]
+    return found[1], found[2], found[2] > 0 and len(before) > 1
+
+
 def fortran(lines):
-    """The values of all lines: parted by blanks, or stuck together by their signs in one format."""
-    values, exponents = [], []
-    for at, line in enumerate(lines):
+    """The values of all lines, of one form: parted by blanks, or stuck together by their signs."""
+    values, parts = [], []
+    for line in lines:
         for token in line.split():
-            i, forms = 0, []
+            i = 0
             while i < len(token):
                 if i and token[i] not in "+-":
                     raise Refused(f"stuck {token[:40]}")
                 found = scan(token, i)
-                if found is None:
+                if found is None or (i and found[1] is None):
                     raise Refused(f"number {token[:40]}")
                 values.append(found[0])
-                forms.append(found[1:3])
-                if found[2]:
-                    digits = token[i : found[3]].lower().replace("d", "e").split("e")[1].lstrip("+-")
-                    exponents.append((at, digits))
+                parts.append(token[i : found[3]])
                 i = found[3]
-            if len(forms) > 1 and (len(set(forms)) > 1 or forms[0][0] is None):
-                raise Refused(f"stuck {token[:40]}")
-    long = [(at, digits) for at, digits in exponents if len(digits) == 3]
-    if long and len(long) < len(exponents):
-        widths = [len(line.rstrip()) for line in lines if line.strip()]
-        for at, digits in long:
-            most = max(widths.count(width) for width in widths)
-            usual = next(width for width in widths if widths.count(width) == most)
-            if digits[0] == "0" or len(lines[at].rstrip()) != usual:
-                raise Refused("exponent of three digits")
+    forms = [form_of(part) for part in parts]
+    counts = {}
+    for form in forms:
+        counts[form] = counts.get(form, 0) + 1
+    usual = next((form for form in counts if counts[form] == max(counts.values())), None)
+    for part, form in zip(parts, forms, strict=True):
+        exponent = part.lower().replace("d", "e").partition("e")[2]
+        small = exponent[:1] == "-" and exponent[1:2] != "0"
+        if form != usual and not (form and usual and usual[1] == 2 and form == (usual[0], 3, usual[2]) and small):
+            raise Refused(f"form of {part}")
+    lengths = [len(line.rstrip()) for line in lines if line.strip()][:-1]
+    if len(set(lengths)) == 2 and len(lengths) > 2 and 1 in [lengths.count(length) for length in lengths]:
+        raise Refused("length of a line")
     return values
 
 
@@ -205,6 +234,24 @@ def ends_of(word):
     return word
 
 
+def plain(text):
+    """The text in lower case, without accents."""
+    return "".join(unicodedata.normalize("NFD", sign.lower()[:1])[:1] for sign in text).replace("ı", "i")
+
+
+def introduces(word):
+    return plain(stem_of(word)).endswith(UNIT_WORDS)
+
+
+def _bracketed(words, i):
+    """Factor of a unit that is said twice, as gal(cm/s/s); None of another."""
+    bare = ends_of(words[i])
+    inside = words[i + 2 : i + 4]
+    if bare in KNOWN and len(inside) == 2 and inside[1] in (")", "]") and KNOWN.get(ends_of(inside[0])) == KNOWN[bare]:
+        return KNOWN[bare]
+    return None
+
+
 def unit_of(lines, titles):
     """Factor of the unit that header lines state, None without one; `titles` is the index of the titles' line."""
     factors, quantities = set(), set()
@@ -212,8 +259,9 @@ def unit_of(lines, titles):
         flat = " ".join(line[:400].replace('"', " ").split())
         for sign in ("/", "^", "**"):
             flat = flat.replace(f" {sign}", sign).replace(f"{sign} ", sign)
+        flat = flat.lower().replace("unidades de los datos", "unidades")
         words = words_of(flat)
-        parts = "".join(sign if sign in LETTERS else " " for sign in line[:400].lower()).split()
+        parts = "".join(sign if sign in LETTERS else " " for sign in plain(line[:400])).split()
         named = {QUANTITIES[part] for part in parts if part in QUANTITIES}
         quantities |= named
         for i, word in enumerate(words):
@@ -223,22 +271,19 @@ def unit_of(lines, titles):
                 before = before[:-1]
             if before and before[-1] in ("of", "in", "is", "are"):
                 stated = before[-1] == "in" and (named or index == titles)
-                before = before[:-1] if before[:-1] and stem_of(before[-2]) in ("unit", "units") else before
+                before = before[:-1] if before[:-1] and introduces(before[-2]) else before
             bare = ends_of(word)
-            glued = f"{word}(" in flat.lower() or f"{word}[" in flat.lower()  # a name: g[cm/s2]
-            if (
-                before
-                and stem_of(before[-1]) in ("unit", "units")
-                and word not in "()[]:=,;"
-                and word not in ("of", "in", "is", "are")
-            ):
+            glued = f"{word}(" in flat or f"{word}[" in flat  # a name: g[cm/s2]
+            tail = bare.rpartition("_")
+            if before and introduces(before[-1]) and word not in "()[]:=,;" and word not in ("of", "in", "is", "are"):
                 if bare in TIME_WORDS:
                     continue
                 if not bare or bare[0] not in LETTERS + "%":
                     continue
-                if bare not in KNOWN:
+                factor = _bracketed(words, i) if glued else KNOWN.get(bare)
+                if factor is None:
                     raise Refused(f"unit {word}")
-                factors.add(KNOWN[bare])
+                factors.add(factor)
             elif "/" in word and word[: word.index("/")] in LENGTHS and not word.endswith("/"):
                 if i and words[i - 1][-1] in DIGITS + ".":
                     continue
@@ -248,12 +293,19 @@ def unit_of(lines, titles):
             elif (
                 stated
                 or ((named or index == titles) and i and words[i - 1] in ("(", "["))
-                or (i and ends_of(words[i - 1]) in ("acc", "accel", "acceleration"))
+                or (i and plain(ends_of(words[i - 1])) in ("acc", "accel", "acceleration", *ACCELERATIONS))
             ):
                 if (bare in LENGTHS or bare in RATES) and not glued:
                     raise Refused(f"unit {word}")
-                if bare in KNOWN and not glued:
-                    factors.add(KNOWN[bare])
+                factor = _bracketed(words, i) if glued else KNOWN.get(bare)
+                if factor is not None:
+                    factors.add(factor)
+            elif (
+                word in ("gal", "gals") and i and words[i - 1] in ("(", "[") and words[i + 1 : i + 2] in ([")"], ["]"])
+            ):
+                factors.add(KNOWN[word])
+            elif index == titles and tail[0][-1:].isalnum() and tail[2] in ("gal", "g", "mg", "mgal"):
+                factors.add(KNOWN[tail[2]])
     if len(factors) > 1:
         raise Refused("two units")
     if quantities == {"other"}:
