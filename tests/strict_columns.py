@@ -71,7 +71,7 @@ def _titles(header, by, width):
     line = line.partition(":")[2] if named else line
     while line and (line[0] in "#%!/" or line[0].isspace()):
         line = line[1:]
-    splits = [line.split(by)] if by else [line.split()]
+    splits = [line.split(by)] if by else []
     splits += [line.replace(";", ",").split(","), line.split("\t"), _split(line, " ", 2), _split(line, " ;,\t", 1)]
     for split in splits:
         split = [part.strip() for part in split]

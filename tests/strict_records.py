@@ -143,7 +143,7 @@ def _at2(lines):
             inside = "".join(sign for sign in behind.partition(")")[0] if sign in LETTERS and behind[0] in "([")
             step_of(old[1], inside)
             count, line = old[0], f"dt = {old[1]} {inside}"
-        elif counts:
+        elif counts and steps:
             if len(counts) > 1 or len(steps) > 1:
                 raise Refused("twice")
             count = _until(counts[0][1], ",;")[0]

@@ -1,4 +1,4 @@
-"""Steps and titles stated in headers, for the second reader of records (`strict_records`), which says what it is for."""
+"""Steps stated in headers, for the second reader of records (`strict_records`), which says what it is for."""
 
 import unicodedata
 from fractions import Fraction

@@ -275,6 +275,8 @@ def unit_of(lines, titles):
             bare = ends_of(word)
             glued = f"{word}(" in flat or f"{word}[" in flat  # a name: g[cm/s2]
             tail = bare.rpartition("_")
+            if word == "in" and words[i + 1 : i + 2] and words[i + 1] not in "()[]:=,;":
+                continue  # no inches
             if before and introduces(before[-1]) and word not in "()[]:=,;" and word not in ("of", "in", "is", "are"):
                 if bare in TIME_WORDS:
                     continue
