@@ -46,6 +46,7 @@ def columns(lines, given, column):
     samples, number, step = _samples(table, titles, timed, column), 0, None
     if timed:
         step = _step_of(table, top)
+        unit_of(titles[:1], 0)  # no velocity
     number = _number_of(column, titles, timed, width) if column is not None or timed else 1
     if titles:
         chosen = blanked([titles[number - 1]])[1] if number == 1 else [titles[number - 1]]
@@ -72,7 +73,7 @@ def _titles(header, by, width):
     while line and (line[0] in "#%!/" or line[0].isspace()):
         line = line[1:]
     splits = [line.split(by)] if by else []
-    splits += [line.replace(";", ",").split(","), line.split("\t"), _split(line, " ", 2), _split(line, " ;,\t", 1)]
+    splits += [line.replace(";", ",").split(","), line.split("\t"), _split(line, " ", 2), _split(line, " ;,", 1)]
     for split in splits:
         split = [part.strip() for part in split]
         if len(split) == width and all(any(sign.isalpha() for sign in part) for part in split):
@@ -155,13 +156,13 @@ def _whole_end(table):
     """Refuses a last number of another form than all those above it: the file may be cut within it."""
     *others, last = table
     forms = []
-    try:
-        for row in [*others, last]:
+    for row in [*others, last]:
+        try:
             field = row[len(last) - 1]
             single(field)
             forms.append(form_of(field))
-    except (Refused, IndexError):
-        return
+        except (Refused, IndexError):
+            forms.append(None)
     if len(others) > 1 and len(set(forms[:-1])) == 1 and forms[-1] != forms[0]:
         raise Refused("cut")
 

@@ -4,7 +4,7 @@ import unicodedata
 from fractions import Fraction
 from itertools import product
 
-from strict_words import DIGITS, LETTERS, TIME_WORDS, Refused, scan
+from strict_words import DIGITS, LETTERS, TIME_WORDS, Refused, letter, scan
 
 GAP = ("", " ", "-", " -")
 SAMPLING_FR = (" dechantillonnage", " d?echantillonnage")  # ?: any sign
@@ -98,13 +98,13 @@ def step_of_all(statements):
 
 def _key_end(text, i):
     """Where the longest key at i ends; None without one."""
-    if i and text[i - 1].isalpha():
+    if i and letter(text[i - 1]):
         return None
     for key in KEYS:
         piece = text[i : i + len(key)]
         if key[0] == piece[:1] and len(piece) == len(key):
             like = all(wanted in (sign, "?") for wanted, sign in zip(key, piece, strict=True))
-            if like and not text[i + len(key) : i + len(key) + 1].isalpha():
+            if like and not letter(text[i + len(key) : i + len(key) + 1]):
                 return i + len(key)
     return None
 
@@ -112,17 +112,21 @@ def _key_end(text, i):
 def _word(text, i):
     """A unit of rates or a word of letters at i, "" without one."""
     for unit in RATES_LONGEST:
-        if text.startswith(unit, i) and not text[i + len(unit) : i + len(unit) + 1].isalpha():
+        if text.startswith(unit, i) and not letter(text[i + len(unit) : i + len(unit) + 1]):
             return unit
     end = i
     while text[end : end + 1] and (text[end] in LETTERS or text[end] == "µ"):
         end += 1
-    return "" if text[end : end + 1].isalpha() else text[i:end]
+    return "" if letter(text[end : end + 1]) else text[i:end]
 
 
 def _number(text, i):
     """(value, unit of its last digit, next i) of a number or one with a decimal comma at i; None without one."""
     found, comma = scan(text, i), i
+    start = i + (text[i : i + 1] in ("+", "-"))
+    start += text[start : start + 1] == "."
+    if not found and text[start : start + 1] in tuple(DIGITS):
+        raise Refused("not finite")
     if found and not _goes_on(text, found[3]):
         exponent = 0
         if found[2]:
@@ -214,25 +218,22 @@ def _known(word):
 
 def _alone(text, i):
     """A number of samples a second that begins at i."""
-    before = text[i - 1 : i] if i else ""
-    if before.isalnum() or before in (".", ",", "+", "-") or text[i] not in DIGITS + ".+-":
+    before, signs = text[i - 1 : i] if i else "", text[max(i - 2, 0) : max(i - 1, 0)]
+    if text[i] not in DIGITS + ".+-":
         return None
-    found = _number_or_none(text, i)
-    if not found:
+    inside = before in (*DIGITS, "+", "-") or (before in (".", ",", "e", "d") and signs in tuple(DIGITS))
+    if text[i] not in "+-" and inside:
         return None
-    at = found[2] + (text[found[2] : found[2] + 1] == " ")
-    word = _word(text, at)
-    if word not in PER_SECOND:
-        return None
-    _number(text, i)
-    return _meant(True, found[0], found[1], 1), at + len(word)
-
-
-def _number_or_none(text, i):
     try:
-        return _number(text, i)
+        found = _number(text, i)
+        end = found[2] if found else i
     except Refused:
-        end = i
-        while text[end : end + 1] and text[end] in DIGITS + ",":
+        found, end = None, i
+        while text[end : end + 1] and text[end] in DIGITS + ".,ed+-":
             end += 1
-        return Fraction(1), Fraction(1), end
+    end += text[end : end + 1] == " "
+    word = _word(text, end)
+    if word not in PER_SECOND or (end == i and not found):
+        return None
+    found = _number(text, i)
+    return found and (_meant(True, found[0], found[1], 1), end + len(word))

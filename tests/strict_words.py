@@ -192,7 +192,6 @@ def _known_units():
                 f"/{time}2",
                 f"/{time}^2",
                 f"/{time}**2",
-                f"/{time}*2",
                 f"/{time}²",
                 f"/{time}/s",
                 f"/{time}/sec",
@@ -210,13 +209,22 @@ RATES = {f"{length}{rate}" for length in LENGTHS for rate in ("/s", "/sec")}
 
 def words_of(line):
     """Words of a header line in lower case; brackets, colons, equals signs, commas and semicolons are words."""
+    return [word for word, _ in glued_words(line)]
+
+
+def glued_words(line):
+    """[(word, sign behind it)] of the words of `words_of`."""
     words, word = [], ""
     for sign in line.lower() + " ":
         if sign.isspace() or sign in "()[]:=,;":
-            words += [word] if word else []
+            words += [(word, sign)] if word else []
             word = ""
-            words += [] if sign.isspace() else [sign]
+            if words and words[-1][1] is None:
+                words[-1] = (words[-1][0], sign)
+            words += [] if sign.isspace() else [(sign, None)]
         else:
+            if not word and words and words[-1][1] is None:
+                words[-1] = (words[-1][0], sign)
             word += sign
     return words
 
@@ -234,6 +242,11 @@ def ends_of(word):
     return word
 
 
+def letter(sign):
+    """Whether the sign is one of words: no digit, but ³ or ½."""
+    return sign.isalnum() and not sign.isdecimal()
+
+
 def plain(text):
     """The text in lower case, without accents."""
     return "".join(unicodedata.normalize("NFD", sign.lower()[:1])[:1] for sign in text).replace("ı", "i")
@@ -245,9 +258,11 @@ def introduces(word):
 
 def _bracketed(words, i):
     """Factor of a unit that is said twice, as gal(cm/s/s); None of another."""
-    bare = ends_of(words[i])
+    bare = ends_of(words[i][0])
     inside = words[i + 2 : i + 4]
-    if bare in KNOWN and len(inside) == 2 and inside[1] in (")", "]") and KNOWN.get(ends_of(inside[0])) == KNOWN[bare]:
+    if len(inside) < 2 or inside[1][0] not in ")]" or not (inside[1][1].isspace() or inside[1][1] in ")],;:"):
+        return None
+    if bare in KNOWN and KNOWN.get(ends_of(inside[0][0])) == KNOWN[bare]:
         return KNOWN[bare]
     return None
 
@@ -259,39 +274,44 @@ def unit_of(lines, titles):
         flat = " ".join(line[:400].replace('"', " ").split())
         for sign in ("/", "^", "**"):
             flat = flat.replace(f" {sign}", sign).replace(f"{sign} ", sign)
-        flat = flat.lower().replace("unidades de los datos", "unidades")
-        words = words_of(flat)
+        flat = f"{flat.lower()} ".replace(" per ", "/")
+        pairs = glued_words(flat)
+        words = [word for word, _ in pairs]
         parts = "".join(sign if sign in LETTERS else " " for sign in plain(line[:400])).split()
         named = {QUANTITIES[part] for part in parts if part in QUANTITIES}
         quantities |= named
         for i, word in enumerate(words):
-            before = words[max(i - 4, 0) : i]
+            before = words[max(i - 7, 0) : i]
             stated = False
             while before and before[-1] in ("(", "[", ":", "="):
                 before = before[:-1]
+            if before[-3:] == ["de", "los", "datos"]:
+                before = before[:-3]
             if before and before[-1] in ("of", "in", "is", "are"):
                 stated = before[-1] == "in" and (named or index == titles)
                 before = before[:-1] if before[:-1] and introduces(before[-2]) else before
             bare = ends_of(word)
-            glued = f"{word}(" in flat or f"{word}[" in flat  # a name: g[cm/s2]
+            glued = pairs[i][1] in ("(", "[")  # a name: g[cm/s2]
             tail = bare.rpartition("_")
             if word == "in" and words[i + 1 : i + 2] and words[i + 1] not in "()[]:=,;":
                 continue  # no inches
             if before and introduces(before[-1]) and word not in "()[]:=,;" and word not in ("of", "in", "is", "are"):
+                if words[i : i + 3] == ["de", "los", "datos"]:
+                    continue
                 if bare in TIME_WORDS:
                     continue
                 if not bare or bare[0] not in LETTERS + "%":
                     continue
-                factor = _bracketed(words, i) if glued else KNOWN.get(bare)
+                factor = _bracketed(pairs, i) if glued else KNOWN.get(bare)
                 if factor is None:
                     raise Refused(f"unit {word}")
                 factors.add(factor)
-            elif "/" in word and word[: word.index("/")] in LENGTHS and not word.endswith("/"):
+            elif tail[2].partition("/")[0] in LENGTHS and "/" in tail[2] and not word.endswith("/"):
                 if i and words[i - 1][-1] in DIGITS + ".":
                     continue
-                if bare not in KNOWN:
+                if tail[2] not in KNOWN:
                     raise Refused(f"unit {word}")
-                factors.add(KNOWN[bare])
+                factors.add(KNOWN[tail[2]])
             elif (
                 stated
                 or ((named or index == titles) and i and words[i - 1] in ("(", "["))
@@ -299,7 +319,7 @@ def unit_of(lines, titles):
             ):
                 if (bare in LENGTHS or bare in RATES) and not glued:
                     raise Refused(f"unit {word}")
-                factor = _bracketed(words, i) if glued else KNOWN.get(bare)
+                factor = _bracketed(pairs, i) if glued else KNOWN.get(bare)
                 if factor is not None:
                     factors.add(factor)
             elif (
