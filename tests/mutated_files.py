@@ -575,7 +575,7 @@ DAMAGE = (
 def cases(number, seed=0):
     """`number` damaged files: (kind, name, content, what the user says), kind "record" or "scene"."""
     chance = random.Random(seed)
-    kinds = [("record", *record) for record in records()] * 2 + [("scene", *scene, {}) for scene in scenes()] * 11
+    kinds = [("record", *record) for record in records()] * 2 + [("scene", *scene, {}) for scene in scenes()] * 22
     for _ in range(number):
         kind, name, text, said = chance.choice(kinds)
         if kind == "record" and chance.random() < 0.1:

@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 from strict_statements import blanked, flat, fold, step_of_all
-from strict_words import DIGITS, LETTERS, TIME_WORDS, Refused, form_of, single, stem_of, unit_of, words_of
+from strict_words import DIGITS, LETTERS, TIME_WORDS, Refused, form_of, letter, single, stem_of, unit_of, words_of
 
 OTHER_TIMES = ("us", "µs", "usec", "ns", "min", "minute", "minutes", "h", "hour", "hours", "samples")
 NAMES_OF_TIMES = ("time", "t", "zeit", "tiempo", "temps", "zaman")
@@ -46,7 +46,6 @@ def columns(lines, given, column):
     samples, number, step = _samples(table, titles, timed, column), 0, None
     if timed:
         step = _step_of(table, top)
-        unit_of(titles[:1], 0)  # no velocity
     number = _number_of(column, titles, timed, width) if column is not None or timed else 1
     if titles:
         chosen = blanked([titles[number - 1]])[1] if number == 1 else [titles[number - 1]]
@@ -76,7 +75,7 @@ def _titles(header, by, width):
     splits += [line.replace(";", ",").split(","), line.split("\t"), _split(line, " ", 2), _split(line, " ;,", 1)]
     for split in splits:
         split = [part.strip() for part in split]
-        if len(split) == width and all(any(sign.isalpha() for sign in part) for part in split):
+        if len(split) == width and all(any(letter(sign) for sign in part) for part in split):
             return [*header[:at], *header[at + 1 :]], split, at
     return header, [], at
 
@@ -232,7 +231,7 @@ def _list(table):
 
 def _step_of(table, header):
     """Bounds of the step of the times in the first column."""
-    per_second = {found for line in header for found in _times_in(line)}
+    per_second = {found for line in header for found in times_in(line)}
     if len(per_second) > 1 or None in per_second:
         raise Refused("unit of time")
     times = [single(row[0]) for row in table]
@@ -257,7 +256,7 @@ def _letters_of(word):
     return "" if word[end : end + 1] in tuple(DIGITS) else word[:end]
 
 
-def _times_in(line):
+def times_in(line):
     """Units of time that stand behind the word time (or t) of a header line, in units a second; None: another unit."""
     found = []
     words = words_of(fold(flat(line)).replace("/", " , "))

@@ -151,6 +151,8 @@ def _at2(lines):
             continue
         statements, header = blanked([*lines[:index], line])
         step = step_of_all(statements)
+        if None in [found for line in header for found in strict_columns.times_in(line)]:
+            raise Refused("unit of time")
         factor = unit_of(header, index - 1)
         samples = fortran(lines[index + 1 :])
         if whole(count) != len(samples):

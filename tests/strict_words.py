@@ -267,6 +267,19 @@ def _bracketed(words, i):
     return None
 
 
+def _low_lines(flat):
+    """Factors of units behind low lines in a line of titles: NS_gal."""
+    factors = set()
+    for at, sign in enumerate(flat):
+        end = at + 1
+        while flat[end : end + 1] and flat[end] in LETTERS:
+            end += 1
+        unit = flat[at + 1 : end] if sign == "_" and flat[at - 1 : at].isalnum() else ""
+        if unit in ("gal", "g", "mg", "mgal") and not flat[end : end + 1].isalnum():
+            factors.add(KNOWN[unit])
+    return factors
+
+
 def unit_of(lines, titles):
     """Factor of the unit that header lines state, None without one; `titles` is the index of the titles' line."""
     factors, quantities = set(), set()
@@ -292,7 +305,7 @@ def unit_of(lines, titles):
                 before = before[:-1] if before[:-1] and introduces(before[-2]) else before
             bare = ends_of(word)
             glued = pairs[i][1] in ("(", "[")  # a name: g[cm/s2]
-            tail = bare.rpartition("_")
+            tail = bare.rpartition("_")[2]
             if word == "in" and words[i + 1 : i + 2] and words[i + 1] not in "()[]:=,;":
                 continue  # no inches
             if before and introduces(before[-1]) and word not in "()[]:=,;" and word not in ("of", "in", "is", "are"):
@@ -301,21 +314,23 @@ def unit_of(lines, titles):
                 if bare in TIME_WORDS:
                     continue
                 if not bare or bare[0] not in LETTERS + "%":
+                    if words[i - 1] == "of":
+                        raise Refused(f"unit {word}")
                     continue
                 factor = _bracketed(pairs, i) if glued else KNOWN.get(bare)
                 if factor is None:
                     raise Refused(f"unit {word}")
                 factors.add(factor)
-            elif tail[2].partition("/")[0] in LENGTHS and "/" in tail[2] and not word.endswith("/"):
+            elif tail.partition("/")[0] in LENGTHS and "/" in tail and not word.endswith("/"):
                 if i and words[i - 1][-1] in DIGITS + ".":
                     continue
-                if tail[2] not in KNOWN:
+                if tail not in KNOWN:
                     raise Refused(f"unit {word}")
-                factors.add(KNOWN[tail[2]])
+                factors.add(KNOWN[tail])
             elif (
                 stated
                 or ((named or index == titles) and i and words[i - 1] in ("(", "["))
-                or (i and plain(ends_of(words[i - 1])) in ("acc", "accel", "acceleration", *ACCELERATIONS))
+                or (i and ends_of(words[i - 1]) in ("acc", "accel", "acceleration"))
             ):
                 if (bare in LENGTHS or bare in RATES) and not glued:
                     raise Refused(f"unit {word}")
@@ -326,8 +341,7 @@ def unit_of(lines, titles):
                 word in ("gal", "gals") and i and words[i - 1] in ("(", "[") and words[i + 1 : i + 2] in ([")"], ["]"])
             ):
                 factors.add(KNOWN[word])
-            elif index == titles and tail[0][-1:].isalnum() and tail[2] in ("gal", "g", "mg", "mgal"):
-                factors.add(KNOWN[tail[2]])
+        factors |= _low_lines(flat) if index == titles else set()
     if len(factors) > 1:
         raise Refused("two units")
     if quantities == {"other"}:
