@@ -40,6 +40,8 @@ def columns(lines, given, column):
     top = [*others[:at], titles[0], *others[at:]] if titles else others
     statements, kept = blanked(top)
     stated = step_of_all(statements)
+    if None in [found for line in top for found in times_in(line)]:
+        raise Refused("unit of time")
     timed = width > 1 and _are_times(table, titles, given or stated is not None)
     if lines[-1].strip():
         _whole_end(table)

@@ -229,11 +229,13 @@ def _alone(text, i):
         end = found[2] if found else i
     except Refused:
         found, end = None, i
+    if not found:
         while text[end : end + 1] and text[end] in DIGITS + ".,ed+-":
             end += 1
-    end += text[end : end + 1] == " "
+    begin, end = end, end + (text[end : end + 1] == " ")
     word = _word(text, end)
-    if word not in PER_SECOND or (end == i and not found):
+    if word not in PER_SECOND or text[begin - 1] not in DIGITS + ".":
         return None
-    found = _number(text, i)
-    return found and (_meant(True, found[0], found[1], 1), end + len(word))
+    if not found:
+        raise Refused("no number of samples a second")
+    return _meant(True, found[0], found[1], 1), end + len(word)
