@@ -40,17 +40,18 @@ def columns(lines, given, column):
     top = [*others[:at], titles[0], *others[at:]] if titles else others
     statements, kept = blanked(top)
     stated = step_of_all(statements)
-    if None in [found for line in top for found in times_in(line)]:
+    if None in [found for line in kept for found in times_in(line)]:
         raise Refused("unit of time")
     timed = width > 1 and _are_times(table, titles, given or stated is not None)
     if lines[-1].strip():
         _whole_end(table)
     samples, number, step = _samples(table, titles, timed, column), 0, None
     if timed:
-        step = _step_of(table, top)
+        step = _step_of(table, kept)
     number = _number_of(column, titles, timed, width) if column is not None or timed else 1
     if titles:
-        chosen = blanked([titles[number - 1]])[1] if number == 1 else [titles[number - 1]]
+        stated_there, chosen = blanked([titles[number - 1]])
+        step_of_all(stated_there)
         kept = [*kept[:at], *chosen, *kept[at + 1 :]]
     if stated is not None:
         if step and abs(stated - sum(step) / 2) > sum(step) / 2 / 10**6:

@@ -123,16 +123,15 @@ def _word(text, i):
 def _number(text, i):
     """(value, unit of its last digit, next i) of a number or one with a decimal comma at i; None without one."""
     found, comma = scan(text, i), i
-    start = i + (text[i : i + 1] in ("+", "-"))
-    start += text[start : start + 1] == "."
-    if not found and text[start : start + 1] in tuple(DIGITS):
-        raise Refused("not finite")
     if found and not _goes_on(text, found[3]):
         exponent = 0
         if found[2]:
             mantissa, _, power = text[i : found[3]].replace("d", "e").partition("e")
             exponent = int(power)
         return found[0], Fraction(10) ** (exponent - (found[1] or 0)), found[3]
+    end = _large(text, i)
+    if not found and end and not _goes_on(text, end):
+        return None, Fraction(1), end
     while text[comma : comma + 1] and text[comma] in DIGITS:
         comma += 1
     end = comma + 1
@@ -141,11 +140,34 @@ def _number(text, i):
     decimals = end - comma - 1
     if comma == i or text[comma : comma + 1] != "," or not decimals or _goes_on(text, end) or end - i > 100:
         return None
-    if decimals == 3 and text[i] != "0":
-        raise Refused("thousands")
-    if text[end : end + 1] in ("e", "d") and text[end + 1 : end + 2] in (*DIGITS, "+", "-"):
-        raise Refused("exponent behind a decimal comma")
     return Fraction(int(text[i:comma] + text[comma + 1 : end]), 10**decimals), Fraction(1, 10**decimals), end
+
+
+def _large(text, i):
+    """Where a number at i that is too long or too large for `scan` ends; 0 without one."""
+    start = i + (text[i : i + 1] in ("+", "-"))
+    start += text[start : start + 1] == "."
+    if text[start : start + 1] not in tuple(DIGITS):
+        return 0
+    while text[start : start + 1] and text[start] in DIGITS + ".":
+        start += 1
+    power = start + 1 + (text[start + 1 : start + 2] in ("+", "-"))
+    if text[start : start + 1] in ("e", "d") and text[power : power + 1] in tuple(DIGITS):
+        start = power
+        while text[start : start + 1] and text[start] in DIGITS:
+            start += 1
+    return start
+
+
+def _sure(text, i, end):
+    """Refuses a number too large, or a decimal comma that may part thousands or has an exponent behind it."""
+    if "," not in text[i:end] and not scan(text, i):
+        raise Refused("not finite")
+    whole, comma, decimals = text[i:end].partition(",")
+    if comma and len(decimals) == 3 and whole[0] != "0":
+        raise Refused("thousands")
+    if comma and text[end : end + 1] in ("e", "d") and text[end + 1 : end + 2] in (*DIGITS, "+", "-"):
+        raise Refused("exponent behind a decimal comma")
 
 
 def _goes_on(text, end):
@@ -164,8 +186,12 @@ def _value(text, i):
     for begin in (inside + (text[inside : inside + 1] == " "), inside, after):
         word = _word(text, begin)
         if word:
+            _sure(text, i, at)
             return *found[:2], word, begin + len(word)
-    return (*found[:2], "", after) if text[after : after + 1] in ("", ",", ";", "|", ")", "]") else None
+    if text[after : after + 1] not in ("", ",", ";", "|", ")", "]"):
+        return None
+    _sure(text, i, at)
+    return *found[:2], "", after
 
 
 def _stated(text, begin, i):
@@ -224,11 +250,8 @@ def _alone(text, i):
     inside = before in (*DIGITS, "+", "-") or (before in (".", ",", "e", "d") and signs in tuple(DIGITS))
     if text[i] not in "+-" and inside:
         return None
-    try:
-        found = _number(text, i)
-        end = found[2] if found else i
-    except Refused:
-        found, end = None, i
+    found = _number(text, i)
+    end = found[2] if found else i
     if not found:
         while text[end : end + 1] and text[end] in DIGITS + ".,ed+-":
             end += 1
@@ -237,5 +260,8 @@ def _alone(text, i):
     if word not in PER_SECOND or text[begin - 1] not in DIGITS + ".":
         return None
     if not found:
+        if not any(sign in DIGITS for sign in text[i:begin]):
+            return None
         raise Refused("no number of samples a second")
+    _sure(text, i, begin)
     return _meant(True, found[0], found[1], 1), end + len(word)
