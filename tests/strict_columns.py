@@ -51,7 +51,7 @@ def columns(lines, given, column):
     number = _number_of(column, titles, timed, width) if column is not None or timed else 1
     if titles:
         stated_there, chosen = blanked([titles[number - 1]])
-        step_of_all(stated_there)
+        step_of_all(statements + stated_there)
         kept = [*kept[:at], *chosen, *kept[at + 1 :]]
     if stated is not None:
         if step and abs(stated - sum(step) / 2) > sum(step) / 2 / 10**6:
@@ -96,7 +96,7 @@ def _split(line, signs, least):
             parts[-1] += run
         run = ""
         parts[-1] += sign
-    return parts
+    return [*parts, ""] if run else parts
 
 
 def _name_of(title):

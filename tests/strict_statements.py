@@ -186,11 +186,9 @@ def _value(text, i):
     for begin in (inside + (text[inside : inside + 1] == " "), inside, after):
         word = _word(text, begin)
         if word:
-            _sure(text, i, at)
             return *found[:2], word, begin + len(word)
     if text[after : after + 1] not in ("", ",", ";", "|", ")", "]"):
         return None
-    _sure(text, i, at)
     return *found[:2], "", after
 
 
@@ -215,6 +213,7 @@ def _stated(text, begin, i):
         if sign in (":", "="):
             raise Refused("no number")
         return None
+    _sure(text, i, _number(text, i)[2])
     value, last, behind, end = found
     unit = behind if _known(behind) else before if _known(before) else ""
     if behind and not unit:

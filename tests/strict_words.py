@@ -330,7 +330,7 @@ def unit_of(lines, titles):
             elif (
                 stated
                 or ((named or index == titles) and i and words[i - 1] in ("(", "["))
-                or (i and ends_of(words[i - 1]) in ("acc", "accel", "acceleration"))
+                or (i and stem_of(ends_of(words[i - 1])) in ("acc", "accel", "acceleration"))
             ):
                 if (bare in LENGTHS or bare in RATES) and not glued:
                     raise Refused(f"unit {word}")
