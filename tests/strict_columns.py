@@ -78,7 +78,7 @@ def _titles(header, by, width):
     splits += [line.replace(";", ",").split(","), line.split("\t"), _split(line, " ", 2), _split(line, " ;,", 1)]
     for split in splits:
         split = [part.strip() for part in split]
-        if len(split) == width and all(any(letter(sign) for sign in part) for part in split):
+        if len(split) == width and all(any(letter(sign) for sign in _name_of(part)) for part in split):
             return [*header[:at], *header[at + 1 :]], split, at
     return header, [], at
 

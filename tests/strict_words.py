@@ -146,7 +146,7 @@ def fortran(lines):
         small = exponent[:1] == "-" and exponent[1:2] != "0"
         if form != usual and not (form and usual and usual[1] == 2 and form == (usual[0], 3, usual[2]) and small):
             raise Refused(f"form of {part}")
-    lengths = [len(line.rstrip()) for line in lines if line.strip()][:-1]
+    lengths = [len(line.rstrip()) for line in [line for line in lines if line.strip()][:-1] if len(line.split()) > 1]
     if len(set(lengths)) == 2 and len(lengths) > 2 and 1 in [lengths.count(length) for length in lengths]:
         raise Refused("length of a line")
     return values
