@@ -98,7 +98,7 @@ def _motion(scene, record, said):
 
 def _simulate(output, scene, motion, engines, variants, many):
     """The result files of the page."""
-    from ..report.own import load_scenes
+    from ..report.runs import load_scenes
     from ..report.study import make_own_results, make_results
     from ..running.solving import stdout_to_stderr
 
@@ -128,12 +128,11 @@ def form(page: Path) -> Report:
     """What the JSON file holds of a page that lies beside its result files."""
     from analytic.response import UNCOMPARED
 
-    from ..report.own import SCENES_FILE
-    from ..report.runs import CARYATID, FREE_ROCKING
+    from ..report.runs import RESTITUTION, SCENES
     from ..running.provenance import read_result
     from ..schemas.results import Report, Reported
 
-    files = [page.with_name(name) for name in (SCENES_FILE, CARYATID, FREE_ROCKING) if page.with_name(name).exists()]
+    files = [page.with_name(name) for name in (SCENES, RESTITUTION) if page.with_name(name).exists()]
     result = read_result(files[0])
     rows = []
     for row in result.rows:

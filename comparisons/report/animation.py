@@ -47,9 +47,9 @@ def animation(result: Result) -> dict[str, Any] | None:
 def _scene(result, name, times):
     scene = result.settings["scenes"][name]
     tracks = [
-        _track(result, f"{name}/{row['solver']}", times, row["solver"], scene["base"] is not None)
+        _track(result, f"{name}/{row['engine']}", times, row["engine"], scene["base"] is not None)
         for row in result.rows
-        if row["scene"] == name and not row["failure"] and f"{name}/{row['solver']}/time" in result.arrays
+        if row["scene"] == name and not row["failure"] and f"{name}/{row['engine']}/time" in result.arrays
     ]
     reach = max((abs(x) for track in tracks for x in track.get("x", ())), default=0.0)
     return {

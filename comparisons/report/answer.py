@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ..showing.parts import Judgement, Mark, number
+from ..showing.parts import Mark, number
 from ..showing.wording import TRUSTED, USABLE
 
 if TYPE_CHECKING:
-    from ..running.provenance import Result
+    from ..showing.parts import Judgement
 
 # part: good in all that was tested, and something was not
 LEVELS = {"good": "✓ trust", "part": "✓ as far as tested", "fair": "~ with care", "bad": "✗ do not trust"}
@@ -19,10 +19,10 @@ UNTESTED = Mark("not tested", "none")
 
 @dataclass(frozen=True)
 class Row:
-    """One way to set an engine up. marks: a `Mark` for each column; verdict: the worst of them.
+    """One way to set an engine up. marks: a `Mark` for each column; rating: the worst of them, the one rating that all
+    pages use.
 
-    best: it is the engine's default; cpu: s of CPU time per simulated second, of the runs behind
-    its restitution.
+    best: it is the engine's default; cpu: s of CPU time per simulated second, of the runs behind its restitution.
     """
 
     engine: str
@@ -30,7 +30,7 @@ class Row:
     tier: str
     best: bool
     marks: tuple[Mark, ...]
-    verdict: Mark
+    rating: Mark
     cpu: float | None
     applies_impact: bool
 
@@ -43,83 +43,56 @@ class Row:
         return f'get_engine("{self.engine}").simulate(scene, variant="{self.variant}")'
 
 
-def rows_of(free: Result, groups: Sequence[Mapping[str, Any]], columns: Sequence[Judgement]) -> list[Row]:
+def rows_of(rated: Sequence[Mapping[str, Any]], columns: Sequence[Judgement]) -> list[Row]:
     """Rows of the decision table: trusted ones first, the cheapest of equals first.
 
-    free: result of free rocking; groups: of `sections.variant_groups`.
+    rated: of each variant engine, variant, tier, best, applies_impact and, of its restitution, rms, worst, failed,
+    cpu_per_second.
     """
     rows = []
-    for group in groups:
-        if group["solver"] == "analytic":
-            continue
-        variant = group["name"].split(", ")[1]
-        kind = free.settings["variants"][group["solver"]][variant]
-        marks = (_restitution(group), *(_mark(one, group, variant) for one in columns))
-        rows.append(
-            Row(
-                group["solver"],
-                variant,
-                kind["tier"],
-                kind["best"],
-                marks,
-                _verdict(marks),
-                group["cpu_per_second"],
-                kind["applies_impact"],
-            )
-        )
+    for one in rated:
+        marks = (_restitution(one), *(_mark(column, one) for column in columns))
+        how = {key: one[key] for key in ("engine", "variant", "tier", "best", "applies_impact")}
+        rows.append(Row(**how, marks=marks, rating=_rating(marks), cpu=one["cpu_per_second"]))
     order = list(LEVELS)
-    return sorted(rows, key=lambda row: (order.index(row.verdict.level), row.cpu or 1e9))
+    return sorted(rows, key=lambda row: (order.index(row.rating.level), row.cpu or 1e9))
 
 
-def _mark(judgement, group, variant):
+def _mark(judgement, one):
     """What a study says of a variant; one that takes engines as they come knows the default by no name."""
     marks = judgement.marks
-    unnamed = marks.get((group["solver"], ""), UNTESTED) if group["default"] else UNTESTED
-    return marks.get((group["solver"], variant), unnamed)
+    unnamed = marks.get((one["engine"], ""), UNTESTED) if one["best"] else UNTESTED
+    return marks.get((one["engine"], one["variant"]), unnamed)
 
 
-def _restitution(group):
-    failed = len(group["failures"])
-    if group["rms"] is None:
-        return Mark("none measured", "bad", f"{failed} runs failed")
-    level = "bad" if failed else "good" if group["rms"] <= TRUSTED else "fair" if group["rms"] <= USABLE else "bad"
-    words = number(group["rms"], 2) + (f", {failed} failed" if failed else "")
-    return Mark(words, level, f"worst impact {number(group['worst'], 2)}")
+def _restitution(one):
+    if one["rms"] is None:
+        return Mark("none measured", "bad", f"{one['failed']} runs failed")
+    level = "good" if one["rms"] <= TRUSTED else "fair" if one["rms"] <= USABLE else "bad"
+    words = number(one["rms"], 2) + (f", {one['failed']} failed" if one["failed"] else "")
+    return Mark(words, "bad" if one["failed"] else level, f"worst impact {number(one['worst'], 2)}")
 
 
-def _verdict(marks):
+def _rating(marks):
     level = max((mark.level if mark.level in LEVELS else "part" for mark in marks), key=list(LEVELS).index)
     return Mark(LEVELS[level], level)
 
 
 def best_of(rows: Sequence[Row]) -> Row | None:
     """The cheapest row that may be trusted and decides the impact itself; None where there is none."""
-    return next((row for row in rows if row.verdict.level in ("good", "part") and not row.applies_impact), None)
+    return next((row for row in rows if row.rating.level in ("good", "part") and not row.applies_impact), None)
 
 
-def recommendation(rows: Sequence[Row], reference: Mapping[str, Any] | None, limits: str) -> list[str]:
+def recommendation(rows: Sequence[Row], limits: str) -> list[str]:
     """What to use, with error, cost and limits, the range in words, within which it was tested; list of str."""
-    words = [
-        "One rigid block, planar, on sharp corners: use the analytic model."
-        + (
-            f" It is exact to the closed forms and needs {number(reference['cpu_per_second'], 2)} s of CPU time per "
-            "simulated second."
-            if reference and reference["cpu_per_second"]
-            else ""
-        )
-    ]
+    words = ["One rigid block, planar, on sharp corners: use the analytic model. It is exact to the closed forms."]
     row = best_of(rows)
     if row is None:
         words.append("More bodies or contacts: no engine that was run here may be trusted in all that was tested.")
         return words
-    ratio = (
-        f", {number(row.cpu / reference['cpu_per_second'], 2)} times the model's"
-        if reference and reference["cpu_per_second"] and row.cpu
-        else ""
-    )
     words.append(
         f"More bodies or contacts: {row.engine} set as “{row.variant}”: restitution within {row.marks[0].words} at "
-        f"{number(row.cpu, 2)} s of CPU time per simulated second{ratio}."
+        f"{number(row.cpu, 2)} s of CPU time per simulated second."
     )
     words.append(f"Tested for {limits}; planar, no sliding, no jump.")
     return words
@@ -130,8 +103,8 @@ def not_to_do(rows: Sequence[Row]) -> list[str]:
     first = [row for row in rows if row.tier == "defaults" and row.marks[0].level != "none"]
     lines = []
     if first:
-        worst = max(first, key=lambda row: list(LEVELS).index(row.verdict.level))
-        bad = [row for row in first if row.verdict.level == "bad"]
+        worst = max(first, key=lambda row: list(LEVELS).index(row.rating.level))
+        bad = [row for row in first if row.rating.level == "bad"]
         lines.append(
             f"Do not use default settings: {len(bad)} of {len(first)} fail (restitution off by "
             f"{', '.join(f'{row.marks[0].words} in {row.engine}' for row in bad or [worst])})."

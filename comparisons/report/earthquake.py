@@ -27,7 +27,7 @@ def earthquake(result: Result) -> Section:
     """The `Section` of the scenes under their motion."""
     scenes = result.settings["scenes"]
     charts = [chart for name in scenes for chart in _panels(result, name)]
-    solvers = dict.fromkeys(row["solver"] for row in result.rows)
+    solvers = dict.fromkeys(row["engine"] for row in result.rows)
     moved = "One earthquake" if result.settings["motion"] else "One scene"
     title = f"{moved}: " + "; ".join(
         f"{scene['name']}: {outcomes([row for row in result.rows if row['scene'] == name])}"
@@ -43,7 +43,7 @@ def earthquake(result: Result) -> Section:
         [scenes[name]["name"], ", ".join(who), words] for name in scenes for words, who in warned(result, name).items()
     ]
     failed = tuple(
-        (f"{row['solver']} on {row['scene']}: {row['failure']['reason']}", row["failure"].get("message", ""))
+        (f"{row['engine']} on {row['scene']}: {row['failure']['reason']}", row["failure"].get("message", ""))
         for row in result.rows
         if row["failure"]
     )
@@ -73,7 +73,7 @@ def _panels(result, name):
     rows = [
         row
         for row in result.rows
-        if row["scene"] == name and not row["failure"] and f"{name}/{row['solver']}/time" in result.arrays
+        if row["scene"] == name and not row["failure"] and f"{name}/{row['engine']}/time" in result.arrays
     ]
     if any(row["outcome"] != "stands" for row in rows):
         yield from _pair(result, scene, name, rows, "tilt", "tilt φ/γ [-]", scene["block"]["slenderness"])
@@ -84,10 +84,10 @@ def _panels(result, name):
 def _pair(result, scene, name, rows, column, label, scale):
     lines, apart = {}, {}
     for row in rows:
-        key = f"{name}/{row['solver']}"
-        lines[row["solver"]] = _line(result, key, column, scale)
-        if f"{key}/apart/time" in result.arrays and row["solver"] != ANALYTIC:
-            apart[row["solver"]] = _line(result, f"{key}/apart", column, scale)
+        key = f"{name}/{row['engine']}"
+        lines[row["engine"]] = _line(result, key, column, scale)
+        if f"{key}/apart/time" in result.arrays and row["engine"] != ANALYTIC:
+            apart[row["engine"]] = _line(result, f"{key}/apart", column, scale)
     end = max(float(time[-1]) for time, _ in lines.values())
     peak = max(float(np.abs(values).max()) for _, values in lines.values()) or 1.0
     limit = min(1.08 * peak, TILT) if column == "tilt" else 1.08 * peak
@@ -137,10 +137,10 @@ def _table(result):
     rows = []
     for row in result.rows:
         agreement = row.get("agreement") or {}
-        engine = row["solver"] != ANALYTIC
+        engine = row["engine"] != ANALYTIC
         rows.append(
             [
-                row["solver"],
+                row["engine"],
                 result.settings["scenes"][row["scene"]]["name"],
                 row["verdict"],
                 number(row.get("overturning_time"), 5),

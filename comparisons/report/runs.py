@@ -1,9 +1,11 @@
-"""The runs behind the report: the Caryatid in every solver, and free rocking in every variant; as result files."""
+"""The runs behind the report: scenes in every solver and, where their block rocks, its restitution; as result files."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,17 +14,18 @@ import numpy as np
 from scipy.integrate import trapezoid
 
 from analytic import Base, Block, Scene, Start, load_scene
-from analytic.closed_form import free_rocking
+from analytic.caryatid import RADIUS
 from analytic.response import History, Response
-from analytic.rocking import base_jump_length, restitution
+from analytic.rocking import restitution
 from engines import available_engines, get_engine
-from engines.statue_range import in_words
 
-from ..measuring.errors import SLOWEST_IMPACT, compare, impact_errors, rms
+from ..measuring.errors import compare, impact_errors, rms, worst
 from ..measuring.horizon import solver_horizon
 from ..running.cases import Case
+from ..running.solving import spinner
 from ..running.study import Batch, Found, say
 from .histories import ToFile, differences, response_of, thinned
+from .statue import statue_of
 
 if TYPE_CHECKING:
     from analytic.types import Motion
@@ -30,77 +33,101 @@ if TYPE_CHECKING:
     from ..running.study import Ask, Plan
     from ..running.sweep import Row
 
-CARYATID, FREE_ROCKING = "caryatid.json", "free-rocking.json"
-SCENES = ("caryatid-rigid", "caryatid-isolated")
-
-SLENDERNESSES = (0.1, 0.2, 0.3, 0.45)  # rad
+SCENES, RESTITUTION = "scenes.json", "restitution.json"  # result files
+CARYATID = ("caryatid-rigid", "caryatid-isolated")  # the scenes of a report without scenes of one's own
 STARTS = (0.3, 0.45, 0.6, 0.75)  # released tilt over slenderness
-VARIANT_STARTS = (0.6,)  # of the variants that are not an engine's default
-BASES = {"rigid ground": None, "sliding base": {"mass": 212.0}}  # kg
-FREE_SECONDS = 3.0
+SECONDS = 3.0  # of a block of the Caryatid's size
 # Outer limit of a run [s], and what a second and a sample of the motion add to it; the longest under a usual record
 # takes a few seconds. A hang becomes a failed row.
 TIME_LIMIT, LIMIT_PER_SECOND, LIMIT_PER_SAMPLE = 60.0, 1.0, 1e-3
 
 
+def load_scenes(places: Sequence[str], motion: Motion | None = None) -> dict[str, Scene]:
+    """{a name of its own: scene} of scene files or shipped scenes; with a motion in place of theirs where it is given.
+
+    Raises
+    ------
+    SceneError
+        A file is no scene.
+    """
+    scenes: dict[str, Scene] = {}
+    for place in places:
+        scene, name = load_scene(place), Path(place).stem
+        key = name if name not in scenes else f"{name}-{len(scenes) + 1}"
+        scenes[key] = scene if motion is None else scene.with_(motion=motion)
+    return scenes
+
+
 def plan(
     ask: Ask,
-    motion: Motion,
+    scenes: Mapping[str, Scene],
     histories: str | PathLike[str],
-    duration: float | None = None,
-    slendernesses: Sequence[float] = SLENDERNESSES,
+    variants: Mapping[str, str | None],
+    motions: Mapping[str, Mapping[str, Sequence[Motion]]],
+    own: bool,
 ) -> Plan:
-    """The plan of the report's own runs; histories: folder in which those of the Caryatid's are kept meanwhile."""
-    scenes = caryatid_scenes(motion, duration)
-    caryatid = [
-        Case(scene, solver, settings={"compare": True} if solver in ask.engines else {}, tag={"scene": name})
+    """The plan of a report's runs: the scenes in every solver and, of scenes of one's own, what the page of a statue
+    asks, and the restitution of a block that rocks.
+
+    histories: folder in which those of the runs are kept meanwhile. variants: of the engines not taken as they come.
+    motions: of each scene, {record: its motions} besides its own.
+    """
+    cases = [
+        Case(
+            scene,
+            solver,
+            variants.get(solver),
+            settings={"compare": True} if solver in ask.engines else {},
+            tag={"scene": name},
+        )
         for solver in ("analytic", *ask.engines)
         for name, scene in scenes.items()
     ]
-    limit = TIME_LIMIT + LIMIT_PER_SECOND * motion.end + LIMIT_PER_SAMPLE * len(motion.samples)
-    say(f"the Caryatid in {', '.join(('the analytic model', *ask.engines))} (the first run on a machine compiles it)")
-    rows = yield Batch(caryatid, ToFile(str(Path(histories).resolve())), "Caryatid", limit)
-    yield scenes_found(Path(histories), rows, scenes, CARYATID)
-    rows = yield Batch(free_rocking_cases(ask.engines, slendernesses), impacts_only, "free rocking", limit)
-    return free_rocking_found(rows, ask.engines)
+    longest = max((scene.motion.end for scene in scenes.values() if scene.motion), default=0.0)
+    samples = max((len(getattr(scene.motion, "samples", ())) for scene in scenes.values()), default=0)
+    limit = TIME_LIMIT + LIMIT_PER_SECOND * longest + LIMIT_PER_SAMPLE * samples
+    say(f"{', '.join(scenes)} in {', '.join(('the analytic model', *ask.engines))}")
+    rows = yield Batch(cases, ToFile(str(Path(histories).resolve())), "scenes", limit)
+    more: dict[str, Any] = {"variants": described_variants(ask.engines), "own": own}
+    if own:
+        more["statues"] = {}
+        for name, scene in scenes.items():
+            with spinner(f"{scene.name}: the analytic model") as tell:
+                more["statues"][name] = statue_of(scene, motions.get(name, {}), partial(_tell, tell, scene.name))
+    found = scenes_found(Path(histories), rows, scenes, **more)
+    rocking = [row.case.scene for row in rows if row.case.solver == "analytic" and row.values["outcome"] != "stands"]
+    if not (own and rocking):
+        return found
+    yield found
+    rows = yield Batch(restitution_cases(ask.engines, rocking), impacts_only, "restitution", limit)
+    return restitution_found(rows)
 
 
-def caryatid_scenes(motion: Motion, duration: float | None = None) -> dict[str, Scene]:
-    """The free-standing and the isolated Caryatid (Table 1 of the paper) under `motion`, by name."""
-    return {name: load_scene(name).with_(motion=motion, duration=duration) for name in SCENES}
+def _tell(tell, name, quantity):
+    tell(f"{name}: margin of {quantity}")
 
 
-def free_rocking_cases(
-    engines: Sequence[str],
-    slendernesses: Sequence[float],
-    block: Block | None = None,
-    bases: Mapping[str, Mapping[str, float] | None] = BASES,
-    seconds: float = FREE_SECONDS,
-) -> list[Case]:
-    """Blocks of the Caryatid's mass and radius, or as `block`, released from rest, in every solver and variant."""
-    block = block or load_scene(SCENES[0]).block
-    solvers: list[tuple[str, str | None, tuple[float, ...]]] = [("analytic", None, STARTS)]
-    for name in engines:
-        engine = get_engine(name)
-        solvers += [
-            (name, variant, STARTS if variant == engine.default_variant else VARIANT_STARTS)
-            for variant in engine.variants
-        ]
-    cases = []
-    for solver, variant, starts in solvers:
-        for ground, base in bases.items():
-            for slenderness in slendernesses:
-                for start in starts:
-                    scene = Scene(
-                        name="free rocking",
-                        block=Block(**{**block.model_dump(), "slenderness": slenderness}),
-                        base=Base(**base) if base else None,
-                        start=Start(tilt=start * slenderness),
-                        duration=seconds,
-                    )
-                    tag = {"ground": ground, "slenderness": slenderness, "start": start}
-                    cases.append(Case(scene, solver, variant, tag=tag))
-    return cases
+def restitution_cases(engines: Sequence[str], scenes: Sequence[Scene]) -> list[Case]:
+    """The block of the first scene released from rest, on the grounds of all, in every solver and variant."""
+    block = Block(**{**scenes[0].block.model_dump(), "restitution": None})  # engines decide it
+    bases = {scene.base and scene.base.mass for scene in scenes}
+    solvers = [("analytic", None), *((name, variant) for name in engines for variant in get_engine(name).variants)]
+    return [
+        Case(
+            Scene(
+                name="free rocking",
+                block=block,
+                base=Base(mass=mass) if mass else None,
+                start=Start(tilt=start * block.slenderness),
+                duration=SECONDS * math.sqrt(block.radius / RADIUS),
+            ),
+            solver,
+            variant,
+        )
+        for solver, variant in solvers
+        for mass in sorted(bases, key=lambda mass: mass or 0.0)
+        for start in STARTS
+    ]
 
 
 def impacts_only(case: Case, response: Response) -> dict[str, Any]:
@@ -108,7 +135,63 @@ def impacts_only(case: Case, response: Response) -> dict[str, Any]:
     return response.to_json()
 
 
-def scenes_found(folder: Path, rows: Sequence[Row], scenes: Mapping[str, Scene], file: str, **more: Any) -> Found:
+def restitution_found(rows: Sequence[Row]) -> Found:
+    """The answer of the block let go: a row for each solver and variant, over all grounds and starts."""
+    groups: dict[tuple[str, str | None], list[Row]] = {}
+    for row in rows:
+        groups.setdefault((row.case.solver, row.case.variant), []).append(row)
+    settings = {"starts": STARTS, "seconds": rows[0].case.scene.duration, "bases": list(_bases(rows))}
+    return Found(settings, [_restitution_row(*key, of) for key, of in groups.items()], name=Path(RESTITUTION).stem)
+
+
+def _bases(rows):
+    return dict.fromkeys(row.case.scene.base and row.case.scene.base.mass for row in rows)
+
+
+def _restitution_row(engine, variant, members):
+    """Errors of one solver and variant."""
+    sound = [(row, Response.from_json(row.values)) for row in members if not row.failed]
+    errors = [impact_errors(row.case.scene, response) for row, response in sound]
+    missed = np.concatenate([one["state"] for one in errors]) if errors else np.empty(0)
+    jumps = [value for one in errors for value in one.get("jump", ())]
+    simulated = sum(response.end.time for _, response in sound)
+    kind = get_engine(engine).variants[variant] if variant else None
+    return {
+        "engine": engine,
+        "variant": variant,
+        "tier": kind and kind.tier,
+        "applies_impact": bool(kind and kind.takes_restitution),
+        "runs": len(members),
+        "failed": len(members) - len(sound),
+        "failures": [row.failure for row in members if row.failed],
+        "impacts": len(missed),
+        "rms": rms(missed) if len(missed) else None,
+        "worst": worst(missed) if len(missed) else None,
+        "jump_rms": rms(jumps) if jumps else None,
+        "warnings": list(dict.fromkeys(warning["text"] for row, _ in sound for warning in row.values["warnings"])),
+        "settings": sound[0][0].values["settings"] if sound else None,
+        "cpu_per_second": sum(row.cost["cpu_seconds"] for row, _ in sound) / simulated if sound else None,
+    }
+
+
+def described_variants(engines: Sequence[str]) -> dict[str, dict[str, dict[str, Any]]]:
+    """{engine: {variant: its tier, what the engine computes and the adapter imposes, whether that is the impact}}."""
+    return {
+        name: {
+            variant: {
+                "tier": kind.tier,
+                "best": variant == get_engine(name).default_variant,
+                "computes": kind.computes,
+                "imposes": kind.imposes,
+                "applies_impact": kind.takes_restitution,
+            }
+            for variant, kind in get_engine(name).variants.items()
+        }
+        for name in engines
+    }
+
+
+def scenes_found(folder: Path, rows: Sequence[Row], scenes: Mapping[str, Scene], **more: Any) -> Found:
     """The answer of the scenes' runs; memory holds two histories at a time, one the analytic model's.
 
     The motion described is the first scene's that has one; more: further settings.
@@ -155,7 +238,7 @@ def scenes_found(folder: Path, rows: Sequence[Row], scenes: Mapping[str, Scene],
         "missing": available_engines()[1],
         **more,
     }
-    return Found(settings, entries, arrays, name=Path(file).stem)
+    return Found(settings, entries, arrays, name=Path(SCENES).stem)
 
 
 def _drawn_motion(motion):
@@ -172,7 +255,7 @@ def _drawn_motion(motion):
 def _scene_entry(scene, row, reference, folder):
     """(what is told of one run, what is drawn of it); measured from all samples, drawn from `thinned` ones."""
     values = {key: value for key, value in row.values.items() if key != "history"}
-    entry = {**values, "solver": row.case.solver, "failure": row.failure, **row.cost}
+    entry = {**values, "engine": row.case.solver, "failure": row.failure, **row.cost}
     if row.failed:
         return {**entry, "verdict": "failed"}, {}
     response = response_of(row.values, folder)
@@ -192,96 +275,3 @@ def _scene_entry(scene, row, reference, folder):
         entry["agreement"] = asdict(compare(scene, response, reference, until=until))
         drawn.update(differences(history, reference.history))
     return entry, drawn
-
-
-def free_rocking_found(
-    rows: Sequence[Row], engines: Sequence[str], bases: Mapping[str, Any] = BASES, seconds: float = FREE_SECONDS
-) -> Found:
-    """The answer of the blocks let go."""
-    groups = {}
-    for row in rows:
-        key = (row.case.solver, row.case.variant, row.case.tag["ground"], row.case.tag["slenderness"])
-        groups.setdefault(key, []).append(row)
-    entries = [_restitution_entry(*[*key, members]) for key, members in groups.items()]
-    arrays = {"curve/slenderness": np.linspace(0.05, 0.5, 91)}
-    for ground in bases:
-        scene = next(row.case.scene for row in rows if row.case.tag["ground"] == ground)
-        arrays[f"curve/{ground}"] = np.array(
-            [
-                restitution(scene.with_(block={"slenderness": float(slenderness)}))
-                for slenderness in arrays["curve/slenderness"]
-            ]
-        )
-    settings = {
-        "starts": STARTS,
-        "variant_starts": VARIANT_STARTS,
-        "seconds": seconds,
-        "slowest_impact": SLOWEST_IMPACT,
-        "bases": bases,
-        "variants": described_variants(engines),
-        "range": in_words(),
-    }
-    return Found(settings, entries, arrays, name=Path(FREE_ROCKING).stem)
-
-
-def described_variants(engines: Sequence[str]) -> dict[str, dict[str, dict[str, Any]]]:
-    """{engine: {variant: its tier, what the engine computes and the adapter imposes, whether that is the impact}}."""
-    return {
-        name: {
-            variant: {
-                "tier": kind.tier,
-                "best": variant == get_engine(name).default_variant,
-                "computes": kind.computes,
-                "imposes": kind.imposes,
-                "applies_impact": kind.takes_restitution,
-            }
-            for variant, kind in get_engine(name).variants.items()
-        }
-        for name in engines
-    }
-
-
-def _restitution_entry(solver, variant, ground, slenderness, members):
-    """Errors of one solver and variant on one ground, over all starts; rates and times of every impact used."""
-    scene = members[0].case.scene
-    formula = restitution(scene)
-    impacts, jumps, time_errors, sound = [], [], [], [row for row in members if not row.failed]
-    for row in sound:
-        scene, response = row.case.scene, Response.from_json(row.values)
-        errors = impact_errors(scene, response)
-        jumps += errors.get("jump", np.empty(0)).tolist()
-        times = errors["time"]
-        if scene.base is None:
-            exact = free_rocking(scene.rocking_frequency, slenderness, formula, scene.start.tilt, len(times))
-            time_errors += (times / exact.times - 1).tolist()
-        impacts += [
-            {"start": row.case.tag["start"], "time": float(time), "restitution": float(error) + formula}
-            for time, error in zip(times, errors["state"], strict=True)
-        ]
-    missed = np.array([impact["restitution"] for impact in impacts]) - formula
-    simulated = sum(row.values["end"]["time"] for row in sound)
-    return {
-        "solver": solver,
-        "variant": sound[0].values["variant"] if sound else variant,
-        "default": len(members) > 1,
-        "ground": ground,
-        "slenderness": slenderness,
-        "restitution": formula,
-        "base_jump_length": base_jump_length(scene),
-        "runs": len(members),
-        "failures": [row.failure for row in members if row.failed],
-        "impacts": impacts,
-        "warnings": list(dict.fromkeys(warning["text"] for row in sound for warning in row.values["warnings"])),
-        "bias": _of(missed, np.mean),
-        "rms": _of(missed, rms),
-        "worst": _of(np.abs(missed), np.max),
-        "jump_rms": _of(jumps, rms) if scene.base else None,
-        "time_rms": _of(time_errors, rms),
-        "settings": sound[0].values["settings"] if sound else None,
-        "cpu_per_second": sum(row.cost["cpu_seconds"] for row in sound) / simulated if sound else None,
-        "simulated": simulated,
-    }
-
-
-def _of(values, number):
-    return float(number(values)) if len(values) else None

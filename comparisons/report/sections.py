@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -10,65 +9,56 @@ from analytic.response import UNCOMPARED, Difference
 
 from ..showing.drawing import draw_scenes
 from ..showing.parts import Section, Table, number
+from ..showing.rows import Column, table
 from ..showing.wording import TRUSTED, USABLE, differing, trust
 from . import figures
 
 if TYPE_CHECKING:
     from ..running.provenance import Result
 
-
-def variant_groups(result: Result) -> list[dict[str, Any]]:
-    """One dict a solver and variant, over all grounds and slendernesses of ``free-rocking.json``.
-
-    solver, name, default, impacts (their number), rms, worst, jump_rms, time_rms, cpu_per_second, failures, warnings;
-    root mean squares are weighted by the number of impacts behind them.
-    """
-    groups = {}
-    for row in result.rows:
-        groups.setdefault((row["solver"], row["variant"]), []).append(row)
-    return [_group(solver, variant, rows) for (solver, variant), rows in groups.items()]
+NAME = Column("engine, variant", lambda row: ", ".join(filter(None, (row["engine"], row["variant"]))))
 
 
-def _group(solver, variant, rows):
-    measured = [row for row in rows if row["rms"] is not None]
-    simulated = sum(row["simulated"] for row in measured)
-    cpu = sum(row["cpu_per_second"] * row["simulated"] for row in measured)
-    return {
-        "solver": solver,
-        "name": "analytic" if solver == "analytic" else f"{solver}, {variant}",
-        "default": rows[0]["default"],
-        "impacts": sum(len(row["impacts"]) for row in measured),
-        "worst": max((row["worst"] for row in measured), default=None),
-        "cpu_per_second": cpu / simulated if measured else None,
-        "failures": [failure for row in rows for failure in row["failures"]],
-        "warnings": list(dict.fromkeys(warning for row in rows for warning in row["warnings"])),
-        **{measure: _pooled(measured, measure) for measure in ("rms", "jump_rms", "time_rms")},
-    }
-
-
-def _pooled(rows, measure):
-    known = [(row[measure], len(row["impacts"])) for row in rows if row[measure] is not None]
-    count = sum(weight for _, weight in known)
-    return math.sqrt(sum(weight * value**2 for value, weight in known) / count) if count else None
-
-
-def caryatid_sections(result: Result) -> list[Section]:
-    """Scene, ground motion, free-standing and isolated Caryatid."""
-    return [_setting_section(result), outcome_section(result), _history_section(result)]
-
-
-def _setting_section(result):
+def scene_sections(result: Result) -> list[Section]:
+    """Scenes and motion, outcomes, and the histories that the scenes have."""
     scenes = result.settings["scenes"]
-    return Section(
-        "The scenes and the ground motion",
-        (
-            "The Caryatid as a rigid block, once on rigid ground and once on a base carried by lead-rubber "
-            "bearings (Table 1 of the paper). The slenderness is not printed in the paper; 0.28 rad reproduces "
-            "its claims under the record it used (Duzce 1999). Under another motion they need not hold.",
-        ),
-        (parameters(scenes),),
-        (draw_scenes(list(scenes.values())), figures.ground_motion(result)),
+    pictures = [draw_scenes(list(scenes.values()))]
+    if result.settings["motion"]:
+        pictures.append(figures.ground_motion(result))
+    words = (
+        "The Caryatid as a rigid block, once on rigid ground and once on a base carried by lead-rubber bearings (Table "
+        "1 of the paper). The slenderness is not printed in the paper; 0.28 rad reproduces its claims under the record "
+        "it used (Duzce 1999). Under another motion they need not hold.",
     )
+    return [
+        Section("The scenes", () if result.settings["own"] else words, (parameters(scenes),), tuple(pictures)),
+        outcome_section(result),
+        *_histories(result),
+    ]
+
+
+def _histories(result):
+    """The section of the histories, none where every run failed or stands on rigid ground."""
+    shown = []
+    for name, scene in result.settings["scenes"].items():
+        rows = [row for row in result.rows if row["scene"] == name and not row["failure"]]
+        if not rows:
+            continue
+        gamma = scene["block"]["slenderness"]
+        if any(row["outcome"] != "stands" for row in rows):
+            limits = tilt_limits(result, name, gamma)
+            shown.append(figures.histories(result, name, "tilt", "tilt φ/γ [-]", gamma, limits))
+        if scene["base"]:
+            shown.append(figures.histories(result, name, "base_displacement", "base displacement x [m]"))
+        if scene["bearings"]:
+            shown.append(figures.loops(result, name))
+    if shown:
+        words = (
+            "Upper axes: all solvers over each other; lower axes: by how much they differ from the analytic model. A "
+            "block that never lifts in any solver has no tilt to show. The bearings' damping in Table 1(a) of the "
+            "paper, 30 %, is W_D/(2 π E_s); the usual equivalent viscous damping, W_D/(4 π E_s), is half of it."
+        )
+        yield Section("Histories and hysteresis", (words,), (), tuple(shown))
 
 
 def outcome_section(result: Result) -> Section:
@@ -76,7 +66,7 @@ def outcome_section(result: Result) -> Section:
     scenes = result.settings["scenes"]
     motion = "; ".join(dict.fromkeys(filter(None, (scene["motion"] for scene in scenes.values())))) or "no motion"
     failed = tuple(
-        (f"{row['solver']} on {row['scene']}: {row['failure']['reason']}", row["failure"].get("message", ""))
+        (f"{row['engine']} on {row['scene']}: {row['failure']['reason']}", row["failure"].get("message", ""))
         for row in result.rows
         if row["failure"]
     )
@@ -196,7 +186,7 @@ def _outcomes(result, name):
     quantities = [*OUTCOMES, *(BASE_OUTCOMES if scene["base"] else ())]
     return Table(
         f"{scene['name']}, {_span(scene)}",
-        ("quantity", *(row["solver"] for row in rows)),
+        ("quantity", *(row["engine"] for row in rows)),
         [[label, *(_value(row, key, digits) for row in rows)] for label, key, digits in quantities],
     )
 
@@ -211,7 +201,7 @@ def warned(result: Result, name: str) -> dict[str, list[str]]:
     for row in result.rows:
         if row["scene"] == name:
             for words in (*different(row), *(warning["text"] for warning in row.get("warnings", ()))):
-                carried.setdefault(words, []).append(row["solver"])
+                carried.setdefault(words, []).append(row["engine"])
     return carried
 
 
@@ -242,7 +232,7 @@ def _value(row, key, digits):
 
 def _agreement(result, name):
     """What each engine's run differs by from the analytic model: a row for each measure, a column for each engine."""
-    rows = [row for row in result.rows if row["scene"] == name and row["solver"] != "analytic" and "agreement" in row]
+    rows = [row for row in result.rows if row["scene"] == name and row["engine"] != "analytic" and "agreement" in row]
     if not rows:
         return ()
     scene = result.settings["scenes"][name]
@@ -268,125 +258,53 @@ def _agreement(result, name):
             ]
         ]
     if scene["bearings"]:
-        work = next(row["bearing_work"] for row in result.rows if row["scene"] == name and row["solver"] == "analytic")
+        work = next(row["bearing_work"] for row in result.rows if row["scene"] == name and row["engine"] == "analytic")
         errors = (100 * (row["bearing_work"] / work - 1) if work else None for row in rows)
         measures += [["work of the bearings [%]", *(number(error, 2) for error in errors)]]
     return (
         Table(
-            f"{scene['name']}: engine minus analytic model", ("difference", *(row["solver"] for row in rows)), measures
+            f"{scene['name']}: engine minus analytic model", ("difference", *(row["engine"] for row in rows)), measures
         ),
     )
 
 
-def restitution_sections(result: Result) -> list[Section]:
-    """Restitution against eq. (7), and error beside cost."""
-    return [_impact_section(result), _cost_section(result)]
-
-
-def _impact_section(result):
+def restitution_section(result: Result) -> Section:
+    """Restitution of the scenes' block against eq. (7), beside its cost."""
     starts = ", ".join(f"{start:g}" for start in result.settings["starts"])
-    few = ", ".join(f"{start:g}" for start in result.settings["variant_starts"])
-    grounds = {
-        "rigid ground": "on rigid ground",
-        "sliding base": "on a base of {mass:g} kg that slides without friction",
-    }
-    on = " and ".join(grounds[name].format(**(base or {})) for name, base in result.settings["bases"].items())
+    grounds = " and ".join(
+        "on rigid ground" if mass is None else f"on a base of {mass:g} kg that slides without friction"
+        for mass in result.settings["bases"]
+    )
     return Section(
-        "Restitution per impact",
+        "Restitution of this block",
         (
-            f"Free rocking for {result.settings['seconds']:g} s, released from rest at φ/γ = {starts} (variants "
-            f"that are not the default: {few}), {on}. The engines "
-            f"are given no restitution{_applied(result)}: it follows from their contact. It is measured as φ̇⁺/φ̇⁻, "
-            "the tilt rate after over that before the impact, from the states in clean flight, carried to the "
-            "impact by the model's equations, for every "
-            f"impact at least {100 * result.settings['slowest_impact']:g} % as fast as the run's fastest.",
-            "The variants of an engine are ways to set it up: as a first script gets it (defaults), well set, but on "
-            "its own (tuned), or with a velocity, position or constraint set by the adapter at the model's event "
-            "(assisted). The table of what each engine computes says which is which.",
-        ),
-        tuple(_restitution_table(result, ground) for ground in result.settings["bases"]),
-        (figures.restitution(result),),
-    )
-
-
-def _cost_section(result):
-    groups = variant_groups(result)
-    rows = [
-        [
-            group["name"],
-            trust(group["rms"], len(group["failures"])),
-            str(group["impacts"]),
-            number(group["rms"], 2),
-            number(group["worst"], 2),
-            number(group["jump_rms"], 2),
-            number(group["time_rms"], 2),
-            number(group["cpu_per_second"], 2),
-            str(len(group["failures"])),
-        ]
-        for group in groups
-    ]
-    return Section(
-        "Error beside cost",
-        (
-            "Error and CPU time of the very same runs. Impact times are held against the closed form (elliptic "
-            "integrals) on rigid ground, so the analytic model is on trial there as well. CPU time is that of the "
-            "simulation alone: no import, no compilation, no building of the scene.",
-            f"Restitution may be trusted if its error, root mean square, is at most {TRUSTED:g} and no run "
-            f"failed; at most {USABLE:g} it is usable where a per cent does not matter.",
+            f"Free rocking for {result.settings['seconds']:g} s, released from rest at φ/γ = {starts}, {grounds}. "
+            "Restitution is φ̇⁺/φ̇⁻, from the states at the impact, and is compared with eq. (7). Error and CPU time "
+            f"are those of the same runs. Trusted: error, root mean square, at most {TRUSTED:g} and no failed run; "
+            f"usable: at most {USABLE:g}.",
         ),
         (
-            Table(
-                "Error beside cost, all grounds and slendernesses together",
-                (
-                    "solver",
-                    "restitution",
-                    "impacts [-]",
-                    "restitution error, rms [-]",
-                    "restitution error, worst [-]",
-                    "base velocity jump, relative error, rms [-]",
-                    "impact times, relative error, rms [-]",
-                    "CPU time per simulated second [s/s]",
-                    "failed runs [-]",
-                ),
-                rows,
+            table(
+                "Restitution of this block, all grounds and starts together",
+                result.rows,
+                NAME,
+                Column("rating", lambda row: trust(row["rms"], row["failed"])),
+                Column("impacts [-]", "impacts"),
+                Column("error, rms [-]", "rms"),
+                Column("worst impact [-]", "worst"),
+                Column("base velocity jump, relative error, rms [-]", "jump_rms"),
+                Column("CPU time per simulated second [s/s]", "cpu_per_second"),
+                Column("failed runs [-]", "{failed} of {runs}"),
             ),
-            *_warnings(
-                "Free rocking",
-                {
-                    warning: [group["name"] for group in groups if warning in group["warnings"]]
-                    for group in groups
-                    for warning in group["warnings"]
-                },
-            ),
+            *_warnings("Free rocking", _carried(result.rows)),
         ),
-        (figures.error_and_cost(groups),),
     )
 
 
-def _applied(result):
-    """Which variants are the exception: their adapter applies the model's own impact."""
-    names = [
-        f"{engine}, {variant}"
-        for engine, variants in result.settings["variants"].items()
-        for variant, kind in variants.items()
-        if kind["applies_impact"]
-    ]
-    return f" (but for {' and '.join(names)}, whose adapter applies the model's own impact)" if names else ""
-
-
-def _restitution_table(result, ground):
-    """Errors over slenderness, a row for each solver and variant."""
-    rows = [row for row in result.rows if row["ground"] == ground]
-    gammas = sorted({row["slenderness"] for row in rows})
-    formula = {row["slenderness"]: row["restitution"] for row in rows}
-    table = [["eq. (7) itself [-]", *(f"{formula[gamma]:.6f}" for gamma in gammas)]]
-    for solver, variant in dict.fromkeys((row["solver"], row["variant"]) for row in rows):
-        errors = {
-            row["slenderness"]: row["rms"] for row in rows if (row["solver"], row["variant"]) == (solver, variant)
-        }
-        table.append([f"{solver}, {variant}", *(number(errors.get(gamma), 2) for gamma in gammas)])
-    return Table(
-        f"Error of restitution on {'a ' if ground == 'sliding base' else ''}{ground}, root mean square [-]",
-        ("solver", *(f"γ = {gamma:g} rad" for gamma in gammas)),
-        table,
-    )
+def _carried(rows):
+    """{warning: names of the variants whose runs carry it}."""
+    carried: dict[str, list[str]] = {}
+    for row in rows:
+        for warning in row["warnings"]:
+            carried.setdefault(warning, []).append(NAME.text(row))
+    return carried

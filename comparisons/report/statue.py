@@ -202,15 +202,15 @@ def _odds(found):
 
 def _engines(rows):
     """Which engines agree with the model, and in what the others differ or why they failed."""
-    engines = [row for row in rows if row["solver"] != "analytic"]
+    engines = [row for row in rows if row["engine"] != "analytic"]
     if not engines:
         return "None was run."
-    agree = [row["solver"] for row in engines if row.get("comparable") == COMPARED and not row.get("differences")]
+    agree = [row["engine"] for row in engines if row.get("comparable") == COMPARED and not row.get("differences")]
     said = [f"{' and '.join(agree)} agree{'s' * (len(agree) == 1)} with the analytic model"] if agree else []
     for row in engines:
         words = [f"failed: {row['failure']['reason']}"] if row["failure"] else different(row)
-        words = words if row["solver"] in agree else words or ["was not compared"]
-        said += [f"{row['solver']} {sentence}" for sentence in words]
+        words = words if row["engine"] in agree else words or ["was not compared"]
+        said += [f"{row['engine']} {sentence}" for sentence in words]
     return "; ".join(said) + "."
 
 

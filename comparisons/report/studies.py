@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from ..running.provenance import RESULTS, ResultError, age, last_check, read_result
 from ..showing.parts import Judgement, Section
 from ..studies import StudyBroken, get_study, study_names
+from ..studies.restitution import page as restitution
 
 if TYPE_CHECKING:
     from ..running.provenance import Result
@@ -25,7 +26,7 @@ FEW = 4  # files, drawn here: new processes would take longer
 class Stored:
     """One result file. section: all of it; finding: its answer for the first page; judgement: its column there.
 
-    origin: machine, versions, date and commit in one line.
+    origin: machine, versions, date and commit in one line. rated: what the study of restitution says of each variant.
     """
 
     name: str
@@ -33,6 +34,7 @@ class Stored:
     finding: Section | None = None
     judgement: Judgement | None = None
     origin: str = ""
+    rated: Sequence[Mapping[str, Any]] = ()
 
 
 def stored_studies(
@@ -101,4 +103,5 @@ def _stored(file):
     except (KeyError, StudyBroken) as error:
         words = f"{file.name} cannot be shown: {error.args[0]}."
         return Stored(file.stem, Section(f"Study {result.kind}", (words,)), origin=origin_of(result))
-    return Stored(file.stem, section, finding, judgement, origin_of(result))
+    rated = restitution.rated(result) if result.kind == "restitution" else ()
+    return Stored(file.stem, section, finding, judgement, origin_of(result), rated)

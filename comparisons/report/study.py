@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..running.study import Study, compute
-from . import own
-from .runs import CARYATID, FREE_ROCKING, SLENDERNESSES, plan
-from .sections import caryatid_sections
+from .runs import CARYATID, RESTITUTION, SCENES, load_scenes, plan
+from .sections import scene_sections
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -21,10 +20,7 @@ if TYPE_CHECKING:
 SHORT_RECORD = 200_000
 UNFINISHED = "unfinished"  # folder of what a report that is broken off goes on from
 
-STUDY = Study("report", "The Caryatid and free rocking in every solver.", plan, lambda result: {}, caryatid_sections)
-
-
-OWN = Study("own", "One's own scenes in every solver.", own.plan, lambda result: {}, own.own_sections)
+STUDY = Study("report", "Scenes in every solver.", plan, lambda result: {}, scene_sections)
 
 
 def make_own_results(
@@ -48,19 +44,13 @@ def make_own_results(
     >>> write_page(folder).name
     'report.html'
     """
-    samples = max((len(getattr(scene.motion, "samples", ())) for scene in scenes.values()), default=0)
-    _make(folder, OWN, samples, engines, scenes=scenes, variants=dict(variants or {}), motions=dict(motions or {}))
+    _make(folder, engines, scenes=scenes, variants=dict(variants or {}), motions=dict(motions or {}), own=True)
 
 
 def make_results(
-    folder: str | PathLike[str],
-    motion: Motion,
-    *,
-    duration: float | None = None,
-    slendernesses: Sequence[float] = SLENDERNESSES,
-    engines: Sequence[str] | None = None,
+    folder: str | PathLike[str], motion: Motion, *, duration: float | None = None, engines: Sequence[str] | None = None
 ) -> None:
-    """Simulate everything the report shows and write its result files into `folder`.
+    """Simulate the Caryatid of the paper, free-standing and isolated, and write the result files of the page.
 
     Parameters
     ----------
@@ -68,22 +58,22 @@ def make_results(
         Made if it does not exist. A report that is broken off goes on from what it finds here.
     motion : SampledMotion
     duration : float or None
-        Of the Caryatid's runs [s]; None: until their outcome is decided.
-    slendernesses : sequence of float
-        Of the free rocking blocks [rad].
+        Of the runs [s]; None: until their outcome is decided.
     engines : sequence of str or None
         Those to compare; None: all that are installed.
     """
-    options = {"motion": motion, "duration": duration, "slendernesses": slendernesses}
-    _make(folder, STUDY, len(motion.samples), engines, **options)
+    scenes = {name: scene.with_(duration=duration) for name, scene in load_scenes(CARYATID, motion).items()}
+    _make(folder, engines, scenes=scenes, variants={}, motions={}, own=False)
 
 
-def _make(folder, study, samples, engines, **options):
-    """Compute a study of the report into `folder`, in place of what an earlier report left there."""
+def _make(folder, engines, *, scenes, **options):
+    """Compute the runs into `folder`, in place of what an earlier report left there."""
     unfinished = Path(folder) / UNFINISHED
+    samples = max((len(getattr(scene.motion, "samples", ())) for scene in scenes.values()), default=0)
     workers = None if samples <= SHORT_RECORD else 1
-    paths = compute(study, unfinished, engines=engines, workers=workers, histories=unfinished, **options)
-    for name in (CARYATID, FREE_ROCKING, own.SCENES_FILE):
+    options |= {"scenes": scenes, "histories": unfinished}
+    paths = compute(STUDY, unfinished, engines=engines, workers=workers, **options)
+    for name in (SCENES, RESTITUTION):
         for file in ((Path(folder) / name).with_suffix(".npz"), Path(folder) / name):
             file.unlink(missing_ok=True)
     for path in paths:

@@ -17,20 +17,20 @@ WORDS = {"stands": "never lifts", "rocks": "rocks and stays upright", "overturns
 MOST_WARNINGS = 3  # of a scene, at the top of the page
 
 
-def summary(caryatid: Result, groups: Sequence[Mapping[str, Any]]) -> list[str]:
+def summary(scenes: Result, block: Result | None) -> list[str]:
     """Sentences, list of str: outcomes, engines that are missing, runs that failed."""
     sentences = []
-    for name, scene in caryatid.settings["scenes"].items():
-        rows = [row for row in caryatid.rows if row["scene"] == name]
+    for name, scene in scenes.settings["scenes"].items():
+        rows = [row for row in scenes.rows if row["scene"] == name]
         sentences.append(f"{scene['name']}: {outcomes(rows)}{_times(rows)}{_displacement(rows)}.{_warnings(rows)}")
-    sentences += [f"Not in this report: {words}." for words in missing_words(caryatid.settings["missing"])]
+    sentences += [f"Not in this report: {words}." for words in missing_words(scenes.settings["missing"])]
     failed = [
-        f"{row['solver']} on {row['scene']} ({row['failure']['reason']})" for row in caryatid.rows if row["failure"]
+        f"{row['engine']} on {row['scene']} ({row['failure']['reason']})" for row in scenes.rows if row["failure"]
     ]
     failed += [
-        f"{len(group['failures'])} of free rocking in {group['name']} ({group['failures'][0]['reason']})"
-        for group in groups
-        if group["failures"]
+        f"{row['failed']} of free rocking in {row['engine']}, {row['variant']} ({row['failures'][0]['reason']})"
+        for row in (block.rows if block else ())
+        if row["failed"]
     ]
     if failed:
         sentences.append("Failed runs: " + "; ".join(failed) + ".")
@@ -43,8 +43,8 @@ def outcomes(rows: Sequence[Mapping[str, Any]]) -> str:
     for row in rows:
         undecided = not row.get("decided", True) and row["outcome"] != "failed"
         words = f"is {row['verdict']}" if undecided else WORDS.get(row["outcome"], row["outcome"])
-        by_outcome.setdefault(words, []).append(row["solver"])
-    off = [row["solver"] for row in rows if row.get("differences") and row["comparable"] == COMPARED]
+        by_outcome.setdefault(words, []).append(row["engine"])
+    off = [row["engine"] for row in rows if row.get("differences") and row["comparable"] == COMPARED]
     if len(by_outcome) == 1 and not off:
         ((outcome, solvers),) = by_outcome.items()
         many = {1: solvers[0], 2: "both solvers"}.get(len(solvers), f"all {len(solvers)} solvers")
@@ -73,7 +73,7 @@ def _times(rows):
 
 
 def _displacement(rows):
-    peaks = {row["solver"]: row["peak_base_displacement"] for row in rows if row.get("peak_base_displacement")}
+    peaks = {row["engine"]: row["peak_base_displacement"] for row in rows if row.get("peak_base_displacement")}
     if "analytic" not in peaks:
         return ""
     text = f"; the base moves by at most {number(peaks['analytic'], 4)} m"

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
+from engines.statue_range import in_words
+
 from ..running.provenance import PACKAGES, RESULTS, age, read_result
 from ..showing import diagrams
-from ..showing.charts import REFERENCE
 from ..showing.parts import Section, Table
 from ..showing.wording import TRUSTED, USABLE
 from . import equations
@@ -22,9 +23,8 @@ from .animation import animation
 from .answer import not_to_do, recommendation, rows_of
 from .detail import assets, detail, environment
 from .earthquake import earthquake
-from .own import SCENES_FILE, own_sections
-from .runs import CARYATID, FREE_ROCKING
-from .sections import caryatid_sections, restitution_sections, variant_groups
+from .runs import RESTITUTION, SCENES
+from .sections import restitution_section, scene_sections
 from .statue import card_of
 from .studies import Stored, commit_of, origin_of, stored_studies
 from .summary import summary
@@ -73,11 +73,9 @@ def write_page(
         A result file of the report is missing or damaged.
     """
     folder = Path(folder)
-    own = (folder / SCENES_FILE).exists()
-    main = SCENES_FILE if own else CARYATID
-    scenes = read_result(folder / main)
-    free = read_result(folder / FREE_ROCKING) if not own or (folder / FREE_ROCKING).exists() else None
-    read = {main: scenes} | ({FREE_ROCKING: free} if free else {})
+    scenes = read_result(folder / SCENES)
+    block = read_result(folder / RESTITUTION) if (folder / RESTITUTION).exists() else None
+    read = {SCENES: scenes} | ({RESTITUTION: block} if block else {})
     stored = stored_studies(studies, lambda done, total: progress(done, total + 1))  # and the pages themselves
     pages = [("runs", "The report’s own runs"), *((one.name, one.section.title.partition(":")[0]) for one in stored)]
     listed = [{"file": f"{PAGES}/{name}.html", "title": title} for name, title in pages]
@@ -86,9 +84,9 @@ def write_page(
         environment()
         .get_template("page.html")
         .render(
-            **_answer(scenes, free, stored),
+            **_answer(scenes, block, stored),
             **assets(),
-            cards=[card_of(scenes, name) for name in scenes.settings["scenes"]] if own else [],
+            cards=[card_of(scenes, name) for name in scenes.settings["scenes"]] if scenes.settings["own"] else [],
             motion=scenes.settings["motion"]["label"] if scenes.settings["motion"] else "no motion",
             contents=_contents(scenes, stored),
             explained="autopsy" if any(one.name == "autopsy" for one in stored) else "impact",
@@ -97,14 +95,14 @@ def write_page(
             frames=[{"svg": Markup(frame.svg), "words": frame.words} for frame in equations.frames()],
             glossary=equations.GLOSSARY,
             references=equations.REFERENCES,
-            provenance=_provenance(scenes, free),
+            provenance=_provenance(scenes, block),
             pages=listed,
             ages=[f"{name} is {text}" for name, text in ((name, age(result)) for name, result in read.items()) if text],
             files=[file for name in read for file in (name, name.replace(".json", ".npz"))],
         ),
         encoding="utf-8",
     )
-    own_runs = [*(own_sections if own else caryatid_sections)(scenes), *(restitution_sections(free) if free else ())]
+    own_runs = [*scene_sections(scenes), *([restitution_section(block)] if block else ())]
     (folder / PAGES).mkdir(exist_ok=True)
     for name, title, sections, origin in (
         ("runs", "The report’s own runs", own_runs, origin_of(scenes)),
@@ -115,24 +113,31 @@ def write_page(
     return path
 
 
-def _answer(scenes: Result, free: Result | None, stored: list[Stored]) -> dict[str, Any]:
-    """What the first screen shows."""
-    groups = variant_groups(free) if free else []
+def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[str, Any]:
+    """What the first screen shows: of the scenes' own block its restitution, else the studies' numbers."""
     columns = [one.judgement for one in stored if one.judgement is not None]
-    decision = rows_of(free, groups, columns) if free else []
-    reference = next((group for group in groups if group["solver"] == REFERENCE), None)
+    rated = _rated(scenes, block) if scenes.settings["own"] else [row for one in stored for row in one.rated]
+    decision = rows_of(rated, columns)
     return {
-        "recommendation": recommendation(decision, reference, free.settings["range"]) if free else [],
-        "summary": summary(scenes, groups),
+        "recommendation": recommendation(decision, in_words()) if decision else [],
+        "summary": summary(scenes, block),
         "not_to_do": not_to_do(decision),
         "decision": decision,
+        "measured": "this report’s own runs of this block" if block else "the study of one impact, default settings",
         "headings": ["restitution error, rms", *(column.heading for column in columns)],
         "trusted": f"{TRUSTED:g}",
         "usable": f"{USABLE:g}",
-        "computed": _computed(free or scenes),
+        "computed": _computed(scenes),
         "origin": origin_of(scenes),
         "stage": _stage(scenes),
     }
+
+
+def _rated(scenes, block):
+    """The variants by the restitution of the scenes' own block."""
+    known = scenes.settings["variants"]
+    rows = block.rows if block else ()
+    return [{**row, "best": known[row["engine"]][row["variant"]]["best"]} for row in rows if row["engine"] in known]
 
 
 def _stage(scenes: Result) -> Mapping[str, Any] | None:
@@ -202,7 +207,7 @@ def _computed(result: Result) -> Table:
     )
 
 
-def _provenance(scenes: Result, free: Result | None) -> Section:
+def _provenance(scenes: Result, block: Result | None) -> Section:
     """Versions, machine and settings: how to obtain the same numbers."""
     origin = scenes.provenance
     machine = origin["machine"]
@@ -217,9 +222,9 @@ def _provenance(scenes: Result, free: Result | None) -> Section:
     ]
     rows += [[name, origin["packages"].get(name) or "not installed"] for name in PACKAGES]
     settings = {}
-    for row in [*scenes.rows, *(free.rows if free else ())]:
+    for row in [*scenes.rows, *(block.rows if block else ())]:
         if row.get("settings") is not None:
-            settings[row["solver"], row["variant"]] = row["settings"]
+            settings[row["engine"], row["variant"]] = row["settings"]
     listed = [
         [f"{solver}, {variant}", ", ".join(f"{key} = {value}" for key, value in chosen.items())]
         for (solver, variant), chosen in settings.items()

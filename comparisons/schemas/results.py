@@ -66,7 +66,7 @@ class Reported(Part):
     model: overturning_time_error [s], peak errors relative, impact_time_error [s]."""
 
     scene: str
-    solver: str
+    engine: str
     variant: str | None
     outcome: Literal["stands", "rocks", "overturns", "failed"]
     decided: bool | None
@@ -88,7 +88,7 @@ class Reported(Part):
 class Report(Form):
     """A page written, and the rows behind its first table. results: the result files it is made from."""
 
-    schema_: str = Field(default="rocking report 2", serialization_alias="schema")
+    schema_: str = Field(default="rocking report 3", serialization_alias="schema")
     page: str
     results: list[str]
     missing: dict[str, str]

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from string import Formatter
 from typing import Any
 
 from .parts import Table, number, percent, short
@@ -78,7 +79,8 @@ class Column:
     def of(self, row: Row) -> Any:
         """The value itself, what `text` writes; of a pattern the text."""
         if isinstance(self.value, str) and "{" in self.value:
-            return self.value.format_map({key: self.words(value) for key, value in row.items()})
+            keys = [key for _, key, _, _ in Formatter().parse(self.value) if key]
+            return self.value.format_map({key: self.words(row[key]) for key in keys})
         return value_of(row, self.value)
 
     def text(self, row: Row) -> str:

@@ -39,7 +39,7 @@ def page(result: Result) -> Page:
     ]
     levels = [{**variants[NAME.of(row)], **row} for row in where(result.rows, part="summary", scope="ladder")]
     orders = {(NAME.of(row), row["ground"]): row["order"] for row in where(result.rows, part="order")}
-    ratings = {name: _rated(variants[name], rows, orders) for (name,), rows in grouped(default, NAME.of).items()}
+    ratings = {NAME.of(row): row for row in rated(result)}
     ranked = sorted((row for row in ratings.values() if not row["applies_impact"]), key=lambda row: row["rms"] or 1e9)
     return Page(
         _title(ranked),
@@ -116,20 +116,35 @@ def _setting(row):
     return f"{row['parameter'].replace('_', ' ')} = {short(row['level'])} {UNITS.get(row['parameter'], '')}".rstrip()
 
 
-def _rated(variant, rows, orders):
-    """A variant at its default with the worse of both grounds."""
-    measured = [row for row in rows if row["rms"] is not None]
-    worst = max((row["rms"] for row in measured), default=None)
+def rated(result: Result) -> list[dict[str, Any]]:
+    """A row for each variant at its default setting, with the worse of both grounds: what the first screen rates it by.
+
+    Settings, rms, worst, failed, runs, orders, cpu_per_second, rating in words, and whether it is its engine's best.
+    """
+    variants = {NAME.of(variant): variant for variant in result.settings["variants"]}
+    orders = grouped(where(result.rows, part="order"), NAME.of)
+    return [
+        _rated(variants[name], rows, orders[name,], result.settings["default_variants"])
+        for (name,), rows in grouped(where(result.rows, part="summary", scope="all"), NAME.of).items()
+    ]
+
+
+def _rated(variant, rows, orders, defaults):
+    def most(key):
+        return max((row[key] for row in rows if row[key] is not None), default=None)
+
     failed = sum(row["failed"] for row in rows)
     return {
         **variant,
+        "best": defaults[variant["engine"]] == variant["variant"],
         "level": variant["default"],
-        "rms": worst,
-        "worst": max((row["worst"] for row in measured), default=None),
+        "rms": most("rms"),
+        "worst": most("worst"),
+        "cpu_per_second": most("cpu_per_second"),
         "failed": failed,
         "runs": sum(row["runs"] for row in rows),
-        "orders": [order for row in rows if (order := orders[NAME.of(row), row["ground"]]) is not None],
-        "rating": trust(worst, failed).removesuffix(" where a per cent does not matter"),
+        "orders": [row["order"] for row in orders if row["order"] is not None],
+        "rating": trust(most("rms"), failed).removesuffix(" where a per cent does not matter"),
     }
 
 

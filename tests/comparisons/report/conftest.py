@@ -6,14 +6,12 @@ from analytic import synthetic_motion
 from comparisons.report.study import make_results
 from comparisons.running.provenance import RESULTS
 
-SLENDERNESS = 0.3
-
 
 @pytest.fixture(scope="session")
 def results(tmp_path_factory):
     """Result files of a report on the synthetic motion, with every engine installed here; not to be changed."""
     folder = tmp_path_factory.mktemp("results")
-    make_results(folder, synthetic_motion(), slendernesses=(SLENDERNESS,))
+    make_results(folder, synthetic_motion())
     return folder
 
 

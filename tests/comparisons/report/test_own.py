@@ -9,8 +9,7 @@ import pytest
 from analytic import load_scene, synthetic_motion
 from analytic.errors import SceneError
 from comparisons.commands.report import form
-from comparisons.report.own import SCENES_FILE, load_scenes
-from comparisons.report.runs import CARYATID, FREE_ROCKING
+from comparisons.report.runs import RESTITUTION, SCENES, load_scenes
 from comparisons.report.study import make_own_results
 from comparisons.report.write import PAGE, write_page
 from comparisons.running.provenance import read_result
@@ -60,8 +59,8 @@ def page_of(folder, **texts):
 def test_a_scene_that_stands_gets_no_word_of_restitution(tmp_path):
     page = page_of(tmp_path, bust=STANDS)
     folder = tmp_path / "report"
-    assert (folder / SCENES_FILE).exists() and not (folder / FREE_ROCKING).exists()
-    assert "Restitution per impact" not in page and "aryatid" not in page
+    assert (folder / SCENES).exists() and not (folder / RESTITUTION).exists()
+    assert "Restitution of this block" not in page and "aryatid" not in page
     titles = re.findall('role="img" aria-label="([^"]*)"', page)
     assert any("base displacement" in title for title in titles) and not any("tilt φ" in title for title in titles)
     assert re.search(r">mass of the block m \[kg\]</th><td[^>]*>1551.8<", page)
@@ -69,16 +68,15 @@ def test_a_scene_that_stands_gets_no_word_of_restitution(tmp_path):
 
 def test_one_that_rocks_gets_its_own_restitution_and_replaces_an_older_report(tmp_path):
     (tmp_path / "report").mkdir()
-    (tmp_path / "report" / CARYATID).write_text("of an older report")
+    (tmp_path / "report" / SCENES).write_text("of an older report")
     page = page_of(tmp_path, bust=STANDS, released=ROCKS)
     folder = tmp_path / "report"
-    assert not (folder / CARYATID).exists()
-    rows = read_result(folder / FREE_ROCKING).rows
-    assert {(row["ground"], row["slenderness"]) for row in rows} == {("rigid ground", 0.3)}
-    assert max(row["rms"] for row in rows) < 1e-9
-    assert "Restitution per impact" in page and "sliding base" not in page
+    result = read_result(folder / RESTITUTION)
+    assert result.settings["bases"] == [None] and max(row["rms"] for row in result.rows) < 1e-9
+    assert sum(row["impacts"] for row in result.rows) >= 8
+    assert "Restitution of this block" in page and "slides without friction" not in page
     told = json.loads(form(folder / PAGE).text())
-    assert told["schema"] == "rocking report 2" and len(told["results"]) == 2
+    assert told["schema"] == "rocking report 3" and len(told["results"]) == 2
     assert [(row["scene"], row["outcome"]) for row in told["rows"]] == [("bust", "stands"), ("released", "rocks")]
     assert "released: in analytic it rocks and stays upright" in page and "bust: in analytic it never lifts" in page
 

@@ -8,7 +8,7 @@ from own_scenes import BRONZE, BUST, CLIFF
 
 from analytic import load_scene, simulate, synthetic_motion
 from analytic.response import COMPARED, EDGE
-from comparisons.report.own import load_scenes
+from comparisons.report.runs import load_scenes
 from comparisons.report.statue import _engines, statue_of
 from comparisons.report.study import make_own_results
 from comparisons.report.write import write_page
@@ -132,7 +132,7 @@ def test_the_card_needs_no_engine(page):
 def test_the_engines_that_agree_and_what_the_others_have_other():
     fell = {"quantity": "outcome", "here": "overturns", "model": "rocks", "limit": None}
     rows = [
-        {"solver": solver, "failure": failure, "comparable": comparable, "differences": differences}
+        {"engine": solver, "failure": failure, "comparable": comparable, "differences": differences}
         for solver, failure, comparable, differences in (
             ("analytic", None, COMPARED, []),
             ("one", None, COMPARED, []),
