@@ -63,6 +63,7 @@ def page(result: Result) -> Page:
                 NAME,
                 Column("rating", lambda row: RATINGS[row["rating"]]),
                 FOUND,
+                Column("ends of overturning found [-]", "gaps"),
                 MEDIAN,
                 LARGEST,
                 Column("outcomes that differ [-]", "{wrong} of {outcomes}"),
@@ -72,20 +73,6 @@ def page(result: Result) -> Page:
             _maps(result, shapes[1:]),
             Head("Every boundary"),
             _over_frequency(known, s["engines"]),
-            table(
-                "Boundaries by ground and pulse, block pressed on its base",
-                [
-                    {**dict(zip(("ground", "shape"), key[:2], strict=True)), **_summary(rows)}
-                    for key, rows in grouped(known, "ground", "shape", "engine").items()
-                ],
-                GROUND,
-                PULSE,
-                NAME,
-                FOUND,
-                Column("ends of overturning found [-]", "{gaps}"),
-                MEDIAN,
-                LARGEST,
-            ),
             _boundaries(
                 "Boundaries, and the engines' shifts, known to ± "
                 f"{percent(s['tolerance'] / 2, 1)}: block pressed on its base",

@@ -60,9 +60,14 @@ def test_half_lies_where_the_share_crosses_it_and_is_shown(found, tmp_path):
     assert whole.measured and figure.svg.count(b'class="chart"') == 2  # a panel for each engine
 
 
-def test_a_share_is_crossed_between_intensities_by_their_logarithm():
-    intensities = np.array([0.1, 0.4, 1.6])
-    assert crossing(intensities, np.array([0.2, 0.8, 0.4])) == pytest.approx(0.2)
-    assert crossing(intensities, np.array([0.2, 0.3, 0.4])) is None  # nowhere
-    assert crossing(intensities, np.array([0.6, 0.8, 0.9])) is None  # below all of them
-    assert crossing(intensities, np.array([0.2, 0.8, 0.4]), 0.5 + 0.15) == pytest.approx(0.1 * 4**0.75)
+@pytest.mark.parametrize(
+    "share, level, expected",
+    [
+        ([0.2, 0.8, 0.4], 0.5, 0.2),
+        ([0.2, 0.8, 0.4], 0.65, 0.1 * 4**0.75),
+        ([0.2, 0.3, 0.4], 0.5, None),
+        ([0.6, 0.8, 0.9], 0.5, None),  # below all intensities
+    ],
+)
+def test_a_share_is_crossed_between_intensities_by_their_logarithm(share, level, expected):
+    assert crossing(np.array([0.1, 0.4, 1.6]), np.array(share), level) == pytest.approx(expected)
