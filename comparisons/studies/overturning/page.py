@@ -63,7 +63,7 @@ def page(result: Result) -> Page:
                 NAME,
                 Column("rating", lambda row: RATINGS[row["rating"]]),
                 FOUND,
-                Column("ends of overturning found [-]", "gaps"),
+                Column("safe gaps found [-]", "gaps"),
                 MEDIAN,
                 LARGEST,
                 Column("outcomes that differ [-]", "{wrong} of {outcomes}"),
@@ -199,10 +199,12 @@ def _maps(result, shapes):
     panels = [_map(result, ground, shape) for shape, ground in itertools.product(shapes, result.settings["grounds"])]
     if not panels:
         return None
+    differ = where(result.rows, part="disagreement", shape=set(shapes))
     caption = (
         f"Analytic model, {' and '.join(shapes)} pulse: shaded overturns, blank stands. Marks: the engines' "
-        f"boundaries. Crosses: outcomes that differ further than {percent(result.settings['band'], 1)} from every "
-        "boundary. Shifts too small to be seen here are in the table."
+        "boundaries. Shifts too small to be seen here are in the table."
+        + f" Crosses: outcomes that differ further than {percent(result.settings['band'], 1)} from every boundary."
+        * bool(differ)
     )
     keys = {engine: key_of(engine, filled=False, joined=False) for engine in result.settings["engines"]}
     return figure(panels, caption + MOVED * any(panel.moved for panel in panels), keys, keys)
