@@ -1,22 +1,25 @@
 """Overturning: where do the solvers' boundaries lie, over pulse frequency and amplitude?"""
 
 from ...running.study import Study
-from .cases import plan
-from .figures import draw_knobs, draw_maps, draw_shifts
-from .finding import finding, judgement
-from .page import section
+from .study import plan
 
 
-def _figures(result):
-    return {"maps": draw_maps(result), "shifts": draw_shifts(result), "knobs": draw_knobs(result)}
+def _page(result):
+    from .page import page  # where it is shown only: the processes that run it need no charts
+
+    return page(result)
+
+
+def _judgement(result):
+    from .page import judgement
+
+    return judgement(result)
 
 
 STUDY = Study(
     "overturning",
     "Overturning boundaries under pulses, on rigid ground and isolated, solver by solver.",
     plan,
-    _figures,
-    section,
-    finding=finding,
-    judgement=judgement,
+    page=_page,
+    judgement=_judgement,
 )

@@ -5,6 +5,7 @@ Amplitudes are over g tan(slenderness), frequencies over omega_r.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
@@ -27,6 +28,13 @@ BESIDE = 2e-5  # relative distance from a boundary at which the analytic run tel
 CUT = 0.45  # where a bracket is divided: not in the middle, which may be the analytic boundary itself
 WIDEST = 5e-3  # half-width of a bracket, relative, beyond which a boundary counts as not found
 ROOM = 0.9  # of the way to the middle between two boundaries, what a search may use
+# why there is no boundary, by the outcomes seen: whether it overturns
+REASONS = {
+    frozenset(): "no run was decided",
+    frozenset({True}): "overturns on both sides",
+    frozenset({False}): "stands on both sides",
+    frozenset({True, False}): "outcomes the other way round",
+}
 
 
 @dataclass(frozen=True)
@@ -34,10 +42,11 @@ class Edge:
     """A boundary of the analytic model along the amplitude.
 
     rises: overturning lies above it. mode: impacts before overturning. low, high: amplitudes half way to the
-    neighbouring boundaries. min_normal: least normal force over m g
-    of the analytic model beside it; below 0 that model holds the corner down, where a block would slide or jump.
+    neighbouring boundaries. min_normal: least normal force over m g of the analytic model beside it; below 0 that model
+    holds the corner down, where a block would slide or jump.
     """
 
+    ground: str
     shape: str
     frequency: float
     amplitude: float
@@ -64,8 +73,14 @@ def pulse(scene: Scene, shape: str, frequency: float, amplitude: float) -> Pulse
     return PulseMotion(shape, amplitude * unit, frequency * scene.rocking_frequency)
 
 
-def edges(scene: Scene, shape: str, frequencies: Sequence[float]) -> list[list[Edge]]:
-    """All `Edge`s of the analytic model, a list for each frequency."""
+def edges(scene: Scene, ground: str, shape: str, frequencies: Sequence[float]) -> list[Edge]:
+    """All `Edge`s of the analytic model on a ground of that name, ascending at each frequency.
+
+    Raises
+    ------
+    RuntimeError
+        The analytic model failed.
+    """
 
     def evaluate(batch):
         scenes = [
@@ -79,37 +94,22 @@ def edges(scene: Scene, shape: str, frequencies: Sequence[float]) -> list[list[E
 
     columns = drive([boundaries(math.log(LOWEST), math.log(HIGHEST), SCAN, TOLERANCE) for _ in frequencies], evaluate)
     return [
-        _edges(
-            scene,
-            shape,
-            frequency,
-            [transition for transition in column.transitions if -1 in (transition.before, transition.after)],
-        )
+        edge
         for frequency, column in zip(frequencies, columns, strict=True)
+        for edge in _edges(scene, ground, shape, frequency, column.transitions)
     ]
 
 
-def _edges(scene, shape, frequency, transitions):
-    amplitudes = [math.exp(transition.position) for transition in transitions]
-    middles = [math.sqrt(a * b) for a, b in zip(amplitudes, amplitudes[1:], strict=False)]
-    crossings = []
-    limits = [LOWEST, *middles, 1.5 * HIGHEST]
-    for k, (transition, amplitude) in enumerate(zip(transitions, amplitudes, strict=True)):
-        rises = transition.before == -1
-        beside = amplitude * (1 + BESIDE if rises else 1 - BESIDE)
-        crossings.append(
-            Edge(
-                shape,
-                frequency,
-                amplitude,
-                rises,
-                int(transition.after if rises else transition.before),
-                limits[k],
-                limits[k + 1],
-                least_normal(scene, pulse(scene, shape, frequency, beside)),
-            )
-        )
-    return crossings
+def _edges(scene, ground, shape, frequency, transitions):
+    """Those of the transitions at which overturning begins or ends."""
+    transitions = [one for one in transitions if -1 in (one.before, one.after)]
+    amplitudes = [math.exp(one.position) for one in transitions]
+    limits = [LOWEST, *(math.sqrt(a * b) for a, b in itertools.pairwise(amplitudes)), 1.5 * HIGHEST]
+    for one, amplitude, low, high in zip(transitions, amplitudes, limits, limits[1:], strict=False):
+        rises = one.before == -1
+        beside = pulse(scene, shape, frequency, amplitude * (1 + BESIDE if rises else 1 - BESIDE))
+        mode, normal = int(one.after if rises else one.before), least_normal(scene, beside)
+        yield Edge(ground, shape, frequency, amplitude, rises, mode, low, high, normal)
 
 
 def least_normal(scene: Scene, motion: Motion) -> float:
@@ -139,9 +139,8 @@ def locate(
         For `refine.drive`; yields lists of amplitudes, is sent True (overturns), False or None (failed, undecided),
         returns a `Located`.
     """
-    known, failed = {}, 0
+    known, bracket = {}, None
     below, above = ROOM * (edge.low / edge.amplitude - 1), ROOM * (edge.high / edge.amplitude - 1)
-    bracket = None
     for distances in ladder:
         offsets = {max(-d, below) for d in distances} | {min(d, above) for d in distances}
         points = sorted(offsets - set(known))
@@ -152,18 +151,9 @@ def locate(
         bracket = _nearest(known, edge.rises)
         if bracket:
             break
-    failed = sum(answer is None for answer in known.values())
     if bracket is None:
-        seen = {answer for answer in known.values() if answer is not None}
-        reason = (
-            "no run was decided"
-            if not seen
-            else "overturns on both sides"
-            if seen == {True}
-            else "stands on both sides"
-            if seen == {False}
-            else "outcomes the other way round"
-        )
+        seen, failed = {answer for answer in known.values() if answer is not None}, list(known.values()).count(None)
+        reason = REASONS[frozenset(seen)]
         reach = f"from {100 * min(known):+.3g} to {100 * max(known):+.3g} %"
         return Located(None, None, f"{reason}, {reach}" + (f"; {failed} undecided" if failed else ""), len(known))
     low, high = bracket
@@ -182,5 +172,5 @@ def locate(
 def _nearest(known, rises):
     """The pair of neighbouring offsets between which the outcome changes the way of the edge, nearest to 0."""
     points = sorted(point for point, answer in known.items() if answer is not None)
-    pairs = [(a, b) for a, b in zip(points, points[1:], strict=False) if known[a] == (not rises) and known[b] == rises]
+    pairs = [(a, b) for a, b in itertools.pairwise(points) if known[a] == (not rises) and known[b] == rises]
     return min(pairs, key=lambda pair: abs(pair[0] + pair[1]), default=None)

@@ -1,84 +1,404 @@
-"""The overturning study's result as a section of the report, from the result alone."""
+"""What is shown of the overturning study."""
 
 from __future__ import annotations
 
+import itertools
+import statistics
+from functools import partial
 from typing import TYPE_CHECKING
 
-from ...showing.parts import Section, figure_of, percent
-from . import words
-from .figures import LIMIT, draw_knobs, draw_maps, draw_shifts, knob_curves
-from .rows import rows_of
-from .tables import tables
+import numpy as np
+
+from ...showing.charts import Axis, Chart, figure, key_of
+from ...showing.figures import MOVED, lines
+from ...showing.parts import Head, Judgement, Mark, Page, number, percent, short
+from ...showing.rows import NAME, Column, grouped, table, where
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
 
+LIMIT, FAIR = 0.005, 0.03  # shifts of a trusted and of a usable engine
+RATINGS = {"good": "trusted", "fair": "usable", "bad": "not to be trusted"}
+UNITS = {"stiffness": "N/m", "step": "s", "largest_step": "s"}  # of accuracy parameters
+EVIDENCE = 50  # failed runs shown, at most
+PLACE = ("ground", "shape", "frequency", "amplitude")
+REGIONS = {
+    "scan": "coarse scan",
+    "outside": "beyond the band, N ≥ 0",
+    "held down": "beyond the band, N < 0",
+    "inside": "within the band",
+}
 
-def section(result: Result) -> Section:
-    """The `Section` of a result of this study."""
-    solvers = result.settings["solvers"]
-    text = [
-        words.asked(result),
-        *(words.verdict(result, solver) for solver in solvers),
-        *(
-            f"{solver} does not decide the impact: its adapter applies the analytic model's. Its boundaries tell of "
-            "its integration alone, and no other setting of it is tried."
-            for solver in solvers
-            if solver in result.settings["held"]
-        ),
-        *words.pulled(result),
-        words.band(result),
-        *(words.knob(result, *key, values) for key, values in knob_curves(result).items()),
-        *filter(None, (words.first_script(result, solver) for solver in result.settings["first_scripts"])),
-        words.failures(result),
-        *words.unfinished(result),
-    ]
-    evidence = tuple(
+GROUND, PULSE = Column("ground", "ground"), Column("pulse", "shape")
+FREQUENCY = Column("pulse frequency over rocking frequency [-]", "frequency", digits=None)
+AMPLITUDE = Column("amplitude over g tan γ [-]", "amplitude", digits=6)
+NORMAL = Column("least N/(m g) of the analytic model [-]", "min_normal")
+FOUND = Column("found [-]", "{found} of {of}")
+MEDIAN = Column("median shift [%]", lambda row: row["median"] and 100 * row["median"])
+LARGEST = Column("largest shift [%]", lambda row: row["largest"] and 100 * row["largest"])
+
+
+def page(result: Result) -> Page:
+    """The `Page` of a `Result` of the overturning study."""
+    s, shapes = result.settings, result.settings["shapes"]
+    edges, shifts, held = (where(result.rows, part=part) for part in ("edge", "shift", "held"))
+    pressed = {_place(edge) for edge in edges if edge["min_normal"] >= 0}
+    known = [row for row in shifts if _place(row) in pressed]
+    rated = [row for row in _rated(result) if s["default_variants"].get(row["engine"]) == row["variant"]]
+    band = percent(s["band"], 1)
+    return Page(
+        _title(rated),
         (
-            f"{row['solver']}, {row['ground']}, {row['shape']}, frequency {row['frequency']:g}, amplitude "
-            f"{row['amplitude']:.6g}",
-            f"{row['reason']}\n{row.get('message') or ''}",
-        )
-        for row in rows_of(result, "failure")[:50]
-    )
-    return Section(
-        "Overturning under pulses: where the boundaries lie",
-        (*(words.trust(result, solver) for solver in solvers), *text),
-        tables(result),
-        tuple(_figures(result)),
-        evidence=evidence,
-    )
-
-
-def _figures(result):
-    """Maps, shifts and knobs with what they show."""
-    shifted = sum(row["shift"] is not None for row in rows_of(result, "shift"))
-    surprises = len(rows_of(result, "surprise"))
-    figures = [
-        figure_of(
-            draw_maps(result),
-            "Maps of outcomes over pulse frequency and amplitude with the engines' "
-            f"boundaries marked; {surprises} disagreements outside the band.",
-            "Colours: the analytic model. Symbols: boundaries found with the engines. Crosses: scanned points "
-            "where an engine's outcome differs. White above colour is the safe gap between two ways to "
-            "overturn.",
+            "A pulse overturns a block above some amplitude. Higher up may lie a safe gap, where the first impact "
+            "takes so much that it stands again. Engines are rated by where they put these boundaries, as long as the "
+            "analytic model keeps the block pressed on its base. An outcome nearer to a boundary than the engine's "
+            "shift is not certain.",
         ),
-        figure_of(
-            draw_shifts(result),
-            f"Shift of {shifted} boundaries in per cent over pulse frequency, beside a "
-            f"band of plus and minus {LIMIT:g} per cent.",
-            f"Boundary of the engine over that of the analytic model, minus one. Bars: width of the last "
-            f"bracket. Grey: {LIMIT:g} %. The axis is linear within ±0.01 %, logarithmic beyond.",
+        first=(
+            _maps(result, shapes[:1]),
+            table(
+                "Boundaries under all pulses on both grounds, block pressed on its base; outcomes further than "
+                f"{band} from them",
+                rated,
+                NAME,
+                Column("rating", lambda row: RATINGS[row["rating"]]),
+                FOUND,
+                Column("safe gaps found [-]", "gaps"),
+                MEDIAN,
+                LARGEST,
+                Column("outcomes that differ [-]", "{wrong} of {outcomes}"),
+            ),
         ),
-    ]
-    if knob_curves(result):
-        figures.append(
-            figure_of(
-                draw_knobs(result),
-                "Largest and median shift of the boundaries over step, accuracy or stiffness.",
-                f"One-sine pulses on both grounds. Dotted: {LIMIT:g} %. A shift is "
-                f"known to ± {percent(result.settings['tolerance'] / 2, 1)} at default settings, to "
-                f"± {percent(result.settings['knob_tolerance'] / 2, 1)} at others.",
+        more=(
+            _maps(result, shapes[1:]),
+            Head("Every boundary"),
+            _over_frequency(known, s["engines"]),
+            _boundaries(
+                "Boundaries, and the engines' shifts, known to ± "
+                f"{percent(s['tolerance'] / 2, 1)}: block pressed on its base",
+                [edge for edge in edges if _place(edge) in pressed],
+                known,
+            ),
+            table(
+                "Boundaries not found, within 30 % or half-way to the next one",
+                [row for row in (*shifts, *_of_defaults(result)) if row["shift"] is None],
+                NAME,
+                GROUND,
+                PULSE,
+                FREQUENCY,
+                AMPLITUDE,
+                Column("half-way to the next boundary", "room", percent=True),
+                Column("why", lambda row: row["reason"].replace("-", "−")),
+            ),
+            *_sliding(s),
+            Head("Where the analytic model holds the corner down"),
+            *_held_down(edges, shifts, held),
+            Head("Outcomes between the boundaries"),
+            _confusions(result, band),
+            table(
+                f"Outcomes that differ further than {band} from every boundary",
+                where(result.rows, part="disagreement"),
+                NAME,
+                GROUND,
+                PULSE,
+                FREQUENCY,
+                AMPLITUDE,
+                Column("distance from the nearest boundary", "distance", percent=True),
+                NORMAL,
+                Column("analytic model", lambda row: "overturns" if row["analytic_overturns"] else "stands"),
+            ),
+            table(
+                "Runs without an outcome, left out of the tables",
+                [
+                    {**rows[0], "runs": len(rows), "held_down": sum(row["min_normal"] < 0 for row in rows)}
+                    for rows in grouped(where(result.rows, part="failure"), "engine", "variant", "reason").values()
+                ],
+                NAME,
+                Column("reason", "reason"),
+                Column("runs [-]", "runs"),
+                Column("of them with N < 0 in the analytic model [-]", "held_down"),
+            ),
+            Head("Refinement levels"),
+            *_refinement(result),
+        ),
+        how=_how(result),
+        evidence=tuple(
+            (
+                f"{NAME.text(row)}, {row['ground']}, {row['shape']}, frequency {row['frequency']:g}, amplitude "
+                f"{row['amplitude']:.6g}",
+                f"{row['reason']}\n{row.get('message') or ''}",
             )
+            for row in where(result.rows, part="failure")[:EVIDENCE]
+        ),
+    )
+
+
+def judgement(result: Result) -> Judgement:
+    """Largest shift of a boundary, by (engine, variant)."""
+    marks = {}
+    for row in _rated(result):
+        lost = row["of"] - row["found"]
+        words = "none found" if row["largest"] is None else percent(row["largest"]) + (f", {lost} lost" if lost else "")
+        share = f"{row['found']} of {row['of']} boundaries found"
+        marks[row["engine"], row["variant"]] = Mark(words, row["rating"], share)
+    return Judgement("boundary shift, worst", marks)
+
+
+def _place(row):
+    return tuple(row[key] for key in PLACE)
+
+
+def _of_defaults(result):
+    """Boundaries at the default settings of variants of that tier, all at one frequency."""
+    tried = {NAME.of(variant) for variant in where(result.settings["variants"], tier="defaults")}
+    return [row for row in where(result.rows, part="refinement") if NAME.of(row) in tried]
+
+
+def _rated(result):
+    """A summary and a rating of each variant that is run at its default, where the block stays pressed on its base."""
+    pressed = {_place(edge) for edge in where(result.rows, part="edge") if edge["min_normal"] >= 0}
+    shifts = where(result.rows, part="shift")
+    known = {NAME.of(row) for row in shifts}
+    rows = shifts + [row for row in _of_defaults(result) if NAME.of(row) not in known]
+    for (name,), members in grouped([row for row in rows if _place(row) in pressed], NAME.of).items():
+        counts = [row for row in where(result.rows, part="confusion", region="outside") if NAME.of(row) == name]
+        found, wrong = _summary(members), sum(row["only_a"] + row["only_b"] for row in counts)
+        complete = found["found"] == found["of"]
+        good = complete and found["largest"] <= LIMIT and not wrong
+        rating = "good" if good else "fair" if complete and found["largest"] <= FAIR else "bad"
+        outcomes = wrong + sum(row["both_stand"] + row["both_overturn"] for row in counts)
+        yield {**found, "rating": rating, "wrong": wrong, "outcomes": outcomes}
+
+
+def _summary(rows):
+    """How many of these boundaries of a variant were found, and how far off they lie."""
+    found = [row for row in rows if row["shift"] is not None]
+    shifts = [abs(row["shift"]) for row in found]
+    return {
+        "engine": rows[0]["engine"],
+        "variant": rows[0]["variant"],
+        "of": len(rows),
+        "found": len(found),
+        "gaps": f"{sum(not row['rises'] for row in found)} of {sum(not row['rises'] for row in rows)}",
+        "median": statistics.median(shifts) if shifts else None,
+        "largest": max(shifts, default=None),
+    }
+
+
+def _title(rated):
+    largest = max((row["largest"] for row in rated if row["largest"] is not None), default=None)
+    count = sum(row["of"] for row in rated)
+    lost = count - sum(row["found"] for row in rated)
+    return f"Many pulses: at their best engines move the overturning boundary by {percent(largest)} at most" + (
+        f", and miss {lost} of {count}" if lost else ""
+    )
+
+
+def _maps(result, shapes):
+    """Outcomes of the analytic model with the boundaries of the engines, and outcomes that differ."""
+    panels = [_map(result, ground, shape) for shape, ground in itertools.product(shapes, result.settings["grounds"])]
+    if not panels:
+        return None
+    differ = where(result.rows, part="disagreement", shape=set(shapes))
+    caption = (
+        f"Analytic model, {' and '.join(shapes)} pulse: shaded overturns, blank stands. Marks: the engines' "
+        "boundaries. Shifts too small to be seen here are in the table."
+        + f" Crosses: outcomes that differ further than {percent(result.settings['band'], 1)} from every boundary."
+        * bool(differ)
+    )
+    keys = {engine: key_of(engine, filled=False, joined=False) for engine in result.settings["engines"]}
+    return figure(panels, caption + MOVED * any(panel.moved for panel in panels), keys, keys)
+
+
+def _map(result, ground, shape):
+    frequency, amplitude = result.arrays["frequency"], result.arrays["amplitude"]
+    chart = Chart(
+        Axis(FREQUENCY.head, float(frequency[0]), float(frequency[-1])),
+        Axis(AMPLITUDE.head, float(amplitude[0]), float(amplitude[-1]), "log", ((1, "1"), (3, "3"), (10, "10"))),
+        f"Outcomes on {ground} over frequency and amplitude of a {shape} pulse, with boundaries of the engines.",
+        title=f"{ground}, {shape}",
+        height=300,
+    )
+    _shade(chart, frequency, amplitude, result.arrays[f"{ground}/{shape}"] >= 0)
+    here = where(result.rows, ground=ground, shape=shape)
+    for engine in result.settings["engines"]:
+        rows = [row for row in where(here, part="shift", engine=engine) if row["shift"] is not None]
+        told = [
+            f"{engine}: amplitude {number(row['amplitude'], 4)}, shifted by {percent(row['shift'])}" for row in rows
+        ]
+        amplitudes = [row["amplitude"] * (1 + row["shift"]) for row in rows]
+        chart.dots([row["frequency"] for row in rows], amplitudes, engine, filled=False, says=told, apart=True)
+        rows = where(here, part="disagreement", engine=engine)
+        told = [f"{engine}: differs at amplitude {AMPLITUDE.text(row)}" for row in rows]
+        chart.dots([row["frequency"] for row in rows], [row["amplitude"] for row in rows], engine, says=told, mark="x")
+    return chart
+
+
+def _shade(chart, frequency, amplitude, falls):
+    """Runs of amplitudes that overturn, as a polygon for each stretch of frequencies with the same number of runs."""
+    runs = []
+    for column in falls.T:
+        ends = np.flatnonzero(np.diff(np.concatenate([[0], column.astype(np.int8), [0]])))
+        runs.append([(amplitude[a], amplitude[min(b, len(amplitude)) - 1]) for a, b in ends.reshape(-1, 2)])
+    begin = 0
+    for _, stretch in itertools.groupby(runs, len):
+        columns = list(stretch)
+        end = begin + len(columns)
+        xs = list(frequency[begin:end])
+        if end < len(runs):  # into the next one, so that no seam is seen
+            xs.append(1.5 * frequency[end] - 0.5 * frequency[end - 1])
+            columns.append(columns[-1])
+        for run in zip(*columns, strict=True):
+            low, high = zip(*run, strict=True)
+            chart.area([*xs, *xs[::-1]], [*low, *high[::-1]], "falls")
+        begin = end
+
+
+def _over_frequency(shifts, engines):
+    """Size of every shift; engines stand beside each other."""
+    aside = {engine: 0.24 * (k - 0.5 * (len(engines) - 1)) for k, engine in enumerate(engines)}
+    return lines(
+        [row for row in shifts if row["shift"] is not None],
+        Column(FREQUENCY.head, lambda row: row["frequency"] + aside[row["engine"]]),
+        Column("shift of the boundary, absolute [%]", lambda row: 100 * abs(row["shift"])),
+        "Boundary of the engine over that of the analytic model, less 1. Engines stand beside each other at each "
+        "frequency.",
+        panel="ground",
+        by=lambda row: f"overturning {'begins' if row['rises'] else 'ends'}",
+        log="y",
+        rules=[("y", 100 * LIMIT, "trusted")],
+        says=lambda row: (
+            f"{NAME.of(row)}: {percent(row['shift'])} at {row['shape']}, frequency {row['frequency']:g}, amplitude "
+            f"{AMPLITUDE.text(row)}"
+        ),
+        joined=False,
+    )
+
+
+def _boundaries(caption, edges, shifts):
+    """A table of boundaries with the shifts of each setting in a column of its own."""
+    found = {(NAME.of(row), *_place(row)): row["shift"] for row in shifts}
+
+    def shift(name, edge):
+        value = found.get((name, *_place(edge)))
+        return "not found" if value is None else number(100 * value, 2)
+
+    return table(
+        caption,
+        edges,
+        GROUND,
+        PULSE,
+        FREQUENCY,
+        AMPLITUDE,
+        Column("overturning", lambda row: "begins" if row["rises"] else "ends"),
+        Column("after impacts [-]", "mode"),
+        NORMAL,
+        *(Column(f"{name} [%]", partial(shift, name)) for name in dict.fromkeys(NAME.of(row) for row in shifts)),
+    )
+
+
+def _sliding(settings):
+    """On which grounds a built-in friction is too low for a block to lift."""
+    for variant in settings["variants"]:
+        mu = variant["friction"]
+        for ground, given in settings["grounds"].items() if mu is not None else ():
+            if mu < given["tan_slenderness"]:
+                yield (
+                    f"{NAME.of(variant)}: its friction, {mu:g} by default, is below tan γ on {ground}. The block "
+                    "slides where it should lift."
+                )
+
+
+def _held_down(edges, shifts, held):
+    pulled = [edge for edge in edges if edge["min_normal"] < 0]
+    if pulled:
+        yield (
+            "Here the normal force of the analytic model becomes negative. A block in contact slides or leaves its "
+            "base, as it does in the engines, so these boundaries tell nothing of the engines. Variants whose adapter "
+            "holds the corner down, as the model does, tell whether contact moves them or the integration."
         )
-    return figures
+    yield _boundaries("Boundaries at which the analytic model holds the corner down", pulled, [*shifts, *held])
+
+
+def _confusions(result, band):
+    return table(
+        f"Outcomes of engine and analytic model; band: {band} about every boundary, N: least normal force of the model",
+        where(result.rows, part="confusion"),
+        NAME,
+        GROUND,
+        Column("runs", lambda row: REGIONS[row["region"]]),
+        Column("both stand [-]", "both_stand"),
+        Column("both overturn [-]", "both_overturn"),
+        Column("only the analytic model overturns [-]", "only_a"),
+        Column("only the engine overturns [-]", "only_b"),
+        Column(
+            "Cohen's kappa (95 % interval) [-]",
+            lambda row: (
+                "–"
+                if row["region"] == "inside" or row["kappa"] is None
+                else f"{number(row['kappa'])} ({number(row['kappa_low'])} to {number(row['kappa_high'])})"
+            ),
+        ),
+    )
+
+
+def _refinement(result):
+    """The boundaries at one frequency at all levels; at the default those that were searched more closely."""
+    variants = {NAME.of(variant): variant for variant in result.settings["variants"]}
+    tried = where(result.rows, part="refinement")
+    places, shifts = {_place(row) for row in tried}, where(result.rows, part="shift")
+    closer = [row for row in shifts if _place(row) in places and NAME.of(row) in map(NAME.of, tried)]
+    known = {(NAME.of(row), row["level"]) for row in closer}
+    rows = [row for row in tried if (NAME.of(row), row["level"]) not in known] + closer
+    groups, order = grouped(rows, NAME.of, "level"), list(variants)
+    levels = [
+        {**variants[name], "level": level, **_summary(groups[name, level])}
+        for name, level in sorted(groups, key=lambda group: (order.index(group[0]), group[1]))
+    ]
+    yield lines(
+        [row for row in levels if row["found"] == row["of"]],
+        Column("accuracy parameter over its default [-]", lambda row: row["level"] / row["default"]),
+        LARGEST,
+        "Largest shift where all boundaries are found, one-sine pulses on both grounds; a stiffness refines upward, a "
+        "step downward. Time-stepping: the analytic model's equations by another method, its steps over 0.1 ms.",
+        log="xy",
+        rules=[("y", 100 * LIMIT, "trusted")],
+    )
+    yield table(
+        f"Refinement levels, shifts known to ± {percent(result.settings['level_tolerance'] / 2, 1)}",
+        levels,
+        NAME,
+        Column("tier", "tier"),
+        Column("setting", _setting),
+        FOUND,
+        MEDIAN,
+        LARGEST,
+    )
+    missing = [
+        name for name, variant in variants.items() if variant["levels"] and (name,) not in grouped(tried, NAME.of)
+    ]
+    if missing and not result.settings["quick"]:
+        yield f"The study was stopped before its end; no level was tried of: {'; '.join(missing)}."
+
+
+def _setting(row):
+    return f"{row['parameter'].replace('_', ' ')} = {short(row['level'])} {UNITS.get(row['parameter'], '')}".rstrip()
+
+
+def _how(result):
+    s = result.settings
+    grounds = "; ".join(
+        f"{name}: γ = {given['block']['slenderness']:g} rad"
+        + (f", {given['bearings']['count']} bearings, base of {given['base']['mass']:g} kg" if given["base"] else "")
+        for name, given in s["grounds"].items()
+    )
+    return (
+        f"{len(where(result.rows, part='edge'))} boundaries of the analytic model: pulses {', '.join(s['shapes'])} of "
+        f"{min(s['frequencies']):g} to {max(s['frequencies']):g} times the rocking frequency, amplitudes of "
+        f"{s['amplitudes'][0]:g} to {s['amplitudes'][1]:g} g tan γ, on two grounds ({grounds}). Each engine bisects "
+        f"for its own to ± {percent(s['tolerance'] / 2, 1)} at default settings. Where the normal force of the "
+        "analytic model becomes negative, that model is the one not to be trusted, and the boundary is not rated.",
+        f"Trusted: all boundaries found, shifted by at most {percent(LIMIT, 1)}, no outcome that differs beyond the "
+        f"band; usable: all found, at most {percent(FAIR, 1)}. Tier assisted: the adapter applies the impact, so that "
+        "the boundaries tell of the integration alone, and no other level is tried.",
+    )

@@ -1,104 +1,114 @@
-"""The fragility surface in words, a table and a picture, from the result alone."""
+"""What is shown of the fragility surface."""
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ...showing.parts import Section, Table, figure_of, number, percent
+from ...showing.charts import Axis, Chart, figure
+from ...showing.parts import Page, number, percent
+from ...showing.rows import NAME, Column, grouped, table
+from .study import crossing
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
 
-LEVELS = np.linspace(0.0, 1.0, 11)
-SHOWN = 9  # rows of the table, at most
+LEVELS = (0.16, 0.5, 0.84)  # shares whose lines are drawn
+SHOWN = 9  # rows of the table for each engine, at most
+GAMMA = Column("slenderness γ [rad]", "slenderness", digits=3)
+HALF = Column("half at [g]", "half", digits=3)
+OVER_UPLIFT = Column("over g tan γ [-]", lambda row: row["half"] and row["half"] / math.tan(row["slenderness"]), 3)
+FALLS = Column("falls again by", "falls_by", percent=True)
 
 
-def section(result: Result) -> Section:
-    """The `Section` of a result of this study."""
-    s = result.settings
-    asked = (
-        f"{s['runs']:,} runs: {len(s['slendernesses'])} slendernesses x {len(s['intensities'])} peak ground "
-        f"accelerations x {s['motions']} synthetic motions for each of {', '.join(s['solvers'])}, scene {s['scene']}. "
-        f"{s['failed']} failed, {s['undecided']} ended undecided."
+def page(result: Result) -> Page:
+    """The `Page` of a `Result` of the fragility surface."""
+    s, engines = result.settings, grouped(result.rows, "engine")
+    first = next(iter(engines.values()))
+    worst = max(first, key=lambda row: row["falls_by"])
+    return Page(
+        _title(first),
+        (
+            "Each point is the share of synthetic motions that overturn a block of that slenderness when they are "
+            "scaled to that peak ground acceleration. A stronger motion is not always the worse one: at slenderness "
+            f"{GAMMA.text(worst)} the share falls again by {FALLS.text(worst)} on the way up.",
+        ),
+        more=(
+            figure(
+                [_surface(result, engine, rows) for (engine,), rows in engines.items()],
+                "Where the share of motions that overturn the block first reaches 16, 50 and 84 %; above, it may fall "
+                "again. Shaded: more than half. Below the line of uplift, peak ground acceleration g tan γ, no block "
+                "lifts.",
+            ),
+            table(
+                "Peak ground acceleration that overturns half, with its 95 % interval",
+                [row for rows in engines.values() for row in _some(rows)],
+                NAME,
+                GAMMA,
+                HALF,
+                Column("interval [g]", lambda row: " to ".join(number(limit) for limit in row["interval"])),
+                OVER_UPLIFT,
+                FALLS,
+                Column("widest Wilson interval of a share", "widest", percent=True),
+            ),
+        ),
+        how=(
+            f"{s['runs']:,} runs: {len(s['slendernesses'])} slendernesses, {len(s['intensities'])} peak ground "
+            f"accelerations and {s['motions']} synthetic motions for each of {', '.join(name for (name,) in engines)}; "
+            f"scene {s['scene']}. {s['failed']} failed, {s['undecided']} ended undecided.",
+        ),
     )
-    figure = figure_of(
-        draw(result),
-        "Probability of overturning as filled contours over slenderness and peak ground acceleration, one panel for "
-        f"each of {', '.join(s['solvers'])}, with the line of uplift. {_answer(result)}",
-        "Share of the motions that overturn the block; lines: 16, 50 and 84 %. Below the dashed line, peak ground "
-        "acceleration g tan γ, no block lifts.",
-    )
-    return Section("Fragility surface", (asked, _answer(result)), (_table(result),), (figure,))
 
 
-def draw(result: Result) -> Figure:
-    """Share of motions that overturn over slenderness and peak ground acceleration; a panel per solver."""
-    s = result.settings
-    figure = Figure(figsize=(0.9 + 4.6 * len(s["solvers"]), 4.4), layout="constrained")
-    axes = figure.subplots(1, len(s["solvers"]), squeeze=False, sharey=True)[0]
-    x, y = np.array(s["slendernesses"]), np.array(s["intensities"])
-    for axis, solver in zip(axes, s["solvers"], strict=True):
-        sound = result.arrays[f"{solver}/sound"]
-        share = result.arrays[f"{solver}/overturned"] / np.where(sound > 0, sound, 1)
-        filled = axis.contourf(x, y, share.T, LEVELS, cmap="cividis")
-        lines = axis.contour(
-            x, y, share.T, [0.16, 0.5, 0.84], colors=["white", "black", "black"], linewidths=[0.8, 1.6, 0.8]
-        )
-        axis.clabel(lines, fmt=lambda level: f"{100 * level:.0f} %", fontsize="small")
-        axis.plot(x, np.tan(x), color="white", linestyle="--", linewidth=1.4)
-        axis.annotate(
-            "uplift, g tan γ", (x[-1], np.tan(x[-1])), (-6, -30), textcoords="offset points", color="white", ha="right"
-        )
-        axis.set(title=f"{solver}, {s['scene']}", xlabel="slenderness γ [rad]", yscale="log", ylim=(y[0], y[-1]))
-        axis.set_yticks([0.1, 0.2, 0.5, 1, 2, 3], labels=["0.1", "0.2", "0.5", "1", "2", "3"])
-        axis.minorticks_off()
-    axes[0].set_ylabel("peak ground acceleration [g]")
-    figure.colorbar(filled, ax=list(axes), label="share of motions that overturn [-]")
-    return figure
+def _some(rows):
+    """Rows from the first to the last, evenly."""
+    return [rows[k] for k in np.unique(np.linspace(0, len(rows) - 1, min(SHOWN, len(rows))).astype(int))]
 
 
-def _answer(result):
-    """From where to where the intensity goes that overturns half, and whether more is always worse."""
-    solver = result.settings["solvers"][0]
-    rows = [row for row in result.rows if row["solver"] == solver]
+def _title(rows):
+    """From where to where the intensity goes that overturns half."""
     known = [row for row in rows if row["half"] is not None]
     if len(known) < 2:
-        return f"{solver}: one half is crossed at fewer than two slendernesses; add intensities."
-    words = [
-        f"at slenderness {number(row['slenderness'])} half of the motions overturn the block at {number(row['half'])} "
-        f"g, {number(row['half'] / np.tan(row['slenderness']))} times its uplift acceleration"
-        for row in (known[0], known[-1])
-    ]
-    worst = max(rows, key=lambda row: row["falls_by"])
+        return "Fragility surface: one half is crossed at fewer than two slendernesses; add intensities"
+    first, last = (OVER_UPLIFT.text(row) for row in (known[0], known[-1]))
     return (
-        f"{solver}: {words[0]}; {words[1]}. A stronger motion is not always the worse one: at slenderness "
-        f"{number(worst['slenderness'])} the share falls again by {percent(worst['falls_by'])} on the way up."
+        f"Fragility surface: half of the motions overturn the block at {first} times its uplift acceleration at "
+        f"slenderness {GAMMA.text(known[0])}, at {last} times at {GAMMA.text(known[-1])}"
     )
 
 
-def _table(result):
-    shown = []
-    for solver in result.settings["solvers"]:
-        rows = [row for row in result.rows if row["solver"] == solver]
-        for k in np.unique(np.linspace(0, len(rows) - 1, min(SHOWN, len(rows))).astype(int)):
-            row = rows[k]
-            over = None if row["half"] is None else row["half"] / np.tan(row["slenderness"])
-            shown.append(
-                (
-                    solver,
-                    number(row["slenderness"]),
-                    number(row["half"]),
-                    " to ".join(number(limit) for limit in row["interval"]),
-                    number(over),
-                    percent(row["falls_by"]),
-                    percent(row["widest"]),
-                )
-            )
-    return Table(
-        "Peak ground acceleration that overturns half, with its 95 % interval; widest Wilson interval of a share",
-        ("solver", "slenderness [rad]", "half at [g]", "interval [g]", "over g tan γ [-]", "falls again by", "widest"),
-        shown,
+def _surface(result, engine, rows):
+    """Lines of equal share over slenderness and intensity."""
+    gammas, intensities = (np.array(result.settings[key]) for key in ("slendernesses", "intensities"))
+    sound = result.arrays[f"{engine}/sound"]
+    shares = result.arrays[f"{engine}/overturned"] / np.where(sound > 0, sound, 1)
+    chart = Chart(
+        Axis(GAMMA.head, float(gammas[0]), float(gammas[-1])),
+        Axis(
+            "peak ground acceleration [g]",
+            float(intensities[0]),
+            float(intensities[-1]),
+            "log",
+            tuple((value, f"{value:g}") for value in (0.1, 0.2, 0.5, 1, 2, 3, 5)),
+        ),
+        f"{engine}: peak ground acceleration that overturns {', '.join(percent(level) for level in LEVELS)} of the "
+        "motions over slenderness, with the line of uplift.",
+        title=NAME.of(rows[0]),
+        height=320,
+        right=70,
     )
+    for level in LEVELS:
+        crossed = np.array([crossing(intensities, share, level) for share in shares], dtype=float)  # NaN for None
+        known = np.isfinite(crossed)
+        if not known.any():
+            continue
+        x, y = gammas[known], crossed[known]
+        chart.line(x, y)
+        chart.label(y[-1], percent(level))
+        if level == 0.5:
+            chart.area([*x, x[-1], x[0]], [*y, intensities[-1], intensities[-1]], "falls")
+    chart.line(gammas, np.tan(gammas), tone="var(--accent)")
+    chart.label(math.tan(gammas[-1]), "uplift", tone="var(--accent)")
+    return chart

@@ -1,15 +1,17 @@
 """What the report's first page takes of the studies: each number from the stored rows, no lucky setting, no silence."""
 
 import re
+from operator import itemgetter
 
 import pytest
 from page_numbers import number_in
 
 from comparisons.report.write import SHORT
 from comparisons.running.provenance import RESULTS, Result, read_result
+from comparisons.running.sources import source_digests
 from comparisons.showing.parts import Head
+from comparisons.showing.rows import where
 from comparisons.studies import BUILT_IN, get_study
-from comparisons.studies.overturning.finding import judgement as boundaries
 from comparisons.studies.speed_error.finding import passing
 from comparisons.studies.stability.finding import judgement as hard_cases
 
@@ -43,6 +45,12 @@ def test_a_page_writes_numbers_and_symbols_as_a_reader_does(name):
     assert not [text for text in words if re.search(r"\d[eE][-+]?\d|\b[a-zA-Z]_[a-zA-Z]\b|\bNone\b|\bnan\b", text)]
 
 
+@pytest.mark.parametrize("name", ["overturning", "surface"])
+def test_what_shows_is_no_part_of_what_a_result_depends_on(name):
+    behind = source_digests([get_study(name).plan.__module__])
+    assert behind and not [name for name in behind if name.endswith(".page") or ".showing" in name]
+
+
 def test_the_errors_of_restitution_are_the_worse_of_both_grounds():
     result = stored("restitution")
     (table,) = get_study("restitution").finding(result).tables
@@ -57,25 +65,16 @@ def test_the_errors_of_restitution_are_the_worse_of_both_grounds():
 
 
 def test_the_boundaries_judged_are_those_where_the_block_stays_pressed():
-    result = stored("overturning")
-    pressed = {
-        (row["ground"], row["shape"], row["frequency"], row["amplitude"])
-        for row in result.rows
-        if row["part"] == "edge" and row["min_normal"] >= 0
-    }
-    for solver in result.settings["solvers"]:
-        shifts = [
-            row["shift"]
-            for row in result.rows
-            if row["part"] == "shift"
-            and row["solver"] == solver
-            and (row["ground"], row["shape"], row["frequency"], row["amplitude"]) in pressed
-        ]
-        mark = boundaries(result).marks[tuple(solver.split(", "))]
-        assert mark.note == f"{sum(shift is not None for shift in shifts)} of {len(shifts)} boundaries found"
-        assert number_in(mark.words) == pytest.approx(
-            100 * max(abs(shift) for shift in shifts if shift is not None), rel=0.06
-        )
+    result, study = stored("overturning"), get_study("overturning")
+    place = itemgetter("ground", "shape", "frequency", "amplitude")
+    pressed = {place(row) for row in where(result.rows, part="edge") if row["min_normal"] >= 0}
+    for name, *_, largest, _ in study.finding(result).tables[0].rows:
+        pair = tuple(name.split(", "))
+        mark, rows = study.judgement(result).marks[pair], where(result.rows, part="shift", engine=pair[0])
+        shifts = [row["shift"] for row in rows if place(row) in pressed]
+        found = [abs(shift) for shift in shifts if shift is not None]
+        assert mark.note == f"{len(found)} of {len(shifts)} boundaries found" and 0 < len(shifts) < len(rows)
+        assert [number_in(mark.words), number_in(largest)] == pytest.approx([100 * max(found)] * 2, rel=0.06)
 
 
 def test_hard_cases_are_counted_as_the_settings_come():

@@ -18,9 +18,10 @@ from comparisons.running.provenance import RESULTS, read_result, write_result
 from comparisons.running.study import Ask
 from comparisons.running.sweep import Row
 from comparisons.sheet.problems import PROBLEMS
+from comparisons.showing.rows import where
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.caryatid.runs import simulations
-from comparisons.studies.overturning import cases as overturning
+from comparisons.studies.overturning import study as overturning
 from comparisons.studies.restitution.cases import CARYATID_BASE, Grid
 from comparisons.studies.speed_error import growth
 from comparisons.studies.speed_error.scenes import near_overturning, trials
@@ -31,8 +32,6 @@ ASK = Ask(("crude",), quick=True)
 DECIDING = FAKE_ENGINE.replace("takes_restitution=True,", "").replace("step: float", "span: float")
 DECIDING = DECIDING.replace("settings.step", "settings.span")
 COLOUR = "#d55e00"
-# of the overturning study, in place of those that take the model's batches
-MAPS = {"frequency": [2.0, 4.0], "amplitude": [1.0, 2.0], "rigid ground/one-sine": [[-1, -1], [0, 1]]}
 # study: what its plan is given so that it stays short
 SHORT = {
     "restitution": {"grid": Grid((0.2,), (None, CARYATID_BASE), (0.6,), ((0.2, None),), 4)},
@@ -113,16 +112,15 @@ def test_a_study_runs_and_shows_it(crude, tmp_path, name):
 
 
 def test_the_overturning_study_runs_and_shows_it(crude, monkeypatch, tmp_path):
-    monkeypatch.setattr(overturning, "GROUNDS", {"rigid ground": ("caryatid-rigid", {})})
-    monkeypatch.setattr(overturning, "_maps", lambda grounds, shapes, quick: MAPS)
-    monkeypatch.setattr(overturning, "TIME_STEPPING", ("time-stepping", None, "step", (1e-2,)))
+    monkeypatch.setitem(overturning.STEPPING, "levels", (1e-2,))
+    grid = dataclasses.replace(overturning.QUICK, grounds=("rigid ground",), size=(60, 8))
     study = get_study("overturning")
-    found = answered(study.plan(ASK), modelled)[-1]
+    found = answered(study.plan(ASK, grid), modelled)[-1]
     section = shown(study, found, tmp_path)
-    assert any(text.startswith("crude, euler may be trusted") for text in section.text) and drawn(section)
-    assert any("does not decide the impact" in text for text in section.text) == crude.takes_restitution
-    tried = [row["settings"] for row in found.rows if row["part"] == "knob" and row["solver"] == "crude, euler"]
-    assert bool(tried) != crude.takes_restitution
+    assert section.tables[0].rows[0][:2] == ["crude, euler", "trusted"] and drawn(section)
+    (variant,) = (variant for variant in found.settings["variants"] if variant["engine"] == "crude")
+    tried = where(found.rows, part="refinement", engine="crude")
+    assert variant["applies_impact"] == crude.takes_restitution != bool(tried)
 
 
 @pytest.mark.parametrize("crude", [FAKE_ENGINE], indirect=True)

@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 from answered import answered, by_runs
+from page_numbers import number_in
 
 from analytic import load_scene, simulate, synthetic_motion
 from analytic.synthetic import PEAK, G
 from comparisons.running.provenance import read_result, write_result
 from comparisons.running.study import Ask
 from comparisons.studies import get_study
+from comparisons.studies.surface.study import crossing
 
 STUDY = get_study("surface")
 GRID = np.array([0.12, 0.3]), np.array([0.15, 0.4, 1.2]), 2
@@ -35,28 +37,37 @@ def test_counts_are_those_of_single_runs(found):
                 simulate(scene.with_(block={"slenderness": slenderness}, motion=motion)).outcome == "overturns"
                 for motion in motions
             )
-            for solver in ("analytic", "twin"):
-                assert found.arrays[f"{solver}/overturned"][i, j] == fallen
-                assert found.arrays[f"{solver}/sound"][i, j] == count
+            for engine in ("analytic", "twin"):
+                assert found.arrays[f"{engine}/overturned"][i, j] == fallen
+                assert found.arrays[f"{engine}/sound"][i, j] == count
     assert 0 < found.arrays["analytic/overturned"].sum() < found.arrays["analytic/sound"].sum()
     assert found.settings["runs"] == 2 * 2 * 3 * 2 and found.settings["failed"] == found.settings["undecided"] == 0
 
 
 def test_half_lies_where_the_share_crosses_it_and_is_shown(found, tmp_path):
     for row in found.rows:
-        share = found.arrays[f"{row['solver']}/overturned"][list(GRID[0]).index(row["slenderness"])] / GRID[2]
+        share = found.arrays[f"{row['engine']}/overturned"][list(GRID[0]).index(row["slenderness"])] / GRID[2]
         above = int(np.argmax(share >= 0.5))
         assert GRID[1][above - 1] <= row["half"] <= GRID[1][above]
         assert row["falls_by"] == pytest.approx(max(share[: k + 1].max() - share[k] for k in range(len(share))))
-    path = write_result(
-        tmp_path / "surface.json",
-        "surface",
-        {**found.settings, "changed_while_running": []},
-        found.rows,
-        found.arrays,
-        modules=["analytic"],
-    )
-    section = STUDY.section(read_result(path))
-    (table,) = section.tables
-    assert len(table.rows) == 4 and all(len(row) == len(table.columns) for row in table.rows)
-    assert "half of the motions overturn the block" in section.text[1] and section.figures[0].svg
+    settings = {**found.settings, "changed_while_running": []}
+    path = write_result(tmp_path / "surface.json", "surface", settings, found.rows, found.arrays, modules=["analytic"])
+    whole = STUDY.page(read_result(path)).whole()
+    (table,), (figure,) = whole.tables, whole.figures
+    assert [(row[0], number_in(row[2])) for row in table.rows] == [
+        (row["engine"], pytest.approx(row["half"], rel=5e-3)) for row in found.rows
+    ]
+    assert whole.measured and figure.svg.count(b'class="chart"') == 2  # a panel for each engine
+
+
+@pytest.mark.parametrize(
+    "share, level, expected",
+    [
+        ([0.2, 0.8, 0.4], 0.5, 0.2),
+        ([0.2, 0.8, 0.4], 0.65, 0.1 * 4**0.75),
+        ([0.2, 0.3, 0.4], 0.5, None),
+        ([0.6, 0.8, 0.9], 0.5, None),  # below all intensities
+    ],
+)
+def test_a_share_is_crossed_between_intensities_by_their_logarithm(share, level, expected):
+    assert crossing(np.array([0.1, 0.4, 1.6]), np.array(share), level) == pytest.approx(expected)

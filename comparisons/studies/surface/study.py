@@ -1,4 +1,4 @@
-"""The runs behind the fragility surface: slendernesses x synthetic motions x intensities.
+"""The fragility surface: slendernesses x synthetic motions x intensities, and where half of the motions overturn.
 
 A case is a block under a motion; its measure runs all intensities and keeps a digit for each, so that a million runs
 are some ten thousand rows.
@@ -11,6 +11,7 @@ import typer
 
 from analytic import Response, load_scene, simulate_many, synthetic_motion
 from analytic.synthetic import PEAK, G
+from engines import ENGINES, get_engine
 
 from ...measuring.statistics import wilson
 from ...running.cases import Case
@@ -44,8 +45,8 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
 def plan(ask: Ask, grid: Any = None, *, scene: Name = "caryatid-rigid") -> Plan:
     """The plan of the study.
 
-    Rows: for each solver and slenderness the intensity that overturns half, see `_crossing`. Arrays
-    ``<solver>/overturned`` and ``<solver>/sound``: runs that overturned, and runs that did not fail, shape
+    Rows, part "half": for each engine and slenderness the intensity that overturns half, see `_half`. Arrays
+    ``<engine>/overturned`` and ``<engine>/sound``: runs that overturned, and runs that did not fail, shape
     (slendernesses, intensities).
 
     Parameters
@@ -59,24 +60,31 @@ def plan(ask: Ask, grid: Any = None, *, scene: Name = "caryatid-rigid") -> Plan:
     start = load_scene(scene).with_(motion=None, duration=None)
     first = [synthetic_motion(seed=seed).scaled(float(intensities[0]) * G / PEAK) for seed in range(count)]
     rows, arrays, checks = [], {}, {"runs": 0, "undecided": 0, "failed": 0}
-    for solver in (ANALYTIC, *ask.engines):
+    for engine in (ANALYTIC, *ask.engines):
+        variant = get_engine(engine).default_variant if engine in ENGINES else ""
         cases = [
             Case(
                 start.with_(block={"slenderness": float(slenderness)}, motion=motion),
-                solver,
+                engine,
                 settings={"history": False},
                 tag={"intensities": [float(x) for x in intensities]},
             )
             for slenderness in slendernesses
             for motion in first
         ]
-        results = yield Batch(cases, measure, f"{solver}: {len(cases) * len(intensities)} runs")
+        results = yield Batch(cases, measure, f"{engine}: {len(cases) * len(intensities)} runs")
         digits = np.array([list(row.values.get("outcomes", FAILED * len(intensities))) for row in results])
         digits = digits.reshape(len(slendernesses), count, len(intensities))
         overturned, sound = (digits == OVERTURNS).sum(axis=1), (digits != FAILED).sum(axis=1)
-        arrays |= {f"{solver}/overturned": overturned, f"{solver}/sound": sound}
+        arrays |= {f"{engine}/overturned": overturned, f"{engine}/sound": sound}
         rows += [
-            {"solver": solver, "slenderness": float(slenderness), **_crossing(intensities, fallen, size)}
+            {
+                "part": "half",
+                "engine": engine,
+                "variant": variant,
+                "slenderness": float(slenderness),
+                **_half(intensities, fallen, size),
+            }
             for slenderness, fallen, size in zip(slendernesses, overturned, sound, strict=True)
         ]
         checks["runs"] += digits.size
@@ -89,32 +97,34 @@ def plan(ask: Ask, grid: Any = None, *, scene: Name = "caryatid-rigid") -> Plan:
         "intensities": [float(x) for x in intensities],
         "motions": count,
         "motion": "synthetic duzce-like, scaled",
-        "solvers": [ANALYTIC, *ask.engines],
+        "engines": ask.engines,
         **checks,
     }
     return Found(settings, rows, arrays, seed=[0, count - 1])
 
 
-def _crossing(intensities, fallen, size):
+def _half(intensities, fallen, size):
     """Where half of the motions overturn the block, and how far the share falls again above.
 
-    The first crossing of one half, between two intensities by their logarithm; its interval is where the upper and the
-    lower Wilson limits cross. No curve is fitted: scaling a motion up can save a block, and no lognormal one does that.
+    The interval is where the upper and the lower Wilson limits cross one half. No curve is fitted: scaling a motion up
+    can save a block, and no lognormal one does that.
     """
     share = fallen / np.where(size > 0, size, 1)
     low, high = np.transpose([wilson(int(k), int(n)) if n else (0.0, 1.0) for k, n in zip(fallen, size, strict=True)])
     return {
-        "half": _first(intensities, share),
-        "interval": [_first(intensities, high), _first(intensities, low)],
+        "half": crossing(intensities, share),
+        "interval": [crossing(intensities, high), crossing(intensities, low)],
         "falls_by": float((np.maximum.accumulate(share) - share).max()),
         "widest": float((high - low).max()),
     }
 
 
-def _first(intensities, share):
-    """The intensity at which `share` first crosses one half, or None."""
-    above = np.flatnonzero(share >= 0.5)
+def crossing(intensities: np.ndarray, share: np.ndarray, level: float = 0.5) -> float | None:
+    """The intensity at which `share` first reaches `level`, between two intensities by their logarithm; None: nowhere,
+    or below the first one.
+    """
+    above = np.flatnonzero(share >= level)
     if not len(above) or above[0] == 0:
         return None
     k = slice(above[0] - 1, above[0] + 1)
-    return float(np.exp(np.interp(0.5, share[k], np.log(intensities[k]))))
+    return float(np.exp(np.interp(level, share[k], np.log(intensities[k]))))

@@ -1,0 +1,381 @@
+"""The overturning study: boundaries of the analytic model, those of every engine beside them, and outcomes between."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from analytic import load_scene, overturning_map, simulate
+from engines import get_engine
+
+from ...measuring.statistics import cohen_kappa, confusion
+from ...running.cases import Case
+from ...running.refine import together
+from ...running.study import Batch, Found, say
+from .edges import HIGHEST, LOWEST, edges, least_normal, locate, pulse
+
+if TYPE_CHECKING:
+    from analytic import Response, Scene
+    from engines.contract import Variant
+
+    from ...running.study import Ask, Plan
+
+# The isolated Caryatid itself overturns at base displacements far beyond its bearings' 0.30 m only; a more slender
+# block on the same bearings does at amplitudes of a strong earthquake.
+GROUNDS = {"rigid ground": ("caryatid-rigid", {}), "isolated base": ("caryatid-isolated", {"slenderness": 0.15})}
+SHAPES = ("one-sine", "one-cosine", "ricker")
+DISTANCES = ((2e-4, 1.2e-2), (3e-2,), (0.1,), (0.3,))  # relative, where a boundary is sought, see `locate`
+TOLERANCE = 2e-5
+# of other levels, at one frequency
+LEVEL_DISTANCES, LEVEL_TOLERANCE, LEVEL_FREQUENCY = ((2e-3, 2e-2), (0.1,), (0.3,)), 2e-4, 4.0
+BAND = 0.01  # relative distance from a boundary beyond which no engine may differ
+# the model's equations by another method, beside the variants of engines
+STEPPING = {
+    "engine": "time-stepping",
+    "variant": "",
+    "tier": "model",
+    "parameter": "step",
+    "default": 1e-4,
+    "levels": (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5),
+    "applies_impact": True,
+    "friction": None,
+}
+
+
+@dataclass(frozen=True)
+class Grid:
+    """What the study covers. frequencies over omega_r; scan: amplitudes over g tan(slenderness) of the coarse scan.
+
+    size: amplitudes and frequencies of the analytic maps. levels: which of a variant's refinement levels.
+    """
+
+    grounds: tuple[str, ...]
+    shapes: tuple[str, ...]
+    frequencies: tuple[float, ...]
+    scan: tuple[float, ...]
+    size: tuple[int, int]
+    levels: slice
+
+
+SCAN = tuple(np.geomspace(1.05, 19.5, 11).tolist())
+FULL = Grid(tuple(GROUNDS), SHAPES, (2.0, 4.0, 6.0, 8.0), SCAN, (240, 141), slice(None))
+QUICK = Grid(tuple(GROUNDS), SHAPES[:1], (2.0, 4.0), SCAN[::4], (60, 36), slice(1, 2))
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A variant at a level of its accuracy parameter; settings: what sets it, nothing at the default."""
+
+    engine: str
+    variant: str
+    level: float
+    settings: Mapping[str, float] = field(default_factory=dict)
+
+    def row(self) -> dict[str, Any]:
+        """Its columns in rows."""
+        return {"engine": self.engine, "variant": self.variant, "level": self.level}
+
+
+class Point(NamedTuple):
+    """A pulse on a ground; min_normal: least N/(m g) of the analytic model there or at the boundary nearby."""
+
+    ground: str
+    shape: str
+    frequency: float
+    amplitude: float
+    min_normal: float
+
+
+def measure(case: Case, response: Response) -> dict[str, Any]:
+    """What is kept of a run."""
+    return {"outcome": response.outcome, "decided": response.decided, "end_tilt": response.end.tilt}
+
+
+def plan(ask: Ask, grid: Grid | None = None) -> Plan:
+    """The plan of the study: an answer first at default settings alone, then growing; grid: in place of FULL or QUICK.
+
+    Rows by "part": "edge" (a boundary of the analytic model), "shift" (an engine's beside it, at default settings),
+    "held" (the same with the corner held down, where the model's normal force is negative), "refinement" (the same at
+    refinement levels and at the defaults of other variants), "confusion" (counts of outcomes), "disagreement" (an
+    outcome that differs outside the band) and "failure".
+
+    Arrays: frequency, amplitude; ``<ground>/<shape>``: int16, shape (amplitudes, frequencies), impacts before
+    overturning in the analytic model, -1 where it does not overturn. ``points``: shape (n, 8): ground, shape, engine
+    (indices into the settings), frequency, amplitude, analytic outcome, engine's outcome (1 overturns, 0 not, -1
+    failed or undecided), whether of the scan.
+    """
+    grid = grid or (QUICK if ask.quick else FULL)
+    grounds = {
+        name: load_scene(shipped).with_(block=block, motion=None, duration=None)
+        for name, (shipped, block) in GROUNDS.items()
+        if name in grid.grounds
+    }
+    arrays, found = _maps(grounds, grid), []
+    for ground, shape in itertools.product(grounds, grid.shapes):
+        say(f"analytic boundaries: {ground}, {shape}")
+        found += edges(grounds[ground], ground, shape, grid.frequencies)
+    rows = [{"part": "edge", **vars(edge)} for edge in found]
+    variants = [(name, variant, kind) for name in ask.engines for variant, kind in get_engine(name).variants.items()]
+    default = [
+        Setting(name, variant, kind.default)
+        for name, variant, kind in variants
+        if variant == get_engine(name).default_variant
+    ]
+    held = [
+        Setting(name, variant, settings.get(kind.knob, kind.default), settings)
+        for name, variant, kind in variants
+        if kind.takes_restitution
+        for settings in (kind.finer[0] if kind.finer else {},)
+    ]
+    runs = _Runs(grounds, default)
+    for setting in default:
+        yield from runs.scan(setting, grid)
+    rows += yield from runs.search("shift", default, found, DISTANCES, TOLERANCE)
+    pulled = [edge for edge in found if edge.min_normal < 0]
+    rows += yield from runs.search("held", held, pulled, DISTANCES, TOLERANCE)
+    records = _compared(runs.outcomes, default, grounds, found)
+    arrays["points"] = _indexed(records, grid, ask.engines)
+    rows += [*_confusions(records, default, grounds), *_disagreements(records)]
+    described = [*itertools.starmap(_described, variants), STEPPING]
+    settings = _settings(ask, grid, grounds, described)
+    yield Found(settings, rows + runs.failures, arrays)
+    chosen = [edge for edge in found if edge.shape == SHAPES[0] and edge.frequency == LEVEL_FREQUENCY]
+    for setting in _refined(described, grid.levels):
+        rows += yield from runs.search("refinement", [setting], chosen, LEVEL_DISTANCES, LEVEL_TOLERANCE)
+        yield Found(settings, rows + runs.failures, arrays)
+    return Found(settings, rows + runs.failures, arrays)
+
+
+def _described(engine: str, variant: str, kind: Variant) -> dict[str, Any]:
+    """A variant, as the settings list it; levels: those that are tried of it."""
+    tried = () if kind.takes_restitution else (kind.default,) if kind.tier == "defaults" else kind.ladder
+    return {
+        "engine": engine,
+        "variant": variant,
+        "tier": kind.tier,
+        "parameter": kind.knob,
+        "default": kind.default,
+        "levels": tried,
+        "applies_impact": kind.takes_restitution,
+        "friction": kind.friction,
+    }
+
+
+def _refined(described, levels):
+    """The `Setting`s that are tried beside the default ones: variants at the tier "defaults", then all levels."""
+    order = {"defaults": 0, "model": 1}
+    for variant in sorted(described, key=lambda variant: order.get(variant["tier"], 2)):
+        for level in variant["levels"][levels] or variant["levels"]:
+            yield Setting(variant["engine"], variant["variant"], level, {variant["parameter"]: level})
+
+
+def _settings(ask, grid, grounds, described):
+    """What the study was asked, for its result file."""
+    return {
+        "quick": ask.quick,
+        "grounds": {
+            name: {
+                "scene": GROUNDS[name][0],
+                "block": scene.block.model_dump(),
+                "omega_r": scene.rocking_frequency,
+                "unit": scene.gravity * math.tan(scene.block.slenderness),
+                "tan_slenderness": math.tan(scene.block.slenderness),
+                "base": scene.base.model_dump() if scene.base else None,
+                "bearings": scene.bearings.model_dump() if scene.bearings else None,
+            }
+            for name, scene in grounds.items()
+        },
+        "shapes": grid.shapes,
+        "frequencies": grid.frequencies,
+        "scan": grid.scan,
+        "amplitudes": (LOWEST, HIGHEST),
+        "band": BAND,
+        "tolerance": TOLERANCE,
+        "level_tolerance": LEVEL_TOLERANCE,
+        "engines": ask.engines,
+        "variants": described,
+        "default_variants": {engine: get_engine(engine).default_variant for engine in ask.engines},
+    }
+
+
+def _maps(grounds, grid):
+    frequency, amplitude = np.linspace(1.5, 8.5, grid.size[1]), np.geomspace(LOWEST, HIGHEST, grid.size[0])
+    arrays = {"frequency": frequency, "amplitude": amplitude}
+    for (ground, scene), shape in itertools.product(grounds.items(), grid.shapes):
+        say(f"analytic map: {ground}, {shape}")
+        outcomes = overturning_map(scene, shape, frequency, amplitude)
+        impacts = np.minimum(outcomes.impacts, 32767)
+        arrays[f"{ground}/{shape}"] = np.where(outcomes.overturns, impacts, -1).astype(np.int16)
+    return arrays
+
+
+class _Runs:
+    """Runs pulses through solvers and remembers failures, and the outcomes at default settings.
+
+    outcomes: {(engine, ground, shape, frequency, amplitude): (overturns, or None where undecided; whether of the scan)}
+    """
+
+    def __init__(self, grounds: Mapping[str, Scene], default: Sequence[Setting]) -> None:
+        self.outcomes: dict[tuple[Any, ...], tuple[bool | None, bool]] = {}
+        self.failures: list[dict[str, Any]] = []
+        self._grounds, self._default = grounds, default
+
+    def ask(self, points, label, scan=False):
+        """Outcomes (True, False, None) of (`Setting`, `Point`) pairs."""
+        cases = [
+            Case(
+                _under(self._grounds, point),
+                setting.engine,
+                setting.variant or None,
+                {"history": False, **setting.settings},
+            )
+            for setting, point in points
+        ]
+        answers = []
+        rows = yield Batch(cases, measure, label)
+        for (setting, point), row in zip(points, rows, strict=True):
+            decided = not row.failed and row.values["decided"]
+            answers.append(row.values["outcome"] == "overturns" if decided else None)
+            if not decided:
+                failure = row.failure or {
+                    "kind": "undecided",
+                    "reason": "the longest run ends without a certain outcome",
+                    "message": f"tilt {row.values['end_tilt']:.6g} rad",
+                }
+                self.failures.append({"part": "failure", **setting.row(), **point._asdict(), **failure})
+            if setting in self._default:
+                self.outcomes[setting.engine, *point[:-1]] = answers[-1], scan
+        return answers
+
+    def scan(self, setting, grid):
+        """A coarse map of one engine."""
+        points = []
+        for place in itertools.product(grid.grounds, grid.shapes, grid.frequencies, grid.scan):
+            scene = self._grounds[place[0]]
+            points.append((setting, Point(*place, least_normal(scene, pulse(scene, *place[1:])))))
+        yield from self.ask(points, f"scan: {setting.engine}", scan=True)
+
+    def search(self, part, settings, found, distances, tolerance):
+        """Rows of the boundaries that settings have beside those found in the analytic model."""
+        jobs = list(itertools.product(settings, found))
+        label = f"{part}: {', '.join(f'{setting.engine} {setting.variant}' for setting in settings)}"
+        searches, answers = together([locate(edge, distances, tolerance) for _, edge in jobs]), None
+        while True:
+            try:
+                batch = searches.send(answers)
+            except StopIteration as stop:
+                located = stop.value
+                break
+            points = [
+                (setting, Point(edge.ground, edge.shape, edge.frequency, float(amplitude), edge.min_normal))
+                for index, amplitude in batch
+                for setting, edge in (jobs[index],)
+            ]
+            answers = yield from self.ask(points, label)
+        return [
+            {
+                "part": part,
+                **setting.row(),
+                "ground": edge.ground,
+                "shape": edge.shape,
+                "frequency": edge.frequency,
+                "amplitude": edge.amplitude,
+                "rises": edge.rises,
+                "mode": edge.mode,
+                "room": min(1 - edge.low / edge.amplitude, edge.high / edge.amplitude - 1),
+                **vars(one),
+            }
+            for (setting, edge), one in zip(jobs, located, strict=True)
+        ]
+
+
+def _under(grounds, point):
+    """The scene of a ground under the pulse of a point."""
+    scene = grounds[point.ground]
+    return scene.with_(motion=pulse(scene, point.shape, point.frequency, point.amplitude))
+
+
+def _compared(outcomes, default, grounds, found):
+    """Records of `_Runs.outcomes`, with what the analytic model says there.
+
+    scan: whether of the scan. distance: from the nearest boundary of the analytic model, relative.
+    """
+    rows, records = {setting.engine: setting.row() for setting in default}, []
+    for (engine, *place), (overturns, scan) in outcomes.items():
+        point = Point._make((*place, math.nan))
+        response = simulate(_under(grounds, point), history=False)
+        distances = [
+            abs(point.amplitude / edge.amplitude - 1)
+            for edge in found
+            if (edge.ground, edge.shape, edge.frequency) == point[:3]
+        ]
+        records.append(
+            {
+                **rows[engine],
+                **point._asdict(),
+                "min_normal": response.min_normal_ratio,
+                "overturns": overturns,
+                "analytic_overturns": response.outcome == "overturns",
+                "scan": scan,
+                "distance": min(distances, default=math.inf),
+            }
+        )
+    return records
+
+
+def _confusions(
+    records: Sequence[dict[str, Any]], default: Iterable[Setting], grounds: Iterable[str]
+) -> Iterator[dict[str, Any]]:
+    """Rows of counts, the engines' outcomes against the analytic model's, by engine, ground and region.
+
+    Outside the band those are apart ("held down") in which the normal force of the analytic model becomes negative.
+    """
+    regions = {
+        "scan": lambda one: one["scan"],
+        "outside": lambda one: one["distance"] > BAND and one["min_normal"] >= 0,
+        "held down": lambda one: one["distance"] > BAND and one["min_normal"] < 0,
+        "inside": lambda one: one["distance"] <= BAND,
+    }
+    for setting, ground, region in itertools.product(default, grounds, regions):
+        whose = {**setting.row(), "ground": ground}
+        chosen = [
+            (one["analytic_overturns"], one["overturns"])
+            for one in records
+            if whose.items() <= one.items() and one["overturns"] is not None and regions[region](one)
+        ]
+        if chosen:
+            counts = confusion(*np.transpose(chosen))
+            kappa, low, high = cohen_kappa(counts.table())
+            agreement = {"kappa": kappa, "kappa_low": low, "kappa_high": high}
+            yield {"part": "confusion", **whose, "region": region, **vars(counts), **agreement}
+
+
+def _disagreements(records):
+    """A row for each outcome outside the band that differs."""
+    for one in records:
+        if one["distance"] > BAND and one["overturns"] not in (None, one["analytic_overturns"]):
+            row = {key: value for key, value in one.items() if key not in ("overturns", "scan")}
+            yield {"part": "disagreement", **row}
+
+
+def _indexed(records, grid, engines):
+    """Array of shape (n, 8), the columns as the plan names them."""
+    rows = [
+        (
+            grid.grounds.index(one["ground"]),
+            grid.shapes.index(one["shape"]),
+            engines.index(one["engine"]),
+            one["frequency"],
+            one["amplitude"],
+            one["analytic_overturns"],
+            -1 if one["overturns"] is None else one["overturns"],
+            one["scan"],
+        )
+        for one in records
+    ]
+    return np.array(rows, dtype=float)
