@@ -117,13 +117,13 @@ def lines(
 
 
 def beside(*figures: Figure | None) -> Figure | None:
-    """Figures as one, panel beside panel, one caption after the other; None: none is there."""
+    """Figures as one, panel beside panel, one caption after the other, equal ones once; None: none is there."""
     found = [one for one in figures if one is not None]
     if not found:
         return None
     keys = {who: key for one in found for who, key in one.keys.items()}
     svg, alt = b"".join(one.svg for one in found), " ".join(one.alt for one in found)
-    caption = " ".join(one.caption.removesuffix(MOVED) for one in found)
+    caption = " ".join(dict.fromkeys(one.caption.removesuffix(MOVED) for one in found))
     moved = MOVED if any(one.caption.endswith(MOVED) for one in found) else ""
     return Figure(svg, alt, caption + moved, True, tuple(keys), keys)
 

@@ -124,6 +124,7 @@ def test_figures_beside_each_other_share_legend_and_caption():
     both = beside(one, None, two)
     assert len(panels(both)) == 3 and both.caption == "One. Two." and both.wide
     assert both.solvers == two.solvers and beside(None) is None
+    assert beside(one, two, one).caption == "One. Two."
 
 
 CELLS = [
