@@ -43,6 +43,7 @@ def lines(
     rules: Sequence[Rule] = (),
     says: Callable[[Row], str] | None = None,
     joined: bool = True,
+    like: Iterable[Row] = (),
 ) -> Figure | None:
     """Panels of lines and marks, one series for each engine and what tells its series apart; None: nothing to draw.
 
@@ -67,6 +68,8 @@ def lines(
         What a row's mark tells under the pointer; without it series, y and x.
     joined : bool
         Whether a line joins the marks.
+    like : iterable of dict
+        Rows whose series get their looks first: figures of the same `like` draw a series alike.
     """
     kept = [row for row in rows if _drawn(x.of(row), "x" in log) and _drawn(y.of(row), "y" in log)]
     if not kept:
@@ -79,8 +82,9 @@ def lines(
         values = [column.of(row) for row in kept] + [value for along, value, _ in rules if along == which]
         return log_axis(column.head, values) if which in log else _linear_axis(column.head, values)
 
-    coloured = list(grouped((row for row in kept if not grey(row)), "engine", name))
-    looks = {pair[1]: LOOKS[rank % len(LOOKS)] for pair, rank in _ranks(coloured)}
+    coloured = grouped((row for row in kept if not grey(row)), "engine", name)
+    ranked = grouped(like, "engine", name) | coloured
+    looks = {pair[1]: LOOKS[rank % len(LOOKS)] for pair, rank in _ranks(ranked)}
     panels = grouped(kept, panel)
     ends = joined and len({engine for engine, _ in coloured}) == len(coloured)
     charts = []

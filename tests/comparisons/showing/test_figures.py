@@ -9,7 +9,7 @@ import pytest
 
 from comparisons.showing.charts import INK, NEAR, STYLE
 from comparisons.showing.figures import MOVED, beside, lines, shades
-from comparisons.showing.rows import NAME, Column
+from comparisons.showing.rows import NAME, Column, where
 from engines import ENGINES
 
 X, Y = Column("slenderness γ [rad]", "x", digits=None), Column("error [-]", "y")
@@ -76,6 +76,9 @@ def test_variants_of_an_engine_share_its_colour_and_differ_in_their_marks():
     fine, coarse = (made.keys[f"{FIRST}, {variant}"] for variant in ("fine", "coarse"))
     assert ENGINES[FIRST].colour in fine and ENGINES[FIRST].colour in coarse
     assert 'class="dot"' in fine and 'class="dot open"' in coarse
+    alone = lines(where(ROWS, variant="coarse"), X, Y, "Errors.", log="y")
+    likewise = lines(where(ROWS, variant="coarse"), X, Y, "Errors.", log="y", like=ROWS)
+    assert 'class="dot"' in alone.keys[f"{FIRST}, coarse"] and likewise.keys == {f"{FIRST}, coarse": coarse}
     many = [row(FIRST, f"variant {k}", 0.1, 10.0**-k) for k in range(4)]
     marks = {
         re.sub(r".*?<path class=\"(dot[^>]*)>.*", r"\1", str(key))
