@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
@@ -41,18 +42,18 @@ HEAVY_BASE, SPRINGS, FREE_3D = "rigid ground as a heavy base", "rigid ground as 
 class Trial:
     """One scene of the study.
 
-    measures: names of the errors that mean something here, the principal one first. reference: the kernel at its
-    tightest. boundary: None but where the runs search for one.
+    measures: names of the errors that mean something here, the principal one first. boundary: None but where the runs
+    search for one. reference: the kernel at its tightest.
     """
 
     name: str
     scene: Scene
     measures: tuple[str, ...]
     boundary: Boundary | None = None
-    reference: Response = field(init=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "reference", tight(self.scene))
+    @cached_property
+    def reference(self) -> Response:
+        return tight(self.scene)
 
     def with_law(self, law: str) -> Trial:
         """The same trial with another bearing law, and that law's own reference."""

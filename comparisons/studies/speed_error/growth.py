@@ -6,7 +6,6 @@ import dataclasses
 import math
 import tracemalloc
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -31,30 +30,27 @@ ENGINE_DURATIONS = ((5, 10, 20, 40), (1, 2, 4))  # s
 RATES = ((100, 200, 400, 800, 1600, 3200), (200, 400, 800))  # 1/s
 
 
-@dataclass(frozen=True, eq=False)
-class Point:
-    """One measurement of growth: `value` of `against` ("duration" [s] or "samples" per second), in `scene`."""
+def growth_cases(scene: Scene, engines: Sequence[str], quick: bool) -> list[Case]:
+    """All measurements, of a scene under a sampled motion that is repeated.
 
-    against: str
-    value: float
-    engine: str
-    variant: str
-    scene: Scene
+    Each is its own run cut short, which loads code and caches; the tag says the duration [s] of the run that `grown`
+    measures, the variant, and the value of what the cost grows against.
+    """
 
-    def case(self, turn: int) -> Case:
-        """The measurement of one round as a `Case`: its own run, cut short, loads code and caches for `grown`."""
-        warm = self.scene.with_(duration=min(self.scene.duration, WARM_SECONDS))
-        return Case(warm, self.engine, None, {"history": False}, {"duration": self.scene.duration, "round": turn})
+    def case(engine, variant, against, value, whole):
+        warm = whole.with_(duration=min(whole.duration, WARM_SECONDS))
+        tag = {"variant": variant, "against": against, "value": value, "duration": whole.duration}
+        return Case(warm, engine, None, {"history": False}, tag)
 
-
-def points(scene: Scene, engines: Sequence[str], quick: bool) -> list[Point]:
-    """All measurements, of a scene under a sampled motion that is repeated."""
-    variants = {engine: get_engine(engine).default_variant for engine in engines}
-    lengths = [("analytic", "kernel", value) for value in DURATIONS[quick]]
-    lengths += [(*pair, value) for pair in variants.items() for value in ENGINE_DURATIONS[quick]]
+    lengths: dict[tuple[str, str], tuple[int, ...]] = {("analytic", "kernel"): DURATIONS[quick]}
+    lengths |= {(engine, get_engine(engine).default_variant): ENGINE_DURATIONS[quick] for engine in engines}
     return [
-        *(Point("duration", value, engine, variant, lasting(scene, value)) for engine, variant, value in lengths),
-        *(Point("samples", value, "analytic", "kernel", sampled(scene, value)) for value in RATES[quick]),
+        *(
+            case(*pair, "duration", value, lasting(scene, value))
+            for pair, values in lengths.items()
+            for value in values
+        ),
+        *(case("analytic", "kernel", "samples", value, sampled(scene, value)) for value in RATES[quick]),
     ]
 
 

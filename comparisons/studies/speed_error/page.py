@@ -40,7 +40,7 @@ CPU = Column("CPU time of a run [s]", "cpu_seconds")
 
 def page(result: Result) -> Page:
     """The `Page` of a `Result` of the speed-error study."""
-    every = settings_of(result)
+    every = levels_run(result)
     rows = [row for row in where(every, model=NEEDED) if row["law"] != "bouc-wen"]
     scenes = grouped(rows, "scene")
     first = [key for key in scenes if key[0] in FIRST] or list(scenes)[-1:]
@@ -91,8 +91,8 @@ COST = (
 )
 
 
-def settings_of(result: Result) -> list[dict[str, Any]]:
-    """The rows of solvers at their levels, with name, title of the scene, its principal measure and the error in it.
+def levels_run(result: Result) -> list[dict[str, Any]]:
+    """The rows of all solvers at their levels, with name, title of the scene, its principal measure and error in it.
 
     The error is None where the run failed, lost impacts or found no boundary.
     """
@@ -264,12 +264,13 @@ def _more_than_needed(result, every):
     ]
 
     def error(row):
-        lost = f" ({row['lost']} impacts lost)" if row["lost"] else ""
+        lost = f" (lost: {row['lost']})" if row["lost"] else ""
         return number(row["errors"].get(row["measure"]), 2) + lost
 
     yield Head("More than the scene needs")
     yield table(
-        "A scene modelled with more than it needs, at the same level: ratio of CPU times, and the error of both",
+        "A scene modelled with more than it needs, at the same level: ratio of CPU times, errors as in the tables "
+        "above, lost impacts",
         [row for row in pairs if row["model"] != NEEDED],
         Column("modelled", "model"),
         NAME,

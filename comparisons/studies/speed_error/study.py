@@ -29,7 +29,7 @@ from ...measuring.errors import (
 from ...running.study import Batch, Found
 from .boundary import RUNS, Boundary, searched
 from .cases import Entry, Trial, entries, levels_of, trials
-from .growth import TICK, grown, points
+from .growth import TICK, grown, growth_cases
 
 if TYPE_CHECKING:
     from analytic import Response
@@ -38,10 +38,10 @@ if TYPE_CHECKING:
     from ...running.study import Ask, Plan
 
 REPEATS, QUICK_REPEATS = 5, 3
-SLOW = 0.5  # s of CPU: such measurements are repeated `FEW` times only
+# s of CPU: next to it what is loaded in a first run is nothing; such a measurement needs no warm-up and `FEW` rounds
+SLOW = 0.5
 FEW = 3
 MOST_REPEATS = 200
-LONG = 0.5  # s of CPU: next to it what is loaded in a first run is nothing, and it is not run again
 TWIN_TOLERANCE = 1e-13  # of the independent solution each reference is held against
 EVIDENCE = 600  # characters of an engine's message that a row keeps
 # A boundary search that still moves this far has found none. Where steps are fixed, the boundary depends on where in a
@@ -63,7 +63,7 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
         return dataclasses.replace(case, scene=scene).run()
 
     shifts, cpu, repeats = None, response.cpu_seconds, 1
-    if goal or cpu < LONG:
+    if goal or cpu < SLOW:
         response, shifts, cpu = searched(run, case.scene, goal)
         if 0 < cpu < TICK and response.outcome != "failed":
             repeats = min(MOST_REPEATS, math.ceil(TICK / cpu))
@@ -214,17 +214,18 @@ def _growth(scenes, ask, rounds):
     """Rows of growth: each measurement in a process of its own, so that none finds memory another has left."""
     rows = []
     (stands,) = (trial.scene for trial in scenes if trial.name == "isolated-standing")
-    for point in points(stands, ask.engines, ask.quick):
-        turns = []
+    for case in growth_cases(stands, ask.engines, ask.quick):
+        turns, tag = [], case.tag
         for turn in range(rounds):
-            turns += yield Batch([point.case(turn)], grown, f"growth against {point.against}", alone=True)
+            again = dataclasses.replace(case, tag={**tag, "round": turn})
+            turns += yield Batch([again], grown, f"growth against {tag['against']}", alone=True)
         sound = [each for each in turns if not each.failed]
         row = {
             "part": "growth",
-            "engine": point.engine,
-            "variant": point.variant,
-            "against": point.against,
-            "value": point.value,
+            "engine": case.solver,
+            "variant": tag["variant"],
+            "against": tag["against"],
+            "value": tag["value"],
             "failure": _evidence(turns[0].failure),
         }
         if sound:

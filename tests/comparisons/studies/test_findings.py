@@ -10,7 +10,7 @@ from comparisons.running.provenance import RESULTS, Result, read_result
 from comparisons.showing.parts import Head
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.overturning.finding import judgement as boundaries
-from comparisons.studies.speed_error.page import passing, settings_of
+from comparisons.studies.speed_error.page import levels_run, passing
 from comparisons.studies.stability.finding import judgement as hard_cases
 
 
@@ -118,7 +118,7 @@ def ladder(errors, failed=()):
     ],
 )
 def test_the_cheapest_setting_is_one_that_no_finer_one_contradicts(errors, failed, chosen):
-    found = passing(settings_of(ladder(errors, failed)), 1e-3)
+    found = passing(levels_run(ladder(errors, failed)), 1e-3)
     assert {name: row["level"] for name, row in found.items()} == (
         {} if chosen is None else {"one, fine": 10.0**-chosen}
     )
