@@ -62,20 +62,25 @@ def csmip(values, step=".005", layout="8f10.5", words="in cm/sec2."):
     return text
 
 
-def cosmos(values, layout="8F10.5", units="cm/sec2(04)", step=5.0, channels=("1:340 deg", "2:Up")):
-    """Channels of COSMOS 1.20; the accelerations of the second one are twice those of the first."""
+def cosmos(
+    values, layout="8F10.5", units="cm/sec2(04)", step=5.0, channels=("1:340 deg", "2:Up"), form=",", volume="Corrected"
+):
+    """Channels of COSMOS 1.20; the accelerations of the second one are twice those of the first.
+
+    `form`: what stands between the unit and the word Format.
+    """
     text = ""
     for times, name in enumerate(channels, 1):
         samples = [100 * value * times for value in values]
         reals = [-999.0] * 33 + [0.02] + [-999.0] * 27 + [step, step * len(values) / 1000, max(samples, key=abs), 0.02]
-        text += "Corrected acceleration    (Format v01.20 with 13 text lines)\n" + "Nowhere\n" * 7
+        text += f"{volume} acceleration    (Format v01.20 with 13 text lines)\n" + "Nowhere\n" * 7
         text += f"Sta Chan   {name} (Rcrdr Chan  1) Location:\n" + "Nowhere\n" * 4
         text += " 100 Integer-header values follow on  10 lines, Format= (10I8)\n"
         text += _columns([2, 1, 4, 120, 1] + [-999] * 95, 10, 8)
         text += " 100 Real-header values follow on  20 lines, Format= (5F15.6)\n"
         text += _columns(reals + [-999.0] * (100 - len(reals)), 5, 15, 6)
         text += '   1 Comment line(s) follow, each starting with a "|":\n| made up\n'
-        text += f"{len(values):8d} acceleration pts, approx    0 secs, units={units},Format=({layout})\n"
+        text += f"{len(values):8d} acceleration pts, approx    0 secs, units={units}{form}Format=({layout})\n"
         text += (
             _columns(samples, 8, 10, 5) if layout.startswith("8") else "".join(f"{value:15.6e}\n" for value in samples)
         )
@@ -121,6 +126,98 @@ def _columns(values, per_line, width, decimals=0):
     return "".join("".join(words[i : i + per_line]) + "\n" for i in range(0, len(words), per_line))
 
 
+def cwa(values):
+    """A file of Taiwan's weather administration: times and three components, the second the made-up one."""
+    text = "#StationCode: X001\n#InstrumentKind: made up\n#StartTime: 2000/01/01-00:00:00.000\n"
+    text += f"#RecordLength(sec): {len(values) / 200:g}\n#SampleRate(Hz): 200\n#AmplitudeUnit:  gal. DCoffset(corr)\n"
+    text += "#AmplitudeMAX.  U: 1.0~ -1.0\n#DataSequence: Time U(+); N(+); E(+)\n#Data: 4F10.3\n"
+    return text + "".join(
+        f"{0.005 * i:10.3f}{10 * value:10.3f}{100 * value:10.3f}{-value:10.3f}\n" for i, value in enumerate(values)
+    )
+
+
+def jma(values, titles="NS,EW,UD"):
+    """A CSV of Japan's weather agency."""
+    text = "SITE CODE= 47000NOWHERE\nLAT.= 35.0\nLON.= 135.0\nSAMPLING RATE= 100Hz\nUNIT  = gal(cm/s/s)\n"
+    text += f"INITIAL TIME = 2000 01 01 00 00 00\n{titles}\n"
+    return text + "".join(f"{100 * value:.3f},{-50 * value:.3f},{value:.3f}\n" for value in values)
+
+
+def turkey(values):
+    """Columns of Turkey's disaster management."""
+    text = "STRONG GROUND MOTION RECORDS OF TURKEY\nPLACE                  : NOWHERE\n"
+    text += f"NUMBER OF DATA         : {len(values)}\nSAMPLING INTERVAL (sec) : 0.02\n"
+    text += "RAW PGA VALUES (gal)   : (N-S) 1.0 (E-W) 2.0 (U-D) 3.0\n\n       N-S        E-W        U-D\n"
+    return text + "".join(f"{100 * value:11.6f}{-50 * value:11.6f}{value:11.6f}\n" for value in values)
+
+
+# What headers say of the step, and whether in a line of its own (else the line is that of the title as well)
+STATED = (
+    "Sampling rate: 200 Hz",
+    "SAMPLING_RATE (samples/s) = 200.0",
+    "Digitization rate 200 sps",
+    "recorded at 200 samples/sec",
+    "fs = 200",
+    "Sampled at 200.0 samples per second",
+    "sampling interval is 5 ms",
+    "Equally-spaced at 0.005 sec",
+    "delta-t [s]: .005",
+    "time step = 0,005 s",
+    "Sample period (msec): 5.0",
+    "Sampling rate: 256 Hz, sampling interval: .0039 s",
+    "Frecuencia de muestreo: 200 muestras/s",
+    "Tasa de muestreo = 200,0 Hz",
+    "INTERVALO DE MUESTREO (seg): 0,005",
+    "paso de tiempo: 5 milisegundos",
+    "Abtastrate: 200 Hz",
+    "Abtastfrequenz [Hz] = 200",
+    "Zeitschritt = 0,005 Sekunden",
+    "Abtastintervall: 5 ms",
+    "Fréquence d'échantillonnage : 200 Hz",
+    "Frequence d echantillonnage : 200,0 echantillons par seconde",
+    "Pas de temps : 0,005 s",
+    "Période d'échantillonnage (ms) = 5",
+    "Örnekleme frekansı: 200 Hz",
+    "ORNEKLEME FREKANSI : 200 ornek/s",
+    "Örnekleme aralığı (sn): 0.005",
+    "zaman adimi = 5 ms",
+)
+UNITS = (
+    "acceleration [cm/s2]",
+    "Units: gal",
+    "NS_gal",
+    "Unidades de los datos: cm/s/s",
+    "Aceleración (gal)",
+    "Einheit: m/s^2",
+    "Beschleunigung [mg]",
+    "Unités : g",
+    "İvme (cm/s²)",
+    "birim: gal",
+    "PGA [gal]",
+)
+
+
+def stated():
+    """(name, text, what the user says) of lists and columns whose headers say the step in words."""
+    for at, step in enumerate(STATED):
+        unit = UNITS[at % len(UNITS)]
+        if at % 3 == 0:
+            yield f"words {at}", f"{step}\n{unit}\n" + _rows("{a:.4f}"), {}
+        elif at % 3 == 1:
+            yield (
+                f"words {at}",
+                f"# {unit.replace('NS_gal', 'gal: units: gal')}\n# {step}\n" + _list(SMOOTH).rstrip("\n"),
+                {},
+            )
+        else:
+            text = f"{step}; {unit}\nNS  EW  UD\n" + _rows("{a:.4f}  -{t:.4f} 1.0")
+            yield (
+                f"words {at}",
+                text,
+                {"column": ("EW", 1, "2", "ns")[at % 4], "units": "gal" if unit == "NS_gal" else None},
+            )
+
+
 def _list(values, per_line=6):
     words = [f"{value:.5f}" for value in values]
     return "".join(" ".join(words[i : i + per_line]) + "\n" for i in range(0, len(words), per_line))
@@ -141,7 +238,7 @@ def records():
         ("at2 stuck", _at2(history, "NPTS=12,DT=5.0E-003", _fortran([-abs(value) - 0.01 for value in VALUES], 13)), {}),
         ("at2 long exponents", _at2(history, counts, _fortran(VALUES, 16, 7, 3)), {}),
         ("at2 of given units", _at2("TIME HISTORY", counts, _fortran(VALUES)), {"units": "g"}),
-        ("at2 of velocities", _at2("VELOCITY TIME HISTORY IN UNITS OF CM/S", counts, _fortran(VALUES)), {}),
+        ("at2 of velocities, refused", _at2("VELOCITY TIME HISTORY IN UNITS OF CM/S", counts, _fortran(VALUES)), {}),
         ("dyna", _dyna(VALUES), {}),
         ("blanks", _rows("{t:8.4f} {a:14.6E}"), {"units": "g"}),
         ("comments", "# time acceleration\n" + _rows("{t:.3f}\t{a:.4f}  # remark"), {"units": "m/s2"}),
@@ -167,6 +264,62 @@ def records():
         ("kiknet", knet([round(1e6 * value) for value in VALUES], "5", 100), {"units": "cm/s2"}),
         ("smc", smc(VALUES), {}),
         ("smc, long numbers", smc(VALUES, high=True), {}),
+        *changed(),
+    ]
+
+
+def changed():
+    """Records of what came last: steps in words, named columns, data as several services write them."""
+    history, semicolons = "ACCELERATION TIME HISTORY IN UNITS OF G", _rows("{t:.3f};{a:.4f};1,0").replace(".", ",")
+    small = [0.00012, 9.5e-05, 0, -0.0003, 1e-05, 0.25] * 4
+    volume_1 = {"form": "     ", "volume": "Uncorrected"}
+    return [
+        ("cosmos, volume 1", cosmos(VALUES, units="g.     (02)", **volume_1), {"channel": 1}),
+        ("cosmos, volume 1, gals", cosmos(VALUES, "1E15.6", "cm/sec2 (4)", channels=("?:Up",), **volume_1), {}),
+        ("cwa", cwa(VALUES), {"column": 3}),
+        ("cwa, name", cwa(VALUES * 2), {"column": "n"}),
+        ("jma", jma(VALUES), {"column": "EW"}),
+        ("jma, refused without a column", jma(VALUES), {}),
+        ("jma, number", jma(VALUES * 2).rstrip("\n"), {"column": "1"}),
+        ("turkey", turkey(VALUES), {"column": "N-S"}),
+        ("turkey, number", turkey(VALUES * 2), {"column": 3}),
+        ("names with gals", "t_s,NS_gal,EW_gal\n" + _rows("{t:.3f},{a:.4f},-{t:.4f}"), {"column": "ew_gal"}),
+        ("names with g", "Zeit [s]\tNS_g\tEW_mg\n" + _rows("{t:.3f}\t{a:.4f}\t-{t:.4f}"), {"column": "EW_mg"}),
+        (
+            "tiempo",
+            "Tiempo (ms); Aceleración (cm/s2); v\n" + _rows("{t:.1f};{a:.4f};1", 5.0),
+            {"column": "Aceleración"},
+        ),
+        ("temps", "temps (s);x (gal);y\n" + semicolons, {"column": 2}),
+        ("gal given", "Time  a\n" + _rows("{t:.3f} {a:.4f}"), {"units": "gal"}),
+        ("%g given", _rows("{t:.3f} {a:.4f}").rstrip("\n"), {"units": "%g"}),
+        ("mm/s2 given", "zaman,a\n" + _rows("{t:.3f},{a:.4f}"), {"units": "mm/s2"}),
+        ("general form", "a (g)\n" + "".join(f"{value:g}\n" for value in small), {"dt": 0.01}),
+        (
+            "general form, csv",
+            "b;a [g];c\n" + "".join(f"{v:e};{v:g};x\n" for v in small).rstrip("\n"),
+            {"dt": 0.01, "column": 2},
+        ),
+        (
+            "general form, times",
+            "".join(f"{0.01 * i:.2f},{v:g}\n" for i, v in enumerate(small)).rstrip("\n"),
+            {"units": "g"},
+        ),
+        ("no last end", _rows("{t:.3f} {a:.4f}").rstrip("\n"), {"units": "g"}),
+        ("no last end, exponents", "# acc (m/s2)\n" + _rows("{t:.3f}, {a:.3E}").rstrip("\n"), {}),
+        (
+            "comment inside",
+            _rows("{t:.3f} {a:.4f}") + "# remark\n" + _rows("{t:.3f} {a:.4f}", origin=0.12),
+            {"units": "g"},
+        ),
+        ("step inside, refused", _list(SMOOTH[:24]) + "# dt = 0.01\n" + _list(SMOOTH[24:]), {"units": "g", "dt": 0.01}),
+        ("at2, rate", _at2(history, "NPTS= 12, DT= .005, SAMPLING RATE= 200 HZ", _fortran(VALUES)), {}),
+        ("at2, rate above", _at2(history + ", 200 SPS", "NPTS= 12, DT= .005 SEC", _fortran(VALUES)), {}),
+        ("at2, step above", _at2(history, "NPTS= 12, DT: 5 ms", _fortran(VALUES)), {"dt": 0.005}),
+        ("at2, no last end", _at2(history, "NPTS= 12, DT= .005 SEC", _fortran(VALUES).rstrip("\n")), {}),
+        ("at2, small", _at2(history, "NPTS= 12, DT= .005", _fortran([1e-102, *VALUES[1:]])), {}),
+        ("dyna, no last end", _dyna(VALUES).rstrip("\n"), {}),
+        *stated(),
     ]
 
 
@@ -254,6 +407,36 @@ WORDS = [
     "-1.0",
     "0",
     "# 1 2",
+    "Hz",
+    "200Hz",
+    "sps",
+    "200 sps",
+    "muestras/s",
+    "200 samples per second",
+    "dt = 5",
+    "dt = 0.005 s",
+    "dt:",
+    "# dt = .01",
+    "Abtastrate",
+    "Sampling rate: 200",
+    "fs",
+    "fs = 100 Hz",
+    "sampling interval of",
+    "1,000",
+    "0,005",
+    "(gal)",
+    "[gals]",
+    "gal(cm/s/s)",
+    "_gal",
+    "unidades",
+    "Zeit",
+    "DataSequence:",
+    "# gal",
+    "kHz",
+    "per second",
+    "is",
+    "=",
+    ":",
 ]
 
 
@@ -392,7 +575,7 @@ DAMAGE = (
 def cases(number, seed=0):
     """`number` damaged files: (kind, name, content, what the user says), kind "record" or "scene"."""
     chance = random.Random(seed)
-    kinds = [("record", *record) for record in records()] * 2 + [("scene", *scene, {}) for scene in scenes()] * 11
+    kinds = [("record", *record) for record in records()] * 2 + [("scene", *scene, {}) for scene in scenes()] * 22
     for _ in range(number):
         kind, name, text, said = chance.choice(kinds)
         if kind == "record" and chance.random() < 0.1:

@@ -2,14 +2,16 @@
 
 from fractions import Fraction
 
-from strict_words import DIGITS, LETTERS, TIME_WORDS, Refused, scan, single, stem_of, unit_of, words_of
+from strict_statements import blanked, flat, fold, step_of_all
+from strict_words import DIGITS, LETTERS, TIME_WORDS, Refused, form_of, letter, single, stem_of, unit_of, words_of
 
 OTHER_TIMES = ("us", "µs", "usec", "ns", "min", "minute", "minutes", "h", "hour", "hours", "samples")
+NAMES_OF_TIMES = ("time", "t", "zeit", "tiempo", "temps", "zaman")
 
 
-def columns(lines, known, column):
-    """(bounds of the step or None, samples, factor) of columns; `known`: the user says the step."""
-    header, rows = _header_and_rows(lines)
+def columns(lines, given, column):
+    """(bounds of the step or None, samples, factor) of columns; `given`: the user says the step."""
+    header, rows, comments = _header_and_rows(lines)
     everything = "\n".join(rows)
     first = next((line for line in lines if line.strip()), "").lower()
     if not rows or "uncorrected accelerogram" in first[:200]:
@@ -29,40 +31,151 @@ def columns(lines, known, column):
             for line in header
         ):
             raise Refused("NPTS")
-    stated = {step for line in header for step in _steps_in(" ".join(line[:400].split()))}
-    if len(stated) > 1:
-        raise Refused("two steps")
-    stated = stated.pop() if stated else None
-    known, width, step = known or stated is not None, len(table[0]), None
-    times = [single(row[0]) for row in table] if known and width > 1 else []
-    rises = len(times) > 1 and all(after > before for before, after in zip(times, times[1:], strict=False))
-    timed = width > 1 and (rises or not known)
-    if timed or column is not None:
-        samples = _chosen(table, column, timed)
-        if timed:
-            step = _step_of(table, header)
-    elif not known:
-        raise Refused("no step")
-    else:
-        samples = _list(table)
-    if column is not None and header:
-        by = "\t" if by is None else by
-        titles = header[-1][:400].split(by)
-        header = [*header[:-1], titles[column - 1] if len(titles) == width else header[-1]]
+    for comment in comments:
+        statements, kept = blanked([comment])
+        if statements or unit_of(kept, None) is not None:
+            raise Refused("statement among the data")
+    width = len(table[0])
+    others, titles, at = _titles(header, by, width)
+    top = [*others[:at], titles[0], *others[at:]] if titles else others
+    statements, kept = blanked(top)
+    stated = step_of_all(statements)
+    if None in [found for line in kept for found in times_in(line)]:
+        raise Refused("unit of time")
+    timed = width > 1 and _are_times(table, titles, given or stated is not None)
+    if lines[-1].strip():
+        _whole_end(table)
+    samples, number, step = _samples(table, titles, timed, column), 0, None
+    if timed:
+        step = _step_of(table, kept)
+    number = _number_of(column, titles, timed, width) if column is not None or timed else 1
+    if titles:
+        stated_there, chosen = blanked([titles[number - 1]])
+        step_of_all(statements + stated_there)
+        kept = [*kept[:at], *chosen, *kept[at + 1 :]]
     if stated is not None:
         if step and abs(stated - sum(step) / 2) > sum(step) / 2 / 10**6:
             raise Refused("two steps")
         step = stated, stated
-    return step, samples, unit_of(header, len(header) - 1)
+    return step, samples, unit_of(kept, at)
+
+
+def _titles(header, by, width):
+    """(lines of the header other than that of titles, titles or [], index of the line of titles)."""
+    at = len(header) - 1
+    for index, line in enumerate(header):
+        if line.lstrip("# \t").lower().startswith("datasequence:"):
+            at = index
+            break
+    if at < 0:
+        return header, [], at
+    line = header[at][:400]
+    named = line.lstrip("# \t").lower().startswith("datasequence:")
+    line = line.partition(":")[2] if named else line
+    while line and (line[0] in "#%!/" or line[0].isspace()):
+        line = line[1:]
+    splits = [line.split(by)] if by else []
+    splits += [line.replace(";", ",").split(","), line.split("\t"), _split(line, " ", 2), _split(line, " ;,", 1)]
+    for split in splits:
+        split = [part.strip() for part in split]
+        if len(split) == width and all(any(letter(sign) for sign in _name_of(part)) for part in split):
+            return [*header[:at], *header[at + 1 :]], split, at
+    return header, [], at
+
+
+def _split(line, signs, least):
+    """Parts between runs of at least `least` of the signs."""
+    parts, run = [""], ""
+    for sign in line.strip():
+        if sign in signs:
+            run += sign
+            continue
+        if len(run) >= least:
+            parts.append("")
+        else:
+            parts[-1] += run
+        run = ""
+        parts[-1] += sign
+    return [*parts, ""] if run else parts
+
+
+def _name_of(title):
+    """The title without what stands in brackets."""
+    name, inside = "", False
+    for sign in title:
+        if not inside and sign in "([":
+            inside = True
+        elif inside:
+            inside = sign not in ")]"
+        else:
+            name += sign
+    return name.strip()
+
+
+def _are_times(table, titles, known):
+    times = [single(row[0]) for row in table]
+    if len(times) > 1 and all(after > before for before, after in zip(times, times[1:], strict=False)):
+        return True
+    if not titles:
+        return not known
+    word = ""
+    for sign in stem_of(fold(titles[0]).strip()):
+        if not sign.isalnum():
+            break
+        word += sign
+    return word in NAMES_OF_TIMES
+
+
+def _number_of(column, titles, timed, width):
+    """The column (from 1) of accelerations."""
+    first = 2 if timed else 1
+    if column is None:
+        if width > first:
+            raise Refused("column missing")
+        return first
+    wanted = str(column).strip()
+    if wanted and all(sign in DIGITS for sign in wanted):
+        found = [int(wanted)]
+    else:
+        wanted = wanted.casefold()
+        found = [at for at, title in enumerate(titles, 1) if wanted in (title.casefold(), _name_of(title).casefold())]
+    if len(found) != 1 or not first <= found[0] <= width:
+        raise Refused("column")
+    return found[0]
+
+
+def _samples(table, titles, timed, column):
+    if not timed and column is None and len(titles) < 2:
+        return _list(table)
+    width = len(table[0])
+    if any(len(row) != width for row in table):
+        raise Refused("columns")
+    number = _number_of(column, titles, timed, width)
+    return [single(row[number - 1]) for row in table]
+
+
+def _whole_end(table):
+    """Refuses a last number of another form than all those above it: the file may be cut within it."""
+    *others, last = table
+    forms = []
+    for row in [*others, last]:
+        try:
+            field = row[len(last) - 1]
+            single(field)
+            forms.append(form_of(field))
+        except (Refused, IndexError):
+            forms.append(None)
+    if len(others) > 1 and len(set(forms[:-1])) == 1 and forms[-1] != forms[0]:
+        raise Refused("cut")
 
 
 def _header_and_rows(lines):
-    """Lines before the first that begins with a number, and those from it on without comments."""
-    header, rows = [], []
+    """Lines before the first that begins with a number, those from it on without comments, and the comments."""
+    header, rows, comments = [], [], []
     for line in lines:
         text = line.strip()
         if text[:1] in ("#", "%", "!") or text[:2] == "//":
-            header += [] if rows else [text]
+            (comments if rows else header).append(text)
         elif text:
             word = ""
             for sign in text.lower().lstrip("+-"):
@@ -73,7 +186,7 @@ def _header_and_rows(lines):
                 rows.append(text.split("#")[0].strip())
             else:
                 header.append(text)
-    return header, rows
+    return header, rows, comments
 
 
 def _separators(rows, everything):
@@ -102,18 +215,6 @@ def _separators(rows, everything):
     return by, decimal
 
 
-def _chosen(table, column, timed):
-    width, first = len(table[0]), 2 if timed else 1
-    if any(len(row) != width for row in table):
-        raise Refused("columns")
-    if column is None and width > 2:
-        raise Refused("column")
-    column = 2 if column is None else column
-    if not first <= column <= width:
-        raise Refused("column")
-    return [single(row[column - 1]) for row in table]
-
-
 def _list(table):
     """Numbers one after the other, which are smoother along the lines than from line to line."""
     width = len(table[0])
@@ -133,7 +234,7 @@ def _list(table):
 
 def _step_of(table, header):
     """Bounds of the step of the times in the first column."""
-    per_second = {found for line in header for found in _times_in(line)}
+    per_second = {found for line in header for found in times_in(line)}
     if len(per_second) > 1 or None in per_second:
         raise Refused("unit of time")
     times = [single(row[0]) for row in table]
@@ -142,39 +243,6 @@ def _step_of(table, header):
     low, high = _uniform(times, [row[0] for row in table])
     scale = per_second.pop() if per_second else 1
     return low / scale, high / scale
-
-
-def _steps_in(line):
-    """Steps [s] that a line of the header states: dt = .01 s, dt [ms]: 5."""
-    low = line.lower()
-    at = low.find("dt")
-    while at >= 0:
-        before, rest, unit = low[at - 1 : at] if at else "", low[at + 2 :].removeprefix(" "), ""
-        if rest[:1] in ("(", "["):
-            inside = rest[1:].lstrip(" ")
-            while inside[:1] and inside[0] in LETTERS + "µ":
-                unit, inside = unit + inside[0], inside[1:]
-            inside = inside.lstrip(" ")
-            rest = inside[1:].removeprefix(" ") if unit and inside[:1] in (")", "]") else ""
-        if rest[:1] in (":", "=") and before not in tuple(LETTERS):
-            yield _stated(rest[1:].removeprefix(" "), unit)
-        at = low.find("dt", at + 1)
-
-
-def _stated(rest, unit):
-    found = scan(rest, 0)
-    behind = rest[found[3] :] if found else ""
-    if not found or behind[:1] in tuple(DIGITS + ".") or (behind[:1] == "," and behind[1:2] in tuple(DIGITS)):
-        raise Refused("step")
-    word = ""
-    for sign in behind.removeprefix(" "):
-        if sign not in LETTERS + "µ":
-            break
-        word += sign
-    word = word if word in TIME_WORDS or word in OTHER_TIMES else unit
-    if found[0] <= 0 or (word and word not in TIME_WORDS):
-        raise Refused("step")
-    return found[0] / TIME_WORDS.get(word, 1)
 
 
 def _numeric(field):
@@ -191,13 +259,12 @@ def _letters_of(word):
     return "" if word[end : end + 1] in tuple(DIGITS) else word[:end]
 
 
-def _times_in(line):
+def times_in(line):
     """Units of time that stand behind the word time (or t) of a header line, in units a second; None: another unit."""
     found = []
-    flat = " ".join(line[:400].lower().split())
-    words = words_of(flat.replace("/", " , ").replace("_", " "))
+    words = words_of(fold(flat(line)).replace("/", " , "))
     for i, word in enumerate(words):
-        if stem_of(word) in ("time", "t"):
+        if stem_of(word) in NAMES_OF_TIMES:
             rest = words[i + 1 :]
             while rest and rest[0] in ("(", "[", ",", ":", "=", "in", "unit", "units"):
                 rest = rest[1:]

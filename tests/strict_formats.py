@@ -6,7 +6,8 @@ if the file is not of its format.
 
 from fractions import Fraction
 
-from strict_words import DIGITS, KNOWN, LETTERS, G, Refused, scan, single, step_of, unit_of
+from strict_statements import flat, fold
+from strict_words import DIGITS, KNOWN, LETTERS, G, Refused, form_of, scan, single, step_of, unit_of
 
 
 def layout_of(line):
@@ -42,7 +43,7 @@ def layout_of(line):
 def columns_of(lines, at, count, layout):
     """(values, index of the line behind) of `count` numbers in columns of equal width."""
     per_line, width, decimals = layout
-    values = []
+    values, forms = [], set()
     while len(values) < count:
         if at >= len(lines):
             raise Refused("cut")
@@ -62,7 +63,10 @@ def columns_of(lines, at, count, layout):
             if found is None or found != decimals:
                 raise Refused("decimals")
             values.append(value)
+            forms.add(form_of(field))
         at += 1
+    if len(forms) > 1:
+        raise Refused("forms")
     while at < len(lines) and not lines[at].strip():
         at += 1
     return values, at
@@ -178,10 +182,13 @@ def _cosmos_data(line):
     places = [k for k in range(1, len(pieces)) if pieces[k].lstrip(" ")[:1] == "="]
     if not places or (pieces[places[0] - 1][-1:].isalnum() or pieces[places[0] - 1][-1:] == "_"):
         return None
-    rest, comma, _ = "units".join(pieces[places[0] :]).lstrip(" ")[1:].partition(",")
-    unit, opened, code = rest.partition("(")
+    rest = "units".join(pieces[places[0] :]).lstrip(" ")[1:]
+    rest, formatted, layout = rest.partition("format")
+    if not formatted or layout.lstrip(" ")[:1] != "=" or rest[-1:].isalnum() or rest[-1:] == "_":
+        return None
+    unit, opened, code = rest.rstrip(" ").removesuffix(",").partition("(")
     code = code.rstrip(" ")
-    if not comma or not unit.strip(" ") or (opened and not code.endswith(")")):
+    if not unit.strip(" ") or "," in unit or (opened and not code.endswith(")")):
         return None
     code = code[:-1].strip(" ") if opened else None
     if code is not None and (not code or any(sign not in DIGITS for sign in code)):
@@ -217,7 +224,7 @@ def _cosmos_channel(lines, order):
     integer = single(integers[1]) if len(integers) > 1 else -999
     if not data or data[1] != "acceleration" or integer not in (1, -999):
         raise Refused("no acceleration")
-    layout, factor = layout_of(lines[at]), KNOWN.get(data[2])
+    layout, factor = layout_of(lines[at]), KNOWN.get(data[2].removesuffix("."))
     if factor is None or {"2": G, "4": Fraction(1, 100)}.get(data[3], factor) != factor or not layout:
         raise Refused("unit")
     values, behind = columns_of(lines, at + 1, data[0], layout)
@@ -247,7 +254,10 @@ def knet(lines):
     if sum(line.lower().startswith("dir.") for line in header) != 1 or not frequency * gal * steps:
         raise Refused("header")
     counts = []
+    ends = set(_ends_in(lines[end + 1])) if lines[end + 1 :] else set()
     for line in lines[end + 1 :]:
+        if not ends.issuperset(_ends_in(line)):
+            raise Refused("columns of counts")
         for token in line.split():
             bare = token[1:] if token[0] in "+-" else token
             found = _leading(bare, 9)
@@ -259,6 +269,11 @@ def knet(lines):
     mean = Fraction(sum(counts), max(len(counts), 1))
     values = [(count - mean) * gal / steps for count in counts]
     return [("", "", 1 / frequency, values, Fraction(1, 100))]
+
+
+def _ends_in(line):
+    """Positions behind the words of a line."""
+    return [at + 1 for at, sign in enumerate(line) if not sign.isspace() and (line[at + 1 :][:1] or " ").isspace()]
 
 
 def _knet_numbers(header, names, digits, ends):
@@ -318,3 +333,43 @@ def smc(lines):
     if any(line.strip() for line in lines[behind:]):
         raise Refused("more numbers")
     return [("", "", 1 / frequency, values, Fraction(1, 100))]
+
+
+def by_name(lines, content):
+    """Whether the file is of a format that is known and not read."""
+    begin = next(at for at, line in enumerate(lines) if line.strip())
+    top = [line[:200].lower().strip() for line in lines[begin : begin + 12]]
+    first = top[0]
+    words = "".join(sign if sign.isalnum() or sign == "_" else " " for sign in first.partition("(")[0]).split()
+    geonet = first.removeprefix("un")
+    digits = geonet.removeprefix("corrected accelerogram")
+    name = digits.lstrip()
+    return (
+        (
+            geonet != digits
+            and name != digits
+            and len(name) >= 16
+            and all(sign in DIGITS for sign in name[:8] + name[9:15])
+            and name[8] + name[15] == "__"
+        )
+        or starts(first, "uncorrected accelerogram")
+        or (
+            words[:1] in (["response"], ["fourier"])
+            and first.startswith(words[0])
+            and ("spectra" in words or "spectrum" in words)
+            and "(format" not in first
+        )
+        or (starts(first, "raw acceleration counts") and "(format" in first)
+        or any(fold(flat(line)).startswith("archivo estandar de aceleracion") for line in top)
+        or starts(first.removeprefix("*").lstrip(), "vol1ds file")
+        or starts(first.removeprefix("*").lstrip(), "vol2ds file")
+        or (
+            words[:1] == ["timeseries"]
+            and first.startswith("timeseries")
+            and "slist" in first.replace(",", " ").split()
+        )
+        or first.startswith("# dataset: geocsv")
+        or (content[:6].isdigit() and content[6:7] in (b"D", b"R", b"Q", b"M") and content[7:8] in (b" ", b"\0"))
+        or content[:3] == b"MS\x03"
+        or content[304:308] in (b"\6\0\0\0", b"\0\0\0\6")
+    )

@@ -9,7 +9,8 @@ from fractions import Fraction
 
 import strict_columns
 import strict_formats
-from strict_words import DIGITS, GIVEN, KNOWN, LETTERS, TIME_WORDS, G, Refused, fortran, step_of, unit_of, whole
+from strict_statements import blanked, step_of_all
+from strict_words import DIGITS, GIVEN, KNOWN, LETTERS, G, Refused, fortran, step_of, unit_of, whole
 
 
 def read(content, units=None, dt=None, column=None, channel=None):
@@ -17,6 +18,8 @@ def read(content, units=None, dt=None, column=None, channel=None):
     lines = _lines(content)
     if not any(line.strip() for line in lines):
         raise Refused("empty")
+    if strict_formats.by_name(lines, content):
+        raise Refused("format not read")
     found = _at2(lines) or _dyna(lines) or _channel(lines, channel)
     if found and column is not None:
         raise Refused("no columns")
@@ -138,32 +141,23 @@ def _at2(lines):
         ):
             behind = "".join(old[3:])[2:]
             inside = "".join(sign for sign in behind.partition(")")[0] if sign in LETTERS and behind[0] in "([")
-            count, step = old[0], step_of(old[1], inside)
+            step_of(old[1], inside)
+            count, line = old[0], f"dt = {old[1]} {inside}"
         elif counts and steps:
             if len(counts) > 1 or len(steps) > 1:
                 raise Refused("twice")
             count = _until(counts[0][1], ",;")[0]
-            unit, rest = steps[0]
-            token, behind = _until(rest, ";")
-            for comma in range(len(token)):
-                if token[comma] == "," and token[comma + 1 : comma + 2] not in tuple(DIGITS):
-                    token, behind = token[:comma], token[comma:] + behind
-                    break
-            word = ""
-            for sign in behind.lstrip(" \t").lower():
-                if sign not in LETTERS + "µ":
-                    break
-                word += sign
-            if word and word not in TIME_WORDS:
-                raise Refused("step")
-            step = step_of(token, word or unit)
         else:
             continue
-        factor = unit_of(lines[: index + 1], index - 1)
+        statements, header = blanked([*lines[:index], line])
+        step = step_of_all(statements)
+        if None in [found for line in header for found in strict_columns.times_in(line)]:
+            raise Refused("unit of time")
+        factor = unit_of(header, index - 1)
         samples = fortran(lines[index + 1 :])
         if whole(count) != len(samples):
             raise Refused("count")
-        return (step, step), samples, factor
+        return step and (step, step), samples, factor
     return None
 
 

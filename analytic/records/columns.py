@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import SceneError
 from .content import HEADER_WIDTH, UNKNOWN, Asked, Content
 from .numbers import check_last, number
-from .statements import Statements, read_statements
+from .statements import END, Statements, read_statements, stated_unit
 from .times import SAME, uniform_step, usable
 
 NAME = "columns"
@@ -24,7 +24,7 @@ COMMENT = ("#", "%", "!", "//")
 HEADER_LINES = 200
 NUMERIC = re.compile(r"[-+]?[.,]?[0-9]")
 SEQUENCE = re.compile(r"datasequence:", re.I)  # Taiwan's line of titles
-TIME_TITLE = re.compile(r"(?:time|t|zeit|tiempo|temps|zaman)\b", re.I)
+TIME_TITLE = re.compile(rf"(?:time|t|zeit|tiempo|temps|zaman){END}", re.I)
 REMEDY = "write time [s] and acceleration, two numbers a line"
 # Of numbers one after the other, neighbours in a line are no rougher than those a line apart, wherever in the line they
 # stand; in columns of their own they are, or some of them are.
@@ -55,7 +55,7 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     titles_at, titles = _titles(header, separator, width)
     words = [(at, line[:HEADER_WIDTH]) for at, line in header if at != titles_at]
     # What the other titles say of their columns is not said of the times.
-    stated = read_statements([*words, (titles_at, titles[0])] if titles else words, titles_at or last)
+    stated = read_statements([*words, (titles_at, titles[0])] if titles else words)
     if lines[-1].strip():
         check_last(f"line {table[-1][0]}", [fields for _, fields in table])
     known = asked.dt is not None or stated.step is not None
@@ -66,13 +66,14 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     no_unit = "the header names no unit" if header else "columns of numbers carry no unit"
     if not timed and asked.column is None and not titles[1:]:
         values = np.array(_one_after_the_other(table, rows, known))
-        return (Content(step, values, stated.unit, no_unit, unread=stated.unread),)
+        return (Content(step, values, stated_unit(stated.rest, last), no_unit, unread=stated.unread),)
     _check_widths(table, rows)
     names = [f"{place + 1} ({_name(titles[place])})" if titles else str(place + 1) for place in range(width)]
     places = _places(titles, names, asked.column, timed)
 
     def content(place: int) -> Content:
-        unit = read_statements([*words, (titles_at, titles[place])], titles_at).unit if titles else stated.unit
+        said = read_statements([*words, (titles_at, titles[place])]) if titles else stated
+        unit = stated_unit(said.rest, titles_at or last)
         values = np.array([number(f"line {at}", fields[place]) for at, fields in table])
         if asked.column is None and width == 2 and timed:
             return Content(step, values, unit, no_unit, unread=stated.unread)
@@ -152,7 +153,7 @@ def _split(lines: Sequence[str]) -> tuple[list[tuple[int, str]], list[tuple[int,
         if text.startswith(COMMENT):
             if not rows:
                 header.append((at, text))
-            elif (found := read_statements([(at, text[:HEADER_WIDTH])])).step or found.unit:
+            elif (found := read_statements([(at, text[:HEADER_WIDTH])])).step or stated_unit(found.rest):
                 raise SceneError(f"line {at}", text, "a statement inside the data", "give one record of the file")
         elif text and not rows and not DATA.match(text):
             header.append((at, text))
@@ -229,14 +230,14 @@ def _titles(header: Sequence[tuple[int, str]], separator: str | None, width: int
         line = line[:HEADER_WIDTH].lstrip("#%!/ ")
         for parting in (*([re.escape(separator)] if separator else []), "[;,]", r"\t", " {2,}", "[;, ]+"):
             titles = [title.strip(" \"'") for title in re.split(parting, line.strip())]
-            if len(titles) == width and all(re.search(r"[^\W\d_]", title) for title in titles):
+            if len(titles) == width and all(re.search(r"[^\W\d_]", _name(title)) for title in titles):
                 return at, titles
     return 0, []
 
 
 def _name(title: str) -> str:
     """A title without what stands in brackets: U(+) is U."""
-    return " ".join(re.sub(r"[(\[][^)\]]*[)\]]?", " ", title).split()) or title
+    return " ".join(re.sub(r"[(\[][^)\]]*[)\]]?", " ", title).split())
 
 
 def _is_time(title: str) -> bool:

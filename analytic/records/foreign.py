@@ -22,7 +22,7 @@ SIGNS = {
     "CSMIP volume 1": (r"\s*uncorrected accelerogram", VOLUME_2),
     "CSMIP volume 3": (r"\s*(?:response|fourier)\b[^(\n]*\bspectr(?:a|um)\b(?!.*\(format)", VOLUME_2),
     "COSMOS volume 0": (r"\s*raw acceleration counts\b.*\(format", VOLUME_2),
-    "UNAM/ASA": (r"(?s:.*)^\s*archivo estandar de aceleracion", COLUMNS),
+    "UNAM/ASA": (r"(?s:.*)^\s*archivo est.ndar de aceleraci.n", COLUMNS),
     "BHRC": (r"\s*\*?\s*vol[12]ds file", COLUMNS),
     "SLIST": (r"\s*timeseries\b.*\bslist\b", WITH_OBSPY),
     "GeoCSV": (r"\s*#\s*dataset:\s*geocsv", WITH_OBSPY),

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from ..errors import SceneError
 from .content import HEADER_WIDTH, Asked, Content
 from .numbers import NUMBER, check_count, count, fortran_values
-from .statements import read_statements
+from .statements import read_statements, stated_unit
 
 NAME = "PEER AT2"
 HEADER_LINES = 8  # the NPTS line is the fourth in every known variant
@@ -34,10 +34,10 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     numbered = [(at, line[:HEADER_WIDTH]) for at, line in enumerate(lines[: head + 1], 1)]
     if old:
         numbered[-1] = head + 1, f"dt = {old[2]} {old[3] or ''}"
-    found = read_statements(numbered, titles=head)
+    found = read_statements(numbered)
     values = fortran_values(lines, head + 1)
     check_count(f"{where}, NPTS", count(f"{where}, NPTS", npts), values)
-    return (Content(found.step, values, found.unit),)
+    return (Content(found.step, values, stated_unit(found.rest, titles=head)),)
 
 
 def _head(lines: Sequence[str]) -> tuple[int, str, re.Match[str] | None] | None:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from ..errors import SceneError
 from .numbers import NUMBER, number
-from .times import OTHER_TIMES, PER_SECOND, SAME, usable
+from .times import OTHER_TIMES, PER_SECOND, SAME, exact, usable
 from .units import NOT_ACCELERATIONS, WORDS, Unit, factor_of, plain
 
 # A word begins and ends where no letter of any alphabet is.
@@ -45,17 +45,18 @@ _SAMPLES = (
     "(?:s|sec|second|segundo|sekunde|seconde|saniye)"
 )
 _HERTZ = f"hz|hertz|1/s(?:ec)?|{_SAMPLES}"
-_PRINTED = rf"({NUMBER}|[+-]?[0-9]+,[0-9]+)(?![0-9]|[.,][0-9])"
+_PRINTED = rf"({NUMBER}|[0-9]+,[0-9]+(?!e[+-]?[0-9]))(?![0-9]|[.,][0-9])"
 _STEP = re.compile(
     rf"{START}(?:(?P<rate>{_RATE})|{_INTERVAL}){END}"
     rf" ?[(\[]? ?(?P<before>(?!(?:is|of|at){END})(?:{_HERTZ}|[a-zµ]+){END})? ?[)\]]?"
     rf" ?(?P<sign>[:=]|(?:is|of|at){END})? ?"
     rf"(?:(?P<value>{_PRINTED})(?: ?[(\[]? ?(?P<behind>{_HERTZ}|[a-zµ]+){END}| ?(?=$|[,;|)\]])))?"
-    rf"|(?P<samples>{_PRINTED}) ?(?:{_SAMPLES}){END}"
+    rf"|(?<![0-9.,])(?P<samples>{_PRINTED}) ?(?:{_SAMPLES}){END}"
 )
 _FREQUENCY = re.compile(rf"{NUMBER} ?k?hz{END}")
 _TIME = re.compile(
-    rf"{START}(?:time|t|zeit|tiempo|temps|zaman)[ ,:=/(\[]+(?:in |units?[ :=]+)?[(\[]?(µs|[a-z]+)(?![a-z0-9])"
+    rf"{START}(?<!-)(?:time|t|zeit|tiempo|temps|zaman)"
+    r"(?=[ ,:=/(\[]+(?:in |units?[ :=]+)?[(\[]?(µs|[a-z]+)(?![a-z0-9]))"
 )
 
 _LENGTH = "(?:mm|cm|m|in|ft|inch(?:es)?|feet|foot|(?:milli|centi)?met(?:er|re)s?)"
@@ -74,7 +75,7 @@ _INTRODUCED = re.compile(
 )
 _SUGGESTED = re.compile(rf"(?:\bin |[(\[] ?|\b(?:acceleration|accel|acc)\.? (?!in )){_WORD}", re.I)
 _GALS = re.compile(r"[(\[] ?(gals?) ?[)\]]", re.I)  # nothing else is called so
-_SUFFIX = re.compile(rf"(?<=[^\W_])_({'|'.join(word for word in WORDS if word.isalpha())}){END}", re.I)
+_SUFFIX = re.compile(rf"(?<=[^\W_])_({'|'.join(word for word in WORDS if word.isalpha())})(?![^\W_])", re.I)
 _ACCELERATION = re.compile(
     rf"{START}(?:acc(?:el|elerations?|elerograms?)?|pga|aceleracion(?:es)?|beschleunigung(?:en)?|ivme){END}"
 )
@@ -87,30 +88,22 @@ _OTHER = re.compile(
 
 @dataclass(frozen=True)
 class Statements:
-    """Of a header: sampling interval [s] and unit of the values, None where not stated; units of its times in a second;
-    and sentences on words about sampling that are not understood."""
+    """Of a header: sampling interval [s], None where not stated; units of its times in a second; sentences on words
+    about sampling that are not understood; and its lines without what was read, for `stated_unit`."""
 
     step: float | None
-    unit: Unit | None
     per_second: int
     unread: tuple[str, ...]
+    rest: list[tuple[int, str]]
 
 
-def read_statements(header: Iterable[tuple[int, str]], titles: int | None = None) -> Statements:
-    """The `Statements` of the lines of a header.
-
-    Parameters
-    ----------
-    header : iterable of (int, str)
-        Line numbers and lines.
-    titles : int, optional
-        The line that names the columns: there "(g)" and "NS_g" hold units; elsewhere only beside the word acceleration.
+def read_statements(header: Iterable[tuple[int, str]]) -> Statements:
+    """The `Statements` of the lines of a header, (line number, line).
 
     Raises
     ------
     SceneError
-        Two steps or units, a step that is no number or in a unit that is not known, a velocity, a displacement, or a
-        unit that is not known.
+        Two steps, a step that is no number or in a unit that is not known, or two units of time.
     """
     steps: list[_Step] = []
     unread, rest = [], []
@@ -127,7 +120,7 @@ def read_statements(header: Iterable[tuple[int, str]], titles: int | None = None
         if _FREQUENCY.search(_folded(taken)):
             unread.append(f"line {at} names a frequency that is not understood: {line[:60]}")
         rest.append((at, taken))
-    return Statements(_only(steps), stated_unit(rest, titles), _per_second(rest), tuple(unread))
+    return Statements(_only(steps), _per_second(rest), tuple(unread), rest)
 
 
 def _folded(line: str) -> str:
@@ -164,9 +157,9 @@ def _step(where: str, line: str, match: re.Match[str]) -> _Step | None:
         if not known and value < 1:
             raise SceneError(where, line, "a rate below 1, without a unit", "write a rate in Hz, or dt = .01 s")
         return _Step(usable(where, 1 / value), where, 0.0)
-    decimals = len(re.split("[ed]", match["value"])[0].replace(",", ".").partition(".")[2])
     per_second = PER_SECOND[known]
-    return _Step(usable(where, value / per_second), where, 0.5 * 10.0**-decimals / per_second)
+    unit = 10.0 ** int(exact(match["value"].replace(",", ".")).as_tuple().exponent)
+    return _Step(usable(where, value / per_second), where, unit / 2 / per_second)
 
 
 def _kind(word: str) -> str:
@@ -190,17 +183,17 @@ def _only(steps: Sequence[_Step]) -> float | None:
     """The one step [s] that all state; an interval may be that of a rate, rounded as printed."""
     if not steps:
         return None
-    exact = next((step for step in steps if not step.half), steps[0])
+    rate = next((step for step in steps if not step.half), steps[0])
     for step in steps:
-        rounding = 0.0 if exact.half else step.half
-        if abs(step.seconds - exact.seconds) > rounding + SAME * exact.seconds:
+        rounding = 0.0 if rate.half else step.half
+        if abs(step.seconds - rate.seconds) > rounding + SAME * rate.seconds:
             raise SceneError(
                 step.where,
                 step.seconds,
-                f"but {exact.where.removesuffix(', step')} states a step of {exact.seconds:.9g} s",
+                f"but {rate.where.removesuffix(', step')} states a step of {rate.seconds:.9g} s",
                 "correct the wrong one",
             )
-    return exact.seconds
+    return rate.seconds
 
 
 def _per_second(header: Iterable[tuple[int, str]]) -> int:
@@ -219,7 +212,20 @@ def _per_second(header: Iterable[tuple[int, str]]) -> int:
 
 
 def stated_unit(header: Iterable[tuple[int, str]], titles: int | None = None) -> Unit | None:
-    """The unit that the lines of a header state, or None; parameters and errors as those of `read_statements`."""
+    """The unit that the lines of a header state, or None.
+
+    Parameters
+    ----------
+    header : iterable of (int, str)
+        Line numbers and lines, without their statements of the step (`Statements.rest`).
+    titles : int, optional
+        The line that names the columns: there "(g)" and "NS_g" hold units; elsewhere only beside the word acceleration.
+
+    Raises
+    ------
+    SceneError
+        Two units, a velocity, a displacement, or a unit that is not known.
+    """
     found = acceleration = other = None
     for number_of_line, line in header:
         line = _spaced(line)

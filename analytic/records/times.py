@@ -114,8 +114,8 @@ def uniform_step(tokens: Sequence[str]) -> float:
     SceneError
         A gap, a repetition or a drift; names the sample.
     """
-    first = _exact(tokens[0])
-    times = np.fromiter((float(_exact(token) - first) for token in tokens), float, len(tokens))  # epochs lose nothing
+    first = exact(tokens[0])
+    times = np.fromiter((float(exact(token) - first) for token in tokens), float, len(tokens))  # epochs lose nothing
     step = times[-1] / (len(times) - 1)
     steps = np.diff(times)
     if (steps > 0).all():
@@ -128,21 +128,20 @@ def uniform_step(tokens: Sequence[str]) -> float:
     worst = int(np.abs(steps - usual).argmax()) + 1
     raise SceneError(
         f"sample {worst + 1}, time",
-        float(_exact(tokens[worst])),
+        float(exact(tokens[worst])),
         f"the sampling is not uniform: this step is {steps[worst - 1]:.6g} s, most are {usual:.6g} s",
         "resample the record at equal intervals",
     )
 
 
-def _exact(token: str) -> Decimal:
+def exact(token: str) -> Decimal:
+    """The number that a token prints."""
     return Decimal(token.replace("D", "E").replace("d", "e"))
 
 
 def _printed_unit(tokens: Sequence[str]) -> np.ndarray:
     """Unit of the last printed digit of each time, shape (n,): all have as many decimals, or as many digits."""
-    parts = np.array(
-        [(len(number.digits), number.exponent) for token in tokens if (number := _exact(token).as_tuple())]
-    )
+    parts = np.array([(len(number.digits), number.exponent) for token in tokens if (number := exact(token).as_tuple())])
     digits, exponents = parts.T
     return 10.0 ** np.maximum(exponents.min(), exponents + digits - digits.max())
 

@@ -11,7 +11,7 @@ import typer
 from ..running.solving import check_time_limit
 
 if TYPE_CHECKING:
-    from ..advice.found import Choice
+    from ..advice.answer import Choice
 
 
 def command(
@@ -19,7 +19,7 @@ def command(
     error: Annotated[
         float, typer.Option(help="Largest error; of outcomes the share of neighbours that differ.")
     ] = 1e-3,
-    aim: Annotated[
+    criterion: Annotated[
         str | None,
         typer.Option(
             "--for",
@@ -33,6 +33,7 @@ def command(
     plot: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw error over CPU time (.png, .svg or .pdf).")
     ] = None,
+    every_level: Annotated[bool, typer.Option("--all", help="Show every level that was run.")] = False,
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write the choice; - prints it.")
     ] = None,
@@ -49,7 +50,7 @@ def command(
     from analytic.scene_file import load_scene
 
     from ..advice import choose
-    from ..advice.aims import fitting
+    from ..advice.criteria import fitting
     from ..running.files import check_writable, write_all
     from ..running.solving import compile_kernels, say, stdout_to_stderr
 
@@ -57,17 +58,23 @@ def command(
     check_writable([json_file], picture=plot, inputs=[scene])
     what = load_scene(scene)
     compile_kernels()
-    if aim is None and engine and (shown := fitting(what)) != "restitution":
+    if criterion is None and engine and (shown := fitting(what)) != "restitution":
         say(f"the block of {what.name} never hits what it stands on: there is no restitution; judged by its {shown}")
     with stdout_to_stderr():  # engines greet on standard output
         choice = choose(
-            what, error=error, aim=aim, engines=engine or None, time_limit=time_limit, progress=True, source=scene
+            what,
+            error=error,
+            criterion=criterion,
+            engines=engine or None,
+            time_limit=time_limit,
+            progress=True,
+            source=scene,
         )
     problem = write_all(_results(choice, json_file, plot))
     if json_file != "-":
         from ..showing.choices import print_choice
 
-        print_choice(choice)
+        print_choice(choice, every_level)
     if problem:
         raise problem
     if choice.chosen is None:

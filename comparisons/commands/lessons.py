@@ -44,9 +44,9 @@ def export(output: Annotated[str, typer.Option(metavar="DIR", help="Folder for t
     """Write the pages: playground, lessons, derivation, teacher's page with figures. They open by double click."""
     from ..lessons.export import export_pages
     from ..running.files import check_folder, make_folder
-    from ..running.solving import say, stdout_to_stderr
+    from ..running.solving import bar, stdout_to_stderr
 
     check_folder(output)
-    with stdout_to_stderr():  # engines greet on standard output
-        paths = export_pages(make_folder(output), tell=say)
+    with stdout_to_stderr(), bar("lessons") as progress:  # engines greet on standard output
+        paths = export_pages(make_folder(output), progress=progress)
     print(next(path for path in paths if path.name == "index.html"))

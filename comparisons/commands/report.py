@@ -62,7 +62,7 @@ def command(
 
     from ..report.write import write_page
     from ..running.files import check_folder, check_writable, write_text
-    from ..running.solving import ANALYTIC, check_solver, say
+    from ..running.solving import ANALYTIC, bar, check_solver
 
     check_folder(output)
     shown = _studies(studies)
@@ -75,8 +75,8 @@ def command(
     if not scene and (records is not None or both_signs or directions is not None):
         raise SettingError("--records, --both-signs and --directions belong to scenes of your own; name one")
     _simulate(output, scene, motion, engines, variants, (records, both_signs, directions, units))
-    say("the page")
-    page = write_page(output, shown)
+    with bar("the page") as progress:
+        page = write_page(output, shown, progress)
     if json_file:
         write_text(json_file, form(page).text())
     if json_file != "-":

@@ -11,10 +11,11 @@ def command(
         str | None, typer.Option("--json", metavar="FILE", help="Write the scores; - prints them.")
     ] = None,
 ) -> None:
-    """Score answers to the problem sheet: error, rank beside the engines, and what probably went wrong.
+    """Score answers to the problem sheet: the first that is wrong, errors, rank beside the engines, probable causes.
 
-    A cause is named where the very answers follow from it and from nothing else that is known. Status 1: an answer is
-    off by more than 1e-3 of its scale. Example: rocking score answers.csv
+    First is meant in time of the run, over all scenes: before it the solver is right. A cause is named where the very
+    answers follow from it and from nothing else that is known. Status 1: an answer is off by more than 1e-3 of its
+    scale. Example: rocking score answers.csv
     """
     from ..running.files import check_writable, write_text
     from ..running.solving import spinner
@@ -40,6 +41,13 @@ def _show(found):
     from rich.text import Text
 
     console = Console(highlight=False)
+    if first := found.first_wrong:
+        when = "" if first.time is None else f" (at {first.time:.4g} s)"
+        console.print(
+            f"First wrong answer: {first.scene}, {first.quantity}{when}: off by {first.error:.1e} of its scale.",
+            soft_wrap=True,
+            markup=False,
+        )
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
     for name in ("scene", "error", "worst answer", "rank", "what probably went wrong"):
         table.add_column(Text(name), justify="right" if name in ("error", "rank") else "left")

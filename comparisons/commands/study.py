@@ -43,6 +43,16 @@ Scheduler = Annotated[
 EVERY = "all"
 Replot = Annotated[str | None, typer.Option(metavar="FILE", help="Run nothing, show this result file again.")]
 
+Check = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        min=1,
+        help="Compute nothing new: do N of the runs stored with the result again, drawn at random, and say how many "
+        "hold; of this project's results, or with --output of those in DIR. Status 1: not all hold.",
+    ),
+]
+
 
 def _options(function):
     """The keyword-only parameters of a plan or of figures, with annotations that Typer can read."""
@@ -62,11 +72,20 @@ def command_of(study: Study) -> Callable[..., None]:
     """A function that Typer makes the study's command of."""
     drawing = {parameter.name for parameter in _options(study.figures)}
 
-    def command(quick=False, output=None, engine=None, workers=None, scheduler=None, replot=None, **options):
+    def command(
+        quick=False, output=None, engine=None, workers=None, scheduler=None, replot=None, check=None, **options
+    ):
         from ..running.files import check_folder
         from ..running.provenance import read_result
+        from ..running.solving import spinner
         from ..running.study import compute
 
+        if check is not None:
+            if quick or engine or scheduler or replot:
+                raise SettingError(
+                    "--check: takes a result as it is; leave --quick, --engine, --scheduler, --replot out"
+                )
+            return _check(study.name, output, check, workers)
         shown = {name: value for name, value in options.items() if name in drawing}
         folder = f"{study.name}-study" if output is None else output
         check_folder(folder)
@@ -78,7 +97,9 @@ def command_of(study: Study) -> Callable[..., None]:
             raise SettingError("--workers: are those of --scheduler; give one of the two")
         place = dict(workers=workers, scheduler=scheduler)
         for path in compute(study, folder, engines=engine or None, quick=quick, **place, **given):
-            _tell([path, *_show(study, path, None, shown)])
+            with spinner(f"{path.name}: page"):
+                shown_files = _show(study, path, None, shown)
+            _tell([path, *shown_files])
             result = read_result(path)
             for paragraph in study.section(result).text:
                 typer.echo(paragraph, err=True)
@@ -97,6 +118,7 @@ def command_of(study: Study) -> Callable[..., None]:
         option("workers", Workers, None),
         option("scheduler", Scheduler, None),
         option("replot", Replot, None),
+        option("check", Check, None),
         *_options(study.plan),
         *_options(study.figures),
     ]
@@ -115,6 +137,20 @@ def _show(study, path, folder, options):
     from ..report.detail import write_study
 
     return [write_study(study, path, folder)]
+
+
+def _check(name, output, number, workers):
+    """Check the stored results of a study; status 1 if a run does not hold."""
+    from ..running.check import check_all
+    from ..running.provenance import RESULTS, commit_seed
+    from ..running.solving import stdout_to_stderr
+
+    with stdout_to_stderr():  # engines greet on standard output
+        checks = check_all(name, RESULTS if output is None else output, number, commit_seed(), workers=workers)
+    for check in checks:
+        _tell([check.words(), *(f"  does not hold: {words}" for words in check.differences)])
+    if any(check.differences for check in checks):
+        raise typer.Exit(1)
 
 
 def _tell(lines):

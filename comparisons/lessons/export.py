@@ -24,11 +24,13 @@ OTHERS = (("index.html", "Lessons"), ("derivations.html", "Derivation"), ("teach
 
 
 def export_pages(
-    folder: str | PathLike[str], names: Sequence[str] | None = None, tell: Callable[[str], object] | None = None
+    folder: str | PathLike[str],
+    names: Sequence[str] | None = None,
+    progress: Callable[[int, int], object] = lambda done, total: None,
 ) -> list[Path]:
     """Write playground, lessons, derivation and teacher's page into `folder`, which exists; returns their paths.
 
-    names : the lessons whose pages are made, all without it. tell : is told what is under way.
+    names : the lessons whose pages are made, all without it. progress : is told how many lessons are done, of how many.
     """
     folder, environment = Path(folder), _environment()
     written_files: list[Path] = []
@@ -45,9 +47,8 @@ def export_pages(
     drawings = {name: Markup(getattr(diagrams, name)()) for name in ("rocking", "impact", "isolated")}
     keep("derivations.html", environment.get_template("derivations.html").render(**drawings))
     exercises, firsts = [], []
-    for one in chosen:
-        if tell:
-            tell(f"lesson {one.number}: {one.title}")
+    for done, one in enumerate(chosen):
+        progress(done, len(chosen))
         exercises.append([(exercise, answer(exercise)) for exercise in one.exercises])
         keep(f"lesson-{one.number}.html", _lesson_page(environment, one, chosen, exercises[-1]))
         first = one.first()

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..running.provenance import RESULTS, ResultError, age, read_result
+from ..running.provenance import RESULTS, ResultError, age, last_check, read_result
 from ..showing.parts import Judgement, Section
 from ..studies import StudyBroken, get_study, study_names
 
@@ -34,27 +35,35 @@ class Stored:
     origin: str = ""
 
 
-def stored_studies(folder: Path = RESULTS) -> list[Stored]:
-    """All result files ``<study>.json`` in `folder`, in the studies' order; one that cannot be shown says why."""
+def stored_studies(
+    folder: Path = RESULTS, progress: Callable[[int, int], object] = lambda done, total: None
+) -> list[Stored]:
+    """All result files ``<study>.json`` in `folder`, in the studies' order; one that cannot be shown says why.
+
+    progress : is told how many of them are done, of how many.
+    """
     order = study_names()
 
     def place(file):
         return (order.index(file.stem) if file.stem in order else len(order), file.stem)
 
     files = sorted(folder.glob("*.json"), key=place)
-    if len(files) < FEW:
-        return [_aged(_stored(file), _age(file)) for file in files]
-    with ProcessPoolExecutor(mp_context=get_context("spawn")) as workers:
-        shown = workers.map(_stored, files)
-        ages = [_age(file) for file in files]  # meanwhile: all code is read for the first of them
-        return [_aged(*pair) for pair in zip(shown, ages, strict=True)]
+    stored = []
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) if len(files) >= FEW else nullcontext() as workers:
+        shown = iter(workers.map(_stored, files) if workers else map(_stored, files))
+        for file in files:
+            old = _age(file)  # meanwhile: all code is read for the first of them
+            stored.append(_aged(next(shown), old))
+            progress(len(stored), len(files))
+    return stored
 
 
 def origin_of(result: Result) -> str:
-    """Machine, versions, date and commit, in one line."""
+    """Date, commit, machine, versions and the last check, in one line."""
     origin = result.provenance
-    packages = ", ".join(f"{name} {version}" for name, version in origin["packages"].items() if version)
-    return f"{origin['time'][:10]}, commit {commit_of(origin)}, {origin['machine']['processor']}, {packages}"
+    packages = [f"{name} {version}" for name, version in origin["packages"].items() if version]
+    first = (origin["time"][:10], f"commit {commit_of(origin)}", origin["machine"]["processor"])
+    return ", ".join((*first, *packages)) + (f"; {last}" if (last := last_check(result)) else "")
 
 
 def commit_of(origin: Mapping[str, Any]) -> str:

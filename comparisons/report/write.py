@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -58,10 +58,14 @@ class Part:
     page: str = ""
 
 
-def write_page(folder: str | PathLike[str], studies: Path = RESULTS) -> Path:
+def write_page(
+    folder: str | PathLike[str],
+    studies: Path = RESULTS,
+    progress: Callable[[int, int], object] = lambda done, total: None,
+) -> Path:
     """Write ``report.html`` into `folder`, and beside it ``pages/``, from result files there and of the studies.
 
-    Returns the path of the page.
+    progress : is told how much of it is done, of how much. Returns the path of the page.
 
     Raises
     ------
@@ -74,7 +78,7 @@ def write_page(folder: str | PathLike[str], studies: Path = RESULTS) -> Path:
     scenes = read_result(folder / main)
     free = read_result(folder / FREE_ROCKING) if not own or (folder / FREE_ROCKING).exists() else None
     read = {main: scenes} | ({FREE_ROCKING: free} if free else {})
-    stored = stored_studies(studies)
+    stored = stored_studies(studies, lambda done, total: progress(done, total + 1))  # and the pages themselves
     pages = [("runs", "The report’s own runs"), *((one.name, one.section.title.partition(":")[0]) for one in stored)]
     listed = [{"file": f"{PAGES}/{name}.html", "title": title} for name, title in pages]
     path = folder / PAGE

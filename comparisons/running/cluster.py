@@ -3,9 +3,8 @@
     with Cluster("tcp://scheduler:8786", solvers) as executor:
         rows = run_sweep(cases, store="results/map.jsonl", measure=outcome, executor=executor)
 
-A Dask worker is a daemon, which may not start processes (unless `distributed.worker.daemon` is False where it starts,
-which nobody here can see to). So it starts this module as a program, a servant, which guards the runs by `Processes` as
-ever, and ends with its worker.
+Each thread of a Dask worker has a process that guards its runs by `Processes`, as ever: a crash or a hang costs one row
+and no worker.
 """
 
 from __future__ import annotations
@@ -13,13 +12,10 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-import os
+import multiprocessing
 import pickle
 import platform
 import queue
-import select
-import subprocess
-import sys
 import threading
 import time
 from collections.abc import Iterable
@@ -30,11 +26,13 @@ from typing import Any
 from analytic.errors import SettingError
 
 from .cases import compile_for, module_of, versions
-from .executors import Closing, Done, Processes, Task, number_of
+from .executors import Closing, Done, Processes, Task, end_with, number_of
+from .solving import say
 from .sources import PROJECT, source_digests
 
 LOCAL = "local:"
 PATIENCE = 5.0  # s, for a scheduler that does not answer
+GRACE = 1.0  # s, for an idle guard to end
 INSTALL = 'pip install -e ".[cluster]" in a checkout of this project'
 
 
@@ -68,11 +66,8 @@ class Cluster(Closing):
         with contextlib.ExitStack() as stack:
             self._client = _connect(address, stack)
             stack.callback(self._dismiss)
-            threads = self._client.nthreads()
-            if not threads:
-                raise SettingError(f"the scheduler at {address} has no workers: start some with dask worker {address}")
-            _check_same(self._ask(partial(_state, self._solvers)), _state(self._solvers))
-            self.slots = 2 * sum(threads.values())
+            self._check_workers()
+            self.slots = 2 * sum(self._client.nthreads().values())
             self._exits = stack.pop_all()
 
     def submit(self, task: Task) -> None:
@@ -99,26 +94,39 @@ class Cluster(Closing):
         except (OSError, TimeoutError, asyncio.CancelledError, futures.CancelledError):  # nobody else drops one
             raise self._gone() from None
         if isinstance(error, KilledWorker):
-            reason = "several workers of the cluster ended while they did it"
-            return Done(task.ticket, lost={"kind": "crash", "reason": reason, "exit_code": -9, "message": ""})
+            return _crashed(task.ticket, "several workers of the cluster ended while they did it")
         raise ClusterError(f"a worker of the cluster cannot do the runs: {type(error).__name__}: {error}")
 
     def close(self) -> None:
         self._exits.close()
 
-    def _ask(self, function):
-        try:
-            return self._client.run(function)
-        except Exception as error:
-            raise ClusterError(
-                f"the workers at {self._address} cannot load this project ({type(error).__name__}: {error}): install "
-                "the same version of it there"
-            ) from None
+    def _check_workers(self):
+        """Raise `ClusterError` where a worker is not of this version; one lost meanwhile is named, and left out."""
+        mine, end = _state(self._solvers), time.monotonic() + PATIENCE
+        same: set[str] = set()
+        lost: set[str] = set()
+        while unknown := sorted(self._client.nthreads().keys() - same):  # some may have come in the place of those lost
+            answers = self._client.run(partial(_state, self._solvers), workers=unknown, on_error="return")
+            for worker, state in answers.items():
+                if not isinstance(state, OSError):
+                    _check_same(worker, state, mine)
+                    same.add(worker)
+                elif time.monotonic() < end:  # the scheduler has yet to see that it is gone
+                    lost.add(worker)
+                else:
+                    raise ClusterError(f"worker {worker} does not answer ({state}): end it, or start it again")
+            time.sleep(0.1 if lost - same else 0.0)
+        for worker in sorted(lost - same):
+            say(f"worker {worker} was lost while versions were compared: the others do its runs")
+        if not same:
+            raise SettingError(
+                f"the scheduler at {self._address} has no workers: start some with dask worker {self._address}"
+            )
 
     def _dismiss(self):
         if self._client.status == "running":
             with contextlib.suppress(Exception):
-                self._client.run(_dismiss_servants, wait=False)
+                self._client.run(_dismiss_guards, wait=False)
 
     def _check_alive(self):
         if self._client.status == "running":
@@ -190,96 +198,73 @@ def _state(solvers):
     return state | source_digests([module_of(name) for name in solvers]) | source_digests([*PROJECT, __name__])
 
 
-def _check_same(theirs, mine):
-    """Raise `ClusterError` where a worker's `_state` differs from mine."""
-    for worker, state in theirs.items():
-        other = sorted(name for name in mine.keys() | state.keys() if mine.get(name) != state.get(name))
-        if not other:
-            continue
-        numbers = [
-            f"{name} {state.get(name)} there, {mine.get(name)} here"
-            for name in other
-            if "." in f"{state.get(name)}{mine.get(name)}"
-        ]
-        what = ", ".join(numbers) or f"the code of {', '.join(other[:3])}{' and more' if len(other) > 3 else ''}"
-        raise ClusterError(f"worker {worker} differs: {what}; install the same there, and start its worker again")
+def _check_same(worker, state, mine):
+    """Raise `ClusterError` where the `_state` of a worker differs from mine, or is an error."""
+    if isinstance(state, Exception):
+        raise ClusterError(
+            f"worker {worker} cannot load this project ({type(state).__name__}: {state}): install the same version of "
+            "it there"
+        )
+    other = sorted(name for name in mine.keys() | state.keys() if mine.get(name) != state.get(name))
+    if not other:
+        return
+    numbers = [
+        f"{name} {state.get(name)} there, {mine.get(name)} here"
+        for name in other
+        if "." in f"{state.get(name)}{mine.get(name)}"
+    ]
+    what = ", ".join(numbers) or f"the code of {', '.join(other[:3])}{' and more' if len(other) > 3 else ''}"
+    raise ClusterError(f"worker {worker} differs: {what}; install the same there, and start its worker again")
 
 
-# In a Dask worker: the servant of each of its threads, with the solvers it has loaded.
-_servants: dict[int, tuple[tuple[str, ...], subprocess.Popen]] = {}
+# In a Dask worker: the process that guards the runs of each of its threads, and the end of the pipe to it.
+_guards: dict[tuple[int, tuple[str, ...]], tuple[Any, Any]] = {}
 
 
 def _serve_here(data: bytes, solvers: tuple[str, ...]) -> Done:
-    """In a Dask worker: the `Done` of a pickled `Task`, by this thread's servant."""
-    servant = _servant(solvers)
+    """In a Dask worker: the `Done` of a pickled `Task`, by this thread's guard."""
+    place = threading.get_ident(), solvers
+    if place not in _guards:
+        _guards[place] = _start_guard(solvers)
     try:
-        servant.stdin.write(data)
-        servant.stdin.flush()
-        return pickle.load(servant.stdout)
+        _guards[place][1].send_bytes(data)
+        return _guards[place][1].recv()
     except (OSError, EOFError):
-        _servants.pop(threading.get_ident(), None)
-        lost = {
-            "kind": "crash",
-            "reason": "the process that guards the runs was killed",
-            "exit_code": -9,
-            "message": "",
-        }
-        return Done(pickle.loads(data).ticket, lost=lost)
+        del _guards[place]
+        return _crashed(pickle.loads(data).ticket, "the process that guards the runs was killed")
 
 
-def _servant(solvers):
-    kept, servant = _servants.get(threading.get_ident(), ((), None))
-    if servant is None or servant.poll() is not None or kept != solvers:
-        if servant is not None:
-            servant.kill()
-        path = os.pathsep.join(sys.path)
-        servant = subprocess.Popen(
-            [sys.executable, "-m", __name__, *solvers],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            env={**os.environ, "PYTHONPATH": path},
-        )
-        _servants[threading.get_ident()] = solvers, servant
-    return servant
+def _start_guard(solvers):
+    multiprocessing.current_process().daemon = False  # Dask's workers are daemons, which may not start processes
+    context = multiprocessing.get_context("spawn")  # a new interpreter: the code is that of the files as they are now
+    ours, theirs = context.Pipe()
+    guard = context.Process(target=guard_runs, args=(theirs, solvers))
+    guard.start()
+    theirs.close()
+    return guard, ours
 
 
-def _dismiss_servants() -> None:
-    """In a Dask worker: let the servants go; one at work has nothing to lose."""
-    for _, servant in list(_servants.values()):
-        servant.stdin.close()  # type: ignore[union-attr]  # a pipe
-    for _, servant in list(_servants.values()):
-        servant.wait()
-    _servants.clear()
+def _dismiss_guards() -> None:
+    """In a Dask worker: end its guards; a run under way there is one that nobody waits for."""
+    while _guards:
+        guard, ours = _guards.popitem()[1]
+        ours.close()
+        guard.join(GRACE)
+        guard.kill()
 
 
-def serve(solvers: tuple[str, ...]) -> None:
-    """As a program under a Dask worker: tasks in on standard input, what became of them out on standard output."""
-    busy = threading.Event()
-    threading.Thread(target=_end_with_worker, args=(busy,), daemon=True).start()
-    answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # engines greet on standard output
+def guard_runs(connection: Any, solvers: tuple[str, ...]) -> None:
+    """In a process below a Dask worker: tasks in, what became of them out, until the worker hangs up or ends."""
+    threading.Thread(target=end_with, args=(multiprocessing.parent_process(),), daemon=True).start()
     compile_for(solvers)
     with Processes(1, solvers) as executor, contextlib.suppress(EOFError):
         while True:
-            task = pickle.load(sys.stdin.buffer)
-            busy.set()
-            executor.submit(task)
-            pickle.dump(executor.next(), answers)
-            answers.flush()
-            busy.clear()
+            executor.submit(pickle.loads(connection.recv_bytes()))
+            connection.send(executor.next())
 
 
-def _end_with_worker(busy):
-    """End this process, even if `busy`, when nobody holds the other end of its standard input: the worker is gone."""
-    watched = select.poll()
-    watched.register(0, 0)  # told of a hang-up without being asked for it
-    watched.poll()
-    if busy.is_set():
-        os._exit(1)
-
-
-if __name__ == "__main__":
-    serve(tuple(sys.argv[1:]))
+def _crashed(ticket, reason):
+    return Done(ticket, lost={"kind": "crash", "reason": reason, "exit_code": -9, "message": ""})
 
 
 def workers_at(scheduler: str | None, workers: int | None, solvers: Iterable[str]) -> Any:

@@ -254,10 +254,11 @@ def _start_worker(path):
     end_with_parent()
     parent = multiprocessing.parent_process()
     if parent is not None:
-        threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+        threading.Thread(target=end_with, args=(parent,), daemon=True).start()
 
 
-def _end_with(parent):
+def end_with(parent: Any) -> None:
+    """End this process when its `parent` (of `multiprocessing.parent_process`) has ended."""
     parent.join()  # kill -9 of the sweep: do not outlive it
     os._exit(1)
 

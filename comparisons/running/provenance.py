@@ -30,6 +30,7 @@ SCHEMA = 1  # of the result files; raise it when a reader of the old ones would 
 FORM = {"kind": str, "settings": dict, "rows": list, "provenance": dict}  # of what a result file holds
 LARGEST = 2_000_000_000  # bytes of a result file, or of the arrays beside it
 PROJECT_FOLDER = Path(__file__).parents[2]
+RUNS = "runs.json"  # the array of a result that holds its sample of runs, as text
 RESULTS = PROJECT_FOLDER / "comparisons" / "results"  # those that the project ships
 PACKAGES = ("numpy", "scipy", "numba", *(engine.package for engine in ENGINES.values()))
 
@@ -40,13 +41,18 @@ class ResultError(RuntimeError):
 
 @dataclass(frozen=True)
 class Result:
-    """What a study found: kind, its settings, rows (list of dict), arrays (dict of ndarray), provenance."""
+    """What a study found: kind, its settings, rows (list of dict), arrays (dict of ndarray), provenance.
+
+    runs: a sample of its runs, see `run_sample`, of `run_count` in all; None in a result of before they were kept.
+    """
 
     kind: str
     settings: dict
     rows: list
     provenance: dict
     arrays: dict = field(default_factory=dict)
+    runs: list = field(default_factory=list)
+    run_count: int | None = None
 
 
 def provenance(modules: Iterable[str] = ("analytic",), seed: object = None) -> dict[str, Any]:
@@ -65,7 +71,7 @@ def provenance(modules: Iterable[str] = ("analytic",), seed: object = None) -> d
         "machine": machine(),
         "python": platform.python_version(),
         "packages": {name: version_of(name) for name in PACKAGES},
-        **_checkout(),
+        **checkout(),
         "sources": {name: digest[:16] for name, digest in sources.items()},
         "seed": seed,
     }
@@ -95,6 +101,8 @@ def write_result(
     *,
     modules: Iterable[str],
     seed: object = None,
+    runs: Sequence[Any] = (),
+    run_count: int = 0,
 ) -> Path:
     """Write a result file: JSON at `path`, and the arrays, if any, beside it as ``.npz``.
 
@@ -110,6 +118,8 @@ def write_result(
     arrays : dict of ndarray, optional
     modules, seed
         See `provenance`.
+    runs, run_count
+        A sample of its runs (see `run_sample`), stored with the arrays, and how many there were in all.
 
     Raises
     ------
@@ -126,19 +136,21 @@ def write_result(
             "provenance": provenance(modules, seed),
             "settings": settings,
             "arrays": None,
+            "runs": {"stored": len(runs), "total": run_count},
             "rows": rows,
         }
     )
-    text = json.dumps(content, allow_nan=False)
-    if any(root in text for root, _ in _roots()):
+    text, sample = json.dumps(content, allow_nan=False), json.dumps(json_ready(runs), allow_nan=False)
+    if any(root in each for root, _ in _roots() for each in (text, sample)):
         raise ResultError(
             f"{path.name}: the content names a folder of this machine; pass file names without "
             "folders, or messages through scrub()"
         )
     path.parent.mkdir(parents=True, exist_ok=True)
+    arrays = dict(arrays or {}) | ({RUNS: np.frombuffer(sample.encode(), np.uint8)} if runs else {})
     if arrays:
         beside = path.with_suffix(".npz")
-        np.savez_compressed(beside, **dict(arrays))  # type: ignore[arg-type]  # no array is called allow_pickle
+        np.savez_compressed(beside, **arrays)  # type: ignore[arg-type]  # no array is called allow_pickle
         content["arrays"] = {"file": beside.name, "digest": _digest(beside)}
     path.write_text(_layout(content))
     return path
@@ -166,7 +178,35 @@ def read_result(path: str | PathLike[str]) -> Result:
         raise ResultError(f"{path.name}: schema {schema!r}, this version reads {SCHEMA}; run the study again")
     if wrong := [name for name, kind in FORM.items() if not isinstance(content.get(name), kind)]:
         raise ResultError(f"{path.name}: no result file of a study, its {wrong[0]} is missing; run the study again")
-    return Result(content["kind"], content["settings"], content["rows"], content["provenance"], _arrays(path, content))
+    arrays = _arrays(path, content)
+    runs = json.loads(arrays.pop(RUNS, np.frombuffer(b"[]", np.uint8)).tobytes())
+    count = content["runs"]["total"] if content.get("runs") else None
+    return Result(content["kind"], content["settings"], content["rows"], content["provenance"], arrays, runs, count)
+
+
+def record_check(path: Path, check: Mapping[str, Any]) -> None:
+    """Write into the provenance of the result at `path` when and how many of its runs were done again and held.
+
+    Raises
+    ------
+    ResultError
+        The file cannot be written.
+    """
+    content = json.loads(path.read_text())
+    content["provenance"]["check"] = dict(check)
+    try:
+        path.write_text(_layout(content))
+    except OSError as error:
+        raise ResultError(
+            f"{path.name}: {check['held']} of {check['runs']} runs hold, but that cannot be recorded there "
+            f"({error.strerror}); check a copy of it, with --output"
+        ) from error
+
+
+def last_check(result: Result) -> str | None:
+    """In words when some of a result's runs were done again and how many held; None if never."""
+    last = result.provenance.get("check")
+    return last and f"last check: {last['date']}, {_at(last['commit'])}, {last['held']} of {last['runs']} runs hold"
 
 
 def _arrays(path, content):
@@ -188,7 +228,8 @@ def age(result: Result) -> str | None:
 
     Code counts wherever it has moved; comments, docstrings and packages that are not installed here do not.
     """
-    return "; ".join(words for words in (_changed(result), _other_versions(result)) if words) or None
+    words = "; ".join(filter(None, (_changed(result), _other_versions(result))))
+    return "; ".join(filter(None, (words, last_check(result)))) if words else None
 
 
 def _changed(result):
@@ -198,13 +239,16 @@ def _changed(result):
     changed = [name for name, digest in then.items() if digest not in here]
     if not changed:
         return None
-    commit = result.provenance["commit"]
-    origin = f"at commit {commit[:7]}" if commit else "outside a checkout"
+    origin = _at(result.provenance["commit"])
     others = f" and {len(changed) - NAMED} more" if len(changed) > NAMED else ""
     return (
         f"older than the code: computed on {result.provenance['time'][:10]} {origin}; since then changed: "
         f"{', '.join(changed[:NAMED])}{others}"
     )
+
+
+def _at(commit):
+    return f"at commit {commit[:7]}" if commit else "outside a checkout"
 
 
 def _other_versions(result):
@@ -258,8 +302,8 @@ def _layout(content):
     return f'{head},\n "rows": [\n  {lines}\n ]\n}}\n' if rows else f'{head},\n "rows": []\n}}\n'
 
 
-def _checkout():
-    """Commit of the project's checkout, and whether tracked files differ from it; None outside one."""
+def checkout() -> dict[str, Any]:
+    """Commit of the project's checkout, and whether tracked files differ from it ("dirty"); None outside one."""
 
     def git(*words):
         return subprocess.run(
@@ -276,7 +320,7 @@ def _checkout():
 
 def commit_seed() -> int:
     """A seed that every commit draws anew; 0 outside a checkout."""
-    return int((_checkout()["commit"] or "0")[:8], 16)
+    return int((checkout()["commit"] or "0")[:8], 16)
 
 
 def _digest(file):

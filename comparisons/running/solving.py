@@ -260,19 +260,22 @@ def tell_failures(responses: Iterable[Response]) -> None:
 
 
 def compile_kernels(vertical: bool = False) -> None:
-    """`analytic.solver.compile_kernels` before a clock starts; said where it takes a while.
+    """`analytic.solver.compile_kernels` before a clock starts; shown where it takes a while.
 
     vertical : also for motions with a vertical component.
     """
     from analytic import solver
 
-    telling = threading.Timer(PATIENCE, say, ["compiling the analytic model: half a minute, once on this machine"])
-    telling.start()
-    try:
-        solver.compile_kernels(vertical)
-    finally:
-        telling.cancel()
-        telling.join()
+    words = "compiling the analytic model: half a minute, once on this machine"
+    with contextlib.ExitStack() as shown:
+        show = (lambda: shown.enter_context(spinner(words))) if sys.stderr.isatty() else (lambda: say(words))
+        telling = threading.Timer(PATIENCE, show)
+        telling.start()
+        try:
+            solver.compile_kernels(vertical)
+        finally:
+            telling.cancel()
+            telling.join()
 
 
 def say(text: str) -> None:

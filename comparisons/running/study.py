@@ -29,7 +29,8 @@ from .cluster import workers_at
 from .executors import Processes, number_of
 from .files import check_folder
 from .provenance import Result, write_result
-from .solving import named_engines, stdout_to_stderr
+from .run_sample import sample_of
+from .solving import named_engines, spinner, stdout_to_stderr
 from .sources import PROJECT, digests_of_all, source_digests
 from .store import Store
 from .sweep import Row, run_sweep
@@ -163,15 +164,18 @@ def compute(
         stack.enter_context(stdout_to_stderr())  # engines greet on standard output
         store = stack.enter_context(Store(folder / RUNS))
         stack.callback(_leave_nothing_empty, folder)
-        ask = _asked(study, engines, quick)  # loads engines: after what is wrong with the place was found
+        with spinner(f"{study.name}: engines and code") if progress else contextlib.nullcontext():
+            ask = _asked(study, engines, quick)  # loads engines: after what is wrong with the place was found
+            code = digests_of_all(_packages(study))
         pool = stack.enter_context(workers_at(scheduler, workers, ("analytic", *ask.engines)))
-        return _carry_out(study, study.plan(ask, **options), folder, ask, store, pool, progress)
+        return _carry_out(study, study.plan(ask, **options), folder, ask, code, store, pool, progress)
 
 
-def _carry_out(study, plan, folder, ask, store, pool, progress):
+def _carry_out(study, plan, folder, ask, code, store, pool, progress):
     """Run what the plan asks for and write what it finds; returns the paths written."""
-    written, counts, answer, ended = {}, {True: 0, False: 0}, None, False
-    solvers, code = dict.fromkeys(("analytic", *ask.engines)), digests_of_all(_packages(study))
+    done: list[tuple[Batch, Row]] = []
+    written, answer, ended = {}, None, False
+    solvers = dict.fromkeys(("analytic", *ask.engines))
     while not ended:
         try:
             step = plan.send(answer)
@@ -184,16 +188,15 @@ def _carry_out(study, plan, folder, ask, store, pool, progress):
             path = folder / f"{step.name or study.name}.json"
             edited = [name for name, digest in source_digests(modules).items() if digest not in code]
             settings = {**step.settings, "changed_while_running": edited}  # its numbers are of the code before
-            written[path] = write_result(
-                path, study.name, settings, step.rows, step.arrays, modules=modules, seed=step.seed
-            )
+            origin: dict[str, Any] = dict(modules=modules, seed=step.seed, runs=sample_of(done), run_count=len(done))
+            written[path] = write_result(path, study.name, settings, step.rows, step.arrays, **origin)
             continue
         answer = _run(step, store, pool, progress)
         solvers.update(dict.fromkeys(case.solver for case in step.cases))
-        for row in answer:
-            counts[row.reused] += 1
+        done += [(step, row) for row in answer]
     if progress:
-        say(f"{counts[False]} runs done, {counts[True]} found in {folder.name}/{RUNS}")
+        found = sum(row.reused for _, row in done)
+        say(f"{len(done) - found} runs done, {found} found in {folder.name}/{RUNS}")
     return list(written)
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, synthetic_motion
 
@@ -44,6 +45,14 @@ class Problem:
     def times(self) -> tuple[float, ...]:
         """Times [s] at which a state is asked for, in order."""
         return tuple(sorted({one.index for one in self.quantities if one.source in STATE}))
+
+    def when(self, quantity: Quantity, right: Mapping[str, Any]) -> float | None:
+        """Time [s] in the run to which an answer belongs, by the exact answers; None for one of the whole run."""
+        if quantity.source in STATE:
+            return quantity.index
+        if quantity.source in IMPACT:
+            return right.get(f"{IMPACT['time'][0]}_{quantity.index:g}")
+        return right.get(quantity.name) if quantity.kind == "time" else None
 
     def scale(self, quantity: Quantity) -> float:
         """What an error of a quantity is divided by, in its unit; `statement.SCALES` says the same in symbols."""

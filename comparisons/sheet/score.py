@@ -6,6 +6,7 @@ of it, while no other mistake's do. Else the cause is unknown.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -44,12 +45,23 @@ class SceneScore(Part):
     advice: str | None
 
 
-class Score(Form):
-    """A file's scores. stored: where the solvers beside it come from; cause: the one mistake that explains all that is
-    wrong, if there is one."""
+class FirstWrong(Part):
+    """The wrong answer that comes first in time [s] of its run, over all scenes; where none of the wrong ones has a
+    time, the first on the sheet. error: over its scale."""
 
-    schema_: str = Field(default="rocking score 1", serialization_alias="schema")
+    scene: str
+    quantity: str
+    time: float | None
+    error: float
+
+
+class Score(Form):
+    """A file's scores. first_wrong: where the solver first goes wrong, None if nowhere. stored: where the solvers
+    beside it come from; cause: the one mistake that explains all that is wrong, if there is one."""
+
+    schema_: str = Field(default="rocking score 2", serialization_alias="schema")
     sheet: int = VERSION
+    first_wrong: FirstWrong | None
     scenes: list[SceneScore]
     unanswered: list[str]
     cause: str | None
@@ -79,6 +91,7 @@ def score(given: Mapping[str, Mapping[str, Value]], tell: Callable[[str], object
         for problem in problems
     ]
     return Score(
+        first_wrong=_first_wrong(problems, errors, right),
         scenes=scenes,
         unanswered=[problem.name for problem in PROBLEMS if problem.name not in given],
         cause=whole,
@@ -99,6 +112,17 @@ def stored_errors() -> tuple[dict[str, list[tuple[float, str]]], str]:
             table.setdefault(row["scene"], []).append((row["error"], f"{row['solver']}, {row['variant']}"))
     when = f"{STORED}, computed on {result.provenance['time'][:10]}"
     return {name: sorted(rows) for name, rows in table.items()}, when
+
+
+def _first_wrong(problems, errors, right):
+    """The `FirstWrong` of answers by their errors; None if all are right."""
+    wrong = [
+        FirstWrong(scene=problem.name, quantity=one.name, time=problem.when(one, right[problem.name]), error=error)
+        for problem in problems
+        for one in problem.quantities
+        if (error := errors[problem.name].get(one.name, 0.0)) > TRUSTED
+    ]
+    return min(wrong, key=lambda one: math.inf if one.time is None else one.time, default=None)
 
 
 def _scene_score(problem, errors, cause, stored):

@@ -41,6 +41,7 @@ def lines(
     grey: Callable[[Row], bool] = lambda row: False,
     log: str = "",
     rules: Sequence[Rule] = (),
+    between: tuple[Column, Column] | None = None,
     says: Callable[[Row], str] | None = None,
     joined: bool = True,
     like: Iterable[Row] = (),
@@ -64,6 +65,8 @@ def lines(
         The logarithmic axes: "", "x", "y" or "xy".
     rules : sequence of (axis, value, words)
         Values to compare with: ("y", 1e-3, "trusted"). Words stand outside the plot, where no line crosses them.
+    between : (Column, Column) or None
+        The ends of an interval about y, drawn for the coloured series.
     says : function
         What a row's mark tells under the pointer; without it series, y and x.
     joined : bool
@@ -71,6 +74,7 @@ def lines(
     like : iterable of dict
         Rows whose series get their looks first: figures of the same `like` draw a series alike.
     """
+    rows = list(rows)
     kept = [row for row in rows if _drawn(x.of(row), "x" in log) and _drawn(y.of(row), "y" in log)]
     if not kept:
         return None
@@ -82,9 +86,10 @@ def lines(
         values = [column.of(row) for row in kept] + [value for along, value, _ in rules if along == which]
         return log_axis(column.head, values) if which in log else _linear_axis(column.head, values)
 
-    coloured = grouped((row for row in kept if not grey(row)), "engine", name)
-    ranked = grouped(like, "engine", name) | coloured
-    looks = {pair[1]: LOOKS[rank % len(LOOKS)] for pair, rank in _ranks(ranked)}
+    coloured = list(grouped((row for row in kept if not grey(row)), "engine", name))
+    # of all rows: a series looks the same where another of its engine's has nothing to draw
+    ranked = grouped([*like, *(row for row in rows if not grey(row))], "engine", name)
+    looks = {who: LOOKS[rank % len(LOOKS)] for (_, who), rank in _ranks(ranked)}
     panels = grouped(kept, panel)
     ends = joined and len({engine for engine, _ in coloured}) == len(coloured)
     charts = []
@@ -111,6 +116,9 @@ def lines(
             look = looks[who] if shown else LOOKS[1]
             if joined:
                 chart.line(*places, who, grey=not shown)
+            if between and shown:
+                low, high = ([end.of(row) for row in points] for end in between)
+                chart.reach(*places, low, high, who)
             if engine != REFERENCE:
                 chart.dots(*places, who, grey=not shown, says=told, apart=shown and joined, **look)
             if ends and shown:

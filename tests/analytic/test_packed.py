@@ -32,7 +32,7 @@ def write(folder, packed, name="record.zip"):
 
 @pytest.mark.parametrize("name, text, said", records(), ids=[name for name, *_ in records()])
 def test_packed_is_read_as_plain(tmp_path, name, text, said):
-    if "velocities" in name:
+    if "velocities" in name or "refused" in name:
         pytest.skip("no record")
     plain = read_record(write(tmp_path, text.encode(), "plain"), **said)
     for packed in (gzip.compress(text.encode()), zipped({"folder/": "", "folder/x.dat": text, "__MACOSX/x": "-"})):

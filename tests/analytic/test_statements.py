@@ -6,7 +6,7 @@ from mutated_files import VALUES
 
 from analytic.errors import SceneError
 from analytic.records import read_channels, read_record
-from analytic.records.statements import read_statements
+from analytic.records.statements import read_statements, stated_unit
 
 ONE_COLUMN = "".join(f"{value:.4f}\n" for value in VALUES)
 THREE = "".join(f"{value:9.3f} {-2 * value:9.3f} {value / 2:9.3f}\n" for value in VALUES)
@@ -112,13 +112,13 @@ def test_a_statement_inside_the_data_is_refused(tmp_path, comment, problem):
     ],
 )
 def test_units_in_words(line, titles, word):
-    unit = read_statements([(1, line)], titles).unit
+    unit = stated_unit(read_statements([(1, line)]).rest, titles)
     assert (unit and unit.word) == word
 
 
 def test_two_names_of_one_unit_must_agree():
     with pytest.raises(SceneError, match="not an acceleration"):
-        read_statements([(1, "UNIT = gal(m/s/s)")])
+        stated_unit([(1, "UNIT = gal(m/s/s)")])
 
 
 JMA = "SITE CODE= 1\nLAT.= 35.0\nSAMPLING RATE= 100Hz\nUNIT  = gal(cm/s/s)\nINITIAL TIME = 2000\n NS,EW,UD\n"

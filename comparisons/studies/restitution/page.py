@@ -161,10 +161,6 @@ def _over_slenderness(cells, defaults):
 
 def _maps(cells):
     """Maps of both errors."""
-
-    def failed(row):
-        return FAILED.of(row).replace(" of ", "/") if row["failed"] else ""
-
     for error, rows in ((ERROR, cells), (JUMP, [row for row in cells if row["ratio"] is not None])):
         yield shades(
             rows,
@@ -175,7 +171,7 @@ def _maps(cells):
             "those made; they are not part of the error.",
             bounds=BOUNDS,
             panel=NAME.of,
-            failed=failed,
+            failed=lambda row: FAILED.of(row).replace(" of ", "/") if row["failed"] else "",
         )
 
 

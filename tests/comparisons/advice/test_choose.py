@@ -10,7 +10,7 @@ import pytest
 from analytic import PulseMotion, SampledMotion, Start, load_scene, simulate
 from analytic.errors import SettingError
 from analytic.response import Impact
-from comparisons.advice import aims, choose
+from comparisons.advice import choose, criteria
 from comparisons.advice.search import Search, problem
 from comparisons.running.cases import Case
 from comparisons.running.sweep import Row
@@ -29,53 +29,53 @@ def row(error, outside=None, cpu=1.0, failure=None):
 
 def test_neighbours_have_start_and_motion_scaled():
     motion = SampledMotion(0.1, [0.0, 1.0, 0.0])
-    family = aims.neighbours(RIGID.with_(motion=motion), "tilt")
-    assert list(family) == [1.0, *aims.FACTORS]
+    family = criteria.neighbours(RIGID.with_(motion=motion), "tilt")
+    assert list(family) == [1.0, *criteria.FACTORS]
     for factor, scene in family.items():
         assert scene.start.tilt == pytest.approx(factor * RIGID.start.tilt)
         assert scene.motion.peak == pytest.approx(factor)
-    assert len(aims.neighbours(RIGID, "outcome")) == 9
+    assert len(criteria.neighbours(RIGID, "outcome")) == 9
     with pytest.raises(SettingError, match="nothing moves"):
-        aims.neighbours(RIGID.with_(start={"tilt": 0.0}), "tilt")
+        criteria.neighbours(RIGID.with_(start={"tilt": 0.0}), "tilt")
 
 
 def test_outcomes_are_those_of_runs_that_no_duration_cuts():
     falling = RIGID.with_(start=Start(), motion=PulseMotion("one-sine", 6.0, 5.0), duration=1.0)
     assert simulate(falling).end.time == 1.0
-    whole = aims.neighbours(falling, "outcome")[1.0]
-    assert simulate(whole).outcome == "overturns" and aims.until(whole, "outcome") == simulate(whole).end.time > 1.0
-    assert aims.neighbours(falling, "tilt")[1.0].duration == 1.0
+    whole = criteria.neighbours(falling, "outcome")[1.0]
+    assert simulate(whole).outcome == "overturns" and criteria.until(whole, "outcome") == simulate(whole).end.time > 1.0
+    assert criteria.neighbours(falling, "tilt")[1.0].duration == 1.0
 
 
 def test_restitution_is_looked_at_up_to_the_eighth_strong_impact():
-    end = aims.until(RIGID, "restitution")
+    end = criteria.until(RIGID, "restitution")
     impacts = [impact for impact in simulate(RIGID).impacts if impact.time < end]
-    assert len(impacts) >= aims.IMPACTS
+    assert len(impacts) >= criteria.IMPACTS
     with pytest.raises(SettingError, match="never hits"):
-        aims.until(STANDING, "restitution")
+        criteria.until(STANDING, "restitution")
     with pytest.raises(SettingError, match="has no base"):
-        aims.until(RIGID, "displacement")
+        criteria.until(RIGID, "displacement")
 
 
 def test_a_block_that_never_hits_is_judged_by_what_it_shows():
-    assert aims.fitting(RIGID) == "restitution"
-    assert aims.fitting(STANDING) == "displacement"
+    assert criteria.fitting(RIGID) == "restitution"
+    assert criteria.fitting(STANDING) == "displacement"
     weak = PulseMotion("one-sine", 0.5, 5.0)
-    assert aims.fitting(RIGID.with_(start=Start(), motion=weak)) == "outcome"
+    assert criteria.fitting(RIGID.with_(start=Start(), motion=weak)) == "outcome"
 
 
-def test_errors_are_those_of_the_aim():
+def test_errors_are_those_of_the_criterion():
     scene = RIGID.with_(duration=4.0)
     reference = simulate(scene)
     history = dataclasses.replace(reference.history, tilt=reference.history.tilt + 0.01 * scene.block.slenderness)
     shifted = dataclasses.replace(reference, history=history)
-    assert aims.error("tilt", scene, shifted, reference) == pytest.approx(0.01)
-    assert aims.error("outcome", scene, dataclasses.replace(shifted, outcome="overturns"), reference) == 1.0
+    assert criteria.error("tilt", scene, shifted, reference) == pytest.approx(0.01)
+    assert criteria.error("outcome", scene, dataclasses.replace(shifted, outcome="overturns"), reference) == 1.0
     lossy = [Impact(i.time, i.rate_before, 0.99 * i.rate_after, 0.0) for i in reference.impacts]
     e = reference.impacts[0].rate_after / reference.impacts[0].rate_before
     wrong = dataclasses.replace(reference, impacts=tuple(lossy))
-    assert aims.error("restitution", scene, wrong, reference) == pytest.approx(0.01 * e, rel=1e-6)
-    assert aims.error("restitution", scene, dataclasses.replace(reference, impacts=()), reference) is None
+    assert criteria.error("restitution", scene, wrong, reference) == pytest.approx(0.01 * e, rel=1e-6)
+    assert criteria.error("restitution", scene, dataclasses.replace(reference, impacts=()), reference) is None
 
 
 def test_a_run_that_loses_an_impact_shows_no_restitution():
@@ -83,7 +83,7 @@ def test_a_run_that_loses_an_impact_shows_no_restitution():
     reference = simulate(scene)
     for kept in ((0, 2, 3), (1, 2, 3)):
         lost = dataclasses.replace(reference, impacts=tuple(reference.impacts[k] for k in kept))
-        assert aims.error("restitution", scene, lost, reference) is None
+        assert criteria.error("restitution", scene, lost, reference) is None
 
 
 @pytest.mark.parametrize(
@@ -109,10 +109,10 @@ def test_of_outcomes_the_share_counts():
 
 
 class Made:
-    """In place of runs: errors by knob (of the scene, of the neighbours), costs falling along the ladder."""
+    """In place of runs: errors by level (of the scene, of the neighbours), costs falling along the ladder."""
 
     def __init__(self, errors):
-        self.family = aims.neighbours(RIGID, "tilt")
+        self.family = criteria.neighbours(RIGID, "tilt")
         self.ladder = get_engine(ENGINE).variants[VARIANT].ladder
         self.errors = dict(zip(self.ladder, errors, strict=True))
         self.rows = {
@@ -120,14 +120,14 @@ class Made:
         }
         self.asked = []
 
-    def __call__(self, rungs, factors, label):
-        self.asked += [rung[2] for rung in rungs]
-        for rung in rungs:
-            self.rows[rung] |= {factor: row(self.errors[rung[2]][1]) for factor in factors}
+    def __call__(self, levels, factors, label):
+        self.asked += [level[2] for level in levels]
+        for level in levels:
+            self.rows[level] |= {factor: row(self.errors[level[2]][1]) for factor in factors}
 
     def chosen(self, whole=0.1):
-        rung = Search(self, 1e-3, "tilt", lambda rung: whole).cheapest(list(self.rows))[0]
-        return rung and self.ladder.index(rung[2])
+        level = Search(self, 1e-3, "tilt", lambda level: whole).cheapest(list(self.rows))[0]
+        return level and self.ladder.index(level[2])
 
 
 GOOD, BAD = (1e-5, 1e-5), (1e-2, 1e-2)
@@ -165,12 +165,12 @@ def test_a_choice_from_python_runs_what_it_names():
         duration=2.0,
         block={"slenderness": 0.2},
     )
-    found = choose(pulse, aim="outcome", error=0.3, engines=[ENGINE], source="pulse.toml")
+    found = choose(pulse, criterion="outcome", error=0.3, engines=[ENGINE], source="pulse.toml")
     assert found.chosen is not None and found.chosen.error <= 0.3 and found.chosen.passes
     assert found.command.startswith(f"rocking run pulse.toml --engine {ENGINE} --variant {found.chosen.variant}")
     assert f'get_engine("{ENGINE}")' in found.snippet
-    assert {part.part: part.needed for part in found.spared}["base"] is False
-    assert found.model_dump(by_alias=True)["schema"] == "rocking choose 1"
+    assert {part.part: part.needed for part in found.parts}["base"] is False
+    assert found.model_dump(by_alias=True)["schema"] == "rocking choose 3"
 
 
 @pytest.mark.parametrize(

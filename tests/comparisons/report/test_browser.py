@@ -135,9 +135,10 @@ def test_tables_sort_rows_unfold_and_solvers_hide(folder, browser):
     assert not wrong
 
 
+@pytest.mark.parametrize("file", ["report.html", "pages/restitution.html"])
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_lettering_in_pictures_can_be_read(folder, browser, scheme):
-    page, wrong = opened(browser, folder / "report.html", PHONE, scheme)
+def test_lettering_in_pictures_can_be_read(folder, browser, scheme, file):
+    page, wrong = opened(browser, folder / file, PHONE, scheme)
     texts = page.evaluate(TEXTS)
     assert len(texts) > 100
     poor = {(text["words"], round(contrast(text["colour"], text["behind"]), 1)) for text in texts
@@ -152,7 +153,7 @@ def test_lettering_in_pictures_can_be_read(folder, browser, scheme):
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_axe_finds_nothing_serious(folder, browser, scheme):
     axe = pytest.importorskip("axe_playwright_python.sync_playwright")
-    for file in (folder / "report.html", folder / "pages/runs.html"):
+    for file in (folder / "report.html", folder / "pages/runs.html", folder / "pages/restitution.html"):
         page, _ = opened(browser, file, DESKTOP, scheme)
         found = axe.Axe().run(page).response["violations"]
         serious = [

@@ -3,7 +3,6 @@
 import json
 import math
 import re
-import types
 from html.parser import HTMLParser
 from pathlib import Path
 from xml.etree import ElementTree
@@ -20,7 +19,9 @@ from comparisons.report.sections import variant_groups
 from comparisons.report.study import make_results
 from comparisons.report.write import write_page
 from comparisons.running.provenance import read_result, write_result
-from comparisons.showing.parts import Section, Table
+from comparisons.running.study import Study
+from comparisons.showing import parts
+from comparisons.showing.parts import Table
 from comparisons.studies import get_study
 from engines import available_engines, installed_engines
 
@@ -299,20 +300,20 @@ def test_a_failed_run_shows_its_evidence(folder, copied):
     assert "<pre>&lt;SIGSEGV&gt;</pre>" in page.source
 
 
-def test_a_study_is_shown_by_its_own_section_and_says_when_it_is_old(folder, copied, tmp_path_factory, monkeypatch):
+def test_a_study_is_shown_by_its_own_page_and_says_when_it_is_old(folder, copied, tmp_path_factory, monkeypatch):
     studies = tmp_path_factory.mktemp("results")
     file = write_result(studies / "fake.json", "fake", {}, [{"kappa": 0.75}], modules=["analytic.errors"])
     write_page(copied, studies=studies)
     assert "fake.json cannot be shown: unknown study" in (copied / "pages/fake.html").read_text()
-    shown = Section(
-        "A fake study", ("Two paragraphs < one.",), (Table("Agreement", ("solver", "kappa [-]"), [["exudyn", "0.75"]]),)
-    )
-    study = types.SimpleNamespace(section=lambda result: shown, finding=lambda result: shown, judgement=None)
+    tables = [Table(name, ("solver", "kappa [-]"), [["exudyn", "0.75"]]) for name in ("Agreement", "All of it")]
+    shown = parts.Page("A fake study: agrees", ("Two paragraphs < one.",), tuple(tables[:1]), tuple(tables[1:]))
+    study = Study("fake", "Does it agree?", lambda ask: None, page=lambda result: shown)
     monkeypatch.setattr("comparisons.report.studies.get_study", lambda kind: study)
     path = write_page(copied, studies=studies)
     for page in (Page(path), Page(copied / "pages/fake.html")):
         assert page.table("Agreement")["exudyn", "kappa [-]"] == "0.75"
         assert "Two paragraphs &lt; one." in page.source
+    assert "All of it" in (copied / "pages/fake.html").read_text() and "All of it" not in path.read_text()
     assert "pages/fake.html" in Page(path).links
     warnings = path.read_text().count("Out of date")
     changed(file, lambda content: content["provenance"]["sources"].update({"analytic.errors": "another"}))

@@ -111,15 +111,52 @@ def test_a_worker_killed_five_times_loses_nothing_and_leaves_nothing(tmp_path):
         assert len(store) == count == (tmp_path / "s.jsonl").read_bytes().count(b"\n")
 
 
-def test_a_worker_with_other_code_or_versions_is_one_message_before_the_first_run(monkeypatch):
+def test_a_worker_with_other_code_or_versions_is_one_message_before_the_first_run():
     mine = module._state(("analytic",))
-    module._check_same({"tcp://a:1": dict(mine)}, mine)
+    module._check_same("tcp://a:1", dict(mine), mine)
     with pytest.raises(ClusterError, match=r"worker tcp://a:1 differs: numpy 1\.0\.0 there, [\d.]+ here; install"):
-        module._check_same({"tcp://a:1": mine | {"numpy": "1.0.0"}}, mine)
+        module._check_same("tcp://a:1", mine | {"numpy": "1.0.0"}, mine)
     with pytest.raises(ClusterError, match="differs: the code of analytic.newer; install"):
-        module._check_same({"tcp://a:1": mine | {"analytic.newer": "0"}}, mine)
+        module._check_same("tcp://a:1", mine | {"analytic.newer": "0"}, mine)
     with pytest.raises(ClusterError, match="differs: the code of analytic.kernel; install"):
-        module._check_same({"tcp://a:1": mine | {"analytic.kernel": "0"}}, mine)
+        module._check_same("tcp://a:1", mine | {"analytic.kernel": "0"}, mine)
+    with pytest.raises(ClusterError, match="cannot load this project .ModuleNotFoundError: no analytic"):
+        module._check_same("tcp://a:1", ModuleNotFoundError("no analytic"), mine)
+
+
+class Workers:
+    """In place of a client: workers that answer, or are lost as they are asked and gone soon after."""
+
+    def __init__(self, answers, lost, gone_after):
+        self.answers, self.lost, self.gone_after, self.asked = answers, lost, gone_after, 0
+
+    def nthreads(self):
+        return dict.fromkeys([*self.answers, *(self.lost if self.asked < self.gone_after else ())], 1)
+
+    def run(self, function, workers, on_error):
+        self.asked += 1
+        return {worker: self.answers.get(worker, OSError("connection broken")) for worker in workers}
+
+
+def checked(monkeypatch, workers):
+    monkeypatch.setattr(module, "PATIENCE", 0.3)
+    cluster = object.__new__(Cluster)
+    cluster._client, cluster._solvers, cluster._address = workers, ("analytic",), "here"
+    cluster._check_workers()
+
+
+def test_a_worker_lost_while_versions_are_compared_is_no_mismatch_but_named(monkeypatch, capsys):
+    mine = module._state(("analytic",))
+    checked(monkeypatch, Workers({"a": mine}, lost=("b",), gone_after=2))
+    assert "worker b was lost while versions were compared" in capsys.readouterr().err
+    checked(monkeypatch, Workers({"a": mine}, lost=(), gone_after=0))
+    assert not capsys.readouterr().err
+    with pytest.raises(ClusterError, match="worker b differs"):  # what answers is compared all the same
+        checked(monkeypatch, Workers({"a": mine, "b": mine | {"numpy": "1.0"}}, lost=("c",), gone_after=2))
+    with pytest.raises(ClusterError, match="worker b does not answer"):
+        checked(monkeypatch, Workers({"a": mine}, lost=("b",), gone_after=10**6))
+    with pytest.raises(SettingError, match="has no workers"):
+        checked(monkeypatch, Workers({}, lost=("b",), gone_after=1))
 
 
 def test_an_address_that_is_none_is_one_message():

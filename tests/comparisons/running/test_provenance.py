@@ -67,18 +67,18 @@ def test_commit_and_dirty_flag_are_those_of_the_checkout_and_none_outside(tmp_pa
         )
 
     monkeypatch.setattr(module, "PROJECT_FOLDER", tmp_path)
-    assert module._checkout() == {"commit": None, "dirty": None}
+    assert module.checkout() == {"commit": None, "dirty": None}
     git("init")
     (tmp_path / "a.py").write_text("x = 1\n")
     git("add", "a.py")
     git("commit", "-m", "a")
-    first = module._checkout()
+    first = module.checkout()
     assert len(first["commit"]) == 40 and first["dirty"] is False
     (tmp_path / "a.py").write_text("x = 2\n")
-    assert module._checkout() == {"commit": first["commit"], "dirty": True}
+    assert module.checkout() == {"commit": first["commit"], "dirty": True}
     (tmp_path / "inner").mkdir()
     monkeypatch.setattr(module, "PROJECT_FOLDER", tmp_path / "inner")
-    assert module._checkout()["commit"] is None  # installed inside some other checkout
+    assert module.checkout()["commit"] is None  # installed inside some other checkout
 
 
 def test_age_names_the_modules_that_changed(tmp_path, monkeypatch):

@@ -11,7 +11,7 @@ import pytest
 from sheet_solver import solve
 
 from analytic.errors import SceneError
-from comparisons.sheet.answers import own_error, read_answers
+from comparisons.sheet.answers import exact, own_error, read_answers
 from comparisons.sheet.faults import MISTAKES
 from comparisons.sheet.pages import markdown, write_sheet
 from comparisons.sheet.problems import PROBLEMS
@@ -90,6 +90,35 @@ def test_a_spoilt_code_is_told_what_is_wrong(sheet, kind):
 def test_what_two_mistakes_explain_is_unknown(sheet):
     found = score(answers(sheet, ("pulse-below",), A=-1))  # or the sign of the tilt: this page alone cannot tell
     assert not found.passed and found.cause is None and found.scenes[0].cause is None
+
+
+def first_wrong(changes, names=("free-rigid", "pulse-below")):
+    """Of exact answers with some replaced: {(scene, quantity): what is added}, or a word."""
+    given = {name: dict(exact(BY_NAME[name])) for name in names}
+    for (name, quantity), change in changes.items():
+        given[name][quantity] = change if isinstance(change, str) else given[name][quantity] + change
+    return score(given).first_wrong
+
+
+def test_the_first_wrong_answer_is_that_of_the_earliest_time():
+    right = exact(BY_NAME["free-rigid"])
+    assert first_wrong({}) is None
+    assert first_wrong({("free-rigid", "impact_time_2"): 1e-6}) is None  # within what counts as right
+    found = first_wrong({("free-rigid", "impact_time_2"): 0.1, ("free-rigid", "rate_after_1"): 0.1})
+    assert (found.scene, found.quantity, found.time) == ("free-rigid", "rate_after_1", right["impact_time_1"])
+    uplift = exact(BY_NAME["pulse-below"])["uplift_time"]
+    assert uplift < right["impact_time_1"]
+    found = first_wrong({("free-rigid", "rate_after_1"): 0.1, ("pulse-below", "uplift_time"): 0.1})
+    assert (found.scene, found.quantity, found.time) == ("pulse-below", "uplift_time", uplift)
+
+
+def test_what_has_no_time_comes_after_what_has_and_in_the_sheets_order():
+    words = {("free-rigid", "outcome"): "overturns", ("pulse-below", "peak_tilt"): 0.1}
+    found = first_wrong(words)
+    assert (found.scene, found.quantity, found.time, found.error) == ("free-rigid", "outcome", None, 1.0)
+    state = next(one for one in BY_NAME["free-rigid"].quantities if one.kind == "angle")
+    found = first_wrong({**words, ("free-rigid", state.name): 0.1})
+    assert (found.quantity, found.time) == (state.name, state.index)
 
 
 TOLD = {

@@ -9,7 +9,7 @@ import pytest
 
 from comparisons.showing.charts import INK, NEAR, STYLE
 from comparisons.showing.figures import MOVED, beside, lines, shades
-from comparisons.showing.rows import NAME, Column, where
+from comparisons.showing.rows import NAME, Column
 from engines import ENGINES
 
 X, Y = Column("slenderness γ [rad]", "x", digits=None), Column("error [-]", "y")
@@ -76,9 +76,11 @@ def test_variants_of_an_engine_share_its_colour_and_differ_in_their_marks():
     fine, coarse = (made.keys[f"{FIRST}, {variant}"] for variant in ("fine", "coarse"))
     assert ENGINES[FIRST].colour in fine and ENGINES[FIRST].colour in coarse
     assert 'class="dot"' in fine and 'class="dot open"' in coarse
-    alone = lines(where(ROWS, variant="coarse"), X, Y, "Errors.", log="y")
-    likewise = lines(where(ROWS, variant="coarse"), X, Y, "Errors.", log="y", like=ROWS)
-    assert 'class="dot"' in alone.keys[f"{FIRST}, coarse"] and likewise.keys == {f"{FIRST}, coarse": coarse}
+    alone = lines([row(FIRST, "fine", 0.1, None), ROWS[2]], X, Y, "Errors.", log="y")
+    assert alone.keys == {f"{FIRST}, coarse": coarse}  # as where the other one is drawn
+    first = lines(ROWS[2:3], X, Y, "Errors.", log="y")
+    likewise = lines(ROWS[2:3], X, Y, "Errors.", log="y", like=ROWS)
+    assert 'class="dot"' in first.keys[f"{FIRST}, coarse"] and likewise.keys == alone.keys
     many = [row(FIRST, f"variant {k}", 0.1, 10.0**-k) for k in range(4)]
     marks = {
         re.sub(r".*?<path class=\"(dot[^>]*)>.*", r"\1", str(key))
@@ -115,6 +117,16 @@ def test_rules_are_named_outside_the_plot():
     words = {text.text: text for text in panel.iter("text") if text.text in ("trusted", "needed")}
     assert float(words["trusted"].get("x")) > left + width and float(words["needed"].get("y")) < top
     assert len([part for part in inside.iter("path") if part.get("class") == "rule"]) == 2
+
+
+def test_intervals_reach_from_end_to_end():
+    told = [one | {"low": one["y"] / 10, "high": one["y"] * 10} for one in ROWS[:2]]
+    made = lines(told, X, Y, "", log="y", between=(Column("low", "low"), Column("high", "high")))
+    (panel,) = panels(made)
+    (reach,) = [part.get("d") for part in panel.iter("path") if part.get("class") == "reach"]
+    ends = [float(place.split()[1]) for place in re.split("[ML]", reach)[1:]]
+    decade = (ends[0] - ends[1]) / 2  # a tenth to ten times
+    assert ends[0] - ends[2] == pytest.approx(decade, abs=0.2) and decade > 20
 
 
 def test_the_model_is_a_line_without_marks():

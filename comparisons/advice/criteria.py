@@ -19,16 +19,21 @@ if TYPE_CHECKING:
 
     from ..running.cases import Case
 
-AIMS = ("restitution", "tilt", "displacement", "outcome")
+CRITERIA = ("restitution", "tilt", "displacement", "outcome")
 IMPACTS = 8  # strong ones of the model up to which a scene is run for its restitution
 AFTER = 0.25  # of a rocking period that a run goes on after them
 PERIODS = 1.0  # rocking periods beyond its peak up to which tilt or displacement is compared
 FACTORS = (0.95, 0.975, 1.025, 1.05)  # of start and motion together: the neighbours
 MORE_FACTORS = (0.9625, 0.9875, 1.0125, 1.0375)  # beside them where outcomes are counted
-SPARE = 2.0  # error asked for over the worst that a setting may show: neighbours not looked at pass, too
+SAFETY = 2.0  # error asked for over the worst that a level may show: neighbours not looked at pass, too
 
 
-def neighbours(scene: Scene, aim: str) -> dict[float, Scene]:
+def safety(criterion: str) -> float:
+    """Error asked for over the largest that passes."""
+    return 1.0 if criterion == "outcome" else SAFETY
+
+
+def neighbours(scene: Scene, criterion: str) -> dict[float, Scene]:
     """{factor: the scene with its start and its motion times that}, the scene itself with 1 first.
 
     Where outcomes count they have no duration: a run that is cut before its outcome is decided shows none.
@@ -40,10 +45,10 @@ def neighbours(scene: Scene, aim: str) -> dict[float, Scene]:
     """
     if scene.motion is None and not any(scene.start.model_dump().values()):
         raise SettingError(f"{scene.name}: nothing moves; give the scene a [start] or a [motion]")
-    if aim == "outcome":
+    if criterion == "outcome":
         scene = scene.with_(duration=None)
     found = {1.0: scene}
-    for factor in sorted(FACTORS + (MORE_FACTORS if aim == "outcome" else ())):
+    for factor in sorted(FACTORS + (MORE_FACTORS if criterion == "outcome" else ())):
         start = {name: factor * value for name, value in scene.start.model_dump().items()}
         try:
             found[factor] = scene.with_(start=start, motion=scene.motion and scene.motion.scaled(factor))
@@ -53,7 +58,7 @@ def neighbours(scene: Scene, aim: str) -> dict[float, Scene]:
 
 
 def fitting(scene: Scene) -> str:
-    """The aim where none is named: restitution where the block hits, else its base's displacement, else the outcome."""
+    """Where none is named: restitution where the block hits, else its base's displacement, else the outcome."""
     if strong_impacts(simulate(scene, history=False)):
         return "restitution"
     return "displacement" if scene.base else "outcome"
@@ -64,7 +69,7 @@ def lifts(scene: Scene) -> bool:
     return simulate(scene.with_(duration=None), history=False).outcome != "stands"
 
 
-def until(scene: Scene, aim: str) -> float:
+def until(scene: Scene, criterion: str) -> float:
     """Time [s] up to which a scene is run and compared.
 
     Raises
@@ -73,23 +78,23 @@ def until(scene: Scene, aim: str) -> float:
         The scene does not show what is asked for.
     """
     reference = simulate(scene, history=False)
-    if aim == "displacement" and scene.base is None:
+    if criterion == "displacement" and scene.base is None:
         raise SettingError("--for displacement: the scene has no base; choose restitution, tilt or outcome")
-    if aim == "restitution":
+    if criterion == "restitution":
         strong = strong_impacts(reference)[:IMPACTS]
         if not strong:
             raise SettingError(
                 f"--for restitution: the block of {scene.name} never hits its base; choose displacement or outcome"
             )
         return float(min(reference.end.time, strong[-1].time + AFTER * 2 * np.pi / scene.rocking_frequency))
-    if aim == "tilt" and reference.outcome == "stands":
+    if criterion == "tilt" and reference.outcome == "stands":
         raise SettingError(f"--for tilt: the block of {scene.name} never lifts; choose displacement or outcome")
-    if aim == "outcome":
+    if criterion == "outcome":
         return reference.end.time
     cut = scene.with_(duration=reference.end.time)
     history = simulate(cut).history
     assert history is not None
-    column = np.abs(history.tilt if aim == "tilt" else history.base_displacement)
+    column = np.abs(history.tilt if criterion == "tilt" else history.base_displacement)
     peak = float(history.time[column.argmax()])
     after = PERIODS * 2 * np.pi / scene.rocking_frequency
     return min(sensitivity_horizon(cut).horizon, peak + after)
@@ -97,30 +102,30 @@ def until(scene: Scene, aim: str) -> float:
 
 @dataclass(frozen=True)
 class Measure:
-    """Measure of a run: its error in the sense of `aim`."""
+    """Measure of a run: its error in the sense of `criterion`."""
 
-    aim: str
+    criterion: str
 
     def __call__(self, case: Case, response: Response) -> dict[str, Any]:
         reference = simulate(case.scene)
         return {
             "outcome": response.outcome,
-            "error": error(self.aim, case.scene, response, reference),
+            "error": error(self.criterion, case.scene, response, reference),
             "simulated": response.end.time,
         }
 
 
-def error(aim: str, scene: Scene, response: Response, reference: Response) -> float | None:
+def error(criterion: str, scene: Scene, response: Response, reference: Response) -> float | None:
     """How far off a run is; None where it does not show what is asked for."""
-    if aim == "outcome":
+    if criterion == "outcome":
         return float(response.outcome != reference.outcome)
-    if aim == "restitution":
+    if criterion == "restitution":
         return _restitution(scene, response, reference)
     ours, theirs = response.history, reference.history
     if ours is None or theirs is None:
         return None
     column, unit = "tilt", scene.block.slenderness
-    if aim == "displacement":
+    if criterion == "displacement":
         column, unit = "base_displacement", reference.peak_base_displacement
     time = theirs.time[theirs.time <= ours.time[-1]]  # one that overturns ends there
     apart = np.interp(time, ours.time, getattr(ours, column)) - getattr(theirs, column)[: len(time)]

@@ -12,7 +12,7 @@ from engines import get_engine
 
 from ..measuring.models import on_heavy_base, on_stiff_springs
 from ..running.cases import Case
-from .found import Setting, Spared
+from .answer import Level, ModelPart
 
 if TYPE_CHECKING:
     from analytic import Response
@@ -25,11 +25,11 @@ def cpu_seconds(scene: Scene) -> float:
     return min(simulate(scene, history=False).cpu_seconds for _ in range(REPEATS))
 
 
-def spared(
-    scene: Scene, family: Mapping[float, Scene], error: float, found: Setting | None, engines: Iterable[str], own: float
-) -> list[Spared]:
-    """`Spared` of each part; family: the scene's neighbours; found: the setting chosen, or the best; own: `cpu_seconds`
-    of the scene."""
+def model_parts(
+    scene: Scene, family: Mapping[float, Scene], error: float, found: Level | None, engines: Iterable[str], own: float
+) -> list[ModelPart]:
+    """Which parts of a model the scene needs; family: its neighbours; found: the level chosen, or the best; own:
+    `cpu_seconds` of the scene."""
     runs = [simulate(one, history=False) for one in family.values()]
     engine = None if found is None or found.cpu_per_second is None else found.cpu_per_second * runs[0].end.time / own
     return [_rocking(runs, engine), _base(scene, own), _vertical(scene, runs[0], own, error), _space(scene, engines)]
@@ -38,27 +38,29 @@ def spared(
 def _rocking(runs, engine):
     lifted = sum(run.outcome != "stands" for run in runs)
     if lifted:
-        return Spared(
+        return ModelPart(
             part="rocking", needed=True, why=f"the block lifts in {lifted} of {len(runs)} scenes looked at", cost=None
         )
     why = "the block never lifts, nor in any neighbour: block and base are one mass on the bearings"
-    return Spared(part="rocking", needed=False, why=f"{why}; an engine's contact is modelled for nothing", cost=engine)
+    return ModelPart(
+        part="rocking", needed=False, why=f"{why}; an engine's contact is modelled for nothing", cost=engine
+    )
 
 
 def _base(scene, own):
     if scene.base is not None:
-        return Spared(part="base", needed=True, why="the block stands on a base that moves", cost=None)
+        return ModelPart(part="base", needed=True, why="the block stands on a base that moves", cost=None)
     if scene.motion is None:
         cost = cpu_seconds(on_heavy_base(scene)) / own
-        return Spared(part="base", needed=False, why="the ground is rigid; in its place a heavy base", cost=cost)
+        return ModelPart(part="base", needed=False, why="the ground is rigid; in its place a heavy base", cost=cost)
     cost = cpu_seconds(on_stiff_springs(scene)) / own
-    return Spared(part="base", needed=False, why="the ground is rigid; in its place a support of 50 Hz", cost=cost)
+    return ModelPart(part="base", needed=False, why="the ground is rigid; in its place a support of 50 Hz", cost=cost)
 
 
-def _vertical(scene: Scene, reference: Response, own: float, error: float) -> Spared:
+def _vertical(scene: Scene, reference: Response, own: float, error: float) -> ModelPart:
     part = "vertical motion"
     if scene.motion is None or scene.motion.vertical is None:
-        return Spared(part=part, needed=False, why="the scene has none", cost=None)
+        return ModelPart(part=part, needed=False, why="the scene has none", cost=None)
     motion = scene.motion
     level = scene.with_(
         motion=SampledMotion(motion.dt, motion.samples, motion.label, motion.warnings)
@@ -71,7 +73,7 @@ def _vertical(scene: Scene, reference: Response, own: float, error: float) -> Sp
         apart = max(apart, abs(without.peak_base_displacement / reference.peak_base_displacement - 1))
     same = without.outcome == reference.outcome and apart <= error
     why = f"without it the outcome is {without.outcome} and the peaks differ by {apart:.1e}"
-    return Spared(part=part, needed=not same, why=why, cost=own / cpu_seconds(level))
+    return ModelPart(part=part, needed=not same, why=why, cost=own / cpu_seconds(level))
 
 
 def _space(scene, engines):
@@ -89,5 +91,7 @@ def _space(scene, engines):
             ]
             if not any(run.failure for run in runs):
                 spent = np.array([run.cpu_seconds / run.end.time for run in runs])
-                return Spared(part=part, needed=False, why=f"{why}; in {engine.name}", cost=float(spent[0] / spent[1]))
-    return Spared(part=part, needed=False, why=why, cost=None)
+                return ModelPart(
+                    part=part, needed=False, why=f"{why}; in {engine.name}", cost=float(spent[0] / spent[1])
+                )
+    return ModelPart(part=part, needed=False, why=why, cost=None)

@@ -1,0 +1,169 @@
+"""Stored runs of a result done again with the code of today: how many still give what they gave?"""
+
+from __future__ import annotations
+
+import importlib
+import math
+import random
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from itertools import zip_longest
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from analytic.errors import SceneError
+
+from .cases import solver
+from .executors import Processes
+from .files import TemporaryFolder
+from .provenance import ResultError, checkout, read_result, record_check
+from .run_sample import case_of, outcome_of
+from .sweep import run_sweep
+
+RELATIVE, ABSOLUTE = 1e-9, 1e-12  # numbers this near are equal: another processor rounds otherwise
+NOT_COMPARED = ("cpu_seconds", "traced_bytes", "resident_bytes", "versions")  # costs, and what they were paid with
+SHOWN = 3  # differences named of a run
+
+
+@dataclass(frozen=True)
+class Check:
+    """Of a result file: runs done again, of so many stored and so many in all; what differs, a sentence a run."""
+
+    file: str
+    seed: int
+    runs: int
+    stored: int
+    total: int
+    differences: tuple[str, ...] = ()
+
+    @property
+    def held(self) -> int:
+        return self.runs - len(self.differences)
+
+    def words(self) -> str:
+        """The outcome in a sentence."""
+        if not self.runs:
+            return f"{self.file}: nothing to check, none of its {self.total} runs can be stored"
+        drawn = f"drawn with seed {self.seed} from {self.stored} stored of {self.total}"
+        return f"{self.file}: {self.held} of {self.runs} runs hold ({drawn})"
+
+
+def check_all(name: str, folder: str | PathLike[str], number: int, seed: int, **options: Any) -> list[Check]:
+    """The `check` of each result of the study `name` in `folder`.
+
+    Raises
+    ------
+    ResultError
+        As `check`; or there is no such result, or none of them keeps a run.
+    EngineNotInstalled
+    """
+    own = Path(folder) / f"{name}.json"
+    files = [own] if own.exists() else sorted(Path(folder).glob(f"{name}-*.json"))  # a study may have several
+    checks = [check(file, number, seed, **options) for file in files or [own]]
+    if not any(one.runs for one in checks):
+        raise ResultError(f"{checks[0].words()}; run rocking study {name}, which computes all of it again")
+    return checks
+
+
+def check(path: Path, number: int, seed: int, *, workers: int | None = None, progress: bool = True) -> Check:
+    """Do `number` runs of the result at `path` again, drawn with `seed` from those stored; recorded in its provenance.
+
+    A run holds if all that was measured is as before, numbers within 1e-9 of themselves; CPU times are not compared.
+    What a study makes of its runs is not checked.
+
+    Raises
+    ------
+    ResultError
+        The result cannot be read, is older than this check, or the outcome cannot be recorded there.
+    EngineNotInstalled
+        A run needs an engine that cannot be imported here.
+    """
+    result = read_result(path)
+    if result.run_count is None:
+        raise ResultError(f"{path.name}: was written before runs were stored; run rocking study {result.kind}")
+    drawn = random.Random(seed).sample(result.runs, min(number, len(result.runs)))
+    again = _again(drawn, workers, progress) if drawn else []
+    found = filter(None, (_differ(run, now) for run, now in zip(drawn, again, strict=True)))
+    done = Check(path.name, seed, len(drawn), len(result.runs), result.run_count, tuple(found))
+    if drawn:
+        today = {"date": datetime.now(UTC).date().isoformat(), **checkout()}
+        record_check(path, {**today, "seed": seed, "runs": done.runs, "held": done.held})
+    return done
+
+
+def _again(runs, workers, progress):
+    """What each of the stored runs gives today (`outcome_of` and the scene's digest), or why it cannot be done."""
+    found: list[Any] = [None] * len(runs)
+    groups: dict[Any, list[tuple[int, Any]]] = {}
+    for place, run in enumerate(runs):
+        try:
+            case, measure = case_of(run), _measure(run["measure"])
+            solver(case.solver)
+        except (KeyError, ImportError, AttributeError, SceneError) as error:
+            found[place] = f"it cannot be run any more ({error.args[0] if isinstance(error, KeyError) else error})"
+        else:
+            groups.setdefault((measure, run["time_limit"]), []).append((place, case))
+    names = sorted({case.solver for members in groups.values() for _, case in members})
+    with TemporaryFolder("check-") as folder, Processes(workers, names) as pool:
+        for (measure, limit), members in groups.items():
+            options: dict[str, Any] = dict(executor=pool, time_limit=limit, progress=progress, label="runs again")
+            store = Path(folder) / "runs.jsonl"
+            rows = run_sweep([case for _, case in members], store=store, measure=measure, **options)
+            for (place, case), row in zip(members, rows, strict=True):
+                found[place] = {**outcome_of(row), "digest": case.scene.digest()}
+    return found
+
+
+def _measure(name):
+    """The function that `name_of` names."""
+    if name is None:
+        return None
+    module, _, function = name.partition(":")
+    return getattr(importlib.import_module(module), function)
+
+
+def _differ(run: Mapping[str, Any], now: Any) -> str | None:
+    """In a sentence what a stored run has otherwise than today's; None where nothing."""
+    if isinstance(now, str):
+        return f"{_named(run)}: {now}"
+    if run["failure"] != now["failure"]:
+        return f"{_named(run)}: {_state(run['failure'])} when stored, now {_state(now['failure'])}"
+    found = [each for part in ("digest", "values") for each in _differences(part, run[part], now[part])]
+    shown = "; ".join(f"{where}: stored {_short(then)}, now {_short(here)}" for where, then, here in found[:SHOWN])
+    more = f"; and {len(found) - SHOWN} more" if len(found) > SHOWN else ""
+    return f"{_named(run)}: {shown}{more}" if found else None
+
+
+def _differences(where: str, stored: Any, now: Any) -> Iterator[tuple[str, Any, Any]]:
+    """(quantity, stored, now) of all that differs."""
+    if isinstance(stored, dict) and isinstance(now, dict):
+        for name in dict.fromkeys((*stored, *now)):
+            if name not in NOT_COMPARED:
+                yield from _differences(f"{where}.{name}", stored.get(name), now.get(name))
+    elif isinstance(stored, list) and isinstance(now, list):
+        for k, (one, other) in enumerate(zip_longest(stored, now)):
+            yield from _differences(f"{where}[{k}]", one, other)
+    elif not _equal(stored, now):
+        yield where.removeprefix("values."), stored, now
+
+
+def _equal(stored, now):
+    if type(stored) is float and isinstance(now, int | float) and type(now) is not bool:
+        return math.isclose(stored, now, rel_tol=RELATIVE, abs_tol=ABSOLUTE)
+    return type(stored) is type(now) and stored == now
+
+
+def _state(failure):
+    return f"{failure['kind']}: {failure['reason']}" if failure else "sound"
+
+
+def _named(run):
+    own = ", ".join(f"{name} = {value}" for name, value in {**run["settings"], **run["tag"]}.items())
+    return ", ".join(filter(None, (run["solver"], run["variant"], run["scene"]["name"], own)))
+
+
+def _short(value):
+    text = f"{value:.9g}" if isinstance(value, float) else str(value)
+    return text if len(text) <= 80 else f"{text[:80]}..."

@@ -1,0 +1,171 @@
+"""Stored runs done again: what holds, what differs, what cannot be run any more; and what is stored of runs."""
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from analytic import PulseMotion, SampledMotion, synthetic_motion
+from analytic.pairing import paired
+from comparisons.report.studies import origin_of
+from comparisons.running import check as module
+from comparisons.running import run_sample
+from comparisons.running.check import check, check_all
+from comparisons.running.provenance import ResultError, age, last_check, read_result, write_result
+from comparisons.running.run_sample import case_of, sample_of
+from comparisons.running.study import Batch, Found, Study, compute
+from comparisons.running.sweep import Case, Row
+from comparisons.showing.parts import Section
+
+sys.path.insert(0, str(Path(__file__).parent))  # and from there to the workers
+import fake_solvers  # noqa: E402
+from fake_solvers import cases, scene  # noqa: E402
+
+
+def _plan(ask):
+    rows = yield Batch(cases("fails", 1) + cases("raises", 8) + cases(count=3), fake_solvers.tilt, "tilts")
+    return Found({}, [row.values for row in rows])
+
+
+STUDY = Study("tilts", "How far?", _plan, lambda result: {}, lambda result: Section(""), all_engines=False)
+
+
+@pytest.fixture
+def result(tmp_path):
+    (path,) = compute(STUDY, tmp_path, workers=1, progress=False)
+    return path
+
+
+def changed(path, change):
+    """The result with its stored runs changed."""
+    old = read_result(path)
+    for run in old.runs:
+        change(run)
+    write_result(path, old.kind, {}, old.rows, modules=["analytic"], runs=old.runs, run_count=old.run_count)
+
+
+def test_unchanged_code_holds_and_the_result_says_when_it_was_checked(result):
+    found = check(result, 30, 1, workers=1, progress=False)
+    assert (found.runs, found.held, found.stored, found.total) == (12, 12, 12, 12)  # failed runs among them
+    read = read_result(result)
+    last = read.provenance["check"]
+    assert (last["runs"], last["held"], last["seed"]) == (12, 12, 1)
+    assert "12 of 12 runs hold" in last_check(read) and last_check(read) in origin_of(read)
+    read.provenance["sources"]["analytic.scene"] = "0" * 16
+    assert age(read).endswith(last_check(read))
+    assert check(result, 5, 2, workers=1, progress=False).runs == 5
+
+
+def test_a_run_that_differs_is_named_with_both_numbers(result):
+    def change(run):
+        if run["tag"]["i"] == 2 and run["solver"].endswith("sound"):
+            run["values"]["peak"] *= 1 + 1e-8  # ten times what rounding is allowed
+
+    changed(result, change)
+    found = check(result, 30, 1, workers=1, progress=False)
+    assert found.held == 11 and read_result(result).provenance["check"]["held"] == 11
+    (words,) = found.differences
+    assert "fake_solvers:sound, i = 2: peak: stored 0.000400000004, now 0.0004" == words
+
+
+@pytest.mark.parametrize(
+    "part, value, words",
+    [
+        ("solver", "nosuchengine", "cannot be run any more (unknown solver 'nosuchengine'"),
+        ("measure", "fake_solvers:gone", "cannot be run any more (module 'fake_solvers' has no attribute 'gone'"),
+        ("settings", {"spring": 1.0}, "sound when stored, now exception: TypeError"),
+        ("failure", {"kind": "crash", "reason": "killed"}, "crash: killed when stored, now sound"),
+        ("digest", "0", "digest: stored 0, now"),
+    ],
+)
+def test_what_is_gone_or_fails_otherwise_does_not_hold(result, part, value, words):
+    def change(run):
+        if run["solver"].endswith("sound"):
+            run[part] = value
+
+    changed(result, change)
+    found = check(result, 30, 1, workers=1, progress=False)
+    assert found.held == 9 and all(words in each for each in found.differences), found.differences
+
+
+def test_a_variant_that_is_gone_does_not_hold_and_is_named(tmp_path):
+    case = Case(scene(0.1), "exudyn", "switched-joints", {"history": False})
+    run = sample_of([(Batch([case], fake_solvers.tilt, ""), Row(case, {"outcome": "rocks"}, None, {}, False))])[0]
+    run["variant"] = "springs-of-old"
+    write_result(tmp_path / "r.json", "k", {}, [], modules=["analytic"], runs=[run], run_count=1)
+    found = check(tmp_path / "r.json", 1, 0, workers=1, progress=False)
+    assert found.held == 0 and "springs-of-old" in found.differences[0]
+
+
+def test_results_without_stored_runs_say_what_to_do(tmp_path):
+    path = write_result(tmp_path / "tilts.json", "tilts", {}, [], modules=["analytic"])
+    with pytest.raises(ResultError, match="nothing to check, none of its 0 runs .* run rocking study tilts"):
+        check_all("tilts", tmp_path, 3, 0)
+    content = json.loads(path.read_text())
+    del content["runs"]
+    path.write_text(json.dumps(content))
+    with pytest.raises(ResultError, match="before runs were stored; run rocking study tilts"):
+        check_all("tilts", tmp_path, 3, 0)
+    with pytest.raises(ResultError, match="other.json: no such result file"):
+        check_all("other", tmp_path, 3, 0)
+
+
+FORMULA = SampledMotion(0.1, [0.0, 1.0 / 3, 0.0])
+MOTIONS = {
+    "none": None,
+    "pulse": PulseMotion("one-sine", 6.0, 5.0, vertical=PulseMotion("one-sine", 2.0, 5.0, phase=0.3)),
+    "formula": FORMULA,
+    "synthetic": synthetic_motion(seed=3).scaled(1 / 3),
+    "pair": paired(synthetic_motion(seed=3), synthetic_motion(seed=4).scaled(0.7)),
+    "scaled twice": synthetic_motion(seed=5).scaled(0.1).scaled(0.7),
+}
+
+
+def stored(motion):
+    case = Case(scene(0.1).with_(motion=motion), "analytic", tag={"k": 1})
+    return sample_of([(Batch([case], fake_solvers.tilt, ""), Row(case, {"peak": 1.0}, None, {}, False))])
+
+
+@pytest.mark.parametrize("kind", MOTIONS)
+def test_a_stored_case_is_the_case_that_was_run(kind):
+    (run,) = json.loads(json.dumps(stored(MOTIONS[kind])))
+    case = case_of(run)
+    assert case.scene.digest() == scene(0.1).with_(motion=MOTIONS[kind]).digest() == run["digest"]
+    assert (case.solver, case.tag) == ("analytic", {"k": 1})
+    assert ("samples" in run["scene"]["motion"]) == (kind in ("formula", "scaled twice"))
+
+
+def test_the_values_of_a_record_are_not_stored():
+    assert stored(SampledMotion(0.1, [0.0, 1.0, 0.0], "RSN1605_DUZCE_DZC270.AT2")) == []
+    assert stored(paired(FORMULA, SampledMotion(0.1, [0.0, 1.0, 0.0], "upwards.AT2"))) == []
+    assert stored(SampledMotion(0.1, [0.0] * (run_sample.LONGEST + 1))) == []
+
+
+def test_few_long_motions_and_few_runs_are_stored():
+    def runs(motions):
+        for motion in motions:
+            case = Case(scene(0.1).with_(motion=motion), "analytic")
+            yield Batch([case], fake_solvers.tilt, ""), Row(case, {}, None, {}, False)
+
+    many = [SampledMotion(0.1, [0.0, float(k), 0.0]) for k in range(1, 9)]
+    assert len(sample_of(runs(many))) == run_sample.MOTIONS
+    assert len(sample_of(runs(many[:1] * 100))) == run_sample.SIZE
+    assert sample_of(runs(many)) == sample_of(runs(many))
+
+
+@pytest.mark.parametrize(
+    "stored, now, places",
+    [
+        (1.0, 1.0 + 1e-10, []),
+        (1.0, 1.0 + 1e-8, ["x"]),
+        (1.0, True, ["x"]),
+        (0.0, 0, []),
+        ([1, 2], [1], ["x[1]"]),
+        ({"a": {"b": 1}}, {"a": {"b": 2}}, ["x.a.b"]),
+        ({"cpu_seconds": 1.0, "resident_bytes": 1}, {"cpu_seconds": 2.0, "resident_bytes": 2}, []),
+        (None, 0.0, ["x"]),
+    ],
+)
+def test_differences_are_found_in_their_place(stored, now, places):
+    assert [where for where, _, _ in module._differences("x", stored, now)] == places
