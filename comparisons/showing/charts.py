@@ -22,7 +22,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator
 from engines import ENGINES
 
 from .parts import Figure, power_of_ten
-from .plots import marker
+from .plots import OTHERS, marker
 
 STYLE = Path(__file__).with_name("charts.css")  # colours of pages, light and dark, and the rules of charts
 WIDTH = 400
@@ -340,10 +340,10 @@ def _group(who, grey, tone=""):
     if not who:
         return f'<g class="who" style="--c:{tone}">' if tone else '<g class="who">'
     engine = engine_of(who)
-    drawn, dashes = "var(--faint)" if grey else colour(who), _dashes(engine) if engine in ENGINES else ""
+    drawn, dashes = "var(--faint)" if grey else colour(who), _dashes(engine)
     return f'<g class="who" data-who="{escape(who)}" style="--c:{drawn};--d:{dashes or "none"}">'
 
 
 def _dashes(who):
-    dashes = ENGINES[who].dashes
+    dashes = ENGINES[who].dashes if who in ENGINES else OTHERS.get(who, ("-", ""))[0]
     return DASHES.get(dashes, "") if isinstance(dashes, str) else " ".join(f"{part:g}" for part in dashes[1])

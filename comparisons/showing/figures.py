@@ -44,6 +44,7 @@ def lines(
     between: tuple[Column, Column] | None = None,
     says: Callable[[Row], str] | None = None,
     joined: bool = True,
+    like: Iterable[Row] = (),
 ) -> Figure | None:
     """Panels of lines and marks, one series for each engine and what tells its series apart; None: nothing to draw.
 
@@ -70,6 +71,8 @@ def lines(
         What a row's mark tells under the pointer; without it series, y and x.
     joined : bool
         Whether a line joins the marks.
+    like : iterable of dict
+        Rows whose series get their looks first: figures of the same `like` draw a series alike.
     """
     rows = list(rows)
     kept = [row for row in rows if _drawn(x.of(row), "x" in log) and _drawn(y.of(row), "y" in log)]
@@ -83,12 +86,10 @@ def lines(
         values = [column.of(row) for row in kept] + [value for along, value, _ in rules if along == which]
         return log_axis(column.head, values) if which in log else _linear_axis(column.head, values)
 
-    # of all rows: a series looks the same where another of its engine's has nothing to draw
-    looks = {
-        who: LOOKS[rank % len(LOOKS)]
-        for (_, who), rank in _ranks(grouped((row for row in rows if not grey(row)), "engine", name))
-    }
     coloured = list(grouped((row for row in kept if not grey(row)), "engine", name))
+    # of all rows: a series looks the same where another of its engine's has nothing to draw
+    ranked = grouped([*like, *(row for row in rows if not grey(row))], "engine", name)
+    looks = {who: LOOKS[rank % len(LOOKS)] for (_, who), rank in _ranks(ranked)}
     panels = grouped(kept, panel)
     ends = joined and len({engine for engine, _ in coloured}) == len(coloured)
     charts = []
@@ -128,13 +129,13 @@ def lines(
 
 
 def beside(*figures: Figure | None) -> Figure | None:
-    """Figures as one, panel beside panel, one caption after the other; None: none is there."""
+    """Figures as one, panel beside panel, one caption after the other, equal ones once; None: none is there."""
     found = [one for one in figures if one is not None]
     if not found:
         return None
     keys = {who: key for one in found for who, key in one.keys.items()}
     svg, alt = b"".join(one.svg for one in found), " ".join(one.alt for one in found)
-    caption = " ".join(one.caption.removesuffix(MOVED) for one in found)
+    caption = " ".join(dict.fromkeys(one.caption.removesuffix(MOVED) for one in found))
     moved = MOVED if any(one.caption.endswith(MOVED) for one in found) else ""
     return Figure(svg, alt, caption + moved, True, tuple(keys), keys)
 

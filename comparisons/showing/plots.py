@@ -23,11 +23,12 @@ DOTS, LINES = 1.8, 1.4
 TITLE_CHARACTERS = 100
 TILT_RANGE = (0.05, 2.0)  # least and greatest limit of a tilt axis, over slenderness
 SPARE: tuple[str, str | tuple[float, tuple[float, ...]], float] = ("#777777", (0, (5, 1)), 1.3)
+OTHERS = {"scipy": ("--", "D"), "time-stepping": (":", "v")}  # solvers that are no engine: dashes and marker in charts
 
 
 def marker(solver: str) -> str:
     """Marker of a solver: the same in every figure."""
-    return ENGINES[solver].marker if solver in ENGINES else "o"
+    return ENGINES[solver].marker if solver in ENGINES else OTHERS.get(solver, ("", "o"))[1]
 
 
 def style(solver: str) -> dict[str, Any]:

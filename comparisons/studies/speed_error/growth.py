@@ -1,82 +1,56 @@
-"""How CPU time and memory of a run grow with duration, sample rate and number of runs."""
+"""How CPU time and memory of a run grow with its duration and with the sample rate of its record."""
 
 from __future__ import annotations
 
 import dataclasses
 import math
-import time
 import tracemalloc
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import psutil
 
-from analytic import simulate
-from analytic.batch import simulate_many
 from analytic.motion import SampledMotion
+from engines import get_engine
 
 from ...running.cases import Case
-from .scenes import at_amplitude
-from .timing import TICK
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
     from analytic import Response, Scene
 
-    from .scenes import Trial
-
-AGAINST = {"duration": "duration [s]", "samples": "record samples per second [1/s]", "runs": "runs in a batch [-]"}
+TICK = 4e-3  # s of CPU: shorter measurements are repeated until they took as long, and the mean counts
 WARM_SECONDS = 0.02  # s simulated before the memory is measured: code and caches are loaded
-SPREAD_OF_BATCH = 0.2  # amplitudes of a batch lie within this share of the boundary
-SPAN: dict[str, Any] = {
-    "duration": {
-        "analytic": ((100, 200, 400, 800, 1600, 3200), (50, 100, 200, 400)),
-        "engine": ((5, 10, 20, 40), (1, 2, 4)),
-    },
-    "samples": ((100, 200, 400, 800, 1600, 3200), (200, 400, 800)),
-    "runs": ((250, 500, 1000, 2000, 4000, 8000), (100, 200, 400)),
-}
+# of a full and of a quick run
+DURATIONS = ((100, 200, 400, 800, 1600, 3200), (50, 100, 200, 400))  # s, of the kernel
+ENGINE_DURATIONS = ((5, 10, 20, 40), (1, 2, 4))  # s
+RATES = ((100, 200, 400, 800, 1600, 3200), (200, 400, 800))  # 1/s
 
 
-@dataclass(frozen=True, eq=False)
-class Point:
-    """One measurement of growth: `value` of `against`, in `scene` by `solver` (count: runs in a batch)."""
+def growth_cases(scene: Scene, engines: Sequence[str], quick: bool) -> list[Case]:
+    """All measurements, of a scene under a sampled motion that is repeated.
 
-    against: str
-    value: float
-    family: str
-    scene: Scene
-    solver: str
-    count: int = 0
+    Each is its own run cut short, which loads code and caches; the tag says the duration [s] of the run that `grown`
+    measures, the variant, and the value of what the cost grows against.
+    """
 
-    def case(self, turn: int) -> Case:
-        """The measurement of one round as a `Case`: its own run, cut short, loads code and caches for `grown`."""
-        warm = self.scene.with_(duration=min(self.scene.duration, WARM_SECONDS))
-        tag = {"duration": self.scene.duration, "count": self.count, "round": turn}
-        return Case(warm, self.solver, None, {"history": False}, tag)
+    def case(engine, variant, against, value, whole):
+        warm = whole.with_(duration=min(whole.duration, WARM_SECONDS))
+        tag = {"variant": variant, "against": against, "value": value, "duration": whole.duration}
+        return Case(warm, engine, None, {"history": False}, tag)
 
-
-def points(trials: Sequence[Trial], engines: Sequence[str], quick: bool) -> list[Point]:
-    """All measurements: the isolated Caryatid under a repeated motion, and batches near the overturning boundary."""
-    pick = 1 if quick else 0
-    by_name = {trial.name: trial.scene for trial in trials}
-    stands, boundary = by_name["isolated-standing"], by_name["near-overturning"]
-    asked = [
-        Point("duration", value, "kernel", lasting(stands, value), "analytic")
-        for value in SPAN["duration"]["analytic"][pick]
-    ]
-    for engine in engines:
-        asked += [
-            Point("duration", value, f"{engine}, default", lasting(stands, value), engine)
-            for value in SPAN["duration"]["engine"][pick]
-        ]
-    asked += [Point("samples", value, "kernel", sampled(stands, value), "analytic") for value in SPAN["samples"][pick]]
-    return asked + [
-        Point("runs", value, "kernel, batch", boundary, "analytic", count=value) for value in SPAN["runs"][pick]
+    lengths: dict[tuple[str, str], tuple[int, ...]] = {("analytic", "kernel"): DURATIONS[quick]}
+    lengths |= {(engine, get_engine(engine).default_variant): ENGINE_DURATIONS[quick] for engine in engines}
+    return [
+        *(
+            case(*pair, "duration", value, lasting(scene, value))
+            for pair, values in lengths.items()
+            for value in values
+        ),
+        *(case("analytic", "kernel", "samples", value, sampled(scene, value)) for value in RATES[quick]),
     ]
 
 
@@ -101,8 +75,7 @@ def grown(case: Case, response: Response) -> dict[str, Any]:
     traced_bytes: peak of what Python and numpy allocate during the run (tracemalloc). resident_bytes: how far the
     process's resident memory rises above its size before the run, at its peak; it counts compiled code's memory too.
     """
-    scene, count = case.scene.with_(duration=case.tag["duration"]), case.tag["count"]
-    run = _batch(scene, count) if count else dataclasses.replace(case, scene=scene).run
+    run = dataclasses.replace(case, scene=case.scene.with_(duration=case.tag["duration"])).run
     resident = _resident_growth(run)
     response = run()
     if response.failure:
@@ -124,20 +97,6 @@ def grown(case: Case, response: Response) -> dict[str, Any]:
     }
 
 
-def _batch(scene, count):
-    """A function that runs `count` scenes around the boundary on one core; its response has the batch's CPU time."""
-    low, high = (scene.motion.amplitude * (1 + sign * SPREAD_OF_BATCH) for sign in (-1, 1))
-    scenes = [at_amplitude(scene, amplitude) for amplitude in np.linspace(low, high, count)]
-    one = simulate(scene, history=False)
-
-    def run():
-        begin = time.process_time()
-        simulate_many(scenes, workers=1)
-        return dataclasses.replace(one, cpu_seconds=time.process_time() - begin)
-
-    return run
-
-
 def _resident_growth(run):
     """Bytes by which the peak resident memory during `run` exceeds that before it; None where the system hides it."""
     status, reset = Path("/proc/self/status"), Path("/proc/self/clear_refs")
@@ -153,7 +112,5 @@ def _resident_growth(run):
 
 def fit(x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[float, float]:
     """(exponent, its standard error) of y ~ x^exponent by least squares of the logarithms; three points or more."""
-    u, v = np.log(x), np.log(y)
-    slope, offset = np.polyfit(u, v, 1)
-    left = v - slope * u - offset
-    return float(slope), float(math.sqrt((left @ left) / (len(u) - 2) / ((u - u.mean()) ** 2).sum()))
+    (slope, _), covariance = np.polyfit(np.log(x), np.log(y), 1, cov=True)
+    return float(slope), math.sqrt(covariance[0, 0])

@@ -1,310 +1,351 @@
-"""The speed-error study in the report: words, tables and figures, all from the result."""
+"""What is shown of the speed-error study."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import statistics
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
 
-from ...showing.parts import Section, Table, figure_of, number
-from .figures import draw_growth, draw_pareto
-from .ladders import NEEDED
-from .measure import MEASURES
-from .tables import (
-    LEVELS,
-    cost_at_error,
-    extras,
-    growths,
-    ladder,
-    law_cost,
-    orders,
-    principal,
-    ranking_stability,
-    unrepeatable,
-)
+import numpy as np
+
+from engines import ENGINES
+
+from ...showing.figures import beside, lines
+from ...showing.parts import Head, Page, number, short
+from ...showing.rows import Column, grouped, table, where
+from .cases import NEEDED
+from .growth import fit
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
 
-SHOWN = (1e-2, 1e-3, 1e-4)  # levels of which the words speak
+FIRST = ("free-sliding", "isolated-rocking")  # scenes of the report's first page
+LEVELS = (1e-2, 1e-3, 1e-4, 1e-6)  # of the scene's principal error; finer ones are the kernel study's
+ASKED = 1e-3
+DRAWN, ROUNDING = 1e-14, 1e-13  # errors below the first are drawn there, those below the second tell no order
+NOISE = 95  # percentile of the settings' spread over the rounds, below which two costs are not told apart
+KERNEL = "analytic, kernel"
+MEASURES = {
+    "impact_time": ("error of impact times, rms", "s"),
+    "peak_displacement": ("error of peak displacement", "-"),
+    "boundary_shift": ("error of overturning boundary", "-"),
+}
+AGAINST = {"duration": "duration [s]", "samples": "record samples per second [1/s]"}
+MIB = 2**20
+
+NAME = Column("solver", "name")
+SCENE = Column("scene", "title")
+CPU = Column("CPU time of a run [s]", "cpu_seconds")
 
 
-def section(result: Result) -> Section:
-    """The study's `Section` of the report."""
-    failed = [row for row in ladder(result) if row["failure"]]
-    figures = [
-        figure_of(
-            draw_pareto(result),
-            "Error against CPU time of every solver, one panel per scene.",
-            "Error against CPU time of the very same runs: one point per setting of the accuracy knob, "
-            "down and left is better. Crosses: impacts lost. Hollow: more is modelled than the scene "
-            "needs.",
+def page(result: Result) -> Page:
+    """The `Page` of a `Result` of the speed-error study."""
+    every = levels_run(result)
+    rows = [row for row in where(every, model=NEEDED) if row["law"] != "bouc-wen"]
+    scenes = grouped(rows, "scene")
+    first = [key for key in scenes if key[0] in FIRST] or list(scenes)[-1:]
+    asked = first[-1]
+    growth = where(result.rows, part="growth", failure=None)
+    return Page(
+        _title(result, scenes[asked]),
+        (
+            "Every solver runs through levels of its accuracy parameter; error and CPU time come from the same runs. "
+            "Cheapest is the cheapest level at which it and all finer ones keep the error: a lucky run does not count.",
+            "In brackets: CPU time over the analytic model's; level of the accuracy parameter. Assisted: the adapter "
+            "applies the impact.",
         ),
-        figure_of(
-            draw_pareto(result, x="step"),
-            "Error against mean step of every solver, one panel per scene.",
-            "Error against the mean step (simulated time over steps taken).",
+        first=(_figure([row for key in first for row in scenes[key]], CPU, COST, rows), _costs(result, scenes[asked])),
+        more=(
+            Head("The other scenes"),
+            _figure([row for key in scenes if key not in first for row in scenes[key]], CPU, COST, rows),
+            *(_costs(result, some) for key, some in scenes.items() if key != asked),
+            _without_error(every),
+            Head("Step and order"),
+            _figure(rows, Column("mean step [s]", "step"), "Mean step: simulated time over steps.", rows),
+            _orders(rows, result.settings["scenes"]),
+            table(
+                "Cost over all scenes and levels, lowest to highest",
+                [{"name": name, "rows": some} for (name,), some in grouped(rows, "name").items()],
+                NAME,
+                Column("CPU time per simulated second [s/s]", lambda row: _range(row["rows"], "cpu_per_second", 1)),
+                Column("CPU time per step [µs]", lambda row: _range(row["rows"], "cpu_per_step", 1e6)),
+            ),
+            *_more_than_needed(result, every),
+            *_growth(growth),
         ),
-    ]
-    if growths(result):
-        figures.append(
-            figure_of(
-                draw_growth(result),
-                "CPU time and memory against duration, sample rate and runs.",
-                "How the cost of a run grows. No run keeps a history.",
-            )
-        )
-    return Section(
-        "Speed against error",
-        tuple(paragraphs(result)),
-        tuple(tables(result)),
-        tuple(figures),
+        how=_how(result, every),
         evidence=tuple(
             (
-                f"{row['family']} at {row['knob']} = {row['value']:g}, {row['scene']}: {row['failure']['reason']}",
+                f"{row['name']} at {_level(row)}, {row['title']}: {row['failure']['reason']}",
                 row["failure"].get("message", ""),
             )
-            for row in failed
+            for row in every
+            if row["failure"]
         ),
     )
 
 
-def paragraphs(result: Result) -> list[str]:
-    """Plain words with computed numbers, list of str."""
-    settings = result.settings
-    text = [
-        "Every solver runs a ladder of its accuracy knob on five scenes. Error and CPU time come from the same "
-        f"runs: {settings['rounds']} fresh processes one after the other, in each every solver has its turn after "
-        "a warm-up; CPU times are medians (of the simulation alone: no import, no compilation, no building of "
-        "the scene). The paragraphs that follow say which engine, at which setting (SI units), keeps an error "
-        "at least cost; those that decide the impact themselves come first."
-    ]
-    for scene, about in settings["scenes"].items():
-        text.append(_scene_words(result, scene, about))
-    if settings["changed_while_running"]:
-        text.append(
-            "While the study ran, this code was edited; the numbers are those of the code before: "
-            + ", ".join(settings["changed_while_running"])
-            + "."
-        )
-    text += _failure_words(result) + _extra_words(result) + _law_words(result) + _growth_words(result)
-    tie, pairs, changed = ranking_stability(result)
-    broken = unrepeatable(result)
-    text.append(
-        f"Repetition: the errors of {len(ladder(result)) - len(broken)} of {len(ladder(result))} settings are "
-        "the same bit for bit in every round"
-        + ("" if not broken else " (not: " + ", ".join(sorted({row["family"] for row in broken})) + ")")
-        + f". Of {pairs} pairs of solvers that reach the same error at CPU times more than a factor of "
-        f"{number(tie, 3)} apart, {len(changed)} swap places between the odd and the even rounds"
-        + (
-            ""
-            if not changed
-            else ": "
-            + "; ".join(
-                f"{one} and {other} ({_title(result, scene)}, {level:g})" for scene, level, one, other in changed
-            )
-        )
-        + ". Solvers nearer than that share a rank: the same setting differs as much between its own rounds."
-    )
-    return text
+COST = (
+    "Left and low is better. Coloured: solvers of which a level and all finer ones keep 0.001; grey: the others, named "
+    "under the pointer. Levels that lost impacts have no error. Rounding is drawn at 10⁻¹⁴."
+)
 
 
-def _scene_words(result, scene, about):
-    """Cheapest engine that decides the impact itself, and the kernel, at each level: one sentence per scene."""
-    measure = MEASURES[principal(result, scene)][0]
-    applied = result.settings["applied_impacts"]
-    parts, given = [], {family: [] for family in applied}
-    for level in SHOWN:
-        best = cost_at_error(result, scene, level)
-        kernel = best.get("kernel")
-        engine = next((row for family, row in best.items() if row["variant"] and family not in applied), None)
-        if kernel is None:
-            continue
-        parts.append(
-            f"{level:g} by no engine"
-            if engine is None
-            else (
-                f"{level:g} by {engine['family']} at {engine['knob']} {number(engine['value'])} in "
-                f"{number(engine['cpu_seconds'], 2)} s, {number(engine['cpu_seconds'] / kernel['cpu_seconds'], 2)} "
-                "times the analytic kernel"
-            )
-        )
-        for family in applied.keys() & best.keys():
-            given[family].append(f"{level:g} in {number(best[family]['cpu_seconds'], 2)} s")
-    words = f"{about['title']}. An error ({measure}) of at most " + "; ".join(parts) + "."
-    return words + "".join(
-        f" {family}, whose impacts are the adapter's own: {'; '.join(costs)}."
-        for family, costs in given.items()
-        if costs
-    )
+def levels_run(result: Result) -> list[dict[str, Any]]:
+    """The rows of all solvers at their levels, with name, title of the scene, its principal measure and error in it.
 
-
-def _failure_words(result):
-    """Which settings failed, and which found no boundary: they have no place in the tables."""
-    rows, words = ladder(result), []
-    failed = _counted(result, [row for row in rows if row["failure"]], rows)
-    if failed:
-        words.append(f"Failed, with the solver's own message below: {failed}.")
-    searched = [row for row in rows if principal(result, row["scene"]) == "boundary_shift" and not row["failure"]]
-    none = _counted(result, [row for row in searched if "boundary_shift" not in row["errors"]], searched)
-    if none:
-        words.append(f"No overturning boundary near the reference's (the search went on moving, by 5 % a run): {none}.")
-    return words
-
-
-def _title(result, scene):
-    return result.settings["scenes"][scene]["title"]
-
-
-def _counted(result, rows, among):
-    """ "solver: 2 of 5 settings (scene)" for those that occur in `rows`."""
-    parts = []
-    for key in dict.fromkeys((row["family"], row["model"], row["scene"]) for row in rows):
-        some, every = (
-            sum((row["family"], row["model"], row["scene"]) == key for row in group) for group in (rows, among)
-        )
-        parts.append(f"{key[0]}: {some} of {every} settings ({_title(result, key[2])})")
-    return "; ".join(parts)
-
-
-def _extra_words(result):
-    models = extras(result)
-    if not models:
-        return []
-    words = []
-    for model in dict.fromkeys(row["model"] for row in models):
-        ratios = [row["cost_ratio"] for row in models if row["model"] == model]
-        low, high = number(min(ratios), 2), number(max(ratios), 2)
-        words.append(f"{model}: {low if low == high else f'{low} to {high}'} times the CPU time of what is needed")
-    return [
-        "More modelled than the scene needs – " + "; ".join(words) + ". The table says what each does to the error."
-    ]
-
-
-def _law_words(result):
-    ratios = [
-        f"{number(middle, 3)} times in {family} ({_title(result, scene)}; {number(low, 3)} to {number(high, 3)})"
-        for (scene, family), (middle, low, high) in law_cost(result).items()
-    ]
-    if not ratios:
-        return []
-    changed = "; ".join(
-        f"{_title(result, scene)}: {number(100 * change['peak_displacement'], 2)} %"
-        for scene, change in result.settings["laws"].items()
-    )
-    return [
-        "A Bouc-Wen bearing costs, over the algebraic law at the same setting: "
-        + ", ".join(ratios)
-        + f". It changes the peak displacement, whatever the solver: {changed}."
-    ]
-
-
-def _growth_words(result):
-    grown = growths(result)
-    words = []
-    for (against, family), series in grown.items():
-        if "exponent" in series:
-            words.append(
-                f"{family} against {against}: {number(series['exponent'], 3)} ± "
-                f"{number(series['exponent_error'], 1)} (last doubling: {number(series['last_exponent'], 3)})"
-            )
-    if not words:
-        return []
-    memory = grown.get(("duration", "kernel"))
-    text = "CPU time grows as a power of – " + "; ".join(words) + "."
-    if memory:
-        traced, value = memory["traced_bytes"], memory["value"]
-        text += (
-            f" The kernel allocates {number(traced[0] / 2**20, 3)} MiB for {value[0]:g} s without history and "
-            f"{number(traced[-1] / 2**20, 3)} MiB for {value[-1]:g} s; the engines' adapters keep every step "
-            "until the run is measured, so theirs grow with the duration."
-        )
-    return [text]
-
-
-def tables(result: Result) -> list[Table]:
-    """Cost at an error for every scene; observed orders; what the scene needs; cost per second and per step."""
-    costs = [_cost_table(result, scene, about) for scene, about in result.settings["scenes"].items()]
-    return [*costs, _order_table(result), _extra_table(result), _unit_table(result)]
-
-
-def _cost_table(result, scene, about):
-    columns = {level: cost_at_error(result, scene, level) for level in LEVELS}
-    families = list(dict.fromkeys(family for level in LEVELS for family in columns[level]))
-    rows = [[family, *(_cell(columns[level].get(family)) for level in LEVELS)] for family in families]
-    return Table(
-        f"{about['title']}: CPU time [ms] of one run to reach an error (lowest – highest round; setting)",
-        (MEASURES[principal(result, scene)][0], *(f"≤ {level:g}" for level in LEVELS)),
-        rows,
-    )
-
-
-def _cell(row):
-    if row is None:
-        return "–"
-    cpu, low, high = (number(1e3 * row[name], 3) for name in ("cpu_seconds", "cpu_low", "cpu_high"))
-    return f"{cpu} ({low} – {high}; {number(row['value'])})"
-
-
-def _order_table(result):
+    The error is None where the run failed, lost impacts or found no boundary.
+    """
     scenes = result.settings["scenes"]
-    by_scene = [orders(result, scene, "value") for scene in scenes]
-    rows = []
-    for family in dict.fromkeys(row["family"] for row in ladder(result)):
-        fits = [by_family.get(family) for by_family in by_scene]
-        if any(fits):
-            rows.append(
-                [family, *("–" if fit is None else f"{fit[0]:.2f} ± {fit[1]:.2f}".replace("-", "−") for fit in fits)]
-            )
-    return Table(
-        "Observed order q: error ~ knob^q, ± standard error; the knob is a step, a tolerance, a contact "
-        "stiffness or an accuracy [-]",
-        ("solver", *(about["title"] for about in scenes.values())),
-        rows,
-    )
+    return [_shown(row, scenes[row["scene"]]) for row in where(result.rows, part="work-precision")]
 
 
-def _extra_table(result):
-    rows = [
-        [
-            f"{row['model']}: {row['family']}, {row['knob']} {row['value']:.3g}",
-            result.settings["scenes"][row["scene"]]["title"],
-            number(row["cost_ratio"], 3),
-            number(row["needed_error"], 2) + _lost(row["needed_lost"]),
-            number(row["error"], 2) + _lost(row["lost_impacts"]),
-        ]
-        for row in extras(result)
+def _shown(row, scene):
+    measure = scene["measures"][0]
+    return {
+        **row,
+        "name": _name(row) + (", Bouc-Wen" if row["law"] == "bouc-wen" else ""),
+        "title": scene["title"],
+        "measure": measure,
+        "error": None if row["failure"] or row["lost"] else row["errors"].get(measure),
+    }
+
+
+def passing(rows: Iterable[dict[str, Any]], level: float) -> dict[str, dict[str, Any]]:
+    """{name: the cheapest of its rows at which it and all finer ones keep an error}, cheapest first; of one scene."""
+    found = {}
+    for (name,), some in grouped(rows, "name").items():
+        bad = [k for k, row in enumerate(some) if row["error"] is None or row["error"] > level]
+        if good := some[bad[-1] + 1 :] if bad else some:  # they come from coarse to fine
+            found[name] = min(good, key=CPU.of)
+    return dict(sorted(found.items(), key=lambda item: CPU.of(item[1])))
+
+
+def _name(row):
+    return ", ".join(filter(None, (row["engine"], row["variant"])))
+
+
+def _assisted(result):
+    """Names of variants whose adapter applies the impact."""
+    return {_name(variant) for variant in where(result.settings["variants"], applies_impact=True)}
+
+
+def _level(row):
+    return f"{row['parameter'].replace('_', ' ')} {short(row['level'])}"
+
+
+def _title(result, rows):
+    found = passing(rows, ASKED)
+    assisted = _assisted(result)
+    engine = next((name for name, row in found.items() if row["engine"] in ENGINES and name not in assisted), None)
+    unit = MEASURES[rows[0]["measure"]][1]
+    place = f"{rows[0]['title']}, to {ASKED:g}{' s' if unit == 's' else ''}"
+    if engine is None or KERNEL not in found:
+        return f"Cost against error: {place}: no engine reaches it by its own contact"
+    ratio = number(CPU.of(found[engine]) / CPU.of(found[KERNEL]), 2)
+    return f"Cost against error: {place}: {engine}, at {ratio} times the analytic model, is the cheapest engine"
+
+
+def _figure(rows, x, caption, like):
+    """Error over x, a panel for each scene; scenes of one kind of error share their axes."""
+    kept = {(scene, name) for (scene,), some in grouped(rows, "scene").items() for name in passing(some, ASKED)}
+    figures = [
+        lines(
+            [row for row in some if row["error"] is not None],
+            x,
+            Column(_measured(measure), lambda row: max(row["error"], DRAWN)),
+            caption,
+            panel="title",
+            grey=lambda row: (row["scene"], row["name"]) not in kept,
+            log="xy",
+            says=lambda row: f"{row['name']}, {_level(row)}: {number(row['error'], 2)} in {CPU.text(row)} s",
+            like=like,
+        )
+        for (measure,), some in grouped(rows, "measure").items()
     ]
-    return Table(
-        "What the scene needs, and more: cost and error (principal measure of the scene)",
-        (
-            "modelled beyond need",
-            "scene",
-            "CPU time over the needed model's [-]",
-            "error as needed",
-            "error with the extra",
-        ),
-        rows,
+    return beside(*figures)
+
+
+def _measured(measure):
+    words, unit = MEASURES[measure]
+    return f"{words} [{unit}]"
+
+
+def _costs(result, rows):
+    """CPU times to keep an error, of one scene."""
+    found = {level: passing(rows, level) for level in LEVELS}
+    assisted = _assisted(result)
+
+    def cell(level):
+        kept = found[level]
+
+        def text(row):
+            if (best := kept.get(row["name"])) is None:
+                return None
+            ratio = f"{number(CPU.of(best) / CPU.of(kept[KERNEL]), 2)} ×; " if KERNEL in kept else ""
+            return f"{number(1e3 * CPU.of(best), 2)} ({ratio}{_level(best)})"
+
+        return Column(f"≤ {short(level)}", text)
+
+    return table(
+        f"{rows[0]['title']}: CPU time [ms] to keep the {_measured(rows[0]['measure'])}",
+        [{"name": name} for name in dict.fromkeys(name for kept in found.values() for name in kept)],
+        Column("solver", lambda row: row["name"] + (" (assisted)" if row["name"] in assisted else "")),
+        *map(cell, LEVELS),
     )
 
 
-def _lost(count):
-    return f" ({count} impacts lost)" if count else ""
-
-
-def _unit_table(result):
-    rows = []
-    for family in dict.fromkeys(row["family"] for row in ladder(result)):
-        mine = [
-            row for row in ladder(result) if row["family"] == family and row["model"] == NEEDED and "cpu_seconds" in row
-        ]
-        steps = [row["cpu_per_step"] for row in mine if row["cpu_per_step"]]
-        if mine:
-            rows.append([family, _range([row["cpu_per_second"] for row in mine], 1.0), _range(steps, 1e6)])
-    return Table(
-        "Cost over all scenes and settings, lowest to highest",
-        ("solver", "CPU time per simulated second [s/s]", "CPU time per step [µs]"),
-        rows,
+def _without_error(every):
+    """What failed, lost impacts or found no boundary: it has no place in figures and tables of cost."""
+    counted = []
+    for (name, model, title, measure), some in grouped(every, "name", "model", "title", "measure").items():
+        sound = [row for row in some if not row["failure"]]
+        counted.append(
+            {
+                "name": name if model == NEEDED else f"{name}: {model}",
+                "title": title,
+                "all": len(some),
+                "failed": len(some) - len(sound),
+                "lost": sum(bool(row["lost"]) for row in sound),
+                "none": sum(measure not in row["errors"] for row in sound) if measure == "boundary_shift" else 0,
+            }
+        )
+    return table(
+        "Levels without an error, of those run",
+        [row for row in counted if row["failed"] or row["lost"] or row["none"]],
+        NAME,
+        SCENE,
+        Column("levels [-]", "all"),
+        Column("failed [-]", "failed"),
+        Column("impacts lost [-]", "lost"),
+        Column("no overturning boundary near the reference's [-]", "none"),
     )
 
 
-def _range(values, unit):
-    return "–" if not values else f"{number(unit * min(values), 2)} – {number(unit * max(values), 2)}"
+def _orders(rows, scenes):
+    fits = {}
+    for (name, scene), some in grouped(rows, "name", "scene").items():
+        known = [(row["level"], row["error"]) for row in some if (row["error"] or 0) > ROUNDING]
+        if len(known) >= 3:
+            order, error = fit(*zip(*known, strict=True))
+            words = f"{round(order, 2) + 0.0:.2f} ± {error:.2f}".replace("-", "−")  # no minus before 0.00
+            fits.setdefault(name, dict.fromkeys(scenes))[scene] = words
+    return table(
+        "Observed order q, ± its standard error: the error grows as the accuracy parameter to the power q; of three "
+        "levels or more above rounding",
+        [{"name": name, **orders} for name, orders in fits.items()],
+        NAME,
+        *(Column(about["title"], scene) for scene, about in scenes.items()),
+    )
+
+
+def _range(rows, key, unit):
+    values = [unit * row[key] for row in rows if row.get(key)]
+    return f"{number(min(values), 2)} – {number(max(values), 2)}" if values else None
+
+
+def _more_than_needed(result, every):
+    """Rows with another model or law beside those of the same solver at the same level."""
+    plain = {
+        (row["scene"], row["engine"], row["variant"], row["level"]): row
+        for row in where(every, model=NEEDED)
+        if row["law"] != "bouc-wen" and "cpu_seconds" in row
+    }
+    pairs = [
+        {**row, "plain": plain[key], "ratio": CPU.of(row) / CPU.of(plain[key])}
+        for row in every
+        for key in ((row["scene"], row["engine"], row["variant"], row["level"]),)
+        if key in plain and row is not plain[key] and "cpu_seconds" in row
+    ]
+    laws = [
+        {"name": _name(some[0]), "title": some[0]["title"], "ratios": [row["ratio"] for row in some], **changes}
+        for (scene, _), some in grouped(where(pairs, law="bouc-wen"), "scene", "name").items()
+        for changes in (result.settings["scenes"][scene]["bouc_wen"],)
+    ]
+
+    def error(row):
+        lost = f" (lost: {row['lost']})" if row["lost"] else ""
+        return number(row["errors"].get(row["measure"]), 2) + lost
+
+    yield Head("More than the scene needs")
+    yield table(
+        "A scene modelled with more than it needs, at the same level: ratio of CPU times, errors as in the tables "
+        "above, lost impacts",
+        [row for row in pairs if row["model"] != NEEDED],
+        Column("modelled", "model"),
+        NAME,
+        Column("level", _level),
+        SCENE,
+        Column("CPU time ratio [-]", "ratio", digits=3),
+        Column("error of the model needed", lambda row: error(row["plain"])),
+        Column("error with more", error),
+    )
+    yield table(
+        "A Bouc-Wen bearing: CPU time over the algebraic law's at the same level; what it changes in the scene itself",
+        laws,
+        NAME,
+        SCENE,
+        Column("CPU time ratio, median [-]", lambda row: statistics.median(row["ratios"]), digits=3),
+        Column("lowest [-]", lambda row: min(row["ratios"]), digits=3),
+        Column("highest [-]", lambda row: max(row["ratios"]), digits=3),
+        Column("peak displacement changed by", "peak_displacement", percent=True),
+        Column("peak tilt changed by", "peak_tilt", percent=True),
+    )
+
+
+def _growth(rows):
+    """Cost against duration and sample rate."""
+    if not rows:
+        return
+    figures = [
+        lines(where(rows, against=against), Column(head, "value"), CPU, "How the cost of one run grows.", log="xy")
+        for against, head in AGAINST.items()
+    ]
+    grown = []
+    for (against, engine, variant), some in grouped(rows, "against", "engine", "variant").items():
+        x, y = ([row[key] for row in some] for key in ("value", "cpu_seconds"))
+        exponent, error = fit(x, y) if len(some) >= 3 else (None, None)
+        last = float(np.log(y[-1] / y[-2]) / np.log(x[-1] / x[-2])) if len(some) >= 2 else None
+        sizes = {
+            key: [None if row[key] is None else row[key] / MIB for row in (some[0], some[-1])]
+            for key in ("traced_bytes", "resident_bytes")
+        }
+        grown.append(
+            {"name": f"{engine}, {variant}", "against": AGAINST[against], "x": [x[0], x[-1]], "exponent": exponent,
+             "error": error, "last": last, **sizes}
+        )  # fmt: skip
+    yield Head("Growth of the cost")
+    yield beside(*figures)
+    yield table(
+        "CPU time as a power of duration or sample rate; peak memory of a run without history, at the first and the "
+        "last value. Adapters of engines keep every step until the run is measured.",
+        grown,
+        NAME,
+        Column("against", "against"),
+        Column("first, last value", "x", digits=None),
+        Column("exponent [-]", "exponent", digits=3),
+        Column("standard error [-]", "error", digits=1),
+        Column("exponent of the last two [-]", "last", digits=3),
+        Column("allocated [MiB]", "traced_bytes", digits=3),
+        Column("resident, increase [MiB]", "resident_bytes", digits=3),
+    )
+
+
+def _how(result, every):
+    timed = [row["cpu_high"] / row["cpu_low"] for row in every if "cpu_seconds" in row]
+    same = sum(row["repeatable"] for row in every)
+    differing = sorted({row["name"] for row in every if not row["repeatable"]})
+    scenes = result.settings["scenes"].values()
+    apart = max(scene["reference_difference"][scene["measures"][0]] for scene in scenes)
+    return (
+        f"{result.settings['rounds']} fresh processes one after the other; in each, every solver has its turn after a "
+        "warm-up. CPU times are medians, of the simulation alone: no import, compilation or building of the scene. The "
+        f"same setting differs between rounds by up to a factor of {number(float(np.percentile(timed, NOISE)), 3)} in "
+        f"{NOISE} % of the settings: costs nearer than that are not told apart.",
+        "References are the kernel at its tightest; an independent solution by scipy differs from them by at most "
+        f"{number(apart, 1)} in the error shown. The errors of {same} of {len(every)} settings are the same bit for "
+        f"bit in every round{'; not those of ' + ', '.join(differing) if differing else ''}.",
+        "Errors of the peak displacement and of the overturning boundary are relative. The boundary is searched: six "
+        "runs, each at the amplitude where the one before would just overturn. Other integrators of a free block, to "
+        "finer errors, and batches of runs are in the study kernel.",
+    )

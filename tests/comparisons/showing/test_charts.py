@@ -77,6 +77,13 @@ def test_every_solver_has_a_marker_of_its_own_and_its_name_on_what_it_drew():
     assert ENGINES["exudyn"].colour in chart.svg() and ENGINES["exudyn"].colour in key_of("exudyn")
 
 
+def test_scipy_and_time_stepping_are_told_apart_in_one_ink():
+    scipy, stepping = key_of("scipy, DOP853"), key_of("time-stepping")
+    assert all("--c:var(--soft)" in key for key in (scipy, stepping))
+    assert SHAPES[marker("scipy")] in scipy and SHAPES[marker("time-stepping")] in stepping
+    assert "--d:7 4" in scipy and "--d:2 3.5" in stepping and "--d:none" in key_of("analytic")
+
+
 def test_labels_are_pushed_apart_and_stay_inside():
     chart = Chart(LINEAR, LINEAR, "Labels.", right=80)
     for k in range(8):

@@ -78,6 +78,9 @@ def test_variants_of_an_engine_share_its_colour_and_differ_in_their_marks():
     assert 'class="dot"' in fine and 'class="dot open"' in coarse
     alone = lines([row(FIRST, "fine", 0.1, None), ROWS[2]], X, Y, "Errors.", log="y")
     assert alone.keys == {f"{FIRST}, coarse": coarse}  # as where the other one is drawn
+    first = lines(ROWS[2:3], X, Y, "Errors.", log="y")
+    likewise = lines(ROWS[2:3], X, Y, "Errors.", log="y", like=ROWS)
+    assert 'class="dot"' in first.keys[f"{FIRST}, coarse"] and likewise.keys == alone.keys
     many = [row(FIRST, f"variant {k}", 0.1, 10.0**-k) for k in range(4)]
     marks = {
         re.sub(r".*?<path class=\"(dot[^>]*)>.*", r"\1", str(key))
@@ -136,6 +139,7 @@ def test_figures_beside_each_other_share_legend_and_caption():
     both = beside(one, None, two)
     assert len(panels(both)) == 3 and both.caption == "One. Two." and both.wide
     assert both.solvers == two.solvers and beside(None) is None
+    assert beside(one, two, one).caption == "One. Two."
 
 
 CELLS = [

@@ -12,7 +12,7 @@ from comparisons.running.sources import source_digests
 from comparisons.showing.parts import Head
 from comparisons.showing.rows import where
 from comparisons.studies import BUILT_IN, get_study
-from comparisons.studies.speed_error.finding import passing
+from comparisons.studies.speed_error.page import levels_run, passing
 from comparisons.studies.stability.finding import judgement as hard_cases
 
 
@@ -91,22 +91,20 @@ def ladder(errors, failed=()):
     """A ladder of one engine from coarse to fine with these errors, the finer the dearer."""
     rows = [
         {
-            "table": "ladder",
+            "part": "work-precision",
             "scene": "s",
-            "family": "one, fine",
-            "model": "as needed",
+            "engine": "one",
+            "variant": "fine",
             "law": None,
-            "solver": "one",
-            "value": 10.0**-k,
-            "knob": "step",
+            "level": 10.0**-k,
             "failure": {"reason": "NaN"} if k in failed else None,
             "errors": {"impact_time": error},
-            "lost_impacts": 0,
+            "lost": 0,
             "cpu_seconds": 1.0 + k,
         }
         for k, error in enumerate(errors)
     ]
-    return Result("speed-error", {"scenes": {"s": {"measures": ["impact_time"]}}}, rows, {})
+    return Result("speed-error", {"scenes": {"s": {"title": "s", "measures": ["impact_time"]}}}, rows, {})
 
 
 @pytest.mark.parametrize(
@@ -119,7 +117,7 @@ def ladder(errors, failed=()):
     ],
 )
 def test_the_cheapest_setting_is_one_that_no_finer_one_contradicts(errors, failed, chosen):
-    found = passing(ladder(errors, failed), "s", 1e-3)
-    assert {family: row["value"] for family, row in found.items()} == (
+    found = passing(levels_run(ladder(errors, failed)), 1e-3)
+    assert {name: row["level"] for name, row in found.items()} == (
         {} if chosen is None else {"one, fine": 10.0**-chosen}
     )

@@ -1,0 +1,272 @@
+"""Speed against error: fresh processes, warm, solvers in turn, repeated; error and CPU time from the very same runs."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+import statistics
+from collections.abc import Callable, Mapping, Sequence
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+import typer
+
+from analytic.response import Impact
+from analytic.rocking import restitution
+from analytic.twin import simulate_twin
+from engines import get_engine
+
+from ...measuring.errors import (
+    lost_impacts,
+    rate_restitution,
+    rms,
+    state_restitution,
+    strong_impacts,
+    strong_time_errors,
+)
+from ...running.study import Batch, Found
+from .boundary import RUNS, Boundary, searched
+from .cases import Entry, Trial, entries, levels_of, trials
+from .growth import TICK, grown, growth_cases
+
+if TYPE_CHECKING:
+    from analytic import Response
+
+    from ...running.cases import Case
+    from ...running.study import Ask, Plan
+
+REPEATS, QUICK_REPEATS = 5, 3
+# s of CPU: next to it what is loaded in a first run is nothing; such a measurement needs no warm-up and `FEW` rounds
+SLOW = 0.5
+FEW = 3
+MOST_REPEATS = 200
+TWIN_TOLERANCE = 1e-13  # of the independent solution each reference is held against
+EVIDENCE = 600  # characters of an engine's message that a row keeps
+# A boundary search that still moves this far has found none. Where steps are fixed, the boundary depends on where in a
+# step the impact falls, which differs from run to run: the root mean square of the last positions stands for it.
+STRAY, LAST = 0.025, 3
+
+Repeats = Annotated[int | None, typer.Option(min=1, max=1000, help="Fresh processes in turn. Default 5, quick 3.")]
+
+
+def measure(case: Case, response: Response) -> dict[str, Any]:
+    """What is kept of one measurement, and its CPU time: the mean over runs of at least `TICK` in all.
+
+    The run that made `response` has loaded code and caches; where it was long enough it is the measurement itself. A
+    case whose tag holds a boundary, (amplitude, slope) of a `Boundary`, is a search for it.
+    """
+    goal = Boundary(*case.tag["boundary"]) if case.tag["boundary"] else None
+
+    def run(scene):
+        return dataclasses.replace(case, scene=scene).run()
+
+    shifts, cpu, repeats = None, response.cpu_seconds, 1
+    if goal or cpu < SLOW:
+        response, shifts, cpu = searched(run, case.scene, goal)
+        if 0 < cpu < TICK and response.outcome != "failed":
+            repeats = min(MOST_REPEATS, math.ceil(TICK / cpu))
+            cpu = sum(searched(run, case.scene, goal)[2] for _ in range(repeats)) / repeats
+    cost = {"cpu_seconds": cpu / (RUNS if goal else 1), "repeats": repeats}
+    return {**response.to_json(), "boundary_shifts": shifts, "cost": cost}
+
+
+def errors(trial: Trial, values: Mapping[str, Any], shifts: Sequence[float] | None = None) -> dict[str, float]:
+    """Absolute errors by measure, of those the trial asks for and the run can show; and "lost", its lost impacts.
+
+    Parameters
+    ----------
+    trial : Trial
+    values : dict
+        `Response.to_json()` of the run, or of the first run of a boundary search.
+    shifts : list of float or None
+        Relative position of the boundary against the reference's, one per run of the search. A solver without a
+        boundary nearby has no error "boundary_shift".
+    """
+    run: Any = SimpleNamespace(impacts=[Impact(**impact) for impact in values["impacts"]])
+    reference, end, gamma = trial.reference, values["end"], trial.scene.block.slenderness
+    times = strong_time_errors(run, reference)
+    found = {"impact_time": times[np.isfinite(times)], "restitution": _restitution_errors(trial.scene, run)}
+    if values["peak_tilt"] is not None:
+        found["peak_tilt"] = [abs(values["peak_tilt"] - reference.peak_tilt) / gamma]
+    if values["peak_base_displacement"] is not None and "peak_displacement" in trial.measures:
+        found["peak_displacement"] = [abs(values["peak_base_displacement"] / reference.peak_base_displacement - 1)]
+    if abs(end["time"] - trial.scene.duration) < 1e-9:
+        found["end_tilt"] = [abs(abs(end["tilt"]) - abs(reference.end.tilt)) / gamma]
+    if shifts and abs(shifts[-1] - shifts[-2]) < STRAY:
+        found["boundary_shift"] = shifts[-LAST:]
+    known = {name: rms(found[name]) for name in trial.measures if len(found.get(name, ()))}
+    return {"lost": lost_impacts(run, reference), **known}
+
+
+def _restitution_errors(scene, run):
+    """e - eq. (7) of the impacts fast enough; under a motion e is that of the states."""
+    if scene.motion is None and scene.bearings is None:
+        return rate_restitution(run) - restitution(scene)
+    strong: Any = SimpleNamespace(impacts=strong_impacts(run))
+    return state_restitution(strong) - restitution(scene)
+
+
+def plan(
+    ask: Ask,
+    scenes: Sequence[Trial] | None = None,
+    keep: Callable[[Entry], bool] = lambda entry: True,
+    grow: bool = True,
+    *,
+    repeats: Repeats = None,
+) -> Plan:
+    """The plan of the study: in each round, one fresh process, every solver has its turn.
+
+    Parameters
+    ----------
+    ask : Ask
+    scenes : list of Trial or None
+        None: all five.
+    keep : callable
+        Entry -> bool: which of them to run.
+    grow : bool
+        Whether to measure the growth of cost too; it needs the scene "isolated-standing".
+    repeats : int or None
+        Rounds.
+    """
+    rounds = repeats or (QUICK_REPEATS if ask.quick else REPEATS)
+    scenes = scenes or trials()
+    measured = [(entry, []) for entry in entries(scenes, ask.engines, ask.quick) if keep(entry)]
+    for turn in range(rounds):
+        part = [(entry, rows) for entry, rows in measured if turn < FEW or rows[0].cost.get("cpu_seconds", 0.0) <= SLOW]
+        cases = [entry.case(turn) for entry, _ in part]
+        done = yield Batch(cases, measure, f"round {turn + 1} of {rounds}", alone=True)
+        for (_, rows), row in zip(part, done, strict=True):
+            rows.append(row)
+    rows = [_row(entry, timings) for entry, timings in measured]
+    if grow:
+        rows += yield from _growth(scenes, ask, min(FEW, rounds))
+    settings = {
+        "quick": ask.quick,
+        "rounds": rounds,
+        "scenes": {trial.name: description(trial) for trial in scenes},
+        "variants": [
+            {
+                "engine": engine,
+                "variant": variant,
+                "tier": kind.tier,
+                "parameter": kind.knob,
+                "default": kind.default,
+                "levels": levels_of(kind, ask.quick),
+                "applies_impact": kind.takes_restitution,
+            }
+            for engine in ask.engines
+            for variant, kind in get_engine(engine).variants.items()
+        ],
+    }
+    return Found(settings, rows)
+
+
+def _row(entry, timings):
+    """JSON-ready row of an entry from its rounds: medians of the CPU time, lowest and highest."""
+    first, trial = timings[0], entry.trial
+    values = first.values
+    row = {
+        "part": "work-precision",
+        "scene": trial.name,
+        "engine": entry.engine,
+        "variant": entry.variant,
+        "model": entry.model,
+        "law": trial.scene.bearings and trial.scene.bearings.law,
+        "parameter": entry.parameter,
+        "level": entry.level,
+        "outcome": values.get("outcome"),
+        "failure": _evidence(first.failure),
+        "timings": len(timings),
+        "errors": {},
+        "lost": None,
+        "repeatable": len({json.dumps(timing.values, sort_keys=True) for timing in timings}) == 1,
+    }
+    seconds = [timing.cost["cpu_seconds"] for timing in timings if timing.cost.get("cpu_seconds")]
+    if first.failure or not seconds:
+        return row
+    found = errors(trial, values, values["boundary_shifts"])
+    cpu, simulated, steps = statistics.median(seconds), values["end"]["time"], values["steps"]
+    return row | {
+        "lost": found.pop("lost"),
+        "errors": found,
+        "cpu_seconds": cpu,
+        "cpu_low": min(seconds),
+        "cpu_high": max(seconds),
+        "simulated": simulated,
+        "steps": steps or None,
+        "step": simulated / steps if steps else None,
+        "cpu_per_second": cpu / simulated,
+        "cpu_per_step": cpu / steps if steps else None,
+        "boundary_shifts": values["boundary_shifts"],
+        "settings": values["settings"],
+    }
+
+
+def _evidence(failure):
+    if failure is None:
+        return None
+    return {key: str(failure[key])[:EVIDENCE] for key in ("kind", "reason", "message") if failure.get(key)}
+
+
+def _growth(scenes, ask, rounds):
+    """Rows of growth: each measurement in a process of its own, so that none finds memory another has left."""
+    rows = []
+    (stands,) = (trial.scene for trial in scenes if trial.name == "isolated-standing")
+    for case in growth_cases(stands, ask.engines, ask.quick):
+        turns, tag = [], case.tag
+        for turn in range(rounds):
+            again = dataclasses.replace(case, tag={**tag, "round": turn})
+            turns += yield Batch([again], grown, f"growth against {tag['against']}", alone=True)
+        sound = [each for each in turns if not each.failed]
+        row = {
+            "part": "growth",
+            "engine": case.solver,
+            "variant": tag["variant"],
+            "against": tag["against"],
+            "value": tag["value"],
+            "failure": _evidence(turns[0].failure),
+        }
+        if sound:
+            row["cpu_seconds"] = statistics.median(each.cost["cpu_seconds"] for each in sound)
+            for name in ("traced_bytes", "resident_bytes"):
+                known = [each.values[name] for each in sound if each.values[name] is not None]
+                row[name] = statistics.median(known) if known else None
+        rows.append(row)
+    return rows
+
+
+def description(trial: Trial) -> dict[str, Any]:
+    """A trial for the result file.
+
+    reference_difference: errors of an independent solution, scipy DOP853 at its tightest. bouc_wen: what that law
+    changes in the scene itself, relative; None without bearings.
+    """
+
+    def run(scene):
+        return simulate_twin(scene, rtol=TWIN_TOLERANCE, history=False, energy=False)
+
+    reference, changes = trial.reference, None
+    if trial.scene.bearings:
+        other = trial.with_law("bouc-wen").reference
+        changes = {
+            "peak_displacement": other.peak_base_displacement / reference.peak_base_displacement - 1,
+            "peak_tilt": other.peak_tilt / reference.peak_tilt - 1 if reference.peak_tilt else None,
+        }
+    response, shifts, _ = searched(run, trial.scene, trial.boundary)
+    return {
+        "title": trial.scene.name,
+        "duration": trial.scene.duration,
+        "runs": RUNS if trial.boundary else 1,
+        "measures": list(trial.measures),
+        "outcome": reference.outcome,
+        "impacts": len(reference.impacts),
+        "slenderness": trial.scene.block.slenderness,
+        "peak_tilt_ratio": reference.peak_tilt_ratio,
+        "peak_base_displacement": reference.peak_base_displacement,
+        "digest": trial.scene.digest(),
+        "boundary_amplitude": trial.boundary and trial.boundary.amplitude,
+        "reference_difference": errors(trial, response.to_json(), shifts),
+        "bouc_wen": changes,
+    }
