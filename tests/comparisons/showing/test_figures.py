@@ -7,8 +7,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from comparisons.showing.charts import INK, NEAR, STYLE
-from comparisons.showing.figures import MOVED, beside, lines, shades
+from comparisons.showing.charts import INK, NEAR, STYLE, Axis
+from comparisons.showing.figures import MOVED, beside, lines, ranks, shades
 from comparisons.showing.rows import NAME, Column
 from engines import ENGINES
 
@@ -124,6 +124,27 @@ def test_figures_beside_each_other_share_legend_and_caption():
     both = beside(one, None, two)
     assert len(panels(both)) == 3 and both.caption == "One. Two." and both.wide
     assert both.solvers == two.solvers and beside(None) is None
+
+
+def test_ranked_values_stand_below_each_other_with_their_intervals_and_no_further_than_the_axis():
+    rows = [row("analytic", "model", 0, 0.5), row(FIRST, "fine", 0, 0.0), row(SECOND, "fine", 0, None, "sliding")]
+    rows = [one | {"ends": [0.25, 2.0] if one["y"] else None} for one in rows]
+    share = Column("share [-]", "y", within="ends")
+    made = ranks(rows, NAME, share, "Shares.", Axis("share [-]", 0.1, 1.0, "log"), panel="ground")
+    (panel,) = panels(made)
+    assert made.solvers == (FIRST,) and ENGINES[FIRST].colour in made.svg.decode()
+    told = [part for part in panel.iter("path") if part.get("data-says")]
+    assert [part.get("data-says") for part in told] == ["analytic, model: 0.50 (0.25 to 2.0)", f"{FIRST}, fine: 0"]
+    (x0, x1), (y0, y1) = (json.loads(panel.get("data-read"))[key]["at"] for key in "xy")
+    places = [tuple(map(float, re.findall(r"[\d.]+", part.get("transform"))[:2])) for part in told]
+    assert places == [
+        (pytest.approx(x0 + math.log10(5) * (x1 - x0), abs=0.1), y1 + (y0 - y1) / 4),
+        (x0, y1 + (y0 - y1) * 0.75),
+    ]
+    reach = next(part.get("d") for part in panel.iter("path") if part.get("class") == "reach")
+    ends = list(map(float, re.findall(r"[\d.]+", reach)))[::2]
+    assert ends == [pytest.approx(x0 + math.log10(2.5) * (x1 - x0), abs=0.1), x1]
+    assert ranks(rows[2:], NAME, share, "Shares.", Axis("share [-]", 0.1, 1.0)) is None
 
 
 CELLS = [

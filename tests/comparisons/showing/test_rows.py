@@ -45,6 +45,10 @@ def test_groups_keep_the_order_of_rows_and_of_keys():
         (Column("share", lambda row: row["failed"] / row["runs"], percent=True), ["0 %", "100 %", "25 %"]),
         (Column("failed", "{failed} of {runs}"), ["0 of 4", "4 of 4", "1 of 4"]),
         (Column("both", lambda row: [row["runs"], row["rms"]]), ["4, 1.2·10⁻⁵", "4, –", "4, 0.25"]),
+        (
+            Column("rms", "rms", within=lambda row: row["rms"] and [0.1, 2]),
+            ["1.2·10⁻⁵ (0.10 to 2)", "–", "0.25 (0.10 to 2)"],
+        ),
         (NAME, ["one, fine", "two, fine", "one, coarse"]),
     ],
 )
