@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from .charts import LETTER, REFERENCE, Axis, Chart, figure, key_of, log_axis
+from .charts import REFERENCE, WIDTH, Axis, Chart, figure, key_of, log_axis, room, slanting
 from .parts import Figure
 from .rows import Column, Key, Row, grouped, value_of
 
@@ -167,17 +167,17 @@ def ranks(
         Title of a row's panel.
     """
     kept = [row for row in rows if value.of(row) is not None]
-    left = 16 + LETTER // 2 * max((len(name.text(row)) for row in kept), default=0)
     charts, engines = [], {row["engine"]: None for row in kept if row["engine"] != REFERENCE}
     for (title,), members in grouped(kept, panel).items():
-        names = tuple((place, name.text(row)) for place, row in enumerate(members))
+        names = tuple((place, f"{name.text(row)}\u2002") for place, row in enumerate(members))  # room for a mark at 0
         chart = Chart(
             axis,
             Axis("", len(members) - 0.5, -0.5, ticks=names),
-            f"{title + ': ' if title else ''}{value.head} of {', '.join(words for _, words in names)}.",
+            f"{title + ': ' if title else ''}{value.head} of {', '.join(map(name.text, members))}.",
             title=str(title),
             height=90 + 21 * len(members),
-            left=left,
+            left=room(map(name.text, kept)),
+            right=24,
         )
         for place, row in enumerate(members):
             who = "" if row["engine"] == REFERENCE else row["engine"]
@@ -220,14 +220,17 @@ def shades(
     if not rows:
         return None
     across, up = ([text for (text,) in grouped(rows, column.text)] for column in (x, y))
-    charts = []
+    left, charts = room(up, 44) + 20, []
+    foot = 46 + round(0.5 * room(across) * slanting(across, WIDTH - left))
     for (title,), members in grouped(rows, panel).items():
         chart = Chart(
             _places(x.head, across),
             _places(y.head, up),
             f"{title + ': ' if title else ''}{value.head} over {x.head} and {y.head}.",
             title=str(title),
-            height=78 + 25 * len(up),
+            height=32 + 25 * len(up) + foot,
+            left=left,
+            foot=foot,
         )
         for row in members:
             lost, found, size = failed(row), value.text(row), value.of(row)

@@ -8,6 +8,7 @@ The same `Column` is an axis of a figure (`comparisons.showing.figures`).
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -81,7 +82,7 @@ class Column:
     def of(self, row: Row) -> Any:
         """The value itself, what `text` writes; of a pattern the text."""
         if isinstance(self.value, str) and "{" in self.value:
-            return self.value.format_map({key: self.words(value) for key, value in row.items()})
+            return re.sub(r"{(\w+)}", lambda found: self.words(row[found[1]]), self.value)
         return value_of(row, self.value)
 
     def ends(self, row: Row) -> tuple[Any, ...]:

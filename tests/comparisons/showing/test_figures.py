@@ -183,6 +183,26 @@ def test_cells_hold_their_numbers_shades_and_failures():
     assert shades([], RATIO, GAMMA, Column("rms [-]", "rms"), "Map.", bounds=(1.0,)) is None
 
 
+def test_a_map_leaves_room_for_long_words_at_both_axes():
+    words = (
+        Column("measure", lambda one: f"measure of intensity {one['gamma']}"),
+        Column("state", lambda one: f"displacement above {one['ratio']} m"),
+    )
+    rows = [one | {"gamma": k} for one in CELLS for k in range(5)]
+    panel, _ = panels(shades(rows, *words, Column("rms [-]", "rms"), "Map.", bounds=(1.0,)))
+    (inside,) = panel.findall("svg")
+    assert float(inside.get("x")) > 6 * len("displacement above 10.0 m")
+    slanted = [text for text in panel.iter("text") if "rotate(-35)" in (text.get("transform") or "")]
+    (below,) = [text for text in panel.iter("text") if text.text == "measure"]
+    end = (
+        float(inside.get("y"))
+        + float(inside.get("height"))
+        + 17
+        + 6 * len("measure of intensity 0") * math.sin(math.radians(35))
+    )
+    assert len(slanted) == 5 and float(below.get("y")) > end
+
+
 def luminance(colour):
     parts = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
     parts = [part / 12.92 if part <= 0.03928 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
