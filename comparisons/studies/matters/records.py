@@ -131,19 +131,19 @@ def _half(scene, triple):
     return float(TRIED[above]) if fallen[above] >= 0.5 else None
 
 
-def record_rows(name: str, recorded: Sequence[Triple], results: Iterable[Any]) -> list[dict]:
-    """A row for every triple: V/H, how fast its vertical motion is, and verdicts flipped by it and by turning.
+def record_rows(recorded: Sequence[Triple], results: Iterable[Any]) -> list[dict]:
+    """A row for every triple: V/H, how fast its vertical motion is, and outcomes changed by it and by turning.
 
     No intervals: runs under one record are no sample.
     """
-    verdicts: dict[int, dict[tuple, bool]] = {}
+    outcomes: dict[int, dict[tuple, bool]] = {}
     for row in results:
         tag = row.case.tag
         if not row.failed:
             place = tag["place"], tag["factor"], tag["step"], tag["raised"]
-            verdicts.setdefault(tag["record"], {})[place] = row.values["overturns"]
+            outcomes.setdefault(tag["record"], {})[place] = row.values["overturns"]
     rows = []
-    for number, found in verdicts.items():
+    for number, found in outcomes.items():
         level = {(place, factor, step): fallen for (place, factor, step, raised), fallen in found.items() if not raised}
         raised = [(fallen, found.get((*key, True))) for key, fallen in level.items()]
         turned = [
@@ -153,13 +153,12 @@ def record_rows(name: str, recorded: Sequence[Triple], results: Iterable[Any]) -
         rows.append(
             {
                 "part": "record",
-                "scene": name,
                 "record": recorded[number].name,
                 "ratio": recorded[number].ratio,
                 "faster": recorded[number].faster,
                 "runs": len(raised),
-                "flips": sum(after is not None and before != after for before, after in raised),
-                "turned": sum(after is not None and before != after for before, after in turned),
+                "outcomes_changed": sum(after is not None and before != after for before, after in raised),
+                "outcomes_changed_by_turning": sum(after is not None and before != after for before, after in turned),
             }
         )
     return rows
