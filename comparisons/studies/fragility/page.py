@@ -22,6 +22,7 @@ OVERTURNING = "overturning"
 UNITS = {"PGA": "g", "PGV": "m/s", "Sa": "g"}
 TONES = ("var(--faint)", "var(--soft)", "var(--accent)", "var(--ink)", "var(--ghost)")
 TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
+OUTCOMES = ("both_stand", "both_overturn", "only_a", "only_b")
 RATIOS = (0.5, 0.7, 1.0, 1.4, 2.0)  # of medians, as ticks
 BOUNDS = (0.2, 0.4, 0.6, 0.8, 1.0)
 
@@ -33,8 +34,9 @@ MEASURE = Column("intensity measure", lambda row: row["measure"].replace("_r", "
 WITH_UNIT = Column(MEASURE.head, lambda row: f"{MEASURE.of(row)} [{UNITS.get(row['measure'], '-')}]")
 DISPERSION = Column("dispersion [-]", "dispersion", within="dispersion_interval")
 MEDIAN_SHIFT = Column("median over the model's [-]", "median_shift", digits=3, within="median_interval")
+COMPARED = Column("runs compared [-]", lambda row: sum(row[key] for key in OUTCOMES))
 EFFECT = (
-    Column("runs compared [-]", lambda row: _size(row)),
+    COMPARED,
     Column("failed [-]", "left_out"),
     Column("exceeded: model alone, engine alone [-]", "{only_a}, {only_b}"),
     Column("p (McNemar, Holm) [-]", "p_holm"),
@@ -157,7 +159,7 @@ def judgement(result: Result) -> Judgement:
         found = [row["detectable_difference"] for row in falls]
         few = None in found or max(found) > COARSE  # so few runs acquit nobody
         bad, failed = any(row["p_holm"] <= LEVEL for row in rows), sum(row["left_out"] for row in falls)
-        words = f"{sum(row['only_a'] + row['only_b'] for row in falls)} of {sum(map(_size, falls))} differ"
+        words = f"{sum(row['only_a'] + row['only_b'] for row in falls)} of {sum(map(COMPARED.of, falls))} differ"
         words += f", {failed} failed" if failed else ""
         words += ", too few to tell" if few and not bad else ""
         resolved = "no difference" if None in found else f"a difference of {percent(max(found))}"
@@ -174,10 +176,6 @@ def _title(marks):
     )
     title += f"; a difference or no run for {', '.join(apart)}" if apart else ""
     return title + (f"; too few runs to tell for {levels.count('none')}" if "none" in levels else "")
-
-
-def _size(row):
-    return row["both_stand"] + row["both_overturn"] + row["only_a"] + row["only_b"]
 
 
 def _fits(row):

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ...running.sweep import Row
 
 CHANGE = 1e-4  # relative change of the restitution: the model's own sensitivity
-MODEL, PERTURBED = ("analytic", None), ("analytic", "perturbed")
+MODEL, PERTURBED = ("analytic", ""), ("analytic", "perturbed")
 NEAR = (1.3, 6.0)  # PGA/(g tan γ) of the runs that engines get: there outcomes are mixed
 TIME_LIMIT = 60.0  # s, of an engine's run; a stiff corner that hardly lifts may take more, and fails
 # runs: of the analytic model, of default variants, of the tier "defaults" (gross errors show in few)
@@ -76,10 +76,13 @@ def plan(ask: Ask, scenes: dict[str, Any] | None = None, runs: tuple[int, int, i
     for name, (shipped, slendernesses) in scenes.items():
         drawn = cloud(shipped, slendernesses, counts[0])
         near, states = drawn.near(*NEAR)[: counts[1]], states_of(drawn)
-        whole = yield Batch(_cases(enumerate(drawn.scenes), MODEL), measure, f"{name}: analytic model")
+        whole = yield Batch(_cases(enumerate(drawn.scenes), *MODEL), measure, f"{name}: analytic model")
         model = values_of(whole)
         curves = fits(drawn.measures, states, model)
-        found = [*curves, _check(whole), _cost(MODEL, whole)]
+        undecided = sum(not row.values["decided"] for row in whole if not row.failed)
+        failed = sum(row.failed for row in whole)
+        check = {"runs": len(whole), "undecided": undecided, "failed": failed}
+        found = [*curves, {"part": "check", "engine": "analytic", "variant": "", **check}, *_runs(MODEL, whole)]
         made = {**drawn.drawn, **{key: drawn.measures[key] for key in ("PGV", "Sa")}, **_kept("analytic", model)}
         for pair, cases in _compared(drawn, near, counts[2], variants):
             label = ", ".join(filter(None, pair))
@@ -87,7 +90,7 @@ def plan(ask: Ask, scenes: dict[str, Any] | None = None, runs: tuple[int, int, i
             few, theirs = near[: len(cases)], values_of(run)
             ours = {key: array[few] for key, array in model.items()}
             found += effects(drawn.measures, few, states, (ours, theirs), curves, pair)
-            found += [_cost(pair, run), *_failures(pair, run)]
+            found += _runs(pair, run)
             made |= _kept(label, theirs)
         rows += [{"scene": name, **row} for row in found]
         arrays |= {f"{name}/{key}": array.astype(np.float32) for key, array in made.items()} | {f"{name}/near": near}
@@ -112,17 +115,17 @@ def values_of(results: Sequence[Row]) -> dict[str, np.ndarray]:
     return found
 
 
-def _cases(scenes: Iterable[tuple[int, Scene]], pair: tuple[str, str | None]) -> list[Case]:
-    return [Case(scene, *pair, {"history": False}, {"seed": seed}) for seed, scene in scenes]
+def _cases(scenes: Iterable[tuple[int, Scene]], engine: str, variant: str) -> list[Case]:
+    return [Case(scene, engine, variant or None, {"history": False}, {"seed": seed}) for seed, scene in scenes]
 
 
 def _compared(drawn: Cloud, near: np.ndarray, few: int, variants: Iterable[tuple[str, str]]) -> Iterator[tuple]:
     """((engine, variant), cases): the model with another restitution, then engines; of the tier "defaults" `few`."""
     chosen = [(int(seed), drawn.scenes[seed]) for seed in near]
-    yield PERTURBED, _cases([(seed, _more_elastic(scene)) for seed, scene in chosen], MODEL)
+    yield PERTURBED, _cases([(seed, _more_elastic(scene)) for seed, scene in chosen], *MODEL)
     for engine, variant in variants:
         default = variant == get_engine(engine).default_variant
-        yield (engine, variant), _cases(chosen if default else chosen[:few], (engine, variant))
+        yield (engine, variant), _cases(chosen if default else chosen[:few], engine, variant)
 
 
 def _more_elastic(scene):
@@ -133,24 +136,15 @@ def _kept(label, values):
     return {f"{label}/{key}": values[key] for key in KEPT[1:]}
 
 
-def _named(part, pair):
-    return {"part": part, "engine": pair[0], "variant": pair[1]}
-
-
-def _cost(pair, results):
+def _runs(pair, results):
+    """What runs cost, and those that failed."""
+    key = {"engine": pair[0], "variant": pair[1]}
     seconds = [row.cost["cpu_seconds"] for row in results if row.cost]
     mean = float(np.mean(seconds)) if seconds else None
-    return {**_named("cost", pair), "runs": len(results), "cpu_per_run": mean}
-
-
-def _check(results):
-    undecided = sum(not row.values["decided"] for row in results if not row.failed)
-    failed = sum(row.failed for row in results)
-    return {**_named("check", MODEL), "runs": len(results), "undecided": undecided, "failed": failed}
-
-
-def _failures(pair, results):
-    return [{**_named("failure", pair), "seed": row.case.tag["seed"], **row.failure} for row in results if row.failed]
+    return [
+        {"part": "cost", **key, "runs": len(results), "cpu_per_run": mean},
+        *({"part": "failure", **key, "seed": row.case.tag["seed"], **row.failure} for row in results if row.failed),
+    ]
 
 
 def _settings(ask, scenes, counts, variants):

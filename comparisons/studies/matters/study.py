@@ -12,7 +12,7 @@ import numpy as np
 import typer
 from scipy.stats import norm
 
-from analytic import load_scene, simulate_many, synthetic_motion
+from analytic import load_scene, synthetic_motion
 from analytic.rocking import RockingModel
 from engines import get_engine
 
@@ -20,7 +20,7 @@ from ...measuring.statistics import confusion, mcnemar, wilson
 from ...running.cases import Case
 from ...running.study import Batch, Found, say
 from .changes import changes, with_vertical
-from .records import record_cases, record_rows, triples
+from .records import overturned, record_cases, record_rows, triples
 
 if TYPE_CHECKING:
     from analytic import Response
@@ -64,7 +64,7 @@ def plan(
 
     Rows by "part", outcomes over all motions and slendernesses, `low` and `high` the 95 % interval of their share:
 
-    - "change": one for each change of the scene in the analytic model (`variant` None) and for each engine and variant
+    - "change": one for each change of the scene in the analytic model (`variant` "") and for each engine and variant
       (`change` None). outcomes_changed, and to_overturning among them; p_value: McNemar's; tilt, displacement: median
       relative change of the peaks of blocks that stay upright in both.
     - "vertical": one for each V/H (`ratio`) and speed (`faster`), and one of V/H 0, without vertical motion. lifts_off:
@@ -93,7 +93,7 @@ def plan(
         raised = yield Batch(_raised(bases, max(count // 3, 1)), measure, f"{name}: vertical motions")
         found = [*_change_rows(changed, run), *_vertical_rows(_as_it_is(changed), raised)]
         if recorded:
-            held = yield Batch(record_cases(usual, slendernesses, recorded), measure, f"{name}: records")
+            held = yield Batch(list(record_cases(usual, slendernesses, recorded)), measure, f"{name}: records")
             found += record_rows(recorded, held)
         rows += [{"scene": name, **row} for row in found]
         described[name] = {
@@ -121,9 +121,7 @@ def plan(
 def _half(name, scene, count):
     """The factor at which half of the motions overturn a block."""
     say(f"{name}: slenderness {scene.block.slenderness:g}, the factor that overturns half")
-    motions = [synthetic_motion(seed=seed) for seed in range(count)]
-    runs = [scene.with_(motion=motion) for motion in motions for _ in TRIED]
-    fallen = simulate_many(runs, scales=np.tile(TRIED, count)).overturns.reshape(count, -1).mean(axis=0)
+    fallen = overturned(scene, (synthetic_motion(seed=seed) for seed in range(count)), TRIED)
     above = int(np.argmax(fallen >= 0.5))
     if above == 0:
         raise ValueError(f"{name}: no factor from {TRIED[0]:g} to {TRIED[-1]:g} overturns half of {count} motions")
@@ -219,7 +217,7 @@ def _change_rows(changed, run):
     )
     for (engine, variant, change), members in groups.items():
         pairs = list(filter(None, members))
-        row = {"part": "change", "engine": engine, "variant": variant, "change": change, "runs": len(pairs)}
+        row = {"part": "change", "engine": engine, "variant": variant or "", "change": change, "runs": len(pairs)}
         row["failed"] = len(members) - len(pairs)
         if not pairs:
             yield row | dict.fromkeys(
