@@ -230,7 +230,7 @@ class Chart:
     def _axes(self):
         parts = [f'<path class="axis" d="M{self.left} {self.top}V{self.bottom}H{self.right}"/>']
         marks = self.x.marks()
-        slanted = LETTER * 0.55 * sum(len(word) + 1 for _, word in marks) > self.right - self.left
+        slanted = slanting([word for _, word in marks], self.right - self.left)
         for value, word in marks:
             x = self.at([value], [self.y.low])[0][0]
             parts.append(f'<path class="grid" d="M{x:.1f} {self.top}V{self.bottom}"/>')
@@ -269,6 +269,16 @@ class Chart:
             f'<text x="{self.right + 19}" y="{y - over + 4:.1f}">{escape(text)}</text></g>'
             for y, text, who, tone in placed
         )
+
+
+def slanting(words: Sequence[str], width: float) -> bool:
+    """Whether words below an axis of this width must slant."""
+    return LETTER * 0.55 * sum(len(word) + 1 for word in words) > width
+
+
+def room(words: Iterable[str], least: float = 0) -> int:
+    """Width that the longest of some words beside an axis takes, or a least one."""
+    return round(max(12 + LETTER * 0.55 * max(map(len, words), default=0), least))
 
 
 def colour(who: str) -> str:

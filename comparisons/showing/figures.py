@@ -1,9 +1,10 @@
-"""From a study's rows to figures: lines and marks by engine and variant, and maps of a quantity over two coordinates.
+"""From a study's rows to figures: lines and marks by engine and variant, values one below the other, and maps.
 
 lines(rows, Column("slenderness γ [rad]", "slenderness"), Column("error, rms [-]", "rms"), "Error of ...",
       panel="ground", log="y", rules=[("y", 1e-3, "trusted")])
 shades(rows, Column("base over block mass [-]", "ratio"), Column("slenderness γ [rad]", "slenderness"),
        Column("error, rms [-]", "rms", digits=1), "Error of ...", bounds=(1e-4, 1e-3, 1e-2), panel=NAME.of)
+ranks(rows, NAME, Column("share [-]", "share", within="interval"), "Share of ...", Axis("share [-]", 0, 1))
 """
 
 from __future__ import annotations
@@ -13,9 +14,10 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
+import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from .charts import REFERENCE, Axis, Chart, figure, key_of, log_axis
+from .charts import REFERENCE, WIDTH, Axis, Chart, figure, key_of, log_axis, room, slanting
 from .parts import Figure
 from .rows import Column, Key, Row, grouped, value_of
 
@@ -158,6 +160,46 @@ def _linear_axis(label, values):
     return Axis(label, float(ticks[0]), float(ticks[-1]))
 
 
+def ranks(
+    rows: Iterable[Row], name: Column, value: Column, caption: str, axis: Axis, *, panel: Key = lambda row: ""
+) -> Figure | None:
+    """Panels of values one below the other, each with its interval; None: nothing to draw.
+
+    Parameters
+    ----------
+    rows : iterable of dict
+        From above, each with its ``engine`` ("analytic": in ink). Rows whose value is None are left out.
+    name : Column
+        What stands beside a row.
+    value : Column
+        With ``within`` for the interval.
+    axis : Axis
+        Of the values; what lies beyond stands at its end.
+    panel : key
+        Title of a row's panel.
+    """
+    kept = [row for row in rows if value.of(row) is not None]
+    charts, engines = [], {row["engine"]: None for row in kept if row["engine"] != REFERENCE}
+    for (title,), members in grouped(kept, panel).items():
+        names = tuple((place, f"{name.text(row)}\u2002") for place, row in enumerate(members))  # room for a mark at 0
+        chart = Chart(
+            axis,
+            Axis("", len(members) - 0.5, -0.5, ticks=names),
+            f"{title + ': ' if title else ''}{value.head} of {', '.join(map(name.text, members))}.",
+            title=str(title),
+            height=90 + 21 * len(members),
+            left=room(map(name.text, kept)),
+            right=24,
+        )
+        for place, row in enumerate(members):
+            who = "" if row["engine"] == REFERENCE else row["engine"]
+            middle, *ends = np.clip([value.of(row), *value.ends(row)], axis.low, axis.high)
+            chart.reach([middle], [place], ends[:1] or [middle], ends[1:] or [middle], who, along="x")
+            chart.dots([middle], [place], who, says=[f"{name.text(row)}: {value.text(row)}"])
+        charts.append(chart)
+    return figure(charts, caption, engines) if charts else None
+
+
 def shades(
     rows: Iterable[Row],
     x: Column,
@@ -190,14 +232,17 @@ def shades(
     if not rows:
         return None
     across, up = ([text for (text,) in grouped(rows, column.text)] for column in (x, y))
-    charts = []
+    left, charts = room(up, 44) + 20, []
+    foot = 46 + round(0.5 * room(across) * slanting(across, WIDTH - left))
     for (title,), members in grouped(rows, panel).items():
         chart = Chart(
             _places(x.head, across),
             _places(y.head, up),
             f"{title + ': ' if title else ''}{value.head} over {x.head} and {y.head}.",
             title=str(title),
-            height=78 + 25 * len(up),
+            height=32 + 25 * len(up) + foot,
+            left=left,
+            foot=foot,
         )
         for row in members:
             lost, found, size = failed(row), value.text(row), value.of(row)

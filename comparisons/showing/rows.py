@@ -8,9 +8,9 @@ The same `Column` is an axis of a figure (`comparisons.showing.figures`).
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from string import Formatter
 from typing import Any
 
 from .parts import Table, number, percent, short
@@ -69,23 +69,30 @@ class Column:
         Significant digits of numbers that are not whole; None: those of a number that was chosen, as 0.3.
     percent : bool
         A fraction, written in per cent.
+    within : str or function or None
+        The interval [low, high] of the value, written behind it; the rows may have None.
     """
 
     head: str
     value: Key
     digits: int | None = 2
     percent: bool = False
+    within: Key | None = None
 
     def of(self, row: Row) -> Any:
         """The value itself, what `text` writes; of a pattern the text."""
         if isinstance(self.value, str) and "{" in self.value:
-            keys = [key for _, key, _, _ in Formatter().parse(self.value) if key]
-            return self.value.format_map({key: self.words(row[key]) for key in keys})
+            return re.sub(r"{(\w+)}", lambda found: self.words(row[found[1]]), self.value)
         return value_of(row, self.value)
+
+    def ends(self, row: Row) -> tuple[Any, ...]:
+        """Low and high end of the value's interval; empty where there is none."""
+        return tuple((value_of(row, self.within) if self.within else None) or ())
 
     def text(self, row: Row) -> str:
         """The cell of a row: text as it is, whole numbers as they are, others to `digits`, a dash for None."""
-        return self.words(self.of(row))
+        ends = " to ".join(map(self.words, self.ends(row)))
+        return self.words(self.of(row)) + (f" ({ends})" if ends else "")
 
     def words(self, value: Any) -> str:
         """A value of this column as its cells have it."""

@@ -1,17 +1,25 @@
-"""Fragility: how likely is a limit state at an intensity, in which measure, and does the answer hang on the solver?"""
+"""Fragility: how likely is a limit state at an intensity, in which measure, and does the engine change the answer?"""
 
 from ...running.study import Study
-from .cases import plan
-from .figures import draw_curves, draw_dispersions, draw_effects
-from .finding import finding, judgement
-from .page import section
+from .study import plan
+
+
+def _page(result):
+    from .page import page  # where it is shown only: the processes that run it need no charts
+
+    return page(result)
+
+
+def _judgement(result):
+    from .page import judgement
+
+    return judgement(result)
+
 
 STUDY = Study(
     "fragility",
-    "Fragility over intensity: which measure tells most, does a lognormal curve fit, does the solver shift it?",
+    "Fragility over intensity: which measure tells most, does a lognormal curve fit, does the engine shift it?",
     plan,
-    lambda result: {"": draw_curves(result), "measures": draw_dispersions(result), "solvers": draw_effects(result)},
-    section,
-    finding=finding,
-    judgement=judgement,
+    page=_page,
+    judgement=_judgement,
 )

@@ -31,8 +31,8 @@ PEAKS = (0.08, 3.0)  # g
 SCENES = {"free-standing": ("caryatid-rigid", (0.12, 0.32)), "isolated": ("caryatid-isolated", (0.1, 0.25))}
 DRAWN = ("stretch", "radius", "slenderness", "peak")
 
-# name: unit; g tan(slenderness) is the uplift acceleration, omega_r the rocking frequency
-MEASURES = {"PGA": "g", "PGV": "m/s", "Sa": "g", "PGA/(g tan γ)": "-", "ω_r PGV/(g tan γ)": "-", "Sa/(g tan γ)": "-"}
+# PGA and Sa in g, PGV in m/s; g tan(slenderness) is the uplift acceleration, omega_r the rocking frequency
+MEASURES = ("PGA", "PGV", "Sa", "PGA/(g tan γ)", "ω_r PGV/(g tan γ)", "Sa/(g tan γ)")
 UPLIFT = "PGA/(g tan γ)"
 
 

@@ -1,191 +1,252 @@
-"""The fragility study's result in words, tables and figures, from the result alone."""
+"""What is shown of the fragility study."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
 
-from ...showing.parts import Section, figure_of, number, percent
-from .figures import FITS, draw_curves, draw_dispersions, draw_effects, is_shown, parted, states_in
-from .tables import LEVEL, effect_table, fit_table, ranged, shift, size
+import numpy as np
+from scipy.stats import norm
+
+from ...showing.charts import Axis, Chart, figure
+from ...showing.figures import ranks, shades
+from ...showing.parts import Head, Judgement, Mark, Page, number, percent, short
+from ...showing.rows import NAME, Column, grouped, table, where
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
 
-ANALYTIC, OVERTURNING = "analytic", "overturning"
+LEVEL = 0.05  # of the test between an engine and the model, and least p of a curve that is shown
+COARSE = 0.3  # difference of probabilities that must at least be found, if there is one
+OVERTURNING = "overturning"
+UNITS = {"PGA": "g", "PGV": "m/s", "Sa": "g"}
+TONES = ("var(--faint)", "var(--soft)", "var(--accent)", "var(--ink)", "var(--ghost)")
+TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
+OUTCOMES = ("both_stand", "both_overturn", "only_a", "only_b")
+RATIOS = (0.5, 0.7, 1.0, 1.4, 2.0)  # of medians, as ticks
+BOUNDS = (0.2, 0.4, 0.6, 0.8, 1.0)
+
+SCENE, STATE = (
+    Column("scene", "scene"),
+    Column("limit state", lambda row: row["state"].replace("displacement", "displ.")),
+)
+MEASURE = Column("intensity measure", lambda row: row["measure"].replace("_r", "ᵣ"))
+WITH_UNIT = Column(MEASURE.head, lambda row: f"{MEASURE.of(row)} [{UNITS.get(row['measure'], '-')}]")
+DISPERSION = Column("dispersion [-]", "dispersion", within="dispersion_interval")
+MEDIAN_SHIFT = Column("median over the model's [-]", "median_shift", digits=3, within="median_interval")
+COMPARED = Column("runs compared [-]", lambda row: sum(row[key] for key in OUTCOMES))
+EFFECT = (
+    COMPARED,
+    Column("failed [-]", "left_out"),
+    Column("exceeded: model alone, engine alone [-]", "{only_a}, {only_b}"),
+    Column("p (McNemar, Holm) [-]", "p_holm"),
+    MEDIAN_SHIFT,
+    Column("dispersion over the model's [-]", "dispersion_shift", digits=3, within="dispersion_interval"),
+    Column("detectable median ratio [-]", "detectable_shift", digits=3),
+    Column("detectable difference", "detectable_difference", percent=True),
+)
 
 
-def section(result: Result) -> Section:
-    """The `Section` of a result of this study."""
-    scenes = list(result.settings["scenes"])
-    text, tables = [_asked(result), _reading(result)], []
-    for scene in scenes:
-        text += [_efficiency(result, scene), _shown(result, scene), *_answers(result, scene)]
-        tables += [fit_table(result, scene), effect_table(result, scene)]
-    text.append(_checks(result))
-    evidence = tuple(
-        (f"{row['solver']}, {row['scene']}, seed {row['seed']}", f"{row['reason']}\n{row.get('message') or ''}")
-        for row in parted(result, "failure")
-    )
-    return Section(
-        "Fragility: probability of a limit state", tuple(text), tuple(tables), _figures(result), evidence=evidence
-    )
-
-
-def _figures(result):
-    scenes = list(result.settings["scenes"])
-    efficient = " ".join(_efficiency(result, scene) for scene in scenes)
-    shifts = "; ".join(
-        f"{row['solver']} {shift(row['median_shift'])} ({row['scene']})"
-        for row in parted(result, "effect", state=OVERTURNING)
-    )
-    return (
-        figure_of(
-            draw_curves(result),
-            "Shares of runs that exceed each limit state, rising over intensity. "
-            + " ".join(_shown(result, scene) for scene in scenes),
-            "Share of runs that exceed a limit state, with 95 % Wilson intervals, in bins of equally many "
-            "runs over the "
-            f"measure of least dispersion. A lognormal curve is drawn only where the test of its fit has p ≥ {FITS:g}.",
+def page(result: Result) -> Page:
+    """The `Page` of a `Result` of the fragility study."""
+    fits, effects = where(result.rows, part="fit"), where(result.rows, part="effect")
+    costs = {(row["scene"], NAME.of(row)): row["cpu_per_run"] for row in where(result.rows, part="cost")}
+    best = {row["scene"]: row["measure"] for row in where(fits, state=OVERTURNING, best=True)}
+    chosen = [row for row in fits if row["measure"] == best.get(row["scene"], "PGA")]
+    tones = dict(zip(dict.fromkeys(row["state"] for row in fits), TONES, strict=False))
+    marks = judgement(result).marks
+    few = [", ".join(pair) for pair, mark in marks.items() if mark.level == "none"]
+    return Page(
+        _title(marks),
+        (
+            "Over a whole motion the rocking of a block cannot be predicted point by point; its odds can. Engines are "
+            "compared with the analytic model run by run. No significant difference is not equality: "
+            "detectable is what would have been found with 80 % probability.",
+            *([f"Too few runs to tell: {'; '.join(few)}."] if few else ()),
         ),
-        figure_of(
-            draw_dispersions(result),
-            f"Dispersion of every intensity measure for each limit state. {efficient}",
-            "Dispersion of the fitted curve in each intensity measure, with 95 % bootstrap intervals: the smaller, the "
-            "more the measure tells. Coloured: the least.",
+        first=(
+            _shares(
+                chosen,
+                tones,
+                "Share of runs of the analytic model that exceed each limit state, with 95 % Wilson intervals, over "
+                "the measure of least dispersion for overturning. A lognormal curve is drawn where it fits, "
+                f"p ≥ {LEVEL:g}.",
+            ),
+            table(
+                "Overturning: engines against the analytic model on the same runs; 95 % intervals by paired bootstrap",
+                where(effects, state=OVERTURNING),
+                NAME,
+                SCENE,
+                *EFFECT,
+                Column("CPU time per run [s]", lambda row: costs[row["scene"], NAME.of(row)]),
+            ),
         ),
-        figure_of(
-            draw_effects(result),
-            f"Shift of the median intensity by each solver. Overturning: {shifts}.",
-            "Shift of the median intensity by a solver against the analytic model on the same runs, with "
-            "95 % intervals "
-            "from paired bootstrap. In each row from above: "
-            + ", ".join(states_in(result, scenes[-1]))
-            + ". Grey: shifts that would not have been found; without a bar: no run differs. Open: first scripts.",
+        more=(
+            Head("All limit states"),
+            ranks(
+                effects,
+                NAME,
+                MEDIAN_SHIFT,
+                "Median intensity over the analytic model's on the same runs, with 95 % intervals by paired bootstrap; "
+                "without an interval no outcome differs, or the runs determine none.",
+                Axis(MEDIAN_SHIFT.head, RATIOS[0], RATIOS[-1], "log", tuple((ratio, short(ratio)) for ratio in RATIOS)),
+                panel=lambda row: f"{row['scene']}: {STATE.of(row)}",
+            ),
+            table(
+                "Other limit states: engines against the analytic model on the same runs",
+                [row for row in effects if row["state"] != OVERTURNING],
+                NAME,
+                SCENE,
+                STATE,
+                *EFFECT,
+            ),
+            *_sliding(result, effects),
+            Head("Intensity measures"),
+            shades(
+                fits,
+                STATE,
+                MEASURE,
+                Column(DISPERSION.head, "dispersion"),
+                "Dispersion of the lognormal curve of the analytic model: the smaller, the more the measure tells.",
+                bounds=BOUNDS,
+                panel="scene",
+            ),
+            _shares(
+                [row for row in fits if row["best"] and row not in chosen],
+                tones,
+                "The other limit states over their own measure of least dispersion.",
+            ),
+            table(
+                "Lognormal curves of the analytic model; 95 % intervals by bootstrap over runs",
+                fits,
+                SCENE,
+                STATE,
+                WITH_UNIT,
+                Column("exceeded [-]", "{exceeded} of {size}"),
+                Column("median", "median", within="median_interval"),
+                DISPERSION,
+                Column("over the least [-]", lambda row: "least" if row["best"] else _reach(row["ratio_interval"])),
+                Column("p of the fit [-]", "p_value"),
+                Column("fits", lambda row: "no curve" if row["median"] is None else "yes" if _fits(row) else "no"),
+            ),
+            table(
+                "Runs of the analytic model",
+                where(result.rows, part="check"),
+                SCENE,
+                Column("runs [-]", "runs"),
+                Column("undecided at their end [-]", "undecided"),
+                Column("failed [-]", "failed"),
+            ),
+        ),
+        how=_how(result.settings),
+        evidence=tuple(
+            (f"{NAME.of(row)}, {row['scene']}, seed {row['seed']}", f"{row['reason']}\n{row.get('message') or ''}")
+            for row in where(result.rows, part="failure")
         ),
     )
 
 
-def _asked(result):
-    s = result.settings
-    scenes = "; ".join(
-        f"{name} ({scene['scene']}), slenderness γ {scene['slendernesses'][0]:g} to {scene['slendernesses'][1]:g} rad"
-        for name, scene in s["scenes"].items()
-    )
-    stretch, radius, peak = (s["drawn"][key] for key in ("stretch", "radius", "peak"))
-    return (
-        "Over a whole motion the rocking of a block cannot be predicted point by point; its odds can. "
-        f"{s['runs']} runs "
-        f"of the analytic model for each scene, no two alike: every one has a synthetic near-fault motion of its own "
-        f"(seeds 0 to {s['runs'] - 1}), whose time is stretched by {stretch[0]:g} to {stretch[1]:g} and whose peak is "
-        f"{peak[0]:g} to {peak[1]:g} g, and a block of its own, radius {radius[0]:g} to {radius[1]:g} m; "
-        "all evenly over "
-        "the logarithm. The stretching is there because all synthetic motions have nearly one spectrum: without it no "
-        "measure of intensity could tell more than another, and blocks of one slenderness would make PGA and "
-        f"PGA/(g tan γ) the same. Scenes: {scenes}."
-    )
-
-
-def _reading(result):
-    s = result.settings
-    return (
-        f"Sa is the spectral acceleration at the isolation period, {s['period']:.2f} s (secant at "
-        f"{s['x_max']:g} m), at {percent(s['damping'])} damping; spectral velocity and displacement are it times a "
-        "constant, so that their dispersion is the same. g tan γ is the uplift acceleration, ω_r the "
-        "rocking frequency. "
-        "A dispersion is that of the lognormal curve P = Φ(ln(x/median)/dispersion) of greatest likelihood, its "
-        "interval from bootstrap over runs; p is that of Pearson's test of the curve's fit, and a curve "
-        f"with p < {FITS:g} "
-        f"is not shown. Engines get the first {s['runs_of_engines']} runs, first scripts the first "
-        f"{s['runs_of_first_scripts']}, whose PGA is {s['near'][0]:g} to {s['near'][1]:g} times g tan γ, and are held "
-        "against the model run by run: exact McNemar test, adjusted after Holm for the limit states, at a level of "
-        f"{LEVEL:g}. “No difference found” is not “equal”: each answer says which shift would have been found with "
-        "80 % probability."
-    )
-
-
-def _efficiency(result, scene):
-    told = []
-    for state in states_in(result, scene):
-        rows = parted(result, "fit", scene=scene, state=state)
-        best = next((row for row in rows if row["best"]), None)
-        if best is None:
-            told.append(f"{state}: no curve")
+def judgement(result: Result) -> Judgement:
+    """Whether the odds of a limit state differ from the model's, by (engine, variant)."""
+    marks = {}
+    for variant in result.settings["variants"]:
+        pair = variant["engine"], variant["variant"]
+        rows = where(result.rows, part="effect", engine=pair[0], variant=pair[1])
+        falls = where(rows, state=OVERTURNING)
+        if not falls:
+            marks[pair] = Mark("no run succeeded", "bad")
             continue
-        equal = [row["measure"] for row in rows if row["ratio_interval"] and row["ratio_interval"][0] <= 1]
-        usual = next(row for row in rows if row["measure"] == "PGA")["dispersion"]
-        words = f"{state}: {best['measure']}, {ranged(best['dispersion'], best['dispersion_interval'])}"
-        words += f" (PGA: {number(usual, 2)})" if best["measure"] != "PGA" else ""
-        told.append(words + (f", not certainly less than {', '.join(equal)}" if equal else ""))
-    return f"{scene}: least dispersion for " + "; ".join(told) + "."
+        found = [row["detectable_difference"] for row in falls]
+        few = None in found or max(found) > COARSE  # so few runs acquit nobody
+        bad, failed = any(row["p_holm"] <= LEVEL for row in rows), sum(row["left_out"] for row in falls)
+        words = f"{sum(row['only_a'] + row['only_b'] for row in falls)} of {sum(map(COMPARED.of, falls))} differ"
+        words += f", {failed} failed" if failed else ""
+        words += ", too few to tell" if few and not bad else ""
+        resolved = "no difference" if None in found else f"a difference of {percent(max(found))}"
+        note = f"{resolved} would have been found with 80 % probability"
+        marks[pair] = Mark(words, "bad" if bad else "none" if few else "good", note)
+    return Judgement("outcomes over many earthquakes", marks)
 
 
-def _shown(result, scene):
-    rows = [row for row in parted(result, "fit", scene=scene) if row["p_value"] is not None]
-    fitting = [row for row in rows if is_shown(row)]
-    told = "; ".join(f"{row['state']} over {row['measure']}, p = {number(row['p_value'], 2)}" for row in fitting)
-    return f"{scene}: a lognormal curve fits in {len(fitting)} of {len(rows)} cases" + (f" ({told})." if told else ".")
+def _title(marks):
+    levels = [mark.level for mark in marks.values()]
+    apart = [", ".join(pair) for pair, mark in marks.items() if mark.level == "bad"]
+    title = (
+        f"Many earthquakes: no significant difference for {levels.count('good')} of {len(marks)} settings of engines"
+    )
+    title += f"; a difference or no run for {', '.join(apart)}" if apart else ""
+    return title + (f"; too few runs to tell for {levels.count('none')}" if "none" in levels else "")
 
 
-def _answers(result, scene):
-    """One paragraph for each solver: does it differ from the analytic model?"""
-    for label in result.settings["solvers"]:
-        rows = parted(result, "effect", scene=scene, solver=label)
-        if not rows:
-            yield f"{scene}, {label}: no run succeeded."
-            continue
-        apart = [row["state"] for row in rows if row["p_holm"] <= LEVEL]
-        flips = [row["only_a"] + row["only_b"] for row in rows]
-        counts = ", ".join(f"{flip} for {row['state']}" for flip, row in zip(flips, rows, strict=True))
-        failed = f" ({rows[0]['left_out']} more failed)" if rows[0]["left_out"] else ""
-        said = f"of {size(rows[0])} runs{failed} these differ: {counts}"
-        known = [row for row, flip in zip(rows, flips, strict=True) if flip and row["median_shift"] is not None]
-        if known:
-            most = max(known, key=lambda row: abs(math.log(row["median_shift"])))
-            said += (
-                f"; largest shift of a median {shift(most['median_shift'], most['median_interval'])} "
-                f"({most['state']}), "
-                f"dispersion times {ranged(most['dispersion_shift'], most['dispersion_interval'], 3)}"
-            )
-        yield (
-            f"{scene}, {label}: they differ ({', '.join(apart)}); {said}.{_cause(result, scene, label)}"
-            if apart
-            else f"{scene}, {label}: no difference found; {said}. {_resolved(rows)}"
+def _fits(row):
+    return row["p_value"] is not None and row["p_value"] >= LEVEL
+
+
+def _reach(interval):
+    return "–" if interval is None else " to ".join(number(limit, 2) for limit in interval)
+
+
+def _shares(rows, tones, caption):
+    """Shares of runs over intensity, a panel for each scene and measure; tones: {limit state: its colour}."""
+    charts = []
+    for (scene, measure), members in grouped(rows, "scene", WITH_UNIT.of).items():
+        places = [point["intensity"] for row in members for point in row["points"]]
+        low, high = 0.95 * min(places), 1.05 * max(places)
+        chart = Chart(
+            Axis(measure, low, high, "log", tuple((tick, short(tick)) for tick in TICKS if low <= tick <= high)),
+            Axis("share of runs [-]", 0.0, 1.0),
+            f"{scene}: share of runs that exceed {', '.join(row['state'] for row in members)}.",
+            title=scene,
+            right=116,
+            height=300,
         )
+        for row in members:
+            tone = tones[row["state"]]
+            xs, ys, lows, highs = zip(
+                *([point[key] for key in ("intensity", "share", "low", "high")] for point in row["points"]), strict=True
+            )
+            chart.reach(xs, ys, lows, highs, tone=tone)
+            says = [f"{row['state']}: {number(y)} at {number(x)}" for x, y in zip(xs, ys, strict=True)]
+            chart.dots(xs, ys, says=says, tone=tone)
+            if _fits(row):
+                fine = np.geomspace(min(xs), max(xs), 80)
+                chart.line(fine, norm.cdf(np.log(fine / row["median"]) / row["dispersion"]), tone=tone)
+            chart.label(ys[-1], STATE.of(row), tone=tone)
+        charts.append(chart)
+    return figure(charts, caption) if charts else None
 
 
-def _resolved(rows):
-    """Which difference would have been found, at worst over the limit states."""
-    least = [row["detectable_difference"] for row in rows]
-    if None in least:
-        return "No difference, however large, could have been found so."
-    shifts = [row["detectable_shift"] for row in rows if row["detectable_shift"] is not None]
-    medians = f", shifts of a median by {shift(max(shifts))}" if shifts else ""
-    return f"Differences of {number(100 * max(least), 2)} percentage points{medians} would have been found."
+def _sliding(result, effects):
+    """A sentence for each variant that differs and whose friction lets blocks slide where they should lift."""
+    for variant in result.settings["variants"]:
+        rows = where(effects, engine=variant["engine"], variant=variant["variant"])
+        for scene in {row["scene"]: None for row in rows if row["p_holm"] <= LEVEL}:
+            steepest = math.tan(result.settings["scenes"][scene]["slendernesses"][1])
+            if variant["friction"] is not None and variant["friction"] < steepest:
+                yield (
+                    f"{NAME.of(variant)}, {scene}: its friction, {variant['friction']:g}, is below tan γ of the least "
+                    f"slender blocks, {number(steepest)}. These slide where they should lift."
+                )
 
 
-def _cause(result, scene, label):
-    """Why a solver's block stays up: friction that lets it slide."""
-    friction = result.settings["friction"].get(label)
-    steepest = math.tan(result.settings["scenes"][scene]["slendernesses"][1])
-    if friction is None or friction >= steepest:
-        return ""
-    return (
-        f" Its friction, {friction:g} by its defaults, is below tan γ of the least slender blocks "
-        f"({number(steepest)}): "
-        "these slide where they should lift."
+def _how(settings):
+    stretch, radius, peak = (settings["drawn"][key] for key in ("stretch", "radius", "peak"))
+    scenes = "; ".join(
+        f"{name}, γ = {scene['slendernesses'][0]:g} to {scene['slendernesses'][1]:g} rad"
+        for name, scene in settings["scenes"].items()
     )
-
-
-def _checks(result):
-    runs, undecided, failed = (
-        sum(row[key] for row in parted(result, "check")) for key in ("runs", "undecided", "failed")
-    )
-    perturbed = result.settings["solvers"][0]
     return (
-        f"Runs of the analytic model whose outcome was not decided at their end: {undecided} of {runs}; "
-        f"failed: {failed}. "
-        f"Runs of others that failed: {len(parted(result, 'failure'))}. “{perturbed}” is the analytic model with its "
-        f"restitution changed by 1 part in {1 / result.settings['change']:.0f}: disagreements as many as it has with "
-        "itself are nothing to blame an engine for."
+        f"{settings['runs']} runs of the analytic model for each scene ({scenes}), independent of each other: each has "
+        f"a synthetic near-fault motion of its own, its time stretched by {stretch[0]:g} to {stretch[1]:g}, its peak "
+        f"{peak[0]:g} to {peak[1]:g} g, and a block of its own, radius {radius[0]:g} to {radius[1]:g} m, all evenly "
+        "over the logarithm. Motions are stretched because all synthetic ones have nearly one spectrum.",
+        f"Sa: spectral acceleration at the isolation period, {settings['period']:.2f} s (secant at "
+        f"{settings['x_max']:g} m), at {percent(settings['damping'])} damping; spectral velocity and displacement have "
+        "the same dispersion. g tan γ: uplift acceleration; ωᵣ: rocking frequency. The curve P = Φ(ln(x/median)"
+        "/dispersion) is that of greatest likelihood, p that of Pearson's test of its fit.",
+        f"Engines run the first {settings['runs_of_engines']} scenes whose PGA is {settings['near'][0]:g} to "
+        f"{settings['near'][1]:g} times g tan γ, default settings the first {settings['runs_of_defaults']}. Exact "
+        f"McNemar test, adjusted after Holm for the limit states, at a level of {LEVEL:g}. “analytic, perturbed”: the "
+        f"model with its restitution changed by 1 part in {1 / settings['change']:.0f}; an engine that differs by no "
+        "more is not to blame.",
     )

@@ -1,16 +1,18 @@
-"""What matters more than the engine: how often does each uncertainty flip the verdict, the solver's among them?"""
+"""What changes the outcome more often than the engine does: each uncertainty in turn, the engine's error among them."""
 
 from ...running.study import Study
-from .cases import plan
-from .figures import draw, draw_vertical
-from .finding import finding
-from .page import section
+from .study import plan
+
+
+def _page(result):
+    from .page import page  # where it is shown only: the processes that run it need no charts
+
+    return page(result)
+
 
 STUDY = Study(
     "matters",
-    "What flips the verdict more often than the choice of the engine: the vertical motion, a per cent of slenderness?",
+    "What changes the outcome more often than the choice of the engine: vertical motion, a per cent of slenderness?",
     plan,
-    lambda result: {"": draw(result), "vertical": draw_vertical(result)},
-    section,
-    finding=finding,
+    page=_page,
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -20,6 +20,19 @@ if TYPE_CHECKING:
 OTHERS = 100_000  # seeds of the other horizontal, and twice of the vertical component, above those of the first
 USUAL_RATIO = 2 / 3  # peak vertical over peak horizontal acceleration, as codes took it for long
 ARIAS = 0.95  # of the intensity, after which a tail is cut off
+# name, quantity, relative change
+BLOCK = (
+    ("slenderness ±1 %", "slenderness", 0.01),
+    ("size ±1 %", "radius", 0.01),
+    ("restitution ±5 %", "restitution", 0.05),
+    ("restitution ±1 %", "restitution", 0.01),
+    ("restitution ±0.01 %", "restitution", 1e-4),
+)
+BEARINGS = (
+    ("bearing stiffness ka ±10 %", "ka"),
+    ("bearing stiffness kb ±10 %", "kb"),
+    ("bearing exponent α ±10 %", "alpha"),
+)
 
 
 def changes(scene: Scene, seed: int) -> Iterator[tuple[str, Scene]]:
@@ -27,16 +40,46 @@ def changes(scene: Scene, seed: int) -> Iterator[tuple[str, Scene]]:
 
     scene : with a sampled motion, made of the synthetic one of this seed times a factor.
     """
-    for name, change in (*MOTIONS.items(), *BLOCKS.items(), *(BEARINGS.items() if scene.bearings else ())):
-        for changed in change(scene, seed):
-            yield name, changed
+    motion = scene.motion
+    samples, dt = motion.samples, motion.dt
+
+    def shaken(samples):
+        return scene.with_(motion=replace(motion, samples=samples))
+
+    for ratio in (USUAL_RATIO, 2 * USUAL_RATIO):
+        yield f"vertical motion, V/H {ratio:.2f}", scene.with_(motion=with_vertical(motion, seed, ratio))
+    # the plane in which the block rocks, turned against two horizontal components of one peak
+    other = synthetic_motion(seed=seed + OTHERS)
+    other = other.scaled(motion.peak / other.peak)
+    turned = math.cos(math.pi / 6) * samples + math.sin(math.pi / 6) * other.samples
+    yield "direction turned by 30°", shaken(turned)
+    for factor in (0.99, 1.01):
+        yield "scale of the motion ±1 %", scene.with_(motion=motion.scaled(factor))
+    intensity = np.cumsum(samples**2)
+    kept = int(np.searchsorted(intensity, ARIAS * intensity[-1])) + 1
+    yield "cut off at 95 % intensity", shaken(samples[:kept])
+    for shift in (-1e-3 * motion.peak, 1e-3 * motion.peak):  # as a baseline corrected otherwise
+        yield "baseline off 0.1 % of peak", shaken(samples + shift)
+    # every fourth sample, as many catalogues have it
+    yield "record's time step 0.02 s", scene.with_(motion=SampledMotion(4 * dt, samples[::4], motion.label))
+    for name, key, share in BLOCK:
+        value = RockingModel.of(scene).restitution if key == "restitution" else getattr(scene.block, key)
+        most = 1.0 if key == "restitution" else math.inf
+        for factor in (1 - share, 1 + share):
+            yield name, scene.with_(block={key: min(value * factor, most)})
+    if scene.bearings:
+        yield from _bearings(scene)
 
 
-def _upright(ratio: float) -> Callable[[Scene, int], list[Scene]]:
-    def change(scene, seed):
-        return [scene.with_(motion=with_vertical(scene.motion, seed, ratio))]
-
-    return change
+def _bearings(scene):
+    """Other values of the bearings, and other laws of the same two stiffnesses and characteristic strength."""
+    bearings = scene.bearings
+    for name, key in BEARINGS:
+        for factor in (0.9, 1.1):
+            yield name, scene.with_(bearings={key: factor * getattr(bearings, key)})
+    yields = BearingLaw.of(bearings).f0 * bearings.ka / (bearings.ka - bearings.kb)
+    yield "bilinear bearings", scene.with_(bearings={"law": "bilinear", "alpha": None, "yield_force": yields})
+    yield "Bouc-Wen bearings", scene.with_(bearings={"law": "bouc-wen"})
 
 
 def with_vertical(motion: Motion, seed: int, ratio: float, faster: float = 1.0) -> SampledMotion:
@@ -50,89 +93,3 @@ def with_vertical(motion: Motion, seed: int, ratio: float, faster: float = 1.0) 
     samples = samples * (ratio * motion.peak / np.abs(samples).max())
     vertical = SampledMotion(motion.dt, samples, f"{up.label}, {faster:g} times as fast")
     return SampledMotion(motion.dt, motion.samples, motion.label, motion.warnings, vertical)
-
-
-def _turned(scene, seed):
-    """The direction in which the block may rock, turned by 30 degrees against the two horizontal components."""
-    other = synthetic_motion(seed=seed + OTHERS)
-    other = other.scaled(scene.motion.peak / other.peak)
-    samples = math.cos(math.pi / 6) * scene.motion.samples + math.sin(math.pi / 6) * other.samples
-    return [scene.with_(motion=replace(scene.motion, samples=samples))]
-
-
-def _scaled(scene, seed):
-    return [scene.with_(motion=scene.motion.scaled(factor)) for factor in (0.99, 1.01)]
-
-
-def _shortened(scene, seed):
-    samples = scene.motion.samples
-    intensity = np.cumsum(samples**2)
-    kept = int(np.searchsorted(intensity, ARIAS * intensity[-1])) + 1
-    return [scene.with_(motion=replace(scene.motion, samples=samples[:kept]))]
-
-
-def _drifting(scene, seed):
-    """As a baseline corrected otherwise: the acceleration off by a thousandth of its peak throughout."""
-    shift = 1e-3 * scene.motion.peak
-    return [scene.with_(motion=replace(scene.motion, samples=scene.motion.samples + sign * shift)) for sign in (-1, 1)]
-
-
-def _coarser(scene, seed):
-    """Every fourth sample, .02 s apart, as many catalogues have it."""
-    motion = scene.motion
-    return [scene.with_(motion=SampledMotion(4 * motion.dt, motion.samples[::4], motion.label))]
-
-
-def _block(key: str, share: float) -> Callable[[Scene, int], list[Scene]]:
-    def change(scene, seed):
-        value = RockingModel.of(scene).restitution if key == "restitution" else getattr(scene.block, key)
-        factors = (1 - share, 1 + share)
-        most = 1.0 if key == "restitution" else math.inf
-        return [scene.with_(block={key: min(value * factor, most)}) for factor in factors]
-
-    return change
-
-
-def _bearing(key: str) -> Callable[[Scene, int], list[Scene]]:
-    def change(scene, seed):
-        value = getattr(scene.bearings, key)
-        return [scene.with_(bearings={key: factor * value}) for factor in (0.9, 1.1)]
-
-    return change
-
-
-def _bilinear(scene, seed):
-    """The same two stiffnesses and the same characteristic strength."""
-    bearings = scene.bearings
-    strength = BearingLaw.of(bearings).f0
-    yields = strength * bearings.ka / (bearings.ka - bearings.kb)
-    return [scene.with_(bearings={"law": "bilinear", "alpha": None, "yield_force": yields})]
-
-
-def _bouc_wen(scene, seed):
-    return [scene.with_(bearings={"law": "bouc-wen"})]
-
-
-MOTIONS = {
-    f"vertical motion, {USUAL_RATIO:.2f} of the horizontal": _upright(USUAL_RATIO),
-    f"vertical motion, {2 * USUAL_RATIO:.2f} of the horizontal": _upright(2 * USUAL_RATIO),
-    "direction turned by 30°": _turned,
-    "scale of the motion ±1 %": _scaled,
-    "tail cut off after 95 % of its intensity": _shortened,
-    "baseline off by 0.1 % of the peak": _drifting,
-    "time step of the record 0.02 s": _coarser,
-}
-BLOCKS = {
-    "slenderness ±1 %": _block("slenderness", 0.01),
-    "size ±1 %": _block("radius", 0.01),
-    "restitution ±5 %": _block("restitution", 0.05),
-    "restitution ±1 %": _block("restitution", 0.01),
-    "restitution ±0.01 %": _block("restitution", 1e-4),
-}
-BEARINGS = {
-    "bearing stiffness ka ±10 %": _bearing("ka"),
-    "bearing stiffness kb ±10 %": _bearing("kb"),
-    "bearing exponent alpha ±10 %": _bearing("alpha"),
-    "bilinear bearings": _bilinear,
-    "Bouc-Wen bearings": _bouc_wen,
-}

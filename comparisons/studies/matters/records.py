@@ -6,7 +6,7 @@ Of a record nothing is kept but counts and ratios.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -99,9 +99,8 @@ def _triple(path):
     return Triple(path.name, first, replace(other, samples=factor * other.samples), up[0].scaled(factor))
 
 
-def record_cases(usual: Scene, slendernesses: Sequence[float], recorded: Sequence[Triple]) -> list[Case]:
+def record_cases(usual: Scene, slendernesses: Sequence[float], recorded: Sequence[Triple]) -> Iterator[Case]:
     """Every triple in all directions, about the factor that overturns half of them, with and without its vertical."""
-    cases = []
     for place, slenderness in enumerate(slendernesses):
         scene = usual.with_(block={"slenderness": slenderness})
         for number, triple in enumerate(recorded):
@@ -112,57 +111,48 @@ def record_cases(usual: Scene, slendernesses: Sequence[float], recorded: Sequenc
             for step in range(DIRECTIONS):
                 level = triple.turned(step)
                 for raised, motion in ((False, level), (True, paired(level, triple.up))):
-                    cases += [
-                        Case(
-                            scene.with_(motion=motion.scaled(float(half * factor))),
-                            settings={"history": False},
-                            tag={"record": number, "place": place, "step": step, "raised": raised, "factor": k},
-                        )
-                        for k, factor in enumerate(SPREAD)
-                    ]
-    return cases
+                    for k, factor in enumerate(SPREAD):
+                        tag = {"record": number, "place": place, "step": step, "raised": raised, "factor": k}
+                        shaken = scene.with_(motion=motion.scaled(float(half * factor)))
+                        yield Case(shaken, settings={"history": False}, tag=tag)
 
 
 def _half(scene, triple):
     """The factor at which half of the directions overturn the block, or None."""
-    scenes = [scene.with_(motion=triple.turned(step)) for step in range(DIRECTIONS) for _ in TRIED]
-    fallen = simulate_many(scenes, scales=np.tile(TRIED, DIRECTIONS)).overturns.reshape(DIRECTIONS, -1).mean(axis=0)
+    fallen = overturned(scene, map(triple.turned, range(DIRECTIONS)), TRIED)
     above = int(np.argmax(fallen >= 0.5))
     return float(TRIED[above]) if fallen[above] >= 0.5 else None
 
 
-def record_rows(name: str, recorded: Sequence[Triple], results: Iterable[Any]) -> list[dict]:
-    """A row for every triple: V/H, how fast its vertical motion is, and verdicts flipped by it and by turning.
+def overturned(scene: Scene, motions: Iterable[SampledMotion], factors: np.ndarray) -> np.ndarray:
+    """Share of motions that overturn the block, at each of the factors; shape (factors,)."""
+    scenes = [scene.with_(motion=motion) for motion in motions for _ in factors]
+    runs = simulate_many(scenes, scales=np.tile(factors, len(scenes) // len(factors)))
+    return runs.overturns.reshape(-1, len(factors)).mean(axis=0)
+
+
+def record_rows(recorded: Sequence[Triple], results: Iterable[Any]) -> Iterator[dict[str, Any]]:
+    """A row for every triple: V/H, how fast its vertical motion is, and outcomes changed by it and by turning.
 
     No intervals: runs under one record are no sample.
     """
-    verdicts: dict[int, dict[tuple, bool]] = {}
+    outcomes: dict[int, dict[tuple, bool]] = {}
     for row in results:
-        tag = row.case.tag
         if not row.failed:
-            place = tag["place"], tag["factor"], tag["step"], tag["raised"]
-            verdicts.setdefault(tag["record"], {})[place] = row.values["overturns"]
-    rows = []
-    for number, found in verdicts.items():
-        level = {(place, factor, step): fallen for (place, factor, step, raised), fallen in found.items() if not raised}
-        raised = [(fallen, found.get((*key, True))) for key, fallen in level.items()]
-        turned = [
-            (fallen, level.get((place, factor, (step + TURNED) % DIRECTIONS)))
-            for (place, factor, step), fallen in level.items()
-        ]
-        rows.append(
-            {
-                "part": "record",
-                "scene": name,
-                "record": recorded[number].name,
-                "ratio": recorded[number].ratio,
-                "faster": recorded[number].faster,
-                "runs": len(raised),
-                "flips": sum(after is not None and before != after for before, after in raised),
-                "turned": sum(after is not None and before != after for before, after in turned),
-            }
-        )
-    return rows
+            place = tuple(row.case.tag[key] for key in ("raised", "place", "factor", "step"))
+            outcomes.setdefault(row.case.tag["record"], {})[place] = row.values["overturns"]
+    for number, found in outcomes.items():
+        level = {place[1:]: fallen for place, fallen in found.items() if not place[0]}
+        turned = {(*rest, (step - TURNED) % DIRECTIONS): fallen for (*rest, step), fallen in level.items()}
+        yield {
+            "part": "record",
+            "record": recorded[number].name,
+            "ratio": recorded[number].ratio,
+            "faster": recorded[number].faster,
+            "runs": len(level),
+            "outcomes_changed": sum(found.get((True, *key), fallen) != fallen for key, fallen in level.items()),
+            "outcomes_changed_by_turning": sum(turned.get(key, fallen) != fallen for key, fallen in level.items()),
+        }
 
 
 def _frequency(motion):

@@ -7,8 +7,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from comparisons.showing.charts import INK, NEAR, STYLE
-from comparisons.showing.figures import MOVED, beside, lines, shades
+from comparisons.showing.charts import INK, NEAR, STYLE, Axis
+from comparisons.showing.figures import MOVED, beside, lines, ranks, shades
 from comparisons.showing.rows import NAME, Column
 from engines import ENGINES
 
@@ -142,6 +142,27 @@ def test_figures_beside_each_other_share_legend_and_caption():
     assert beside(one, two, one).caption == "One. Two."
 
 
+def test_ranked_values_stand_below_each_other_with_their_intervals_and_no_further_than_the_axis():
+    rows = [row("analytic", "model", 0, 0.5), row(FIRST, "fine", 0, 0.0), row(SECOND, "fine", 0, None, "sliding")]
+    rows = [one | {"ends": [0.25, 2.0] if one["y"] else None} for one in rows]
+    share = Column("share [-]", "y", within="ends")
+    made = ranks(rows, NAME, share, "Shares.", Axis("share [-]", 0.1, 1.0, "log"), panel="ground")
+    (panel,) = panels(made)
+    assert made.solvers == (FIRST,) and ENGINES[FIRST].colour in made.svg.decode()
+    told = [part for part in panel.iter("path") if part.get("data-says")]
+    assert [part.get("data-says") for part in told] == ["analytic, model: 0.50 (0.25 to 2.0)", f"{FIRST}, fine: 0"]
+    (x0, x1), (y0, y1) = (json.loads(panel.get("data-read"))[key]["at"] for key in "xy")
+    places = [tuple(map(float, re.findall(r"[\d.]+", part.get("transform"))[:2])) for part in told]
+    assert places == [
+        (pytest.approx(x0 + math.log10(5) * (x1 - x0), abs=0.1), y1 + (y0 - y1) / 4),
+        (x0, y1 + (y0 - y1) * 0.75),
+    ]
+    reach = next(part.get("d") for part in panel.iter("path") if part.get("class") == "reach")
+    ends = list(map(float, re.findall(r"[\d.]+", reach)))[::2]
+    assert ends == [pytest.approx(x0 + math.log10(2.5) * (x1 - x0), abs=0.1), x1]
+    assert ranks(rows[2:], NAME, share, "Shares.", Axis("share [-]", 0.1, 1.0)) is None
+
+
 CELLS = [
     {"engine": "one", "variant": "fine", "ratio": ratio, "gamma": gamma, "rms": rms, "failed": failed}
     for ratio, gamma, rms, failed in (
@@ -176,6 +197,26 @@ def test_cells_hold_their_numbers_shades_and_failures():
     assert [part.get("class") for part in scale.iter("rect")] == ["shade s0", "shade s1", "shade s2"]
     assert {"1·10⁻⁴", "0.01"} <= {text.text for text in scale.iter("text")}
     assert shades([], RATIO, GAMMA, Column("rms [-]", "rms"), "Map.", bounds=(1.0,)) is None
+
+
+def test_a_map_leaves_room_for_long_words_at_both_axes():
+    words = (
+        Column("measure", lambda one: f"measure of intensity {one['gamma']}"),
+        Column("state", lambda one: f"displacement above {one['ratio']} m"),
+    )
+    rows = [one | {"gamma": k} for one in CELLS for k in range(5)]
+    panel, _ = panels(shades(rows, *words, Column("rms [-]", "rms"), "Map.", bounds=(1.0,)))
+    (inside,) = panel.findall("svg")
+    assert float(inside.get("x")) > 6 * len("displacement above 10.0 m")
+    slanted = [text for text in panel.iter("text") if "rotate(-35)" in (text.get("transform") or "")]
+    (below,) = [text for text in panel.iter("text") if text.text == "measure"]
+    end = (
+        float(inside.get("y"))
+        + float(inside.get("height"))
+        + 17
+        + 6 * len("measure of intensity 0") * math.sin(math.radians(35))
+    )
+    assert len(slanted) == 5 and float(below.get("y")) > end
 
 
 def luminance(colour):

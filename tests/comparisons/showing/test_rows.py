@@ -13,7 +13,8 @@ ROWS = [
     {"part": "cell", "engine": "one", "variant": "fine", "ratio": None, "rms": 1.234e-5, "failed": 0, "runs": 4},
     {"part": "cell", "engine": "two", "variant": "fine", "ratio": 0.5, "rms": None, "failed": 4, "runs": 4},
     {"part": "order", "engine": "one", "variant": "fine", "order": 2.0},
-    {"part": "cell", "engine": "one", "variant": "coarse", "ratio": 0.5, "rms": 0.25, "failed": 1, "runs": 4},
+    {"part": "cell", "engine": "one", "variant": "coarse", "ratio": 0.5, "rms": 0.25, "failed": 1, "runs": 4}
+    | {"state": {"tilt": 0.1}},
 ]
 
 
@@ -43,8 +44,12 @@ def test_groups_keep_the_order_of_rows_and_of_keys():
         (Column("rms", "rms", digits=3), ["1.23·10⁻⁵", "–", "0.250"]),
         (Column("rms", "rms", digits=None), ["1.23·10⁻⁵", "–", "0.25"]),
         (Column("share", lambda row: row["failed"] / row["runs"], percent=True), ["0 %", "100 %", "25 %"]),
-        (Column("failed", "{failed} of {runs}"), ["0 of 4", "4 of 4", "1 of 4"]),
+        (Column("failed", "{failed} of {runs}"), ["0 of 4", "4 of 4", "1 of 4"]),  # whatever else the row holds
         (Column("both", lambda row: [row["runs"], row["rms"]]), ["4, 1.2·10⁻⁵", "4, –", "4, 0.25"]),
+        (
+            Column("rms", "rms", within=lambda row: row["rms"] and [0.1, 2]),
+            ["1.2·10⁻⁵ (0.10 to 2)", "–", "0.25 (0.10 to 2)"],
+        ),
         (NAME, ["one, fine", "two, fine", "one, coarse"]),
     ],
 )

@@ -1,6 +1,4 @@
-"""What matters: every change is of the size its name says, and a flip is another verdict on the same motion."""
-
-import dataclasses
+"""What matters: each change is of the size its name says; counted are other outcomes under the same motion."""
 
 import numpy as np
 import pytest
@@ -15,16 +13,16 @@ from analytic.pairing import paired
 from analytic.rocking import RockingModel
 from comparisons.running.provenance import read_result, write_result
 from comparisons.running.study import Ask
+from comparisons.showing.rows import where
 from comparisons.studies import get_study
-from comparisons.studies.matters.cases import SPREAD
 from comparisons.studies.matters.changes import changes, with_vertical
-from comparisons.studies.matters.page import section
 from comparisons.studies.matters.records import SPREAD as RECORD_SPREAD
 from comparisons.studies.matters.records import triples
-from comparisons.studies.matters.vertical import FASTER, RATIOS
+from comparisons.studies.matters.study import FASTER, RATIOS, SPREAD
 
 STUDY = get_study("matters")
 SCENES = {"isolated": ("caryatid-isolated", (0.15,))}
+USUAL = load_scene("caryatid-isolated").with_(motion=None, duration=None, block={"slenderness": 0.15})
 COUNT = 8
 
 pytestmark = pytest.mark.xdist_group("matters")  # its runs are made once
@@ -41,6 +39,21 @@ def found(tmp_path_factory):
     write_triple(folder / "triple.V2")
     (folder / "notes.txt").write_text("no record\n")
     return answered(STUDY.plan(Ask(()), SCENES, (COUNT, 0, 0), records=str(folder)), by_runs(folder))[-1]
+
+
+def fallen(scene):
+    return simulate(scene, history=False).outcome == "overturns"
+
+
+def scenes_of(found):
+    """The scenes as they are, one a seed."""
+    half = found.settings["scenes"]["isolated"]["half"][0]
+    order = np.random.Generator(np.random.PCG64(7)).permutation(COUNT)
+    factors = half * np.exp(SPREAD * norm.ppf((order + 0.5) / COUNT))
+    assert np.log(factors / half).mean() == pytest.approx(0.0, abs=1e-12)
+    return [
+        USUAL.with_(motion=synthetic_motion(seed=seed).scaled(float(factor))) for seed, factor in enumerate(factors)
+    ]
 
 
 def test_changes_are_of_the_size_their_names_say():
@@ -60,37 +73,30 @@ def test_changes_are_of_the_size_their_names_say():
     (bilinear,), (bouc_wen,) = by_name["bilinear bearings"], by_name["Bouc-Wen bearings"]
     assert BearingLaw.of(bilinear.bearings).f0 == pytest.approx(law.f0) and bouc_wen.bearings.law == "bouc-wen"
     for share in (2 / 3, 4 / 3):
-        (changed,) = by_name[f"vertical motion, {share:.2f} of the horizontal"]
+        (changed,) = by_name[f"vertical motion, V/H {share:.2f}"]
         assert changed.motion.vertical.peak == pytest.approx(share * peak)
         np.testing.assert_array_equal(changed.motion.samples, scene.motion.samples)
     (turned,) = by_name["direction turned by 30°"]
     rest = turned.motion.samples - np.cos(np.pi / 6) * scene.motion.samples  # of a component as strong
     assert np.abs(rest).max() == pytest.approx(0.5 * peak)
-    (coarse,) = by_name["time step of the record 0.02 s"]
+    (coarse,) = by_name["record's time step 0.02 s"]
     assert coarse.motion.dt == 0.02 and coarse.motion.acceleration(3.0) == scene.motion.acceleration(3.0)
-    (short,) = by_name["tail cut off after 95 % of its intensity"]
+    (short,) = by_name["cut off at 95 % intensity"]
     kept = (short.motion.samples**2).sum() / (scene.motion.samples**2).sum()
     assert 0.95 <= kept < 0.96
-    low, high = by_name["baseline off by 0.1 % of the peak"]
+    low, high = by_name["baseline off 0.1 % of peak"]
     np.testing.assert_allclose((high.motion.samples - low.motion.samples) / peak, 2e-3, rtol=1e-9)
     free = dict(changes(load_scene("caryatid-rigid").with_(motion=scene.motion), 3))
     assert not any("bearing" in name for name in free) and len(free) == len(by_name) - 5
 
 
-def test_flips_are_those_of_single_runs(found):
-    half = found.settings["scenes"]["isolated"]["half"][0]
-    usual = load_scene("caryatid-isolated").with_(motion=None, duration=None, block={"slenderness": 0.15})
-    rows = {row["change"]: row for row in found.rows if row["part"] == "change"}
-    order = np.random.Generator(np.random.PCG64(7)).permutation(COUNT)
-    factors, flips = [], 0
-    for seed in range(COUNT):
-        factors.append(half * np.exp(SPREAD * norm.ppf((order[seed] + 0.5) / COUNT)))
-        scene = usual.with_(motion=synthetic_motion(seed=seed).scaled(float(factors[-1])))
-        outcomes = [simulate(one).outcome == "overturns" for one in (scene, scene.with_(bearings={"law": "bouc-wen"}))]
-        flips += outcomes[0] != outcomes[1]
+def test_changed_outcomes_are_those_of_single_runs(found):
+    rows = {row["change"]: row for row in where(found.rows, part="change")}
+    pairs = [[fallen(one) for one in (scene, scene.with_(bearings={"law": "bouc-wen"}))] for scene in scenes_of(found)]
     row = rows["Bouc-Wen bearings"]
-    assert (row["flips"], row["runs"], row["failed"]) == (flips, COUNT, 0)
-    assert np.log(np.array(factors) / half).mean() == pytest.approx(0.0, abs=1e-12)
+    assert (row["runs"], row["failed"], row["variant"]) == (COUNT, 0, "")
+    assert row["outcomes_changed"] == sum(before != after for before, after in pairs)
+    assert row["to_overturning"] == sum(after and not before for before, after in pairs)
     for change, row in rows.items():
         assert row["runs"] == (2 * COUNT if "±" in change or "baseline" in change else COUNT)
     # a tenth of a per mille of restitution moves less than five per cent of it
@@ -99,17 +105,11 @@ def test_flips_are_those_of_single_runs(found):
 
 def test_half_of_the_motions_overturn_at_the_factor_that_is_said(found):
     half = found.settings["scenes"]["isolated"]["half"][0]
-    usual = load_scene("caryatid-isolated").with_(motion=None, duration=None, block={"slenderness": 0.15})
 
     def share(factor):
-        scenes = [usual.with_(motion=synthetic_motion(seed=seed).scaled(factor)) for seed in range(COUNT)]
-        return np.mean([simulate(scene).outcome == "overturns" for scene in scenes])
+        return np.mean([fallen(USUAL.with_(motion=synthetic_motion(seed=k).scaled(factor))) for k in range(COUNT)])
 
     assert share(0.9 * half) <= 0.5 <= share(1.1 * half)
-
-
-def fallen(scene):
-    return simulate(scene, history=False).outcome == "overturns"
 
 
 def test_a_vertical_motion_is_as_strong_and_as_fast_as_asked_for():
@@ -127,23 +127,19 @@ def test_a_vertical_motion_is_as_strong_and_as_fast_as_asked_for():
     assert frequency(fast) == pytest.approx(4 * frequency(usual), rel=0.03)
 
 
-def test_flips_by_vertical_motions_and_what_the_contact_bears_are_those_of_single_runs(found):
-    rows = [row for row in found.rows if row["part"] == "vertical"]
+def test_outcomes_changed_by_vertical_motions_and_what_the_contact_bears_are_those_of_single_runs(found):
+    rows = where(found.rows, part="vertical")
     assert [(row["faster"], row["ratio"]) for row in rows] == [(1, 0.0), *((f, r) for f in FASTER for r in RATIOS)]
-    half = found.settings["scenes"]["isolated"]["half"][0]
-    usual = load_scene("caryatid-isolated").with_(motion=None, duration=None, block={"slenderness": 0.15})
-    order = np.random.Generator(np.random.PCG64(7)).permutation(COUNT)
-    level, raised = [], []
-    for seed in range(COUNT // 3):
-        factor = float(half * np.exp(SPREAD * norm.ppf((order[seed] + 0.5) / COUNT)))
-        scene = usual.with_(motion=synthetic_motion(seed=seed).scaled(factor))
-        level.append(simulate(scene))
-        raised.append(simulate(scene.with_(motion=with_vertical(scene.motion, seed, 1.5, 2))))
-    last = next(row for row in rows if (row["faster"], row["ratio"]) == (2, 1.5))
+    scenes = scenes_of(found)[: COUNT // 3]
+    level = [simulate(scene) for scene in scenes]
+    raised = [
+        simulate(scene.with_(motion=with_vertical(scene.motion, seed, 1.5, 2))) for seed, scene in enumerate(scenes)
+    ]
+    (last,) = where(rows, faster=2, ratio=1.5)
     for row, runs in ((rows[0], level), (last, raised)):
         assert row["runs"] == len(runs)
         overturned = [[run.outcome == "overturns" for run in some] for some in (level, runs)]
-        assert row["flips"] == sum(before != after for before, after in zip(*overturned, strict=True))
+        assert row["outcomes_changed"] == sum(before != after for before, after in zip(*overturned, strict=True))
         assert row["sliding"]["0.5"] == sum(run.friction_demand > 0.5 for run in runs)
         assert row["lifts_off"] == sum(run.min_normal_ratio <= 0 for run in runs)
 
@@ -155,12 +151,11 @@ def test_a_recorded_triple_is_turned_raised_and_counted(found, tmp_path):
     assert triple.second.peak == pytest.approx(synthetic_motion().peak)  # the stronger horizontal one
     np.testing.assert_allclose(triple.turned(0).samples, triple.first.samples)
     np.testing.assert_allclose(triple.turned(6).samples, triple.second.samples, atol=1e-12)
-    (row,) = [row for row in found.rows if row["part"] == "record"]
+    (row,) = where(found.rows, part="record")
     assert row["record"] == "triple.V2" and row["runs"] == 12 * len(RECORD_SPREAD) and found.settings["records"] == 1
-    usual = load_scene("caryatid-isolated").with_(motion=None, duration=None, block={"slenderness": 0.15})
 
     def share(factor):
-        return np.mean([fallen(usual.with_(motion=triple.turned(k).scaled(factor))) for k in range(12)])
+        return np.mean([fallen(USUAL.with_(motion=triple.turned(k).scaled(factor))) for k in range(12)])
 
     factors = np.geomspace(0.1, 10, 40)
     half = next(float(factor) for factor in factors if share(float(factor)) >= 0.5)
@@ -168,10 +163,11 @@ def test_a_recorded_triple_is_turned_raised_and_counted(found, tmp_path):
     for step in range(12):
         motion = triple.turned(step)
         for k, factor in enumerate(RECORD_SPREAD):
-            level[step, k] = fallen(usual.with_(motion=motion.scaled(float(half * factor))))
-            raised[step, k] = fallen(usual.with_(motion=paired(motion, triple.up).scaled(float(half * factor))))
-    assert row["flips"] == sum(level[key] != raised[key] for key in level)
-    assert row["turned"] == sum(level[step, k] != level[(step + 2) % 12, k] for step, k in level) > 0
+            level[step, k] = fallen(USUAL.with_(motion=motion.scaled(float(half * factor))))
+            raised[step, k] = fallen(USUAL.with_(motion=paired(motion, triple.up).scaled(float(half * factor))))
+    assert row["outcomes_changed"] == sum(level[key] != raised[key] for key in level)
+    turned = sum(level[step, k] != level[(step + 2) % 12, k] for step, k in level)
+    assert row["outcomes_changed_by_turning"] == turned > 0
 
 
 def test_a_folder_without_triples_is_one_message(tmp_path):
@@ -182,37 +178,48 @@ def test_a_folder_without_triples_is_one_message(tmp_path):
         triples(str(tmp_path / "nowhere"))
 
 
-def made_up(change, flips, runs=100, solver="analytic"):
-    low, high = flips / runs / 2, min(2 * flips / runs + 0.02, 1.0)
-    counts = {"flips": flips, "falls": 0, "runs": runs, "failed": 0, "low": low, "high": high}
-    moved = {"p_value": 1.0, "tilt": 0.1, "displacement": None}
-    return {"part": "change", "scene": "isolated", "solver": solver, "change": change, **counts, **moved}
+def made_up(change, changed, runs=100, engine="analytic", variant=""):
+    low, high = changed / runs / 2, min(2 * changed / runs + 0.02, 1.0)
+    counts = {"outcomes_changed": changed, "to_overturning": 0, "runs": runs, "failed": 0, "low": low, "high": high}
+    found = {"p_value": 1.0, "tilt": 0.1, "displacement": None, **counts}
+    return {"part": "change", "scene": "isolated", "engine": engine, "variant": variant, "change": change, **found}
 
 
-def test_the_sentence_ranks_changes_and_says_which_certainly_flip_more_than_the_best_engines(found, tmp_path):
+@pytest.fixture
+def page(found, tmp_path):
+    lost = dict.fromkeys(("outcomes_changed", "to_overturning", "low", "high", "p_value", "tilt", "displacement"))
     rows = [
         made_up("slenderness ±1 %", 4),
         made_up("direction turned by 30°", 30),
         made_up("vertical motion", 12),
         made_up("size ±1 %", 2),
-        made_up("pybullet, impact-aware", 1, solver="pybullet"),
-        made_up("pybullet, first-script", 25, solver="pybullet"),
+        made_up(None, 1, engine="pybullet", variant="impact-aware"),
+        made_up(None, 25, engine="pybullet", variant="first-script"),
+        made_up(None, 0, engine="exudyn", variant="native-contact") | {"runs": 0, "failed": 100} | lost,
         *(row for row in found.rows if row["part"] != "change"),
     ]
-    settings = {**found.settings, "best": ["pybullet, impact-aware"], "motions_of_engines": 60}
-    settings["changed_while_running"] = []
-    settings["motions_of_other_variants"] = 10
-    path = write_result(tmp_path / "matters.json", "matters", settings, rows, modules=["analytic"])
-    result = read_result(path)
-    page = section(result)
-    assert (
-        "Isolated: most verdicts are flipped by direction turned by 30° (30 %); vertical motion (12 %); slenderness "
-        "±1 % (4.0 %). Engines at their best: pybullet, impact-aware (1.0 %). 2 of 4 changes certainly flip more than "
-        "the worst of these. In other variants up to pybullet, first-script (25 %)."
-    ) in page.text
-    assert "a share up to 6.0 % and" in page.text[0]  # Wilson's limit of 0 of 60
-    assert [row[0] for row in page.tables[0].rows][:2] == ["direction turned by 30°", "pybullet, first-script"]
-    sentence = next(text for text in page.text if "Recorded triples" in text)
-    assert "at V/H 0.67, as fast as the horizontal" in sentence
-    assert any("N reaches zero" in text for text in page.text)
-    assert set(STUDY.figures(dataclasses.replace(result))) == {"", "vertical"}
+    settings = {**found.settings, "default_variants": {"pybullet": "impact-aware", "exudyn": "native-contact"}}
+    settings |= {"motions_of_engines": 60, "motions_of_other_variants": 10, "changed_while_running": []}
+    return STUDY.page(
+        read_result(write_result(tmp_path / "matters.json", "matters", settings, rows, modules=["analytic"]))
+    )
+
+
+def test_changes_and_engines_are_ranked_and_the_title_sets_the_first_against_the_engines_at_their_best(page):
+    ranked, vertical, records = page.whole().tables
+    assert [row[0] for row in ranked.rows] == [
+        "direction turned by 30°", "pybullet, first-script", "vertical motion", "slenderness ±1 %", "size ±1 %",
+        "pybullet, impact-aware", "exudyn, native-contact",
+    ]  # fmt: skip
+    assert ranked.rows[0][1:3] == ["30 % (15 % to 62 %)", "30 of 100"] and ranked.rows[-1][1] == "–"
+    assert "direction turned by 30° changes 30 %" in page.title and "1.0 % (4.0 %" in page.title
+    assert len(vertical.rows) == 1 + len(FASTER) * len(RATIOS) and len(records.rows) == 1
+    (sentence,) = [text for text in page.lead if "pybullet, impact-aware" in text]
+    assert "2 of 4" in sentence and "4.0 %" in sentence  # lower ends above its upper one
+    assert "6.0 %" in page.how[0]  # Wilson's limit of 0 of 60
+
+
+def test_the_figure_shows_changes_and_default_variants_that_ran(page):
+    figure, over = page.whole().figures
+    assert figure.solvers == ("pybullet",) and figure.svg.decode().count('class="dot"') == 5
+    assert over.svg.decode().count("<rect") == len(FASTER) * len(RATIOS) + 6  # the scale's

@@ -1,0 +1,168 @@
+"""The fragility study: a cloud of runs of the analytic model, the first of it in every engine, and curves of both."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from analytic.rocking import RockingModel
+from engines import get_engine
+
+from ...running.cases import Case
+from ...running.study import Batch, Found
+from .cloud import DAMPING, DRAWN, PEAKS, PERIOD, RADII, SCENES, STRETCH, X_MAX, Cloud, cloud
+from .fits import effects, fits
+
+if TYPE_CHECKING:
+    from analytic import Response, Scene
+
+    from ...running.study import Ask, Plan
+    from ...running.sweep import Row
+
+CHANGE = 1e-4  # relative change of the restitution: the model's own sensitivity
+MODEL, PERTURBED = ("analytic", ""), ("analytic", "perturbed")
+NEAR = (1.3, 6.0)  # PGA/(g tan γ) of the runs that engines get: there outcomes are mixed
+TIME_LIMIT = 60.0  # s, of an engine's run; a stiff corner that hardly lifts may take more, and fails
+# runs: of the analytic model, of default variants, of the tier "defaults" (gross errors show in few)
+FULL, QUICK = (2000, 60, 20), (200, 6, 2)
+TILTS = (0.1, 0.5, 1.0)  # limit states of |tilt|/slenderness
+KEPT = ("overturns", "tilt", "displacement")
+
+
+def variants_of(engines: Sequence[str]) -> list[tuple[str, str]]:
+    """(engine, variant) of what is compared: the default variant of every engine, then those of the tier "defaults"."""
+    defaults = {name: get_engine(name).default_variant for name in engines}
+    return [
+        *defaults.items(),
+        *(
+            (name, variant)
+            for name, default in defaults.items()
+            for variant, kind in get_engine(name).variants.items()
+            if kind.tier == "defaults" and variant != default
+        ),
+    ]
+
+
+def measure(case: Case, response: Response) -> dict[str, Any]:
+    """What is kept of a run."""
+    return {
+        "overturns": response.outcome == "overturns",
+        "tilt": response.peak_tilt_ratio,
+        "displacement": response.peak_base_displacement,
+        "decided": response.decided,
+    }
+
+
+def plan(ask: Ask, scenes: dict[str, Any] | None = None, runs: tuple[int, int, int] | None = None) -> Plan:
+    """The plan of the study; an answer with one scene more each time.
+
+    Rows by "part": "fit" and "effect" (see `comparisons.studies.fragility.fits`), "cost" (CPU seconds per run), "check"
+    and "failure". The model with its restitution changed by `CHANGE` is the variant "perturbed" of "analytic". Arrays,
+    float32: ``<scene>/<drawn>``, of all runs, with PGV and Sa; ``<scene>/<engine>, <variant>/tilt`` and
+    ``/displacement`` of the first in ``<scene>/near`` (``<scene>/analytic/``: of all): NaN where a run failed, the tilt
+    infinite where it overturned.
+
+    Parameters
+    ----------
+    ask : Ask
+    scenes, runs : dict and (int, int, int), optional
+        In place of `SCENES`, and of `FULL` or `QUICK`.
+    """
+    scenes = scenes or (dict(list(SCENES.items())[:1]) if ask.quick else SCENES)
+    counts, variants = runs or (QUICK if ask.quick else FULL), variants_of(ask.engines)
+    rows, arrays = [], {}
+    for name, (shipped, slendernesses) in scenes.items():
+        drawn = cloud(shipped, slendernesses, counts[0])
+        near, states = drawn.near(*NEAR)[: counts[1]], states_of(drawn)
+        whole = yield Batch(_cases(enumerate(drawn.scenes), *MODEL), measure, f"{name}: analytic model")
+        model = values_of(whole)
+        curves = fits(drawn.measures, states, model)
+        undecided = sum(not row.values["decided"] for row in whole if not row.failed)
+        failed = sum(row.failed for row in whole)
+        check = {"runs": len(whole), "undecided": undecided, "failed": failed}
+        found = [*curves, {"part": "check", "engine": "analytic", "variant": "", **check}, *_runs(MODEL, whole)]
+        made = {**drawn.drawn, **{key: drawn.measures[key] for key in ("PGV", "Sa")}, **_kept("analytic", model)}
+        for pair, cases in _compared(drawn, near, counts[2], variants):
+            label = ", ".join(filter(None, pair))
+            run = yield Batch(cases, measure, f"{name}: {label}", TIME_LIMIT)
+            few, theirs = near[: len(cases)], values_of(run)
+            ours = {key: array[few] for key, array in model.items()}
+            found += effects(drawn.measures, few, states, (ours, theirs), curves, pair)
+            found += _runs(pair, run)
+            made |= _kept(label, theirs)
+        rows += [{"scene": name, **row} for row in found]
+        arrays |= {f"{name}/{key}": array.astype(np.float32) for key, array in made.items()} | {f"{name}/near": near}
+        answer = Found(_settings(ask, scenes, counts, variants), list(rows), dict(arrays), seed=[0, counts[0] - 1])
+        yield answer
+    return answer
+
+
+def states_of(drawn: Cloud) -> dict[str, tuple[str, float]]:
+    """Limit states {name: (value of a run, limit)}: exceeded where the value is above the limit."""
+    tilts = {f"|φ|/γ > {limit:g}": ("tilt", limit) for limit in TILTS}
+    states = {**tilts, "overturning": ("overturns", 0.5)}
+    if (bearings := drawn.scenes[0].bearings) is not None:
+        states[f"displacement > {bearings.x_max:g} m"] = ("displacement", bearings.x_max)
+    return states
+
+
+def values_of(results: Sequence[Row]) -> dict[str, np.ndarray]:
+    """{each of `KEPT`: (n,)} of rows; NaN where a run failed, the tilt infinite in overturning."""
+    found = {key: np.array([np.nan if row.failed else row.values[key] for row in results], dtype=float) for key in KEPT}
+    found["tilt"][found["overturns"] == 1] = np.inf
+    return found
+
+
+def _cases(scenes: Iterable[tuple[int, Scene]], engine: str, variant: str) -> list[Case]:
+    return [Case(scene, engine, variant or None, {"history": False}, {"seed": seed}) for seed, scene in scenes]
+
+
+def _compared(drawn: Cloud, near: np.ndarray, few: int, variants: Iterable[tuple[str, str]]) -> Iterator[tuple]:
+    """((engine, variant), cases): the model with another restitution, then engines; of the tier "defaults" `few`."""
+    chosen = [(int(seed), drawn.scenes[seed]) for seed in near]
+    yield PERTURBED, _cases([(seed, _more_elastic(scene)) for seed, scene in chosen], *MODEL)
+    for engine, variant in variants:
+        default = variant == get_engine(engine).default_variant
+        yield (engine, variant), _cases(chosen if default else chosen[:few], engine, variant)
+
+
+def _more_elastic(scene):
+    return scene.with_(block={"restitution": min(RockingModel.of(scene).restitution * (1 + CHANGE), 1.0)})
+
+
+def _kept(label, values):
+    return {f"{label}/{key}": values[key] for key in KEPT[1:]}
+
+
+def _runs(pair, results):
+    """What runs cost, and those that failed."""
+    key = {"engine": pair[0], "variant": pair[1]}
+    seconds = [row.cost["cpu_seconds"] for row in results if row.cost]
+    mean = float(np.mean(seconds)) if seconds else None
+    return [
+        {"part": "cost", **key, "runs": len(results), "cpu_per_run": mean},
+        *({"part": "failure", **key, "seed": row.case.tag["seed"], **row.failure} for row in results if row.failed),
+    ]
+
+
+def _settings(ask, scenes, counts, variants):
+    kinds = [(engine, variant, get_engine(engine).variants[variant]) for engine, variant in variants]
+    return {
+        "quick": ask.quick,
+        "scenes": {name: {"scene": shipped, "slendernesses": list(s)} for name, (shipped, s) in scenes.items()},
+        "runs": counts[0],
+        "runs_of_engines": counts[1],
+        "runs_of_defaults": counts[2],
+        "drawn": dict(zip(DRAWN, (list(STRETCH), list(RADII), None, list(PEAKS)), strict=True)),
+        "near": list(NEAR),
+        "period": PERIOD,
+        "damping": DAMPING,
+        "x_max": X_MAX,
+        "change": CHANGE,
+        "variants": [
+            {"engine": engine, "variant": variant, "tier": kind.tier, "friction": kind.friction}
+            for engine, variant, kind in kinds
+        ],
+    }

@@ -1,0 +1,254 @@
+"""The study of what matters: motions near the boundary of overturning, and each of them changed in every way.
+
+The factors of the motions lie about the one at which half of them overturn the block: how often a change changes the
+outcome depends on how near the boundary the motions are, and this is said with the answer.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+import typer
+from scipy.stats import norm
+
+from analytic import load_scene, synthetic_motion
+from analytic.rocking import RockingModel
+from engines import get_engine
+
+from ...measuring.statistics import confusion, mcnemar, wilson
+from ...running.cases import Case
+from ...running.study import Batch, Found, say
+from .changes import changes, with_vertical
+from .records import overturned, record_cases, record_rows, triples
+
+if TYPE_CHECKING:
+    from analytic import Response
+
+    from ...running.study import Ask, Plan
+
+SPREAD = 0.4  # standard deviation of the logarithm of the motions' factors
+TRIED = np.geomspace(0.1, 4.0, 40)  # factors among which the one is found that overturns half
+# name: (shipped scene, slendernesses [rad])
+SCENES = {"free-standing": ("caryatid-rigid", (0.15, 0.2, 0.28)), "isolated": ("caryatid-isolated", (0.12, 0.15, 0.18))}
+# motions for the changes, for default variants of engines, for other variants (engines run the middle slenderness)
+FULL, QUICK = (300, 60, 12), (16, 2, 1)
+LIFTING = 1.3  # least peak over g tan γ of the engines' motions: a stiff corner that hardly lifts takes minutes
+TIME_LIMIT = 60.0  # s, of an engine's run
+RATIOS = (0.3, 0.5, 0.7, 0.9, 1.1, 1.3, 1.5)  # V/H: peak vertical over peak horizontal acceleration
+FASTER = (1, 2, 4)  # how many times as fast as the horizontal motion: vertical ones hold higher frequencies
+FRICTIONS = (0.3, 0.5, 0.7)  # coefficients that the demand is compared with
+RECORDS = "Folder of recorded triples, searched for files with two horizontal channels and a vertical one."
+Folder = Annotated[str | None, typer.Option("--records", metavar="FOLDER", help=RECORDS)]
+
+
+def measure(case: Case, response: Response) -> dict[str, Any]:
+    """What is kept of a run; demand: infinite (not finite) where the contact was lost."""
+    return {
+        "overturns": response.outcome == "overturns",
+        "tilt": response.peak_tilt_ratio,
+        "displacement": response.peak_base_displacement,
+        "demand": response.friction_demand,
+        "normal": response.min_normal_ratio,
+    }
+
+
+def plan(
+    ask: Ask,
+    scenes: dict[str, Any] | None = None,
+    motions: tuple[int, int, int] | None = None,
+    *,
+    records: Folder = None,
+) -> Plan:
+    """The plan of the study; an answer with one scene more each time.
+
+    Rows by "part", outcomes over all motions and slendernesses, `low` and `high` the 95 % interval of their share:
+
+    - "change": one for each change of the scene in the analytic model (`variant` "") and for each engine and variant
+      (`change` None). outcomes_changed, and to_overturning among them; p_value: McNemar's; tilt, displacement: median
+      relative change of the peaks of blocks that stay upright in both.
+    - "vertical": one for each V/H (`ratio`) and speed (`faster`), and one of V/H 0, without vertical motion. lifts_off:
+      runs in which N reaches zero, where the model ends; sliding: {friction: runs that need more}.
+    - "record": see `record_rows`; none without a folder.
+
+    Parameters
+    ----------
+    ask : Ask
+    scenes, motions : dict and (int, int, int), optional
+        In place of `SCENES`, and of the numbers of motions, `FULL` or `QUICK`.
+    records : str, optional
+        Folder of recorded triples. Of what they hold, the answer keeps counts and ratios.
+    """
+    scenes = scenes or SCENES
+    counts = motions or (QUICK if ask.quick else FULL)
+    count, recorded = counts[0], triples(records)
+    rows, described = [], {}
+    for name, (shipped, slendernesses) in scenes.items():
+        usual = load_scene(shipped).with_(motion=None, duration=None)
+        steep = [usual.with_(block={"slenderness": slenderness}) for slenderness in slendernesses]
+        halves = [_half(name, scene, min(count, 50)) for scene in steep]
+        bases = [_ensemble(scene, half, count) for scene, half in zip(steep, halves, strict=True)]
+        changed = yield Batch(_changed(bases), measure, f"{name}: changes")
+        run = yield Batch(_by_engines(bases, ask.engines, counts), measure, f"{name}: engines", TIME_LIMIT)
+        raised = yield Batch(_raised(bases, max(count // 3, 1)), measure, f"{name}: vertical motions")
+        found = [*_change_rows(changed, run), *_vertical_rows(_as_it_is(changed), raised)]
+        if recorded:
+            held = yield Batch(list(record_cases(usual, slendernesses, recorded)), measure, f"{name}: records")
+            found += record_rows(recorded, held)
+        rows += [{"scene": name, **row} for row in found]
+        described[name] = {
+            "scene": shipped,
+            "slendernesses": list(slendernesses),
+            "half": halves,
+            "slenderness_of_engines": slendernesses[len(slendernesses) // 2],
+        }
+        settings = {
+            "quick": ask.quick,
+            "scenes": dict(described),
+            "motions": count,
+            "motions_of_engines": counts[1],
+            "motions_of_other_variants": counts[2],
+            "lifting": LIFTING,
+            "records": len(recorded),
+            "spread": SPREAD,
+            "default_variants": {engine: get_engine(engine).default_variant for engine in ask.engines},
+        }
+        answer = Found(settings, list(rows), seed=[0, count - 1])
+        yield answer
+    return answer
+
+
+def _half(name, scene, count):
+    """The factor at which half of the motions overturn a block."""
+    say(f"{name}: slenderness {scene.block.slenderness:g}, the factor that overturns half")
+    fallen = overturned(scene, (synthetic_motion(seed=seed) for seed in range(count)), TRIED)
+    above = int(np.argmax(fallen >= 0.5))
+    if above == 0:
+        raise ValueError(f"{name}: no factor from {TRIED[0]:g} to {TRIED[-1]:g} overturns half of {count} motions")
+    return float(np.exp(np.interp(0.5, fallen[above - 1 : above + 1], np.log(TRIED[above - 1 : above + 1]))))
+
+
+def _ensemble(scene, half, count):
+    """The scene under every motion, with factors lognormal about the half one, evenly spread and in no order."""
+    spread = norm.ppf((np.random.Generator(np.random.PCG64(7)).permutation(count) + 0.5) / count)
+    return [
+        scene.with_(motion=synthetic_motion(seed=seed).scaled(float(half * np.exp(SPREAD * spread[seed]))))
+        for seed in range(count)
+    ]
+
+
+def _case(scene, engine="analytic", variant=None, **tag):
+    return Case(scene, engine, variant, {"history": False}, tag)
+
+
+def _changed(bases):
+    """Every scene as it is (change None) and changed in every way, in the model; bases: an ensemble per slenderness."""
+    return [
+        _case(scene, change=change, seed=seed, place=place)
+        for place, ensemble in enumerate(bases)
+        for seed, base in enumerate(ensemble)
+        for change, scene in ((None, base), *changes(base, seed))
+    ]
+
+
+def _by_engines(bases, engines, counts):
+    """The first scenes of the middle ensemble that lift, in every (engine, variant); most in an engine's default."""
+    place = len(bases) // 2
+    lifting = [
+        (seed, base)
+        for seed, base in enumerate(bases[place])
+        if base.motion.peak >= LIFTING * RockingModel.of(base).uplift_acceleration
+    ]
+    return [
+        _case(base, engine, variant, change=None, seed=seed, place=place)
+        for engine in engines
+        for variant in get_engine(engine).variants
+        for seed, base in lifting[: counts[1] if variant == get_engine(engine).default_variant else counts[2]]
+    ]
+
+
+def _raised(bases, count):
+    """The first `count` scenes of every ensemble under every vertical motion, in the analytic model."""
+    return [
+        _case(
+            base.with_(motion=with_vertical(base.motion, seed, ratio, faster)),
+            ratio=ratio,
+            faster=faster,
+            seed=seed,
+            place=place,
+        )
+        for place, ensemble in enumerate(bases)
+        for seed, base in enumerate(ensemble[:count])
+        for faster in FASTER
+        for ratio in RATIOS
+    ]
+
+
+def _as_it_is(changed):
+    """{(place, seed): values} of the model's runs of the scenes as they are."""
+    return {_motion(row): row.values for row in changed if row.case.tag["change"] is None and not row.failed}
+
+
+def _motion(row):
+    return row.case.tag["place"], row.case.tag["seed"]
+
+
+def _paired(usual, results, key):
+    """{key of a run: its pairs (values of the scene as it is, values), None where a run failed}."""
+    groups = {}
+    for row in results:
+        sound = not row.failed and _motion(row) in usual
+        groups.setdefault(key(row), []).append((usual[_motion(row)], row.values) if sound else None)
+    return groups
+
+
+def _outcomes(pairs):
+    """The table of outcomes before and after, and what rows say of it."""
+    table = confusion(*([values["overturns"] for values in side] for side in zip(*pairs, strict=True)))
+    low, high = wilson(table.discordant, table.size)
+    return table, {"runs": table.size, "outcomes_changed": table.discordant, "low": low, "high": high}
+
+
+def _change_rows(changed, run):
+    """A row for every change and every engine's variant, against the model of the scene as it is."""
+    results = [*(row for row in changed if row.case.tag["change"] is not None), *run]
+    groups = _paired(
+        _as_it_is(changed), results, lambda row: (row.case.solver, row.case.variant, row.case.tag["change"])
+    )
+    for (engine, variant, change), members in groups.items():
+        pairs = list(filter(None, members))
+        row = {"part": "change", "engine": engine, "variant": variant or "", "change": change, "runs": len(pairs)}
+        row["failed"] = len(members) - len(pairs)
+        if not pairs:
+            yield row | dict.fromkeys(
+                ("outcomes_changed", "to_overturning", "low", "high", "p_value", "tilt", "displacement")
+            )
+            continue
+        table, found = _outcomes(pairs)
+        upright = [(a, b) for a, b in pairs if not a["overturns"] and not b["overturns"]]
+        moved = {peak: _moved(upright, peak) for peak in ("tilt", "displacement")}
+        yield row | found | {"to_overturning": table.only_b, "p_value": mcnemar(table), **moved}
+
+
+def _moved(pairs, peak):
+    """Median relative change of a peak, where there is one."""
+    moved = [abs(b[peak] / a[peak] - 1) for a, b in pairs if a[peak] > 0]
+    return float(np.median(moved)) if moved else None
+
+
+def _vertical_rows(usual, raised):
+    """A row without vertical motion, then one for every (faster, ratio)."""
+    groups = _paired(usual, raised, lambda row: (row.case.tag["faster"], row.case.tag["ratio"]))
+    found = {key: list(filter(None, members)) for key, members in groups.items()}
+    without = [(before, before) for before, _ in next(filter(None, found.values()), [])]
+    for (faster, ratio), pairs in {(1, 0.0): without, **found}.items():
+        if pairs:
+            demands = [np.inf if after["demand"] is None else after["demand"] for _, after in pairs]
+            yield {
+                "part": "vertical",
+                "faster": faster,
+                "ratio": ratio,
+                **_outcomes(pairs)[1],
+                "lifts_off": sum(after["normal"] <= 0 for _, after in pairs),
+                "sliding": {f"{limit:g}": sum(demand > limit for demand in demands) for limit in FRICTIONS},
+            }
