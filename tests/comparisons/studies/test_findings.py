@@ -8,10 +8,11 @@ from page_numbers import number_in
 from comparisons.report.write import SHORT
 from comparisons.running.provenance import RESULTS, Result, read_result
 from comparisons.showing.parts import Head
+from comparisons.showing.rows import where
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.overturning.finding import judgement as boundaries
 from comparisons.studies.speed_error.finding import passing
-from comparisons.studies.stability.finding import judgement as hard_cases
+from comparisons.studies.stability.page import judgement as hard_cases
 
 
 def stored(name):
@@ -80,12 +81,13 @@ def test_the_boundaries_judged_are_those_where_the_block_stays_pressed():
 
 def test_hard_cases_are_counted_as_the_settings_come():
     result = stored("stability")
-    for (name, variant), mark in hard_cases(result).marks.items():
-        label = f"{name}, {variant}" if variant else name
-        verdicts = [row["verdict"] for row in result.rows if row["solver"] == label and row["cure"] is None]
-        assert mark.words == f"{verdicts.count('right')} of {len(verdicts)}"
-        spared = 0 if result.settings["solvers"][label]["default_variant"] else 2  # scenes of ten minutes
-        assert len(verdicts) == len(result.settings["cases"]) - spared
+    marks, cases = hard_cases(result).marks, len(result.settings["cases"])
+    assert len(marks) == len(result.settings["variants"])
+    for variant in result.settings["variants"]:
+        own = {key: variant[key] for key in ("engine", "variant")}
+        found = [row["result"] for row in where(result.rows, **own, part="default settings")]
+        assert marks[own["engine"], own["variant"] or ""].words == f"{found.count('right')} of {len(found)}"
+        assert len(found) == cases - (0 if variant["best"] else 2)  # scenes of ten minutes
 
 
 def ladder(errors, failed=()):
