@@ -7,6 +7,7 @@ from page_numbers import number_in
 
 from comparisons.report.write import SHORT
 from comparisons.running.provenance import RESULTS, Result, read_result
+from comparisons.running.sources import source_digests
 from comparisons.showing.parts import Head
 from comparisons.showing.rows import where
 from comparisons.studies import BUILT_IN, get_study
@@ -28,9 +29,16 @@ def test_a_finding_is_one_sentence_one_figure_and_short_tables(name):
         assert table.rows and all(len(row) == len(table.columns) for row in table.rows)
 
 
-@pytest.mark.parametrize(
-    "name", [name for name in BUILT_IN if get_study(name).page and (RESULTS / f"{name}.json").exists()]
-)
+PAGED = [name for name in BUILT_IN if get_study(name).page]
+
+
+@pytest.mark.parametrize("name", PAGED)
+def test_what_shows_is_no_part_of_what_a_result_depends_on(name):
+    behind = source_digests([get_study(name).plan.__module__])
+    assert not [module for module in behind if module.endswith(".page") or ".showing" in module]
+
+
+@pytest.mark.parametrize("name", [name for name in PAGED if (RESULTS / f"{name}.json").exists()])
 def test_a_page_writes_numbers_and_symbols_as_a_reader_does(name):
     whole = get_study(name).page(stored(name)).whole()
     words = [whole.title, *whole.text, *whole.measured, *(part for part in whole.shown if isinstance(part, str))]

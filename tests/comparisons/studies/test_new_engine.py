@@ -145,7 +145,7 @@ def test_the_study_of_the_paper_runs_and_shows_it(crude, tmp_path):
 
 
 def test_the_problem_sheet_runs_and_shows_it(crude, monkeypatch, tmp_path):
-    monkeypatch.setattr("comparisons.studies.sheet.PROBLEMS", PROBLEMS[:1])
+    monkeypatch.setattr("comparisons.studies.sheet.study.PROBLEMS", PROBLEMS[:1])
     study = get_study("sheet")
     found = answered(study.plan(ASK), modelled)[-1]
     assert found.rows[0]["error"] < 1e-5  # the model in its place: what interpolation leaves
