@@ -96,7 +96,8 @@ class Column:
         return percent(value, self.digits) if self.percent else number(value, self.digits)
 
 
-NAME = Column("engine, variant", "{engine}, {variant}")
+# a solver without variants says "variant": "", and its engine's name stands alone
+NAME = Column("engine, variant", lambda row: ", ".join(filter(None, (row["engine"], row["variant"]))))
 
 
 def table(caption: str, rows: Iterable[Row], *columns: Column) -> Table:

@@ -50,6 +50,7 @@ def test_groups_keep_the_order_of_rows_and_of_keys():
 )
 def test_cells(column, cells):
     assert [column.text(row) for row in where(ROWS, part="cell")] == cells
+    assert NAME.text({"engine": "analytic", "variant": ""}) == "analytic"
 
 
 def test_a_table_names_its_rows_first_and_asks_for_its_columns():
