@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from ...showing.charts import Axis, Chart, figure
 from ...showing.parts import Head, Judgement, Mark, Page, short
+from ...showing.rows import NAME as ENGINE
 from ...showing.rows import Column, grouped, table, where
-from ...showing.wording import solver_name
 from .study import DEFAULT, DIFFERS, FAILED, FINER, RIGHT, worst
 
 if TYPE_CHECKING:
@@ -35,11 +35,7 @@ def _readable(words):
     return re.sub(r"\d[.\d]*e[-+]?\d+", lambda found: short(float(found[0])).removeprefix("1·"), words)
 
 
-def _name(row):
-    return TWIN if row["engine"] == "twin" else solver_name(row["engine"], row["variant"])
-
-
-NAME = Column("solver, variant", _name)
+NAME = Column("solver, variant", lambda row: TWIN if row["engine"] == "twin" else ENGINE.of(row))
 CASE = Column("case", lambda row: _readable(row["case"]))
 TOLERANCE = Column("tolerance", "tolerance", digits=None)
 
@@ -146,7 +142,7 @@ def judgement(result: Result) -> Judgement:
     marks = {}
     for row in _counts(result, _cells(result)):
         level = "good" if row[RIGHT] >= MOST * row["run"] else "fair" if row[RIGHT] >= SOME * row["run"] else "bad"
-        marks[row["engine"], row["variant"] or ""] = Mark(f"{row[RIGHT]} of {row['run']}", level)
+        marks[row["engine"], row["variant"]] = Mark(f"{row[RIGHT]} of {row['run']}", level)
     return Judgement("hard cases right", marks)
 
 

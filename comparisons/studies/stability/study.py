@@ -97,7 +97,8 @@ class Solver:
 
     Parameters
     ----------
-    engine, variant, tier : str, None of a code of ours
+    engine, variant, tier : str
+        Of a code of ours variant and tier are "".
     kind : str
         Of its tolerances.
     parameter, default, levels
@@ -115,8 +116,8 @@ class Solver:
     """
 
     engine: str
-    variant: str | None = None
-    tier: str | None = None
+    variant: str = ""
+    tier: str = ""
     kind: str = "event-driven"
     parameter: str | None = None
     default: float | None = None
@@ -137,7 +138,7 @@ class Solver:
         if finer is not None:
             settings |= self.finer[finer]
         tag = {"case": hard.name, "part": DEFAULT if finer is None else FINER}
-        return Case(hard.scene, self.engine, self.variant, settings, tag)
+        return Case(hard.scene, self.engine, self.variant or None, settings, tag)
 
 
 TIME_STEPPING = Solver(
