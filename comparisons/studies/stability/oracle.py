@@ -68,12 +68,10 @@ def comparable_until(name: str) -> tuple[float, bool]:
 
 def twin_step(scene: Scene) -> float:
     """Longest step of the twin [s]: its own choice, but short enough to interpolate in to 1e-8."""
-    longest = 0.005
-    if hasattr(scene.motion, "dt"):
-        longest = min(longest, 0.5 * scene.motion.dt)
-    if scene.bearings is not None:
-        longest = min(longest, 0.05 / math.sqrt(scene.bearings.count * scene.bearings.ka / scene.total_mass))
-    return longest
+    longest = min(0.005, 0.5 * getattr(scene.motion, "dt", math.inf))
+    if scene.bearings is None:
+        return longest
+    return min(longest, 0.05 / math.sqrt(scene.bearings.count * scene.bearings.ka / scene.total_mass))
 
 
 @functools.cache

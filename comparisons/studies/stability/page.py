@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import product
 from typing import TYPE_CHECKING
 
 from ...showing.charts import Axis, Chart, figure
@@ -23,7 +24,8 @@ SIGNS = {
     FAILED: ("✗", FAILED),
     "": ("–", "shade"),
 }
-NOT_RUN = {"sign": "", "told": "not run", "remedy": "not tried"}
+NOT_TRIED, NONE_FOUND = "not tried", "none found"  # of finer settings
+NOT_RUN = {"result": "not run", "sign": "", "measure": "–", "value": None, "tolerance": None, "remedy": NOT_TRIED}
 MOST, SOME = 0.85, 0.6  # shares of cases from which a solver may be trusted, and is usable with care
 SLANT = 4.1  # height of a letter of the slanted names below a matrix
 TWIN = "second implementation"
@@ -31,8 +33,9 @@ SHORT = {TWIN: "2nd code", "time-stepping": "steps"}
 
 
 def _readable(words):
-    """Words with powers of ten as a reader writes them."""
-    return re.sub(r"\d[.\d]*e[-+]?\d+", lambda found: short(float(found[0])).removeprefix("1·"), words)
+    """Words with powers of ten and minus signs as a reader writes them."""
+    powers = re.sub(r"\d[.\d]*e[-+]?\d+", lambda found: short(float(found[0])).removeprefix("1·"), words)
+    return powers.replace(" -", " −")
 
 
 NAME = Column("solver, variant", lambda row: TWIN if row["engine"] == "twin" else ENGINE.of(row))
@@ -45,7 +48,7 @@ def page(result: Result) -> Page:
     cases, measures = result.settings["cases"], result.settings["measures"]
     cells, variants = _cells(result), result.settings["variants"]
     counts = sorted(_counts(result, cells), key=lambda row: -row[RIGHT])
-    wrong = [cell for cell in cells.values() if cell["result"] != RIGHT]
+    wrong = where(cells.values(), result={DIFFERS, FAILED})
     return Page(
         _title(cells, cases, where(variants, kind="stepping", best=True)),
         (
@@ -128,7 +131,7 @@ def page(result: Result) -> Page:
         ),
         evidence=tuple(
             (
-                f"{name}: {reason} ({', '.join(map(CASE.of, rows))})",
+                f"{name}: {reason} ({'; '.join(map(CASE.of, rows))})",
                 "\n".join(f"{key}: {value}" for key, value in rows[0]["failure"].items())
                 + f"\nlast state: {rows[0]['last_state']}\nsettings: {rows[0]['settings'] or rows[0]['set']}",
             )
@@ -147,58 +150,58 @@ def judgement(result: Result) -> Judgement:
 
 
 def _cells(result):
-    """{(case, name): row with default settings, what is farthest outside in it, and what finer settings do}.
+    """{(case, name): row with default settings, the measure farthest outside in it, and what finer settings do}.
 
     These are tried in turn until one is right: the last one counts.
     """
+    names = [NAME.of(variant) for variant in result.settings["variants"]]
+    cells = {(case, name): NOT_RUN for case in result.settings["cases"] for name in names}
     finer = {(row["case"], NAME.of(row)): row for row in where(result.rows, part=FINER)}
-    cells = {}
     for row in where(result.rows, part=DEFAULT):
         key = row["case"], NAME.of(row)
-        cells[key] = {**row, **_farthest(row, result.settings["measures"]), **_remedy(row, finer.get(key))}
+        cells[key] = {**row, **_farthest(row, result.settings["measures"]), "remedy": _remedy(row, finer.get(key))}
     return cells
 
 
 def _farthest(row, measures):
     if row["result"] == FAILED:
-        failure = row["failure"]
-        reason = failure["kind"] if failure["kind"] == "time limit" else failure["reason"]
-        return {"sign": FAILED, "measure": reason, "value": None, "tolerance": None, "others": [], "told": reason}
+        kind, reason = row["failure"]["kind"], row["failure"]["reason"]
+        measure = kind if kind == "time limit" else reason
+        return {"sign": FAILED, "measure": measure, "value": None, "tolerance": None, "others": []}
     name, value, limit = worst(row)
-    others = [other for other in row["outside"] if other != name]
-    found = {"measure": f"{name} [{measures[name][0] or '-'}]", "value": value, "tolerance": limit, "others": others}
-    if row["result"] == RIGHT:
-        return {**found, "sign": RIGHT, "told": RIGHT}
-    if name == "outcome":
-        return {**found, "sign": WRONG, "told": f"outcome {row['outcome']}"}
-    return {**found, "sign": DIFFERS, "told": f"{name} {short(value)}, tolerance {short(limit)}"}
+    wrong = name == "outcome" and row["result"] == DIFFERS
+    return {
+        "sign": WRONG if wrong else row["result"],
+        "measure": f"outcome: {row['outcome']}" if wrong else f"{name} [{measures[name][0] or '-'}]",
+        "value": value,
+        "tolerance": limit,
+        "others": [other for other in row["outside"] if other != name],
+    }
 
 
 def _remedy(row, finer):
     """Which finer settings are right, in words."""
-    if finer is None:
-        return {"tried": False, "cured": False, "remedy": "not tried"}
-    if finer["result"] != RIGHT:
-        return {"tried": True, "cured": False, "remedy": "none found"}
-    changed = [(key, value) for key, value in finer["set"].items() if row["set"].get(key) != value]
+    if finer is None or finer["result"] != RIGHT:
+        return NOT_TRIED if finer is None else NONE_FOUND
     unit = {"stiffness": " N/m", "tolerance": ""}
-    words = ", ".join(f"{key.replace('_', ' ')} = {short(value)}{unit.get(key, ' s')}" for key, value in changed)
-    return {"tried": True, "cured": True, "remedy": words}
+    changed = [(key, value) for key, value in finer["set"].items() if row["set"].get(key) != value]
+    return ", ".join(f"{key.replace('_', ' ')} = {short(value)}{unit.get(key, ' s')}" for key, value in changed)
 
 
 def _counts(result, cells):
     """Each variant with the numbers of its results, of runs, and of finer settings tried and right."""
-    variants = {NAME.of(variant): variant for variant in result.settings["variants"]}
-    for (name,), rows in grouped(cells.values(), NAME.of).items():
+    for variant in result.settings["variants"]:
+        rows = [cell for (_, name), cell in cells.items() if name == NAME.of(variant) and cell is not NOT_RUN]
         found = {kind: len(where(rows, result=kind)) for kind in (RIGHT, DIFFERS, FAILED)}
-        finer = {"tried": len(where(rows, tried=True)), FINER: len(where(rows, cured=True))}
-        yield {**variants[name], **found, **finer, "run": len(rows)}
+        tried = [row for row in rows if row["remedy"] != NOT_TRIED]
+        cured = len(tried) - len(where(tried, remedy=NONE_FOUND))
+        yield {**variant, **found, "run": len(rows), "tried": len(tried), FINER: cured}
 
 
 def _title(cells, cases, engines):
     names = [NAME.of(engine) for engine in engines]
-    none = [case for case in cases if not any(_result(cells, case, name) == RIGHT for name in names)]
-    listed = _readable(f" ({', '.join(none[:3])}{' …' if len(none) > 3 else ''})") if none else ""
+    none = [case for case in cases if not any(cells[case, name]["result"] == RIGHT for name in names)]
+    listed = _readable(f" ({'; '.join(none[:3])}{' …' if len(none) > 3 else ''})") if none else ""
     if len(names) > 2:
         return f"Hard cases: no engine solves {len(none)} of {len(cases)}{listed}"
     return f"Hard cases: {len(none)} of {len(cases)} are not right in {' and '.join(names)}{listed}"
@@ -215,37 +218,28 @@ def _most(counts):
     )
 
 
-def _result(cells, case, name):
-    return cells[case, name]["result"] if (case, name) in cells else None
-
-
 def _matrix(cells, cases, variants, caption):
     """A line for each case, a column for each variant, in two halves; None: no variants."""
-    names, middle = [NAME.of(variant) for variant in variants], (len(cases) + 1) // 2
+    names = {NAME.of(one): SHORT.get(NAME.of(one), one["engine"] if one["best"] else NAME.of(one)) for one in variants}
     if not names:
         return None
-    words = [SHORT.get(name, name.partition(", ")[0] if variant["best"] else name)
-             for name, variant in zip(names, variants, strict=True)]  # fmt: skip
-    foot = 22 + round(SLANT * max(map(len, words)))
-    charts = []
+    middle, foot, charts = (len(cases) + 1) // 2, 22 + round(SLANT * max(map(len, names.values()))), []
     for half in (list(cases)[:middle], list(cases)[middle:]):
-        right = [f"{name} right in {[_result(cells, case, name) for case in half].count(RIGHT)}" for name in names]
+        right = {name: [cells[case, name]["result"] for case in half].count(RIGHT) for name in names}
         chart = Chart(
-            Axis("", -0.5, len(names) - 0.5, ticks=tuple(enumerate(words))),
+            Axis("", -0.5, len(names) - 0.5, ticks=tuple(enumerate(names.values()))),
             Axis("", len(half) - 0.5, -0.5, ticks=tuple(enumerate(map(_readable, half)))),
-            f"Results of {len(half)} cases: {'; '.join(right)}.",
+            f"Right of {len(half)} cases: {', '.join(f'{name} {count}' for name, count in right.items())}.",
             left=168,
             right=4,
             foot=foot,
             height=16 + foot + 19 * len(half),
         )
-        for j, case in enumerate(half):
-            for i, name in enumerate(names):
-                cell = cells.get((case, name), NOT_RUN)
-                sign, kind = SIGNS[cell["sign"]]
-                chart.cell(
-                    i, j, kind, sign, f"{_readable(case)}, {name}: {cell['told']}; finer settings: {cell['remedy']}"
-                )
+        for (j, case), (i, name) in product(enumerate(half), enumerate(names)):
+            cell = cells[case, name]
+            says = f"{_readable(case)}, {name}: {cell['result']}; {cell['measure']} {short(cell['value'])}, tolerance "
+            sign, kind = SIGNS[cell["sign"]]
+            chart.cell(i, j, kind, sign, f"{says}{short(cell['tolerance'])}; finer settings: {cell['remedy']}")
         charts.append(chart)
     return figure(charts, caption)
 

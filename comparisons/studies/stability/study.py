@@ -209,7 +209,6 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
         "until": truth.until,
         "impacts": response.impact_count,
         "steps": response.steps,
-        "settings": response.settings,
     }
 
 
