@@ -296,14 +296,12 @@ def _short(value):
 def worst(row: Mapping[str, Any]) -> tuple[str, float | None, float]:
     """(measure, value, tolerance) of the measure farthest outside its tolerance, or closest to it."""
 
-    def ratio(item):
-        _, (value, limit) = item
-        if value is None:
-            return math.inf
-        return value / limit if limit else (math.inf if value else 0.0)
+    def share(name):
+        value, limit = row["errors"][name]
+        return math.inf if value is None or (value and not limit) else value / (limit or 1.0)
 
-    name, (value, limit) = max(row["errors"].items(), key=ratio)
-    return name, value, limit
+    name = max(row["errors"], key=share)
+    return name, *row["errors"][name]
 
 
 def plan(ask: Ask, names: Iterable[str] | None = None, columns: Sequence[Solver] | None = None) -> Plan:

@@ -31,7 +31,7 @@ def page(result: Result) -> Page:
                 result.rows,
                 NAME,
                 Column("quantity", "quantity"),
-                Column("scenes", "scenes"),
+                Column("scenes", lambda row: row["scenes"].replace("omega_r", "ωᵣ")),
                 Column("tolerance", "bound"),
                 Column("measured when set", "measured", digits=3),
                 Column("measured now", lambda row: row["failure"] or row["found"], digits=3),
