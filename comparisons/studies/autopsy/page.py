@@ -108,7 +108,7 @@ def _frames(rows):
                 chart.dots(time, values, row["engine"], grey=grey, filled=not grey, says=says)
         charts.append(chart)
     caption = (
-        "The first impact on rigid ground. Coloured: default variants; grey: default settings. Only engines that tell "
+        "The first impact on rigid ground. Coloured: default variants; grey: tier “defaults”. Only engines that tell "
         "where the block was have frames 2 and 3."
     )
     return figure(charts, caption, [row["engine"] for row in rows if row["best"]])
