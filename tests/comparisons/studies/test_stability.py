@@ -202,3 +202,6 @@ def test_committed_result_has_the_kernel_right_in_every_case():
             assert row["failure"]["reason"] and row["set"] is not None
         else:
             assert all(value is None or math.isfinite(value) for value, _ in row["errors"].values())
+    missing = len(CASES) * len(result.settings["variants"]) - len(where(result.rows, part="default settings"))
+    drawn = b"".join(figure.svg for figure in STUDY.page(result).whole().figures)
+    assert drawn.count(b": not run;") == missing > 0  # what was not asked is no empty cell
