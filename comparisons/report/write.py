@@ -43,7 +43,7 @@ SHORT = {
     "fragility": "Many earthquakes",
     "matters": "What matters more",
     "speed-error": "Cost against error",
-    "stability": "Where all fail",
+    "stability": "Hard cases",
 }
 
 

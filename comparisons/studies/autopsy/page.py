@@ -1,176 +1,114 @@
-"""The autopsy in words, a table and four frames, from the result alone."""
+"""What is shown of the autopsy study."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure as Canvas
 
 from ...showing.charts import Axis, Chart, figure
-from ...showing.parts import Section, Table, figure_of, number
-from ...showing.plots import style
+from ...showing.parts import Page
+from ...showing.rows import NAME, Column, table, where
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
 
-DEFAULTS = "defaults"
 RIGID = "rigid ground"
-WINDOW = 0.02  # s, about the landing that is drawn
-# frame: (key of its values, unit of the page, times what, label, title)
+WINDOW = 20.0  # ms before and after the landing that are drawn
+MARKED = 40  # values of a line, at most, to mark each
+# frame: (its title, key of its values, unit of the page, label)
 FRAMES = {
-    "straddle": ("landing", 1e3, "height of the corner [mm]", "1. the steps straddle the impact"),
-    "penetration": ("landing", 1e3, "height of the corner [mm]", "2. the corner sinks in"),
-    "rebound": ("speed", 1.0, "speed away from the ground [-]", "3. it is pushed out again"),
-    "energy": ("energy", 1.0, "energy over that before [-]", "4. energy is lost, or made"),
+    "straddle": ("1. the steps straddle the impact", "landing", 1e3, "height of the corner [mm]"),
+    "penetration": ("2. the corner sinks in", "landing", 1e3, "height of the corner [mm]"),
+    "rebound": ("3. it is pushed out again", "speed", 1.0, "speed away from the ground [-]"),
+    "energy": ("4. energy is lost, or made", "energy", 1.0, "energy over that before [-]"),
 }
+ERROR = Column("error of restitution [-]", "error")
 
 
-def section(result: Result) -> Section:
-    """The `Section` of a result of this study."""
-    told = _told(result)
-    causes = [f"{name}: {words}." for name, words in result.settings["causes"].items()]
-    drawn = figure_of(
-        draw(result),
-        "Four frames of the first impact in every engine, from the landing corner's height to the energy.",
-        "The first impact on rigid ground in every engine that tells where the block was. Lines: at its best; dotted: "
-        "its default settings.",
+def page(result: Result) -> Page:
+    """The `Page` of a `Result` of the autopsy study."""
+    settings = result.settings
+    told = [row for row in result.rows if row["failure"] is None and "why_not" not in row]
+    ranked = sorted(told, key=lambda row: -abs(row["error"]))
+    wrong, best = [row for row in ranked if row["cause"]], where(ranked, best=True)
+    sound = where(best, cause=None)
+    columns = (
+        NAME,
+        Column("ground", "ground"),
+        ERROR,
+        Column("cause", lambda row: row["cause"] or f"none (below {settings['least']:g})"),
+        Column("steps in contact [-]", "steps"),
+        Column("deepest [mm]", lambda row: 1e3 * row["deepest"] if "deepest" in row else None),
+        Column("energy lost", "lost", digits=3, percent=True),
     )
-    return Section(
-        "Autopsy of an impact",
-        (_asked(result), _named(told), *causes),
-        (_table(result, told),),
-        (drawn,),
-        evidence=_silent(result),
+    causes = ", ".join(dict.fromkeys(row["cause"] for row in wrong)) or "none"
+    return Page(
+        f"Why engines err: {len(sound)} of {len(best)} impacts with default variants are within {settings['least']:g}; "
+        f"causes elsewhere: {causes}",
+        (
+            "Newton’s laws give the impulses that an engine must have used between two steps, whatever its solver "
+            "calls them. They split the error of restitution into parts that add up to it. The parts name the cause; "
+            "no setting is looked at.",
+        ),
+        first=(
+            _frames([row for row in where(told, ground=RIGID) if row["best"] or row["tier"] == "defaults"]),
+            table("The first impact: those with a cause, and all of default variants", [*wrong, *sound], *columns),
+        ),
+        more=(
+            table("The other impacts", where(ranked, cause=None, best=False), *columns),
+            table(
+                "Causes",
+                [{"cause": cause, "words": words} for cause, words in settings["causes"].items()],
+                Column("cause", "cause"),
+                Column("how it shows: what it is", "words"),
+            ),
+        ),
+        how=(
+            f"A block of slenderness {settings['slenderness']:g} rad is let go from {settings['start']:g} of it, on "
+            "rigid ground and on the Caryatid’s base sliding freely. Its first impact is taken apart in every engine "
+            f"and variant with default settings. A cause is named from an error of {settings['least']:g} on.",
+        ),
+        evidence=tuple(
+            (f"{NAME.of(row)}, {row['ground']}", row.get("why_not") or row["failure"]["reason"])
+            for row in result.rows
+            if row["failure"] is not None or "why_not" in row
+        ),
     )
 
 
-def finding(result: Result) -> Section:
-    """The `Section` of the report: why engines err at a corner."""
-    told = _told(result)
-    at_best = [row for row in told if row["best"]]
-    named = [row for row in told if row["cause"]]
-    sound = sum(row["cause"] is None for row in at_best)
-    causes = dict.fromkeys(row["cause"] for row in sorted(named, key=lambda row: -abs(row["error"])))
-    title = (
-        f"Why engines err: {sound} of {len(at_best)} impacts at their best have no error worth a cause; the others’: "
-        + ", ".join(causes)
-        if causes
-        else f"Why engines err: none of {len(told)} impacts has an error worth a cause"
-    )
-    text = (
-        "Newton's laws give the impulses that an engine must have used between two steps, whatever its solver calls "
-        "them. They split the error of restitution into parts that add up to it, and the parts name the cause; no "
-        "setting is looked at.",
-    )
-    shown = sorted(named, key=lambda row: -abs(row["error"])) + [row for row in at_best if row["cause"] is None]
-    charts = [_frame(result, name) for name in FRAMES]
-    caption = (
-        "The first impact on rigid ground, time from the landing. Coloured: engines at their best; grey: default "
-        "settings; only those that tell where the block was have frames 2 and 3."
-    )
-    solvers = [row["engine"] for row in at_best]
-    return Section(
-        title, text, (_table(result, shown),), (figure(charts, caption, solvers),), measured=(_asked(result),)
-    )
-
-
-def draw(result: Result) -> Canvas:
-    """The four frames as a matplotlib figure."""
-    canvas = Canvas(figsize=(9.6, 6.4), layout="constrained")
-    for axes, (name, (_, _, label, title)) in zip(canvas.subplots(2, 2).flat, FRAMES.items(), strict=True):
-        for row, time, values in _series(result, name):
-            best = row["best"]
-            axes.plot(
-                1e3 * time,
-                values,
-                **{**style(row["engine"]), "linewidth": 1.6 if best else 0.9, "alpha": 1 if best else 0.6},
-            )
-        axes.set(title=title, xlabel="time from the landing [ms]", ylabel=label, xlim=(-1e3 * WINDOW, 1e3 * WINDOW))
-    return canvas
-
-
-def _told(result):
-    return [row for row in result.rows if row["failure"] is None and "why_not" not in row]
-
-
-def _series(result: Result, name: str) -> Iterator[tuple[dict[str, Any], np.ndarray, np.ndarray]]:
-    """(row, time [s], values) of a frame, default settings before the best."""
-    key, unit, _, _ = FRAMES[name]
-    rows = [row for row in _told(result) if row["ground"] == RIGID and (row["best"] or row["tier"] == DEFAULTS)]
-    for row in sorted(rows, key=lambda row: row["best"]):
-        frame = row["frames"].get(name)
-        if frame is not None:
-            time = np.array(frame["time"])
+def _frames(rows):
+    """The contact in four frames; not as `lines`: hundreds of values are a curve, and their ends lie outside."""
+    charts = []
+    for name, (title, key, unit, label) in FRAMES.items():
+        series = []
+        for row in sorted(rows, key=lambda row: row["best"]):
+            frame = row["frames"].get(name, {"time": []})
+            time = 1e3 * np.array(frame["time"])
             near = np.abs(time) <= 1.5 * WINDOW
-            yield row, time[near], unit * np.array(frame[key])[near]
-
-
-def _frame(result, name):
-    _, _, label, title = FRAMES[name]
-    series = list(_series(result, name))
-    values = np.concatenate([values for *_, values in series]) if series else np.zeros(1)
-    low, high = float(np.percentile(values, 1)), float(np.percentile(values, 99))
-    room = 0.08 * (high - low) or 1.0
-    chart = Chart(
-        Axis("time from the landing [ms]", -1e3 * WINDOW, 1e3 * WINDOW),
-        Axis(label, low - room, high + room),
-        f"{title}: {label} in {', '.join(dict.fromkeys(row['engine'] for row, *_ in series)) or 'no engine'}.",
-        title=title,
-        height=260,
-        left=70,
+            if near.any():
+                series.append((row, time[near], unit * np.array(frame[key])[near]))
+        if not series:
+            continue
+        low, high = np.percentile(np.concatenate([values for *_, values in series]), (1, 99))
+        room = 0.08 * float(high - low) or 1.0
+        chart = Chart(
+            Axis("time from the landing [ms]", -WINDOW, WINDOW),
+            Axis(label, float(low) - room, float(high) + room),
+            f"{title}: {label} in {', '.join(dict.fromkeys(row['engine'] for row, *_ in series))}.",
+            title=title,
+            height=260,
+            left=70,
+        )
+        for row, time, values in series:
+            grey = not row["best"]
+            chart.line(time, values, row["engine"], grey=grey)
+            if len(values) <= MARKED:
+                says = [f"{NAME.of(row)}: {value:.3g}" for value in values]
+                chart.dots(time, values, row["engine"], grey=grey, filled=not grey, says=says)
+        charts.append(chart)
+    caption = (
+        "The first impact on rigid ground. Coloured: default variants; grey: tier “defaults”. Only engines that tell "
+        "where the block was have frames 2 and 3."
     )
-    for row, time, one in series:
-        grey = not row["best"]
-        chart.line(1e3 * time, one, row["engine"], grey=grey)
-        says = [f"{row['engine']}, {row['variant']}: {number(value, 3)}" for value in one]
-        if len(one) <= 40:
-            chart.dots(1e3 * time, one, row["engine"], grey=grey, filled=not grey, says=says)
-    return chart
-
-
-def _table(result, rows):
-    return Table(
-        "The first impact: error of restitution, its cause, and the contact",
-        ("engine, variant", "ground", "error [-]", "cause", "steps in contact [-]", "deepest [mm]", "energy lost [%]"),
-        [
-            [
-                f"{row['engine']}, {row['variant']}",
-                row["ground"],
-                number(row["error"], 2),
-                row["cause"] or f"none (below {result.settings['least']:g})",
-                str(row["steps"]),
-                number(1e3 * row["deepest"], 2) if "deepest" in row else "–",
-                number(100 * row["lost"], 3),
-            ]
-            for row in rows
-        ],
-    )
-
-
-def _named(told):
-    """Whose impact has which cause, in one sentence."""
-    found = {}
-    for row in told:
-        found.setdefault(f"{row['engine']}, {row['variant']}", []).append(row["cause"] or "none")
-    words = [f"{name} {' and '.join(dict.fromkeys(causes))}" for name, causes in found.items()]
-    return f"Causes found: {'; '.join(words) or 'no impact could be told'}."
-
-
-def _asked(result):
-    s = result.settings
-    return (
-        f"A block of slenderness {s['slenderness']:g} let go from {s['start']:g} of it, on rigid ground and on the "
-        "Caryatid's base sliding freely; its first impact, every engine and variant as it comes. A cause is named from "
-        f"an error of {s['least']:g} on."
-    )
-
-
-def _silent(result):
-    """Runs that failed, and impacts that cannot be told."""
-    return tuple(
-        (f"{row['engine']}, {row['variant']}, {row['ground']}", row.get("why_not") or row["failure"]["reason"])
-        for row in result.rows
-        if row["failure"] is not None or "why_not" in row
-    )
+    return figure(charts, caption, [row["engine"] for row in rows if row["best"]])

@@ -1,16 +1,25 @@
-"""Numerical stability: which solver survives which hard case, with evidence and cures."""
+"""Numerical stability: which solver gets which hard case right, where it does not, and which finer settings do."""
 
 from ...running.study import Study
-from .finding import finding, judgement
-from .page import pictures, section
-from .verdicts import plan
+from .study import plan
+
+
+def _page(result):
+    from .page import page  # where it is shown only: the processes that run it need no charts
+
+    return page(result)
+
+
+def _judgement(result):
+    from .page import judgement
+
+    return judgement(result)
+
 
 STUDY = Study(
     "stability",
-    "Named hard cases, every solver and variant: right, degraded or failed, with measures, evidence and cures.",
+    "Named hard cases in every solver and variant: right, differs or failed, with measures, evidence, finer settings.",
     plan,
-    pictures,
-    section,
-    finding=finding,
-    judgement=judgement,
+    page=_page,
+    judgement=_judgement,
 )

@@ -11,8 +11,6 @@ from analytic import Scene, simulate
 from analytic.bearing import BearingLaw
 from comparisons.measuring import agreement
 from comparisons.measuring.tolerances import SLACK, TABLE, measure_all
-from comparisons.running.provenance import Result
-from comparisons.studies import tolerances
 from engines import get_engine, installed_engines
 
 ROWS = pytest.mark.parametrize("row", TABLE, ids=lambda row: row.name)
@@ -90,27 +88,3 @@ def test_a_failed_run_is_a_row_that_does_not_hold(monkeypatch):
     (result,) = measure_all((broken,))
     assert not result["holds"] and result["found"] is None and "sank" in result["failure"]
     json.dumps(result, allow_nan=False)
-
-
-def test_the_section_shows_every_row_and_says_what_does_not_hold():
-    rows = [
-        {
-            "quantity": row.quantity,
-            "engine": row.engine,
-            "variant": row.variant,
-            "scenes": row.scenes,
-            "bound": row.bound,
-            "unit": row.unit,
-            "measured": row.measured,
-            "source": row.source,
-            "found": 3 * row.bound if k == 0 else row.measured,
-            "holds": k > 0,
-            "failure": None,
-        }
-        for k, row in enumerate(TABLE)
-    ]
-    section = tolerances.section(Result("tolerances", {"engines": sorted({row.engine for row in TABLE})}, rows, {}))
-    (table,) = section.tables
-    assert len(table.rows) == len(TABLE) and {len(row) for row in table.rows} == {len(table.columns)}
-    assert "1 of them do not hold" in section.text[1]
-    assert [row[6] for row in table.rows[:2]] == ["no", "yes"]

@@ -9,7 +9,7 @@ from comparisons.running.provenance import Result
 from comparisons.running.study import Ask
 from comparisons.running.sweep import Row
 from comparisons.studies.autopsy import STUDY
-from comparisons.studies.autopsy.cases import GROUNDS, SECONDS, plan, scene_on
+from comparisons.studies.autopsy.study import GROUNDS, SECONDS, plan, scene_on
 
 
 def told(engine, variant="fine", tier="tuned", error=1e-7, cause=None, ground="rigid ground", **more):
@@ -38,38 +38,32 @@ def test_rows_carry_the_diagnosis_or_the_failure():
     def run(batch):
         assert {case.tag["ground"] for case in batch.cases} == set(GROUNDS)
         first = {"error": 1e-7, "cause": None}
-        return [
-            Row(case, {} if k else first, {"reason": "a crash"} if k else None, {"cpu_seconds": 0.1}, False)
-            for k, case in enumerate(batch.cases)
-        ]
+        return [Row(case, {} if k else first, {"reason": "a crash"} if k else None, {"cpu_seconds": 0.1}, False)
+                for k, case in enumerate(batch.cases)]  # fmt: skip
 
-    found = answered(plan(Ask(("pymunk",))), run)[-1]
-    assert [row["failure"] is None for row in found.rows] == [True] + [False] * (len(found.rows) - 1)
-    assert found.rows[0]["error"] == 1e-7 and {row["engine"] for row in found.rows} == {"pymunk"}
+    rows = answered(plan(Ask(("pymunk",))), run)[-1].rows
+    assert [row["failure"] is None for row in rows] == [True] + [False] * (len(rows) - 1)
+    assert rows[0]["error"] == 1e-7 and {(row["part"], row["engine"]) for row in rows} == {("impact", "pymunk")}
 
 
-def test_the_finding_counts_the_best_and_names_the_causes_of_the_rest():
+def test_the_page_counts_default_variants_and_names_the_causes_of_the_rest():
     bad = told("exudyn", "native", "defaults", -0.02, "adhesion", deepest=8e-4)
-    found = STUDY.finding(result(told("exudyn"), told("pymunk"), bad))
-    assert found.title.startswith("Why engines err: 2 of 2 impacts at their best") and "adhesion" in found.title
-    (table,) = found.tables
-    assert table.rows[0][:4] == ["exudyn, native", "rigid ground", "−0.020", "adhesion"] and table.rows[0][5] == "0.80"
-    assert [row[3] for row in table.rows[1:]] == ["none (below 0.001)"] * 2
-    worse = STUDY.finding(result(told("exudyn", error=0.01, cause="step"), told("pymunk")))
-    assert "1 of 2 impacts" in worse.title and "step" in worse.title
+    page = STUDY.page(result(told("exudyn"), told("pymunk", "fast", best=False), told("pymunk"), bad))
+    opening = page.opening()
+    assert "2 of 2" in opening.title and "adhesion" in opening.title
+    first, *sound = opening.tables[0].rows
+    assert first[:4] == ["exudyn, native", "rigid ground", "−0.020", "adhesion"] and first[5] == "0.80"
+    assert [row[0] for row in sound] == ["exudyn, fine", "pymunk, fine"]
+    assert [row[0] for row in page.whole().tables[1].rows] == ["pymunk, fast"]  # each impact stands in one table
+    assert opening.figures[0].svg.count(b'<svg class="chart"') == 2  # of the frames that these rows have
+    worse = STUDY.page(result(told("exudyn", error=0.01, cause="step"), told("pymunk")))
+    assert "1 of 2" in worse.title and "step" in worse.title
 
 
 def test_what_cannot_be_told_is_evidence():
-    silent = {
-        "engine": "pybullet",
-        "variant": "v",
-        "tier": "tuned",
-        "best": True,
-        "ground": "rigid ground",
-        "failure": None,
-    }
-    crashed = {"engine": "dart", "variant": "v", "ground": "rigid ground", "failure": {"reason": "a crash"}}
-    shown = STUDY.section(result(told("exudyn"), {**silent, "why_not": "no corner is struck"}, crashed))
+    silent = {"engine": "pybullet", "variant": "v", "ground": "rigid ground", "failure": None}
+    crashed = {**silent, "engine": "dart", "failure": {"reason": "a crash"}}
+    shown = STUDY.page(result(told("exudyn"), {**silent, "why_not": "no corner is struck"}, crashed)).whole()
     assert shown.evidence == (
         ("pybullet, v, rigid ground", "no corner is struck"),
         ("dart, v, rigid ground", "a crash"),

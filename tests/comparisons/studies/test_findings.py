@@ -13,7 +13,7 @@ from comparisons.showing.parts import Head
 from comparisons.showing.rows import where
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.speed_error.page import levels_run, passing
-from comparisons.studies.stability.finding import judgement as hard_cases
+from comparisons.studies.stability.page import judgement as hard_cases
 
 
 def stored(name):
@@ -29,9 +29,16 @@ def test_a_finding_is_one_sentence_one_figure_and_short_tables(name):
         assert table.rows and all(len(row) == len(table.columns) for row in table.rows)
 
 
-@pytest.mark.parametrize(
-    "name", [name for name in BUILT_IN if get_study(name).page and (RESULTS / f"{name}.json").exists()]
-)
+PAGED = [name for name in BUILT_IN if get_study(name).page]
+
+
+@pytest.mark.parametrize("name", PAGED)
+def test_what_shows_is_no_part_of_what_a_result_depends_on(name):
+    behind = source_digests([get_study(name).plan.__module__])
+    assert behind and not [module for module in behind if module.endswith(".page") or ".showing" in module]
+
+
+@pytest.mark.parametrize("name", [name for name in PAGED if (RESULTS / f"{name}.json").exists()])
 def test_a_page_writes_numbers_and_symbols_as_a_reader_does(name):
     whole = get_study(name).page(stored(name)).whole()
     words = [whole.title, *whole.text, *whole.measured, *(part for part in whole.shown if isinstance(part, str))]
@@ -43,12 +50,6 @@ def test_a_page_writes_numbers_and_symbols_as_a_reader_does(name):
     ]
     words += [cell for table in whole.tables for row in ([table.caption], table.columns, *table.rows) for cell in row]
     assert not [text for text in words if re.search(r"\d[eE][-+]?\d|\b[a-zA-Z]_[a-zA-Z]\b|\bNone\b|\bnan\b", text)]
-
-
-@pytest.mark.parametrize("name", ["overturning", "surface"])
-def test_what_shows_is_no_part_of_what_a_result_depends_on(name):
-    behind = source_digests([get_study(name).plan.__module__])
-    assert behind and not [name for name in behind if name.endswith(".page") or ".showing" in name]
 
 
 def test_the_errors_of_restitution_are_the_worse_of_both_grounds():
@@ -79,12 +80,13 @@ def test_the_boundaries_judged_are_those_where_the_block_stays_pressed():
 
 def test_hard_cases_are_counted_as_the_settings_come():
     result = stored("stability")
-    for (name, variant), mark in hard_cases(result).marks.items():
-        label = f"{name}, {variant}" if variant else name
-        verdicts = [row["verdict"] for row in result.rows if row["solver"] == label and row["cure"] is None]
-        assert mark.words == f"{verdicts.count('right')} of {len(verdicts)}"
-        spared = 0 if result.settings["solvers"][label]["default_variant"] else 2  # scenes of ten minutes
-        assert len(verdicts) == len(result.settings["cases"]) - spared
+    marks, cases = hard_cases(result).marks, len(result.settings["cases"])
+    assert len(marks) == len(result.settings["variants"])
+    for variant in result.settings["variants"]:
+        own = {key: variant[key] for key in ("engine", "variant")}
+        found = [row["result"] for row in where(result.rows, **own, part="default settings")]
+        assert marks[own["engine"], own["variant"]].words == f"{found.count('right')} of {len(found)}"
+        assert len(found) == cases - (0 if variant["best"] else 2)  # scenes of ten minutes
 
 
 def ladder(errors, failed=()):

@@ -1,4 +1,4 @@
-"""The runs behind the autopsy: the first impact of a block let go, on both grounds, in every engine and variant."""
+"""The autopsy study: the first impact of a block let go, on both grounds, in every engine and variant."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
 
 
 def plan(ask: Ask) -> Plan:
-    """The plan of the study. Rows: `diagnosis`, or the failure, with ground and cpu_seconds.
+    """The plan of the study. Rows: `diagnosis`, or the failure, with the ground.
 
     Parameters
     ----------
@@ -52,16 +52,17 @@ def plan(ask: Ask) -> Plan:
         for variant in get_engine(engine).variants
         for ground in (list(GROUNDS)[:1] if ask.quick else GROUNDS)
     ]
-    rows = yield Batch(cases, measure, "one impact", time_limit=60.0)
-    found = [
+    runs = yield Batch(cases, measure, "one impact", time_limit=60.0)
+    rows = [
         {
-            "engine": row.case.solver,
-            "variant": row.case.variant,
-            "ground": row.case.tag["ground"],
-            "failure": row.failure,
-            **row.values,
+            "part": "impact",
+            "engine": run.case.solver,
+            "variant": run.case.variant,
+            **run.case.tag,
+            "failure": run.failure,
+            **run.values,
         }
-        for row in rows
+        for run in runs
     ]
     settings = {"quick": ask.quick, "slenderness": SLENDERNESS, "start": START, "least": LEAST, "causes": CAUSES}
-    return Found(settings, found)
+    return Found(settings, rows)

@@ -1,0 +1,53 @@
+"""What is shown of the sheet study."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ...showing.parts import Page
+from ...showing.rows import Column, grouped, table
+from ...showing.wording import USABLE, solver_name
+
+if TYPE_CHECKING:
+    from ...running.provenance import Result
+
+
+def page(result: Result) -> Page:
+    """The `Page` of a `Result` of the sheet study."""
+    scenes = result.settings["scenes"]
+    rows = [
+        {"name": solver_name(*names), **dict.fromkeys(scenes), **{row["scene"]: _error(row) for row in own}}
+        for names, own in grouped(result.rows, "solver", "variant").items()
+    ]
+    right = [row for row in rows if all(isinstance(row[scene], float) and row[scene] <= USABLE for scene in scenes)]
+    exact = {"name": "the exact answers themselves", **result.settings["own_error"]}
+    return Page(
+        f"The problem sheet: {len(right)} of {len(rows)} variants are within {USABLE:g} in all {len(scenes)} scenes",
+        (
+            "Scenes stated as equations and numbers, for codes that are not ours (rocking sheet, rocking score), here "
+            "solved by the engines with default settings. Error: the largest of a scene’s answers, over the scale of "
+            "each. The exact answers’ own is the largest difference to another tolerance and to a second "
+            "implementation.",
+        ),
+        more=(
+            table(
+                "Largest error of a scene’s answers [-]",
+                [*rows, exact],
+                Column("engine, variant", "name"),
+                *(Column(scene, scene) for scene in scenes),
+            ),
+            table(
+                "The scenes",
+                [{"name": name, "title": title} for name, title in scenes.items()],
+                Column("scene", "name"),
+                Column("what it is", "title"),
+            ),
+        ),
+    )
+
+
+def _error(row):
+    """The largest error, or why there is none."""
+    if row["failure"]:
+        return "failed"
+    return f"{len(row['missing'])} missing" if row["missing"] else row["error"]

@@ -1,0 +1,64 @@
+"""The sheet study: the problem sheet's scenes in every engine and variant, its answers held against the exact ones."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from engines import get_engine
+
+from ...running.cases import Case
+from ...running.study import Batch, Found
+from ...sheet.answers import error, exact, own_error
+from ...sheet.observed import of_response
+from ...sheet.problems import PROBLEMS, VERSION
+
+if TYPE_CHECKING:
+    from analytic import Response
+
+    from ...running.study import Ask, Plan
+
+
+def plan(ask: Ask) -> Plan:
+    """The plan of the study: each scene in each variant at its default setting; quick: in default variants only."""
+    cases = [
+        Case(problem.scene, engine, variant, tag={"scene": problem.name})
+        for engine in ask.engines
+        for variant in get_engine(engine).variants
+        if not ask.quick or variant == get_engine(engine).default_variant
+        for problem in PROBLEMS
+    ]
+    runs = yield Batch(cases, answered, "problem sheet")
+    nothing = {"error": None, "missing": [], "warnings": []}
+    rows = [
+        {
+            "part": "scene",
+            "solver": run.case.solver,  # as rocking score reads it
+            "variant": run.case.variant,
+            **run.case.tag,
+            **(nothing if run.failed else {key: run.values[key] for key in nothing}),
+            "failure": run.failure,
+            **run.cost,
+        }
+        for run in runs
+    ]
+    settings = {
+        "sheet": VERSION,
+        "engines": ask.engines,
+        "scenes": {problem.name: problem.title for problem in PROBLEMS},
+        "own_error": {problem.name: own_error(problem) for problem in PROBLEMS},
+    }
+    return Found(settings, rows)
+
+
+def answered(case: Case, response: Response) -> dict[str, Any]:
+    """Measure: the largest error of the answers, None where some are missing, and which."""
+    problem = next(one for one in PROBLEMS if one.name == case.tag["scene"])
+    given = of_response(problem, response).answers(problem)
+    missing = [one.name for one in problem.quantities if one.name not in given]
+    errors = error(problem, given, exact(problem))
+    return {
+        "outcome": response.outcome,
+        "error": None if missing else max(errors.values()),
+        "missing": missing,
+        "warnings": [warning.text for warning in response.warnings],
+    }

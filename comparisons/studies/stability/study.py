@@ -1,0 +1,358 @@
+"""The stability study: each hard case in each variant, judged measure by measure, then again with finer settings."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from engines import get_engine
+
+from ...measuring.errors import energy_errors
+from ...running.cases import Case
+from ...running.provenance import scrub
+from ...running.study import Batch, Found
+from .cases import hard_cases
+from .oracle import LAST_PART, column_at, comparable_until, oracle, twin_step
+
+if TYPE_CHECKING:
+    from analytic import Response
+    from analytic.response import Energy
+
+    from ...running.study import Ask, Plan
+    from ...running.sweep import Row
+    from .cases import HardCase
+    from .oracle import Oracle
+
+QUICK_LIMIT, TIME_LIMIT = 60.0, 300.0  # s, of one run; of those that end the longest takes 75 s of CPU time
+# s; scenes longer than the first are run with finer settings, longer than the second run at all, in the engines'
+# default variants only: another's ten minutes take 45 to 300 s of CPU time
+LONG, LONGEST = 60.0, 300.0
+RIGHT, DIFFERS, FAILED = "right", "differs", "failed"
+DEFAULT, FINER = "default settings", "finer settings"  # parts of the rows
+EVIDENCE_CHARACTERS = 600
+# Impacts are counted down to this share of the strongest one's rate, but not below 1e-3 omega_r slenderness, which
+# moves nothing: engines rest earlier than the model. A run's own impacts count from OWN of that, for their rates err.
+# They are not matched in time, as `lost_impacts` does: the last ones before rest lie closer than times are right.
+LEAST_RATE, LEAST_SHARE, OWN = 0.05, 1e-3, 0.95
+
+# measure: unit, what it is
+MEASURES = {
+    "outcome": ("", "1 where the outcome is not the oracle's"),
+    "tilt": ("of the slenderness", "largest difference of the tilt up to the horizon"),
+    "displacement": ("of its peak", "largest difference of the base displacement up to the horizon"),
+    "overturning time": ("s", "difference"),
+    "uplift time": ("s", "difference of the first one"),
+    "lost uplifts": ("", "of the oracle's"),
+    "rest time": ("of the time", "largest difference"),
+    "lost rests": ("", "of the oracle's"),
+    "impacts too few": ("", "than the oracle's with 5 % or more of its largest rate; not whether their times match"),
+    "tilt at rest": ("of the slenderness", "where the oracle rests or stands: rattling and drift"),
+    "energy drift": ("of m g R (1 − cos γ)", "change between events beyond what the measure shows on the oracle"),
+    "energy gain": ("of the energy scale", "rise from nowhere, beyond what the measure shows on the oracle"),
+    "energy imbalance": ("of the largest entry", "of the solver's own energy ledger"),
+}
+
+# class of solver: measure: (tolerance, reason)
+TOLERANCES = {
+    "event-driven": {
+        "outcome": (0, "a decision"),
+        "tilt": (
+            1e-6,
+            "steps are good to 1e-10; up to the horizon a difference grows a hundredfold; the rest is reserve",
+        ),
+        "displacement": (1e-6, "as the tilt"),
+        "overturning time": (1e-4, "as the tilt, and falling begins exponentially slowly"),
+        "uplift time": (1e-8, "a root of a known function"),
+        "lost uplifts": (0, "a count"),
+        "rest time": (1e-6, "the limit of a geometric series; rest itself is defined to 1e-8 of the rocking frequency"),
+        "lost rests": (0, "a count"),
+        "impacts too few": (0, "a count"),
+        "tilt at rest": (0, "at rest the model's tilt is 0"),
+        "energy imbalance": (1e-8, "quadrature beside steps good to 1e-10"),
+    },
+    "stepping": {
+        "outcome": (0, "a decision"),
+        "tilt": (0.02, "up to the horizon 1e-4 in restitution make 0.01; as much again for the solver"),
+        "displacement": (0.02, "the 2 % to which bearing displacements are designed"),
+        "overturning time": (0.05, "ten samples of a usual record"),
+        "uplift time": (0.01, "two samples of a usual record"),
+        "lost uplifts": (0, "a count"),
+        "rest time": (0.02, "as the tilt; the last impacts are below every contact's resolution"),
+        "lost rests": (0, "a count"),
+        "impacts too few": (0, "a count"),
+        "tilt at rest": (1e-3, "a hundredth of a swing that anyone would notice"),
+        "energy drift": (0.02, "as the tilt: the energy of a swing to 2 %"),
+        "energy gain": (0.02, "energy from nowhere has no excuse but the measure's error"),
+    },
+}
+
+
+@dataclasses.dataclass(frozen=True)
+class Solver:
+    """What solves the cases: an engine's variant, or a code of ours.
+
+    Parameters
+    ----------
+    engine, variant, tier : str
+        Of a code of ours variant and tier are "".
+    kind : str
+        Of its tolerances.
+    parameter, default, levels
+        The accuracy parameter, if it has one, its default and its levels.
+    applies_impact : bool
+        It is given eqs (7) and (8).
+    settings : dict
+        Its default settings.
+    step : str or None
+        The setting that is a step [s].
+    finer : tuple of dict
+        Settings to try in turn where the result is not right.
+    best : bool
+        The engine's default variant, or a code of ours.
+    """
+
+    engine: str
+    variant: str = ""
+    tier: str = ""
+    kind: str = "event-driven"
+    parameter: str | None = None
+    default: float | None = None
+    levels: tuple[float, ...] = ()
+    applies_impact: bool = True
+    settings: dict = dataclasses.field(default_factory=dict)
+    step: str | None = None
+    finer: tuple = ()
+    best: bool = True
+
+    def case(self, hard: HardCase, finer: int | None = None) -> Case:
+        """The run of a hard case; finer: which of the finer settings, None for the default ones."""
+        settings = {} if self.variant else dict(self.settings)
+        if self.engine == "twin":
+            settings["max_step"] = twin_step(hard.scene)
+        if hard.step is not None and self.step:
+            settings[self.step] = hard.step
+        if finer is not None:
+            settings |= self.finer[finer]
+        tag = {"case": hard.name, "part": DEFAULT if finer is None else FINER}
+        return Case(hard.scene, self.engine, self.variant or None, settings, tag)
+
+
+TIME_STEPPING = Solver(
+    "time-stepping",
+    kind="stepping",
+    parameter="step",
+    default=1e-3,
+    levels=(1e-3, 1e-4, 1e-5),
+    settings={"step": 1e-3},
+    step="step",
+    finer=({"step": 1e-4}, {"step": 1e-5}),
+)
+
+
+def solvers(engines: Iterable[str]) -> list[Solver]:
+    """Kernel, twin, time stepping, and every variant of the engines."""
+    return [
+        Solver("analytic"),
+        Solver("twin"),
+        TIME_STEPPING,
+        *(
+            Solver(
+                name,
+                variant,
+                kind.tier,
+                "stepping",
+                kind.knob,
+                kind.default,
+                tuple(sorted(kind.ladder)),
+                kind.takes_restitution,
+                dataclasses.asdict(kind.settings),
+                kind.step,
+                kind.finer,
+                variant == get_engine(name).default_variant,
+            )
+            for name in engines
+            for variant, kind in get_engine(name).variants.items()
+        ),
+    ]
+
+
+def measure(case: Case, response: Response) -> dict[str, Any]:
+    """Errors of one run, name -> number or None, and its outcome; see `MEASURES` for the units.
+
+    What does not apply is left out. case: its tag names the hard case.
+    """
+    hard = hard_cases()[case.tag["case"]]
+    truth = oracle(hard.name, response.engine == "analytic")
+    errors: dict[str, float] = {}
+    if truth.outcome is not None:
+        errors["outcome"] = float(response.outcome != truth.outcome)
+    errors |= _trajectory_errors(hard, response, truth) | _event_errors(response, truth)
+    if truth.settled:
+        history = response.history
+        late = history.time >= hard.scene.duration * (1 - LAST_PART)
+        still = history.tilt if hard.expected.get("outcome") == "stands" else history.tilt[late]
+        errors["tilt at rest"] = float(np.abs(still).max(initial=0.0)) / hard.scene.block.slenderness
+    if response.energy is not None:
+        errors["energy imbalance"] = _imbalance(response.energy)
+    else:
+        found = energy_errors(hard.scene, response, until=comparable_until(hard.name)[0], step=hard.step or 0.0)
+        errors["energy drift"], errors["energy gain"] = (
+            max(0.0, own - noise) for own, noise in zip(found, truth.noise, strict=True)
+        )
+    return {
+        "outcome": response.outcome,
+        "errors": errors,
+        "until": truth.until,
+        "impacts": response.impact_count,
+        "steps": response.steps,
+    }
+
+
+def _trajectory_errors(hard: HardCase, response: Response, truth: Oracle) -> dict[str, float]:
+    """Largest differences up to the horizon, at the samples of the kernel's history."""
+    kernel = response if response.engine == "analytic" else truth.response
+    times, tilt = truth.tilt(kernel.history.time)
+    errors = {"tilt": float(np.abs(column_at(response, times, "tilt") - tilt).max()) / hard.scene.block.slenderness}
+    if hard.scene.base is not None:
+        own, x = (column_at(one, times, "base_displacement") for one in (response, truth.response))
+        errors["displacement"] = float(np.abs(own - x).max() / np.abs(x).max())
+    return errors
+
+
+def _event_errors(response: Response, truth: Oracle) -> dict[str, float]:
+    errors = {}
+    if truth.uplifts:
+        errors["lost uplifts"] = float(max(0, len(truth.uplifts) - len(response.uplifts)))
+        if response.uplifts:
+            errors["uplift time"] = abs(response.uplifts[0] - truth.uplifts[0])
+    if truth.rests:
+        errors["lost rests"] = float(max(0, len(truth.rests) - len(response.rests)))
+        if response.rests:
+            rests = np.array(response.rests)
+            errors["rest time"] = max(float(np.abs(rests / time - 1).min()) for time in truth.rests)
+    if truth.response.overturning_time is not None and response.overturning_time is not None:
+        errors["overturning time"] = abs(response.overturning_time - truth.response.overturning_time)
+    wanted = [abs(impact.rate_before) for impact in truth.response.impacts if impact.time <= truth.until]
+    scene = truth.case.scene
+    least = max(LEAST_RATE * max(wanted, default=0.0), LEAST_SHARE * scene.rocking_frequency * scene.block.slenderness)
+    if count := sum(rate >= least for rate in wanted):
+        fast = sum(abs(impact.rate_before) >= OWN * least for impact in response.impacts)
+        errors["impacts too few"] = float(max(0, count - fast))
+    return errors
+
+
+def _imbalance(energy: Energy) -> float:
+    """The ledger's imbalance over the largest entry."""
+    largest = max(map(abs, dataclasses.astuple(energy)))
+    return abs(energy.imbalance) / largest if largest > 0 else 0.0
+
+
+def row_of(hard: HardCase, solver: Solver, run: Row) -> dict[str, Any]:
+    """The result file's row of one run: its result, every measure beside its tolerance, or the evidence of failure."""
+    case = run.case
+    row = {
+        "part": case.tag["part"],
+        "case": hard.name,
+        "engine": solver.engine,
+        "variant": solver.variant,
+        "level": case.settings.get(solver.parameter, solver.default),
+        "set": case.settings,
+        "cpu_seconds": run.cost.get("cpu_seconds"),
+    }
+    if run.failed:
+        failure = {key: _evidence(value) if isinstance(value, str) else value for key, value in run.failure.items()}
+        state = failure.pop("last_state", None) or run.values.get("end")
+        ended = {"failure": failure, "settings": run.values.get("settings"), "last_state": state}
+        return {**row, "result": FAILED, "outcome": "failed", **ended}
+    limits = TOLERANCES[solver.kind] | hard.tolerances.get(solver.kind, {})
+    errors = {name: (_short(value), limits[name][0]) for name, value in run.values["errors"].items()}
+    outside = [name for name, (value, limit) in errors.items() if not (value is not None and value <= limit)]
+    return {
+        **row,
+        "result": DIFFERS if outside else RIGHT,
+        "outcome": run.values["outcome"],
+        "outside": outside,
+        "errors": errors,
+        "until": _short(run.values["until"]),
+        "impacts": run.values["impacts"],
+        "steps": run.values["steps"],
+    }
+
+
+def _evidence(text):
+    """Both ends of a long message: one names the error, the other the place."""
+    text, half = scrub(text), EVIDENCE_CHARACTERS // 2
+    return text if len(text) <= 2 * half else f"{text[:half]} [...] {text[-half:]}"
+
+
+def _short(value):
+    return value if value is None or not math.isfinite(value) else float(f"{value:.3g}")
+
+
+def worst(row: Mapping[str, Any]) -> tuple[str, float | None, float]:
+    """(measure, value, tolerance) of the measure farthest outside its tolerance, or closest to it."""
+
+    def share(name):
+        value, limit = row["errors"][name]
+        return math.inf if value is None or (value and not limit) else value / (limit or 1.0)
+
+    name = max(row["errors"], key=share)
+    return name, *row["errors"][name]
+
+
+def plan(ask: Ask, names: Iterable[str] | None = None, columns: Sequence[Solver] | None = None) -> Plan:
+    """The plan of the study: all cells, then finer settings in turn where the result was not "right".
+
+    Scenes longer than `LONGEST` are asked of engines' default variants only.
+
+    Parameters
+    ----------
+    ask : Ask
+        quick: the quick cases only, and finer settings of the engines' default variants only.
+    names : iterable of str or None
+        Only these cases.
+    columns : sequence of Solver or None
+        None: `solvers`.
+    """
+    cases = [
+        case for case in hard_cases().values() if (case.quick or not ask.quick) and (not names or case.name in names)
+    ]
+    columns = solvers(ask.engines) if columns is None else columns
+    limit = QUICK_LIMIT if ask.quick else TIME_LIMIT
+    left = [(case, column) for case in cases for column in columns if column.best or case.scene.duration <= LONGEST]
+    finer, rows = None, []
+    while left:
+        label = "hard cases" if finer is None else f"finer settings, round {finer + 1}"
+        runs = yield Batch([column.case(case, finer) for case, column in left], measure, label, limit)
+        found = [row_of(case, column, run) for (case, column), run in zip(left, runs, strict=True)]
+        rows += found
+        finer = 0 if finer is None else finer + 1
+        left = [
+            (case, column)
+            for (case, column), row in zip(left, found, strict=True)
+            if row["result"] != RIGHT
+            and finer < len(column.finer)
+            and (column.best or not (ask.quick or case.scene.duration > LONG))
+        ]
+    settings = {
+        "quick": ask.quick,
+        "time_limit": limit,
+        "cases": {
+            case.name: {
+                "title": case.title,
+                "oracle": case.oracle,
+                "duration": case.scene.duration,
+                "twin_until": case.twin_until,
+                "tolerances": case.tolerances,
+            }
+            for case in cases
+        },
+        "measures": MEASURES,
+        "tolerances": TOLERANCES,
+        "variants": [dataclasses.asdict(column) for column in columns],
+    }
+    return Found(settings, rows)

@@ -1,0 +1,19 @@
+"""The table of agreement tolerances, every row measured anew: how far is each engine, and what is it held to?"""
+
+from ...running.study import Study
+from .study import plan, problems
+
+
+def _page(result):
+    from .page import page  # where it is shown only: the processes that run it need no charts
+
+    return page(result)
+
+
+STUDY = Study(
+    "tolerances",
+    "How far each engine is from the analytic model, beside what it is held to. Status 1: a row does not hold.",
+    plan,
+    problems=problems,
+    page=_page,
+)

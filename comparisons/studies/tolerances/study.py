@@ -1,0 +1,37 @@
+"""The tolerances study: the rows of the table, measured engine by engine."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from engines import ENGINES, get_engine
+
+from ...measuring.tolerances import TABLE, measure_all
+from ...running.study import Found, say
+
+if TYPE_CHECKING:
+    from ...running.provenance import Result
+    from ...running.study import Ask, Plan
+
+
+def plan(ask: Ask) -> Plan:
+    """The plan of the study: rows of `TABLE`, where it is quick of default variants only."""
+    rows = []
+    for engine in ask.engines:
+        say(f"tolerances: {engine}")
+        default = get_engine(engine).default_variant
+        own = [row for row in TABLE if row.engine == engine and (row.variant == default or not ask.quick)]
+        rows += [{"part": "tolerance", **row} for row in measure_all(own)]
+    bounds = tuple(f"{ENGINES[name].tolerances}:TOLERANCES" for name in ask.engines if ENGINES[name].tolerances)
+    yield from ()
+    return Found({"engines": ask.engines, "quick": ask.quick}, rows, solvers=bounds)
+
+
+def problems(result: Result) -> list[str]:
+    """Sentences on the rows that do not hold."""
+    return [
+        f"does not hold: {row['quantity']}, {row['engine']}, {row['variant']}, {row['scenes']}: "
+        f"{row['failure'] or row['found']}, tolerated {row['bound']:g} {row['unit']}"
+        for row in result.rows
+        if not row["holds"]
+    ]
