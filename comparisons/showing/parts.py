@@ -206,13 +206,15 @@ def number(value: float | None, digits: int = 3) -> str:
     if -3 <= exponent < 5:
         return f"{value:.{max(digits - 1 - exponent, 0)}f}".replace("-", "−")
     mantissa, power = f"{value:.{digits - 1}e}".split("e")
-    return f"{mantissa}·10{str(int(power)).translate(MINUS_DIGITS)}".replace("-", "−")
+    times = "" if mantissa == "1" else f"{mantissa}·"
+    return f"{times}10{str(int(power)).translate(MINUS_DIGITS)}".replace("-", "−")
 
 
 def short(value: float | None) -> str:
-    """A number that was chosen, in three digits at most: 0.3, 10, 2·10¹¹."""
+    """A number that was chosen, in three digits at most: 0.3, 10, 2·10¹¹, 10⁻⁴."""
     digits, point, power = number(value).partition("·")
-    return (digits.rstrip("0").rstrip(".") if "." in digits else digits) + point + power
+    digits = digits.rstrip("0").rstrip(".") if "." in digits else digits
+    return power if point and digits == "1" else digits + point + power
 
 
 def percent(fraction: float | None, digits: int = 2) -> str:

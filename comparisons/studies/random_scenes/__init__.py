@@ -1,15 +1,25 @@
-"""Random scenes within the range of a statue: how often is an engine right, and is every wrong run told?"""
+"""Random scenes within the range of a statue: how often is an engine right, and is every wrong run reported?"""
 
 from ...running.study import Study
-from .page import finding, judgement, section
 from .study import plan
+
+
+def _page(result):
+    from .page import page  # where it is shown only
+
+    return page(result)
+
+
+def _judgement(result):
+    from .page import judgement
+
+    return judgement(result)
+
 
 STUDY = Study(
     "random-scenes",
-    "Random scenes in the range of a statue: how often is an engine right, and is every wrong run told?",
+    "Random scenes in the range of a statue: how often is an engine right, and is every wrong run reported?",
     plan,
-    lambda result: {},
-    section,
-    finding=finding,
-    judgement=judgement,
+    page=_page,
+    judgement=_judgement,
 )

@@ -99,11 +99,10 @@ def test_the_study_runs_and_shows_ratios_side_by_side(few, tmp_path):
     (process,) = (row for row in result.rows if row["part"] == "throughput")
     assert process["problem"] == "process" and process["elapsed_seconds"] > process["cpu_seconds"]
     cheapest = page.passing(rows, "problem A", 1e-9)
-    ratio = cheapest["scipy", "DOP853"]["cpu_seconds"] / cheapest[KERNEL]["cpu_seconds"]
-    assert list(cheapest) == [KERNEL, ("scipy", "DOP853")] and ratio > 20  # some 300 on a machine left alone
-    section = get_study("kernel").section(result)
-    table = section.tables[0]
-    (cell,) = (row[2] for row in table.rows if row[0] == "scipy, DOP853")
+    ratio = cheapest["scipy, DOP853"]["cpu_seconds"] / cheapest[page.KERNEL]["cpu_seconds"]
+    assert list(cheapest) == [page.KERNEL, "scipy, DOP853"] and ratio > 20  # some 300 on a machine left alone
+    section = get_study("kernel").page(result).whole()
+    (cell,) = (row[2] for row in section.tables[0].rows if row[0] == "scipy, DOP853")
     assert f"{page.number(ratio, 3)} ×" in cell
     assert all(len(row) == len(one.columns) for one in section.tables for row in one.rows)
     assert len(section.figures) == 1 and not section.evidence
@@ -117,7 +116,7 @@ def test_an_integrator_that_gives_up_is_reported_and_not_timed(few, monkeypatch,
     result = found(tmp_path)
     lost = [row for row in result.rows if row["engine"] == "scipy"]
     assert len(lost) == 4 and all(row["failure"] and "cpu_seconds" not in row for row in lost)
-    section = get_study("kernel").section(result)
+    section = get_study("kernel").page(result).whole()
     assert len(section.evidence) == 4 and "different signs" in section.evidence[0][1]
     assert {row[1] for row in section.tables[0].rows if row[0] == "scipy, DOP853"} == {"–"}
 

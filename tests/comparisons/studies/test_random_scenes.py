@@ -52,7 +52,8 @@ def test_tables_and_marks_count_the_stored_rows(result):
     classes = {}
     for row in result.rows:
         classes.setdefault(f"{row['engine']}, {row['variant']}", Counter())[row["class"]] += 1
-    for section in (study.section(result), study.finding(result)):
+    page = study.page(result)
+    for section in (page.whole(), page.opening()):
         table = section.tables[0]
         assert [row[0] for row in table.rows] == list(classes)
         for name, _, right, differs, failed, left_out, share in table.rows:
@@ -70,7 +71,7 @@ def test_tables_and_marks_count_the_stored_rows(result):
 
 
 def test_every_run_that_failed_is_evidence_and_every_tuned_one_that_differs_is_named(result):
-    section = get_study("random-scenes").section(result)
+    section = get_study("random-scenes").page(result).whole()
     assert len(section.evidence) == sum(row["class"] == "failed" for row in result.rows)
     differ = [row for row in result.rows if row["class"] == "differs" and row["tier"] != "defaults"]
     named = section.tables[1].rows if len(section.tables) > 1 else []
