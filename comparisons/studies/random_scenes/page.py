@@ -28,6 +28,7 @@ def page(result: Result) -> Page:
     right, judged, failed = (sum(row[key] for row in tuned) for key in ("right", "judged", "failed"))
     differing = [row for row in where(result.rows, **{"class": "differs"}) if row["tier"] != "defaults"]
     settings = result.settings
+    limits = settings["range"].replace("J_O/(m R^2)", "inertia about a corner over m R²")
     return Page(
         f"Random statues: {right} of {judged} runs of tuned engines are right, {failed} failed",
         (TOLD,),
@@ -60,7 +61,7 @@ def page(result: Result) -> Page:
         ),
         how=(
             f"{settings['scenes']} scenes drawn at random (seed {result.provenance['seed']}, of the commit): "
-            f"{settings['range'].replace('J_O/(m R^2)', 'inertia about a corner over m R²')}; let go or under a pulse, until the outcome is decided. {settings['below_range']} "
+            f"{limits}; let go or under a pulse, until the outcome is decided. {settings['below_range']} "
             "whose peak tilt stays below the range are not run.",
             "Left out: the normal force falls to 0, no contact gives the friction demanded, or the scene is on an "
             "edge, where a change by 10⁻⁴ makes such a difference in the analytic model.",

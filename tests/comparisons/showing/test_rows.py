@@ -66,7 +66,7 @@ def test_a_table_names_its_rows_first_and_asks_for_its_columns():
         table("Errors", ROWS, Column("error [-]", "rms"))
 
 
-@pytest.mark.parametrize("value, words", [(10.0, "10"), (0.3, "0.3"), (2e11, "2·10¹¹"), (1e-4, "1·10⁻⁴"), (100, "100")])
+@pytest.mark.parametrize("value, words", [(10.0, "10"), (0.3, "0.3"), (2e11, "2·10¹¹"), (1e-4, "10⁻⁴"), (100, "100")])
 def test_chosen_numbers_are_as_short_as_they_are(value, words):
     assert short(value) == words
 
