@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...showing.parts import Page
-from ...showing.rows import Column, grouped, table
+from ...showing.rows import Column, grouped, table, where
 from ...showing.wording import USABLE, solver_name
 
 if TYPE_CHECKING:
@@ -19,8 +19,11 @@ def page(result: Result) -> Page:
         {"name": solver_name(*names), **dict.fromkeys(scenes), **{row["scene"]: _error(row) for row in own}}
         for names, own in grouped(result.rows, "solver", "variant").items()
     ]
-    right = [row for row in rows if all(isinstance(row[scene], float) and row[scene] <= USABLE for scene in scenes)]
-    exact = {"name": "the exact answers themselves", **result.settings["own_error"]}
+    for row in rows:
+        within = all(isinstance(row[scene], float) and row[scene] <= USABLE for scene in scenes)
+        row["within"] = "yes" if within else "no"
+    right = where(rows, within="yes")
+    exact = {"name": "the exact answers themselves", "within": "–", **result.settings["own_error"]}
     return Page(
         f"The problem sheet: {len(right)} of {len(rows)} variants are within {USABLE:g} in all {len(scenes)} scenes",
         (
@@ -34,6 +37,7 @@ def page(result: Result) -> Page:
                 "Largest error of a scene’s answers [-]",
                 [*rows, exact],
                 Column("engine, variant", "name"),
+                Column(f"all within {USABLE:g}", "within"),
                 *(Column(scene, scene) for scene in scenes),
             ),
             table(
