@@ -98,6 +98,10 @@ def recommendation(rows: Sequence[Row], limits: str) -> list[str]:
     return words
 
 
+def _error(row):
+    return row.marks[0].words.partition(",")[0]
+
+
 def not_to_do(rows: Sequence[Row]) -> list[str]:
     """Three lines at most."""
     first = [row for row in rows if row.tier == "defaults" and row.marks[0].level != "none"]
@@ -107,7 +111,7 @@ def not_to_do(rows: Sequence[Row]) -> list[str]:
         bad = [row for row in first if row.rating.level == "bad"]
         lines.append(
             f"Do not use default settings: {len(bad)} of {len(first)} fail (restitution off by "
-            f"{', '.join(f'{row.marks[0].words} in {row.engine}' for row in bad or [worst])})."
+            f"{', '.join(f'{_error(row)} in {row.engine}' for row in bad or [worst])})."
         )
     lines.append(
         "Check how near the outcome is to changing (rocking margin SCENE): if your data are less certain than that, it "
