@@ -214,6 +214,22 @@ class Chart:
             f'text-anchor="middle">{escape(sign)}</text>'
         )
 
+    def cells(self, xs: np.ndarray, ys: np.ndarray, chosen: np.ndarray, kind: str, who: str) -> None:
+        """The chosen cells, shape (xs, ys), about even xs and ys, of a class: a rectangle for each run along y.
+
+        who: what they are, by which they can be hidden.
+        """
+        half = np.array([xs[1] - xs[0], ys[1] - ys[0]]) / 2
+        turns = np.diff(np.pad(chosen.astype(int), ((0, 0), (1, 1))))
+        begins, ends = np.argwhere(turns == 1), np.argwhere(turns == -1) - [0, 1]
+        low = self.at(xs[begins[:, 0]] - half[0], ys[begins[:, 1]] - half[1])
+        high = self.at(xs[ends[:, 0]] + half[0], ys[ends[:, 1]] + half[1])
+        rectangles = "".join(
+            f'<rect class="{kind}" x="{a[0]:.1f}" y="{b[1]:.1f}" width="{b[0] - a[0]:.1f}" height="{a[1] - b[1]:.1f}"/>'
+            for a, b in zip(low, high, strict=True)
+        )
+        self.parts.append(f'<g class="who" data-who="{escape(who)}" shape-rendering="crispEdges">{rectangles}</g>')
+
     def svg(self) -> str:
         """The element."""
         inside = self.right - self.left, self.bottom - self.top
