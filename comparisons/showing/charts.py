@@ -29,6 +29,7 @@ WIDTH = 400
 LETTER = 13
 REFERENCE = "analytic"
 INK = 25  # % of the page's ink in a solver's colour: so much gives each a contrast of 3.4 or more, light and dark
+HAIR = 0.5  # so far a cell of a map reaches under the next: rounded edges leave no gap between them
 NEAR, ASIDE = 6.0, (0, 7, -7, 14, -14)  # marks nearer than this cover each other; where to put one instead
 DASHES = {"-": "", "--": "7 4", ":": "2 3.5", "-.": "8 3 2 3"}
 SHAPES = {
@@ -225,7 +226,8 @@ class Chart:
         low = self.at(xs[begins[:, 0]] - half[0], ys[begins[:, 1]] - half[1])
         high = self.at(xs[ends[:, 0]] + half[0], ys[ends[:, 1]] + half[1])
         rectangles = "".join(
-            f'<rect class="{kind}" x="{a[0]:.1f}" y="{b[1]:.1f}" width="{b[0] - a[0]:.1f}" height="{a[1] - b[1]:.1f}"/>'
+            f'<rect class="{kind}" x="{a[0]:.1f}" y="{b[1]:.1f}" width="{b[0] - a[0] + HAIR:.1f}" '
+            f'height="{a[1] - b[1] + HAIR:.1f}"/>'
             for a, b in zip(low, high, strict=True)
         )
         self.parts.append(f'<g class="who" data-who="{escape(who)}" shape-rendering="crispEdges">{rectangles}</g>')

@@ -206,7 +206,7 @@ def regions(
     panels: Mapping[str, np.ndarray],
     kinds: Mapping[str, str],
     *,
-    height: int = 300,
+    right: int = 14,
 ) -> tuple[list[Chart], dict[str, str]]:
     """Maps of too many cells for numbers in them: panels, to draw more on, and the legend of their `figure`.
 
@@ -220,16 +220,17 @@ def regions(
         {title: shape (xs, ys), each cell's place among the kinds}.
     kinds : dict
         {name: class of its cells, as "s3" or "right"; "" leaves them empty}.
-    height : int
-        Of a panel.
+    right : int
+        Room there for names of lines.
     """
     ends = [(float(at[0] - (at[1] - at[0]) / 2), float(at[-1] + (at[1] - at[0]) / 2)) for at in (xs, ys)]
     charts = []
     for title, places in panels.items():
         says = f"{title + ': ' if title else ''}{', '.join(kinds)}, over {x} and {y}."
-        chart = Chart(Axis(x, *ends[0]), Axis(y, *ends[1]), says, title=title, height=height)
+        chart = Chart(Axis(x, *ends[0]), Axis(y, *ends[1]), says, title=title, height=300, right=right)
         for place, (name, kind) in enumerate(kinds.items()):
-            chart.cells(xs, ys, places == place, kind, name)
+            if kind:
+                chart.cells(xs, ys, places == place, kind, name)
         charts.append(chart)
     key = (
         '<svg class="chart mini" viewBox="0 0 32 14" aria-hidden="true"><rect class="{}" width="32" height="14"/></svg>'
