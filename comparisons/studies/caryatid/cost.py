@@ -6,7 +6,7 @@ import math
 import time
 from functools import partial
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -17,11 +17,9 @@ from analytic.laws import NUMBERS
 from analytic.laws.algebraic import virtual_travel
 from analytic.solver import ground, options, parameters
 from analytic.twin import simulate_twin
+from analytic.types import Motion
 
 from .runs import ISOLATED, caryatid
-
-if TYPE_CHECKING:
-    from analytic.types import Motion
 
 LAWS = ("algebraic", "bouc-wen")
 ALGEBRAIC, BOUC_WEN = (NUMBERS[law] for law in LAWS)

@@ -8,22 +8,19 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.integrate import cumulative_simpson
 from scipy.optimize import brentq
 
-from analytic import load_scene, simulate
+from analytic import Scene, load_scene, simulate
 from analytic.bearing import BearingLaw
 from analytic.design import design_bearings, properties
 from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
 
 from . import paper
 from .paper import CORRECTED, DERIVED, GIVEN, NOT_REPRODUCIBLE, REPRODUCED, judged, value
-
-if TYPE_CHECKING:
-    from analytic import Scene
 
 TURNS = (0.0, 0.06, -0.06, 0.15, -0.15, 0.30, -0.30, 0.10, -0.05, 0.30)  # m, the path of Fig. 3
 REVERSAL = 0.20  # m, where the misprint of eq. (12) is shown

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from analytic import SampledMotion
 from analytic.linear_oscillator import displacement_spectrum
+from analytic.types import Motion
 
 from .runs import FREE, ISOLATED, caryatid
-
-if TYPE_CHECKING:
-    from analytic import SampledMotion
-    from analytic.types import Motion
 
 REPRODUCED, CORRECTED, NOT_REPRODUCIBLE = "reproduced", "corrected", "not reproducible"
 GIVEN, DERIVED, ADDED, OTHER_MOTION = "input", "not printed, derived", "added here", "other motion"

@@ -6,20 +6,17 @@ import math
 from collections.abc import Callable
 from functools import reduce
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from analytic import rocking_spectrum, simulate, simulate_many, synthetic_motion
+from analytic import Scene, rocking_spectrum, simulate, simulate_many, synthetic_motion
 from analytic.rocking import restitution
+from analytic.types import Motion
 
 from ...running.refine import boundaries, drive
 from . import paper
 from .runs import FREE, ISOLATED, caryatid
-
-if TYPE_CHECKING:
-    from analytic import Scene
-    from analytic.types import Motion
 
 LOW, HIGH = 0.10, 0.45  # rad
 TOLERANCE = 1e-5  # rad
