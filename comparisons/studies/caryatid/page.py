@@ -32,7 +32,7 @@ GAMMA = "slenderness γ [rad]"
 
 NUMBER = Column("number of the paper", "{where}: {quantity}")
 PAPER, DIFFERENCE = Column("paper", "paper", digits=6), Column("difference", "difference")
-STATUS, NOTE = Column("status", "status"), Column("note", "note")
+STATUS = Column("status", lambda row: ": ".join(filter(None, (row["status"], row.get("note")))))
 SCENE = Column("scene", lambda row: _scene(row))
 RUN = (
     SCENE,
@@ -96,7 +96,6 @@ def _paper(result):
                 Column("this study", "study", digits=6),
                 DIFFERENCE,
                 STATUS,
-                NOTE,
             ),
             _table(
                 "Equations, Fig. 3 and Table 1",
@@ -209,7 +208,6 @@ def _motion(result):
                 DIFFERENCE,
                 Column("engines", "engines"),
                 STATUS,
-                NOTE,
             ),
             _spectra(result),
             _table(
