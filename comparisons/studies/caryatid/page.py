@@ -15,7 +15,7 @@ from engines import missing_words
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
 from ...showing.figures import lines, regions
-from ...showing.parts import Head, Page, Table, number
+from ...showing.parts import Head, Page, Table, number, percent
 from ...showing.rows import Column, grouped, table, where
 from . import paper
 from .runs import FREE, ISOLATED
@@ -31,7 +31,7 @@ INTENSITY = "intensity: motion times [-]"
 GAMMA = "slenderness γ [rad]"
 
 NUMBER = Column("number of the paper", "{where}: {quantity}")
-PAPER, DIFFERENCE = Column("paper", "paper", digits=6), Column("difference", "difference")
+PAPER = Column("paper", "paper", digits=6)
 STATUS = Column("status", lambda row: ": ".join(filter(None, (row["status"], row.get("note")))))
 SCENE = Column("scene", lambda row: _scene(row))
 RUN = (
@@ -94,7 +94,7 @@ def _paper(result):
                 NUMBER,
                 PAPER,
                 Column("this study", "study", digits=6),
-                DIFFERENCE,
+                Column("difference", "difference"),
                 STATUS,
             ),
             _table(
@@ -205,7 +205,6 @@ def _motion(result):
                 NUMBER,
                 PAPER,
                 Column("analytic model", "study", digits=6),
-                DIFFERENCE,
                 Column("engines", "engines"),
                 STATUS,
             ),
@@ -279,8 +278,8 @@ def _scene(row):
     return {
         "run": "{scene} Caryatid",
         "rocking spectrum": "Fig. 5(a), T_r = {period:.3f} s",
-        "displacement spectrum": "Fig. 5(b), T_bi = {period:g} s, ξ = {damping:.0%}",
-    }[row["part"]].format_map(row)
+        "displacement spectrum": "Fig. 5(b), T_bi = {period:g} s, ξ = {share}",
+    }[row["part"]].format_map({**row, "share": percent(row.get("damping"), 1)})
 
 
 def _spans(intervals):
@@ -303,7 +302,7 @@ def _beside(rows: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
         others = dict.fromkeys(row["study"] for row in same if row["engine"] not in (None, "analytic"))
         values = sorted(value for value in others if not isinstance(value, str))
         words = [value for value in others if isinstance(value, str)]
-        words += [f"{number(values[0], 6)} to {number(values[-1], 6)}"] if values else []
+        words += [" to ".join(dict.fromkeys(number(value, 4) for value in (values[0], values[-1])))] if values else []
         status = ", ".join(dict.fromkeys(row["status"] for row in same))
         yield {**same[0], **own[0], "engines": "; ".join(words) or None, "status": status}
 
@@ -317,7 +316,7 @@ def _agreement(runs):
             peak = "peak_tilt_ratio" if row["part"] == "rocking spectrum" else "peak_base_displacement"
             key = "overturning_time" if row["outcome"] == "overturns" else peak
             apart = abs(row[key] / model[key] - 1) if row["outcome"] == model["outcome"] else 1.0
-            panel = f"Fig. 5(b), ξ = {row['damping']:.0%}" if "damping" in row else "Fig. 5(a)"
+            panel = f"Fig. 5(b), ξ = {percent(row['damping'], 1)}" if "damping" in row else "Fig. 5(a)"
             rows.append({**row, "apart": apart, "panel": panel})
     return lines(
         [row for row in rows if row["engine"] != "analytic"],

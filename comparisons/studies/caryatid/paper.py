@@ -126,7 +126,8 @@ def _run_values(row, motion, own):
 
     def found(place, quantity, printed, study, status, note=""):
         study = "does not happen" if study is None else study
-        return value(place, quantity, printed, study, status if own else OTHER_MOTION, note, engine)
+        status, note = (status, note) if own else (OTHER_MOTION, "")
+        return value(place, quantity, printed, study, status, note, engine)
 
     if row["outcome"] == "failed":
         why = row["failure"]["reason"]
