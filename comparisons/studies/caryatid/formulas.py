@@ -19,8 +19,26 @@ from analytic.bearing import BearingLaw
 from analytic.design import design_bearings, properties
 from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
 
-from . import paper
-from .paper import CORRECTED, DERIVED, GIVEN, NOT_REPRODUCIBLE, REPRODUCED, judged, value
+from .paper import (
+    ALPHA,
+    BASE_MASS,
+    CORRECTED,
+    COUNT,
+    DAMPING,
+    DELTA_K,
+    DERIVED,
+    GIVEN,
+    KA,
+    KB,
+    MASS,
+    NOT_REPRODUCIBLE,
+    OMEGA_R,
+    PERIOD,
+    REPRODUCED,
+    X_MAX,
+    judged,
+    value,
+)
 
 TURNS = (0.0, 0.06, -0.06, 0.15, -0.15, 0.30, -0.30, 0.10, -0.05, 0.30)  # m, the path of Fig. 3
 REVERSAL = 0.20  # m, where the misprint of eq. (12) is shown
@@ -126,24 +144,24 @@ def _amplitudes(scene):
 
 def _designed(scene):
     """The bearings that follow from Table 1(a)."""
-    targets = scene.total_mass, paper.PERIOD, paper.DAMPING, paper.X_MAX
-    return design_bearings(*targets, count=paper.COUNT, definition="paper")
+    targets = scene.total_mass, PERIOD, DAMPING, X_MAX
+    return design_bearings(*targets, count=COUNT, definition="paper")
 
 
 def _values(scene):
     """Every number of the paper that needs no motion."""
-    radius = 3 * scene.gravity / (4 * paper.OMEGA_R**2)  # (1) with J_O = 4/3 m R^2
-    got, designed = properties(scene.bearings, scene.total_mass, paper.X_MAX), _designed(scene)
+    radius = 3 * scene.gravity / (4 * OMEGA_R**2)  # (1) with J_O = 4/3 m R^2
+    got, designed = properties(scene.bearings, scene.total_mass, X_MAX), _designed(scene)
     secant = f"as secant period at x_max; with k_b alone it would be {got.period_kb:.3f} s"
     ours, usual = "damping ξ as W_D/(2π E_s) [%]", "damping ξ as W_D/(4π E_s) [%]"
     from_a, ten = "designed from Table 1(a)", "designed from Table 1(a) with k_a/k_b = 10"
     return [
-        value("text", "mass of the Caryatid m [kg]", paper.MASS, scene.block.mass, GIVEN),
-        value("text", "mass of the base m_b [kg]", paper.BASE_MASS, scene.base.mass, GIVEN),
+        value("text", "mass of the Caryatid m [kg]", MASS, scene.block.mass, GIVEN),
+        value("text", "mass of the base m_b [kg]", BASE_MASS, scene.base.mass, GIVEN),
         judged(
             "eq. (1)",
             "rocking frequency ω_r [rad/s]",
-            paper.OMEGA_R,
+            OMEGA_R,
             scene.rocking_frequency,
             0.005,
             "with R = 1.0884 m, itself derived from ω_r",
@@ -164,12 +182,12 @@ def _values(scene):
             DERIVED,
             "chosen; the interval that fits the paper's claims is with each motion",
         ),
-        judged("Table 1(a)", "period T_bi [s]", paper.PERIOD, got.period, 0.005, secant),
-        value("Table 1(a)", "displacement x_max [m]", paper.X_MAX, paper.X_MAX, GIVEN),
+        judged("Table 1(a)", "period T_bi [s]", PERIOD, got.period, 0.005, secant),
+        value("Table 1(a)", "displacement x_max [m]", X_MAX, X_MAX, GIVEN),
         judged(
             "Table 1(a)",
             ours,
-            100 * paper.DAMPING,
+            100 * DAMPING,
             100 * got.damping_paper,
             0.5,
             "the only definition that gives the printed value",
@@ -177,16 +195,16 @@ def _values(scene):
         value(
             "Table 1(a)",
             usual,
-            100 * paper.DAMPING,
+            100 * DAMPING,
             100 * got.damping_equivalent,
             CORRECTED,
             "the usual equivalent viscous damping: half of what is printed",
         ),
-        value("Table 1(b)", "number of bearings n_d [-]", float(paper.COUNT), float(scene.bearings.count), GIVEN),
-        judged("Table 1(b)", "k_a [N/m]", paper.KA, designed.ka, 50.0, ten),
-        judged("Table 1(b)", "k_b [N/m]", paper.KB, designed.kb, 5.0, ten),
-        judged("Table 1(b)", "α [-]", paper.ALPHA, designed.alpha, 0.005, from_a),
-        value("Table 1(b)", "δ_k [N/m]", paper.DELTA_K, scene.bearings.delta_k, GIVEN),
+        value("Table 1(b)", "number of bearings n_d [-]", float(COUNT), float(scene.bearings.count), GIVEN),
+        judged("Table 1(b)", "k_a [N/m]", KA, designed.ka, 50.0, ten),
+        judged("Table 1(b)", "k_b [N/m]", KB, designed.kb, 5.0, ten),
+        judged("Table 1(b)", "α [-]", ALPHA, designed.alpha, 0.005, from_a),
+        value("Table 1(b)", "δ_k [N/m]", DELTA_K, scene.bearings.delta_k, GIVEN),
         value("Figs 1, 2", "what they show", "not at hand", "not drawn", NOT_REPRODUCIBLE, "neither known here"),
     ]
 
@@ -197,7 +215,7 @@ def _rows(part, keys, *rows):
 
 
 def _misprints(scene, jumps):
-    got = properties(scene.bearings, scene.total_mass, paper.X_MAX)
+    got = properties(scene.bearings, scene.total_mass, X_MAX)
     return _rows(
         "misprint",
         ("where", "printed", "corrected", "measure", "value_corrected", "value_printed"),
@@ -223,7 +241,7 @@ def _misprints(scene, jumps):
             "equivalent viscous damping W_D/(4π E_s)",
             "damping at x_max [%]",
             100 * got.damping_equivalent,
-            100 * got.cycle_loss / (math.pi * got.force * paper.X_MAX),
+            100 * got.cycle_loss / (math.pi * got.force * X_MAX),
         ),
         (
             "Table 1(a), T_bi",
@@ -256,7 +274,7 @@ def _impact_by_balances(scene, rate):
 def _equations(scene, law, jumps, literal):
     """Eqs (1) to (14), Fig. 3 and Table 1, each by a number that it must give."""
     run = simulate(load_scene("caryatid-isolated").with_(block={"slenderness": 0.15}), history=False)  # it rocks
-    rate, got = -0.7, properties(scene.bearings, scene.total_mass, paper.X_MAX)
+    rate, got = -0.7, properties(scene.bearings, scene.total_mass, X_MAX)
     spin, base = _impact_by_balances(scene, rate)
     _, corrected = RockingModel.of(scene).impact(rate)
     off = base_jump_length_as_printed(scene) / base_jump_length(scene) - 1

@@ -15,7 +15,7 @@ from analytic.rocking import restitution
 from analytic.types import Motion
 
 from ...running.refine import boundaries, drive
-from . import paper
+from .paper import VULNERABLE_ABOUT, VULNERABLE_PERIOD, X_MAX
 from .runs import FREE, ISOLATED, caryatid
 
 LOW, HIGH = 0.10, 0.45  # rad
@@ -49,11 +49,11 @@ def claims(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], d
 
     def vulnerable(points):
         periods = np.array([vulnerable_period(motion, point, step) for point in points])
-        return abs(periods - paper.VULNERABLE_PERIOD) <= paper.VULNERABLE_ABOUT
+        return abs(periods - VULNERABLE_PERIOD) <= VULNERABLE_ABOUT
 
     tests = {
         "free-standing overturns": (lambda points: run(free, points).overturns, 141, TOLERANCE),
-        f"vulnerable below T_r = {paper.VULNERABLE_PERIOD:g} ± {paper.VULNERABLE_ABOUT:g} s": (vulnerable, scan, near),
+        f"vulnerable below T_r = {VULNERABLE_PERIOD:g} ± {VULNERABLE_ABOUT:g} s": (vulnerable, scan, near),
         "isolated does not rock": (lambda points: ~run(isolated, points).lifted, 141, TOLERANCE),
     }
     rows = []
@@ -157,7 +157,7 @@ def maps(
 
 def _shares(name, category, lifted, displacement):
     shares = {text: float((category == kind).mean()) for kind, text in enumerate(CATEGORIES)}
-    within = (category == ONLY_ISOLATED) & (displacement <= paper.X_MAX)
+    within = (category == ONLY_ISOLATED) & (displacement <= X_MAX)
     return {
         "part": "benefit",
         "motion": name,
@@ -165,7 +165,7 @@ def _shares(name, category, lifted, displacement):
         **shares,
         WITHIN: float(within.mean()),
         "isolated lifts": float(lifted.mean()),
-        "beyond x_max": float((displacement > paper.X_MAX).mean()),
+        "beyond x_max": float((displacement > X_MAX).mean()),
     }
 
 
@@ -176,7 +176,7 @@ def _critical(motion):
         (FREE, "overturns", lambda found: found.overturns),
         (ISOLATED, "overturns", lambda found: found.overturns),
         (ISOLATED, "lifts", lambda found: found.lifted),
-        (ISOLATED, "exceeds x_max", lambda found: found.overturns | (found.peak_base_displacement > paper.X_MAX)),
+        (ISOLATED, "exceeds x_max", lambda found: found.overturns | (found.peak_base_displacement > X_MAX)),
     ):
         scene = caryatid(name, motion)
 

@@ -12,6 +12,7 @@ from analytic.rocking import RockingModel
 from comparisons.cli import main
 from comparisons.running.provenance import PROJECT_FOLDER, RESULTS, read_result
 from comparisons.running.refine import Transition
+from comparisons.running.sources import source_digests
 from comparisons.running.study import compute
 from comparisons.showing.rows import where
 from comparisons.studies.caryatid import STUDY
@@ -211,6 +212,12 @@ def test_end_to_end(short, tmp_path):
         assert values.size < 1 or not np.isin(np.float32(short.samples[30:50]), values).any(), name
     # the numbers of another motion are never said to be the paper's
     assert {row["status"] for row in where(under.rows, where="Fig. 6")} == {OTHER_MOTION}
+
+
+def test_what_shows_is_not_behind_a_result():
+    behind = source_digests([STUDY.plan.__module__])
+    assert "comparisons.studies.caryatid.cost" in behind
+    assert not [name for name in behind if name.endswith(".page") or ".showing" in name]
 
 
 def test_only_a_duzce_record_has_to_meet_what_the_paper_prints(short):
