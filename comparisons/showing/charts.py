@@ -29,6 +29,7 @@ WIDTH = 400
 LETTER = 13
 REFERENCE = "analytic"
 INK = 25  # % of the page's ink in a solver's colour: so much gives each a contrast of 3.4 or more, light and dark
+HAIR = 0.5  # so far a cell of a map reaches under the next: rounded edges leave no gap between them
 NEAR, ASIDE = 6.0, (0, 7, -7, 14, -14)  # marks nearer than this cover each other; where to put one instead
 DASHES = {"-": "", "--": "7 4", ":": "2 3.5", "-.": "8 3 2 3"}
 SHAPES = {
@@ -213,6 +214,23 @@ class Chart:
             f'<text class="sign {kind}" x="{(x0 + x1) / 2:.1f}" y="{(y0 + y1) / 2 + 4.5:.1f}" '
             f'text-anchor="middle">{escape(sign)}</text>'
         )
+
+    def cells(self, xs: np.ndarray, ys: np.ndarray, chosen: np.ndarray, kind: str, who: str) -> None:
+        """The chosen cells, shape (xs, ys), about even xs and ys, of a class: a rectangle for each run along y.
+
+        who: what they are, by which they can be hidden.
+        """
+        half = np.array([xs[1] - xs[0], ys[1] - ys[0]]) / 2
+        turns = np.diff(np.pad(chosen.astype(int), ((0, 0), (1, 1))))
+        begins, ends = np.argwhere(turns == 1), np.argwhere(turns == -1) - [0, 1]
+        low = self.at(xs[begins[:, 0]] - half[0], ys[begins[:, 1]] - half[1])
+        high = self.at(xs[ends[:, 0]] + half[0], ys[ends[:, 1]] + half[1])
+        rectangles = "".join(
+            f'<rect class="{kind}" x="{a[0]:.1f}" y="{b[1]:.1f}" width="{b[0] - a[0] + HAIR:.1f}" '
+            f'height="{a[1] - b[1] + HAIR:.1f}"/>'
+            for a, b in zip(low, high, strict=True)
+        )
+        self.parts.append(f'<g class="who" data-who="{escape(who)}" shape-rendering="crispEdges">{rectangles}</g>')
 
     def svg(self) -> str:
         """The element."""

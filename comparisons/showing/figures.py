@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -252,6 +252,46 @@ def shades(
             chart.cell(across.index(x.text(row)), up.index(y.text(row)), f"{kind} lost" if lost else kind, sign, words)
         charts.append(chart)
     return figure([*charts, _scale(value, bounds)], caption)
+
+
+def regions(
+    x: str,
+    y: str,
+    xs: np.ndarray,
+    ys: np.ndarray,
+    panels: Mapping[str, np.ndarray],
+    kinds: Mapping[str, str],
+    *,
+    right: int = 14,
+) -> tuple[list[Chart], dict[str, str]]:
+    """Maps of too many cells for numbers in them: panels, to draw more on, and the legend of their `figure`.
+
+    Parameters
+    ----------
+    x, y : str
+        Labels of the axes.
+    xs, ys : array
+        Centres of the cells, even.
+    panels : dict
+        {title: shape (xs, ys), each cell's place among the kinds}.
+    kinds : dict
+        {name: class of its cells, as "s3" or "right"; "" leaves them empty}.
+    right : int
+        Room there for names of lines.
+    """
+    ends = [(float(at[0] - (at[1] - at[0]) / 2), float(at[-1] + (at[1] - at[0]) / 2)) for at in (xs, ys)]
+    charts = []
+    for title, places in panels.items():
+        says = f"{title + ': ' if title else ''}{', '.join(kinds)}, over {x} and {y}."
+        chart = Chart(Axis(x, *ends[0]), Axis(y, *ends[1]), says, title=title, height=300, right=right)
+        for place, (name, kind) in enumerate(kinds.items()):
+            if kind:
+                chart.cells(xs, ys, places == place, kind, name)
+        charts.append(chart)
+    key = (
+        '<svg class="chart mini" viewBox="0 0 32 14" aria-hidden="true"><rect class="{}" width="32" height="14"/></svg>'
+    )
+    return charts, {name: key.format(kind or "shade") for name, kind in kinds.items()}
 
 
 def _places(label, words):

@@ -6,14 +6,18 @@ misprints), ``caryatid-under-<motion>`` (what does, without a single value of th
 """
 
 from ...running.study import Study
-from .figures import figures
-from .sections import section
 from .study import plan
+
+
+def _page(result):
+    from .page import page  # where it is shown only: the processes that run it need no charts
+
+    return page(result)
+
 
 STUDY = Study(
     "caryatid",
     "The Caryatid paper: every equation, figure and table reproduced or corrected, and what it leaves out.",
     plan,
-    figures,
-    section,
+    page=_page,
 )

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import time
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from itertools import product
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -15,11 +17,9 @@ from analytic.laws import NUMBERS
 from analytic.laws.algebraic import virtual_travel
 from analytic.solver import ground, options, parameters
 from analytic.twin import simulate_twin
+from analytic.types import Motion
 
 from .runs import ISOLATED, caryatid
-
-if TYPE_CHECKING:
-    from analytic.types import Motion
 
 LAWS = ("algebraic", "bouc-wen")
 ALGEBRAIC, BOUC_WEN = (NUMBERS[law] for law in LAWS)
@@ -38,44 +38,42 @@ def cost_rows(motion: Motion, quick: bool = False) -> list[dict[str, Any]]:
     """
     rounds = 3 if quick else 7
     record = {law: caryatid(ISOLATED, motion).with_(bearings={"law": law}, duration=motion.end) for law in LAWS}
-    pulse = {
-        law: scene.with_(motion=PulseMotion("one-sine", 3.0, math.pi), duration=10.0) for law, scene in record.items()
-    }
+    shaking = PulseMotion("one-sine", 3.0, math.pi)
+    pulse = {law: scene.with_(motion=shaking, duration=10.0) for law, scene in record.items()}
+    begin = {law: scene.with_(duration=TWIN_SECONDS) for law, scene in record.items()}
     return [
-        _ladder(
+        _compared(
             "kernel",
             "one-sine pulse: Taylor steps, code alike for both laws",
             pulse,
-            TOLERANCES,
-            lambda scene, tolerance: _kernel(scene, tolerance, 20),
+            [partial(_kernel, tolerance=tolerance, repeats=20) for tolerance in TOLERANCES],
             rounds,
         ),
-        _floor(
+        _compared(
             "kernel",
             "record: steps end at samples, algebraic path unrolled",
             record,
+            [partial(_kernel, tolerance=1e-8, repeats=3)],
             rounds,
-            lambda scene: _kernel(scene, 1e-8, 3),
         ),
-        _ladder(
+        _compared(
             "fixed-step RK4",
             "record: the same loop; x_j fixed at each reversal",
             record,
-            DIVISIONS,
-            _fixed_step,
+            [partial(_fixed_step, divisions=divisions) for divisions in DIVISIONS],
             rounds,
         ),
         *(
-            _floor(
+            _compared(
                 f"scipy {method}",
                 f"record, first {TWIN_SECONDS:g} s",
-                {law: scene.with_(duration=TWIN_SECONDS) for law, scene in record.items()},
+                begin,
+                [partial(_twin, method=method)],
                 2 if quick else 5,
-                lambda scene, method=method: _twin(scene, method),
             )
             for method in ("RK45", "DOP853")
         ),
-        _evaluation(record, rounds),
+        _evaluation(BearingLaw.of(record["algebraic"].bearings), rounds),
     ]
 
 
@@ -162,31 +160,30 @@ def _fixed_step(scene, divisions):
     return _timed(_rk4, motion.dt, motion.samples, divisions, scene.total_mass, *properties)
 
 
-def _references(scenes):
+def _compared(integrator, what, scenes, runs, rounds):
+    """CPU of both laws, a ratio per round; runs: by accuracy, coarse to fine, each gives (CPU, final displacement).
+
+    Several are compared at equal error, between the levels of each law on logarithmic scales. One alone sits at the
+    error floor that steps ending at the samples give.
+    """
     tight = {law: simulate(scene, tolerance=1e-16, history=False) for law, scene in scenes.items()}
-    return {law: (one.end.base_displacement, one.peak_base_displacement) for law, one in tight.items()}
-
-
-def _error(end, reference):
-    return abs(end - reference[0]) / reference[1]
-
-
-def _ladder(solver, what, scenes, knobs, run, rounds):
-    """CPU at equal error: between the rungs of each law's ladder, on logarithmic scales; a ratio per round."""
-    references = _references(scenes)
     for scene in scenes.values():
-        run(scene, knobs[0])  # compiled
-    cpu, errors = np.empty((rounds, len(LAWS), len(knobs))), np.empty((len(LAWS), len(knobs)))
-    for number in range(rounds):
-        for k, knob in enumerate(knobs):
-            cpu[number, :, k], ends = _least([lambda law=law, knob=knob: run(scenes[law], knob) for law in LAWS])
-            errors[:, k] = [_error(end, references[law]) for law, end in zip(LAWS, ends, strict=True)]
-    ratios = []
-    targets = ERRORS[solver]
-    for number in range(rounds):
-        at = [[_cpu_at(target, errors[i], cpu[number, i]) for target in targets] for i in range(len(LAWS))]
-        ratios += [a / b for a, b in zip(*at, strict=True) if a is not None and b is not None]
-    return _row(solver, what, ratios, errors.tolist(), np.median(cpu, axis=0).tolist(), targets)
+        runs[0](scene)  # compiled
+    cpu, errors = np.empty((rounds, len(LAWS), len(runs))), np.empty((len(LAWS), len(runs)))
+    for number, (k, run) in product(range(rounds), enumerate(runs)):
+        cpu[number, :, k], ends = _least([partial(run, scenes[law]) for law in LAWS])
+        errors[:, k] = [
+            abs(end - tight[law].end.base_displacement) / tight[law].peak_base_displacement
+            for law, end in zip(LAWS, ends, strict=True)
+        ]
+    if len(runs) == 1:
+        return _row(integrator, what, (cpu[:, 0, 0] / cpu[:, 1, 0]).tolist(), errors.tolist(), cpu, None)
+    at = [
+        [_cpu_at(target, own, spent) for own, spent in zip(errors, one, strict=True)]
+        for one, target in product(cpu, ERRORS[integrator])
+    ]
+    ratios = [a / b for a, b in at if a is not None and b is not None]
+    return _row(integrator, what, ratios, errors.tolist(), cpu, ERRORS[integrator])
 
 
 def _cpu_at(error, errors, cpu):
@@ -196,18 +193,6 @@ def _cpu_at(error, errors, cpu):
     if not best[-1] <= error <= best[0]:
         return None
     return float(np.exp(np.interp(-np.log(error), -np.log(best), np.log(cpu))))
-
-
-def _floor(solver, what, scenes, rounds, run):
-    """CPU where both laws sit at the error floor that steps ending at the samples give."""
-    references = _references(scenes)
-    for scene in scenes.values():
-        run(scene)
-    cpu = np.empty((rounds, len(LAWS)))
-    for number in range(rounds):
-        cpu[number], ends = _least([lambda law=law: run(scenes[law]) for law in LAWS])
-    errors = [[_error(end, references[law])] for law, end in zip(LAWS, ends, strict=True)]
-    return _row(solver, what, (cpu[:, 0] / cpu[:, 1]).tolist(), errors, np.median(cpu, axis=0)[:, None].tolist(), None)
 
 
 @njit(cache=True)
@@ -228,36 +213,30 @@ def _rates(n, dk, f0):
     return z
 
 
-def _evaluation(scenes, rounds):
+def _evaluation(law, rounds):
     """One evaluation of the force (algebraic, x_j fixed) over one of the rate z' (Bouc-Wen)."""
-    law = BearingLaw.of(scenes["algebraic"].bearings)
     runs = [
-        lambda: _timed(_branch_forces, EVALUATIONS, law.dk, law.alpha, law.d0, law.f0),
-        lambda: _timed(_rates, EVALUATIONS, law.dk, law.f0),
+        partial(_timed, _branch_forces, EVALUATIONS, law.dk, law.alpha, law.d0, law.f0),
+        partial(_timed, _rates, EVALUATIONS, law.dk, law.f0),
     ]
     _least(runs)  # compiled
-    cpu = np.array([_least(runs)[0] for _ in range(rounds)]) / EVALUATIONS
-    return _row(
-        "one evaluation, compiled",
-        "force with x_j fixed, against rate of z",
-        (cpu[:, 0] / cpu[:, 1]).tolist(),
-        None,
-        np.median(cpu, axis=0)[:, None].tolist(),
-        None,
-    )
+    cpu = np.array([_least(runs)[0] for _ in range(rounds)])[:, :, None] / EVALUATIONS
+    what = "force with x_j fixed, against rate of z"
+    return _row("one evaluation, compiled", what, (cpu[:, 0, 0] / cpu[:, 1, 0]).tolist(), None, cpu, None)
 
 
-def _row(solver, what, ratios, errors, cpu, targets):
+def _row(integrator, what, ratios, errors, cpu, targets):
+    """cpu: shape (rounds, laws, levels) [s]."""
     low, middle, high = np.percentile(ratios, (10, 50, 90)) if ratios else (None, None, None)
     return {
         "part": "cost",
-        "solver": solver,
+        "integrator": integrator,
         "what": what,
         "ratio": middle,
         "ratio_low": low,
         "ratio_high": high,
         "ratios": len(ratios),
         "errors": errors,
-        "cpu_seconds": cpu,
+        "cpu_seconds": np.median(cpu, axis=0).tolist(),
         "at_errors": targets,
     }

@@ -1,19 +1,44 @@
-"""What needs no ground motion: the bearing law of Fig. 3, Table 1, and the misprints, each by a number."""
+"""What needs no ground motion: the bearing law of Fig. 3, Table 1 and the misprints, each by a number.
+
+`branch` and `history_point` are the paper's equations written out literally, misprint included; the corrected ones are
+the model's own.
+"""
+
+from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from scipy.integrate import cumulative_simpson
+from scipy.optimize import brentq
 
-from analytic import load_scene, simulate
+from analytic import Scene, load_scene, simulate
 from analytic.bearing import BearingLaw
-from analytic.design import design_bearings, properties, steady_cycle
+from analytic.design import design_bearings, properties
 from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
 
-from . import paper
-from .literal import branch, history_point, momentum_after
-from .paper import CORRECTED, DERIVED, GIVEN, NOT_REPRODUCIBLE, REPRODUCED, Value, judged
+from .paper import (
+    ALPHA,
+    BASE_MASS,
+    CORRECTED,
+    COUNT,
+    DAMPING,
+    DELTA_K,
+    DERIVED,
+    GIVEN,
+    KA,
+    KB,
+    MASS,
+    NOT_REPRODUCIBLE,
+    OMEGA_R,
+    PERIOD,
+    REPRODUCED,
+    X_MAX,
+    judged,
+    value,
+)
 
 TURNS = (0.0, 0.06, -0.06, 0.15, -0.15, 0.30, -0.30, 0.10, -0.05, 0.30)  # m, the path of Fig. 3
 REVERSAL = 0.20  # m, where the misprint of eq. (12) is shown
@@ -23,42 +48,70 @@ SLENDERNESSES = np.linspace(0.1, 0.45, 71)  # rad
 AMPLITUDES = np.linspace(0.02, 0.40, 96)  # m
 
 
+def branch(law: BearingLaw, x: float, s: float, x_j: float, misprinted: bool = False) -> float:
+    """Force of one bearing [N] on the branch of direction s, eqs (9) to (12), with the paper's x_j.
+
+    The bracket is 1 + s x - s x_j + 2 x0. As printed, eq. (12) for unloading (s = -1) has the signs of loading:
+    1 + x - x_j + 2 x0.
+    """
+    sign = 1 if misprinted else s
+    bracket = 1 + sign * (x - x_j) + 2 * law.x0
+    return law.kb * x + law.dk * (bracket ** (1 - law.alpha) - law.d0) / (s * (1 - law.alpha)) + s * law.f0
+
+
+def history_point(law: BearingLaw, x: float, force: float, s: float) -> float:
+    """x_j [m] of the branch of direction s through the point (x [m], force [N]) of a reversal, found as a root."""
+    # at the root the bracket lies between 1 (on the other limit curve) and 1 + 2 x0 (on this one)
+    edges = sorted((x, x + 2 * s * law.x0))
+    return brentq(lambda x_j: branch(law, x, s, x_j) - force, *edges, xtol=1e-15, rtol=1e-15)
+
+
+def momentum_after(scene: Scene, jump_length: float, rate: float = -1.0) -> float:
+    """Horizontal momentum after an impact over that before it, for a base velocity jump -e_x phi'-; 1 if conserved.
+
+    Before: m h w (the base stands). After: m h e_phi w + (m + m_b) jump.
+    """
+    before = scene.block.mass * scene.block.half_height * rate
+    return (restitution(scene) * before - scene.total_mass * jump_length * rate) / before
+
+
 def formulas() -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
-    """(rows, arrays) of the result file ``paper``."""
+    """(rows, arrays) of the result file ``caryatid-paper``."""
     scene = load_scene("caryatid-isolated").with_(motion=None)
     law = BearingLaw.of(scene.bearings)
-    arrays = {**_loops(law), **_misprint_12(law), **_misprint_8(scene), **_amplitudes(scene)}
-    jump = arrays["reversal/right"][0] - arrays["reversal/printed"][0]
-    rows = [value.row() for value in _table(scene)]
-    rows += _misprints(scene, law, jump) + _block_equations(scene) + _bearing_equations(scene, law, arrays, jump)
+    arrays = {**_loops(law), **_reversal(law), **_momentum(scene), **_amplitudes(scene)}
+    loaded, unloading = arrays["reversal/loading"][1, -1], arrays["reversal/right"]
+    jumps = {  # of the force at a reversal, over 2 f0, with eq. (12) corrected and as printed
+        "corrected": abs(arrays["reversal/literal"][0] - loaded) / (2 * law.f0),
+        "printed": (unloading[0] - arrays["reversal/printed"][0]) / (2 * law.f0),
+    }
+    literal = np.abs(arrays["reversal/literal"] - unloading).max() / law.f0
+    rows = [*_values(scene), *_misprints(scene, jumps), *_equations(scene, law, jumps, float(literal))]
     return rows, arrays
 
 
 def _loops(law):
     """Fig. 3: the path through `TURNS`, its reversal points, the limit curves."""
-    x, f, points, z = [], [], [], 0.0
-    for start, end in zip(TURNS, TURNS[1:], strict=False):
+    x, f, z = [], [], 0.0
+    for start, end in pairwise(TURNS):
         travel = np.linspace(0.0, end - start, POINTS)
         forces = np.array([law.hysteretic(z, dx) for dx in travel])
         x.append(start + travel)
         f.append(law.kb * (start + travel) + forces)
         z = forces[-1]
-        points.append((end, f[-1][-1]))
     return {
         "loops/x": np.concatenate(x),
         "loops/force": np.concatenate(f),
-        "loops/reversals": np.array(points[:-1]),
+        "loops/reversals": np.column_stack([TURNS[1:-1], [force[-1] for force in f[:-1]]]),
         "loops/limits": np.array([[s, law.kb * s * 0.34, law.f0] for s in (-1.0, 1.0)]),
     }
 
 
-def _misprint_12(law):
+def _reversal(law):
     """Loading of the virgin bearing to `REVERSAL` and unloading: right, and with eq. (12) as printed."""
-    loading = np.linspace(0.0, REVERSAL, POINTS)
+    loading, unloading = np.linspace(0.0, REVERSAL, POINTS), np.linspace(REVERSAL, -REVERSAL, POINTS)
     force = np.array([law.kb * x + law.start(x) for x in loading])
-    unloading = np.linspace(REVERSAL, -REVERSAL, POINTS)
-    z = law.start(REVERSAL)
-    x_j = history_point(law, REVERSAL, force[-1], -1)
+    z, x_j = law.start(REVERSAL), history_point(law, REVERSAL, force[-1], -1)
     return {
         "reversal/loading": np.array([loading, force]),
         "reversal/x": unloading,
@@ -68,14 +121,13 @@ def _misprint_12(law):
     }
 
 
-def _misprint_8(scene):
-    """Momentum after an impact over that before, corrected and printed, over slenderness and over radius."""
-    by_slenderness = [scene.with_(block={"slenderness": float(gamma)}) for gamma in SLENDERNESSES]
-    by_radius = [scene.with_(block={"radius": float(radius)}) for radius in RADII]
+def _momentum(scene):
+    """Momentum after an impact over that before, by eq. (8) corrected and printed, over slenderness and over radius."""
     arrays = {"impact/slenderness": SLENDERNESSES, "impact/radius": RADII}
-    for name, scenes in (("slenderness", by_slenderness), ("radius", by_radius)):
+    for by in ("slenderness", "radius"):
+        scenes = [scene.with_(block={by: float(size)}) for size in arrays[f"impact/{by}"]]
         for form, length in (("right", base_jump_length), ("printed", base_jump_length_as_printed)):
-            arrays[f"impact/{form} by {name}"] = np.array([momentum_after(scene, length(scene)) for scene in scenes])
+            arrays[f"impact/{form} by {by}"] = np.array([momentum_after(one, length(one)) for one in scenes])
     return arrays
 
 
@@ -90,31 +142,31 @@ def _amplitudes(scene):
     }
 
 
-def _table(scene):
+def _designed(scene):
+    """The bearings that follow from Table 1(a)."""
+    targets = scene.total_mass, PERIOD, DAMPING, X_MAX
+    return design_bearings(*targets, count=COUNT, definition="paper")
+
+
+def _values(scene):
     """Every number of the paper that needs no motion."""
+    radius = 3 * scene.gravity / (4 * OMEGA_R**2)  # (1) with J_O = 4/3 m R^2
+    got, designed = properties(scene.bearings, scene.total_mass, X_MAX), _designed(scene)
+    secant = f"as secant period at x_max; with k_b alone it would be {got.period_kb:.3f} s"
+    ours, usual = "damping ξ as W_D/(2π E_s) [%]", "damping ξ as W_D/(4π E_s) [%]"
+    from_a, ten = "designed from Table 1(a)", "designed from Table 1(a) with k_a/k_b = 10"
     return [
-        *_block_values(scene),
-        *_target_values(scene),
-        *_bearing_values(scene),
-        Value("Figs 1, 2", "what they show", "not at hand", "not drawn", NOT_REPRODUCIBLE, "neither known here"),
-    ]
-
-
-def _block_values(scene):
-    """What the text says of block and base."""
-    radius = 3 * scene.gravity / (4 * paper.OMEGA_R**2)  # (1) with J_O = 4/3 m R^2
-    return [
-        Value("text", "mass of the Caryatid m [kg]", paper.MASS, scene.block.mass, GIVEN),
-        Value("text", "mass of the base m_b [kg]", paper.BASE_MASS, scene.base.mass, GIVEN),
+        value("text", "mass of the Caryatid m [kg]", MASS, scene.block.mass, GIVEN),
+        value("text", "mass of the base m_b [kg]", BASE_MASS, scene.base.mass, GIVEN),
         judged(
             "eq. (1)",
             "rocking frequency ω_r [rad/s]",
-            paper.OMEGA_R,
+            OMEGA_R,
             scene.rocking_frequency,
             0.005,
             "with R = 1.0884 m, itself derived from ω_r",
         ),
-        Value(
+        value(
             "eq. (1)",
             "radius R [m]",
             "not at hand",
@@ -122,7 +174,7 @@ def _block_values(scene):
             DERIVED,
             "follows from ω_r and J_O = 4/3 m R² of a rectangle",
         ),
-        Value(
+        value(
             "text",
             "slenderness γ [rad]",
             "not printed",
@@ -130,97 +182,68 @@ def _block_values(scene):
             DERIVED,
             "chosen; the interval that fits the paper's claims is with each motion",
         ),
-    ]
-
-
-def _target_values(scene):
-    """Table 1(a)."""
-    got = properties(scene.bearings, scene.total_mass, paper.X_MAX)
-    return [
+        judged("Table 1(a)", "period T_bi [s]", PERIOD, got.period, 0.005, secant),
+        value("Table 1(a)", "displacement x_max [m]", X_MAX, X_MAX, GIVEN),
         judged(
             "Table 1(a)",
-            "period T_bi [s]",
-            paper.PERIOD,
-            got.period,
-            0.005,
-            f"as secant period at x_max; with k_b alone it would be {got.period_kb:.3f} s",
-        ),
-        Value("Table 1(a)", "displacement x_max [m]", paper.X_MAX, paper.X_MAX, GIVEN),
-        judged(
-            "Table 1(a)",
-            "damping ξ as W_D/(2π E_s) [%]",
-            100 * paper.DAMPING,
+            ours,
+            100 * DAMPING,
             100 * got.damping_paper,
             0.5,
             "the only definition that gives the printed value",
         ),
-        Value(
+        value(
             "Table 1(a)",
-            "damping ξ as W_D/(4π E_s) [%]",
-            100 * paper.DAMPING,
+            usual,
+            100 * DAMPING,
             100 * got.damping_equivalent,
             CORRECTED,
             "the usual equivalent viscous damping: half of what is printed",
         ),
+        value("Table 1(b)", "number of bearings n_d [-]", float(COUNT), float(scene.bearings.count), GIVEN),
+        judged("Table 1(b)", "k_a [N/m]", KA, designed.ka, 50.0, ten),
+        judged("Table 1(b)", "k_b [N/m]", KB, designed.kb, 5.0, ten),
+        judged("Table 1(b)", "α [-]", ALPHA, designed.alpha, 0.005, from_a),
+        value("Table 1(b)", "δ_k [N/m]", DELTA_K, scene.bearings.delta_k, GIVEN),
+        value("Figs 1, 2", "what they show", "not at hand", "not drawn", NOT_REPRODUCIBLE, "neither known here"),
     ]
 
 
-def _bearing_values(scene):
-    """Table 1(b), beside what follows from Table 1(a)."""
-    targets = scene.total_mass, paper.PERIOD, paper.DAMPING, paper.X_MAX
-    designed = design_bearings(*targets, count=paper.COUNT, definition="paper")
-    return [
-        Value("Table 1(b)", "number of bearings n_d [-]", float(paper.COUNT), float(scene.bearings.count), GIVEN),
-        judged("Table 1(b)", "k_a [N/m]", paper.KA, designed.ka, 50.0, "designed from Table 1(a) with k_a/k_b = 10"),
-        judged("Table 1(b)", "k_b [N/m]", paper.KB, designed.kb, 5.0, "designed from Table 1(a) with k_a/k_b = 10"),
-        judged("Table 1(b)", "α [-]", paper.ALPHA, designed.alpha, 0.005, "designed from Table 1(a)"),
-        Value("Table 1(b)", "δ_k [N/m]", paper.DELTA_K, scene.bearings.delta_k, GIVEN),
-    ]
+def _rows(part, keys, *rows):
+    """Rows of a part, their values in the order of the keys."""
+    return [{"part": part, **dict(zip(keys, row, strict=True))} for row in rows]
 
 
-def _misprints(scene, law, jump):
-    got = properties(scene.bearings, scene.total_mass, paper.X_MAX)
-    loss, force = steady_cycle(law, paper.X_MAX)
-    after = momentum_after(scene, base_jump_length(scene))
-    printed = momentum_after(scene, base_jump_length_as_printed(scene))
-
-    def misprint(where, says, should, measure, right, wrong):
-        return {
-            "part": "misprint",
-            "where": where,
-            "printed": says,
-            "corrected": should,
-            "measure": measure,
-            "value_corrected": right,
-            "value_printed": wrong,
-        }
-
-    return [
-        misprint(
+def _misprints(scene, jumps):
+    got = properties(scene.bearings, scene.total_mass, X_MAX)
+    return _rows(
+        "misprint",
+        ("where", "printed", "corrected", "measure", "value_corrected", "value_printed"),
+        (
             "eq. (8)",
             "e_x with a factor R cos γ too many: a length squared",
             "e_x = 2R³ sin²γ cosγ m m̃/(…)",
             "momentum after an impact over that before, γ = 0.28 rad [-]",
-            after,
-            printed,
+            momentum_after(scene, base_jump_length(scene)),
+            momentum_after(scene, base_jump_length_as_printed(scene)),
         ),
-        misprint(
+        (
             "eq. (12)",
             "bracket 1 + x − x_j + 2x₀",
             "bracket 1 − x + x_j + 2x₀",
             "force jump at a reversal over 2 f₀ [-]",
-            _continuity(law),
-            jump / (2 * law.f0),
+            jumps["corrected"],
+            jumps["printed"],
         ),
-        misprint(
+        (
             "Table 1(a), ξ",
             "30 %, which is W_D/(2π E_s)",
             "equivalent viscous damping W_D/(4π E_s)",
             "damping at x_max [%]",
             100 * got.damping_equivalent,
-            100 * loss / (math.pi * force * paper.X_MAX),
+            100 * got.cycle_loss / (math.pi * got.force * X_MAX),
         ),
-        misprint(
+        (
             "Table 1(a), T_bi",
             "2 s, said of the isolated system",
             "secant period at x_max = 0.30 m only",
@@ -228,26 +251,13 @@ def _misprints(scene, law, jump):
             got.period,
             got.period_kb,
         ),
-    ]
-
-
-def _continuity(law):
-    """Force jump of the corrected eq. (12) at `REVERSAL`, over 2 f0."""
-    force = law.kb * REVERSAL + law.start(REVERSAL)
-    x_j = history_point(law, REVERSAL, force, -1)
-    return abs(branch(law, REVERSAL, -1, x_j) - force) / (2 * law.f0)
-
-
-def _rocking_run():
-    """An isolated block that rocks under the shipped motion: what eqs (3) to (6) are checked on."""
-    return simulate(load_scene("caryatid-isolated").with_(block={"slenderness": 0.15}), history=False)
+    )
 
 
 def _momentum_residual():
     """Eq. (2) integrated: (m + m_b)(v + int a_g dt) + int n_d f dt over a run, over the largest of its impulses."""
     scene = load_scene("caryatid-isolated")
-    scene = scene.with_(duration=scene.motion.end)
-    history = simulate(scene, output_step=scene.motion.dt / 8).history
+    history = simulate(scene.with_(duration=scene.motion.end), output_step=scene.motion.dt / 8).history
     ground = cumulative_simpson(history.ground_acceleration, x=history.time, initial=0)
     bearings = cumulative_simpson(history.bearing_force, x=history.time, initial=0)
     left = scene.total_mass * (history.base_velocity + ground) + bearings
@@ -256,95 +266,73 @@ def _momentum_residual():
 
 def _impact_by_balances(scene, rate):
     """(phi'+, jump of x') from linear momentum and the block's angular momentum about its new corner alone."""
-    m, b, h = scene.block.mass, scene.block.half_width, scene.block.half_height
-    about = scene.block.centre_inertia
+    m, b, h, about = scene.block.mass, scene.block.half_width, scene.block.half_height, scene.block.centre_inertia
     balances = np.array([[m * h, scene.total_mass], [about + m * (h * h + b * b), m * h]])
     return np.linalg.solve(balances, [m * h * rate, (about + m * (h * h - b * b)) * rate])
 
 
-def _equation(number, what, status, check, value):
-    return {"part": "equation", "number": number, "what": what, "status": status, "check": check, "value": value}
-
-
-def _block_equations(scene):
-    """Eqs (1) to (8), each by a number that it must give."""
-    run, rate = _rocking_run(), -0.7
+def _equations(scene, law, jumps, literal):
+    """Eqs (1) to (14), Fig. 3 and Table 1, each by a number that it must give."""
+    run = simulate(load_scene("caryatid-isolated").with_(block={"slenderness": 0.15}), history=False)  # it rocks
+    rate, got = -0.7, properties(scene.bearings, scene.total_mass, X_MAX)
     spin, base = _impact_by_balances(scene, rate)
     _, corrected = RockingModel.of(scene).impact(rate)
-    ledger = abs(run.energy.imbalance / run.energy.input)
-    return [
-        _equation("(1)", "rocking frequency", REPRODUCED, "ω_r [rad/s], 2.60 printed", scene.rocking_frequency),
-        _equation(
+    off = base_jump_length_as_printed(scene) / base_jump_length(scene) - 1
+    return _rows(
+        "equation",
+        ("number", "what", "status", "check", "value"),
+        ("(1)", "rocking frequency", REPRODUCED, "ω_r [rad/s], 2.60 printed", scene.rocking_frequency),
+        (
             "(2)",
             "full contact on the bearings",
             REPRODUCED,
             "momentum balance over a run in full contact, over its largest impulse [-]",
             _momentum_residual(),
         ),
-        _equation(
+        (
             "(3)–(6)",
             "rocking on the base, re-derived",
             REPRODUCED,
             f"imbalance of the energy over the input, {run.impact_count} impacts [-]",
-            ledger,
+            abs(run.energy.imbalance / run.energy.input),
         ),
-        _equation(
+        (
             "(7)",
             "restitution e_φ",
             REPRODUCED,
             "difference from the momentum balances [-]",
             abs(restitution(scene) - spin / rate),
         ),
-        _equation(
+        (
             "(8)",
             "jump of the base velocity",
             CORRECTED,
-            "corrected form, relative difference from the momentum balances [-]; printed form: "
-            f"{base_jump_length_as_printed(scene) / base_jump_length(scene) - 1:.3%} off",
+            f"corrected form, relative difference from the momentum balances [-]; printed form: {off:.3%} off",
             abs(corrected / base - 1),
         ),
-    ]
-
-
-def _bearing_equations(scene, law, arrays, jump):
-    """Eqs (9) to (14), Fig. 3 and Table 1, likewise."""
-    literal = np.abs(arrays["reversal/literal"] - arrays["reversal/right"]).max() / law.f0
-    return [
-        _equation(
+        (
             "(9)–(11)",
             "bearing force and its history x_j",
             REPRODUCED,
             "literal x_j form against the stable form, over f₀ [-] (literal is NaN beyond 1.33 m of travel)",
-            float(literal),
+            literal,
         ),
-        _equation(
+        (
             "(12)",
             "unloading branch",
             CORRECTED,
-            f"force jump at a reversal over 2 f₀, corrected [-]; printed form: {jump / (2 * law.f0):.4f}",
-            _continuity(law),
+            f"force jump at a reversal over 2 f₀, corrected [-]; printed form: {jumps['printed']:.4f}",
+            jumps["corrected"],
         ),
-        _equation("(13)", "x₀ from k_a, k_b, α, δ_k", REPRODUCED, "2 x₀ [m]", 2 * law.x0),
-        _equation("(14)", "f₀ from k_a, k_b, α, x₀", REPRODUCED, "f₀ of one bearing [N]", law.f0),
-        _equation(
+        ("(13)", "x₀ from k_a, k_b, α, δ_k", REPRODUCED, "2 x₀ [m]", 2 * law.x0),
+        ("(14)", "f₀ from k_a, k_b, α, x₀", REPRODUCED, "f₀ of one bearing [N]", law.f0),
+        (
             "Fig. 3",
             "bearing law with its curves and reversal points",
             REPRODUCED,
             "W_D of one bearing at 0.30 m [J]",
-            steady_cycle(law, paper.X_MAX)[0],
+            got.cycle_loss,
         ),
-        _equation(
-            "Table 1(a)",
-            "design targets",
-            REPRODUCED,
-            "T_bi as secant period at x_max [s]",
-            properties(scene.bearings, scene.total_mass, paper.X_MAX).period,
-        ),
-        _equation(
-            "Table 1(b)",
-            "bearings",
-            REPRODUCED,
-            "α designed from Table 1(a) [-]",
-            design_bearings(scene.total_mass, paper.PERIOD, paper.DAMPING, paper.X_MAX, definition="paper").alpha,
-        ),
-    ]
+        ("Table 1(a)", "design targets", REPRODUCED, "T_bi as secant period at x_max [s]", got.period),
+        ("Table 1(b)", "bearings", REPRODUCED, "α designed from Table 1(a) [-]", _designed(scene).alpha),
+    )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -87,47 +88,33 @@ def simulations(
         for name in SHIPPED
         for solver in solvers
     ]
-    points = _points(motion, solvers, quick)
+    points = list(_points(motion, solvers, quick))
     rows, histories = [], {}
     for cases, measure, label in ((figures, with_history, "Figs 4(b), 6"), (points, scalars, "Figs 5(a), 5(b)")):
         for row in (yield Batch(cases, measure, label, TIME_LIMIT)):
-            values = dict(row.values)
+            values, engine = dict(row.values), row.case.solver
             if row.case.scene.base is None:  # the ground's own peak: a value of the motion
                 values.pop("peak_base_acceleration", None)
             for column, numbers in values.pop("history", {}).items():
-                key = f"{row.case.tag['scene']}/{row.case.solver}/{column}"
-                histories[key] = np.array(numbers, dtype=np.float32)
-            rows.append({**values, **row.case.tag, "solver": row.case.solver, "failure": row.failure, **row.cost})
+                histories[f"{row.case.tag['scene']}/{engine}/{column}"] = np.array(numbers, dtype=np.float32)
+            default = {"engine": engine, "variant": row.case.variant}  # of a run that failed
+            rows.append({**default, **values, **row.case.tag, "failure": row.failure, **row.cost})
     return rows, histories
 
 
 def _points(motion, solvers, quick):
     """Single blocks and oscillators of Fig. 5, in every solver."""
-    slenderness = caryatid(FREE, motion).block.slenderness
-    own = 2 * np.pi / caryatid(FREE, motion).rocking_frequency
+    free = caryatid(FREE, motion)
+    slenderness, own = free.block.slenderness, 2 * np.pi / free.rocking_frequency
     blocks = (own, 5.0) if quick else (1.5, own, 3.0, 3.5, 4.5, 5.0, 6.0, 7.0)
     oscillators = (2.0,) if quick else (1.0, 2.0, 3.0)
-    cases = [
-        Case(
-            slender_block(motion, period, slenderness),
-            solver,
-            settings={"history": False},
-            tag={"part": "rocking spectrum", "period": float(period)},
-        )
-        for solver in solvers
-        for period in blocks
-    ]
-    return cases + [
-        Case(
-            oscillator(motion, period, damping),
-            solver,
-            settings={"history": False},
-            tag={"part": "displacement spectrum", "period": period, "damping": damping},
-        )
-        for solver in solvers
-        for period in oscillators
-        for damping in OSCILLATOR_DAMPING
-    ]
+    without = {"history": False}
+    for solver, period in product(solvers, blocks):
+        tag = {"part": "rocking spectrum", "period": float(period)}
+        yield Case(slender_block(motion, period, slenderness), solver, settings=without, tag=tag)
+    for solver, period, damping in product(solvers, oscillators, OSCILLATOR_DAMPING):
+        tag = {"part": "displacement spectrum", "period": period, "damping": damping}
+        yield Case(oscillator(motion, period, damping), solver, settings=without, tag=tag)
 
 
 def spectra(motion: Motion, quick: bool = False) -> dict[str, np.ndarray]:

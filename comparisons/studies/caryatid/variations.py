@@ -1,24 +1,26 @@
-"""What the paper leaves out: other slendernesses, intensities and motions. Does isolation help, when does it harm?"""
+"""What the paper leaves out: which slenderness it can have meant, and other slendernesses, intensities and motions."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from functools import reduce
+from itertools import product
+from typing import Any
 
 import numpy as np
 
-from analytic import simulate, simulate_many, synthetic_motion
+from analytic import Scene, rocking_spectrum, simulate, simulate_many, synthetic_motion
 from analytic.rocking import restitution
+from analytic.types import Motion
 
 from ...running.refine import boundaries, drive
-from . import paper
+from .paper import VULNERABLE_ABOUT, VULNERABLE_PERIOD, X_MAX
 from .runs import FREE, ISOLATED, caryatid
 
-if TYPE_CHECKING:
-    from analytic import Scene
-    from analytic.types import Motion
-
+LOW, HIGH = 0.10, 0.45  # rad
+TOLERANCE = 1e-5  # rad
+LONGEST = 8.0  # s, of the rocking periods looked at
 # who stays upright
 BOTH, ONLY_ISOLATED, ONLY_FREE, NEITHER = range(4)
 CATEGORIES = ("both stay upright", "only the isolated one does", "only the free-standing one does", "both overturn")
@@ -27,15 +29,80 @@ SEEDS = 12
 FRICTION_LIMITS = (0.3, 0.5, 0.7)  # [-], of stone on stone and steel, low to high
 
 
+def vulnerable_period(motion: Motion, slenderness: float, step: float = 0.02) -> float:
+    """Largest rocking period T_r [s] up to `LONGEST` at which a block overturns, on a grid of `step`; 0 if none."""
+    periods = np.arange(LONGEST, 0.4, -step)
+    overturns = rocking_spectrum(motion, periods, slenderness).overturns
+    return round(float(periods[overturns].max(initial=0.0)), 6)
+
+
+def claims(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
+    """Rows: for each of the paper's three claims the intervals of slenderness in which it holds; then where all do.
+
+    Also the arrays of vulnerable period over slenderness.
+    """
+    free, isolated = caryatid(FREE, motion), caryatid(ISOLATED, motion)
+    scan, step, near = (29, 0.1, 1e-2) if quick else (71, 0.02, 1e-3)
+
+    def run(scene, points):
+        return simulate_many([scene.with_(block={"slenderness": point}) for point in points])
+
+    def vulnerable(points):
+        periods = np.array([vulnerable_period(motion, point, step) for point in points])
+        return abs(periods - VULNERABLE_PERIOD) <= VULNERABLE_ABOUT
+
+    tests = {
+        "free-standing overturns": (lambda points: run(free, points).overturns, 141, TOLERANCE),
+        f"vulnerable below T_r = {VULNERABLE_PERIOD:g} ± {VULNERABLE_ABOUT:g} s": (vulnerable, scan, near),
+        "isolated does not rock": (lambda points: ~run(isolated, points).lifted, 141, TOLERANCE),
+    }
+    rows = []
+    for claim, (holds, points, tolerance) in tests.items():
+        column = _along(LOW, HIGH, points, tolerance, holds)
+        intervals = _intervals(column.transitions, bool(holds([LOW])[0]))
+        rows.append({"part": "claim", "claim": claim, "intervals": intervals, "evaluations": column.evaluations})
+    together = reduce(_overlap, [row["intervals"] for row in rows])
+    own, grid = free.block.slenderness, np.linspace(LOW, HIGH, scan)
+    rows += [
+        {"part": "claim", "claim": "all three", "intervals": together, "evaluations": None},
+        {"part": "vulnerable", "slenderness": own, "step": step, "period": vulnerable_period(motion, own, step)},
+    ]
+    periods = np.array([vulnerable_period(motion, float(gamma), step) for gamma in grid])
+    return rows, {"claims/slenderness": grid, "claims/vulnerable period": periods}
+
+
+def _along(low, high, points, tolerance, outcomes):
+    """The `Column` of outcomes, a function of many points, along one line."""
+    search = boundaries(low, high, points, tolerance)
+    (column,) = drive([search], lambda batch: list(map(bool, outcomes([point for _, point in batch]))))
+    return column
+
+
+def uplift_slenderness(motion: Motion) -> float:
+    """Least slenderness [rad] that stays down on the bearings, from the acceleration alone: atan(max|a|/g).
+
+    A block that stays down does not change the acceleration of its base, so any that does gives it.
+    """
+    scene = caryatid(ISOLATED, motion).with_(block={"slenderness": 1.2})
+    return math.atan(simulate(scene, history=False).peak_base_acceleration / scene.gravity)
+
+
+def _intervals(transitions, holds_at_low):
+    edges = [LOW] if holds_at_low else []
+    edges += [transition.high if transition.after else transition.low for transition in transitions]
+    edges += [HIGH] if len(edges) % 2 else []
+    return [edges[k : k + 2] for k in range(0, len(edges), 2)]
+
+
+def _overlap(ones, others):
+    pairs = [(max(a[0], b[0]), min(a[1], b[1])) for a in ones for b in others]
+    return [[low, high] for low, high in sorted(pairs) if low < high]
+
+
 def grid(quick: bool, fine: bool = True) -> tuple[np.ndarray, np.ndarray]:
     """(slendernesses [rad], intensities [-])."""
-    if quick:
-        return np.linspace(0.10, 0.45, 15), np.linspace(0.25, 3.0, 12)
-    return (
-        (np.linspace(0.10, 0.45, 71), np.linspace(0.25, 3.0, 56))
-        if fine
-        else (np.linspace(0.10, 0.45, 36), np.linspace(0.25, 3.0, 34))
-    )
+    slendernesses, intensities = (15, 12) if quick else (71, 56) if fine else (36, 34)
+    return np.linspace(LOW, HIGH, slendernesses), np.linspace(0.25, 3.0, intensities)
 
 
 def benefit(
@@ -45,32 +112,26 @@ def benefit(
 
     The displacement is NaN where the isolated block overturns: runs end when that is certain.
     """
-    kept = {}
     scaled = [motion.scaled(float(factor)) for factor in intensities]
+    changes = [{"block": {"slenderness": float(gamma)}, "motion": one} for gamma, one in product(slendernesses, scaled)]
     shape = len(slendernesses), len(intensities)
-    for name in (FREE, ISOLATED):
-        base = caryatid(name, motion)
-        scenes = [
-            base.with_(block={"slenderness": float(gamma)}, motion=shaking)
-            for gamma in slendernesses
-            for shaking in scaled
-        ]
-        kept[name] = simulate_many(scenes)
-    if any(outcomes.failed.any() for outcomes in kept.values()):
+    free, isolated = (
+        simulate_many([scene.with_(**change) for change in changes])
+        for scene in (caryatid(FREE, motion), caryatid(ISOLATED, motion))
+    )
+    if free.failed.any() or isolated.failed.any():
         raise RuntimeError("the analytic model failed on a scene of the map; report it with its slenderness")
-    overturns = {name: outcomes.overturns.reshape(shape) for name, outcomes in kept.items()}
     category = np.select(
-        [
-            ~overturns[FREE] & ~overturns[ISOLATED],
-            overturns[FREE] & ~overturns[ISOLATED],
-            ~overturns[FREE] & overturns[ISOLATED],
-        ],
+        [~free.overturns & ~isolated.overturns, ~isolated.overturns, ~free.overturns],
         [BOTH, ONLY_ISOLATED, ONLY_FREE],
         NEITHER,
     )
-    isolated = kept[ISOLATED]
-    displacement = np.where(overturns[ISOLATED], np.nan, isolated.peak_base_displacement.reshape(shape))
-    return category.astype(np.uint8), isolated.lifted.reshape(shape), displacement.astype(np.float32)
+    displacement = np.where(isolated.overturns, np.nan, isolated.peak_base_displacement)
+    return (
+        category.astype(np.uint8).reshape(shape),
+        isolated.lifted.reshape(shape),
+        displacement.astype(np.float32).reshape(shape),
+    )
 
 
 def maps(
@@ -78,32 +139,25 @@ def maps(
 ) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
     """(rows, arrays): the map of `motion`, how many of the synthetic motions agree cell by cell, and critical
     intensities of the Caryatid itself."""
-    slendernesses, intensities = grid(quick)
-    category, lifted, displacement = benefit(motion, slendernesses, intensities)
-    arrays = {
-        "benefit/slenderness": slendernesses,
-        "benefit/intensity": intensities,
-        "benefit/category": category,
-        "benefit/isolated lifts": lifted,
-        "benefit/isolated displacement": displacement,
-    }
-    rows = [_shares("this motion", category, lifted, displacement)]
-    coarse = grid(quick, fine=False)
+    fine, coarse = grid(quick), grid(quick, fine=False)
+    found = benefit(motion, *fine)
+    rows = [_shares("this motion", *found)]
+    names = ("slenderness", "intensity", "category", "isolated lifts", "isolated displacement")
+    arrays = {f"benefit/{name}": values for name, values in zip(names, (*fine, *found), strict=True)}
     counts = np.zeros((len(CATEGORIES), len(coarse[0]), len(coarse[1])), dtype=np.uint8)
     seeds = range(3 if quick else SEEDS)
     for seed in seeds:
         advance(f"synthetic motion {seed + 1} of {len(seeds)}")
-        category, lifted, displacement = benefit(synthetic_motion(seed=seed), *coarse)
-        rows.append(_shares(f"synthetic, seed {seed}", category, lifted, displacement))
-        for kind in range(len(CATEGORIES)):
-            counts[kind] += category == kind
+        found = benefit(synthetic_motion(seed=seed), *coarse)
+        rows.append(_shares(f"synthetic, seed {seed}", *found))
+        counts += np.array([found[0] == kind for kind in range(len(CATEGORIES))])
     arrays |= {"seeds/slenderness": coarse[0], "seeds/intensity": coarse[1], "seeds/counts": counts}
     return rows + _critical(motion), arrays
 
 
 def _shares(name, category, lifted, displacement):
     shares = {text: float((category == kind).mean()) for kind, text in enumerate(CATEGORIES)}
-    within = (category == ONLY_ISOLATED) & (displacement <= paper.X_MAX)
+    within = (category == ONLY_ISOLATED) & (displacement <= X_MAX)
     return {
         "part": "benefit",
         "motion": name,
@@ -111,41 +165,28 @@ def _shares(name, category, lifted, displacement):
         **shares,
         WITHIN: float(within.mean()),
         "isolated lifts": float(lifted.mean()),
-        "beyond x_max": float((displacement > paper.X_MAX).mean()),
+        "beyond x_max": float((displacement > X_MAX).mean()),
     }
 
 
 def _critical(motion):
     """Intensities at which the Caryatid's state changes, free-standing and isolated: the first, and all."""
     rows = []
-    questions = (
-        (FREE, "overturns", lambda outcomes: outcomes.overturns),
-        (ISOLATED, "overturns", lambda outcomes: outcomes.overturns),
-        (ISOLATED, "lifts", lambda outcomes: outcomes.lifted),
-        (
-            ISOLATED,
-            "exceeds x_max",
-            lambda outcomes: outcomes.overturns | (outcomes.peak_base_displacement > paper.X_MAX),
-        ),
-    )
-    for name, what, read in questions:
+    for name, what, read in (
+        (FREE, "overturns", lambda found: found.overturns),
+        (ISOLATED, "overturns", lambda found: found.overturns),
+        (ISOLATED, "lifts", lambda found: found.lifted),
+        (ISOLATED, "exceeds x_max", lambda found: found.overturns | (found.peak_base_displacement > X_MAX)),
+    ):
         scene = caryatid(name, motion)
 
-        def evaluate(batch, scene=scene, read=read):
-            scenes = [scene.with_(motion=scene.motion.scaled(point)) for _, point in batch]
-            return list(map(bool, read(simulate_many(scenes))))
+        def outcomes(points, scene=scene, read=read):
+            return read(simulate_many([scene.with_(motion=scene.motion.scaled(point)) for point in points]))
 
-        (column,) = drive([boundaries(0.25, 4.0, 151, 1e-4)], evaluate)
+        column = _along(0.25, 4.0, 151, 1e-4, outcomes)
         changes = [round(transition.position, 4) for transition in column.transitions]
-        rows.append(
-            {
-                "part": "critical intensity",
-                "scene": name,
-                "what": what,
-                "first": changes[0] if changes else None,
-                "changes": changes,
-            }
-        )
+        first = changes[0] if changes else None
+        rows.append({"part": "critical intensity", "scene": name, "what": what, "first": first, "changes": changes})
     return rows
 
 
@@ -156,22 +197,20 @@ def contact(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], 
     not to slide while it falls.
     """
     slendernesses, intensities = (axis[::2] for axis in grid(quick, fine=False))
-    arrays = {"contact/slenderness": slendernesses, "contact/intensity": intensities}
-    rows = []
+    scaled = [motion.scaled(float(factor)) for factor in intensities]
+    arrays, rows = {"contact/slenderness": slendernesses, "contact/intensity": intensities}, []
     for name in (FREE, ISOLATED):
         scene = caryatid(name, motion)
-        friction, normal = np.empty((2, len(slendernesses), len(intensities)))
-        upright = np.empty(friction.shape, dtype=bool)
-        for i, gamma in enumerate(slendernesses):
-            for k, factor in enumerate(intensities):
-                one = scene.with_(block={"slenderness": float(gamma)}, motion=motion.scaled(float(factor)))
-                friction[i, k], normal[i, k], upright[i, k] = _demand(one)
+        found = [
+            [_demand(scene.with_(block={"slenderness": float(gamma)}, motion=one)) for one in scaled]
+            for gamma in slendernesses
+        ]
+        friction, normal, upright = np.moveaxis(np.array(found, dtype=float), 2, 0)
         arrays |= {
             f"contact/{name} friction": friction.astype(np.float32),
             f"contact/{name} normal": normal.astype(np.float32),
-            f"contact/{name} upright": upright,
+            f"contact/{name} upright": upright.astype(bool),
         }
-        over = {f"friction above {limit:g}": float((friction > limit).mean()) for limit in FRICTION_LIMITS}
         at = _demand(scene)
         rows.append(
             {
@@ -179,7 +218,7 @@ def contact(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], 
                 "scene": name,
                 "friction_demand": at[0],
                 "min_normal_ratio": at[1],
-                **over,
+                **{f"friction above {limit:g}": float((friction > limit).mean()) for limit in FRICTION_LIMITS},
                 "worst_friction": float(friction.max()),
                 "least_normal": float(normal.min()),
                 "jumps": float((normal <= 0).mean()),

@@ -5,10 +5,11 @@ import math
 import re
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
-from comparisons.showing.charts import INK, NEAR, STYLE, Axis
-from comparisons.showing.figures import MOVED, beside, lines, ranks, shades
+from comparisons.showing.charts import HAIR, INK, NEAR, STYLE, Axis, figure
+from comparisons.showing.figures import MOVED, beside, lines, ranks, regions, shades
 from comparisons.showing.rows import NAME, Column
 from engines import ENGINES
 
@@ -246,3 +247,24 @@ def test_lines_and_shades_can_be_told_from_the_page(scheme):
     assert contrast(colours["faint"], colours["paper"]) >= 3
     for shade in range(6):
         assert contrast(colours["ink"], colours[f"s{shade}"]) >= 4.5
+
+
+def test_a_map_of_many_cells_draws_a_rectangle_for_each_run_of_equal_ones():
+    places, kinds = np.array([[0, 1, 1], [1, 0, 1]]), {"stands": "", "overturns": "falls"}
+    charts, keys = regions("x [m]", "y [s]", np.array([1.0, 2.0]), np.array([10.0, 20.0, 30.0]), {"": places}, kinds)
+    made = figure(charts, "Who overturns.", keys, keys)
+    (panel,) = panels(made)
+    read = json.loads(panel.get("data-read"))
+    scale = {key: (read[key]["high"] - read[key]["low"]) / np.diff(read[key]["at"])[0] for key in "xy"}
+    drawn = {}
+    for group in panel.iter("g"):
+        for rect in group.iter("rect"):
+            x, y, width, height = (float(rect.get(key)) for key in ("x", "y", "width", "height"))
+            left, top = (read[k]["low"] + (at - read[k]["at"][0]) * scale[k] for k, at in (("x", x), ("y", y)))
+            sides = left, left + (width - HAIR) * scale["x"], top + (height - HAIR) * scale["y"], top
+            drawn.setdefault((group.get("data-who"), rect.get("class")), []).append(sides)
+    assert drawn["overturns", "falls"] == [
+        pytest.approx(sides, abs=0.02) for sides in ((0.5, 1.5, 15, 35), (1.5, 2.5, 5, 15), (1.5, 2.5, 25, 35))
+    ]
+    assert len(drawn) == 1 and made.solvers == ("stands", "overturns")
+    assert "falls" in made.keys["overturns"] and panel.get("aria-label").startswith("stands, overturns")

@@ -1,0 +1,494 @@
+"""What is shown of the study of the paper, a page for each of its three result files."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup, escape
+
+from engines import missing_words
+
+from ...running.provenance import Result
+from ...showing.charts import Axis, Chart, figure
+from ...showing.figures import lines, regions
+from ...showing.parts import Head, Page, Table, number, percent
+from ...showing.rows import Column, grouped, table, where
+from . import paper
+from .runs import FREE, ISOLATED
+from .variations import CATEGORIES, FRICTION_LIMITS, ONLY_FREE, ONLY_ISOLATED, WITHIN
+
+PRINTED, CORRECT, LIMIT = "var(--ghost)", "var(--accent)", "var(--soft)"  # colours of curves
+DAMPINGS = ("var(--ink)", "var(--accent)", "var(--good)", "var(--fair)", "var(--bad)")  # of Fig. 5(b), least first
+FLOOR = 1e-9  # differences below are drawn there
+KEPT = 5  # of so many samples of a smooth history one is drawn
+HARMS = dict(zip(CATEGORIES, ("", "right", "wrong", "falls"), strict=True))  # classes of who stays upright
+BOUNDS = {"share": (0.01, 0.25, 0.5, 0.75), "friction": (0.2, *FRICTION_LIMITS), "normal": (0.0, 0.25, 0.5, 0.75)}
+INTENSITY = "intensity: motion times [-]"
+GAMMA = "slenderness γ [rad]"
+
+NUMBER = Column("number of the paper", "{where}: {quantity}")
+PAPER = Column("paper", "paper", digits=6)
+STATUS = Column("status", lambda row: ": ".join(filter(None, (row["status"], row.get("note")))))
+SCENE = Column("scene", lambda row: _scene(row))
+RUN = (
+    SCENE,
+    Column("solver", "engine"),
+    Column("outcome", lambda row: f"failed: {row['failure']['reason']}" if row["failure"] else row["outcome"]),
+    Column("overturning time [s]", lambda row: row.get("overturning_time"), digits=5),
+    Column("peak |φ|/γ [-]", lambda row: row.get("peak_tilt_ratio"), digits=4),
+    Column("peak displacement [m]", lambda row: row.get("peak_base_displacement"), digits=5),
+    Column("friction demand [-]", lambda row: row.get("friction_demand"), digits=3),
+    Column("least N/(m g) [-]", lambda row: row.get("min_normal_ratio"), digits=3),
+    Column("CPU time [s]", lambda row: row.get("cpu_seconds")),
+)
+SHARES = (*CATEGORIES, WITHIN, "isolated lifts", "beyond x_max")
+
+
+def page(result: Result) -> Page:
+    """The `Page` of a `Result` of the study."""
+    return {"paper": _paper, "motion": _motion, "histories": _histories}[result.settings["part"]](result)
+
+
+def _table(caption: str, rows: Iterable[Mapping[str, Any]], *columns: Column) -> Table:
+    """A `table`, the indices of its symbols set low: k_a."""
+    made = table(caption, rows, *columns)
+
+    def symbols(text):
+        low = re.sub(r"\b(\w)_(\w+)", r"\1<sub>\2</sub>", str(escape(text)))
+        return Markup(low.replace("_", "_<wbr>"))  # a record's name may break there
+
+    return Table(caption, tuple(map(symbols, made.columns)), [list(map(symbols, row)) for row in made.rows])
+
+
+def _curves(title: str, x: Axis, y: Axis, curves: Mapping[str, tuple], right: int = 106) -> Chart:
+    """A `Chart` of {name: (colour, xs, ys)}, each named where it ends; a name in parentheses is not written."""
+    chart = Chart(x, y, f"{title}: {y.label} over {x.label}; {', '.join(curves)}.", right=right, title=title)
+    for name, (tone, xs, ys) in curves.items():
+        chart.line(xs, ys, tone=tone)
+        if not name.startswith("("):
+            chart.label(ys[-1], name, tone=tone)
+    return chart
+
+
+def _paper(result):
+    rows = where(result.rows, part="equation")
+    reproduced, corrected = (len(where(rows, status=status)) for status in (paper.REPRODUCED, paper.CORRECTED))
+    return Page(
+        f"The Caryatid paper: {reproduced} of {len(rows)} equations, figures and tables are reproduced, {corrected} "
+        "corrected",
+        (
+            "Eq. (8) as printed breaks the conservation of momentum. Eq. (12) as printed makes the bearing force jump. "
+            "The damping of 30 % is twice the usual equivalent damping. The period of 2 s is the secant period at "
+            "0.30 m.",
+            f"Not at hand, and so not compared: {paper.UNKNOWN}",
+        ),
+        more=(
+            Head("What is printed, beside what is found"),
+            _table(
+                "Numbers",
+                where(result.rows, part="value"),
+                NUMBER,
+                PAPER,
+                Column("this study", "study", digits=6),
+                Column("difference", "difference"),
+                STATUS,
+            ),
+            _table(
+                "Equations, Fig. 3 and Table 1",
+                rows,
+                Column("number", "number"),
+                Column("what", "what"),
+                STATUS,
+                Column("how it was checked", "check"),
+                Column("value", "value", digits=6),
+            ),
+            Head("Misprints and definitions"),
+            _table(
+                "What is printed, and what it should be",
+                where(result.rows, part="misprint"),
+                Column("where", "where"),
+                Column("printed", "printed"),
+                Column("should be", "corrected"),
+                Column("measure", "measure"),
+                Column("value corrected", "value_corrected", digits=5),
+                Column("value printed", "value_printed", digits=5),
+            ),
+            _misprints(result.arrays),
+            Head("The bearings"),
+            _bearings(result.arrays),
+        ),
+    )
+
+
+def _misprints(arrays):
+    """Eqs (8) and (12), as printed and corrected."""
+    forms = (("as printed", PRINTED, "printed"), ("corrected", CORRECT, "right"))
+    charts = [
+        _curves(
+            title,
+            x,
+            Axis("momentum after / before [-]", *ends),
+            {name: (tone, arrays[f"impact/{by}"], arrays[f"impact/{form} by {by}"]) for name, tone, form in forms},
+        )
+        for title, by, x, ends in (
+            ("Eq. (8), R = 1.0884 m", "slenderness", Axis(GAMMA, 0.1, 0.45), (0.985, 1.02)),
+            ("Eq. (8), γ = 0.28 rad", "radius", Axis("radius R [m]", 0.1, 10.0, "log"), (0.5, 4.0)),
+        )
+    ]
+    unloading = {
+        name: (tone, arrays["reversal/x"][::-1], arrays[f"reversal/{form}"][::-1] / 1e3) for name, tone, form in forms
+    }
+    x, loading = arrays["reversal/loading"]
+    jump = arrays["reversal/right"][0] - arrays["reversal/printed"][0]
+    curves = {"loading": (LIMIT, x, loading / 1e3), **unloading}
+    displacement, force = Axis("displacement x [m]", -0.2, 0.2), Axis("force of one bearing [kN]", -2.5, 2.5)
+    return figure(
+        [*charts, _curves("Eq. (12), unloading from 0.2 m", displacement, force, curves)],
+        "Horizontal momentum after an impact over that before: eq. (8) as printed is right only where R cos γ happens "
+        f"to be 1 m. With eq. (12) as printed the force jumps by {number(jump / 1e3)} kN = 2 f₀ at a reversal.",
+    )
+
+
+def _bearings(arrays):
+    """Fig. 3, and the definitions of Table 1(a) over the amplitude."""
+    ends, amplitude = np.array([-0.34, 0.34]), Axis("amplitude [m]", 0.0, 0.4)
+    limits = {
+        name: (LIMIT, ends, (abs(slope) * ends / 0.34 + s * f0) / 1e3)
+        for name, (s, slope, f0) in zip(("(lower)", "limit curves"), arrays["loops/limits"], strict=True)
+    }
+    loops = _curves(
+        "Fig. 3",
+        Axis("displacement x [m]", -0.34, 0.34),
+        Axis("force of one bearing [kN]", -3.0, 3.0),
+        {**limits, "algebraic law": (CORRECT, arrays["loops/x"], arrays["loops/force"] / 1e3)},
+    )
+    loops.dots(*(arrays["loops/reversals"].T / [[1.0], [1e3]]), tone=PRINTED)
+    period, ours, usual = (arrays[f"amplitude/{name}"] for name in ("period", "damping 2 pi", "damping 4 pi"))
+    at, energy = arrays["amplitude/x"], {"loss/(2π energy)": (PRINTED, ours), "loss/(4π energy)": (CORRECT, usual)}
+    dampings = {name: (tone, at, 100 * share) for name, (tone, share) in energy.items()}
+    periods = _curves("Period", amplitude, Axis("secant period [s]", 0.0, 2.5), {"(one)": (CORRECT, at, period)}, 14)
+    damping = _curves("Damping", amplitude, Axis("damping [% of critical]", 0.0, 60.0), dampings, 132)
+    for chart, value in ((periods, paper.PERIOD), (damping, 100 * paper.DAMPING)):
+        chart.dots([paper.X_MAX], [value], says=[f"Table 1(a): {value:g}"], tone="var(--bad)")
+    return figure(
+        [loops, periods, damping],
+        "The bearing law between its limit curves; its history is fixed at the reversal points, dots. Dots on period "
+        "and damping: Table 1(a), the secant period at 0.30 m, and loss of a cycle over 2π times the elastic energy.",
+    )
+
+
+def _motion(result):
+    label, missing = result.settings["motion"]["label"], missing_words(result.settings["missing"])
+    runs = where(result.rows, part={"run", "rocking spectrum", "displacement spectrum"})
+    claims = where(result.rows, part="claim")
+    together = _spans(claims[-1]["intervals"])
+    shares = where(result.rows, part="benefit")
+    others = shares[1:]
+    mean = {key: sum(row[key] for row in others) / len(others) for key in SHARES}
+    return Page(
+        f"The Caryatid under {label}: {_outcomes(where(runs, part='run'))}",
+        (
+            "The paper prints no slenderness. Its three claims (free-standing the statue overturns, it is vulnerable "
+            "below a rocking period of about 4 s, isolated it does not rock) hold together under this motion for γ "
+            f"[rad]: {together}. Used here is {result.settings['slenderness']:g} rad.",
+            *([f"Not installed, and so not compared: {'; '.join(missing)}"] if missing else ()),
+        ),
+        more=(
+            Head("What is printed, beside what is found"),
+            _table(
+                "Figs 4 to 6",
+                _beside(where(result.rows, part="value")),
+                NUMBER,
+                PAPER,
+                Column("analytic model", "study", digits=6),
+                Column("engines", "engines"),
+                STATUS,
+            ),
+            _spectra(result),
+            _table(
+                "A linear oscillator at the design period, by either definition of damping, beside the bearings",
+                where(result.rows, part="equivalent"),
+                Column("damping", "definition"),
+                Column("its value", "damping", digits=3, percent=True),
+                Column("peak displacement of the oscillator [m]", "displacement", digits=3),
+                Column("of the bearings [m]", "nonlinear", digits=3),
+            ),
+            Head("Which slenderness?"),
+            _table(
+                "Slendernesses that fit the paper's claims",
+                claims,
+                Column("claim", "claim"),
+                Column("holds for γ [rad]", lambda row: _spans(row["intervals"])),
+            ),
+            _vulnerable(result),
+            Head("Other slendernesses, intensities and motions"),
+            _benefit(result),
+            _table(
+                "The Caryatid at other intensities: times the motion at which its state changes",
+                where(result.rows, part="critical intensity"),
+                Column("scene and state", "{scene}, {what}"),
+                Column("first at [-]", "first", digits=4),
+                Column("all changes [-]", lambda row: row["changes"] or "none up to 4", digits=4),
+            ),
+            _seeds(result.arrays),
+            _table(
+                "Share of the map over slenderness and intensity",
+                [shares[0], {"motion": f"mean of {len(others)} synthetic motions", **mean}, *others],
+                Column("motion", "motion"),
+                *(
+                    Column(f"isolated upright {key}" if key == SHARES[-1] else key, key, digits=3, percent=True)
+                    for key in SHARES
+                ),
+            ),
+            Head("Does it slide, does it jump?"),
+            _table(
+                "Friction demand and least normal force of the Caryatid, and shares of the map",
+                where(result.rows, part="contact"),
+                Column("scene", "scene"),
+                Column("friction demand [-]", "friction_demand", digits=3),
+                Column("least N/(m g) [-]", "min_normal_ratio", digits=3),
+                Column("friction of an impact, at any speed [-]", "impact_friction", digits=3),
+                *(
+                    Column(f"map: friction above {limit:g}", f"friction above {limit:g}", digits=3, percent=True)
+                    for limit in FRICTION_LIMITS
+                ),
+                Column("map: N ≤ 0", "jumps", percent=True),
+            ),
+            _contact(result.arrays, "friction", "friction demand |H|/N [-]", "s0 s1 s2 s3 s5"),
+            _contact(result.arrays, "normal", "least N/(m g) [-]", "s5 s3 s2 s1 s0"),
+            Head("Is the algebraic law cheaper than Bouc-Wen?"),
+            *_cost(where(result.rows, part="cost")),
+            Head("All runs"),
+            _agreement(runs),
+            _table("All runs", [row for same in grouped(runs, SCENE.of).values() for row in same], *RUN),
+        ),
+        evidence=tuple(
+            (f"{row['engine']}, {_scene(row)}: {row['failure']['reason']}", row["failure"].get("message", ""))
+            for row in runs
+            if row["failure"]
+        ),
+    )
+
+
+def _scene(row):
+    return {
+        "run": "{scene} Caryatid",
+        "rocking spectrum": "Fig. 5(a), T_r = {period:.3f} s",
+        "displacement spectrum": "Fig. 5(b), T_bi = {period:g} s, ξ = {share}",
+    }[row["part"]].format_map({**row, "share": percent(row.get("damping"), 1)})
+
+
+def _spans(intervals):
+    return ", ".join(f"{low:.4f} to {high:.4f}" for low, high in intervals) or "nowhere"
+
+
+def _outcomes(runs):
+    """In how many solvers each scene ends how."""
+    return "; ".join(
+        f"{scene} it {end} in {len(where(same, outcome=end))} of {len(same)} solvers"
+        for (scene,), same in grouped(runs, "scene").items()
+        for (end,) in grouped(same, "outcome")
+    )
+
+
+def _beside(rows: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
+    """A row for each number of the paper: the model's, and in ``engines`` what the engines give, from least to most."""
+    for same in grouped(rows, "where", "quantity").values():
+        own = where(same, engine={None, "analytic"}) or [{"study": None}]
+        others = dict.fromkeys(row["study"] for row in same if row["engine"] not in (None, "analytic"))
+        values = sorted(value for value in others if not isinstance(value, str))
+        words = [value for value in others if isinstance(value, str)]
+        words += [" to ".join(dict.fromkeys(number(value, 4) for value in (values[0], values[-1])))] if values else []
+        status = ", ".join(dict.fromkeys(row["status"] for row in same))
+        yield {**same[0], **own[0], "engines": "; ".join(words) or None, "status": status}
+
+
+def _agreement(runs):
+    """What each engine's runs of Fig. 5 differ by from the model's: in their times of overturning or their peaks."""
+    rows = []
+    for same in grouped((row for row in runs if row["part"] != "run" and not row["failure"]), SCENE.of).values():
+        (model,) = where(same, engine="analytic") or [None]
+        for row in same if model else ():
+            peak = "peak_tilt_ratio" if row["part"] == "rocking spectrum" else "peak_base_displacement"
+            key = "overturning_time" if row["outcome"] == "overturns" else peak
+            apart = abs(row[key] / model[key] - 1) if row["outcome"] == model["outcome"] else 1.0
+            panel = f"Fig. 5(b), ξ = {percent(row['damping'], 1)}" if "damping" in row else "Fig. 5(a)"
+            rows.append({**row, "apart": apart, "panel": panel})
+    return lines(
+        [row for row in rows if row["engine"] != "analytic"],
+        Column("period [s]", "period", digits=3),
+        Column("relative difference [-]", lambda row: max(row["apart"], FLOOR)),
+        "What an engine differs by from the analytic model: in the time of overturning, where it overturns, else in "
+        "the peak. 1: another outcome.",
+        panel="panel",
+        by=lambda row: "",
+        log="y",
+    )
+
+
+def _spectra(result):
+    """Fig. 5 in the analytic model."""
+    period, overturns = result.arrays["rocking/period"], result.arrays["rocking/overturns"]
+    bearings, peaks = where(result.rows, part="equivalent")[0], result.arrays["displacement/peak"]
+    tilt = Chart(
+        Axis("rocking period [s]", float(period[0]), float(period[-1])),
+        Axis("peak |φ|/γ [-]", 0.0, 1.6),
+        "Peak tilt over the rocking period; shaded where the block overturns.",
+        title=f"Fig. 5(a), γ = {result.settings['slenderness']:g} rad",
+    )
+    edges = np.concatenate([period[:1], (period[1:] + period[:-1]) / 2, period[-1:]])
+    tilt.area(list(np.repeat(edges, 2)), [0.0, *np.repeat(np.where(overturns, 1.6, 0.0), 2), 0.0], "falls")
+    tilt.line(period, result.arrays["rocking/tilt"])
+    sway = _curves(
+        "Fig. 5(b)",
+        Axis("period [s]", 0.0, 5.0),
+        Axis("peak displacement [m]", 0.0, 1.05 * float(peaks.max())),
+        {
+            f"{100 * ratio:.0f} % damping": (tone, result.arrays["displacement/period"], peak)
+            for tone, ratio, peak in zip(DAMPINGS, result.arrays["displacement/damping"], peaks, strict=True)
+        },
+        122,
+    )
+    says = [f"the bearings, at their period: {number(bearings['nonlinear'])} m"]
+    sway.dots([bearings["period"]], [bearings["nonlinear"]], says=says, mark="X", tone="var(--bad)")
+    return figure(
+        [tilt, sway],
+        "The analytic model. Shaded: the block overturns. Linear oscillators are exact for the sampled motion; cross: "
+        "the hysteretic bearings at their secant period.",
+    )
+
+
+def _vulnerable(result):
+    about = paper.VULNERABLE_PERIOD - paper.VULNERABLE_ABOUT, paper.VULNERABLE_PERIOD + paper.VULNERABLE_ABOUT
+    values = zip(result.arrays["claims/slenderness"], result.arrays["claims/vulnerable period"], strict=True)
+    return lines(
+        [{"engine": "analytic", "at": float(x), "period": float(y)} for x, y in values],
+        Column(GAMMA, "at", digits=3),
+        Column("longest that overturns [s]", "period", digits=3),
+        "Longest rocking period of a block that overturns: the paper's are vulnerable below about 4 s. By the "
+        f"acceleration of the base alone, atan(max|a|/g), a block stays down on the bearings from a slenderness of "
+        f"{result.settings['uplift_slenderness']:.4f} rad on.",
+        by=lambda row: "",
+        rules=[("x", result.settings["slenderness"], "used here"), *(("y", at, f"{at:g} s") for at in about)],
+    )
+
+
+def _map(arrays, part, panels, kinds, right=14):
+    """Maps over the slendernesses and intensities of a part; returns panels and legend."""
+    gamma, intensity = (arrays[f"{part}/{name}"].astype(float) for name in ("slenderness", "intensity"))
+    return regions(GAMMA, INTENSITY, gamma, intensity, panels, kinds, right=right)
+
+
+def _levels(quantity, classes):
+    """{words: class} of the levels between its bounds."""
+    bounds = BOUNDS[quantity]
+    between = [f"{low:g} to {high:g}" for low, high in pairwise(bounds)]
+    return dict(zip((f"below {bounds[0]:g}", *between, f"above {bounds[-1]:g}"), classes.split(), strict=True))
+
+
+def _benefit(result):
+    """Who stays upright, over slenderness and intensity."""
+    (chart,), keys = _map(result.arrays, "benefit", {"": result.arrays["benefit/category"]}, HARMS, 76)
+    gamma, intensity = (result.arrays[f"benefit/{name}"] for name in ("slenderness", "intensity"))
+    beyond = ~(result.arrays["benefit/isolated displacement"] <= paper.X_MAX)
+    lifts = result.arrays["benefit/isolated lifts"]
+    for reached, name, tone in ((beyond, "0.30 m", "var(--bad)"), (lifts, "lifts", "var(--ink)")):
+        first = np.where(reached.any(axis=1), intensity[reached.argmax(axis=1)], np.nan)
+        chart.line(gamma, first, tone=tone)
+        chart.label(float(np.nan_to_num(first[-1], nan=intensity[-1])), name, tone=tone)
+    chart.dots([result.settings["slenderness"]], [1.0], says=["the Caryatid"], mark="D", tone="var(--ink)")
+    return figure(
+        [chart],
+        "Does isolation help? Diamond: the Caryatid. Above the lines the isolated block lifts, and its bearings need "
+        "more than their 0.30 m, where the law describes no built bearing.",
+        keys,
+        keys,
+    )
+
+
+def _seeds(arrays):
+    """Share of the synthetic motions in which isolation helps, and in which it harms."""
+    total = arrays["seeds/counts"].sum(axis=0).max()
+    panels = {
+        title: np.digitize(arrays["seeds/counts"][kind] / total, BOUNDS["share"])
+        for title, kind in (("only the isolated one stays", ONLY_ISOLATED), ("only the free-standing one", ONLY_FREE))
+    }
+    charts, keys = _map(arrays, "seeds", panels, _levels("share", "s0 s1 s2 s3 s5"))
+    return figure(charts, f"Share of {total} synthetic motions in which isolation decides.", keys, keys)
+
+
+def _contact(arrays, quantity, words, classes):
+    """What the contact has to bear, free-standing and isolated; no friction demand: no normal force."""
+    panels = {
+        name: np.digitize(arrays[f"contact/{name} {quantity}"].astype(float), BOUNDS[quantity])
+        for name in (FREE, ISOLATED)
+    }
+    charts, keys = _map(arrays, "contact", panels, _levels(quantity, classes))
+    caption = f"{words[0].upper()}{words[1:]}; runs that overturn count until the tilt first reaches γ."
+    return figure(charts, caption, keys, keys)
+
+
+def _cost(rows):
+    won = [f"{row['integrator']} ({row['what']})" for row in rows if row["ratio_high"] and row["ratio_high"] < 1]
+    found = f"Cheaper beyond the spread in {', '.join(won)}." if won else "Not confirmed here: in no setting it is."
+    yield (
+        f"{found} The Bouc-Wen law is the simplest one, linear in z: a multiplication where the algebraic law raises "
+        "to a power. Not tested are the paper's own setting, sub-steps inside a time-step scheme, and other exponents."
+    )
+
+    def errors(row):
+        if row["errors"] is None:
+            return "equal by construction"
+        return row["at_errors"] or [errors[-1] for errors in row["errors"]]
+
+    yield _table(
+        "CPU time of the algebraic bearing over that of a Bouc-Wen bearing of the same limit force and stiffnesses",
+        rows,
+        Column("integrator", "integrator"),
+        Column("how", "what"),
+        Column("errors over the peak displacement [-]", errors, digits=1),
+        Column("algebraic, finest [s]", lambda row: row["cpu_seconds"][0][-1]),
+        Column("Bouc-Wen, finest [s]", lambda row: row["cpu_seconds"][1][-1]),
+        Column("median ratio [-]", "ratio", digits=3),
+        Column("10 to 90 % of ratios [-]", "{ratio_low} to {ratio_high}", digits=3),
+        Column("ratios [-]", "ratios"),
+    )
+
+
+def _histories(result):
+    arrays, motion, x_max = result.arrays, result.settings["motion"], result.settings["x_max"]
+    ended = [row for row in result.rows if not row["failure"]]
+    longest = {name: max(row["end"]["time"] for row in where(ended, scene=name)) for name in (FREE, ISOLATED)}
+    time, acceleration = arrays["motion/time"], arrays["motion/acceleration"] / 9.81
+    peak, most = float(abs(acceleration).max()), max(row["peak_tilt_ratio"] for row in where(ended, scene=ISOLATED))
+    charts = []
+    for title, label, high, level, end in (
+        ("Fig. 4(a)", "ground acceleration [g]", 1.1 * peak, None, 1.5 * longest[FREE]),
+        ("Fig. 4(b), free-standing", "tilt φ/γ [-]", 2.5, 1.0, 1.5 * longest[FREE]),
+        ("Fig. 6, isolated", "displacement x [m]", 1.1 * x_max, x_max, longest[ISOLATED]),
+    ):
+        says = f"{title}: {label} over time, all solvers over each other."
+        charts.append(Chart(Axis("time [s]", 0.0, end), Axis(label, -high, high), says, title=title))
+        for at in (-level, level) if level else ():
+            charts[-1].rule(at, "y")
+    charts[0].line(time[time < charts[0].x.high], acceleration[time < charts[0].x.high])
+    charts[0].rule(motion["peak_time"])
+    for row in ended:
+        at, tilt, x = (
+            arrays[f"{row['scene']}/{row['engine']}/{name}"] for name in ("time", "tilt", "base_displacement")
+        )
+        if row["scene"] == FREE:
+            charts[1].line(at, tilt / result.settings["slenderness"], row["engine"])
+        else:
+            charts[2].line(at[::KEPT], x[::KEPT], row["engine"])
+    solvers = dict.fromkeys(row["engine"] for row in ended)
+    caption = (
+        "All solvers over each other. Dashed: peak of the motion; |φ| = γ; the design displacement. Largest tilt of "
+        f"the isolated Caryatid: {number(most, 2)} slendernesses."
+    )
+    title = f"The Caryatid over time under {motion['label']}: {_outcomes(result.rows)}"
+    return Page(title, (), more=(figure(charts, caption, solvers),))
