@@ -55,7 +55,7 @@ Check = Annotated[
 
 
 def _options(function):
-    """The keyword-only parameters of a plan or of figures, with annotations that Typer can read."""
+    """The keyword-only parameters of a plan, with annotations that Typer can read."""
     return [
         parameter.replace(annotation=_known(parameter.annotation, function))
         for parameter in inspect.signature(function).parameters.values()
@@ -70,11 +70,11 @@ def _known(annotation, function):
 
 def command_of(study: Study) -> Callable[..., None]:
     """A function that Typer makes the study's command of."""
-    drawing = {parameter.name for parameter in _options(study.figures)}
 
     def command(
         quick=False, output=None, engine=None, workers=None, scheduler=None, replot=None, check=None, **options
     ):
+        from ..report.detail import write_study
         from ..running.files import check_folder
         from ..running.provenance import read_result
         from ..running.solving import spinner
@@ -86,24 +86,21 @@ def command_of(study: Study) -> Callable[..., None]:
                     "--check: takes a result as it is; leave --quick, --engine, --scheduler, --replot out"
                 )
             return _check(study.name, output, check, workers)
-        shown = {name: value for name, value in options.items() if name in drawing}
         folder = f"{study.name}-study" if output is None else output
         check_folder(folder)
         if replot is not None:
-            return _tell(_show(study, replot, output, shown))
-        given = {name: value for name, value in options.items() if name not in drawing}
+            return _tell(write_study(study, replot, output)[:1])
         problems = []
         if scheduler is not None and workers is not None:
             raise SettingError("--workers: are those of --scheduler; give one of the two")
         place = dict(workers=workers, scheduler=scheduler)
-        for path in compute(study, folder, engines=engine or None, quick=quick, **place, **given):
+        for path in compute(study, folder, engines=engine or None, quick=quick, **place, **options):
             with spinner(f"{path.name}: page"):
-                shown_files = _show(study, path, None, shown)
-            _tell([path, *shown_files])
-            result = read_result(path)
-            for paragraph in study.section(result).text:
+                file, page = write_study(study, path)
+            _tell([path, file])
+            for paragraph in (page.title, *page.text):
                 typer.echo(paragraph, err=True)
-            problems += study.problems(result)
+            problems += study.problems(read_result(path))
         if problems:
             _tell(problems)
             raise typer.Exit(1)
@@ -120,23 +117,11 @@ def command_of(study: Study) -> Callable[..., None]:
         option("replot", Replot, None),
         option("check", Check, None),
         *_options(study.plan),
-        *_options(study.figures),
     ]
     command.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]  # Typer reads it there
     command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
     command.__doc__ = f"{study.question}\n\nExample: rocking study {study.name} --quick"
     return command
-
-
-def _show(study, path, folder, options):
-    """Write the page of a result file, or save the figures of a study that has no page yet; returns the paths."""
-    if study.page is None:
-        from ..studies import draw
-
-        return draw(study, path, folder, **options)
-    from ..report.detail import write_study
-
-    return [write_study(study, path, folder)]
 
 
 def _check(name, output, number, workers):

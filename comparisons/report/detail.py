@@ -27,8 +27,10 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parent
 
 
-def write_study(study: Study, path: str | PathLike[str], folder: str | PathLike[str] | None = None) -> Path:
-    """Write the page of the result file at `path` into `folder`, by default beside it; returns the page's path.
+def write_study(
+    study: Study, path: str | PathLike[str], folder: str | PathLike[str] | None = None
+) -> tuple[Path, Section]:
+    """Write the page of the result file at `path` into `folder`, by default beside it: (its path, what it says).
 
     Raises
     ------
@@ -41,7 +43,7 @@ def write_study(study: Study, path: str | PathLike[str], folder: str | PathLike[
     into.parent.mkdir(parents=True, exist_ok=True)
     html = detail(page.title, [replace(page, age=age(result))], origin_of(result))
     into.write_text(html, encoding="utf-8")
-    return into
+    return into, page
 
 
 def detail(

@@ -31,12 +31,12 @@ def stored(studies: Path = RESULTS) -> dict[str, Section]:
     ResultError
         A result file is damaged.
     """
-    found = {}
-    for name in HEADLINES:
-        finding, file = get_study(name).finding, studies / f"{name}.json"
-        if finding is not None and file.exists():
-            found[name] = finding(read_result(file))
-    return found
+    pages = {
+        name: get_study(name).page(read_result(file)).opening()
+        for name in HEADLINES
+        if (file := studies / f"{name}.json").exists()
+    }
+    return {name: opening for name, opening in pages.items() if opening is not None}
 
 
 def gallery(found: Mapping[str, Section]) -> dict[str, str]:

@@ -94,14 +94,10 @@ def _stored(file):
         return Stored(file.stem, Section(f"Study {file.stem}", (f"{file.name} cannot be shown: {error}",)))
     try:
         study = get_study(result.kind)
-        if study.page:
-            page = study.page(result)  # drawn once
-            section, finding = page.whole(), page.opening()
-        else:
-            section, finding = study.section(result), study.finding(result) if study.finding else None
-        judgement = study.judgement(result) if study.judgement else None
+        page = study.page(result)  # drawn once
+        judgement = study.judgement(result)
     except (KeyError, StudyBroken) as error:
         words = f"{file.name} cannot be shown: {error.args[0]}."
         return Stored(file.stem, Section(f"Study {result.kind}", (words,)), origin=origin_of(result))
     rated = restitution.rated(result) if result.kind == "restitution" else ()
-    return Stored(file.stem, section, finding, judgement, origin_of(result), rated)
+    return Stored(file.stem, page.whole(), page.opening(), judgement, origin_of(result), rated)

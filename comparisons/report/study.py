@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from ..running.study import Study, compute
 from .runs import CARYATID, RESTITUTION, SCENES, load_scenes, plan
-from .sections import scene_sections
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
 SHORT_RECORD = 200_000
 UNFINISHED = "unfinished"  # folder of what a report that is broken off goes on from
 
-STUDY = Study("report", "Scenes in every solver.", plan, lambda result: {}, scene_sections)
+STUDY = Study("report", "Scenes in every solver.", plan)
 
 
 def make_own_results(

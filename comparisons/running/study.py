@@ -1,6 +1,6 @@
 """A study: a question, the runs that answer it, what is measured in each, and how the answer is shown.
 
-    STUDY = Study("outcomes", "Who overturns?", plan, page=page)
+    STUDY = Study("outcomes", "Who overturns?", plan, "outcomes.page")
 
     def plan(ask):
         rows = yield Batch([Case(scene, solver) for solver in ("analytic", *ask.engines)], outcome, "outcomes")
@@ -12,15 +12,18 @@ the last one is returned. What runs, stores, resumes and writes is `compute`, th
 study, from the first file to its page: `comparisons.studies`.
 """
 
+from __future__ import annotations
+
 import contextlib
 import sys
 import time
 from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from importlib import import_module
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from engines import ENGINES, installed_engines
 
@@ -34,6 +37,9 @@ from .solving import named_engines, spinner, stdout_to_stderr
 from .sources import PROJECT, digests_of_all, source_digests
 from .store import Store
 from .sweep import Row, run_sweep
+
+if TYPE_CHECKING:
+    from ..showing.parts import Judgement, Page
 
 RUNS = "runs.jsonl"  # rows of single runs, beside the result
 TIME_LIMIT = 300.0  # s, of one run
@@ -86,31 +92,27 @@ class Study:
 
     name: on the command line, of its files, and the kind of its result. question: one line, the command's help.
     plan: ``(ask, **options)`` -> generator, see above; its keyword-only parameters, annotated as Typer wants them, are
-    options of the command. page: result -> `comparisons.showing.parts.Page`, all that is shown of it. judgement:
-    result -> `comparisons.showing.parts.Judgement`, a column of the report's decision table. problems: result ->
-    sentences that end the command with status 1. all_engines: whether all that are installed take part where none is
-    asked for.
-
-    Of a study without a page: figures, ``(result, **options)`` -> {suffix: Figure}, saved as pictures; section, result
-    -> `comparisons.showing.parts.Section`, all that is known; finding, result -> `Section`, for the report's first
-    page. A page gives both.
+    options of the command. shown_by: the module that shows it, imported only there: its ``page(result)`` gives the
+    `comparisons.showing.parts.Page`, and its ``judgement(result)``, if it has one, a column of the report's decision
+    table. problems: result -> sentences that end the command with status 1. all_engines: whether all that are installed
+    take part where none is asked for.
     """
 
     name: str
     question: str
     plan: Callable[..., Plan]
-    figures: Callable[..., dict] = lambda result: {}  # these two, finding and __post_init__ go with the last such study
-    section: Callable[[Result], Any] = None  # type: ignore[assignment]  # one of page and section is given
+    shown_by: str = ""
     problems: Callable[[Result], list] = lambda result: []
     all_engines: bool = True
-    finding: Callable[[Result], Any] | None = None
-    judgement: Callable[[Result], Any] | None = None
-    page: Callable[[Result], Any] | None = None
 
-    def __post_init__(self) -> None:
-        if (page := self.page) is not None:
-            object.__setattr__(self, "section", lambda result: page(result).whole())
-            object.__setattr__(self, "finding", lambda result: page(result).opening())
+    def page(self, result: Result) -> Page:
+        """What is shown of a result."""
+        return import_module(self.shown_by).page(result)
+
+    def judgement(self, result: Result) -> Judgement | None:
+        """The column of the decision table; None of a study that judges no engine."""
+        judges = getattr(import_module(self.shown_by), "judgement", None)
+        return judges and judges(result)
 
 
 def compute(

@@ -24,8 +24,8 @@ title, lead and first, the study's own page all of it; nothing is told or drawn 
         )
 
 The layer: `comparisons.showing.rows` (where, grouped, Column, table), `comparisons.showing.figures` (lines, shades,
-beside); what they cannot draw is a `comparisons.showing.charts.Chart`. ``__init__.py`` holds ``STUDY`` and imports the
-page only where it is shown.
+beside); what they cannot draw is a `comparisons.showing.charts.Chart`. ``__init__.py`` holds ``STUDY``,
+which names the module of the page: it is imported only where it is shown.
 
 Other packages declare theirs in the entry point group `rocking.studies`; an entry resolves to a `Study` of its name.
 """
@@ -34,9 +34,7 @@ from __future__ import annotations
 
 from importlib import import_module
 from importlib.metadata import entry_points
-from os import PathLike
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from analytic.errors import SettingError
 
@@ -91,25 +89,6 @@ def get_study(name: str) -> Study:
     if len(entries) > 1:
         raise StudyBroken(f"{who}: several declare that name; uninstall all but one")
     return _resolve(entries[0], who)
-
-
-def draw(
-    study: Study, path: str | PathLike[str], folder: str | PathLike[str] | None = None, **options: Any
-) -> list[Path]:
-    """Draw the figures of the result file at `path` into `folder`, by default beside it; returns their paths.
-
-    Of studies without a page, and gone with the last of them.
-    """
-    from ..running.provenance import read_result
-    from ..showing.plots import save
-
-    path, drawn = Path(path), []
-    into = path if folder is None else Path(folder) / path.name
-    into.parent.mkdir(parents=True, exist_ok=True)
-    for suffix, figure in study.figures(read_result(path), **options).items():
-        drawn.append(into.with_name(f"{path.stem}-{suffix}.png" if suffix else f"{path.stem}.png"))
-        save(figure, drawn[-1])
-    return drawn
 
 
 def _resolve(entry, who):

@@ -8,16 +8,9 @@ misprints), ``caryatid-under-<motion>`` (what does, without a single value of th
 from ...running.study import Study
 from .study import plan
 
-
-def _page(result):
-    from .page import page  # where it is shown only: the processes that run it need no charts
-
-    return page(result)
-
-
 STUDY = Study(
     "caryatid",
     "The Caryatid paper: every equation, figure and table reproduced or corrected, and what it leaves out.",
     plan,
-    page=_page,
+    f"{__name__}.page",
 )

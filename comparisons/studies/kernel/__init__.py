@@ -3,17 +3,10 @@
 from ...running.study import Study
 from .study import plan
 
-
-def _page(result):
-    from .page import page  # where it is shown only
-
-    return page(result)
-
-
 STUDY = Study(
     "kernel",
     "The analytic model's kernel against other integrators: error and CPU time of the same runs, and throughput.",
     plan,
-    page=_page,
+    f"{__name__}.page",
     all_engines=False,
 )

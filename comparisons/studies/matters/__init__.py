@@ -3,16 +3,9 @@
 from ...running.study import Study
 from .study import plan
 
-
-def _page(result):
-    from .page import page  # where it is shown only: the processes that run it need no charts
-
-    return page(result)
-
-
 STUDY = Study(
     "matters",
     "What changes the outcome more often than the choice of the engine: vertical motion, a per cent of slenderness?",
     plan,
-    page=_page,
+    f"{__name__}.page",
 )

@@ -3,17 +3,10 @@
 from ...running.study import Study
 from .study import plan, problems
 
-
-def _page(result):
-    from .page import page  # where it is shown only: the processes that run it need no charts
-
-    return page(result)
-
-
 STUDY = Study(
     "tolerances",
     "How far each engine is from the analytic model, beside what it is held to. Status 1: a row does not hold.",
     plan,
-    problems=problems,
-    page=_page,
+    f"{__name__}.page",
+    problems,
 )

@@ -6,7 +6,6 @@ import pytest
 
 from comparisons.commands import study as command
 from comparisons.running.study import Found, Study
-from comparisons.showing.parts import Section
 
 
 def _plan(ask):
@@ -15,7 +14,7 @@ def _plan(ask):
 
 
 def _study(name):
-    return Study(name, "A study that asks for no run?", _plan, lambda result: {}, lambda result: Section(name))
+    return Study(name, "A study that asks for no run?", _plan)
 
 
 @pytest.fixture

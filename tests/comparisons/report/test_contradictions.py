@@ -24,6 +24,10 @@ def decision():
     return {(row.engine, row.variant): row for row in rows_of([row for one in stored for row in one.rated], columns)}
 
 
+def judgement_of(name):
+    return get_study(name).judgement(read_result(RESULTS / f"{name}.json"))
+
+
 def page_of(name):
     return get_study(name).page(read_result(RESULTS / f"{name}.json")).whole()
 
@@ -65,9 +69,9 @@ def test_the_rating_of_restitution_is_the_same_on_the_first_screen_and_on_its_pa
         assert row["rating"] == words[decision[row["engine"], row["variant"]].marks[0].level]
 
 
-@pytest.mark.parametrize("name", [name for name in STORED if get_study(name).judgement])
+@pytest.mark.parametrize("name", [name for name in STORED if judgement_of(name)])
 def test_what_a_study_says_on_the_first_screen_stands_in_its_own_tables(name):
-    judgement = get_study(name).judgement(read_result(RESULTS / f"{name}.json"))
+    judgement = judgement_of(name)
     page = page_of(name)
     marks = {key: mark for key, mark in judgement.marks.items() if key[0] in ENGINES}
     assert marks

@@ -4,6 +4,7 @@ import json
 import re
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -17,7 +18,6 @@ from comparisons.report import runs, write
 from comparisons.report.study import make_results
 from comparisons.report.write import write_page
 from comparisons.running.provenance import read_result, write_result
-from comparisons.running.study import Study
 from comparisons.showing import parts
 from comparisons.showing.parts import Table
 from comparisons.studies import get_study
@@ -291,7 +291,7 @@ def test_a_study_is_shown_by_its_own_page_and_says_when_it_is_old(folder, copied
     assert "fake.json cannot be shown: unknown study" in (copied / "pages/fake.html").read_text()
     tables = [Table(name, ("solver", "kappa [-]"), [["exudyn", "0.75"]]) for name in ("Agreement", "All of it")]
     shown = parts.Page("A fake study: agrees", ("Two paragraphs < one.",), tuple(tables[:1]), tuple(tables[1:]))
-    study = Study("fake", "Does it agree?", lambda ask: None, page=lambda result: shown)
+    study = SimpleNamespace(page=lambda result: shown, judgement=lambda result: None)
     monkeypatch.setattr("comparisons.report.studies.get_study", lambda kind: study)
     path = write_page(copied, studies=studies)
     for page in (Page(path), Page(copied / "pages/fake.html")):

@@ -16,7 +16,6 @@ from comparisons.running.provenance import ResultError, age, last_check, read_re
 from comparisons.running.run_sample import case_of, sample_of
 from comparisons.running.study import Batch, Found, Study, compute
 from comparisons.running.sweep import Case, Row
-from comparisons.showing.parts import Section
 
 sys.path.insert(0, str(Path(__file__).parent))  # and from there to the workers
 import fake_solvers  # noqa: E402
@@ -28,7 +27,7 @@ def _plan(ask):
     return Found({}, [row.values for row in rows])
 
 
-STUDY = Study("tilts", "How far?", _plan, lambda result: {}, lambda result: Section(""), all_engines=False)
+STUDY = Study("tilts", "How far?", _plan, all_engines=False)
 
 
 @pytest.fixture

@@ -22,7 +22,7 @@ def stored(name):
 
 @pytest.mark.parametrize("name", SHORT)
 def test_a_finding_is_one_sentence_one_figure_and_short_tables(name):
-    found = get_study(name).finding(stored(name))
+    found = get_study(name).page(stored(name)).opening()
     assert 20 < len(found.title) < 200 and len(found.figures) == 1 and found.measured
     assert sum(len(paragraph.split()) for paragraph in found.text) < 200
     for table in found.tables:
@@ -53,7 +53,7 @@ def test_a_page_writes_numbers_and_symbols_as_a_reader_does(name, file):
 
 def test_the_errors_of_restitution_are_the_worse_of_both_grounds():
     result = stored("restitution")
-    (table,) = get_study("restitution").finding(result).tables
+    (table,) = get_study("restitution").page(result).opening().tables
     rows = [row for row in result.rows if row["part"] == "summary" and row["scope"] == "all" and row["rms"] is not None]
     checked = 0
     for name, _, error, worst, _, _ in table.rows:
@@ -68,7 +68,7 @@ def test_the_boundaries_judged_are_those_where_the_block_stays_pressed():
     result, study = stored("overturning"), get_study("overturning")
     place = itemgetter("ground", "shape", "frequency", "amplitude")
     pressed = {place(row) for row in where(result.rows, part="edge") if row["min_normal"] >= 0}
-    for name, *_, largest, _ in study.finding(result).tables[0].rows:
+    for name, *_, largest, _ in study.page(result).opening().tables[0].rows:
         pair = tuple(name.split(", "))
         mark, rows = study.judgement(result).marks[pair], where(result.rows, part="shift", engine=pair[0])
         shifts = [row["shift"] for row in rows if place(row) in pressed]

@@ -14,12 +14,12 @@ SOURCE = '''
 from analytic import Block, Scene, Start
 from comparisons.running.cases import Case
 from comparisons.running.study import Batch, Found, Study
-from comparisons.showing.parts import Section, Table, number
-from matplotlib.figure import Figure
+from comparisons.showing.parts import Page
+from comparisons.showing.rows import Column, table
 
 
 def measure(case, response):
-    return {"start": case.tag["start"], "rest": response.end.tilt, "solver": case.solver}
+    return {"start": case.tag["start"], "rest": response.end.tilt, "engine": case.solver}
 
 
 def plan(ask, *, mass: float = 1.0):
@@ -30,19 +30,12 @@ def plan(ask, *, mass: float = 1.0):
     return Found({"mass": mass, "quick": ask.quick}, [row.values for row in rows])
 
 
-def figures(result):
-    figure = Figure()
-    figure.subplots().plot([row["start"] for row in result.rows], [row["rest"] for row in result.rows])
-    return {"": figure}
+def page(result):
+    return Page("Swings: how high they go", (f"{len(result.rows)} swings of {result.settings['mass']:g} kg.",),
+                more=(table("Swings", result.rows, Column("start [rad]", "start"), Column("tilt [rad]", "rest")),))
 
 
-def section(result):
-    table = Table("Swings", ("start [rad]", "tilt [rad]"),
-                  [[number(row["start"]), number(row["rest"])] for row in result.rows])
-    return Section("Swings", (f"{len(result.rows)} swings of {number(result.settings['mass'])} kg.",), (table,))
-
-
-STUDY = Study("swings", "How high does a released block swing?", plan, figures, section)
+STUDY = Study("swings", "How high does a released block swing?", plan, __name__)
 '''
 
 
@@ -74,8 +67,8 @@ def test_a_study_of_another_package_gets_command_resumption_and_section(tmp_path
     install(tmp_path, SOURCE)
     status, out, err = rocking(tmp_path, "study", "swings", "--quick", "--mass", "2", "--workers", "1")
     assert status == 0, err
-    assert (tmp_path / "swings-study" / "swings.json").exists() and (tmp_path / "swings-study" / "swings.png").exists()
-    assert "2 swings of 2.00 kg." in err and "2 runs done, 0 found" in err and "swings.png" in out
+    assert (tmp_path / "swings-study" / "swings.json").exists() and (tmp_path / "swings-study" / "swings.html").exists()
+    assert "2 swings of 2 kg." in err and "2 runs done, 0 found" in err and "swings.html" in out
     status, _, err = rocking(tmp_path, "study", "swings", "--mass", "2", "--workers", "1")
     assert status == 0 and "2 runs done, 2 found" in err
     page = (
@@ -91,7 +84,7 @@ def test_a_study_of_another_package_gets_command_resumption_and_section(tmp_path
         capture_output=True,
         timeout=120,
     )
-    assert shown.stdout.split() == ["Swings", "None", "4"], shown.stderr
+    assert shown.stdout.split() == ["Swings:", "how", "high", "they", "go", "None", "4"], shown.stderr
     assert "swings" in rocking(tmp_path, "study", "--help")[1]
 
 

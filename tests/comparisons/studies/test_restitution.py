@@ -104,7 +104,7 @@ def test_the_page_comes_from_the_result_alone(small):
 
 
 def test_its_own_page_needs_no_other_file(small, tmp_path):
-    file = write_study(STUDY, small[2], tmp_path / "shown")
+    file, _ = write_study(STUDY, small[2], tmp_path / "shown")
     text = file.read_text()
     assert file == tmp_path / "shown" / "restitution.html" and "<style>" in text and "pybullet, impact-aware" in text
     assert not [link for link in ("src=", "href=", "<link", "@import") if link in text]
