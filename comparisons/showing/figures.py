@@ -43,7 +43,6 @@ def lines(
     grey: Callable[[Row], bool] = lambda row: False,
     log: str = "",
     rules: Sequence[Rule] = (),
-    between: tuple[Column, Column] | None = None,
     says: Callable[[Row], str] | None = None,
     joined: bool = True,
     like: Iterable[Row] = (),
@@ -67,8 +66,6 @@ def lines(
         The logarithmic axes: "", "x", "y" or "xy".
     rules : sequence of (axis, value, words)
         Values to compare with: ("y", 1e-3, "trusted"). Words stand outside the plot, where no line crosses them.
-    between : (Column, Column) or None
-        The ends of an interval about y, drawn for the coloured series.
     says : function
         What a row's mark tells under the pointer; without it series, y and x.
     joined : bool
@@ -118,9 +115,6 @@ def lines(
             look = looks[who] if shown else LOOKS[1]
             if joined:
                 chart.line(*places, who, grey=not shown)
-            if between and shown:
-                low, high = ([end.of(row) for row in points] for end in between)
-                chart.reach(*places, low, high, who)
             if engine != REFERENCE:
                 chart.dots(*places, who, grey=not shown, says=told, apart=shown and joined, **look)
             if ends and shown:

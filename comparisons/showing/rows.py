@@ -17,6 +17,7 @@ from .parts import Table, number, percent, short
 
 Row = Mapping[str, Any]
 Key = str | Callable[[Row], Any]
+UNITS = {"stiffness": "N/m", "step": "s", "largest_step": "s"}  # of accuracy parameters
 
 
 def where(rows: Iterable[Row], **wanted: Any) -> list[Any]:
@@ -114,3 +115,8 @@ def table(caption: str, rows: Iterable[Row], *columns: Column) -> Table:
     return Table(
         caption, tuple(column.head for column in columns), [[column.text(row) for column in columns] for row in rows]
     )
+
+
+def setting_of(row: Row) -> str:
+    """The level of a row's accuracy parameter, with its name and unit: step = 0.001 s."""
+    return f"{row['parameter'].replace('_', ' ')} = {short(row['level'])} {UNITS.get(row['parameter'], '')}".rstrip()

@@ -11,15 +11,14 @@ import numpy as np
 
 from ...showing.charts import Axis, Chart, figure, key_of
 from ...showing.figures import MOVED, lines
-from ...showing.parts import Head, Judgement, Mark, Page, number, percent, short
-from ...showing.rows import NAME, Column, grouped, table, where
+from ...showing.parts import Head, Judgement, Mark, Page, number, percent
+from ...showing.rows import NAME, Column, grouped, setting_of, table, where
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
 
 LIMIT, FAIR = 0.005, 0.03  # shifts of a trusted and of a usable engine
 RATINGS = {"good": "trusted", "fair": "usable", "bad": "not to be trusted"}
-UNITS = {"stiffness": "N/m", "step": "s", "largest_step": "s"}  # of accuracy parameters
 EVIDENCE = 50  # failed runs shown, at most
 PLACE = ("ground", "shape", "frequency", "amplitude")
 REGIONS = {
@@ -369,7 +368,7 @@ def _refinement(result):
         levels,
         NAME,
         Column("tier", "tier"),
-        Column("setting", _setting),
+        Column("setting", setting_of),
         FOUND,
         MEDIAN,
         LARGEST,
@@ -379,10 +378,6 @@ def _refinement(result):
     ]
     if missing and not result.settings["quick"]:
         yield f"The study was stopped before its end; no level was tried of: {'; '.join(missing)}."
-
-
-def _setting(row):
-    return f"{row['parameter'].replace('_', ' ')} = {short(row['level'])} {UNITS.get(row['parameter'], '')}".rstrip()
 
 
 def _how(result):

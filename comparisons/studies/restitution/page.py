@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any
 from ...measuring.errors import rms
 from ...showing.figures import beside, lines, shades
 from ...showing.parts import Head, Page, number, percent, short
-from ...showing.rows import NAME, Column, grouped, table, where
+from ...showing.rows import NAME, Column, grouped, setting_of, table, where
 from ...showing.wording import TRUSTED, USABLE, trust
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
 
-UNITS = {"stiffness": "N/m", "step": "s", "largest_step": "s"}  # of accuracy parameters
 FLOOR = 1e-9  # errors below are drawn here
 BOUNDS = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
 
@@ -70,7 +69,7 @@ def page(result: Result) -> Page:
                 NAME,
                 Column("tier", "tier"),
                 Column("rating", "rating"),
-                Column("default setting", _setting),
+                Column("default setting", setting_of),
             ),
             table(
                 "Default settings, all slendernesses and bases together",
@@ -109,11 +108,6 @@ def page(result: Result) -> Page:
 
 def _ground(row):
     return "rigid ground" if row["ratio"] is None else "sliding base"
-
-
-def _setting(row):
-    """The level of a row with its unit."""
-    return f"{row['parameter'].replace('_', ' ')} = {short(row['level'])} {UNITS.get(row['parameter'], '')}".rstrip()
 
 
 def rated(result: Result) -> list[dict[str, Any]]:
@@ -203,7 +197,7 @@ def _refinement(levels):
         levels,
         NAME,
         GROUND,
-        Column("setting", _setting),
+        Column("setting", setting_of),
         ERROR,
         JUMP,
         CPU,
@@ -292,7 +286,7 @@ def _damping(damped, variants):
         for same in grouped(stick, "whose", "slenderness").values()
     ]
     yield lines(
-        [*predicted, *({**row, "error": row["measured"], "by": _setting(row)} for row in stick)],
+        [*predicted, *({**row, "error": row["measured"], "by": setting_of(row)} for row in stick)],
         GAMMA,
         Column("mean error of restitution [-]", "error"),
         "Damping in flight, built into the engine: the error it gives the model alone, and the error measured, where "
@@ -304,7 +298,7 @@ def _damping(damped, variants):
         "Damping in flight, on rigid ground",
         rows,
         NAME,
-        Column("setting", _setting),
+        Column("setting", setting_of),
         GAMMA,
         Column("predicted by the damping alone [-]", "predicted", digits=3),
         Column("measured [-]", "measured", digits=3),

@@ -120,16 +120,6 @@ def test_rules_are_named_outside_the_plot():
     assert len([part for part in inside.iter("path") if part.get("class") == "rule"]) == 2
 
 
-def test_intervals_reach_from_end_to_end():
-    told = [one | {"low": one["y"] / 10, "high": one["y"] * 10} for one in ROWS[:2]]
-    made = lines(told, X, Y, "", log="y", between=(Column("low", "low"), Column("high", "high")))
-    (panel,) = panels(made)
-    (reach,) = [part.get("d") for part in panel.iter("path") if part.get("class") == "reach"]
-    ends = [float(place.split()[1]) for place in re.split("[ML]", reach)[1:]]
-    decade = (ends[0] - ends[1]) / 2  # a tenth to ten times
-    assert ends[0] - ends[2] == pytest.approx(decade, abs=0.2) and decade > 20
-
-
 def test_the_model_is_a_line_without_marks():
     (panel,) = panels(lines([row("analytic", "damped", 0.1, 1.0), row("analytic", "damped", 0.2, 2.0)], X, Y, ""))
     assert groups(panel) == {"analytic, damped": (1, 0)}

@@ -105,9 +105,7 @@ def test_a_study_runs_and_shows_it(crude, tmp_path, name):
     run = modelled if name in ("fragility", "matters") else by_runs(tmp_path)
     found = answered(study.plan(ASK, **options), run)[-1]
     section = shown(study, found, tmp_path)
-    words = [*section.text, *(part for part in section.parts if isinstance(part, str))]
-    assert rows_with(section)  # what two of them say in words stands in tables
-    assert name in ("speed-error", "autopsy") or any("crude" in text for text in words)
+    assert rows_with(section)
     assert name == "stability" or drawn(section)  # its picture is a table of words
     failed = [row for row in found.rows if row.get("failure")]
     assert not failed or name == "random-scenes", failed[0]  # where the fake may blow up
