@@ -15,7 +15,7 @@ from analytic import Block, Scene, Start
 from engines import ENGINES, get_engine
 
 from .solving import compile_kernels
-from .sources import digest_of, source_digests, version_of
+from .sources import source_digests, version_of
 
 if TYPE_CHECKING:
     from analytic import Response
@@ -57,7 +57,7 @@ class Case:
             self.settings,
             self.tag,
             name_of(measure),
-            fingerprint(self.solver, measure),
+            fingerprint(self.solver, measure and measure.__module__),
         )
         return hashlib.sha256(json.dumps(content, sort_keys=True, allow_nan=False).encode()).hexdigest()[:32]
 
@@ -115,15 +115,11 @@ def name_of(function: Callable[..., Any] | None) -> str | None:
     return name
 
 
-def fingerprint(name: str, measure: Callable[..., Any] | None = None) -> str:
-    """Digest of the versions and of the project's source files behind a solver and a measure."""
-    return _fingerprint(name, measure.__module__ if measure else None)
-
-
 @functools.cache  # of the code this process has loaded: it cannot change under it
-def _fingerprint(name, measuring):
-    modules = [module_of(name)] + ([measuring] if measuring else [])
-    return digest_of({"versions": json.dumps(versions(name)), **source_digests(modules)})
+def fingerprint(name: str, measuring: str | None = None) -> str:
+    """Digest of the versions and of the project's source files behind a solver and the module of a measure."""
+    sources = source_digests([module_of(name), *([measuring] if measuring else [])])
+    return hashlib.sha256(json.dumps([versions(name), sorted(sources.values())]).encode()).hexdigest()
 
 
 def _place(name):

@@ -89,7 +89,7 @@ def test_a_key_follows_versions_and_source_code(tmp_path, monkeypatch):
     def key(text):
         file.write_text(text)
         os.utime(file, ns=(time.time_ns(), time.time_ns()))
-        module._fingerprint.cache_clear()
+        module.fingerprint.cache_clear()
         return Case(scene(0.1), "changing_solver:simulate").key()
 
     first = key("def simulate(scene):\n    return 1\n")
