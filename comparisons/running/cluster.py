@@ -26,7 +26,7 @@ from typing import Any
 from analytic.errors import SettingError
 
 from .cases import compile_for, module_of, versions
-from .executors import Closing, Done, Processes, Task, end_with, number_of
+from .executors import Done, Executor, Processes, Task, end_with, number_of
 from .solving import say
 from .sources import PROJECT, source_digests
 
@@ -40,7 +40,7 @@ class ClusterError(RuntimeError):
     """A cluster that cannot do the runs, or no longer; says which part of it, and the remedy."""
 
 
-class Cluster(Closing):
+class Cluster(Executor):
     """Runs on the workers of a Dask scheduler, or on ``local:N`` workers started here for the purpose.
 
     Parameters
@@ -195,7 +195,7 @@ def _state(solvers):
     state = {"python": platform.python_version()}
     for name in solvers:
         state |= {package: str(number) for package, number in versions(name).items()}
-    return state | source_digests([module_of(name) for name in solvers]) | source_digests([*PROJECT, __name__])
+    return state | source_digests([*map(module_of, solvers), *PROJECT, __name__])
 
 
 def _check_same(worker, state, mine):
