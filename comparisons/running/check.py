@@ -161,7 +161,7 @@ def _state(failure):
 
 def _named(run):
     own = ", ".join(f"{name} = {value}" for name, value in {**run["settings"], **run["tag"]}.items())
-    return ", ".join(filter(None, (run["solver"], run["variant"], run["scene"]["name"], own)))
+    return ", ".join(filter(None, (run["engine"], run["variant"], run["scene"]["name"], own)))
 
 
 def _short(value):
