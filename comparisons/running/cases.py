@@ -81,7 +81,12 @@ def solver(name: str) -> Callable:
     """
     if name in ENGINES:
         return get_engine(name).simulate
-    module, function = _place(name)
+    return named(":".join(_place(name)))
+
+
+def named(name: str) -> Callable:
+    """The function that ``module:function`` names, see `name_of`."""
+    module, _, function = name.partition(":")
     return getattr(importlib.import_module(module), function)
 
 

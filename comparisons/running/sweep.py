@@ -103,16 +103,18 @@ def run_sweep(
     with ExitStack() as stack:
         if not isinstance(store, Store):
             store = stack.enter_context(Store(store))
-        waiting = {key: case for key, case in zip(keys, cases, strict=True) if not _settled(store.get(key), time_limit)}
+        waiting = {
+            key: case for key, case in zip(keys, cases, strict=True) if not _settled(store.rows.get(key), time_limit)
+        }
         if waiting:
             compile_for({case.solver for case in waiting.values()})
             advance = _bar(stack, progress, label, len(waiting))
             if executor is None:
                 executor = stack.enter_context(workers_at(scheduler, workers, names))
             _run(waiting, store, executor, measure, time_limit, advance)
-        rows = [store.get(key) for key in keys]
+        rows = [store.rows[key] for key in keys]
     return [
-        Row(case, row["values"], row["failure"], row["cost"], key not in waiting)  # type: ignore[index]  # each was run, or found
+        Row(case, row["values"], row["failure"], row["cost"], key not in waiting)
         for case, key, row in zip(cases, keys, rows, strict=True)
     ]
 
