@@ -113,7 +113,8 @@ class _ForNumbers(ast.NodeTransformer):
         return None if isinstance(node.value, ast.Constant) else node
 
     def visit_If(self, node):
-        return None if getattr(node.test, "id", None) == "TYPE_CHECKING" else self.generic_visit(node)
+        self.generic_visit(node)
+        return node.orelse if getattr(node.test, "id", None) == "TYPE_CHECKING" else node
 
 
 def _plain(node):

@@ -51,6 +51,7 @@ def test_imports_are_followed_within_the_package_inside_functions_too(package):
         ("# why\nx   =  1\n", True),
         ('"""What."""\nx = 1\n', True),
         ("if TYPE_CHECKING:\n    from .alone import y\nx = 1\n", True),
+        ("if TYPE_CHECKING:\n    from .alone import y\nelse:\n    y = 2\nx = 1\n", False),
         ("from math import pi\nx = 1\n", False),
         ("x = 2\n", False),
         ("x = 1.0\n", False),
