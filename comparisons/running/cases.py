@@ -20,11 +20,11 @@ from .sources import source_digests, version_of
 if TYPE_CHECKING:
     from analytic import Response
 
-# solver: (module, function); every other name is an engine's, or "module:function"
+# every other name is an engine's, or such a "module:function" itself
 SOLVERS = {
-    "analytic": ("analytic", "simulate"),
-    "twin": ("analytic.twin", "simulate_twin"),
-    "time-stepping": ("analytic.time_stepping", "simulate_time_stepping"),
+    "analytic": "analytic:simulate",
+    "twin": "analytic.twin:simulate_twin",
+    "time-stepping": "analytic.time_stepping:simulate_time_stepping",
 }
 
 
@@ -81,7 +81,7 @@ def solver(name: str) -> Callable:
     """
     if name in ENGINES:
         return get_engine(name).simulate
-    return named(":".join(_place(name)))
+    return named(_place(name))
 
 
 def named(name: str) -> Callable:
@@ -101,7 +101,7 @@ def compile_for(names: Iterable[str]) -> None:
 
 def module_of(name: str) -> str:
     """The module that holds the solver `name`."""
-    return ENGINES[name].adapter if name in ENGINES else _place(name)[0]
+    return ENGINES[name].adapter if name in ENGINES else _place(name).partition(":")[0]
 
 
 def versions(name: str) -> dict[str, str | None]:
@@ -128,9 +128,7 @@ def fingerprint(name: str, measuring: str | None = None) -> str:
 
 
 def _place(name):
-    if name in SOLVERS:
-        return SOLVERS[name]
-    module, colon, function = name.partition(":")
-    if not colon:
+    place = SOLVERS.get(name, name)
+    if ":" not in place:
         raise KeyError(f"unknown solver {name!r}: choose one of {', '.join([*SOLVERS, *ENGINES])}")
-    return module, function
+    return place
