@@ -15,16 +15,16 @@ from analytic import Block, Scene, Start
 from engines import ENGINES, get_engine
 
 from .solving import compile_kernels
-from .sources import digest_of, source_digests, version_of
+from .sources import source_digests, version_of
 
 if TYPE_CHECKING:
     from analytic import Response
 
-# solver: (module, function); every other name is an engine's, or "module:function"
+# every other name is an engine's, or such a "module:function" itself
 SOLVERS = {
-    "analytic": ("analytic", "simulate"),
-    "twin": ("analytic.twin", "simulate_twin"),
-    "time-stepping": ("analytic.time_stepping", "simulate_time_stepping"),
+    "analytic": "analytic:simulate",
+    "twin": "analytic.twin:simulate_twin",
+    "time-stepping": "analytic.time_stepping:simulate_time_stepping",
 }
 
 
@@ -57,7 +57,7 @@ class Case:
             self.settings,
             self.tag,
             name_of(measure),
-            fingerprint(self.solver, measure),
+            fingerprint(self.solver, measure and measure.__module__),
         )
         return hashlib.sha256(json.dumps(content, sort_keys=True, allow_nan=False).encode()).hexdigest()[:32]
 
@@ -81,7 +81,12 @@ def solver(name: str) -> Callable:
     """
     if name in ENGINES:
         return get_engine(name).simulate
-    module, function = _place(name)
+    return named(_place(name))
+
+
+def named(name: str) -> Callable:
+    """The function that ``module:function`` names, see `name_of`."""
+    module, _, function = name.partition(":")
     return getattr(importlib.import_module(module), function)
 
 
@@ -96,7 +101,7 @@ def compile_for(names: Iterable[str]) -> None:
 
 def module_of(name: str) -> str:
     """The module that holds the solver `name`."""
-    return ENGINES[name].adapter if name in ENGINES else _place(name)[0]
+    return ENGINES[name].adapter if name in ENGINES else _place(name).partition(":")[0]
 
 
 def versions(name: str) -> dict[str, str | None]:
@@ -115,21 +120,15 @@ def name_of(function: Callable[..., Any] | None) -> str | None:
     return name
 
 
-def fingerprint(name: str, measure: Callable[..., Any] | None = None) -> str:
-    """Digest of the versions and of the project's source files behind a solver and a measure."""
-    return _fingerprint(name, measure.__module__ if measure else None)
-
-
 @functools.cache  # of the code this process has loaded: it cannot change under it
-def _fingerprint(name, measuring):
-    modules = [module_of(name)] + ([measuring] if measuring else [])
-    return digest_of({"versions": json.dumps(versions(name)), **source_digests(modules)})
+def fingerprint(name: str, measuring: str | None = None) -> str:
+    """Digest of the versions and of the project's source files behind a solver and the module of a measure."""
+    sources = source_digests([module_of(name), *([measuring] if measuring else [])])
+    return hashlib.sha256(json.dumps([versions(name), sorted(sources.values())]).encode()).hexdigest()
 
 
 def _place(name):
-    if name in SOLVERS:
-        return SOLVERS[name]
-    module, colon, function = name.partition(":")
-    if not colon:
+    place = SOLVERS.get(name, name)
+    if ":" not in place:
         raise KeyError(f"unknown solver {name!r}: choose one of {', '.join([*SOLVERS, *ENGINES])}")
-    return module, function
+    return place

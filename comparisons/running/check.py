@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import math
 import random
 from collections.abc import Iterator, Mapping
@@ -15,7 +14,7 @@ from typing import Any
 
 from analytic.errors import SceneError
 
-from .cases import solver
+from .cases import named, solver
 from .executors import Processes
 from .files import TemporaryFolder
 from .provenance import ResultError, checkout, read_result, record_check
@@ -99,7 +98,7 @@ def _again(runs, workers, progress):
     groups: dict[Any, list[tuple[int, Any]]] = {}
     for place, run in enumerate(runs):
         try:
-            case, measure = case_of(run), _measure(run["measure"])
+            case, measure = case_of(run), run["measure"] and named(run["measure"])
             solver(case.solver)
         except (KeyError, ImportError, AttributeError, SceneError) as error:
             found[place] = f"it cannot be run any more ({error.args[0] if isinstance(error, KeyError) else error})"
@@ -114,14 +113,6 @@ def _again(runs, workers, progress):
             for (place, case), row in zip(members, rows, strict=True):
                 found[place] = {**outcome_of(row), "digest": case.scene.digest()}
     return found
-
-
-def _measure(name):
-    """The function that `name_of` names."""
-    if name is None:
-        return None
-    module, _, function = name.partition(":")
-    return getattr(importlib.import_module(module), function)
 
 
 def _differ(run: Mapping[str, Any], now: Any) -> str | None:
@@ -161,7 +152,7 @@ def _state(failure):
 
 def _named(run):
     own = ", ".join(f"{name} = {value}" for name, value in {**run["settings"], **run["tag"]}.items())
-    return ", ".join(filter(None, (run["solver"], run["variant"], run["scene"]["name"], own)))
+    return ", ".join(filter(None, (run["engine"], run["variant"], run["scene"]["name"], own)))
 
 
 def _short(value):

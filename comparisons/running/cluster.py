@@ -14,7 +14,6 @@ import contextlib
 import logging
 import multiprocessing
 import pickle
-import platform
 import queue
 import threading
 import time
@@ -26,7 +25,7 @@ from typing import Any
 from analytic.errors import SettingError
 
 from .cases import compile_for, module_of, versions
-from .executors import Closing, Done, Processes, Task, end_with, number_of
+from .executors import Done, Executor, Processes, Task, end_with, number_of
 from .solving import say
 from .sources import PROJECT, source_digests
 
@@ -40,7 +39,7 @@ class ClusterError(RuntimeError):
     """A cluster that cannot do the runs, or no longer; says which part of it, and the remedy."""
 
 
-class Cluster(Closing):
+class Cluster(Executor):
     """Runs on the workers of a Dask scheduler, or on ``local:N`` workers started here for the purpose.
 
     Parameters
@@ -152,9 +151,11 @@ def _connect(address, stack):
     for name in [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]:
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what is lost is said here, once
     if address.startswith(LOCAL):
-        number = number_of(_whole(address))
+        number = address.removeprefix(LOCAL)
+        if not number.isdecimal():
+            raise SettingError(f"--scheduler {address}: give local:N with a number of workers")
         local = LocalCluster(
-            n_workers=number,
+            n_workers=number_of(int(number)),
             threads_per_worker=1,
             processes=True,
             dashboard_address=":0",  # any port: the usual one may be taken
@@ -183,19 +184,10 @@ async def _reach(address):
     await comm.close()
 
 
-def _whole(address):
-    try:
-        return int(address.removeprefix(LOCAL))
-    except ValueError:
-        raise SettingError(f"--scheduler {address}: give local:N with a number of workers") from None
-
-
 def _state(solvers):
     """{what: its version or digest} of all that rows depend on, in the process that asks."""
-    state = {"python": platform.python_version()}
-    for name in solvers:
-        state |= {package: str(number) for package, number in versions(name).items()}
-    return state | source_digests([module_of(name) for name in solvers]) | source_digests([*PROJECT, __name__])
+    known = {package: str(number) for name in solvers for package, number in versions(name).items()}
+    return known | source_digests([*map(module_of, solvers), *PROJECT, __name__])
 
 
 def _check_same(worker, state, mine):

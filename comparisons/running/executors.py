@@ -12,13 +12,14 @@ import sys
 import threading
 import time
 import traceback
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Iterable
 from concurrent.futures import TimeoutError
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from multiprocessing import forkserver, resource_tracker
-from typing import Any, Protocol, Self
+from typing import Any, Self
 
 from pebble import ProcessExpired, ProcessPool
 
@@ -28,8 +29,10 @@ from engines.guard import end_with_parent
 from .cases import Case, module_of
 from .files import TemporaryFolder
 from .provenance import json_ready, scrub
+from .solving import redirected
 
-MOST_BROKEN = 3
+ENOUGH_SECONDS = 0.2  # of a task: cheap runs travel together; what a kill can cost
+MOST_BROKEN = 3  # pools in a row that end without finishing a task
 MOST_WORKERS = 64  # where there are no more cores than that
 GRACE_SECONDS = 0.5  # beyond the time limit, for the worker to write down where it hangs
 EVIDENCE_CHARACTERS = 4000
@@ -40,7 +43,7 @@ THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
 class Task:
     """Cases done one after the other by one worker.
 
-    The worker stops after `enough` seconds and hands back what it has by then, at least one line. The time
+    The worker stops after `ENOUGH_SECONDS` and hands back what it has by then, at least one line. The time
     limit [s] holds for the task as a whole.
     """
 
@@ -49,45 +52,42 @@ class Task:
     keys: tuple[str, ...]
     measure: Callable | None
     time_limit: float
-    enough: float
 
 
 @dataclass(frozen=True)
 class Done:
-    """What became of a task: lines of JSON for its first cases and the seconds they took, or why it was lost."""
+    """What became of a task: lines of JSON for its first cases, or why it was lost."""
 
     ticket: str
     lines: tuple[str, ...] = ()
-    seconds: float = 0.0
     lost: dict | None = None  # failure: kind, reason, message
 
 
-class Executor(Protocol):
-    """What a sweep asks of the place where its runs are done; a cluster needs these members and no more."""
+class Executor(ABC):
+    """The place where the runs of a sweep are done; a `with` statement closes it."""
 
     slots: int  # tasks to keep submitted so that no worker waits
 
+    @abstractmethod
     def submit(self, task: Task) -> None:
         """Take a task; returns at once."""
 
+    @abstractmethod
     def next(self) -> Done:
         """Wait for any submitted task to end; every task ends, lost or done."""
 
+    @abstractmethod
     def close(self) -> None:
         """Stop working, drop what is under way."""
-
-
-class Closing:
-    """An executor that a `with` statement closes."""
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.close()  # type: ignore[attr-defined]  # an executor's
+        self.close()
 
 
-class Serial(Closing):
+class Serial(Executor):
     """Runs in this process: for debugging. A crash or a hang of a solver is a crash or a hang of the sweep."""
 
     slots = 1
@@ -100,7 +100,7 @@ class Serial(Closing):
 
     def next(self) -> Done:
         task = self._tasks.popleft()
-        return Done(task.ticket, *_lines(task))
+        return Done(task.ticket, _lines(task))
 
     def close(self) -> None:
         self._tasks.clear()
@@ -115,7 +115,7 @@ def number_of(workers: int | None) -> int:
     return number
 
 
-class Processes(Closing):
+class Processes(Executor):
     """Runs in `workers` processes (default: one per core), each with one numerical thread.
 
     Workers are forked from a server that has imported the `solvers`: one that crashed is replaced in
@@ -135,7 +135,7 @@ class Processes(Closing):
             with _one_thread(), _ctrl_c_blocked():  # the server and its workers leave Ctrl-C to this process
                 forkserver.ensure_running()
         self._under_way: dict[Any, tuple[Task, str]] = {}  # future: task and its log
-        self._broken = 0  # pools in a row that ended without finishing a task
+        self._broken = 0
         self._pool = self._new_pool()
 
     def submit(self, task: Task) -> None:
@@ -163,7 +163,7 @@ class Processes(Closing):
             task, log = self._under_way.pop(future)
             self._broken = 0
             try:
-                return Done(task.ticket, *future.result())
+                return Done(task.ticket, future.result())
             except TimeoutError:
                 reason = f"no result within the time limit of {task.time_limit:g} s"
                 lost = {"kind": "time limit", "reason": reason, "time_limit": task.time_limit}
@@ -234,9 +234,9 @@ def _lines(task):
             }
             line = json.dumps(row)
         lines.append(line)
-        if time.monotonic() - start > task.enough:
+        if time.monotonic() - start > ENOUGH_SECONDS:
             break
-    return tuple(lines), time.monotonic() - start
+    return tuple(lines)
 
 
 @contextlib.contextmanager
@@ -264,8 +264,8 @@ def end_with(parent: Any) -> None:
 
 
 def _work(task, log):
-    """In a worker: the lines of a task and the seconds they took; what it prints and where it hangs goes to `log`."""
-    with open(log, "wb") as file, _output_to(file):
+    """In a worker: the lines of a task; what it prints and where it hangs goes to `log`."""
+    with open(log, "wb") as file, redirected(1, 2, to=file.fileno()):
         faulthandler.enable(file, all_threads=False)
         faulthandler.dump_traceback_later(task.time_limit, file=file)
         if hasattr(signal, "setitimer"):  # ends an orphan that hangs in compiled code, where no thread gets a turn
@@ -283,33 +283,16 @@ def _work(task, log):
 
 
 @contextlib.contextmanager
-def _output_to(file):
-    """Standard output and error of this process, the engines' own C code included, into `file`."""
-    sys.stdout.flush(), sys.stderr.flush()
-    kept = os.dup(1), os.dup(2)
-    os.dup2(file.fileno(), 1), os.dup2(file.fileno(), 2)
-    try:
-        yield
-    finally:
-        sys.stdout.flush(), sys.stderr.flush()
-        for descriptor, copy in enumerate(kept, 1):
-            os.dup2(copy, descriptor)
-            os.close(copy)
-
-
-@contextlib.contextmanager
 def _one_thread():
     """One numerical thread for processes started inside: libraries read these variables when loaded."""
-    before = {name: os.environ.get(name) for name in THREAD_VARIABLES}
+    before = {name: os.environ[name] for name in THREAD_VARIABLES if name in os.environ}
     os.environ.update(dict.fromkeys(THREAD_VARIABLES, "1"))
     try:
         yield
     finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
+        for name in THREAD_VARIABLES:
+            del os.environ[name]
+        os.environ.update(before)
 
 
 def _exit(code):

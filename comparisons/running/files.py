@@ -75,7 +75,7 @@ def check_folder(output: str | PathLike[str], option: str = "--output") -> None:
         above = above.parent
     if not above.is_dir():
         raise SettingError(f"{option} {output}: {above} is no folder; give another place")
-    _probe(above, f"{option} {output}")
+    _probe(_part(above, ""), f"{option} {output}")
 
 
 def write(path: str | PathLike[str], writer: Callable[[Path], object]) -> None:
@@ -153,35 +153,21 @@ def _check_file(path):
         raise SettingError(f"{path}: there is no folder {Path(path).parent}; make it first")
     if mode is not None and not os.access(place, os.W_OK):
         raise SettingError(f"{path}: is read-only; give another file name")
-    if mode is None:
-        _probe_name(place, path)
-    _probe(place.parent, path)
+    _probe(place if mode is None else _part(place.parent, ""), path)
 
 
-def _probe_name(place, named):
+def _probe(place, named):
+    """Raise `SettingError` where no file of a few bytes can be made at `place`."""
     try:
-        os.close(os.open(place, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
+        with open(place, "xb") as file:
+            file.write(bytes(PROBE_BYTES))
         place.unlink()
-    except FileExistsError:
+    except FileExistsError:  # somebody else's by now
         pass
     except OSError as error:
-        raise _refused(named, error) from None
-
-
-def _probe(folder, named):
-    part = _part(Path(folder), "")
-    try:
-        with open(part, "xb") as file:
-            file.write(bytes(PROBE_BYTES))
-    except OSError as error:
-        raise _refused(named, error) from None
-    finally:
         with contextlib.suppress(OSError):
-            part.unlink(missing_ok=True)
-
-
-def _refused(named, error):
-    return SettingError(f"{named}: nothing can be written there ({error.strerror}); give another place")
+            place.unlink(missing_ok=True)
+        raise SettingError(f"{named}: nothing can be written there ({error.strerror}); give another place") from None
 
 
 def _part(folder, suffix):

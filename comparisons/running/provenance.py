@@ -19,15 +19,18 @@ from typing import Any
 
 import numpy as np
 import psutil
+from pydantic import ValidationError
 
 from analytic.files import read_plain
 from engines import ENGINES
 
+from ..schemas.study import StudyResult
 from .sources import PROJECT, digests_of_all, source_digests, version_of
 
 NAMED = 3  # modules that a sentence on a stale result names
-SCHEMA = 1  # of the result files; raise it when a reader of the old ones would go wrong
-FORM = {"kind": str, "settings": dict, "rows": list, "provenance": dict}  # of what a result file holds
+SCHEMA = StudyResult.model_fields["schema_"].default
+# Studies whose stored results have other keys still; they go on being read, and leave this list as they are renamed.
+OLD_SCHEMA, OLD_KINDS = 1, ("autopsy", "caryatid", "sheet", "stability", "tolerances")
 LARGEST = 2_000_000_000  # bytes of a result file, or of the arrays beside it
 PROJECT_FOLDER = Path(__file__).parents[2]
 RUNS = "runs.json"  # the array of a result that holds its sample of runs, as text
@@ -124,7 +127,7 @@ def write_result(
     Raises
     ------
     ResultError
-        The content names a path of this machine, or `path` is no ``.json``.
+        The content names a path of this machine, rows are no dicts, or `path` is no ``.json``.
     """
     path = Path(path)
     if path.suffix != ".json":
@@ -140,6 +143,7 @@ def write_result(
             "rows": rows,
         }
     )
+    _check_form(path.name, content)
     text, sample = json.dumps(content, allow_nan=False), json.dumps(json_ready(runs), allow_nan=False)
     if any(root in each for root, _ in _roots() for each in (text, sample)):
         raise ResultError(
@@ -151,7 +155,7 @@ def write_result(
     if arrays:
         beside = path.with_suffix(".npz")
         np.savez_compressed(beside, **arrays)  # type: ignore[arg-type]  # no array is called allow_pickle
-        content["arrays"] = {"file": beside.name, "digest": _digest(beside)}
+        content["arrays"] = {"file": beside.name, "digest": hashlib.sha256(beside.read_bytes()).hexdigest()}
     path.write_text(_layout(content))
     return path
 
@@ -162,7 +166,8 @@ def read_result(path: str | PathLike[str]) -> Result:
     Raises
     ------
     ResultError
-        The file is missing, of another schema, or its arrays are missing or another study's.
+        The file is missing, of another layout (`comparisons.schemas.study`), or its arrays are missing or another
+        study's.
     """
     path = Path(path)
     try:
@@ -173,15 +178,31 @@ def read_result(path: str | PathLike[str]) -> Result:
         raise ResultError(f"{path.name}: cannot be read ({error.strerror}); give a result file of a study") from error
     except (ValueError, RecursionError) as error:
         raise ResultError(f"{path.name}: not JSON ({error}); run the study again") from error
-    schema = content.get("schema") if isinstance(content, dict) else None
-    if schema != SCHEMA:
-        raise ResultError(f"{path.name}: schema {schema!r}, this version reads {SCHEMA}; run the study again")
-    if wrong := [name for name, kind in FORM.items() if not isinstance(content.get(name), kind)]:
-        raise ResultError(f"{path.name}: no result file of a study, its {wrong[0]} is missing; run the study again")
+    _check_form(path.name, content)
     arrays = _arrays(path, content)
     runs = json.loads(arrays.pop(RUNS, np.frombuffer(b"[]", np.uint8)).tobytes())
     count = content["runs"]["total"] if content.get("runs") else None
     return Result(content["kind"], content["settings"], content["rows"], content["provenance"], arrays, runs, count)
+
+
+def _check_form(name, content):
+    """Raise `ResultError` where the content of a file is no result, or one of another layout."""
+    content = dict(content) if isinstance(content, dict) else {}
+    if content.get("schema") == OLD_SCHEMA and content.get("kind") in OLD_KINDS:
+        content["schema"] = SCHEMA
+    elif content.get("schema") != SCHEMA:
+        origin = content.get("provenance")
+        commit = origin.get("commit") if isinstance(origin, dict) else None
+        reader = f", the version {_at(commit)} reads it" if commit else ""
+        raise ResultError(
+            f"{name}: schema {content.get('schema')!r}, this version reads {SCHEMA!r}{reader}; run the study again"
+        )
+    try:
+        StudyResult.model_validate(content)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(map(str, first["loc"]))
+        raise ResultError(f"{name}: no result file of a study, {where}: {first['msg']}; run the study again") from None
 
 
 def record_check(path: Path, check: Mapping[str, Any]) -> None:
@@ -321,7 +342,3 @@ def checkout() -> dict[str, Any]:
 def commit_seed() -> int:
     """A seed that every commit draws anew; 0 outside a checkout."""
     return int((checkout()["commit"] or "0")[:8], 16)
-
-
-def _digest(file):
-    return hashlib.sha256(Path(file).read_bytes()).hexdigest()

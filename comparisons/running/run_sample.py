@@ -57,7 +57,7 @@ def case_of(run: Mapping[str, Any]) -> Case:
         It is no scene today.
     """
     scene = Scene(**{**run["scene"], "motion": _motion(run["scene"]["motion"])})
-    return Case(scene, run["solver"], run["variant"], run["settings"], run["tag"])
+    return Case(scene, run["engine"], run["variant"], run["settings"], run["tag"])
 
 
 def outcome_of(row: Row) -> dict[str, Any]:
@@ -71,7 +71,8 @@ def _run_table(batch, row, motion):
     case = row.case
     scene = {**case.scene.model_dump(exclude={"motion"}), "motion": motion}
     return {
-        **{name: getattr(case, name) for name in ("solver", "variant", "settings", "tag")},
+        "engine": case.solver,
+        **{name: getattr(case, name) for name in ("variant", "settings", "tag")},
         "measure": name_of(batch.measure),
         "time_limit": batch.time_limit,
         **outcome_of(row),

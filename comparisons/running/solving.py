@@ -309,14 +309,21 @@ def bar(text: str) -> Iterator[Callable[[int, int], None]]:
 
 
 @contextlib.contextmanager
-def stdout_to_stderr() -> Iterator[None]:
-    """What this process prints to standard output, compiled code included, goes to standard error."""
-    sys.stdout.flush()
-    kept = os.dup(1)
-    os.dup2(2, 1)
+def redirected(*descriptors: int, to: int) -> Iterator[None]:
+    """What this process prints to `descriptors` (1 and 2), compiled code included, goes to the file number `to`."""
+    sys.stdout.flush(), sys.stderr.flush()
+    kept = {number: os.dup(number) for number in descriptors}
+    for number in descriptors:
+        os.dup2(to, number)
     try:
         yield
     finally:
-        sys.stdout.flush()
-        os.dup2(kept, 1)
-        os.close(kept)
+        sys.stdout.flush(), sys.stderr.flush()
+        for number, copy in kept.items():
+            os.dup2(copy, number)
+            os.close(copy)
+
+
+def stdout_to_stderr() -> contextlib.AbstractContextManager[None]:
+    """What this process prints to standard output goes to standard error."""
+    return redirected(1, to=2)

@@ -61,10 +61,6 @@ class Store:
     def __len__(self) -> int:
         return len(self.rows)
 
-    def get(self, key: str) -> dict[str, Any] | None:
-        """The row stored last under `key`, or None."""
-        return self.rows.get(key)
-
     def append(self, lines: Iterable[str]) -> list[dict[str, Any]]:
         """Write rows given as lines of JSON (str, no line end) and return them as dicts.
 

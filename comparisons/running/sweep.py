@@ -31,9 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Case", "Done", "Executor", "Processes", "Row", "Serial", "Store", "Task", "run_sweep"]
 
-CHUNK_SECONDS = 0.2  # cheap runs travel together in tasks of about this length: what a kill can cost
-ENOUGH_SECONDS = 1.0  # a task that turns out longer hands back what it has
-CHUNK_CASES = 512
+MOST_CASES = 512  # in a task
 
 
 @dataclass(frozen=True)
@@ -105,16 +103,18 @@ def run_sweep(
     with ExitStack() as stack:
         if not isinstance(store, Store):
             store = stack.enter_context(Store(store))
-        waiting = {key: case for key, case in zip(keys, cases, strict=True) if not _settled(store.get(key), time_limit)}
+        waiting = {
+            key: case for key, case in zip(keys, cases, strict=True) if not _settled(store.rows.get(key), time_limit)
+        }
         if waiting:
             compile_for({case.solver for case in waiting.values()})
             advance = _bar(stack, progress, label, len(waiting))
             if executor is None:
                 executor = stack.enter_context(workers_at(scheduler, workers, names))
             _run(waiting, store, executor, measure, time_limit, advance)
-        rows = [store.get(key) for key in keys]
+        rows = [store.rows[key] for key in keys]
     return [
-        Row(case, row["values"], row["failure"], row["cost"], key not in waiting)  # type: ignore[index]  # each was run, or found
+        Row(case, row["values"], row["failure"], row["cost"], key not in waiting)
         for case, key, row in zip(cases, keys, rows, strict=True)
     ]
 
@@ -129,16 +129,18 @@ def _checked(cases, measure):
 
 
 def _run(waiting, store, executor, measure, time_limit, advance):
-    chunks = _Chunks(waiting, executor.slots)
+    pending = deque(waiting.items())
     alone: deque[Any] = deque()  # members of lost tasks: each runs by itself, to find the guilty one
     submitted: dict[str, Any] = {}
-    while chunks or alone or submitted:
-        while len(submitted) < executor.slots and (alone or chunks):
-            members = [alone.popleft()] if alone else chunks.take()
+    size = 1  # of the next task: twice what was done in the last one, which ends after `ENOUGH_SECONDS`
+    while pending or alone or submitted:
+        while len(submitted) < executor.slots and (alone or pending):
+            fair = -(-len(pending) // executor.slots)  # near the end, leave something for every worker
+            members = [alone.popleft()] if alone else [pending.popleft() for _ in range(min(size, fair))]
             keys, cases = zip(*members, strict=True)
             ticket = f"{keys[0]}-{len(keys)}"
             submitted[ticket] = members
-            executor.submit(Task(ticket, cases, keys, measure, time_limit, ENOUGH_SECONDS))
+            executor.submit(Task(ticket, cases, keys, measure, time_limit))
         done = executor.next()
         members = submitted.pop(done.ticket, None)
         if members is None:  # of a sweep that was broken off, on a shared executor
@@ -149,40 +151,8 @@ def _run(waiting, store, executor, measure, time_limit, advance):
         lines = [_lost_line(members[0][0], done.lost)] if done.lost else done.lines
         store.append(lines)
         advance(len(lines))
-        chunks.put_back(members[len(lines) :])
-        if not done.lost:
-            chunks.learn(members[0][1], done.seconds / len(lines))
-
-
-class _Chunks:
-    """Cuts the waiting cases into tasks of about `CHUNK_SECONDS`, as the runs before took."""
-
-    def __init__(self, waiting: dict[str, Case], slots: int) -> None:
-        self._waiting = deque(waiting.items())
-        self._slots = slots
-        self._seconds: dict[Any, float] = {}  # kind of case: seconds per run of the last task
-
-    def __bool__(self) -> bool:
-        return bool(self._waiting)
-
-    def take(self):
-        kind = _kind(self._waiting[0][1])
-        size = int(CHUNK_SECONDS / max(self._seconds[kind], 1e-9)) if kind in self._seconds else 1
-        fair = -(-len(self._waiting) // self._slots)  # near the end, leave something for every worker
-        members = [self._waiting.popleft()]
-        while len(members) < min(size, fair, CHUNK_CASES) and self._waiting and _kind(self._waiting[0][1]) == kind:
-            members.append(self._waiting.popleft())
-        return members
-
-    def put_back(self, members):
-        self._waiting.extendleft(reversed(members))
-
-    def learn(self, case, seconds):
-        self._seconds[_kind(case)] = seconds
-
-
-def _kind(case):
-    return case.solver, case.variant
+        pending.extendleft(reversed(members[len(lines) :]))
+        size = min(2 * len(lines), MOST_CASES)
 
 
 def _settled(row, time_limit):

@@ -10,10 +10,25 @@ from comparisons.schemas.advice import Design, Margins, SuitedBearings
 from comparisons.schemas.inputs import New, Record
 from comparisons.schemas.results import Report, Sheet, Verification
 from comparisons.schemas.runs import Comparison, Run
+from comparisons.schemas.study import StudyResult
 from comparisons.sheet.score import Score
 
 FOLDER = PROJECT_FOLDER / "comparisons" / "schemas"
-FORMS = (Choice, Comparison, Design, Margins, New, Record, Report, Run, Score, Sheet, SuitedBearings, Verification)
+FORMS = (
+    Choice,
+    Comparison,
+    Design,
+    Margins,
+    New,
+    Record,
+    Report,
+    Run,
+    Score,
+    Sheet,
+    StudyResult,
+    SuitedBearings,
+    Verification,
+)
 
 
 def name(form):

@@ -110,3 +110,9 @@ def cases(solver="sound", count=10, **settings):
     return [
         Case(scene(round(0.01 * i, 6)), f"fake_solvers:{solver}", settings=settings, tag={"i": i}) for i in range(count)
     ]
+
+
+def slow(log, count):
+    """Cases of 0.05 s each that leave marks in `log`."""
+    settings = {"log": str(log), "sleep": 0.05}
+    return [Case(scene(1e-3 * i), "fake_solvers:counted", settings=settings) for i in range(count)]

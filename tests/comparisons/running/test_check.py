@@ -58,7 +58,7 @@ def test_unchanged_code_holds_and_the_result_says_when_it_was_checked(result):
 
 def test_a_run_that_differs_is_named_with_both_numbers(result):
     def change(run):
-        if run["tag"]["i"] == 2 and run["solver"].endswith("sound"):
+        if run["tag"]["i"] == 2 and run["engine"].endswith("sound"):
             run["values"]["peak"] *= 1 + 1e-8  # ten times what rounding is allowed
 
     changed(result, change)
@@ -71,7 +71,7 @@ def test_a_run_that_differs_is_named_with_both_numbers(result):
 @pytest.mark.parametrize(
     "part, value, words",
     [
-        ("solver", "nosuchengine", "cannot be run any more (unknown solver 'nosuchengine'"),
+        ("engine", "nosuchengine", "cannot be run any more (unknown solver 'nosuchengine'"),
         ("measure", "fake_solvers:gone", "cannot be run any more (module 'fake_solvers' has no attribute 'gone'"),
         ("settings", {"spring": 1.0}, "sound when stored, now exception: TypeError"),
         ("failure", {"kind": "crash", "reason": "killed"}, "crash: killed when stored, now sound"),
@@ -80,7 +80,7 @@ def test_a_run_that_differs_is_named_with_both_numbers(result):
 )
 def test_what_is_gone_or_fails_otherwise_does_not_hold(result, part, value, words):
     def change(run):
-        if run["solver"].endswith("sound"):
+        if run["engine"].endswith("sound"):
             run[part] = value
 
     changed(result, change)

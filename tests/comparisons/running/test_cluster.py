@@ -96,14 +96,11 @@ def kill_again_and_again(executor, times, log):
 def test_a_worker_killed_five_times_loses_nothing_and_leaves_nothing(tmp_path):
     log, kills = tmp_path / "log", 5
     count = 40 + 40 * kills
-    which = [
-        Case(scene(1e-3 * i), "fake_solvers:counted", settings={"log": str(log), "sleep": 0.05}) for i in range(count)
-    ]
     with Cluster("local:2", ["fake_solvers:counted"]) as executor:
         left = []
         killer = threading.Thread(target=lambda: left.extend(kill_again_and_again(executor, kills, log)))
         killer.start()
-        rows = sweep(which, tmp_path / "s.jsonl", executor=executor)
+        rows = sweep(fake_solvers.slow(log, count), tmp_path / "s.jsonl", executor=executor)
         killer.join()
     assert not left
     assert [row.values["peak"] for row in rows] == [(1e-3 * i) ** 2 for i in range(count)]
@@ -222,17 +219,13 @@ def wait_for_workers(address, count):
 
 LONG_STUDY = """
 import sys
-from fake_solvers import *
-from analytic import Block, Scene, Start
-from comparisons.running.sweep import Case, run_sweep
+from fake_solvers import slow, tilt
+from comparisons.running.cluster import ClusterError
+from comparisons.running.sweep import run_sweep
 if __name__ == "__main__":
     address, log, store, count = sys.argv[1:]
-    scene = lambda tilt: Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), start=Start(tilt=tilt), duration=1.0)
-    settings = {"log": log, "sleep": 0.05}
-    cases = [Case(scene(1e-3 * i), "fake_solvers:counted", settings=settings) for i in range(int(count))]
-    from comparisons.running.cluster import ClusterError
     try:
-        run_sweep(cases, store=store, scheduler=address, progress=False, measure=tilt)
+        run_sweep(slow(log, int(count)), store=store, scheduler=address, progress=False, measure=tilt)
     except ClusterError as error:
         sys.exit(f"error: {error}")
 """

@@ -159,11 +159,32 @@ def test_files_that_cannot_be_used_are_errors_with_a_remedy(tmp_path):
     (tmp_path / "r.npz").unlink()
     with pytest.raises(ResultError, match="r.npz: missing"):
         read_result(path)
-    path.write_text(path.read_text().replace('"schema": 1', '"schema": 99'))
-    with pytest.raises(ResultError, match="schema 99, this version reads 1"):
-        read_result(path)
     path.write_text("{")
     with pytest.raises(ResultError, match="not JSON"):
+        read_result(path)
+    with pytest.raises(ResultError, match=r"no result file of a study, rows\.0"):
+        write_result(tmp_path / "r.json", "k", {}, [3], modules=["analytic"])
+
+
+def test_another_layout_is_refused_with_the_one_that_is_read_and_who_reads_it(tmp_path):
+    path = written(tmp_path)
+    content = json.loads(path.read_text())
+
+    def changed(**parts):
+        path.write_text(json.dumps(content | parts))
+        return path
+
+    for schema in (1, 99, "rocking study 2"):
+        with pytest.raises(ResultError, match=f"schema {schema!r}, this version reads 'rocking study 1', the version"):
+            read_result(changed(schema=schema, provenance=content["provenance"] | {"commit": "0" * 40}))
+    with pytest.raises(ResultError, match="schema 1, this version reads 'rocking study 1'; run"):
+        read_result(changed(schema=1, provenance=None))
+    assert read_result(changed(schema=1, kind="stability")).kind == "stability"  # not renamed yet
+    for wrong in ({"rows": [1]}, {"settings": None}, {"provenance": {}}, {"more": 1}):
+        with pytest.raises(ResultError, match=f"no result file of a study, {next(iter(wrong))}"):
+            read_result(changed(**wrong))
+    path.write_text("[]")
+    with pytest.raises(ResultError, match="schema None"):
         read_result(path)
 
 

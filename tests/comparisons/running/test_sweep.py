@@ -89,7 +89,7 @@ def test_a_key_follows_versions_and_source_code(tmp_path, monkeypatch):
     def key(text):
         file.write_text(text)
         os.utime(file, ns=(time.time_ns(), time.time_ns()))
-        module._fingerprint.cache_clear()
+        module.fingerprint.cache_clear()
         return Case(scene(0.1), "changing_solver:simulate").key()
 
     first = key("def simulate(scene):\n    return 1\n")
@@ -206,28 +206,23 @@ def test_the_analytic_model_gives_the_same_rows_here_and_in_workers_without_comp
 
 KILLED_SWEEP = """
 import sys
-sys.path.insert(0, {here!r})
-from test_sweep_cases import slow
+from fake_solvers import slow
 from comparisons.running.sweep import run_sweep
 if __name__ == "__main__":
-    run_sweep(slow({log!r}), store={store!r}, workers=2, progress=False)
+    log, store = sys.argv[1:]
+    run_sweep(slow(log, 40), store=store, workers=2, progress=False)
 """
 
 
 def test_kill_9_then_resume_equals_an_uninterrupted_sweep(tmp_path):
-    log, store = tmp_path / "log", tmp_path / "s.jsonl"
-    (tmp_path / "test_sweep_cases.py").write_text(
-        "from analytic import Block, Scene, Start\nfrom comparisons.running.sweep import Case\n"
-        "def slow(log):\n"
-        "    scene = lambda t: Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), start=Start(tilt=t),"
-        " duration=1.0)\n"
-        "    return [Case(scene(0.001 * i), 'fake_solvers:counted', settings={'log': log, 'sleep': 0.05})"
-        " for i in range(40)]\n"
-    )
-    script = tmp_path / "study.py"
-    script.write_text(KILLED_SWEEP.format(here=str(tmp_path), log=str(log), store=str(store)))
+    script, log, store, whole = (tmp_path / name for name in ("study.py", "log", "s.jsonl", "whole.jsonl"))
+    script.write_text(KILLED_SWEEP)
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE), str(HERE.parents[2])])}
-    process = subprocess.Popen([sys.executable, str(script)], env=environment)
+
+    def command(into):
+        return [sys.executable, str(script), str(log), str(into)]
+
+    process = subprocess.Popen(command(store), env=environment)
     deadline = time.monotonic() + 60
     while time.monotonic() < deadline and not (store.exists() and store.read_bytes().count(b"\n") >= 10):
         time.sleep(0.01)
@@ -242,13 +237,12 @@ def test_kill_9_then_resume_equals_an_uninterrupted_sweep(tmp_path):
     # Lost at most: the tasks in flight, two workers' worth of a few runs each.
     assert begun - saved <= 2 * 6
 
-    subprocess.run([sys.executable, str(script)], env=environment, check=True, timeout=60)
+    subprocess.run(command(store), env=environment, check=True, timeout=60)
     assert len(log.read_text().split()) - begun == 40 - saved
-    script.write_text(KILLED_SWEEP.format(here=str(tmp_path), log=str(log), store=str(tmp_path / "whole.jsonl")))
-    subprocess.run([sys.executable, str(script)], env=environment, check=True, timeout=60)
+    subprocess.run(command(whole), env=environment, check=True, timeout=60)
 
     def content(file):
         with Store(file) as opened:
             return {key: (row["values"], row["failure"]) for key, row in opened.rows.items()}
 
-    assert content(store) == content(tmp_path / "whole.jsonl") and len(content(store)) == 40
+    assert content(store) == content(whole) and len(content(store)) == 40
