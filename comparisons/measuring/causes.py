@@ -84,7 +84,7 @@ def diagnosis(engine: str, variant: str, scene: Scene, which: int = 0, **setting
     -------
     dict
         engine, variant, tier, best (the default variant); where the impact can be told: placed, error, cause and words
-        (None below `LEAST`), parts, steps, lasting [s], lost (energy over the kinetic one before), frames, and where
+        (None below `LEAST`), parts, steps, lasting [s], energy_lost (over the kinetic one before), frames, and where
         the block is placed deepest [m] and demand; else why_not.
     """
     record = get_engine(engine)
@@ -106,7 +106,7 @@ def diagnosis(engine: str, variant: str, scene: Scene, which: int = 0, **setting
         "parts": contact.parts,
         "steps": contact.steps,
         "lasting": contact.lasting,
-        "lost": float(contact.energy[contact.first] - contact.energy[contact.last]),
+        "energy_lost": float(contact.energy[contact.first] - contact.energy[contact.last]),
         "frames": frames(contact),
     }
     return row | ({"deepest": contact.deepest, "demand": contact.demand} if contact.placed else {})

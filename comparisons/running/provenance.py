@@ -29,8 +29,6 @@ from .sources import PROJECT, digests_of_all, source_digests, version_of
 
 NAMED = 3  # modules that a sentence on a stale result names
 SCHEMA = StudyResult.model_fields["schema_"].default
-# Studies whose stored results have other keys still; they go on being read, and leave this list as they are renamed.
-OLD_SCHEMA, OLD_KINDS = 1, ("autopsy", "caryatid", "sheet", "stability", "tolerances")
 LARGEST = 2_000_000_000  # bytes of a result file, or of the arrays beside it
 PROJECT_FOLDER = Path(__file__).parents[2]
 RUNS = "runs.json"  # the array of a result that holds its sample of runs, as text
@@ -188,9 +186,7 @@ def read_result(path: str | PathLike[str]) -> Result:
 def _check_form(name, content):
     """Raise `ResultError` where the content of a file is no result, or one of another layout."""
     content = dict(content) if isinstance(content, dict) else {}
-    if content.get("schema") == OLD_SCHEMA and content.get("kind") in OLD_KINDS:
-        content["schema"] = SCHEMA
-    elif content.get("schema") != SCHEMA:
+    if content.get("schema") != SCHEMA:
         origin = content.get("provenance")
         commit = origin.get("commit") if isinstance(origin, dict) else None
         reader = f", the version {_at(commit)} reads it" if commit else ""

@@ -109,7 +109,7 @@ def stored_errors() -> tuple[dict[str, list[tuple[float, str]]], str]:
     table: dict[str, list[tuple[float, str]]] = {}
     for row in result.rows:
         if row["error"] is not None:
-            table.setdefault(row["scene"], []).append((row["error"], f"{row['solver']}, {row['variant']}"))
+            table.setdefault(row["scene"], []).append((row["error"], f"{row['engine']}, {row['variant']}"))
     when = f"{STORED}, computed on {result.provenance['time'][:10]}"
     return {name: sorted(rows) for name, rows in table.items()}, when
 

@@ -40,7 +40,7 @@ def page(result: Result) -> Page:
         Column("cause", lambda row: row["cause"] or f"none (below {settings['least']:g})"),
         Column("steps in contact [-]", "steps"),
         Column("deepest [mm]", lambda row: 1e3 * row["deepest"] if "deepest" in row else None),
-        Column("energy lost", "lost", digits=3, percent=True),
+        Column("energy lost", "energy_lost", digits=3, percent=True),
     )
     causes = ", ".join(dict.fromkeys(row["cause"] for row in wrong)) or "none"
     return Page(

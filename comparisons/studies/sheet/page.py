@@ -17,7 +17,7 @@ def page(result: Result) -> Page:
     scenes = result.settings["scenes"]
     rows = [
         {"name": solver_name(*names), **dict.fromkeys(scenes), **{row["scene"]: _error(row) for row in own}}
-        for names, own in grouped(result.rows, "solver", "variant").items()
+        for names, own in grouped(result.rows, "engine", "variant").items()
     ]
     for row in rows:
         within = all(isinstance(row[scene], float) and row[scene] <= USABLE for scene in scenes)

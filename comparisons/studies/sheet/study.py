@@ -32,7 +32,7 @@ def plan(ask: Ask) -> Plan:
     rows = [
         {
             "part": "scene",
-            "solver": run.case.solver,  # as rocking score reads it
+            "engine": run.case.solver,
             "variant": run.case.variant,
             **run.case.tag,
             **(nothing if run.failed else {key: run.values[key] for key in nothing}),

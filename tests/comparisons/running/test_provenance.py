@@ -179,7 +179,6 @@ def test_another_layout_is_refused_with_the_one_that_is_read_and_who_reads_it(tm
             read_result(changed(schema=schema, provenance=content["provenance"] | {"commit": "0" * 40}))
     with pytest.raises(ResultError, match="schema 1, this version reads 'rocking study 1'; run"):
         read_result(changed(schema=1, provenance=None))
-    assert read_result(changed(schema=1, kind="stability")).kind == "stability"  # not renamed yet
     for wrong in ({"rows": [1]}, {"settings": None}, {"provenance": {}}, {"more": 1}):
         with pytest.raises(ResultError, match=f"no result file of a study, {next(iter(wrong))}"):
             read_result(changed(**wrong))

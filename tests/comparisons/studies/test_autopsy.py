@@ -20,7 +20,16 @@ def told(engine, variant="fine", tier="tuned", error=1e-7, cause=None, ground="r
     }
     row = {"engine": engine, "variant": variant, "tier": tier, "best": tier == "tuned", "ground": ground}
     row |= {"failure": None, "placed": False}
-    return {**row, "error": error, "cause": cause, "steps": 2, "lasting": 1e-3, "lost": 0.1, "frames": frames, **more}
+    return {
+        **row,
+        "error": error,
+        "cause": cause,
+        "steps": 2,
+        "lasting": 1e-3,
+        "energy_lost": 0.1,
+        "frames": frames,
+        **more,
+    }
 
 
 def result(*rows):
