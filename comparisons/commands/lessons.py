@@ -34,7 +34,7 @@ def _listed(context: typer.Context) -> None:
 @app.command(name="open")
 def open_(name: Annotated[str, typer.Argument(help="Lesson: see rocking lessons.")]) -> None:
     """Open a lesson as a notebook in the browser, a copy whose code one can change. Ctrl-C ends it."""
-    from ..lessons.opening import open_notebook
+    from ..lessons.notebook import open_notebook
 
     raise typer.Exit(open_notebook(name))
 

@@ -92,6 +92,17 @@ def harmful_pulse() -> float:
     return edge(falls, 0.15, 0.25)
 
 
+def code() -> object:
+    from math import tan
+
+    from analytic import load_scene, simulate
+
+    isolated = load_scene("caryatid-isolated")
+    response = simulate(isolated)
+    found = 100 * (1 - response.peak_base_acceleration / (9.81 * tan(isolated.block.slenderness)))  # %
+    return response.outcome, found
+
+
 LESSON = Lesson(
     4,
     "caryatid",
@@ -155,5 +166,6 @@ LESSON = Lesson(
             "Less than the $0.288\\,g$ that would lift it without bearings.",
         ),
     ),
+    code,
     "motion=synthetic&base=true",
 )

@@ -102,6 +102,18 @@ def share_that_falls() -> float:
     return crowd(0.01)
 
 
+def code() -> object:
+    import numpy as np
+
+    from analytic import simulate_many
+    from comparisons.lessons.topics.chaos import RESTITUTION, scene
+
+    spread = RESTITUTION * (1 + 0.01 * np.linspace(-1, 1, 200))
+    crowd = simulate_many([scene().with_(block={"restitution": e}) for e in spread])
+    found = 100 * crowd.overturns.mean()  # %
+    return found
+
+
 LESSON = Lesson(
     6,
     "chaos",
@@ -158,5 +170,6 @@ LESSON = Lesson(
             2,
         ),
     ),
+    code,
     "motion=synthetic&slenderness=0.2",
 )

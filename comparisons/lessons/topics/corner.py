@@ -131,6 +131,20 @@ def order() -> float:
     return float(np.polyfit(np.log(SCAN[tops]), np.log(scanned()[tops]), 1)[0])
 
 
+def code() -> object:
+    import numpy as np
+
+    from analytic import simulate
+    from analytic.time_stepping import simulate_time_stepping
+    from comparisons.lessons.engine_runs import SCENE
+
+    exact = simulate(SCENE, history=False).impacts[0].time
+    steps = np.linspace(4e-3, 5e-3, 41)  # s
+    shifts = [simulate_time_stepping(SCENE, step=step).impacts[0].time - exact for step in steps]
+    found = 1e3 * max(abs(shift) for shift in shifts)  # ms
+    return found
+
+
 LESSON = Lesson(
     5,
     "corner",
@@ -197,6 +211,7 @@ LESSON = Lesson(
             2,
         ),
     ),
+    code,
     "motion=pulse&amplitude=0.4&period=0.8&engine=straddling&step=20",
     engines_table,
 )

@@ -143,6 +143,15 @@ def passing_solvers() -> float:
     return float(len(trusted(everything(), TARGET)))
 
 
+def code() -> object:
+    from comparisons.lessons.engine_runs import engine_runs, own_runs
+    from comparisons.lessons.topics.cost import TARGET, model_runs, trusted
+
+    best = trusted((*model_runs(), *own_runs(), *engine_runs()), TARGET)
+    found = len(best)
+    return {name: (f"{run.knob} = {run.value:g}", f"{1e3 * run.cpu:.3g} ms") for name, run in best.items()}
+
+
 LESSON = Lesson(
     7,
     "cost",
@@ -197,6 +206,7 @@ LESSON = Lesson(
             0,
         ),
     ),
+    code,
     "motion=release&tilt=0.6&engine=straddling&step=5",
     table,
 )

@@ -83,6 +83,16 @@ def momentum_on_the_base() -> float:
     return float(RockingModel.of(Scene(block=caryatid_block(0.28), base=BASE)).impact(1.0)[1])
 
 
+def code() -> object:
+    from analytic import Block, Scene, Start, simulate
+
+    statue = Block(mass=3172.05, radius=1.0884, slenderness=0.28)  # kg, m, rad
+    response = simulate(Scene(block=statue, start=Start(tilt=0.8 * 0.28)))
+    first = response.impacts[0]
+    found = first.rate_after / first.rate_before
+    return found
+
+
 LESSON = Lesson(
     2,
     "impacts",
@@ -148,6 +158,7 @@ LESSON = Lesson(
             "Horizontal momentum: $\\tilde{m} h (1 - e_{\\phi}) \\dot{\\phi}^-$, eq. (8) as it should read.",
         ),
     ),
+    code,
     "motion=release&tilt=0.8",
 )
 

@@ -100,6 +100,18 @@ def size_that_survives() -> float:
     return edge(lambda size: overturns(pulse_scene(0.5, size=size)), 1.0, 3.0)
 
 
+def code() -> object:
+    from math import pi
+
+    from analytic import Block, PulseMotion, Scene, simulate
+
+    statue = Block(mass=3172.05, radius=1.0884, slenderness=0.28)  # kg, m, rad
+    pulse = PulseMotion("one-sine", amplitude=0.4 * 9.81, frequency=2 * pi / 0.8)  # m/s2, rad/s
+    response = simulate(Scene(block=statue, motion=pulse))
+    found = response.peak_tilt_ratio
+    return response.outcome, found
+
+
 LESSON = Lesson(
     1,
     "tipping",
@@ -165,5 +177,6 @@ LESSON = Lesson(
             "The same halving, over R. The acceleration that lifts it has not changed.",
         ),
     ),
+    code,
     "motion=pulse&period=0.8&amplitude=0.4",
 )
