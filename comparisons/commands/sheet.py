@@ -32,8 +32,7 @@ def command(
 def _form(paths):
     """What the JSON file holds."""
     from ..schemas.results import Asked, Problem, Sheet
-    from ..sheet.problems import PROBLEMS, VERSION
-    from ..sheet.statement import UNITS
+    from ..sheet.problems import PROBLEMS, UNITS, VERSION
 
     problems = []
     for problem in PROBLEMS:

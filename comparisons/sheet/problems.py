@@ -13,6 +13,17 @@ VERSION = 1  # of the scenes and quantities: answers to another sheet are answer
 RECORD_SAMPLES = 1601  # of the synthetic motion: its first 8 s
 DAMPING = 0.15  # of the linear bearings, as a share of critical damping
 PERIOD = 2.0  # s, of the linear bearings under block and base
+# By kind of quantity: its unit, and the scale of its error in symbols.
+UNITS = {"time": "s", "angle": "rad", "rate": "rad/s", "length": "m", "speed": "m/s", "force": "N", "outcome": "a word"}
+SCALES = {
+    "time": "1/ω_r",
+    "angle": "γ",
+    "rate": "γ ω_r",
+    "length": "R γ",
+    "speed": "R γ ω_r",
+    "force": "(m + m_b) g γ",
+    "outcome": "1 if another",
+}
 
 
 @dataclass(frozen=True)
@@ -55,7 +66,7 @@ class Problem:
         return right.get(quantity.name) if quantity.kind == "time" else None
 
     def scale(self, quantity: Quantity) -> float:
-        """What an error of a quantity is divided by, in its unit; `statement.SCALES` says the same in symbols."""
+        """What an error of a quantity is divided by, in its unit; `SCALES` says the same in symbols."""
         block, omega = self.scene.block, self.scene.rocking_frequency
         return {
             "time": 1 / omega,
