@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -32,7 +32,7 @@ def _value(quantity: Quantity, response: Response, states: Mapping[float, State]
     if quantity.source in STATE:
         return getattr(states.get(quantity.index), quantity.source, None)
     of_impact = quantity.source in IMPACT
-    found = response.impacts if of_impact else getattr(response, quantity.source)
+    found: Any = response.impacts if of_impact else getattr(response, quantity.source)
     if quantity.index:
         k = int(quantity.index) - 1
         found = found[k] if k < len(found) else None

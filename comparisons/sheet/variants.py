@@ -108,7 +108,7 @@ class FaultyRun(Run):
                 break
             states[t] = self.state()
         hidden = () if self.fault.seen else self.fault.lost
-        seen = [impact for k, impact in enumerate(self.impacts, 1) if k not in hidden]
+        seen = tuple(impact for k, impact in enumerate(self.impacts, 1) if k not in hidden)
         return answers_of(problem, replace(self.response(0.0, None), impacts=seen), states)
 
     def at_reversal(self, ground: float) -> None:
