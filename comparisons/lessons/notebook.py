@@ -18,7 +18,7 @@ from ..running.files import TemporaryFolder
 from ..showing.parts import number
 from ..showing.templates import templates
 from .drawing import svg
-from .lesson import Exercise, Lesson, View
+from .lesson import Exercise, Lesson
 from .topics import lesson
 
 PAGES = Path(__file__).parent / "pages"
@@ -100,18 +100,14 @@ def controls(lesson: Lesson, mo: Any) -> Any:
     return mo.ui.array(made)
 
 
-def shown(view: View, mo: Any) -> Any:
-    """A view as picture and numbers."""
+def place(lesson: Lesson, values: Sequence[float | str], mo: Any) -> Any:
+    """What the lesson shows at these values of its controls: picture and numbers."""
+    view = lesson.view(*values)
     numbers = [mo.stat(written(value, unit), label=label) for label, (value, unit) in view.numbers.items()]
     picture = (
         f'<div style="{COLOURS}; max-width: 38rem" role="img" aria-label="{view.says}">{svg(view.figure, "n")}</div>'
     )
     return mo.vstack([mo.Html(picture), mo.hstack(numbers, justify="start", wrap=True)])
-
-
-def place(lesson: Lesson, values: Sequence[float | str], mo: Any) -> Any:
-    """What the lesson shows at these values of its controls."""
-    return shown(lesson.view(*values), mo)
 
 
 def closing(lesson: Lesson, mo: Any) -> Any:

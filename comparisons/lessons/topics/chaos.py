@@ -38,7 +38,6 @@ def tilt_of(exponent: float | None) -> np.ndarray:
     """Tilt over slenderness every `STEP`, of the block or, with an exponent k, of one whose e is 1 + 10^k times it."""
     e = RESTITUTION * (1 + (0.0 if exponent is None else 10.0**exponent))
     history = simulate(scene().with_(block={"restitution": e}), output_step=STEP).history
-    assert history is not None  # it was asked for
     times = np.arange(0, DURATION + STEP / 2, STEP)
     return np.interp(times, history.time, history.tilt) / SLENDERNESS
 

@@ -13,7 +13,7 @@ from analytic.caryatid import MASS, RADIUS, caryatid_block
 from analytic.rocking import RockingModel
 
 from ..computing import G, edge, history_until, overturns
-from ..drawing import INK, MODEL, OUTCOMES, PANEL, SOFT, canvas
+from ..drawing import INK, OUTCOMES, PANEL, canvas, tilt_axis
 from ..lesson import Control, Equation, Exercise, Lesson, View
 
 SLENDERNESS, PERIOD = 0.28, 0.8  # rad, s
@@ -46,11 +46,7 @@ def view(amplitude: float) -> View:
     scene = pulse_scene(amplitude)
     response, decided = history_until(scene, WINDOW), simulate(scene, history=False)
     figure, (tilt, field) = canvas(2, (1, 1.25))
-    assert response.history is not None  # it was asked for
-    tilt.plot(response.history.time, response.history.tilt / SLENDERNESS, color=MODEL)
-    for level in (-1, 1):
-        tilt.axhline(level, color=SOFT, linewidth=0.9, linestyle=(0, (4, 4)))
-    tilt.set(xlim=(0, WINDOW), ylim=(-1.5, 1.5), ylabel="tilt φ / γ", xlabel="time [s]")
+    tilt_axis(tilt, response.history.time, response.history.tilt / SLENDERNESS, WINDOW, xlabel="time [s]")
     edges = [np.append(v - (v[1] - v[0]) / 2, v[-1] + (v[1] - v[0]) / 2) for v in (PERIODS, AMPLITUDES)]
     field.imshow(
         kinds(overturning()),
