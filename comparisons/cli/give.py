@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..running.files import STANDARD_OUTPUT, write_all
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from ..schemas.form import Form
+
 
 def give(
-    results: Mapping[str | None, str | Callable[[Path], object]],
+    results: Mapping[str | None, Form | str],
     show: Callable[[], object],
     plot: str | None = None,
     draw: Callable[[], Figure] | None = None,
@@ -25,7 +26,9 @@ def give(
     PlaceError
         Something could not be written; the rest is written and shown all the same.
     """
-    files = {path: content for path, content in results.items() if path}
+    files: dict[str, Any] = {
+        path: content if isinstance(content, str) else content.text() for path, content in results.items() if path
+    }
     if plot and draw:
         from ..showing.plots import save
 

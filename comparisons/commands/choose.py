@@ -67,6 +67,6 @@ def command(
             progress=True,
             source=scene,
         )
-    give({json_file: choice.text()}, lambda: print_choice(choice, every_level), plot, lambda: draw_choice(choice))
+    give({json_file: choice}, lambda: print_choice(choice, every_level), plot, lambda: draw_choice(choice))
     if choice.chosen is None:
         raise typer.Exit(1)

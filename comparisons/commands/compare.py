@@ -68,7 +68,7 @@ def command(
         show(comparison(what, responses, horizons), responses)
 
     tell_failures(responses)
-    give({json_file: _form(what, responses, horizons, horizon).text()}, tell, plot, draw)
+    give({json_file: _form(what, responses, horizons, horizon)}, tell, plot, draw)
     if responses[0].failure:
         raise typer.Exit(1)
 

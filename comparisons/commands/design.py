@@ -106,7 +106,7 @@ def _by_targets(targets, made, json_file):
         f"{back.damping_equivalent:.2%} as W_D/(4 pi E_s); "
         f"loss {back.cycle_loss:.5g} J a cycle and bearing",
     )
-    give({json_file: Design(bearings=constants, properties=given).text()}, lambda: tell(*lines))
+    give({json_file: Design(bearings=constants, properties=given)}, lambda: tell(*lines))
 
 
 def _for_scene(place, stroke, tilt, made, many, write, plot, json_file):
@@ -130,7 +130,7 @@ def _for_scene(place, stroke, tilt, made, many, write, plot, json_file):
     chosen = {name: _chosen(scene, scan, point, motions) for name, point in _points(scan).items()}
     if write and write not in chosen:
         raise SettingError(f"--write: {nothing_holds(scan, stroke)}")
-    results = {json_file: _form(scene, stroke, tilt, motions, scan, chosen).text()}
+    results = {json_file: _form(scene, stroke, tilt, motions, scan, chosen)}
     if write:
         results[place] = _written(place, chosen[write]["bearings"])
     give(

@@ -67,7 +67,7 @@ def command(
         print_motions(what, [{**row, "changes": named(row["changes"], tilt)} for row in rows])
 
     form = _form(what, nearest, contact, rows, span, tilt)
-    give({json_file: form.text()}, show, plot, lambda: draw_margins(what, nearest, tilt))
+    give({json_file: form}, show, plot, lambda: draw_margins(what, nearest, tilt))
 
 
 def _form(scene, nearest, contact, rows, span, tilt):

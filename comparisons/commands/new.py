@@ -207,4 +207,4 @@ def _tell(file: str, scene: Any, json_file: str | None, asked: Mapping[str, tupl
         found.append(Derived(name=name, value=value, unit=unit, asked=target))
         shown[f"{name}, {words}" if words else name] = f"{value:.5g} {unit}".removesuffix(" -")
     form = New(file=file, scene=scene.name, derived=found)
-    give({json_file: form.text()}, lambda: tell(named_values(shown, f"{file}: {scene.name}")))
+    give({json_file: form}, lambda: tell(named_values(shown, f"{file}: {scene.name}")))

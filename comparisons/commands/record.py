@@ -49,5 +49,9 @@ def command(
         choice = ", ".join(channel_words(one) for one in channels)
         raise SettingError(f"--to {to}: takes one channel; add --channel, one of {choice}")
     found = Record(file=name, format=channels[0].format, channels=[described(one) for one in channels])
-    results = {json_file: found.text(), to: two_columns(channels[0].motion)}
-    give(results, lambda: print_channels(name, channels), plot, lambda: draw_channels(name, channels))
+    give(
+        {json_file: found, to: two_columns(channels[0].motion) if to else ""},
+        lambda: print_channels(name, channels),
+        plot,
+        lambda: draw_channels(name, channels),
+    )

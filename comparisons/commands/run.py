@@ -86,6 +86,6 @@ def command(
 
     form = Run(**response.to_json(), motions=[MotionRun(**row) for row in rows])
     tell_failures([response])
-    give({json_file: form.text(), csv: history.getvalue()}, tell, plot, draw)
+    give({json_file: form, csv: history.getvalue()}, tell, plot, draw)
     if response.failure:
         raise typer.Exit(1)

@@ -28,7 +28,7 @@ def command(
     given = read_answers(file)
     with spinner("the sheet's scenes") as tell:
         found = score(given, tell)
-    give({json_file: found.text()}, lambda: _show(found))
+    give({json_file: found}, lambda: _show(found))
     if not found.passed:
         raise typer.Exit(1)
 

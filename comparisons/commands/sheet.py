@@ -24,7 +24,7 @@ def command(
     check_folder(output)
     check_writable([json_file])
     paths = write_sheet(make_folder(output))
-    give({json_file: _form(paths).text()}, lambda: print(*paths, sep="\n"))
+    give({json_file: _form(paths)}, lambda: print(*paths, sep="\n"))
 
 
 def _form(paths):

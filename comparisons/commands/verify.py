@@ -43,7 +43,7 @@ def command(
         results += _verified(name, rows(name, variant), time_limit)
     versions = {name: get_engine(name).versions() for name in dict.fromkeys(row["engine"] for row in results)}
     form = Verification(versions=versions, rows=[Tolerance(**row) for row in results])
-    give({json_file: form.text()}, lambda: _show(results))
+    give({json_file: form}, lambda: _show(results))
     if not results or not all(row["holds"] for row in results):
         raise typer.Exit(1)
 
