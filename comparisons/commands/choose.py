@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+from ..cli.give import give
 from ..running.solving import check_time_limit
-
-if TYPE_CHECKING:
-    from ..advice.answer import Choice
 
 
 def command(
@@ -51,8 +47,9 @@ def command(
 
     from ..advice import choose
     from ..advice.criteria import fitting
-    from ..running.files import check_writable, write_all
+    from ..running.files import check_writable
     from ..running.solving import compile_kernels, say, stdout_to_stderr
+    from ..showing.choices import draw_choice, print_choice
 
     check_time_limit(time_limit)
     check_writable([json_file], picture=plot, inputs=[scene])
@@ -70,25 +67,6 @@ def command(
             progress=True,
             source=scene,
         )
-    problem = write_all(_results(choice, json_file, plot))
-    if json_file != "-":
-        from ..showing.choices import print_choice
-
-        print_choice(choice, every_level)
-    if problem:
-        raise problem
+    give({json_file: choice}, lambda: print_choice(choice, every_level), plot, lambda: draw_choice(choice))
     if choice.chosen is None:
         raise typer.Exit(1)
-
-
-def _results(choice: Choice, json_file: str | None, plot: str | None) -> dict[str, str | Callable[[Path], object]]:
-    """{file: what is written there}."""
-    results: dict[str, str | Callable[[Path], object]] = {}
-    if json_file:
-        results[json_file] = choice.text()
-    if plot:
-        from ..showing.choices import draw_choice
-        from ..showing.plots import save
-
-        results[plot] = lambda path: save(draw_choice(choice), path)
-    return results

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from math import nan
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from ..cli.give import give
 from ..running.readable import readable
 from ..running.solving import (
     ANALYTIC,
@@ -43,7 +42,8 @@ def command(
     """
     from analytic.scene_file import load_scene
 
-    from ..running.files import check_writable, write_all
+    from ..running.files import check_writable
+    from ..showing.tables import comparison, show
 
     check_time_limit(time_limit)
     check_writable([json_file], picture=plot, inputs=[scene])
@@ -54,25 +54,21 @@ def command(
     responses = [replace(first, warnings=(*first.warnings, *near_motion(what))), *others]
     horizons = {} if responses[0].failure else _sensitivity(what, responses, time_limit)
     horizon = min((each.horizon for each in horizons.values() if each.parts), default=None)
-    results: dict[str, str | Callable[[Path], object]] = {}
-    if json_file:
-        results[json_file] = _form(what, responses, horizons, horizon).text()
-    drawn = [response for response in responses if response.history] if plot else []
-    if plot and drawn:
-        from ..showing.plots import draw_histories, save
-
-        figure = draw_histories(what, drawn, horizon)
-        results[plot] = lambda path: save(figure, path)
-    elif plot:
+    drawn = [response for response in responses if response.history]
+    if plot and not drawn:
         say("there is no history to draw")
-    problem = write_all(results)
-    if json_file != "-":
-        from ..showing.tables import comparison, show
+        plot = None
 
+    def draw():
+        from ..showing.plots import draw_histories
+
+        return draw_histories(what, drawn, horizon)
+
+    def tell():
         show(comparison(what, responses, horizons), responses)
+
     tell_failures(responses)
-    if problem:
-        raise problem
+    give({json_file: _form(what, responses, horizons, horizon)}, tell, plot, draw)
     if responses[0].failure:
         raise typer.Exit(1)
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 import dataclasses
 import math
 import tempfile
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from analytic.errors import SceneError, SettingError
+
+from ..cli.give import give
 from ..running.motion_options import BothSigns, Directions, Records, motions_of
 from ..running.options import DEFINITION, OPTIONS, RATIO, told_by_options
 from ..running.record_options import Units
@@ -58,8 +60,6 @@ def command(
     Example: rocking design bust.toml --stroke 0.25 --plot bearings.svg --write least-stroke
     Example: rocking design --period 2 --damping 0.30 --definition paper --xmax 0.30 --mass 3384.05
     """
-    from analytic.errors import SettingError
-
     targets = {"period": period, "damping": damping, "xmax": xmax, "mass": mass}
     given = [f"--{name}" for name, value in targets.items() if value is not None]
     made: dict[str, Any] = {"count": count, "stiffness_ratio": ratio, "definition": definition}
@@ -71,8 +71,7 @@ def command(
         if len(given) < len(targets):
             missing = next(f"--{name}" for name, value in targets.items() if value is None)
             raise SettingError(f"{missing} is missing; give all four targets, or a scene and --stroke")
-        _by_targets(targets, made, json_file)
-        return
+        return _by_targets(targets, made, json_file)
     if given:
         raise SettingError(f"{given[0]}: a target, which a scene leaves open; give --stroke alone")
     if stroke is None:
@@ -83,43 +82,39 @@ def command(
 
 def _by_targets(targets, made, json_file):
     """Constants for four targets."""
-    from rich.console import Console
+    from rich.text import Text
 
     from analytic.design import design_bearings, properties
 
-    from ..running.files import check_writable, write_text
+    from ..running.files import check_writable
     from ..schemas.advice import Constants, Design, Properties
+    from ..showing.terminal import tell
 
     check_writable([json_file])
     mass, xmax = targets["mass"], targets["xmax"]
     with told_by_options(OPTIONS):
         bearings = design_bearings(mass, targets["period"], targets["damping"], xmax, **made)
     back = properties(bearings, mass, xmax)
-    if json_file:
-        constants, given = Constants(**bearings.model_dump()), Properties(**dataclasses.asdict(back))
-        write_text(json_file, Design(bearings=constants, properties=given).text())
-    if json_file == "-":
-        return
-    console = Console(highlight=False, soft_wrap=True)
-    console.print(
-        f"[bold]ka[/bold] = {bearings.ka:.5g} N/m   [bold]kb[/bold] = {bearings.kb:.5g} N/m   "
-        f"[bold]alpha[/bold] = {bearings.alpha:.4f}   for each of {bearings.count} bearings"
-    )
-    console.print(
+    constants, given = Constants(**bearings.model_dump()), Properties(**dataclasses.asdict(back))
+    lines = (
+        Text.from_markup(
+            f"[bold]ka[/bold] = {bearings.ka:.5g} N/m   [bold]kb[/bold] = {bearings.kb:.5g} N/m   "
+            f"[bold]alpha[/bold] = {bearings.alpha:.4f}   for each of {bearings.count} bearings"
+        ),
         f"back: secant period {back.period:.5g} s at {xmax:g} m ({back.period_kb:.4g} s with kb alone); "
         f"damping {back.damping_paper:.2%} as W_D/(2 pi E_s), "
         f"{back.damping_equivalent:.2%} as W_D/(4 pi E_s); "
-        f"loss {back.cycle_loss:.5g} J a cycle and bearing"
+        f"loss {back.cycle_loss:.5g} J a cycle and bearing",
     )
+    give({json_file: Design(bearings=constants, properties=given)}, lambda: tell(*lines))
 
 
 def _for_scene(place, stroke, tilt, made, many, write, plot, json_file):
     """The bearings that hold, found by a scan; shown, drawn, written."""
     from analytic.bearing_scan import scan_bearings
-    from analytic.errors import SettingError
     from analytic.scene_file import load_scene, shipped_scenes
 
-    from ..running.files import check_writable, write_all
+    from ..running.files import check_writable
     from ..running.solving import bar, compile_kernels
     from ..showing.bearings import draw_bearings, nothing_holds, print_bearings
 
@@ -135,23 +130,17 @@ def _for_scene(place, stroke, tilt, made, many, write, plot, json_file):
     chosen = {name: _chosen(scene, scan, point, motions) for name, point in _points(scan).items()}
     if write and write not in chosen:
         raise SettingError(f"--write: {nothing_holds(scan, stroke)}")
-    results: dict[str, str | Callable[[Path], object]] = {}
-    if json_file:
-        results[json_file] = _form(scene, stroke, tilt, motions, scan, chosen).text()
-    if plot:
-        from ..showing.plots import save
-
-        figure = draw_bearings(scene, scan, stroke, tilt)
-        results[plot] = lambda path: save(figure, path)
+    results = {json_file: _form(scene, stroke, tilt, motions, scan, chosen)}
     if write:
         results[place] = _written(place, chosen[write]["bearings"])
-    problem = write_all(results)
-    if json_file != "-":
-        print_bearings(scene, scan, stroke, tilt, len(motions), chosen)
-        if write and not problem:
-            print(f"written into {place}: {write}")
-    if problem:
-        raise problem
+    give(
+        results,
+        lambda: print_bearings(scene, scan, stroke, tilt, len(motions), chosen),
+        plot,
+        lambda: draw_bearings(scene, scan, stroke, tilt),
+    )
+    if write and json_file != "-":
+        print(f"written into {place}: {write}")
 
 
 def _points(scan: BearingScan) -> dict[str, tuple[float, float]]:
@@ -184,7 +173,6 @@ def _chosen(scene, scan, point, motions):
 
 def _written(place, bearings):
     """The text of the scene file with these bearings; refused where the file holds them in another form."""
-    from analytic.errors import SceneError, SettingError
     from analytic.new_scene import with_bearings
     from analytic.scene_file import load_scene
 

@@ -17,24 +17,19 @@ def _listed(context: typer.Context) -> None:
     """Eight lessons on the rocking block; without a command they are listed."""
     if context.invoked_subcommand is not None:
         return
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
     from ..lessons.topics import lessons
+    from ..showing.terminal import grid, tell
 
-    table = Table("name", "lesson", "minutes", "needs", box=box.SIMPLE)
-    for lesson in lessons():
-        table.add_row(lesson.name, f"{lesson.number}. {lesson.title}", str(lesson.minutes), lesson.needs)
-    console = Console(highlight=False)
-    console.print(table)
-    console.print("rocking lessons open NAME: as a notebook;  rocking lessons export: pages to open by double click")
+    heads = ["name", "lesson", "minutes", "needs"]
+    rows = [[one.name, f"{one.number}. {one.title}", str(one.minutes), one.needs] for one in lessons()]
+    tell(grid(heads, rows, left=heads, wraps=heads))
+    tell("rocking lessons open NAME: as a notebook;  rocking lessons export: pages to open by double click")
 
 
 @app.command(name="open")
 def open_(name: Annotated[str, typer.Argument(help="Lesson: see rocking lessons.")]) -> None:
     """Open a lesson as a notebook in the browser, a copy whose code one can change. Ctrl-C ends it."""
-    from ..lessons.opening import open_notebook
+    from ..lessons.notebook import open_notebook
 
     raise typer.Exit(open_notebook(name))
 

@@ -1,12 +1,11 @@
 """``rocking margin``: how far a scene is from other limit states and another outcome."""
 
 import dataclasses
-from collections.abc import Callable
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from ..cli.give import give
 from ..running.motion_options import BothSigns, Directions, Records, other_motions
 from ..running.record_options import Units
 
@@ -43,8 +42,10 @@ def command(
     from analytic.margins import LARGEST_SPAN, contact_margins, margins
     from analytic.scene_file import load_scene
 
-    from ..running.files import check_writable, write_all
+    from ..running.files import check_writable
     from ..running.solving import compile_kernels, spinner
+    from ..showing.margins import draw_margins, named, print_margins
+    from ..showing.motions import print_motions
 
     if not LEAST_SPAN <= span <= 100 * LARGEST_SPAN:
         raise SettingError(f"--span {span:g}: give per cent, from {LEAST_SPAN:g} to {100 * LARGEST_SPAN:g}")
@@ -60,26 +61,13 @@ def command(
         )
         contact = contact_margins(what)
     rows = [row for name, motions in groups.items() for row in _under(what, name, motions, span, tilt)]
-    results: dict[str, str | Callable[[Path], object]] = {}
-    if json_file:
-        results[json_file] = _form(what, nearest, contact, rows, span, tilt).text()
-    if plot:
-        from ..showing.margins import draw_margins
-        from ..showing.plots import save
 
-        figure = draw_margins(what, nearest, tilt)
-        results[plot] = lambda path: save(figure, path)
-    problem = write_all(results)
-    if json_file != "-":
-        from ..showing.margins import named, print_margins
-
+    def show():
         print_margins(what, nearest, contact, span, tilt)
-        if rows:
-            from ..showing.motions import print_motions
+        print_motions(what, [{**row, "changes": named(row["changes"], tilt)} for row in rows])
 
-            print_motions(what, [{**row, "changes": named(row["changes"], tilt)} for row in rows])
-    if problem:
-        raise problem
+    form = _form(what, nearest, contact, rows, span, tilt)
+    give({json_file: form}, show, plot, lambda: draw_margins(what, nearest, tilt))
 
 
 def _form(scene, nearest, contact, rows, span, tilt):

@@ -1,12 +1,17 @@
 """``rocking new``: a scene file for one's own block."""
 
 import os
+import sys
+import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from analytic.errors import SceneError, SettingError
+
+from ..cli.give import give
 from ..running.options import DEFINITION, OPTIONS, RATIO, told_by_options
 from ..running.record_options import Channel, Column, Step, Units
 
@@ -53,7 +58,6 @@ def command(
 
     Example: rocking new bust.toml --height 1.9 --width 0.55 --material marble --base-mass 400 --period 2.5 --xmax 0.2
     """
-    from analytic.errors import SettingError
     from analytic.new_scene import block_from, scene_text
     from analytic.scene import Base
 
@@ -90,10 +94,6 @@ def command(
 
 def _asked(value: float | None, option: str, question: str) -> float:
     """The value, or the answer to the question where somebody sits at a terminal."""
-    import sys
-
-    from analytic.errors import SettingError
-
     if value is not None:
         return value
     if not sys.stdin.isatty():
@@ -103,9 +103,6 @@ def _asked(value: float | None, option: str, question: str) -> float:
 
 def _weight() -> tuple[str | None, float | None]:
     """(material, mass [kg]) as answered; one of them is None."""
-    import sys
-
-    from analytic.errors import SettingError
     from analytic.new_scene import MATERIALS
 
     if not sys.stdin.isatty():
@@ -118,7 +115,6 @@ def _weight() -> tuple[str | None, float | None]:
 
 
 def _density(density: float | None, material: str | None) -> float | None:
-    from analytic.errors import SettingError
     from analytic.new_scene import MATERIALS
 
     if material is None:
@@ -135,7 +131,6 @@ def _bearings(
 ) -> Any:
     """The `Bearings` under what they carry [kg], by design or by constants; None without a base."""
     from analytic.design import design_bearings
-    from analytic.errors import SettingError
     from analytic.scene import Bearings
 
     from ..running.solving import say
@@ -168,7 +163,6 @@ def _asked_for(period: float, damping: float, definition: str) -> dict[str, tupl
 
 def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str, Any]) -> dict[str, Any] | None:
     """The table [motion]; a record is named as seen from the scene file. `said`: what it does not say itself."""
-    from analytic.errors import SettingError
     from analytic.records import read_record
 
     if record is not None and tilt is not None:
@@ -187,9 +181,6 @@ def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str
 
 def _scene(file: str, text: str) -> Any:
     """The `Scene` that the text makes as `file`."""
-    import tempfile
-
-    from analytic.errors import SceneError
     from analytic.scene_file import load_scene
 
     # read before it is kept: a record that cannot be read, say, leaves no file behind
@@ -204,25 +195,16 @@ def _scene(file: str, text: str) -> Any:
 
 def _tell(file: str, scene: Any, json_file: str | None, asked: Mapping[str, tuple[float, str]]) -> None:
     """Print or write what follows from a scene, beside what was asked for."""
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
     from analytic.new_scene import derived
 
-    from ..running.files import write_text
     from ..schemas.inputs import Derived, New
+    from ..showing.tables import named_values
+    from ..showing.terminal import tell
 
-    rows = derived(scene)
-    if json_file:
-        found = [
-            Derived(name=name, value=value, unit=unit, asked=asked.get(name, (None,))[0]) for name, value, unit in rows
-        ]
-        write_text(json_file, New(file=file, scene=scene.name, derived=found).text())
-    if json_file == "-":
-        return
-    table = Table(title=f"{file}: {scene.name}", box=box.SIMPLE, show_header=False)
-    for label, value, unit in rows:
-        label = f"{label}, {asked[label][1]}" if label in asked else label
-        table.add_row(label, f"{value:.5g}" + ("" if unit == "-" else f" {unit}"))
-    Console(highlight=False).print(table)
+    found, shown = [], {}
+    for name, value, unit in derived(scene):
+        target, words = asked.get(name, (None, ""))
+        found.append(Derived(name=name, value=value, unit=unit, asked=target))
+        shown[f"{name}, {words}" if words else name] = f"{value:.5g} {unit}".removesuffix(" -")
+    form = New(file=file, scene=scene.name, derived=found)
+    give({json_file: form}, lambda: tell(named_values(shown, f"{file}: {scene.name}")))

@@ -1,11 +1,11 @@
 """``rocking record``: what a record file holds, as it is read here."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from ..cli.give import give
 from ..running.options import RECORD_OPTIONS, told_by_options
 from ..running.record_options import Channel, Column, Step, Units
 
@@ -37,7 +37,7 @@ def command(
     from analytic.records import read_channels
     from analytic.records.written import two_columns
 
-    from ..running.files import check_writable, write_all
+    from ..running.files import check_writable
     from ..schemas.inputs import Record
     from ..showing.records import channel_words, described, draw_channels, print_channels
 
@@ -48,19 +48,10 @@ def command(
     if to and len(channels) > 1:
         choice = ", ".join(channel_words(one) for one in channels)
         raise SettingError(f"--to {to}: takes one channel; add --channel, one of {choice}")
-    results: dict[str, str | Callable] = {}
-    if json_file:
-        found = Record(file=name, format=channels[0].format, channels=[described(one) for one in channels])
-        results[json_file] = found.text()
-    if to:
-        results[to] = two_columns(channels[0].motion)
-    if plot:
-        from ..showing.plots import save
-
-        figure = draw_channels(name, channels)
-        results[plot] = lambda path: save(figure, path)
-    problem = write_all(results)
-    if json_file != "-" and to != "-":
-        print_channels(name, channels)
-    if problem:
-        raise problem
+    found = Record(file=name, format=channels[0].format, channels=[described(one) for one in channels])
+    give(
+        {json_file: found, to: two_columns(channels[0].motion) if to else ""},
+        lambda: print_channels(name, channels),
+        plot,
+        lambda: draw_channels(name, channels),
+    )

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from analytic.errors import SettingError
+
 from ..running.motion_options import BothSigns, Directions, Records, other_motions
 from ..running.options import RECORD_OPTIONS, told_by_options
 from ..running.record_options import Channel, Column, Step, Units
@@ -58,7 +60,6 @@ def command(
     A record given with scenes takes the place of their motions. The stored studies follow as background.
     Example: rocking report bust.toml --output bust
     """
-    from analytic.errors import SettingError
 
     from ..report.write import write_page
     from ..running.files import check_folder, check_writable, write_text
@@ -113,9 +114,6 @@ def _simulate(output, scene, motion, engines, variants, many):
 
 def _studies(folder):
     """The folder of the studies' result files, checked."""
-    from pathlib import Path
-
-    from analytic.errors import SettingError
 
     from ..running.provenance import RESULTS
 
@@ -145,7 +143,6 @@ def form(page: Path) -> Report:
 
 def _variants(variant, engines, scene):
     """{engine: its variant} as asked for, checked."""
-    from analytic.errors import SettingError
     from engines import get_engine
 
     if variant is None:

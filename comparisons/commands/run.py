@@ -1,14 +1,12 @@
 """``rocking run``: one scene, one solver."""
 
 import io
-import sys
-from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from ..cli.give import give
 from ..running.motion_options import BothSigns, Directions, Records, other_motions, rows_of
 from ..running.record_options import Units
 from ..running.solving import (
@@ -18,6 +16,7 @@ from ..running.solving import (
     check_time_limit,
     near_motion,
     parse_settings,
+    say,
     simulate,
     tell_failures,
 )
@@ -47,8 +46,10 @@ def command(
     """
     from analytic.scene_file import load_scene
 
-    from ..running.files import STANDARD_OUTPUT, check_writable, write_all
+    from ..running.files import check_writable
     from ..schemas.runs import MotionRun, Run
+    from ..showing.motions import print_motions
+    from ..showing.tables import show, summary
 
     check_time_limit(time_limit)
     check_writable([json_file, csv], picture=plot, inputs=[scene])
@@ -68,43 +69,23 @@ def command(
     rows = rows_of(what, groups, lambda one: simulate(one, engine, variant, chosen, False, time_limit))
     response = replace(response, warnings=(*response.warnings, *near_motion(what)))
     if response.history is None and (csv or plot):
-        print("there is no history to write", file=sys.stderr)
+        say("there is no history to write")
         csv = plot = None
-    results = _history_files(what, response, csv, plot)
-    if json_file:
-        form = Run(**response.to_json(), motions=[MotionRun(**row) for row in rows])
-        results = {json_file: form.text()} | results
-    problem = write_all(results)
-    if STANDARD_OUTPUT not in (json_file, csv):
-        from ..showing.tables import show, summary
+    history = io.StringIO()
+    if csv and response.history is not None:
+        response.history.to_csv(history)
 
+    def tell():
         show(summary(what, response), [response])
-        if rows:
-            from ..showing.motions import print_motions
+        print_motions(what, rows)
 
-            print_motions(what, rows)
+    def draw():
+        from ..showing.plots import draw_histories
+
+        return draw_histories(what, [response])
+
+    form = Run(**response.to_json(), motions=[MotionRun(**row) for row in rows])
     tell_failures([response])
-    if problem:
-        raise problem
+    give({json_file: form, csv: history.getvalue()}, tell, plot, draw)
     if response.failure:
         raise typer.Exit(1)
-
-
-def _history_files(scene, response, csv, plot):
-    """{file: what goes into it} of the files of the history that are asked for."""
-    from ..running.files import STANDARD_OUTPUT
-
-    results: dict[str, str | Callable[[Path], object]] = {}
-    history = response.history
-    if history is not None and csv == STANDARD_OUTPUT:
-        table = io.StringIO()
-        history.to_csv(table)
-        results[csv] = table.getvalue()
-    elif history is not None and csv:
-        results[csv] = history.to_csv
-    if plot:
-        from ..showing.plots import draw_histories, save
-
-        figure = draw_histories(scene, [response])
-        results[plot] = lambda path: save(figure, path)
-    return results

@@ -4,6 +4,8 @@ from typing import Annotated
 
 import typer
 
+from ..cli.give import give
+
 
 def command(
     output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the pages.")] = "sheet",
@@ -16,24 +18,19 @@ def command(
     With them go the input record and answers.csv, to be filled in and handed to rocking score.
     Example: rocking sheet --output problems
     """
-    from ..running.files import check_folder, check_writable, make_folder, write_text
+    from ..running.files import check_folder, check_writable, make_folder
     from ..sheet.pages import write_sheet
 
     check_folder(output)
     check_writable([json_file])
     paths = write_sheet(make_folder(output))
-    if json_file:
-        write_text(json_file, _form(paths).text())
-    if json_file != "-":
-        for path in paths:
-            print(path)
+    give({json_file: _form(paths)}, lambda: print(*paths, sep="\n"))
 
 
 def _form(paths):
     """What the JSON file holds."""
     from ..schemas.results import Asked, Problem, Sheet
-    from ..sheet.problems import PROBLEMS, VERSION
-    from ..sheet.statement import UNITS
+    from ..sheet.problems import PROBLEMS, UNITS, VERSION
 
     problems = []
     for problem in PROBLEMS:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from typer.core import TyperGroup
@@ -72,8 +72,15 @@ def command_of(study: Study) -> Callable[..., None]:
     """A function that Typer makes the study's command of."""
 
     def command(
-        quick=False, output=None, engine=None, workers=None, scheduler=None, replot=None, check=None, **options
-    ):
+        quick: Quick = False,
+        output: Output = None,
+        engine: Engines = None,
+        workers: Workers = None,
+        scheduler: Scheduler = None,
+        replot: Replot = None,
+        check: Check = None,
+        **options: Any,
+    ) -> None:
         from ..report.detail import write_study
         from ..running.files import check_folder
         from ..running.provenance import read_result
@@ -93,7 +100,7 @@ def command_of(study: Study) -> Callable[..., None]:
         problems = []
         if scheduler is not None and workers is not None:
             raise SettingError("--workers: are those of --scheduler; give one of the two")
-        place = dict(workers=workers, scheduler=scheduler)
+        place: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
         for path in compute(study, folder, engines=engine or None, quick=quick, **place, **options):
             with spinner(f"{path.name}: page"):
                 file, page = write_study(study, path)
@@ -105,19 +112,8 @@ def command_of(study: Study) -> Callable[..., None]:
             _tell(problems)
             raise typer.Exit(1)
 
-    def option(name, kind, default):
-        return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
-
-    parameters = [
-        option("quick", Quick, False),
-        option("output", Output, None),
-        option("engine", Engines, None),
-        option("workers", Workers, None),
-        option("scheduler", Scheduler, None),
-        option("replot", Replot, None),
-        option("check", Check, None),
-        *_options(study.plan),
-    ]
+    own = list(inspect.signature(command, eval_str=True).parameters.values())[:-1]  # without the others
+    parameters = [*own, *_options(study.plan)]
     command.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]  # Typer reads it there
     command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
     command.__doc__ = f"{study.question}\n\nExample: rocking study {study.name} --quick"

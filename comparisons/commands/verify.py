@@ -4,6 +4,9 @@ from typing import Annotated, Any
 
 import typer
 
+from analytic.errors import SettingError
+
+from ..cli.give import give
 from ..running.solving import TIME_LIMIT, check_time_limit, named_engines
 
 
@@ -25,11 +28,10 @@ def command(
     From the tests of another project: comparisons.measuring.tolerances.rows("exudyn"), each with `check()`.
     Example: rocking verify --engine exudyn
     """
-    from analytic.errors import SettingError
     from engines import get_engine, installed_engines
 
     from ..measuring.tolerances import rows
-    from ..running.files import check_writable, write_text
+    from ..running.files import check_writable
     from ..schemas.results import Tolerance, Verification
 
     check_time_limit(time_limit)
@@ -39,11 +41,9 @@ def command(
     results: list[dict[str, Any]] = []
     for name in named_engines(engine or installed_engines()):
         results += _verified(name, rows(name, variant), time_limit)
-    if json_file:
-        versions = {name: get_engine(name).versions() for name in dict.fromkeys(row["engine"] for row in results)}
-        write_text(json_file, Verification(versions=versions, rows=[Tolerance(**row) for row in results]).text())
-    if json_file != "-":
-        _show(results)
+    versions = {name: get_engine(name).versions() for name in dict.fromkeys(row["engine"] for row in results)}
+    form = Verification(versions=versions, rows=[Tolerance(**row) for row in results])
+    give({json_file: form}, lambda: _show(results))
     if not results or not all(row["holds"] for row in results):
         raise typer.Exit(1)
 
@@ -66,32 +66,29 @@ def _verified(name, table, time_limit):
 
 
 def _show(results):
-    from rich.console import Console
+    from ..showing.terminal import tell
 
-    console = Console(highlight=False)
     for solver in dict.fromkeys((row["engine"], row["variant"]) for row in results):
-        console.print(_table(solver, [row for row in results if (row["engine"], row["variant"]) == solver]))
-    for row in results:
-        if row["failure"]:
-            console.print(f"{row['engine']}, {row['quantity']}: {row['failure']}", soft_wrap=True, markup=False)
-    broken = sum(not row["holds"] for row in results)
-    console.print(f"{len(results) - broken} of {len(results)} tolerances hold.")
+        tell(_table(solver, [row for row in results if (row["engine"], row["variant"]) == solver]))
+    failures = [f"{row['engine']}, {row['quantity']}: {row['failure']}" for row in results if row["failure"]]
+    held = sum(row["holds"] for row in results)
+    tell(*failures, f"{held} of {len(results)} tolerances hold.")
 
 
 def _table(solver, rows):
-    from rich import box
-    from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=", ".join(solver), box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    for name in ("", "quantity and scenes", "found", "tolerated", "unit"):
-        table.add_column(Text(name), justify="right" if name in ("found", "tolerated") else "left")
-    for row in rows:
-        table.add_row(
+    from ..showing.terminal import digits, grid
+
+    heads = ["", "quantity and scenes", "found", "tolerated", "unit"]
+    cells = [
+        [
             "" if row["bound"] is None else "holds" if row["holds"] else Text("FAILS", style="bold red"),
-            Text(f"{row['quantity']}\n{row['scenes']}"),
-            "-" if row["found"] is None else f"{row['found']:.3g}",
+            f"{row['quantity']}\n{row['scenes']}",
+            digits(row["found"], ".3g"),
             "not stated" if row["bound"] is None else f"{row['bound']:.2g}",
             row["unit"],
-        )
-    return table
+        ]
+        for row in rows
+    ]
+    return grid(heads, cells, left=["quantity and scenes", "unit"], wraps=heads, title=", ".join(solver))

@@ -60,6 +60,14 @@ def canvas(rows: int = 1, heights: tuple[float, ...] = (1,), columns: int = 1, *
     return figure, axes
 
 
+def tilt_axis(axes: Axes, time: Any, ratio: Any, window: float, **more: Any) -> None:
+    """Tilt over slenderness in time [s] up to the window, with the lines at which the block is balanced."""
+    axes.plot(time, ratio, color=MODEL)
+    for level in (-1, 1):
+        axes.axhline(level, color=SOFT, linewidth=0.9, linestyle=(0, (4, 4)))
+    axes.set(xlim=(0, window), ylim=(-1.5, 1.5), ylabel="tilt φ / γ", **more)
+
+
 def legend(axes: Axes, **more: Any) -> None:
     """A legend in the lessons' style."""
     with matplotlib.rc_context(STYLE):

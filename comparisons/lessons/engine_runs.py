@@ -6,6 +6,7 @@ Which engines there are is asked of `engines`; without any the lessons run on th
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from analytic import Response, Scene, Start, simulate
@@ -30,7 +31,6 @@ class EngineRun:
     tier: str
     knob: str
     value: float
-    default: bool
     error: float | None
     cpu: float
 
@@ -39,33 +39,32 @@ class EngineRun:
         return f"{self.solver}, {self.variant}" if self.variant else self.solver
 
 
-def first_rate(response: Response) -> float | None:
-    """Tilt rate after the first impact [rad/s], None where there is none."""
-    hits = [impact for impact in response.impacts if impact.time < FIRST]
-    return hits[0].rate_after if hits else None
-
-
 @functools.cache
 def exact_rate() -> float:
-    rate = first_rate(simulate(SCENE, history=False))
-    assert rate is not None  # the model strikes
-    return rate
+    """Tilt rate after the first impact [rad/s], of the model."""
+    return simulate(SCENE, history=False).impacts[0].rate_after
 
 
-def _error(response):
-    rate = first_rate(response)
-    return None if rate is None else abs(rate / exact_rate() - 1)
+def error_of(response: Response) -> float | None:
+    """Relative error of the tilt rate after the first impact, None where there is none."""
+    hits = [impact for impact in response.impacts if impact.time < FIRST]
+    return abs(hits[0].rate_after / exact_rate() - 1) if hits else None
+
+
+def timed(solver: str, knob: str, values: Iterable[float], simulated: Callable[..., Response]) -> tuple[EngineRun, ...]:
+    """Runs of one of our own solvers, a setting each."""
+    found = []
+    for value in values:
+        runs = [simulated(SCENE, history=False, **{knob: value}) for _ in range(ROUNDS)]
+        cpu = min(run.cpu_seconds for run in runs)
+        found.append(EngineRun(solver, "", "", knob, value, error_of(runs[0]), cpu))
+    return tuple(found)
 
 
 @functools.cache
 def own_runs() -> tuple[EngineRun, ...]:
     """Of the model's fixed-step integrator."""
-    found = []
-    for step in OWN_STEPS:
-        runs = [simulate_time_stepping(SCENE, step=step, history=False) for _ in range(ROUNDS)]
-        cpu = min(run.cpu_seconds for run in runs)
-        found.append(EngineRun(OWN, "", "", "step", step, step == 1e-3, _error(runs[0]), cpu))
-    return tuple(found)
+    return timed(OWN, "step", OWN_STEPS, simulate_time_stepping)
 
 
 @functools.cache
@@ -77,12 +76,8 @@ def engine_runs() -> tuple[EngineRun, ...]:
         for variant, kind in engine.variants.items():
             for value in kind.ladder:
                 response = engine.simulate(SCENE, variant=variant, history=False, compare=False, **{kind.knob: value})
-                error = None if response.outcome == "failed" else _error(response)
-                found.append(
-                    EngineRun(
-                        name, variant, kind.tier, kind.knob, value, value == kind.default, error, response.cpu_seconds
-                    )
-                )
+                error = None if response.outcome == "failed" else error_of(response)
+                found.append(EngineRun(name, variant, kind.tier, kind.knob, value, error, response.cpu_seconds))
     return tuple(found)
 
 

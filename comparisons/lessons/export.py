@@ -15,11 +15,10 @@ from ..showing.mathml import mathml, prose
 from ..showing.templates import templates
 from .drawing import LICENCE, download, svg
 from .lesson import Lesson, View
-from .notebook import answer, code_of, written
+from .notebook import PAGES, answer, code_of, written
 from .playground import PAGE, playground_page
 from .topics import NAMES, lesson
 
-FOLDER = Path(__file__).parent / "pages"
 OTHERS = (("index.html", "Lessons"), ("derivations.html", "Derivation"), ("teacher.html", "For teachers"))
 
 
@@ -61,10 +60,10 @@ def export_pages(
 
 
 def _environment() -> Environment:
-    environment = templates(FOLDER)
+    environment = templates(PAGES)
     environment.filters["prose"] = lambda text: Markup(prose(text))
     environment.filters["math"] = lambda tex: Markup(mathml(tex, display=True))
-    environment.globals["style"] = Markup((FOLDER / "pages.css").read_text(encoding="utf-8"))
+    environment.globals["style"] = Markup((PAGES / "pages.css").read_text(encoding="utf-8"))
     return environment
 
 
@@ -81,7 +80,7 @@ def _lesson_page(environment: Environment, one: Lesson, chosen: list[Lesson], ex
         table=one.table() if one.table else None,
         texts=json.dumps([[control.text(value) for value in control.values] for control in one.controls]),
         views=views,
-        script=Markup((FOLDER / "lesson.js").read_text(encoding="utf-8")),
+        script=Markup((PAGES / "lesson.js").read_text(encoding="utf-8")),
     )
 
 

@@ -78,8 +78,9 @@ class Exercise:
 class Lesson:
     """One lesson; `view` takes the values of the controls in their order.
 
-    minutes : in a lecture. aims : what one can do afterwards. needs : what one should know before. playground : where
-    the playground's sliders stand, as its address after #. table : rows beside the picture that need not move.
+    minutes : in a lecture. aims : what one can do afterwards. needs : what one should know before. code : the few lines
+    that compute a number of it, `found`; their text is a cell of the notebook. playground : where the playground's
+    sliders stand, as its address after #. table : rows beside the picture that need not move.
     """
 
     number: int
@@ -95,6 +96,7 @@ class Lesson:
     look: str
     wrong: tuple[str, ...]
     exercises: tuple[Exercise, ...]
+    code: Callable[[], object]
     playground: str
     table: Callable[[], Table] | None = field(default=None)
 

@@ -1,18 +1,30 @@
-"""What the notebooks show, made of a `Lesson`; `mo` is the module marimo, which only they import."""
+"""A lesson as a notebook: its file, and what its cells show; `mo` is the module marimo, which only they import."""
 
 from __future__ import annotations
 
-import ast
+import importlib.util
+import inspect
+import re
+import subprocess
+import sys
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ..showing.parts import number
-from .drawing import svg
-from .lesson import Exercise, Lesson, View
+from analytic.errors import SettingError
 
-FOLDER = Path(__file__).parent / "notebooks"
+from ..running.files import TemporaryFolder
+from ..showing.parts import number
+from ..showing.templates import templates
+from .drawing import svg
+from .lesson import Exercise, Lesson
+from .topics import lesson
+
+PAGES = Path(__file__).parent / "pages"
+# Cells run when the notebook opens, which marimo does not do unasked.
+SETTINGS = "[tool.marimo.runtime]\nauto_instantiate = true\n"
+INSTALL = "pip install marimo, or this project with .[lessons]"
 # Stand-ins of `drawing` in a notebook, light or dark.
 COLOURS = (
     "--ink: currentColor; --soft: #8a867e; --grid: #88888844; --panel: #ffffff; --model: #2b8fd0; --ghost: #e0701a; "
@@ -20,26 +32,38 @@ COLOURS = (
 )
 
 
-def notebook_file(lesson: Lesson) -> Path:
-    """The notebook of a lesson."""
-    return FOLDER / f"{lesson.name}.py"
-
-
 def code_of(lesson: Lesson) -> str:
-    """The few lines of a lesson: the cell `code` of its notebook.
+    """The few lines of a lesson: the body of its `code`, whose last line shows what that returns."""
+    body = inspect.getsource(lesson.code).partition("\n")[2]
+    return re.sub(r"^return ", "", textwrap.dedent(body).rstrip(), flags=re.MULTILINE)
+
+
+def notebook_of(lesson: Lesson) -> str:
+    """The notebook of a lesson, as marimo has them: a Python file."""
+    return templates(PAGES).get_template("notebook.py.jinja").render(lesson=lesson, code=code_of(lesson))
+
+
+def open_notebook(name: str) -> int:
+    """Open the notebook of a lesson in the browser, by marimo; returns its status when it ends.
 
     Raises
     ------
-    ValueError
-        The notebook has no such cell.
+    SettingError
+        There is no such lesson, or marimo is not installed.
     """
-    source = notebook_file(lesson).read_text(encoding="utf-8")
-    for node in ast.parse(source).body:
-        if isinstance(node, ast.FunctionDef) and node.name == "code":
-            kept = [part for part in node.body if not isinstance(part, ast.Return)]
-            lines = source.splitlines()[kept[0].lineno - 1 : kept[-1].end_lineno]
-            return textwrap.dedent("\n".join(lines))
-    raise ValueError(f"{notebook_file(lesson)}: no cell called code")
+    try:
+        chosen = lesson(name)
+    except KeyError as error:
+        raise SettingError(str(error.args[0])) from None
+    if importlib.util.find_spec("marimo") is None:
+        raise SettingError(
+            f"notebooks need the package marimo: {INSTALL}; rocking lessons export writes pages without it"
+        )
+    with TemporaryFolder("rocking-lesson-") as folder:
+        file = Path(folder) / f"{name}.py"
+        file.write_text(notebook_of(chosen), encoding="utf-8")
+        file.with_name("pyproject.toml").write_text(SETTINGS, encoding="utf-8")
+        return subprocess.call([sys.executable, "-m", "marimo", "edit", str(file)])
 
 
 def written(value: float | str, unit: str = "", digits: int = 4) -> str:
@@ -76,18 +100,14 @@ def controls(lesson: Lesson, mo: Any) -> Any:
     return mo.ui.array(made)
 
 
-def shown(view: View, mo: Any) -> Any:
-    """A view as picture and numbers."""
+def place(lesson: Lesson, values: Sequence[float | str], mo: Any) -> Any:
+    """What the lesson shows at these values of its controls: picture and numbers."""
+    view = lesson.view(*values)
     numbers = [mo.stat(written(value, unit), label=label) for label, (value, unit) in view.numbers.items()]
     picture = (
         f'<div style="{COLOURS}; max-width: 38rem" role="img" aria-label="{view.says}">{svg(view.figure, "n")}</div>'
     )
     return mo.vstack([mo.Html(picture), mo.hstack(numbers, justify="start", wrap=True)])
-
-
-def place(lesson: Lesson, values: Sequence[float | str], mo: Any) -> Any:
-    """What the lesson shows at these values of its controls."""
-    return shown(lesson.view(*values), mo)
 
 
 def closing(lesson: Lesson, mo: Any) -> Any:

@@ -1,4 +1,4 @@
-"""A file of answers, read; and the exact ones with what they may be off by."""
+"""A file of answers, read; and what the exact ones may be off by."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from analytic.files import read_plain
 from .observed import Value, solved
 from .pages import COLUMNS
 from .problems import PROBLEMS, Problem
-from .variants import TIGHTEST, Fault, FaultyRun
+from .variants import TIGHTEST, Fault, with_fault
 
 LARGEST = 1_000_000  # bytes of a file of answers, a hundred times what the sheet asks for
 LOOSER = 1e-14  # tolerance of the run beside the tightest one
@@ -74,11 +74,6 @@ def _value(kind, text, place):
     return value
 
 
-def exact(problem: Problem) -> dict[str, Value]:
-    """The answers to a problem."""
-    return solved(problem)
-
-
 def error(problem: Problem, given: dict[str, Value], right: dict[str, Value]) -> dict[str, float]:
     """{quantity: error over its scale} of the answers given; of a word 0, or 1 where it is another."""
     return {
@@ -93,12 +88,8 @@ def error(problem: Problem, given: dict[str, Value], right: dict[str, Value]) ->
 def own_error(problem: Problem) -> float:
     """What the exact answers may be off by: the largest difference, over the scales, from a run of the model at a
     looser tolerance and from one of the second implementation."""
-    right, worst = exact(problem), 0.0
-    second = FaultyRun.observed(problem, Fault(), TIGHTEST)
-    if second is None:
-        raise ArithmeticError(f"{problem.name}: the second implementation fails")
-    for other in (solved(problem, tolerance=LOOSER), second.answers(problem)):
-        worst = max(worst, *error(problem, other, right).values())
-        if other.keys() != right.keys():
-            raise ArithmeticError(f"{problem.name}: two solutions do not show the same")
-    return worst
+    right = solved(problem)
+    others = solved(problem, tolerance=LOOSER), with_fault(problem, Fault(), TIGHTEST)
+    if any(other is None or other.keys() != right.keys() for other in others):
+        raise ArithmeticError(f"{problem.name}: the second implementation fails, or two solutions do not show the same")
+    return max(max(error(problem, other, right).values()) for other in others if other is not None)

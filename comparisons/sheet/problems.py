@@ -13,6 +13,17 @@ VERSION = 1  # of the scenes and quantities: answers to another sheet are answer
 RECORD_SAMPLES = 1601  # of the synthetic motion: its first 8 s
 DAMPING = 0.15  # of the linear bearings, as a share of critical damping
 PERIOD = 2.0  # s, of the linear bearings under block and base
+# By kind of quantity: its unit, and the scale of its error in symbols.
+UNITS = {"time": "s", "angle": "rad", "rate": "rad/s", "length": "m", "speed": "m/s", "force": "N", "outcome": "a word"}
+SCALES = {
+    "time": "1/ω_r",
+    "angle": "γ",
+    "rate": "γ ω_r",
+    "length": "R γ",
+    "speed": "R γ ω_r",
+    "force": "(m + m_b) g γ",
+    "outcome": "1 if another",
+}
 
 
 @dataclass(frozen=True)
@@ -55,7 +66,7 @@ class Problem:
         return right.get(quantity.name) if quantity.kind == "time" else None
 
     def scale(self, quantity: Quantity) -> float:
-        """What an error of a quantity is divided by, in its unit; `statement.SCALES` says the same in symbols."""
+        """What an error of a quantity is divided by, in its unit; `SCALES` says the same in symbols."""
         block, omega = self.scene.block, self.scene.rocking_frequency
         return {
             "time": 1 / omega,
@@ -130,107 +141,9 @@ def record() -> SampledMotion:
 
 BASE = Base(mass=300.0)
 WORD = OTHERS["outcome"]
-
-
-def _free() -> tuple[Problem, ...]:
-    return (
-        Problem(
-            "free-rigid",
-            "Free rocking on rigid ground",
-            "The block is tilted, let go from rest, and rocks on rigid ground that does not move.",
-            Scene(block=_block(0.25), start=Start(tilt=0.2), duration=4.0),
-            (WORD, *impacts(3, "time", "rate_before", "rate_after"), *states((1.5, 2.5, 4.0), "tilt", "tilt_rate")),
-        ),
-        Problem(
-            "free-sliding",
-            "Free rocking on a base that slides",
-            "The block is tilted and let go from rest. Its base slides on the ground without friction; the ground does "
-            "not move.",
-            Scene(block=_block(0.2), base=BASE, start=Start(tilt=0.15), duration=4.0),
-            (
-                WORD,
-                *impacts(3, "time", "rate_before", "rate_after", "base_velocity_jump"),
-                *states((1.0, 2.0), "tilt", "base_displacement"),
-            ),
-        ),
-    )
-
-
-def _isolated() -> tuple[Problem, ...]:
-    rubber = Bearings(count=4, ka=2.4e4, kb=2.4e3, alpha=40.0)
-    return (
-        Problem(
-            "isolated-standing",
-            "A block that stands on bearings",
-            "Block and base start at rest on hysteretic bearings. The ground moves by one sine, and the block is too "
-            "stocky to lift.",
-            Scene(
-                block=_block(0.35), base=BASE, bearings=rubber, motion=PulseMotion("one-sine", -3.0, 6.0), duration=4.0
-            ),
-            (
-                WORD,
-                OTHERS["peak_displacement"],
-                *states((0.75, 1.25, 1.5, 2.0, 2.25), "base_displacement", "bearing_force"),
-            ),
-        ),
-        Problem(
-            "isolated-rocking",
-            "A block that rocks on bearings",
-            "Block and base start at rest on hysteretic bearings. The ground moves by one sine, and the block lifts.",
-            Scene(
-                block=_block(0.17), base=BASE, bearings=rubber, motion=PulseMotion("one-sine", -3.0, 8.0), duration=4.0
-            ),
-            (
-                WORD,
-                OTHERS["uplift"],
-                *impacts(2, "time", "rate_before", "rate_after", "base_velocity_jump"),
-                OTHERS["peak_tilt"],
-                OTHERS["peak_displacement"],
-                *states((0.5, 1.25), "tilt", "base_displacement", "bearing_force"),
-            ),
-        ),
-    )
-
-
-def _recorded() -> Problem:
-    omega = 2 * math.pi / PERIOD
-    springs = Bearings(law="linear", count=4, ka=1300 * omega**2 / 4, damping=2 * DAMPING * omega * 1300 / 4)
-    return Problem(
-        "record",
-        "A recorded motion, linear bearings with a damper",
-        "Block and base start at rest on linear springs with viscous dampers. The ground acceleration is that of "
-        "the file inputs/record.csv, linear between its samples.",
-        Scene(block=_block(0.18), base=BASE, bearings=springs, motion=record(), duration=6.0),
-        (
-            WORD,
-            OTHERS["uplift"],
-            *impacts(1, "time", "rate_before", "rate_after", "base_velocity_jump"),
-            OTHERS["peak_displacement"],
-            *states((3.0, 4.0, 5.0, 6.0), "tilt", "base_displacement", "bearing_force"),
-        ),
-    )
-
-
-def _hard() -> Problem:
-    return Problem(
-        "hard",
-        "Rest, and uplift again",
-        "The block is tilted and let go on rigid ground. Ever faster and weaker impacts bring it to rest in finite "
-        "time, after infinitely many of them. From t = 2 s on the ground moves by one sine, and it lifts again.",
-        Scene(
-            block=_block(0.45), start=Start(tilt=0.1), motion=PulseMotion("one-sine", 6.0, 6.5, start=2.0), duration=6.0
-        ),
-        (
-            WORD,
-            *impacts(3, "time"),
-            OTHERS["rest"],
-            OTHERS["uplift"],
-            OTHERS["peak_tilt"],
-            *states((2.4, 3.0), "tilt", "tilt_rate"),
-        ),
-    )
-
-
+RUBBER = Bearings(count=4, ka=2.4e4, kb=2.4e3, alpha=40.0)
+OMEGA = 2 * math.pi / PERIOD  # rad/s
+SPRINGS = Bearings(law="linear", count=4, ka=1300 * OMEGA**2 / 4, damping=2 * DAMPING * OMEGA * 1300 / 4)
 PULSES = (("pulse-below", "overturning is near", 3.14), ("pulse-above", "the amplitude is 5 % larger", 3.3))
 
 
@@ -252,4 +165,82 @@ def _pulse(name, words, amplitude):
     )
 
 
-PROBLEMS = (*_free(), *_isolated(), *(_pulse(*words) for words in PULSES), _recorded(), _hard())
+PROBLEMS = (
+    Problem(
+        "free-rigid",
+        "Free rocking on rigid ground",
+        "The block is tilted, let go from rest, and rocks on rigid ground that does not move.",
+        Scene(block=_block(0.25), start=Start(tilt=0.2), duration=4.0),
+        (WORD, *impacts(3, "time", "rate_before", "rate_after"), *states((1.5, 2.5, 4.0), "tilt", "tilt_rate")),
+    ),
+    Problem(
+        "free-sliding",
+        "Free rocking on a base that slides",
+        "The block is tilted and let go from rest. Its base slides on the ground without friction; the ground does "
+        "not move.",
+        Scene(block=_block(0.2), base=BASE, start=Start(tilt=0.15), duration=4.0),
+        (
+            WORD,
+            *impacts(3, "time", "rate_before", "rate_after", "base_velocity_jump"),
+            *states((1.0, 2.0), "tilt", "base_displacement"),
+        ),
+    ),
+    Problem(
+        "isolated-standing",
+        "A block that stands on bearings",
+        "Block and base start at rest on hysteretic bearings. The ground moves by one sine, and the block is too "
+        "stocky to lift.",
+        Scene(block=_block(0.35), base=BASE, bearings=RUBBER, motion=PulseMotion("one-sine", -3.0, 6.0), duration=4.0),
+        (
+            WORD,
+            OTHERS["peak_displacement"],
+            *states((0.75, 1.25, 1.5, 2.0, 2.25), "base_displacement", "bearing_force"),
+        ),
+    ),
+    Problem(
+        "isolated-rocking",
+        "A block that rocks on bearings",
+        "Block and base start at rest on hysteretic bearings. The ground moves by one sine, and the block lifts.",
+        Scene(block=_block(0.17), base=BASE, bearings=RUBBER, motion=PulseMotion("one-sine", -3.0, 8.0), duration=4.0),
+        (
+            WORD,
+            OTHERS["uplift"],
+            *impacts(2, "time", "rate_before", "rate_after", "base_velocity_jump"),
+            OTHERS["peak_tilt"],
+            OTHERS["peak_displacement"],
+            *states((0.5, 1.25), "tilt", "base_displacement", "bearing_force"),
+        ),
+    ),
+    *(_pulse(*words) for words in PULSES),
+    Problem(
+        "record",
+        "A recorded motion, linear bearings with a damper",
+        "Block and base start at rest on linear springs with viscous dampers. The ground acceleration is that of "
+        "the file inputs/record.csv, linear between its samples.",
+        Scene(block=_block(0.18), base=BASE, bearings=SPRINGS, motion=record(), duration=6.0),
+        (
+            WORD,
+            OTHERS["uplift"],
+            *impacts(1, "time", "rate_before", "rate_after", "base_velocity_jump"),
+            OTHERS["peak_displacement"],
+            *states((3.0, 4.0, 5.0, 6.0), "tilt", "base_displacement", "bearing_force"),
+        ),
+    ),
+    Problem(
+        "hard",
+        "Rest, and uplift again",
+        "The block is tilted and let go on rigid ground. Ever faster and weaker impacts bring it to rest in finite "
+        "time, after infinitely many of them. From t = 2 s on the ground moves by one sine, and it lifts again.",
+        Scene(
+            block=_block(0.45), start=Start(tilt=0.1), motion=PulseMotion("one-sine", 6.0, 6.5, start=2.0), duration=6.0
+        ),
+        (
+            WORD,
+            *impacts(3, "time"),
+            OTHERS["rest"],
+            OTHERS["uplift"],
+            OTHERS["peak_tilt"],
+            *states((2.4, 3.0), "tilt", "tilt_rate"),
+        ),
+    ),
+)

@@ -15,8 +15,9 @@ from pydantic import Field
 from ..running.provenance import RESULTS, ResultError, read_result
 from ..schemas.form import Form, Part
 from ..showing.wording import TRUSTED
-from .answers import error, exact
+from .answers import error
 from .faults import MISTAKES
+from .observed import solved
 from .problems import PROBLEMS, VERSION
 
 if TYPE_CHECKING:
@@ -72,9 +73,9 @@ class Score(Form):
 def score(given: Mapping[str, Mapping[str, Value]], tell: Callable[[str], object] = lambda name: None) -> Score:
     """The `Score` of answers as `answers.read_answers` gives them; `tell` is called with each scene's name.
 
-    >>> from comparisons.sheet.answers import exact
+    >>> from comparisons.sheet.observed import solved
     >>> from comparisons.sheet.problems import PROBLEMS
-    >>> found = score({"free-rigid": exact(PROBLEMS[0])})
+    >>> found = score({"free-rigid": solved(PROBLEMS[0])})
     >>> found.passed, found.scenes[0].cause
     (True, None)
     """
@@ -82,7 +83,7 @@ def score(given: Mapping[str, Mapping[str, Value]], tell: Callable[[str], object
     right, errors = {}, {}
     for problem in problems:
         tell(problem.name)
-        right[problem.name] = exact(problem)
+        right[problem.name] = solved(problem)
         errors[problem.name] = error(problem, dict(given[problem.name]), right[problem.name])
     causes, whole = _causes(problems, given, errors)
     table, stored = stored_errors()
@@ -146,28 +147,22 @@ def _scene_score(problem, errors, cause, stored):
 def _causes(problems, given, errors):
     """({scene: `Mistake`} of wrong scenes whose cause is known, name of the one behind all that is wrong or None)."""
     wrong = [problem for problem in problems if _is_wrong(problem, errors[problem.name])]
+    sound = [problem for problem in problems if problem not in wrong]
     verdicts = {
-        mistake.name: {problem.name: _verdict(mistake, problem, given[problem.name]) for problem in wrong}
+        mistake: {problem.name: _verdict(mistake, problem, given[problem.name]) for problem in wrong}
         for mistake in MISTAKES
     }
-    by_name = {mistake.name: mistake for mistake in MISTAKES}
-    sound = [problem for problem in problems if problem not in wrong]
     whole = [
-        name
-        for name, found in verdicts.items()
+        mistake
+        for mistake, found in verdicts.items()
         if True in found.values()
         and False not in found.values()
-        and not any(_verdict(by_name[name], problem, given[problem.name]) is False for problem in sound)
+        and not any(_verdict(mistake, problem, given[problem.name]) is False for problem in sound)
     ]
     if len(whole) == 1:
-        (name,) = whole
-        return {scene: by_name[name] for scene, found in verdicts[name].items() if found}, name
-    causes = {}
-    for problem in wrong:
-        matching = [name for name, found in verdicts.items() if found[problem.name]]
-        if len(matching) == 1:
-            causes[problem.name] = by_name[matching[0]]
-    return causes, None
+        return {scene: whole[0] for scene, found in verdicts[whole[0]].items() if found}, whole[0].name
+    matching = {problem.name: [one for one, found in verdicts.items() if found[problem.name]] for problem in wrong}
+    return {scene: found[0] for scene, found in matching.items() if len(found) == 1}, None
 
 
 def _is_wrong(problem, errors):
@@ -179,13 +174,8 @@ def _verdict(mistake, problem, given):
     """Whether a mistake explains the answers of a scene; None where it is not known what it would answer, or where it
     would answer all of that right."""
     forms = [form for form in mistake.answers(problem, given) if form]
-    found = [_matches(problem, given, form) for form in forms]
-    if any(found):
-        return True
-    return False if forms else None
+    return any(_matches(problem, given, form) for form in forms) if forms else None
 
 
 def _matches(problem: Problem, given: Mapping[str, Any], form: Mapping[str, Any]) -> bool:
-    if any(name not in form for name in given):
-        return False
-    return max(error(problem, dict(given), dict(form)).values()) <= MATCHING
+    return form.keys() >= given.keys() and max(error(problem, dict(given), dict(form)).values()) <= MATCHING

@@ -13,7 +13,7 @@ from analytic.response import State
 from analytic.rocking import RockingModel
 from analytic.twin.run import Run
 
-from .observed import Observed, Value
+from .observed import Value, answers_of
 
 if TYPE_CHECKING:
     from analytic.types import GroundFunction
@@ -96,28 +96,20 @@ class FaultyRun(Run):
         self.model = self.right = model if fault.model is None else _as(fault.model, model)
         self.lossless, self.reversals = _as(Lossless, model), 0
 
-    @classmethod
-    def observed(cls, problem: Problem, fault: Fault, tolerance: float = TOLERANCE) -> Observed | None:
-        """What the run shows; None where it fails."""
-        run, end = cls(problem, fault, tolerance), float(problem.scene.duration or 0.0)
+    def answers(self, problem: Problem) -> dict[str, Value] | None:
+        """The answers of the run, made now; None where it fails."""
         states: dict[float, State] = {}
-        for t in (*problem.times, end):
-            run.scene = problem.scene.with_(duration=t)
+        for t in (*problem.times, float(problem.scene.duration or 0.0)):
+            self.scene = problem.scene.with_(duration=t)
             with np.errstate(all="ignore"):
-                if run.go():
+                if self.go():
                     return None
-            if run.overturning is not None:
+            if self.overturning is not None:
                 break
-            states[t] = run.state()
-        return run.shown(states)
-
-    def shown(self, states: dict[float, State]) -> Observed:
-        """The run so far as `Observed`."""
-        response = self.response(0.0, None)
+            states[t] = self.state()
         hidden = () if self.fault.seen else self.fault.lost
-        impacts = [impact for k, impact in enumerate(self.impacts, 1) if k not in hidden]
-        names = "outcome", "uplifts", "rests", "peak_tilt", "peak_base_displacement", "overturning_time"
-        return Observed(impacts=impacts, states=states, **{name: getattr(response, name) for name in names})
+        seen = tuple(impact for k, impact in enumerate(self.impacts, 1) if k not in hidden)
+        return answers_of(problem, replace(self.response(0.0, None), impacts=seen), states)
 
     def at_reversal(self, ground: float) -> None:
         self.reversals += 1
@@ -158,10 +150,9 @@ class FaultyRun(Run):
         return y + h / 6 * (a + 2 * b + 2 * c + d)
 
 
-def with_fault(problem: Problem, fault: Fault) -> dict[str, Value] | None:
+def with_fault(problem: Problem, fault: Fault, tolerance: float = TOLERANCE) -> dict[str, Value] | None:
     """The answers of a run with a fault; None where it comes to no end."""
     try:
-        found = FaultyRun.observed(problem, fault)
+        return FaultyRun(problem, fault, tolerance).answers(problem)
     except (ArithmeticError, ValueError):  # what a fault makes of the equations need not have a solution
         return None
-    return None if found is None else found.answers(problem)

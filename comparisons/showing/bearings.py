@@ -8,13 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from rich import box
-from rich.console import Console
-from rich.table import Table
-from rich.text import Text
 
 from ..running.readable import readable
 from .plots import TITLE_CHARACTERS
+from .terminal import grid, tell
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -27,17 +24,11 @@ def print_bearings(
     scene: Scene, scan: BearingScan, stroke: float, tilt: float, motions: int, chosen: Mapping[str, Mapping[str, Any]]
 ) -> None:
     """Print the bearings named, a column each, or how near the best ones come where none hold."""
-    console = Console(highlight=False)
-    console.print(Text(f"{readable(scene.name, TITLE_CHARACTERS)}: {_wanted(stroke, tilt)}; motions: {motions}"))
+    tell(f"{readable(scene.name, TITLE_CHARACTERS)}: {_wanted(stroke, tilt)}; motions: {motions}", wrap=True)
     if not chosen:
-        console.print(nothing_holds(scan, stroke))
-        return
-    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    table.add_column("bearings")
+        return tell(nothing_holds(scan, stroke), wrap=True)
     if len({(one["period"], one["damping"]) for one in chosen.values()}) == 1:
         chosen = {" and ".join(chosen): next(iter(chosen.values()))}
-    for name in chosen:
-        table.add_column(name, justify="right")
     rows = {
         "secant period at the stroke [s]": "{period:.3g}",
         "equivalent damping at the stroke": "{damping:.3g}",
@@ -48,12 +39,12 @@ def print_bearings(
         "acceleration over that of uplift": "{uplift:.3g}",
         "peak tilt / slenderness": "{tilt:.3g}",
     }
-    for label, form in rows.items():
-        table.add_row(Text(label), *(form.format(**one) for one in chosen.values()))
-    console.print(table)
-    console.print(
+    cells = [[label, *(form.format(**one) for one in chosen.values())] for label, form in rows.items()]
+    tell(
+        grid(["bearings", *chosen], cells, wraps=["bearings", *chosen]),
         f"Of bearings with {scan.periods[0]:g} to {scan.periods[-1]:g} s and {scan.dampings[0]:.0%} to "
-        f"{scan.dampings[-1]:.0%}, {np.mean(scan.demand <= 1):.0%} hold."
+        f"{scan.dampings[-1]:.0%}, {np.mean(scan.demand <= 1):.0%} hold.",
+        wrap=True,
     )
 
 

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
-from rich import box
-from rich.console import Console, JustifyMethod
-from rich.table import Table
 from rich.text import Text
 
 from engines import missing_words
 
 from ..running.readable import readable
 from .plots import TITLE_CHARACTERS, marker, style
+from .terminal import digits, grid, tell
 
 if TYPE_CHECKING:
     from ..advice.answer import Choice, Level
@@ -29,25 +28,15 @@ ZERO = 1e-12  # an error of 0 is drawn here
 
 def print_choice(choice: Choice, every_level: bool = False) -> None:
     """Print a choice: the answer and how it is used, a line per variant (or all its levels), what else was found."""
-    console = Console(highlight=False)
-
-    def show(line):
-        console.print(Text(readable(line)), soft_wrap=True)
-
-    show(answer(choice))
+    tell(readable(answer(choice)))
     if choice.command:
-        console.print(f"\n  {choice.command}\n", markup=False, soft_wrap=True)
-        console.print(
-            "\n".join(f"  {line}" for line in (choice.snippet or "").splitlines()), markup=False, soft_wrap=True
-        )
+        tell(f"\n  {choice.command}\n", textwrap.indent(choice.snippet or "", "  ").rstrip())
     if choice.variants:
-        console.print(_table(choice, every_level))
-    for line in (*_remarks(choice), *map(_about_part, choice.parts)):
-        show(line)
-    for words in missing_words(choice.missing):
-        show(f"Not tried: {words}.")
-    if choice.variants and not every_level:
-        show("All levels: --all.")
+        tell(_table(choice, every_level))
+    lines = [*_remarks(choice), *map(_about_part, choice.parts)]
+    lines += [f"Not tried: {words}." for words in missing_words(choice.missing)]
+    lines += ["All levels: --all."] if choice.variants and not every_level else []
+    tell(*map(readable, lines))
 
 
 def answer(choice: Choice) -> str:
@@ -116,26 +105,20 @@ def _about_part(part):
 
 
 def _table(choice, every_level):
-    table = Table(
-        padding=(0, 1, 0, 0),
-        title=Text(f"{readable(choice.scene, TITLE_CHARACTERS)}: {choice.criterion}"),
-        box=box.SIMPLE_HEAD,
-    )
-    for name in ("engine, variant", "level", "error", "CPU\n[s/s]", ""):
-        justify: JustifyMethod = "right" if name in ("error", "CPU\n[s/s]") else "left"
-        table.add_column(Text(name), justify=justify, no_wrap=bool(name))
-    for variant in choice.variants:
-        for one in variant.levels if every_level else (variant.cheapest(),):
-            table.add_row(
-                f"{one.engine}, {one.variant}",
-                f"{one.parameter} = {one.value:.3g}",
-                "-" if one.error is None else _digits(one.error),
-                "-" if one.cpu_per_second is None else f"{one.cpu_per_second:.2g}",
-                Text("CHOSEN", style="bold")
-                if one == choice.chosen
-                else Text("not tried" if one.untried else one.why or "passes"),
-            )
-    return table
+    levels = [one for each in choice.variants for one in (each.levels if every_level else [each.cheapest()])]
+    rows = [
+        [
+            f"{one.engine}, {one.variant}",
+            f"{one.parameter} = {one.value:.3g}",
+            "-" if one.error is None else _digits(one.error),
+            digits(one.cpu_per_second, ".2g"),
+            Text("CHOSEN", "bold") if one == choice.chosen else "not tried" if one.untried else one.why or "passes",
+        ]
+        for one in levels
+    ]
+    title = Text(f"{readable(choice.scene, TITLE_CHARACTERS)}: {choice.criterion}")
+    heads = ["engine, variant", "level", "error", "CPU\n[s/s]", ""]
+    return grid(heads, rows, left=["level", ""], wraps=[""], title=title)
 
 
 def draw_choice(choice: Choice) -> Figure:

@@ -7,17 +7,16 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from rich import box
-from rich.console import Console
-from rich.table import Table
-from rich.text import Text
 
 from analytic.margins import limit_states
 
 from ..running.readable import readable
 from .plots import TITLE_CHARACTERS
+from .terminal import grid, tell
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from analytic import Scene
     from analytic.margins import Contact, Margin
 
@@ -30,37 +29,40 @@ OUTSIDE, TILT, STROKE = ("#CC79A7", -0.43), ("#0072B2", 0.35), ("#56B4E9", 0.43)
 
 def print_margins(scene: Scene, margins: Sequence[Margin], contact: Contact, span: float, tilt: float) -> None:
     """Print a row for each `Margin` that changes something, in its order, and what the contact has to spare."""
-    console, nearest = Console(highlight=False, markup=False), margins[0]
+    nearest = margins[0]
     names = {state: name for state, name in _names(tilt).items() if state in limit_states(scene)}
     now = ", ".join(name for state, name in names.items() if nearest.reached(state))
-    console.print(f"{readable(scene.name, TITLE_CHARACTERS)}: {nearest.outcome}\nnow: {now or 'no limit state'}")
+    parts: list[Table | str] = [
+        f"{readable(scene.name, TITLE_CHARACTERS)}: {nearest.outcome}\nnow: {now or 'no limit state'}"
+    ]
     rows = {margin: [margin.change(state) for state in names] for margin in margins}
     rows = {margin: changes for margin, changes in rows.items() if any([*changes, margin.leaves_model])}
     if rows:
-        console.print(_table(names, rows))
-        console.print(
+        parts += [
+            _table(names, rows),
             "Each quantity alone, to the nearest change at which a limit state becomes reached, or no longer is. "
             "Slenderness at fixed R, mass and J_O; size at fixed mass and shape."
-            + (" Left at: from there on the model does not hold." if _leaves(rows) else "")
-        )
+            + (" Left at: from there on the model does not hold." if _leaves(rows) else ""),
+        ]
     if still := ", ".join(margin.quantity for margin in margins if margin not in rows):
-        console.print(f"No change of up to {span:g} % of {still} changes any of these: {', '.join(names.values())}.")
+        parts.append(f"No change of up to {span:g} % of {still} changes any of these: {', '.join(names.values())}.")
     if nearest.nearest is None:
-        console.print(f"No change of up to {span:g} % of any one quantity changes the outcome.")
+        parts.append(f"No change of up to {span:g} % of any one quantity changes the outcome.")
     else:
-        console.print(
+        parts.append(
             f"Nearest change of the outcome: {nearest.quantity} {_percent(nearest.nearest)}, the block then "
             f"{nearest.beyond(nearest.nearest)}."
         )
     if frayed := [margin for margin in margins if margin.frayed]:
-        console.print(
+        parts.append(
             f"The outcomes are interleaved in {', '.join(margin.quantity for margin in frayed)}: bands narrower than "
             f"{200 * frayed[0].step:.2g} % alternate there. Still narrower ones may lie nearer than the change that is "
             "given: do not rest a decision on this margin."
         )
-    console.print(f"{_normal_words(contact)} {_friction_words(contact)}")
+    parts.append(f"{_normal_words(contact)} {_friction_words(contact)}")
     if scene.bearings is not None:
-        console.print("Assumed: the bearings are stiff vertically (real ones sway at 10 to 20 Hz).")
+        parts.append("Assumed: the bearings are stiff vertically (real ones sway at 10 to 20 Hz).")
+    tell(*parts, wrap=True)
 
 
 def _names(tilt):
@@ -80,14 +82,16 @@ def _leaves(margins):
 def _table(names, rows):
     """rows: {margin: its change of each limit state}."""
     outside = _leaves(rows)
-    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    for name in ("quantity", "value", *names.values(), *(["left at"] if outside else [])):
-        heading = Text(name.replace(" > ", "\n> "))  # in two lines: 80 columns hold the widest numbers
-        table.add_column(heading, justify="left" if name == "quantity" else "right", no_wrap=True)
-    for margin, changes in rows.items():
-        value = f"{margin.value:.5g}" + (f" {margin.unit}" if margin.unit != "-" else "")
-        table.add_row(margin.quantity, value, *map(_percent, [*changes, *([margin.leaves_model] if outside else [])]))
-    return table
+    heads = ["quantity", "value", *names.values(), *(["left at"] if outside else [])]
+    cells = [
+        [
+            margin.quantity,
+            f"{margin.value:.5g} {margin.unit}".removesuffix(" -"),
+            *map(_percent, [*changes, *([margin.leaves_model] if outside else [])]),
+        ]
+        for margin, changes in rows.items()
+    ]
+    return grid([head.replace(" > ", "\n> ") for head in heads], cells)  # 80 columns hold the widest numbers
 
 
 def draw_margins(scene: Scene, margins: Sequence[Margin], tilt: float) -> Figure:

@@ -14,14 +14,26 @@ OPERATORS = {
     "oint": "∮", "infty": "∞", "ll": "≪", "sum": "∑", "Rightarrow": "⇒", "propto": "∝", "lt": "<", "gt": ">",
 }  # fmt: skip
 FUNCTIONS = {"sin", "cos", "tan", "ln", "log", "exp", "sgn", "max", "min"}
-ACCENTS = {
-    "dot": ".",
-    "ddot": "..",
-    "tilde": "~",
-}  # full stops: fonts without mathematics draw them clear of the letter
 SPACES = {",": "0.17em", ";": "0.28em", "quad": "1em", "qquad": "2em", "!": "-0.1em"}
 THIN = "<mspace width='0.17em'/>"
-TOKEN = re.compile(r"\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|\s+|.", re.DOTALL)
+# {command: (number of its arguments, MathML)}. Accents are full stops: fonts without mathematics draw them clear of the
+# letter.
+COMMANDS = {
+    **{name: (0, f"<mi>{letter}</mi>") for name, letter in SYMBOLS.items()},
+    **{name: (0, f"<mo>{escape(sign)}</mo>") for name, sign in OPERATORS.items()},
+    **{name: (0, f"<mi>{name}</mi>") for name in FUNCTIONS},
+    **{name: (0, f"<mspace width='{width}'/>") for name, width in SPACES.items()},
+    **{
+        name: (1, f"<mover>{{}}<mo>{sign}</mo></mover>")
+        for name, sign in (("dot", "."), ("ddot", ".."), ("tilde", "~"))
+    },
+    "left": (1, "{}"),
+    "right": (1, "{}"),
+    "sqrt": (1, "<msqrt>{}</msqrt>"),
+    "frac": (2, "<mfrac>{}{}</mfrac>"),
+}
+NAMES = {"_": "sub", "^": "sup"}  # of scripts: msub, msup, msubsup
+TOKEN = re.compile(r"\\text\{[^}]*\}|\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|\s+|.", re.DOTALL)
 
 
 def mathml(tex: str, display: bool = False) -> str:
@@ -33,80 +45,57 @@ def mathml(tex: str, display: bool = False) -> str:
         A command that is not known here, or braces that do not match.
     """
     tokens = [token for token in TOKEN.findall(tex) if not token.isspace()]
-    body, _ = _row(tokens, None, tex)
+    try:
+        body = _row(tokens)
+    except IndexError:
+        raise ValueError(f"{tex!r}: something is missing at the end") from None
+    except ValueError as error:
+        raise ValueError(f"{tex!r}: {error}") from None
     block = ' display="block"' if display else ""
     return f"<math{block}>{body}</math>"
 
 
-def _row(tokens, closing, tex):
-    """(MathML of the tokens up to `closing`, tokens after it)."""
+def _row(tokens: list[str], closing: str | None = None) -> str:
+    """MathML of the tokens up to `closing`, which are taken off the list."""
     parts: list[str] = []
     function = False
-    while tokens:
-        if tokens[0] == closing:
-            return "".join(parts), tokens[1:]
+    while tokens and tokens[0] != closing:
         if tokens[0] in "^_" and parts:
-            scripts = {}
-            base = parts.pop()
+            base, scripts = parts.pop(), {}
             while tokens and tokens[0] in "^_":
-                kind = tokens[0]
-                scripts[kind], tokens = _one(tokens[1:], tex)
-            if len(scripts) == 2:
-                parts.append(f"<msubsup>{base}{scripts['_']}{scripts['^']}</msubsup>")
-            elif "_" in scripts:
-                parts.append(f"<msub>{base}{scripts['_']}</msub>")
-            else:
-                parts.append(f"<msup>{base}{scripts['^']}</msup>")
+                kind = tokens.pop(0)
+                scripts[kind] = _one(tokens)
+            name = "".join(NAMES[kind] for kind in "_^" if kind in scripts)
+            parts.append(f"<m{name}>{base}{scripts.get('_', '')}{scripts.get('^', '')}</m{name}>")
             continue
         if function and tokens[0] not in ("(", "\\left"):
             parts.append(THIN)  # between a function, or its power, and its argument
         function = tokens[0][1:] in FUNCTIONS
         if function and parts and not parts[-1].startswith("<mo"):
             parts.append(THIN)
-        part, tokens = _one(tokens, tex)
-        parts.append(part)
-    if closing:
-        raise ValueError(f"{tex!r}: a brace is not closed")
-    return "".join(parts), []
+        parts.append(_one(tokens))
+    if closing and not tokens:
+        raise ValueError("a brace is not closed")
+    return "".join(parts)
 
 
-def _one(tokens, tex):
-    """(MathML of the first token and its arguments, tokens after them)."""
-    if not tokens:
-        raise ValueError(f"{tex!r}: something is missing at the end")
-    token, rest = tokens[0], tokens[1:]
-    if token == "}":
-        raise ValueError(f"{tex!r}: a brace too many")
+def _one(tokens: list[str]) -> str:
+    """MathML of the first token and its arguments, which are taken off the list."""
+    token = tokens.pop(0)
     if token == "{":
-        body, rest = _row(rest, "}", tex)
-        return f"<mrow>{body}</mrow>", rest
-    if not token.startswith("\\"):
-        return _letter(token), rest
-    name = token[1:]
-    if name in SYMBOLS:
-        return f"<mi>{SYMBOLS[name]}</mi>", rest
-    if name in OPERATORS:
-        return f"<mo>{escape(OPERATORS[name])}</mo>", rest
-    if name in FUNCTIONS:
-        return f"<mi>{name}</mi>", rest
-    if name in SPACES:
-        return f"<mspace width='{SPACES[name]}'/>", rest
-    if name in ("left", "right"):
-        return _letter(rest[0]), rest[1:]
-    if name in ACCENTS:
-        body, rest = _one(rest, tex)
-        return f"<mover>{body}<mo>{ACCENTS[name]}</mo></mover>", rest
-    if name == "sqrt":
-        body, rest = _one(rest, tex)
-        return f"<msqrt>{body}</msqrt>", rest
-    if name == "frac":
-        above, rest = _one(rest, tex)
-        below, rest = _one(rest, tex)
-        return f"<mfrac>{above}{below}</mfrac>", rest
-    if name == "text" and rest[:1] == ["{"] and "}" in rest:
-        end = rest.index("}")
-        return f"<mi mathvariant='normal'>{escape(''.join(rest[1:end]))}</mi>", rest[end + 1 :]
-    raise ValueError(f"{tex!r}: \\{name} is not among the commands that the pages use")
+        body = _row(tokens, "}")
+        tokens.pop(0)
+        return f"<mrow>{body}</mrow>"
+    if token.startswith("\\text{"):
+        return f"<mi mathvariant='normal'>{escape(token[6:-1])}</mi>"
+    if token.startswith("\\"):
+        if token[1:] not in COMMANDS:
+            raise ValueError(f"{token} is not among the commands that the pages use")
+        count, form = COMMANDS[token[1:]]
+        return form.format(*(_one(tokens) for _ in range(count)))
+    if token == "}":
+        raise ValueError("a brace too many")
+    return _letter(token)
 
 
 def _letter(token):
@@ -121,11 +110,9 @@ def _letter(token):
 
 def prose(text: str) -> str:
     """HTML of a paragraph with ``$formulas$``, `code` and *emphasis*."""
-    parts = []
-    for i, part in enumerate(text.split("$")):
-        if i % 2:
-            parts.append(mathml(part))
-            continue
-        words = re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(part, quote=False))
-        parts.append(re.sub(r"\*([^*]+)\*", r"<em>\1</em>", words))
+    parts = text.split("$")
+    parts[1::2] = map(mathml, parts[1::2])
+    for i in range(0, len(parts), 2):
+        words = re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(parts[i], quote=False))
+        parts[i] = re.sub(r"\*([^*]+)\*", r"<em>\1</em>", words)
     return "".join(parts)

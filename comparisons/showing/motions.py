@@ -6,13 +6,9 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from rich import box
-from rich.console import Console
-from rich.table import Table
-from rich.text import Text
-
 from ..measuring.statistics import wilson
 from ..running.readable import readable
+from .terminal import grid, tell
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -21,24 +17,24 @@ LIFTED = ("rocks", "overturns")
 
 
 def print_motions(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Print a row for each motion, and how many records lift and overturn the block. rows : as of `rows_of`, and for
-    each more column of a `Mapping` called changes a name and a relative change."""
+    """Print a row for each motion, and how many records lift and overturn the block; nothing without motions.
+
+    rows : as of `rows_of`, and for each more column of a `Mapping` called changes a name and a relative change.
+    """
+    if not rows:
+        return
     more = list(dict.fromkeys(name for row in rows for name in row.get("changes", ())))
     more_heads = [name.replace(" > ", " >\n") for name in more]
     heads = ["motion", "peak\n[g]", "outcome", *(["tilt\n[-]"] if "tilt" in rows[0] else []), *more_heads]
     heads += ["base\n[m]"] if rows[0].get("stroke") is not None else []
-    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    for head in heads:
-        first = head == "motion"
-        table.add_column(Text(head), justify="left" if first else "right", no_wrap=not first, overflow="fold")
+    table = []
     for row in rows:
-        cells = [Text(readable(row["motion"])), f"{row['peak'] / scene.gravity:.3g}", row["outcome"]]
+        cells = [readable(row["motion"]), f"{row['peak'] / scene.gravity:.3g}", row["outcome"]]
         cells += [f"{row['tilt']:.3g}"] if "tilt" in row else []
         cells += ["" if row["changes"][name] is None else f"{100 * row['changes'][name]:+.3g} %" for name in more]
-        table.add_row(*cells, *([f"{row['stroke']:.3g}"] if row.get("stroke") is not None else []))
-    console = Console(highlight=False)
-    console.print(table)
-    console.print(f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}.")
+        table.append(cells + ([f"{row['stroke']:.3g}"] if row.get("stroke") is not None else []))
+    words = f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}."
+    tell(grid(heads, table, wraps=["motion"]), words, wrap=True)
 
 
 def odds(rows: Iterable[Mapping[str, Any]], outcomes: Sequence[str], word: str) -> str:

@@ -7,9 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
-from rich import box
-from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from analytic.linear_oscillator import displacement_spectrum
@@ -18,6 +15,7 @@ from analytic.records import G
 from ..running.readable import readable
 from ..schemas import inputs
 from .plots import TITLE_CHARACTERS
+from .terminal import grid, tell
 
 if TYPE_CHECKING:
     from analytic.motion import SampledMotion
@@ -53,25 +51,18 @@ def described(channel: Channel) -> inputs.Channel:
 
 def print_channels(name: str, channels: Sequence[Channel]) -> None:
     """Print a row for each channel of the file `name`, and what is odd about them."""
-    table = Table(
-        title=Text(f"{readable(name, TITLE_CHARACTERS)}: {channels[0].format}"),
-        box=box.SIMPLE_HEAD,
-        padding=(0, 1, 0, 0),
-    )
+    rows = []
     kind = "column" if channels[0].format == "columns" else "channel"
-    for head in (kind, "units", "dt [s]", "samples", "end [s]", "peak [m/s2]", "peak [g]", "at [s]"):
-        table.add_column(Text(head), justify="left" if head in (kind, "units") else "right", no_wrap=True)
+    heads = [kind, "units", "dt [s]", "samples", "end [s]", "peak [m/s2]", "peak [g]", "at [s]"]
     for channel in channels:
         motion = channel.motion
         words = [channel_words(channel), channel.unit.word, f"{motion.dt:.9g}", str(len(motion.samples))]
         words += [f"{number:.5g}" for number in (motion.end, motion.peak, motion.peak / G, motion.peak_time)]
-        table.add_row(*(Text(readable(word, 40)) for word in words))
-    console = Console(highlight=False)
-    console.print(table)
-    for note in dict.fromkeys(channel.note for channel in channels if channel.note):
-        console.print(Text(f"{note[0].upper()}{note[1:]}."), soft_wrap=True)
-    for warning in dict.fromkeys(warning for channel in channels for warning in channel.motion.warnings):
-        console.print(Text(f"Warning: {readable(warning)}."), soft_wrap=True)
+        rows.append([readable(word, 40) for word in words])
+    title = Text(f"{readable(name, TITLE_CHARACTERS)}: {channels[0].format}")
+    notes = dict.fromkeys(f"{channel.note[0].upper()}{channel.note[1:]}." for channel in channels if channel.note)
+    warnings = dict.fromkeys(warning for channel in channels for warning in channel.motion.warnings)
+    tell(grid(heads, rows, left=["units"], title=title), *notes, *(f"Warning: {readable(one)}." for one in warnings))
 
 
 def spectrum(motion: SampledMotion) -> np.ndarray:

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import dataclasses
 import inspect
-import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rich import box
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from engines.statue_range import in_words
 
 from ..running.readable import readable
+from .terminal import digits, grid, tell
 from .wording import differing
 
 if TYPE_CHECKING:
@@ -28,34 +27,33 @@ TITLE_CHARACTERS = 100
 MOTION = "motion"  # the kind of warning that is of the scene, not of a solver
 
 
-def _number(value, form=".4g"):
-    return "-" if value is None or math.isnan(value) else f"{value:{form}}"
-
-
 def _name(scene):
     return readable(scene.name, TITLE_CHARACTERS)
 
 
 def summary(scene: Scene, response: Response) -> Table:
     """The main figures of one response, as a table."""
-    title = Text(f"{_name(scene)}: {response.engine}" + (f", {response.variant}" if response.variant else ""))
-    table = Table(title=title, box=box.SIMPLE, show_header=False)
+    title = f"{_name(scene)}: {response.engine}" + (f", {response.variant}" if response.variant else "")
     rows = {
         "outcome": response.verdict,
-        "overturning time [s]": _number(response.overturning_time, ".6g"),
-        "peak tilt [rad]": _number(response.peak_tilt),
-        "peak tilt / slenderness": _number(response.peak_tilt_ratio),
-        "peak base displacement [m]": _number(response.peak_base_displacement),
-        "peak base acceleration [m/s2]": _number(response.peak_base_acceleration),
+        "overturning time [s]": digits(response.overturning_time, ".6g"),
+        "peak tilt [rad]": digits(response.peak_tilt),
+        "peak tilt / slenderness": digits(response.peak_tilt_ratio),
+        "peak base displacement [m]": digits(response.peak_base_displacement),
+        "peak base acceleration [m/s2]": digits(response.peak_base_acceleration),
         "impacts": str(response.impact_count),
-        "friction demand |H|/N": _number(response.friction_demand),
-        "least normal force N/(m g)": _number(response.min_normal_ratio),
-        "CPU time [s]": _number(response.cpu_seconds, ".3g"),
+        "friction demand |H|/N": digits(response.friction_demand),
+        "least normal force N/(m g)": digits(response.min_normal_ratio),
+        "CPU time [s]": digits(response.cpu_seconds, ".3g"),
         "steps": str(response.steps),
     }
-    for name, value in rows.items():
-        table.add_row(Text(name), Text(value))  # as text: a unit in brackets is no markup
-    return table
+    return named_values(rows, title)
+
+
+def named_values(rows: Mapping[str, str], title: str) -> Table:
+    """A table of {name: value}."""
+    look = {"box": box.SIMPLE, "padding": (0, 1), "show_header": False}
+    return grid(["name", "value"], rows.items(), left=["value"], wraps=["name", "value"], title=Text(title), **look)
 
 
 def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[str, Horizon]) -> Table:
@@ -67,27 +65,12 @@ def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[st
             f"\n{name} {f'{found.horizon:.3g} s' if found.parts else 'none, to the end'} ({found.perturbation:.0e})"
             for name, found in horizons.items()
         )
-    table = Table(
-        title=Text(_name(scene)),
-        box=box.SIMPLE_HEAD,
-        show_edge=False,
-        padding=(0, 1, 0, 0),
-        caption="over: time of overturning; tilt: peak tilt over slenderness;\n"
-        "base: peak base displacement; d: difference from the first row.\n" + limit,
+    caption = (
+        "over: time of overturning; tilt: peak tilt over slenderness;\n"
+        "base: peak base displacement; d: difference from the first row.\n" + limit
     )
-    for name in (
-        "solver",
-        "outcome",
-        "over\n[s]",
-        "tilt\n[-]",
-        "d\n[-]",
-        "base\n[m]",
-        "d\n[%]",
-        "im-\npacts",
-        "CPU\n[ms]",
-    ):
-        table.add_column(Text(name), justify="left" if name in ("solver", "outcome") else "right", no_wrap=True)
-    reference = responses[0]
+    heads = "solver", "outcome", "over\n[s]", "tilt\n[-]", "d\n[-]", "base\n[m]", "d\n[%]", "im-\npacts", "CPU\n[ms]"
+    reference, rows = responses[0], []
     for response in responses:
         tilt, displacement = "", ""
         if response is not reference and not response.failure and not reference.failure:
@@ -95,19 +78,20 @@ def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[st
                 tilt = f"{response.peak_tilt_ratio - reference.peak_tilt_ratio:+.0e}"
             if reference.peak_base_displacement > 0:
                 displacement = f"{100 * (response.peak_base_displacement / reference.peak_base_displacement - 1):+.0e}"
-        outcome = response.verdict.replace(" ", "\n", 1)  # narrow: undecided, and so far what
-        table.add_row(
-            f"{response.engine}\n{response.variant}".rstrip(),
-            outcome,
-            _number(response.overturning_time, ".4f"),
-            _number(response.peak_tilt_ratio, ".4f"),
-            tilt,
-            _number(response.peak_base_displacement, ".4f"),
-            displacement,
-            str(response.impact_count),
-            _number(1e3 * response.cpu_seconds, ".1f"),
+        rows.append(
+            [
+                f"{response.engine}\n{response.variant}".rstrip(),
+                response.verdict.replace(" ", "\n", 1),  # narrow: undecided, and so far what
+                digits(response.overturning_time, ".4f"),
+                digits(response.peak_tilt_ratio, ".4f"),
+                tilt,
+                digits(response.peak_base_displacement, ".4f"),
+                displacement,
+                str(response.impact_count),
+                digits(1e3 * response.cpu_seconds, ".1f"),
+            ]
         )
-    return table
+    return grid(heads, rows, left=["outcome"], title=Text(_name(scene)), show_edge=False, caption=caption)
 
 
 def show(table: Table, responses: Sequence[Response]) -> None:
@@ -115,13 +99,9 @@ def show(table: Table, responses: Sequence[Response]) -> None:
 
     Where the result depends on little of the motion, that stands last, in bold.
     """
-    console = Console()
-    console.print(table)
-    for response in responses:
-        for words in remarks(response):
-            console.print(Text(readable(words)), soft_wrap=True)
-    for warning in (warning for response in responses for warning in response.warnings if warning.kind == MOTION):
-        console.print(Text(readable(str(warning)), "bold"), soft_wrap=True)
+    motion = [warning for response in responses for warning in response.warnings if warning.kind == MOTION]
+    tell(table, *(readable(words) for response in responses for words in remarks(response)))
+    tell(*(Text(readable(str(warning)), "bold") for warning in motion))
 
 
 def remarks(response: Response) -> list[str]:
@@ -133,20 +113,14 @@ def remarks(response: Response) -> list[str]:
 
 def engines_table(engines: Sequence[Engine]) -> Table:
     """Who does what: of every variant its tier, what the engine computes and what the adapter imposes."""
-    table = Table(
-        box=box.SIMPLE_HEAD,
-        show_edge=False,
-        padding=(0, 1, 0, 0),
-        caption=Text(f"Tested for {in_words()}.\nrocking engines NAME: settings, refinement levels, versions."),
-        caption_justify="left",
-    )
-    for head in ("engine", "variant", "tier", "the engine computes", "the adapter imposes"):
-        table.add_column(head, no_wrap=head in ("engine", "variant", "tier"))
-    for engine in engines:
-        for name, variant in engine.variants.items():
-            first = engine.name if name == engine.default_variant else ""
-            table.add_row(*map(Text, (first, name, variant.tier, variant.computes, variant.imposes)))
-    return table
+    caption = Text(f"Tested for {in_words()}.\nrocking engines NAME: settings, refinement levels, versions.")
+    heads = ["engine", "variant", "tier", "the engine computes", "the adapter imposes"]
+    rows = [
+        [engine.name if name == engine.default_variant else "", name, variant.tier, variant.computes, variant.imposes]
+        for engine in engines
+        for name, variant in engine.variants.items()
+    ]
+    return grid(heads, rows, left=heads, wraps=heads[3:], show_edge=False, caption=caption, caption_justify="left")
 
 
 def engine_text(engine: Engine) -> str:

@@ -85,6 +85,19 @@ def misprinted_jump() -> float:
     return 2 * min(abs(z), LAW.f0)
 
 
+def code() -> object:
+    import numpy as np
+
+    from analytic.bearing import BearingLaw
+    from analytic.caryatid import BEARINGS
+
+    law = BearingLaw.of(BEARINGS)
+    x = np.concatenate([[0.0], 0.30 * np.cos(np.linspace(0, 2 * np.pi, 20001))])  # m, from rest to a cycle
+    force = law.kb * x + law.path(x)  # N, of one bearing
+    found = np.trapezoid(force[1:], x[1:])  # J
+    return found
+
+
 LESSON = Lesson(
     3,
     "bearing",
@@ -160,5 +173,6 @@ LESSON = Lesson(
             "$2 f_0$, once the loop is on its limit curve: this is what the misprint of (12) does.",
         ),
     ),
+    code,
     "motion=synthetic&base=true",
 )

@@ -9,7 +9,7 @@ from analytic.caryatid import BASE, BEARINGS, caryatid_block
 from analytic.types import Motion
 
 from ..computing import G, edge, history_until
-from ..drawing import MODEL, OTHER, SOFT, canvas, legend
+from ..drawing import OTHER, SOFT, canvas, legend, tilt_axis
 from ..lesson import Control, Equation, Exercise, Lesson, View
 
 BEARING_CHOICE = {"none": None, "as designed": 1.0, "twice as stiff": 2.0}
@@ -39,11 +39,7 @@ def view(slenderness: float, bearings: str, motion: str) -> View:
     scene = scene_of(slenderness, BEARING_CHOICE[bearings], motion_of(motion))
     decided, response = simulate(scene, history=False), history_until(scene, WINDOW)
     figure, (tilt, base) = canvas(2, (1, 1), sharex=True)
-    assert response.history is not None  # it was asked for
-    tilt.plot(response.history.time, response.history.tilt / slenderness, color=MODEL)
-    for level in (-1, 1):
-        tilt.axhline(level, color=SOFT, linewidth=0.9, linestyle=(0, (4, 4)))
-    tilt.set(xlim=(0, WINDOW), ylim=(-1.5, 1.5), ylabel="tilt φ / γ")
+    tilt_axis(tilt, response.history.time, response.history.tilt / slenderness, WINDOW)
     acceleration = response.history.ground_acceleration / G
     base.plot(response.history.time, acceleration, color=SOFT, linewidth=0.9, label="ground acceleration [g]")
     base.plot(
@@ -90,6 +86,17 @@ def harmful_pulse() -> float:
         return simulate(scene_of(0.28, 1.0, pulse), history=False).outcome == "overturns"
 
     return edge(falls, 0.15, 0.25)
+
+
+def code() -> object:
+    from math import tan
+
+    from analytic import load_scene, simulate
+
+    isolated = load_scene("caryatid-isolated")
+    response = simulate(isolated)
+    found = 100 * (1 - response.peak_base_acceleration / (9.81 * tan(isolated.block.slenderness)))  # %
+    return response.outcome, found
 
 
 LESSON = Lesson(
@@ -155,5 +162,6 @@ LESSON = Lesson(
             "Less than the $0.288\\,g$ that would lift it without bearings.",
         ),
     ),
+    code,
     "motion=synthetic&base=true",
 )

@@ -133,6 +133,19 @@ def mirror_defect() -> float:
     return abs(run(SOLVERS[0], 6.0).end.tilt + run(SOLVERS[0], 6.0, -1.0).end.tilt)
 
 
+def code() -> object:
+    from analytic import Base, Block, Scene
+    from analytic.rocking import base_jump_length_as_printed, restitution
+
+    on_base = Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=0.28), base=Base(mass=212.0))
+    block, rate = on_base.block, -0.8  # rad/s
+    before = block.mass * block.half_height * rate
+    kept = block.mass * block.half_height * restitution(on_base) * rate
+    pushed = -on_base.total_mass * base_jump_length_as_printed(on_base) * rate
+    found = 100 * abs((kept + pushed) / before - 1)  # %
+    return found
+
+
 LESSON = Lesson(
     8,
     "checks",
@@ -197,5 +210,6 @@ LESSON = Lesson(
             "Every operation is the same but for signs, which floating point keeps.",
         ),
     ),
+    code,
     "motion=release&tilt=0.6&base=true",
 )

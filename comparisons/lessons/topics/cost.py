@@ -3,23 +3,13 @@
 from __future__ import annotations
 
 import functools
+from itertools import takewhile
 
 from analytic import simulate
 
 from ...showing.parts import Table, number
 from ..drawing import INK, OTHER, SOFT, THIRD, canvas, legend
-from ..engine_runs import (
-    OWN_STEPS,
-    ROUNDS,
-    SCENE,
-    EngineRun,
-    colour_of,
-    engine_runs,
-    exact_rate,
-    first_rate,
-    marker_of,
-    own_runs,
-)
+from ..engine_runs import OWN_STEPS, EngineRun, colour_of, engine_runs, marker_of, own_runs, timed
 from ..lesson import Control, Equation, Exercise, Lesson, View
 
 TARGET = 0.01  # error asked for
@@ -30,32 +20,25 @@ FLOOR = 1e-12  # smaller errors are drawn here
 @functools.cache
 def model_runs() -> tuple[EngineRun, ...]:
     """The event-driven model at several tolerances."""
-    found = []
-    for tolerance in TOLERANCES:
-        runs = [simulate(SCENE, history=False, tolerance=tolerance) for _ in range(ROUNDS)]
-        rate = first_rate(runs[0])
-        assert rate is not None  # it strikes
-        cpu = min(run.cpu_seconds for run in runs)
-        error = abs(rate / exact_rate() - 1)
-        found.append(EngineRun("event-driven", "", "", "tolerance", tolerance, tolerance == 1e-9, error, cpu))
-    return tuple(found)
+    return timed("event-driven", "tolerance", TOLERANCES, simulate)
+
+
+def ladders(runs: tuple[EngineRun, ...]) -> dict[str, list[EngineRun]]:
+    """{solver: its runs}, coarse to fine as they come."""
+    found: dict[str, list[EngineRun]] = {}
+    for run in runs:
+        found.setdefault(run.name, []).append(run)
+    return found
 
 
 def trusted(runs: tuple[EngineRun, ...], target: float) -> dict[str, EngineRun]:
     """The cheapest run of each solver whose error, and that of every finer setting, is below the target."""
-    ladders: dict[str, list[EngineRun]] = {}
-    for run in runs:  # in the order of the ladder, coarse to fine
-        ladders.setdefault(run.name, []).append(run)
-    best = {}
-    for name, ladder in ladders.items():
-        passing: list[EngineRun] = []
-        for run in reversed(ladder):
-            if run.error is None or run.error >= target:
-                break
-            passing.append(run)
-        if passing:
-            best[name] = min(passing, key=lambda run: run.cpu)
-    return best
+
+    def passes(run):
+        return run.error is not None and run.error < target
+
+    passing = {name: list(takewhile(passes, reversed(ladder))) for name, ladder in ladders(runs).items()}
+    return {name: min(those, key=lambda run: run.cpu) for name, those in passing.items() if those}
 
 
 def everything() -> tuple[EngineRun, ...]:
@@ -65,10 +48,7 @@ def everything() -> tuple[EngineRun, ...]:
 def view(step: float) -> View:
     """Error against CPU time; step [ms] of the fixed-step integrator."""
     figure, axis = canvas()
-    ladders: dict[str, list[EngineRun]] = {}
-    for run in everything():
-        ladders.setdefault(run.name, []).append(run)
-    for name, ladder in ladders.items():
+    for name, ladder in ladders(everything()).items():
         own = ladder[0].solver == own_runs()[0].solver
         colour = THIRD if own else INK if ladder[0].solver == "event-driven" else colour_of(ladder[0])
         known = [run for run in ladder if run.error is not None]
@@ -86,7 +66,6 @@ def view(step: float) -> View:
         )
     axis.axvline(100 * TARGET, 0, 0.74, color=SOFT, linewidth=1, linestyle=(0, (4, 4)))  # up to the legend
     here = next(run for run in own_runs() if abs(1e3 * run.value - step) < 1e-9)
-    assert here.error is not None  # the integrator strikes at each of its steps
     axis.loglog(100 * here.error, 1e3 * here.cpu, "o", color=OTHER, markersize=10, zorder=5)
     axis.set(xlabel="error of the rate after the first impact [%]", ylabel="CPU time [ms]", xlim=(60, 50 * 100 * FLOOR))
     figure.set_figheight(6.4)
@@ -121,18 +100,12 @@ def table() -> Table:
 
 def coarsest_step() -> float:
     """Of the fixed-step integrator's steps: the largest [ms] below 1 % with all finer ones."""
-    best = [run for run in own_runs() if run.error is not None]
-    passing = []
-    for run in reversed(best):
-        if run.error is None or run.error >= TARGET:
-            break
-        passing.append(run.value)
-    return 1e3 * max(passing)
+    finest = takewhile(lambda run: run.error < TARGET, reversed(own_runs()))  # it strikes at each of its steps
+    return 1e3 * max(run.value for run in finest)
 
 
 def event_driven_share() -> float:
-    """How many fixed steps cost as much as the whole event-driven run, at 1 % [runs of the model per fixed-step "
-    "run]."""
+    """CPU time of a run of fixed steps at 1 % over that of the event-driven model."""
     model = min(run.cpu for run in model_runs())
     steps = trusted(own_runs(), TARGET)
     return next(iter(steps.values())).cpu / model
@@ -141,6 +114,15 @@ def event_driven_share() -> float:
 def passing_solvers() -> float:
     """Number of solvers, variants apart, that reach 1 % and keep it."""
     return float(len(trusted(everything(), TARGET)))
+
+
+def code() -> object:
+    from comparisons.lessons.engine_runs import engine_runs, own_runs
+    from comparisons.lessons.topics.cost import TARGET, model_runs, trusted
+
+    best = trusted((*model_runs(), *own_runs(), *engine_runs()), TARGET)
+    found = len(best)
+    return {name: (f"{run.knob} = {run.value:g}", f"{1e3 * run.cpu:.3g} ms") for name, run in best.items()}
 
 
 LESSON = Lesson(
@@ -197,6 +179,7 @@ LESSON = Lesson(
             0,
         ),
     ),
+    code,
     "motion=release&tilt=0.6&engine=straddling&step=5",
     table,
 )

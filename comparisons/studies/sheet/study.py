@@ -8,8 +8,8 @@ from engines import get_engine
 
 from ...running.cases import Case
 from ...running.study import Batch, Found
-from ...sheet.answers import error, exact, own_error
-from ...sheet.observed import of_response
+from ...sheet.answers import error, own_error
+from ...sheet.observed import of_response, solved
 from ...sheet.problems import PROBLEMS, VERSION
 
 if TYPE_CHECKING:
@@ -53,9 +53,9 @@ def plan(ask: Ask) -> Plan:
 def answered(case: Case, response: Response) -> dict[str, Any]:
     """Measure: the largest error of the answers, None where some are missing, and which."""
     problem = next(one for one in PROBLEMS if one.name == case.tag["scene"])
-    given = of_response(problem, response).answers(problem)
+    given = of_response(problem, response)
     missing = [one.name for one in problem.quantities if one.name not in given]
-    errors = error(problem, given, exact(problem))
+    errors = error(problem, given, solved(problem))
     return {
         "outcome": response.outcome,
         "error": None if missing else max(errors.values()),

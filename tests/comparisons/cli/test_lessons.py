@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from comparisons.lessons import export, opening
-from comparisons.lessons.notebook import notebook_file
+from comparisons.lessons import export, notebook
 from comparisons.lessons.topics import lessons
 
 
@@ -30,15 +29,15 @@ def test_a_notebook_opens_as_a_copy(rocking, monkeypatch):
         calls.append((command[1:4], copy.read_text(), copy.with_name("pyproject.toml").read_text()))
         return 0
 
-    monkeypatch.setattr(opening.subprocess, "call", call)
+    monkeypatch.setattr(notebook.subprocess, "call", call)
     assert rocking("lessons", "open", "chaos")[0] == 0
-    (command, text, settings), original = calls[0], notebook_file(lessons()[5])
+    (command, text, settings), original = calls[0], notebook.notebook_of(lessons()[5])
     assert command == ["-m", "marimo", "edit"] and "auto_instantiate = true" in settings
-    assert text == original.read_text()
+    assert text == original
 
 
 def test_without_marimo_it_says_what_to_install(rocking, monkeypatch):
-    monkeypatch.setattr(opening.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(notebook.importlib.util, "find_spec", lambda name: None)
     status, _, err = rocking("lessons", "open", "chaos")
     assert status == 2 and "pip install marimo" in err
 

@@ -11,8 +11,9 @@ import pytest
 from sheet_solver import solve
 
 from analytic.errors import SceneError
-from comparisons.sheet.answers import exact, own_error, read_answers
+from comparisons.sheet.answers import own_error, read_answers
 from comparisons.sheet.faults import MISTAKES
+from comparisons.sheet.observed import solved
 from comparisons.sheet.pages import markdown, write_sheet
 from comparisons.sheet.problems import PROBLEMS
 from comparisons.sheet.score import score
@@ -94,19 +95,19 @@ def test_what_two_mistakes_explain_is_unknown(sheet):
 
 def first_wrong(changes, names=("free-rigid", "pulse-below")):
     """Of exact answers with some replaced: {(scene, quantity): what is added}, or a word."""
-    given = {name: dict(exact(BY_NAME[name])) for name in names}
+    given = {name: dict(solved(BY_NAME[name])) for name in names}
     for (name, quantity), change in changes.items():
         given[name][quantity] = change if isinstance(change, str) else given[name][quantity] + change
     return score(given).first_wrong
 
 
 def test_the_first_wrong_answer_is_that_of_the_earliest_time():
-    right = exact(BY_NAME["free-rigid"])
+    right = solved(BY_NAME["free-rigid"])
     assert first_wrong({}) is None
     assert first_wrong({("free-rigid", "impact_time_2"): 1e-6}) is None  # within what counts as right
     found = first_wrong({("free-rigid", "impact_time_2"): 0.1, ("free-rigid", "rate_after_1"): 0.1})
     assert (found.scene, found.quantity, found.time) == ("free-rigid", "rate_after_1", right["impact_time_1"])
-    uplift = exact(BY_NAME["pulse-below"])["uplift_time"]
+    uplift = solved(BY_NAME["pulse-below"])["uplift_time"]
     assert uplift < right["impact_time_1"]
     found = first_wrong({("free-rigid", "rate_after_1"): 0.1, ("pulse-below", "uplift_time"): 0.1})
     assert (found.scene, found.quantity, found.time) == ("pulse-below", "uplift_time", uplift)

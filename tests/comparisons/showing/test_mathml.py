@@ -4,7 +4,7 @@ import xml.etree.ElementTree as xml
 
 import pytest
 
-from comparisons.lessons.export import FOLDER, _environment
+from comparisons.lessons.export import PAGES, _environment
 from comparisons.lessons.topics import lessons
 from comparisons.showing.mathml import mathml, prose
 
@@ -32,7 +32,7 @@ def test_every_formula_of_the_derivation():
     for name in ("prose", "math"):
         environment.filters[name] = lambda text, own=environment.filters[name]: made.append(own(text)) or made[-1]
     environment.get_template("derivations.html").render(rocking="", impact="", isolated="")
-    assert len(made) >= (FOLDER / "derivations.html").read_text().count("eq(") - 1 > 10
+    assert len(made) >= (PAGES / "derivations.html").read_text().count("eq(") - 1 > 10
     for text in made:
         check(f"<p>{text}</p>")
 

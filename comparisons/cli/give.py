@@ -1,0 +1,41 @@
+"""What a command gives: result files, and what the terminal shows unless a result goes there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from ..running.files import STANDARD_OUTPUT, write_all
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..schemas.form import Form
+
+
+def give(
+    results: Mapping[str | None, Form | str],
+    show: Callable[[], object],
+    plot: str | None = None,
+    draw: Callable[[], Figure] | None = None,
+) -> None:
+    """Write each result to its file (None: it is not wanted) and the picture that `draw` makes to `plot`, then show.
+
+    Raises
+    ------
+    PlaceError
+        Something could not be written; the rest is written and shown all the same.
+    """
+    files: dict[str, Any] = {
+        path: content if isinstance(content, str) else content.text() for path, content in results.items() if path
+    }
+    if plot and draw:
+        from ..showing.plots import save
+
+        figure = draw()
+        files[plot] = lambda path: save(figure, path)
+    problem = write_all(files)
+    if STANDARD_OUTPUT not in files:
+        show()
+    if problem:
+        raise problem
