@@ -101,28 +101,6 @@ def outcome_section(result: Result) -> Section:
     )
 
 
-def _history_section(result):
-    scenes = result.settings["scenes"]
-    rigid, isolated = scenes
-    gamma = scenes[isolated]["block"]["slenderness"]
-    return Section(
-        "Histories and hysteresis",
-        (
-            "Upper axes: all solvers over each other; lower axes: by how much they differ from the analytic "
-            "model. The bearings' damping of 30 % in Table 1(a) of the paper is W_D/(2 π E_s), with W_D the "
-            "energy of a loop and E_s the elastic energy at its peak; the usual equivalent viscous damping, "
-            "W_D/(4 π E_s), is half of it.",
-        ),
-        (),
-        (
-            figures.histories(result, rigid, "tilt", "tilt φ/γ [-]", scenes[rigid]["block"]["slenderness"]),
-            figures.histories(result, isolated, "base_displacement", "base displacement x [m]"),
-            figures.histories(result, isolated, "tilt", "tilt φ/γ [-]", gamma, tilt_limits(result, isolated, gamma)),
-            figures.loops(result, isolated),
-        ),
-    )
-
-
 def tilt_limits(result: Result, name: str, gamma: float) -> tuple[float | None, float | None]:
     """Contact noise of an engine is no tilt to look at: at least a hundredth of the slenderness up and down."""
     peaks = [row["peak_tilt"] for row in result.rows if row["scene"] == name and row.get("peak_tilt")]
