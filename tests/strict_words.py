@@ -208,7 +208,11 @@ def unit_of(lines, titles):
             if word == "in" and words[i + 1 : i + 2] and words[i + 1] not in "()[]:=,;":
                 continue  # no inches
             if before and introduces(before[-1]) and word not in "()[]:=,;" and word not in ("of", "in", "is", "are"):
-                if words[i : i + 3] == ["de", "los", "datos"] or bare in TIME_WORDS or not (re.match("[a-z%]", bare) or words[i - 1] == "of"):
+                if (
+                    words[i : i + 3] == ["de", "los", "datos"]
+                    or bare in TIME_WORDS
+                    or not (re.match("[a-z%]", bare) or words[i - 1] == "of")
+                ):
                     continue
                 factor = _bracketed(pairs, i) if glued else KNOWN.get(bare)
                 if factor is None:
