@@ -10,7 +10,6 @@ from fractions import Fraction
 from strict_statements import flat, fold
 from strict_words import KNOWN, G, Refused, form_of, scan, single, step_of, unit_of
 
-
 FORTRAN = re.compile("([1-9][0-9]?)[A-Z]{1,2} *([1-9][0-9]?) *[.] *([0-9]{1,2})(?: *E *[0-9]?)?")
 
 

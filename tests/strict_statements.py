@@ -5,7 +5,7 @@ import unicodedata
 from fractions import Fraction
 from itertools import product
 
-from strict_words import TIME_WORDS, Refused, letter, scan
+from strict_words import TIME_WORDS, Refused, scan
 
 GAP = ("", " ", "-", " -")
 SAMPLING_FR = (" dechantillonnage", " d?echantillonnage")  # ?: any sign

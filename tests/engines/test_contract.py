@@ -168,16 +168,15 @@ def test_ground_motion_that_is_not_finite_fails_with_the_last_finite_state(engin
 
 @default_variant
 def test_hang_ends_at_the_time_limit(engine, variant):
-    response = guard.guarded_simulate(engine, scene(0.2, duration=3e3, start=Start(tilt=0.12)), time_limit=4.0)
-    assert response.outcome == "failed"
-    assert "time limit" in response.failure.message
-    assert response.versions == get_engine(engine).versions()
+    endless = scene(0.2, duration=3e3, start=Start(tilt=0.12))
+    _, failure = guard.alone(simulate, engine, variant, endless, time_limit=4.0)
+    assert failure.reason == guard.OUT_OF_TIME
 
 
 # Repeatable and symmetric.
 
 
-def in_every_variant(engine, given, settings):
+def in_every_variant(engine, given):
     """What the guarded process runs."""
     return [simulate(engine, variant, given) for variant in get_engine(engine).variants]
 
@@ -185,10 +184,10 @@ def in_every_variant(engine, given, settings):
 @default_variant
 def test_runs_repeat_bit_for_bit_also_in_other_processes(engine, variant):
     given = scene(0.15, 212.0, 1.0, bearings=BEARINGS, motion=PULSE)
-    first, second = (in_every_variant(engine, given, {}) for _ in range(2))
+    first, second = (in_every_variant(engine, given) for _ in range(2))
     with ThreadPoolExecutor(2) as two:  # two at once
-        elsewhere = list(two.map(lambda _: guard.guarded(in_every_variant, engine, given, {}, 120.0), range(2)))
-    for repeated in (second, *elsewhere):
+        elsewhere = list(two.map(lambda _: guard.alone(in_every_variant, engine, given, time_limit=120.0), range(2)))
+    for repeated in (second, *(runs for runs, _ in elsewhere)):
         for here, there in zip(first, repeated, strict=True):
             assert (here.variant, here.end, here.impacts) == (there.variant, there.end, there.impacts)
             assert all(

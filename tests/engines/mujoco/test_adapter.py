@@ -141,13 +141,6 @@ def test_what_mujoco_does_not_hold_as_asked_is_refused(monkeypatch, asked, given
         built.build(scene(0.2), 1e-3, plain=False)
 
 
-def test_sliding_block_fails(monkeypatch):
-    monkeypatch.setattr(built, "FRICTION", 0.2)
-    response = simulate(scene(0.4, motion=PulseMotion("rectangular", 3.0, 2.0)))
-    assert response.outcome == "failed"
-    assert "slid" in response.failure.reason
-
-
 @pytest.mark.parametrize("setting, value, most", [("RECOVERY", 150.0, 2e-4), ("IMPEDANCE", 0.9995, 2e-4)])
 def test_constants_of_the_contact_are_insensitive(monkeypatch, setting, value, most):
     usual = impact_errors(simulate, 0.3, 212.0, 2, 2.0)[0]
@@ -223,19 +216,6 @@ def test_a_base_that_vibrates_when_impacts_kick_it():
     )
     peaks = [solver(fast, history=False).peak_base_displacement for solver in (simulate, exact)]
     assert peaks[0] == pytest.approx(peaks[1], rel=0.015)
-
-
-@pytest.mark.parametrize("variant, error", [("impact-aware", 1e-4), ("fixed-step", 5e-3)])
-@pytest.mark.parametrize("radius", [1e-3, 0.1, 30.0])
-def test_steps_go_with_the_size_of_the_block(radius, variant, error):
-    mass = 2460.0 * radius**3
-    given = AnyScene(
-        block=Block(mass=mass, radius=radius, slenderness=0.25),
-        base=Base(mass=0.1 * mass),
-        start=Start(tilt=0.15),
-        duration=2.5 * math.sqrt(radius),
-    )
-    assert_like_the_model(given, error=error, variant=variant)
 
 
 @pytest.mark.parametrize(

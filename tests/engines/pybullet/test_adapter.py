@@ -84,13 +84,6 @@ def test_joint_motor_or_friction_left_as_it_is_is_refused(monkeypatch):
     assert "friction" in response.failure.message
 
 
-def test_sliding_block_fails(monkeypatch):
-    monkeypatch.setattr(bullet, "FRICTION", 0.2)
-    response = simulate(scene(0.4, motion=PulseMotion("rectangular", 3.0, 2.0)))
-    assert response.outcome == "failed"
-    assert "slid" in response.failure.reason
-
-
 def test_clients_are_closed(monkeypatch):
     open_clients = []
     connect, disconnect = adapter.pybullet.connect, adapter.pybullet.disconnect
