@@ -5,8 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from engine_cases import needs
-from released import scene
+from engine_cases import needs, scene
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Start
 from analytic import Scene as AnyScene
@@ -185,6 +184,7 @@ def test_friction_of_the_scene_is_coulombs(engine):
     given = scene(0.45, duration=0.5, friction=0.2, motion=PulseMotion("rectangular", -0.3 * 9.81, math.pi / 0.05))
     _, trace = engine.traced(given)
     assert abs(trace.centre[-1, 0]) == pytest.approx(0.5 * 0.1 * 9.81 * 0.05**2 * 1.5, rel=0.02)
+    assert engine.simulate(given.with_(friction=0.35)).outcome == "stands"
 
 
 def test_sliding_block_fails(engine):
@@ -250,7 +250,10 @@ def test_a_block_comes_to_rest_under_a_motion_below_uplift_and_stays_there(engin
     assert np.abs(trace.tilt[late]).max() < 1e-5 * 0.28
 
 
-def test_a_load_that_is_not_finite_fails(engine, monkeypatch):
+@pytest.mark.parametrize("name, kind", [*VARIANTS, *((name, "first-script") for name in RULED)])
+def test_a_load_that_is_not_finite_fails_and_leaves_no_log(name, kind, monkeypatch, tmp_path):
+    needs(name)
+    monkeypatch.chdir(tmp_path)
     calls = []
 
     class Breaking(BearingLaw):
@@ -259,10 +262,11 @@ def test_a_load_that_is_not_finite_fails(engine, monkeypatch):
             return math.nan if len(calls) > 50 else super().hysteretic(z, dx)
 
     monkeypatch.setattr(stepping, "BearingLaw", Breaking)
-    response = engine.simulate(scene(0.2, 212.0, bearings=BEARINGS, motion=PulseMotion("one-sine", 3.0, 4.0)))
-    assert response.outcome == "failed"
+    given = scene(0.2, 212.0, bearings=BEARINGS, motion=PulseMotion("one-sine", 3.0, 4.0))
+    response = get_engine(name).simulate(given, variant=kind)
+    assert response.outcome == "failed" and response.settings
     assert "finite" in response.failure.reason and math.isfinite(response.failure.last_state.tilt)
-    assert "largest_step" in response.settings
+    assert list(tmp_path.iterdir()) == []  # no MUJOCO_LOG.TXT
 
 
 def test_run_that_does_not_advance_is_given_up(engine, monkeypatch):

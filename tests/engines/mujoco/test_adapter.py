@@ -7,14 +7,13 @@ import pytest
 
 mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed: see README.md")
 
-from released import impact_errors, scene  # noqa: E402
+from engine_cases import impact_errors, scene  # noqa: E402
 
-from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Start  # noqa: E402
+from analytic import Base, Bearings, Block, PulseMotion, Start  # noqa: E402
 from analytic import Scene as AnyScene  # noqa: E402
 from analytic import simulate as exact  # noqa: E402
-from analytic.bearing import BearingLaw  # noqa: E402
 from analytic.rocking import restitution  # noqa: E402
-from engines import get_engine, stepping  # noqa: E402
+from engines import get_engine  # noqa: E402
 from engines.contract import Mismatch  # noqa: E402
 from engines.mujoco import scene as built  # noqa: E402
 
@@ -43,46 +42,6 @@ def test_first_script_loses_too_much_of_a_slender_block_at_every_step(slendernes
     assert second < swing_peaks(exact(given), slenderness)[1] - 0.02
 
 
-@pytest.mark.parametrize("base", [None, 212.0])
-def test_rest_under_shaking_below_uplift(base):
-    time = 0.01 * np.arange(6001)
-    level = np.sin(8 * time) + 0.5 * np.sin(26 * time)
-    peak = 0.5 if base else 0.9 * 9.81 * math.tan(0.2)
-    given = scene(
-        0.2,
-        base,
-        60.0,
-        bearings=BEARINGS if base else None,
-        motion=SampledMotion(0.01, level / np.abs(level).max() * peak),
-    )
-    response, trace = get_engine("mujoco").traced(given)
-    assert response.outcome == "stands"
-    assert np.abs(trace.tilt).max() * 1.0884 < 1e-5  # measured: 1e-7
-    across, up = trace.centre[-1, :2]
-    assert abs(across - trace.base_displacement[-1]) < 1e-5 and abs(up) < 1e-5  # measured: 1.2e-7 and 2e-8
-
-
-@pytest.mark.parametrize("variant", ["impact-aware", "fixed-step", "first-script"])
-def test_a_force_that_is_not_finite_fails_and_leaves_no_log(monkeypatch, tmp_path, variant):
-    monkeypatch.chdir(tmp_path)
-    calls = []
-
-    class Breaking(BearingLaw):
-        def hysteretic(self, z, dx):
-            calls.append(dx)
-            return math.nan if len(calls) > 50 else super().hysteretic(z, dx)
-
-    monkeypatch.setattr(stepping, "BearingLaw", Breaking)
-    given = scene(0.2, 212.0, bearings=BEARINGS, motion=PulseMotion("one-sine", 3.0, 4.0))
-    response = simulate(given, variant=variant)
-    assert response.outcome == "failed"
-    assert "finite" in response.failure.reason
-    assert math.isfinite(response.failure.last_state.tilt)
-    assert response.settings
-    assert list(tmp_path.iterdir()) == []  # no MUJOCO_LOG.TXT
-    assert mujoco.get_mju_user_warning() is None  # the handler is given back
-
-
 def test_a_state_that_mujoco_makes_not_finite_fails_with_its_own_words(monkeypatch):
     step = mujoco.mj_step
 
@@ -95,6 +54,7 @@ def test_a_state_that_mujoco_makes_not_finite_fails_with_its_own_words(monkeypat
     response = simulate(scene(0.2, start=Start(tilt=0.1)))
     assert response.outcome == "failed"
     assert "finite" in response.failure.reason and "unstable" in response.failure.message
+    assert mujoco.get_mju_user_warning() is None  # the handler is given back
 
 
 def test_warning_alone_fails(monkeypatch):
