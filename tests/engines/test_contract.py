@@ -13,11 +13,12 @@ from importlib import metadata
 
 import numpy as np
 import pytest
-from engine_cases import BEARINGS, PULSE, accurate, default_variant, every_variant, scene, shaking, simulate
+from engine_cases import PULSE, accurate, default_variant, every_variant, scene, shaking, simulate
 
 import engines
 from analytic import SceneError, SettingError, Start
 from analytic import simulate as exact
+from analytic.caryatid import BEARINGS
 from analytic.response import History
 from engines import ENGINES, get_engine, guard
 from engines.contract import TIERS

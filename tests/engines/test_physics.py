@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from bearing_laws import NAMES
 from engine_cases import (
-    BEARINGS,
     PULSE,
     accurate,
     accurate_variant,
@@ -26,6 +25,7 @@ from record_files import RECORDS, needs_records
 from analytic import PulseMotion, Start, load_scene
 from analytic import simulate as exact
 from analytic.bearing import BearingLaw
+from analytic.caryatid import BEARINGS
 from analytic.records import read_record
 from engines import get_engine
 from engines.checks import pivoting_centre

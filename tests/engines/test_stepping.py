@@ -2,22 +2,24 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
+from engine_cases import impact_errors as released_errors
 from engine_cases import needs, scene
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Start
 from analytic import Scene as AnyScene
 from analytic import simulate as exact
 from analytic.bearing import BearingLaw
+from analytic.caryatid import BEARINGS
 from analytic.rocking import restitution
 from comparisons.measuring.errors import impact_errors, rms
 from engines import get_engine, stepping
 from engines.checks import energy_gain
 from engines.stepping import NoSolution, march, mean_loads, sampled_loads
 
-BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 LINEAR = Bearings(law="linear", count=1, ka=2e6)
 RULED = ["pybullet", "mujoco", "pymunk", "dart"]
 VARIANTS = [(name, "impact-aware") for name in RULED] + [(name, "fixed-step") for name in RULED[:2]]
@@ -135,6 +137,19 @@ def variant(request):
 def engine(request):
     needs(request.param)
     return get_engine(request.param)
+
+
+@pytest.mark.parametrize(
+    "name, slenderness, starts, seconds, finer, least, most",
+    [("mujoco", 0.2, 4, 2.5, 8, 4, 16), ("pybullet", 0.45, 8, 3.0, 4, 2.5, 6.5)],
+)
+def test_fixed_steps_are_of_first_order(name, slenderness, starts, seconds, finer, least, most):
+    needs(name)
+    run = partial(get_engine(name).simulate, variant="fixed-step")
+    errors = [
+        released_errors(run, slenderness, None, starts, seconds, step=step)[0] for step in (1.6e-3, 1.6e-3 / finer)
+    ]
+    assert least < errors[0] / errors[1] < most  # `finer` but for the phase of the steps
 
 
 @pytest.mark.parametrize("base, fine, least", [(None, 2e-5, 4.0), (212.0, 5e-5, 1.0)])

@@ -31,22 +31,18 @@ def rocking(slenderness, base=None, part=0.6, duration=1.3, **block):
 
 
 def errors(scene, response):
-    """(restitution less eq. (7), base jump less momentum's [m/s]) of the impacts above a tenth of omega_r gamma."""
+    """Restitution less eq. (7) of the impacts above a tenth of omega_r gamma."""
     fast = 0.1 * scene.rocking_frequency * scene.block.slenderness
     impacts = [impact for impact in response.impacts if abs(impact.rate_before) > fast]
     assert impacts
-    lever = scene.mass_share * scene.block.half_height
-    return (
-        np.array([i.rate_after / i.rate_before for i in impacts]) - restitution(scene),
-        np.array([i.base_velocity_jump - lever * (i.rate_before - i.rate_after) for i in impacts]),
-    )
+    return np.array([i.rate_after / i.rate_before for i in impacts]) - restitution(scene)
 
 
 def test_a_stocky_block_that_leaves_the_ground_after_an_impact_is_no_failure():
     scene = rocking(0.45, part=0.8, duration=1.5)
     response = simulate(scene)
     assert response.outcome == "rocks"
-    assert np.abs(errors(scene, response)[0]).max() < 2e-4
+    assert np.abs(errors(scene, response)).max() < 2e-4
 
 
 @pytest.mark.parametrize("part", [0.59, 0.73, 0.8])
@@ -60,7 +56,7 @@ def test_no_impact_of_a_stocky_fast_block_is_lost(part):
 
 def test_error_of_compliant_corners_goes_as_one_over_stiffness():
     scene = rocking(0.1, duration=0.8)
-    soft, stiff = (abs(errors(scene, simulate(scene, stiffness=k))[0][0]) for k in (1e9, 1e10))
+    soft, stiff = (abs(errors(scene, simulate(scene, stiffness=k))[0]) for k in (1e9, 1e10))
     assert 4 < soft / stiff < 25
 
 
@@ -68,7 +64,7 @@ def test_error_of_compliant_corners_goes_as_one_over_stiffness():
 def test_switched_joints_give_the_restitution_to_the_square_of_the_step(base):
     scene = rocking(0.2, base)
     coarse, fine = (
-        np.abs(errors(scene, simulate(scene, variant="switched-joints", step=step))[0]).max() for step in (4e-3, 1e-3)
+        np.abs(errors(scene, simulate(scene, variant="switched-joints", step=step))).max() for step in (4e-3, 1e-3)
     )
     assert fine < 1e-6
     assert coarse > 4 * fine
@@ -78,8 +74,7 @@ def test_switched_joints_give_the_restitution_to_the_square_of_the_step(base):
 def test_native_contact_is_one_to_ten_percent_off(slenderness):
     """A documented fault: a version of exudyn that mends it should be noticed."""
     scene = rocking(slenderness, duration=0.9)
-    error, _ = errors(scene, simulate(scene, variant="native-contact"))
-    assert 0.01 < abs(error[0]) < 0.10
+    assert 0.01 < abs(errors(scene, simulate(scene, variant="native-contact"))[0]) < 0.10
 
 
 @pytest.mark.parametrize("ratio", [1e-4, 1e-2, 1.0, 10.0])
@@ -88,7 +83,7 @@ def test_extreme_bases_do_not_fail_in_silence(ratio):
     response = simulate(scene)
     assert response.outcome == "rocks" or response.failure.reason
     if response.outcome == "rocks":
-        assert np.abs(errors(scene, response)[0]).max() < 2e-3
+        assert np.abs(errors(scene, response)).max() < 2e-3
 
 
 def test_newton_failure_surfaces_with_the_engines_message():
