@@ -1,4 +1,4 @@
-"""A second reader of records, written for tests alone: character by character, in whole numbers and fractions.
+"""A second reader of records, written for tests alone: by patterns of its own, in whole numbers and fractions.
 
 It shares no code, no pattern and no floating-point step with the reader of the project, so that the two can be held
 against each other on damaged files. It is slow (its test of uniform times takes every pair) and as strict as the rules:
