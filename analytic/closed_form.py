@@ -1,26 +1,16 @@
 """What is known in closed form about a rocking block on rigid ground: the oracles of the numerical models.
 
-Exact for their equations: free rocking as a pendulum, phi'' = -omega_r^2 sin(s gamma - phi), and Housner's
-linear equation for slender blocks, phi'' = omega_r^2 (phi - s gamma - a_g/g).
-Sources: the pendulum's elliptic integral in the form of B. C. Carlson (1995), Numer. Algorithms 10, 13-26;
-G. W. Housner (1963), Bull. Seismol. Soc. Am. 53(2), 403-417; N. Makris, J. Zhang (2001), J. Eng. Mech. 127.
+Exact for its equation: free rocking as a pendulum, phi'' = -omega_r^2 sin(s gamma - phi).
+Source: the pendulum's elliptic integral in the form of B. C. Carlson (1995), Numer. Algorithms 10, 13-26.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.integrate import quad
 from scipy.special import ellipj, elliprf
-
-from .motion import SampledMotion
-
-if TYPE_CHECKING:
-    from .types import Motion
 
 
 def swing_energy(slenderness: float, peak: float) -> float:
@@ -134,45 +124,3 @@ def free_rocking_tilt(omega_r: float, slenderness: float, restitution: float, ti
     complement = math.sin(slenderness / 2) ** 2 - energy
     dn = float(ellipj(omega_r * (t - peak_time), 1 - complement)[2])
     return side * (slenderness - 2 * math.asin(math.sqrt(complement) / dn))
-
-
-def linear_period(omega_r: float, tilt_ratio: float) -> float:
-    """Housner's period [s] of a slender block's full cycle with peaks |phi|/gamma = tilt_ratio, in (0, 1)."""
-    return 4 / omega_r * math.acosh(1 / (1 - tilt_ratio))
-
-
-def linear_decay(restitution: float, tilt_ratio: float, n: int) -> float:
-    """Housner's |phi_n|/gamma: the peak after n impacts of a slender block released from |phi_0|/gamma."""
-    energy = restitution ** (2 * n) * tilt_ratio * (2 - tilt_ratio)  # 1 - (1 - tilt_ratio)^2
-    return energy / (1 + math.sqrt(1 - energy))  # 1 - sqrt(1 - energy)
-
-
-def rectangular_pulse_critical_duration(omega_r: float, ratio: float) -> float:
-    """Shortest rectangular pulse [s] that overturns a slender block; ratio = a/(g gamma).
-
-    Infinite for ratio <= 1, where the block does not lift. The block overturns without impact.
-    """
-    return math.log(ratio / (ratio - 1)) / omega_r if ratio > 1 else math.inf
-
-
-def no_impact_overturning_integral(omega_r: float, motion: Motion, uplift: float, gravity: float = 9.81) -> float:
-    """|omega_r times the integral of exp(-omega_r (t - uplift)) a_g/g dt| [rad] from `uplift` [s] on.
-
-    A slender block that lifts at `uplift` and does not come back before the motion is over overturns exactly
-    if this exceeds its slenderness. `motion` is a pulse or a record.
-    """
-
-    def growth(t):
-        return omega_r * math.exp(-omega_r * (t - uplift)) * float(motion.acceleration(t)) / gravity
-
-    corners: Sequence[float] | np.ndarray
-    if isinstance(motion, SampledMotion):  # quad must not smear the corners of a record
-        first = math.floor(uplift / motion.dt) + 1
-        corners = [uplift, *(motion.dt * np.arange(first, len(motion.samples)))]
-    else:
-        corners = np.linspace(uplift, motion.end, 9)
-    parts = [
-        quad(growth, a, b, epsabs=1e-15, epsrel=1e-12)[0] if b > a else 0.0
-        for a, b in zip(corners[:-1], corners[1:], strict=True)
-    ]
-    return abs(math.fsum(parts))

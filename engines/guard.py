@@ -12,19 +12,14 @@ import signal
 import sys
 import tempfile
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from multiprocessing import connection
 from multiprocessing.reduction import ForkingPickler
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, Any
 
 from analytic.errors import EngineNotInstalled, SceneError, SettingError
 from analytic.response import Failure
-
-from . import get_engine
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene
 
 LONGEST = 1e6  # s; longer time limits overflow the system's timers
 GRACE_SECONDS = 0.3  # beyond the time limit, for the process to write down where it hangs
@@ -34,65 +29,6 @@ MISTAKES = (SettingError, SceneError, EngineNotInstalled)  # the caller's, not t
 STOPPING = {signal.SIGINT, signal.SIGTERM}
 PR_SET_PDEATHSIG = 1
 TRACE = getattr(signal, "SIGUSR1", None)  # tells a process that hangs to write down where
-
-
-def guarded_simulate(engine_name: str, scene: Scene, *, time_limit: float, **settings: Any) -> Response:
-    """The response of ``get_engine(engine_name).simulate(scene, **settings)``, run in its own process.
-
-    Parameters
-    ----------
-    engine_name : str
-    scene : Scene
-    time_limit : float
-        Wall-clock time [s] after which the run is killed, start of the process included.
-    **settings
-        Passed to the engine.
-
-    Returns
-    -------
-    Response
-        Of outcome "failed", with the evidence in its failure, where the process was killed, crashed, ran into
-        the time limit or raised an error while simulating.
-
-    Raises
-    ------
-    KeyError, EngineNotInstalled
-        As `get_engine`, before any process is started.
-    SettingError, SceneError
-        The run cannot be asked for; this is the caller's mistake and no failure of the engine.
-    ValueError
-        `time_limit` is not positive, or above `LONGEST`.
-    """
-    check_time_limit(time_limit)
-    versions = get_engine(engine_name).versions()
-    return guarded(_simulate, engine_name, scene, settings, time_limit, versions)
-
-
-def guarded(
-    run: Callable[[str, Scene, Mapping[str, Any]], Response],
-    engine_name: str,
-    scene: Scene,
-    settings: Mapping[str, Any],
-    time_limit: float,
-    versions: dict[str, str] | None = None,
-) -> Response:
-    """``run(engine_name, scene, settings)`` in a process of its own; see `guarded_simulate`.
-
-    `run` is a function at the top of a module, so that the process can import it.
-    """
-    response, failure = alone(run, engine_name, scene, settings, time_limit=time_limit)
-    if failure is None:
-        return response
-    from .observe import failed_response  # half a second at every start, for runs that fail
-
-    return failed_response(
-        scene,
-        failure,
-        engine=engine_name,
-        variant=str(settings.get("variant") or ""),
-        settings=dict(settings),
-        versions=versions or {},
-    )
 
 
 def check_time_limit(time_limit: float) -> None:
@@ -157,10 +93,6 @@ def alone(
             print(printed, end="", file=sys.stderr, flush=True)
         return content, None
     return None, Failure(content[0], f"{content[1]}\n{_ends(printed)}".strip())
-
-
-def _simulate(engine_name: str, scene: Scene, settings: Mapping[str, Any]) -> Response:
-    return get_engine(engine_name).simulate(scene, **settings)
 
 
 def _answer(reader: Any, process: Any, time_limit: float) -> tuple[str, Any]:

@@ -2,16 +2,12 @@
 
 import numpy as np
 
-from analytic import Base, Bearings, Block, SampledMotion, Scene, Start, simulate
+from analytic import SampledMotion, Scene, Start, simulate
+from analytic.caryatid import BASE, BEARINGS
+from analytic.caryatid import caryatid_block as block
 from engines.observe import Trace, observe
 
-BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
-BASE = Base(mass=212.0)
 EDGE = 1e-6
-
-
-def block(slenderness):
-    return Block(mass=3172.05, radius=1.0884, slenderness=slenderness)
 
 
 def shaking(scale):

@@ -1,11 +1,13 @@
 """Columns of numbers for the second reader of records (`strict_records`), which says what it is for."""
 
+import re
 from fractions import Fraction
 
 from strict_statements import blanked, flat, fold, step_of_all
-from strict_words import DIGITS, LETTERS, TIME_WORDS, Refused, form_of, letter, single, stem_of, unit_of, words_of
+from strict_words import TIME_WORDS, Refused, form_of, letter, single, stem_of, unit_of, words_of
 
 OTHER_TIMES = ("us", "µs", "usec", "ns", "min", "minute", "minutes", "h", "hour", "hours", "samples")
+COMMENT = re.compile("[#%!]|//")
 NAMES_OF_TIMES = ("time", "t", "zeit", "tiempo", "temps", "zaman")
 
 
@@ -20,16 +22,12 @@ def columns(lines, given, column):
     table = []
     for row in rows:
         row = row.replace(",", ".") if decimal == "," else row
-        table.append([field.strip() for field in (row.split(by) if by else row.split())])
+        table.append([field.strip() for field in row.split(by)])
     if header:
-        last = header[-1]
-        fields = [field.strip() for field in (last.split(by) if by else last.split())][1:]
-        if last[0] not in "#%!" and last[:2] != "//" and any(_numeric(field) for field in fields):
+        fields = [field.strip() for field in header[-1].split(by)][1:]
+        if not COMMENT.match(header[-1]) and any(re.match("[+-]?[.,]?[0-9]", field) for field in fields):
             raise Refused("header")
-        if any(
-            "npts" in "".join(sign if sign.isalnum() or sign == "_" else " " for sign in line.lower()).split()
-            for line in header
-        ):
+        if any(re.search(r"\bnpts\b", line.lower()) for line in header):
             raise Refused("NPTS")
     for comment in comments:
         statements, kept = blanked([comment])
@@ -62,54 +60,21 @@ def columns(lines, given, column):
 
 def _titles(header, by, width):
     """(lines of the header other than that of titles, titles or [], index of the line of titles)."""
-    at = len(header) - 1
-    for index, line in enumerate(header):
-        if line.lstrip("# \t").lower().startswith("datasequence:"):
-            at = index
-            break
+    named = [index for index, line in enumerate(header) if re.match("[# \t]*datasequence:", line.lower())]
+    at = named[0] if named else len(header) - 1
     if at < 0:
         return header, [], at
-    line = header[at][:400]
-    named = line.lstrip("# \t").lower().startswith("datasequence:")
-    line = line.partition(":")[2] if named else line
-    while line and (line[0] in "#%!/" or line[0].isspace()):
-        line = line[1:]
-    splits = [line.split(by)] if by else []
-    splits += [line.replace(";", ",").split(","), line.split("\t"), _split(line, " ", 2), _split(line, " ;,", 1)]
-    for split in splits:
-        split = [part.strip() for part in split]
+    line = re.sub(r"^[#%!/\s]+", "", header[at][:400].partition(":")[2] if named else header[at][:400])
+    for parting in (*([by] if by else []), "[;,]", "\t", "  +", "[ ;,]+"):
+        split = [part.strip() for part in re.split(parting, line.strip() if parting[-1] == "+" else line)]
         if len(split) == width and all(any(letter(sign) for sign in _name_of(part)) for part in split):
             return [*header[:at], *header[at + 1 :]], split, at
     return header, [], at
 
 
-def _split(line, signs, least):
-    """Parts between runs of at least `least` of the signs."""
-    parts, run = [""], ""
-    for sign in line.strip():
-        if sign in signs:
-            run += sign
-            continue
-        if len(run) >= least:
-            parts.append("")
-        else:
-            parts[-1] += run
-        run = ""
-        parts[-1] += sign
-    return [*parts, ""] if run else parts
-
-
 def _name_of(title):
     """The title without what stands in brackets."""
-    name, inside = "", False
-    for sign in title:
-        if not inside and sign in "([":
-            inside = True
-        elif inside:
-            inside = sign not in ")]"
-        else:
-            name += sign
-    return name.strip()
+    return re.sub(r"[(\[][^)\]]*[)\]]?", "", title).strip()
 
 
 def _are_times(table, titles, known):
@@ -118,12 +83,7 @@ def _are_times(table, titles, known):
         return True
     if not titles:
         return not known
-    word = ""
-    for sign in stem_of(fold(titles[0]).strip()):
-        if not sign.isalnum():
-            break
-        word += sign
-    return word in NAMES_OF_TIMES
+    return re.match(r"[^\W_]*", stem_of(fold(titles[0]).strip()))[0] in NAMES_OF_TIMES
 
 
 def _number_of(column, titles, timed, width):
@@ -134,7 +94,7 @@ def _number_of(column, titles, timed, width):
             raise Refused("column missing")
         return first
     wanted = str(column).strip()
-    if wanted and all(sign in DIGITS for sign in wanted):
+    if re.fullmatch("[0-9]+", wanted):
         found = [int(wanted)]
     else:
         wanted = wanted.casefold()
@@ -174,45 +134,27 @@ def _header_and_rows(lines):
     header, rows, comments = [], [], []
     for line in lines:
         text = line.strip()
-        if text[:1] in ("#", "%", "!") or text[:2] == "//":
+        if COMMENT.match(text):
             (comments if rows else header).append(text)
+        elif rows or re.match(r"[-+.,;0-9]|(nan|inf|infinity)\b", text.lower()):
+            rows += [text.split("#")[0].strip()] if text else []
         elif text:
-            word = ""
-            for sign in text.lower().lstrip("+-"):
-                if not (sign.isalnum() or sign == "_"):
-                    break
-                word += sign
-            if rows or text[0] in "-+.,;" + DIGITS or word in ("nan", "inf", "infinity"):
-                rows.append(text.split("#")[0].strip())
-            else:
-                header.append(text)
+            header.append(text)
     return header, rows, comments
 
 
 def _separators(rows, everything):
     """(what parts the columns, None for blanks; the sign of decimals)."""
     semicolons, commas = ";" in everything, "," in everything
-    spaced = any(
-        row[0] == ","
-        or row[-1] == ","
-        or any(sign == "," and (row[i - 1] in " \t" or row[i + 1 : i + 2] in (" ", "\t")) for i, sign in enumerate(row))
-        for row in rows
-        if row
-    )
-    by, decimal = None, "."
-    if semicolons:
-        by, decimal = ";", "," if commas else "."
-    elif commas and (
-        spaced or (any(len(row.split()) < 2 for row in rows) and 2 * sum("." in row for row in rows) >= len(rows))
-    ):
-        by = ","
-    elif commas and all(len(row.split()) > 1 for row in rows):
-        decimal = ","
-    elif commas:
+    spaced = any(re.search("^,|,$|[ \t],|,[ \t]", row) for row in rows)
+    blanks = all(len(row.split()) > 1 for row in rows)
+    if not commas:
+        return ";" if semicolons else None, "."
+    if not semicolons and (spaced or (not blanks and 2 * sum("." in row for row in rows) >= len(rows))):
+        return ",", "."
+    if "." in everything or not (semicolons or blanks):
         raise Refused("comma")
-    if decimal == "," and "." in everything:
-        raise Refused("points and commas")
-    return by, decimal
+    return ";" if semicolons else None, ","
 
 
 def _list(table):
@@ -245,20 +187,6 @@ def _step_of(table, header):
     return low / scale, high / scale
 
 
-def _numeric(field):
-    field = field[1:] if field[:1] in ("+", "-") else field
-    field = field[1:] if field[:1] in (".", ",") else field
-    return field[:1] in tuple(DIGITS)
-
-
-def _letters_of(word):
-    """The letters a word begins with; nothing where digits follow them."""
-    end = 0
-    while end < len(word) and (word[end] in LETTERS or word[end] == "µ"):
-        end += 1
-    return "" if word[end : end + 1] in tuple(DIGITS) else word[:end]
-
-
 def times_in(line):
     """Units of time that stand behind the word time (or t) of a header line, in units a second; None: another unit."""
     found = []
@@ -268,11 +196,9 @@ def times_in(line):
             rest = words[i + 1 :]
             while rest and rest[0] in ("(", "[", ",", ":", "=", "in", "unit", "units"):
                 rest = rest[1:]
-            unit = _letters_of(rest[0]) if rest else ""
-            if unit in OTHER_TIMES:
-                found.append(None)
-            elif unit in TIME_WORDS:
-                found.append(TIME_WORDS[unit])
+            unit = re.match("([a-zµ]*)(?![a-zµ0-9])", rest[0] if rest else "")
+            if unit and (unit[1] in OTHER_TIMES or unit[1] in TIME_WORDS):
+                found.append(TIME_WORDS.get(unit[1]))
     return found
 
 

@@ -1,16 +1,17 @@
-"""A second reader of records, written for tests alone: character by character, in whole numbers and fractions.
+"""A second reader of records, written for tests alone: by patterns of its own, in whole numbers and fractions.
 
 It shares no code, no pattern and no floating-point step with the reader of the project, so that the two can be held
 against each other on damaged files. It is slow (its test of uniform times takes every pair) and as strict as the rules:
 what is not surely a record is `Refused`.
 """
 
+import re
 from fractions import Fraction
 
 import strict_columns
 import strict_formats
 from strict_statements import blanked, step_of_all
-from strict_words import DIGITS, GIVEN, KNOWN, LETTERS, G, Refused, fortran, step_of, unit_of, whole
+from strict_words import GIVEN, KNOWN, G, Refused, fortran, step_of, unit_of, whole
 
 
 def read(content, units=None, dt=None, column=None, channel=None):
@@ -58,58 +59,19 @@ def _lines(content):
         text = text[1:] if text[:1] == "\ufeff" else text
     if content.startswith((b"\x1f\x8b", b"PK", b"BZh", b"\xfd7zXZ")):  # `test_packed` damages packed files
         raise Refused("packed")
-    while text.endswith("\x1a"):
-        text = text[:-1]
-    lines, line, i = [], "", 0
-    while i < len(text):
-        if text[i] in "\r\n":
-            while text[i] == "\r" and i + 1 < len(text) and text[i + 1] in "\r\n":
-                i += 1
-            lines.append(line)
-            line = ""
-        else:
-            if (ord(text[i]) < 32 and text[i] != "\t") or ord(text[i]) == 127:
-                raise Refused("control character")
-            line += text[i]
-        i += 1
-    return [*lines, line]
+    text = text.rstrip("\x1a")
+    if any((sign < " " and sign not in "\t\r\n") or sign == "\x7f" for sign in text):
+        raise Refused("control character")
+    return re.split("\r*\n|\r+", text)
 
 
 # Formats
 
 
-def _named(line, name):
-    """What stands behind every `name =` or `name (unit) =` of a line: list of (unit, rest of the line)."""
-    found, low = [], line.lower()
-    at = low.find(name)
-    while at >= 0:
-        before, i = low[at - 1 : at], at + len(name)
-        while line[i : i + 1].isspace():
-            i += 1
-        unit = ""
-        if name == "dt" and line[i : i + 1] and line[i] in "([":
-            i += 1
-            while line[i : i + 1].isspace():
-                i += 1
-            while low[i : i + 1] and low[i] in LETTERS:
-                unit += low[i]
-                i += 1
-            while line[i : i + 1].isspace():
-                i += 1
-            i = i + 1 if line[i : i + 1] and line[i] in ")]" else len(line)
-            while line[i : i + 1].isspace():
-                i += 1
-        if line[i : i + 1] and line[i] in "=:" and not (before and (before.isalnum() or before == "_")):
-            found.append((unit, line[i + 1 :].lstrip()))
-        at = low.find(name, at + 1)
-    return found
-
-
-def _until(text, stops):
-    i = 0
-    while i < len(text) and not text[i].isspace() and text[i] not in stops:
-        i += 1
-    return text[:i], text[i:]
+# The numbers before their names; each `npts =` with the count behind it; each `dt =` or `dt (unit) =`.
+OLD = re.compile(r"\s*([0-9]+)\s+(\S+)\s+npts\s+dt(?![^\s(\[])\s*([(\[].*)?.*")
+NPTS = re.compile(r"\bnpts\s*[=:]\s*([^\s,;]*)")
+DT = re.compile(r"\bdt\s*(?:[(\[]\s*[a-z]*\s*[)\]]\s*)?[=:]")
 
 
 def _channel(lines, wanted):
@@ -131,22 +93,16 @@ def _at2(lines):
     """(step, samples, factor) of a PEER AT2 file; None if it is none."""
     for index, line in enumerate(lines[:8]):
         line = line[:400]
-        old = line.lower().replace(",", " ").split()
-        counts, steps = _named(line, "npts"), _named(line, "dt")
-        if (
-            len(old) >= 4
-            and old[2] == "npts"
-            and (old[3] == "dt" or old[3][:3] in ("dt(", "dt["))
-            and all(sign in DIGITS for sign in old[0])
-        ):
-            behind = "".join(old[3:])[2:]
-            inside = "".join(sign for sign in behind.partition(")")[0] if sign in LETTERS and behind[0] in "([")
-            step_of(old[1], inside)
-            count, line = old[0], f"dt = {old[1]} {inside}"
+        old = OLD.fullmatch(line.lower().replace(",", " "))
+        counts, steps = NPTS.findall(line.lower()), DT.findall(line.lower())
+        if old:
+            inside = "".join(re.findall("[a-z]", (old[3] or "").partition(")")[0]))
+            step_of(old[2], inside)
+            count, line = old[1], f"dt = {old[2]} {inside}"
         elif counts and steps:
             if len(counts) > 1 or len(steps) > 1:
                 raise Refused("twice")
-            count = _until(counts[0][1], ",;")[0]
+            count = counts[0]
         else:
             continue
         statements, header = blanked([*lines[:index], line])
@@ -165,15 +121,8 @@ def _dyna(lines):
     """(step, samples, factor) of an ESM/DYNA file; None if it is none."""
     begin = next(i for i, line in enumerate(lines) if line.strip())
     keys, i = {}, begin
-    while i < len(lines):
-        key, colon, value = lines[i][:400].partition(":")
-        if (
-            not colon
-            or not key
-            or key[0] not in LETTERS.upper()
-            or any(sign not in LETTERS.upper() + DIGITS + "_/^" for sign in key)
-        ):
-            break
+    while i < len(lines) and (stated := re.match("([A-Z][A-Z0-9_/^]*):(.*)", lines[i][:400])):
+        key, value = stated.groups()
         if keys.setdefault(key, value.strip()) != value.strip():
             raise Refused("two values")
         i += 1

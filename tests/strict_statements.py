@@ -1,10 +1,11 @@
 """Steps stated in headers, for the second reader of records (`strict_records`), which says what it is for."""
 
+import re
 import unicodedata
 from fractions import Fraction
 from itertools import product
 
-from strict_words import DIGITS, LETTERS, TIME_WORDS, Refused, letter, scan
+from strict_words import TIME_WORDS, Refused, scan
 
 GAP = ("", " ", "-", " -")
 SAMPLING_FR = (" dechantillonnage", " d?echantillonnage")  # ?: any sign
@@ -35,7 +36,6 @@ INTERVAL_KEYS = {"dt", "interval of", "intervals of"}.union(
     _spelled(("pas", "intervalle", "periode"), (" de temps", *SAMPLING_FR)),
     _spelled(("ornekleme", "zaman"), (" araligi", " periyodu", " adimi")),
 )
-KEYS = sorted(RATE_KEYS | INTERVAL_KEYS, key=len, reverse=True)
 PER_SECOND = {"sps"}.union(
     _spelled(
         ("sample", "muestra", "abtastwert", "wert", "echantillon", "ornek", "point"),
@@ -44,7 +44,23 @@ PER_SECOND = {"sps"}.union(
         ("s", "sec", "second", "segundo", "sekunde", "seconde", "saniye"),
     )
 )
-RATES_LONGEST = sorted(PER_SECOND | {"hz", "hertz", "1/s", "1/sec"}, key=len, reverse=True)
+RATES = PER_SECOND | {"hz", "hertz", "1/s", "1/sec"}
+
+
+def _one_of(words):
+    """A pattern of any of the words, the longest first."""
+    return "|".join(re.escape(word).replace(r"\?", ".") for word in sorted(words, key=len, reverse=True))
+
+
+LETTER = r"[^\W\d_]"
+KEY = re.compile(f"(?<!{LETTER})(?:{_one_of(RATE_KEYS | INTERVAL_KEYS)})(?!{LETTER})")
+RATE_KEY = re.compile(_one_of(RATE_KEYS))
+UNIT = re.compile(f"(?:{_one_of(RATES)}|[a-zµ]*)(?!{LETTER})")
+DECIMAL_COMMA = re.compile("[0-9]+,([0-9]+)")
+LARGE = re.compile(r"[+-]?\.?[0-9][0-9.]*(?:[ed][+-]?[0-9]+)?")
+GOES_ON = re.compile("[.,]?[0-9]")
+OPENED, SAID = re.compile(r" ?[(\[]? ?"), re.compile(r" ?[)\]]? ?([:=]|is|of|at)? ?")
+SAMPLES = re.compile("[0-9.,ed+-]*")
 
 
 def flat(line):
@@ -54,11 +70,8 @@ def flat(line):
 
 def fold(text):
     """As many signs as the text has: lower case, without accents, blanks for low lines."""
-    folded = ""
-    for sign in text:
-        sign = unicodedata.normalize("NFD", sign.lower()[:1])[:1]
-        folded += {"ı": "i", "_": " "}.get(sign, sign)
-    return folded
+    plain = "".join(unicodedata.normalize("NFD", sign.lower()[:1])[:1] for sign in text)
+    return plain.replace("ı", "i").replace("_", " ")
 
 
 def blanked(lines):
@@ -68,15 +81,13 @@ def blanked(lines):
         line = flat(line)
         text, i = fold(line), 0
         while i < len(text):
-            end = _key_end(text, i)
-            if end:
-                found = _stated(text, i, end)
-            else:
-                found = _alone(text, i)
+            key = KEY.match(text, i)
+            found = _stated(text, i, key.end()) if key else _alone(text, i)
+            end = found[1] if found else key.end() if key else i + 1
             if found:
                 statements.append(found[0])
-                line = line[:i] + " " * (found[1] - i) + line[found[1] :]
-            i = found[1] if found else end or i + 1
+                line = line[:i] + " " * (end - i) + line[end:]
+            i = end
         kept.append(line)
     return statements, kept
 
@@ -96,67 +107,23 @@ def step_of_all(statements):
     return step
 
 
-def _key_end(text, i):
-    """Where the longest key at i ends; None without one."""
-    if i and letter(text[i - 1]):
-        return None
-    for key in KEYS:
-        piece = text[i : i + len(key)]
-        if key[0] == piece[:1] and len(piece) == len(key):
-            like = all(wanted in (sign, "?") for wanted, sign in zip(key, piece, strict=True))
-            if like and not letter(text[i + len(key) : i + len(key) + 1]):
-                return i + len(key)
-    return None
-
-
 def _word(text, i):
     """A unit of rates or a word of letters at i, "" without one."""
-    for unit in RATES_LONGEST:
-        if text.startswith(unit, i) and not letter(text[i + len(unit) : i + len(unit) + 1]):
-            return unit
-    end = i
-    while text[end : end + 1] and (text[end] in LETTERS or text[end] == "µ"):
-        end += 1
-    return "" if letter(text[end : end + 1]) else text[i:end]
+    found = UNIT.match(text, i)
+    return found[0] if found else ""
 
 
 def _number(text, i):
     """(value, unit of its last digit, next i) of a number or one with a decimal comma at i; None without one."""
-    found, comma = scan(text, i), i
-    if found and not _goes_on(text, found[3]):
-        exponent = 0
-        if found[2]:
-            mantissa, _, power = text[i : found[3]].replace("d", "e").partition("e")
-            exponent = int(power)
-        return found[0], Fraction(10) ** (exponent - (found[1] or 0)), found[3]
-    end = _large(text, i)
-    if not found and end and not _goes_on(text, end):
-        return None, Fraction(1), end
-    while text[comma : comma + 1] and text[comma] in DIGITS:
-        comma += 1
-    end = comma + 1
-    while text[end : end + 1] and text[end] in DIGITS:
-        end += 1
-    decimals = end - comma - 1
-    if comma == i or text[comma : comma + 1] != "," or not decimals or _goes_on(text, end) or end - i > 100:
+    found, large, comma = scan(text, i), LARGE.match(text, i), DECIMAL_COMMA.match(text, i)
+    if found and not GOES_ON.match(text, found[3]):
+        power = text[i : found[3]].replace("d", "e").partition("e")[2]
+        return found[0], Fraction(10) ** (int(power or 0) - (found[1] or 0)), found[3]
+    if not found and large and not GOES_ON.match(text, large.end()):
+        return None, Fraction(1), large.end()
+    if not comma or len(comma[0]) > 100 or GOES_ON.match(text, comma.end()):
         return None
-    return Fraction(int(text[i:comma] + text[comma + 1 : end]), 10**decimals), Fraction(1, 10**decimals), end
-
-
-def _large(text, i):
-    """Where a number at i that is too long or too large for `scan` ends; 0 without one."""
-    start = i + (text[i : i + 1] in ("+", "-"))
-    start += text[start : start + 1] == "."
-    if text[start : start + 1] not in tuple(DIGITS):
-        return 0
-    while text[start : start + 1] and text[start] in DIGITS + ".":
-        start += 1
-    power = start + 1 + (text[start + 1 : start + 2] in ("+", "-"))
-    if text[start : start + 1] in ("e", "d") and text[power : power + 1] in tuple(DIGITS):
-        start = power
-        while text[start : start + 1] and text[start] in DIGITS:
-            start += 1
-    return start
+    return Fraction(comma[0].replace(",", ".")), Fraction(1, 10 ** len(comma[1])), comma.end()
 
 
 def _sure(text, i, end):
@@ -164,15 +131,8 @@ def _sure(text, i, end):
     if "," not in text[i:end] and not scan(text, i):
         raise Refused("not finite")
     whole, comma, decimals = text[i:end].partition(",")
-    if comma and len(decimals) == 3 and whole[0] != "0":
-        raise Refused("thousands")
-    if comma and text[end : end + 1] in ("e", "d") and text[end + 1 : end + 2] in (*DIGITS, "+", "-"):
-        raise Refused("exponent behind a decimal comma")
-
-
-def _goes_on(text, end):
-    digits = tuple(DIGITS)
-    return text[end : end + 1] in digits or (text[end : end + 1] in (".", ",") and text[end + 1 : end + 2] in digits)
+    if comma and (len(decimals) == 3 and whole[0] != "0" or re.match("[ed][0-9+-]", text[end:])):
+        raise Refused("thousands, or an exponent behind a decimal comma")
 
 
 def _value(text, i):
@@ -192,25 +152,16 @@ def _value(text, i):
     return *found[:2], "", after
 
 
-def _stated(text, begin, i):
-    """(statement, where it ends) of what stands behind the key from begin to i; None if it states nothing."""
-    key_end = i
-    i += text[i : i + 1] == " "
-    i += text[i : i + 1] in ("(", "[")
-    i += text[i : i + 1] == " "
+def _stated(text, begin, key_end):
+    """(statement, where it ends) of what stands behind the key from begin to its end; None if it states nothing."""
+    i = OPENED.match(text, key_end).end()
     before = _word(text, i)
     before = "" if before in ("is", "of", "at") else before
-    i += len(before)
-    i += text[i : i + 1] == " "
-    i += text[i : i + 1] in (")", "]")
-    i += text[i : i + 1] == " "
-    sign = text[i : i + 1] if text[i : i + 1] in (":", "=") else ""
-    sign = text[i : i + 2] if text[i : i + 2] in ("is", "of", "at") else sign
-    i += len(sign)
-    i += text[i : i + 1] == " "
+    says = SAID.match(text, i + len(before))
+    i = says.end()
     found = _value(text, i)
     if not found or (before and not _known(before) and not found[2]):
-        if sign in (":", "="):
+        if says[1] in (":", "="):
             raise Refused("no number")
         return None
     _sure(text, i, _number(text, i)[2])
@@ -218,17 +169,10 @@ def _stated(text, begin, i):
     unit = behind if _known(behind) else before if _known(before) else ""
     if behind and not unit:
         raise Refused("unit of a step")
-    is_rate = unit in RATES_LONGEST if unit else _is_rate(text[begin:key_end])
+    is_rate = unit in RATES if unit else bool(RATE_KEY.fullmatch(text, begin, key_end))
     if is_rate and not unit and value < 1:
         raise Refused("rate below 1")
     return _meant(is_rate, value, last, TIME_WORDS.get(unit, 1)), end
-
-
-def _is_rate(piece):
-    return any(
-        len(key) == len(piece) and all(wanted in (sign, "?") for wanted, sign in zip(key, piece, strict=True))
-        for key in RATE_KEYS
-    )
 
 
 def _meant(is_rate, value, last, per_second):
@@ -238,28 +182,22 @@ def _meant(is_rate, value, last, per_second):
 
 
 def _known(word):
-    return word in TIME_WORDS or word in RATES_LONGEST
+    return word in TIME_WORDS or word in RATES
 
 
 def _alone(text, i):
     """A number of samples a second that begins at i."""
-    before, signs = text[i - 1 : i] if i else "", text[max(i - 2, 0) : max(i - 1, 0)]
-    if text[i] not in DIGITS + ".+-":
-        return None
-    inside = before in (*DIGITS, "+", "-") or (before in (".", ",", "e", "d") and signs in tuple(DIGITS))
-    if text[i] not in "+-" and inside:
+    within = re.search("[0-9+-]$|[0-9][.,ed]$", text[:i]) if text[i] not in "+-" else None
+    if within or not re.match("[0-9.+-]", text[i]):
         return None
     found = _number(text, i)
-    end = found[2] if found else i
-    if not found:
-        while text[end : end + 1] and text[end] in DIGITS + ".,ed+-":
-            end += 1
+    end = found[2] if found else SAMPLES.match(text, i).end()
     begin, end = end, end + (text[end : end + 1] == " ")
     word = _word(text, end)
-    if word not in PER_SECOND or text[begin - 1] not in DIGITS + ".":
+    if word not in PER_SECOND or not re.match("[0-9.]", text[begin - 1]):
         return None
     if not found:
-        if not any(sign in DIGITS for sign in text[i:begin]):
+        if not re.search("[0-9]", text[i:begin]):
             return None
         raise Refused("no number of samples a second")
     _sure(text, i, begin)

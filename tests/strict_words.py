@@ -1,6 +1,8 @@
 """Numbers and units for the second reader of records (`strict_records`), which says what it is for."""
 
+import re
 import unicodedata
+from collections import Counter
 from fractions import Fraction
 
 G = Fraction("9.81")
@@ -11,23 +13,12 @@ LENGTHS = {
     "in": Fraction("0.0254"),
     "ft": Fraction("0.3048"),
 }
-TIME_WORDS = {
-    "s": 1,
-    "sec": 1,
-    "secs": 1,
-    "second": 1,
-    "seconds": 1,
-    "ms": 1000,
-    "msec": 1000,
-    "msecs": 1000,
-    "millisec": 1000,
-    "millisecs": 1000,
-    "millisecond": 1000,
-    "milliseconds": 1000,
-}
-TIME_WORDS |= dict.fromkeys("seg segundo segundos sek sekunde sekunden seconde secondes sn saniye".split(), 1)
-TIME_WORDS |= dict.fromkeys(
-    "milisegundo milisegundos millisekunde millisekunden milliseconde millisecondes milisaniye".split(), 1000
+TIME_WORDS = dict.fromkeys(
+    "s sec secs second seconds seg segundo segundos sek sekunde sekunden seconde secondes sn saniye".split(), 1
+) | dict.fromkeys(
+    "ms msec msecs millisec millisecs millisecond milliseconds milisegundo milisegundos millisekunde millisekunden"
+    " milliseconde millisecondes milisaniye".split(),
+    1000,
 )
 GIVEN = {
     "g": G,
@@ -37,23 +28,14 @@ GIVEN = {
     "mm/s2": Fraction(1, 1000),
     "%g": G / 100,
 }
-DIGITS, LETTERS = "0123456789", "abcdefghijklmnopqrstuvwxyz"
-QUANTITIES = {
-    "acc": "acceleration",
-    "accel": "acceleration",
-    "acceleration": "acceleration",
-    "accelerations": "acceleration",
-    "accelerogram": "acceleration",
-    "velocity": "other",
-    "vel": "other",
-    "displacement": "other",
-    "disp": "other",
-}
-ACCELERATIONS = "pga aceleracion aceleraciones beschleunigung beschleunigungen ivme".split()
-QUANTITIES |= dict.fromkeys(ACCELERATIONS, "acceleration")
-QUANTITIES |= dict.fromkeys(
-    "velocidad velocidades desplazamiento desplazamientos geschwindigkeit geschwindigkeiten verschiebung"
-    " verschiebungen vitesse vitesses deplacement deplacements".split(),
+DIGITS = "0123456789"
+QUANTITIES = dict.fromkeys(
+    "acc accel acceleration accelerations accelerogram pga aceleracion aceleraciones beschleunigung beschleunigungen"
+    " ivme".split(),
+    "acceleration",
+) | dict.fromkeys(
+    "velocity vel displacement disp velocidad velocidades desplazamiento desplazamientos geschwindigkeit"
+    " geschwindigkeiten verschiebung verschiebungen vitesse vitesses deplacement deplacements".split(),
     "other",
 )
 UNIT_WORDS = ("unit", "units", "unites", "unidad", "unidades", "einheit", "einheiten", "birim", "birimi")
@@ -65,43 +47,18 @@ class Refused(Exception):
 
 # Numbers
 
+NUMBER = re.compile(r"[+-]?(?=\.?[0-9])[0-9]*(\.[0-9]*)?(?:[EeDd][+-]?([0-9]{1,3}))?")
+
 
 def scan(text, i):
     """(value, digits after the point or None, digits of the exponent, next i) of the number at i; None without one."""
-    begin, sign = i, 1
-    if i < len(text) and text[i] in "+-":
-        sign = -1 if text[i] == "-" else 1
-        i += 1
-    whole = decimals = 0
-    mantissa, point = 0, False
-    while i < len(text) and (text[i] in DIGITS or (text[i] == "." and not point)):
-        if text[i] == ".":
-            point = True
-        else:
-            mantissa = 10 * mantissa + DIGITS.index(text[i])
-            whole, decimals = (whole, decimals + 1) if point else (whole + 1, decimals)
-        i += 1
-    if whole + decimals == 0:
+    found = NUMBER.match(text, i)
+    if not found or len(found[0]) > 100:
         return None
-    exponent = places = 0
-    if i < len(text) and text[i] in "EeDd":
-        j, minus = i + 1, False
-        if j < len(text) and text[j] in "+-":
-            minus = text[j] == "-"
-            j += 1
-        while j < len(text) and text[j] in DIGITS and places < 3:
-            exponent = 10 * exponent + DIGITS.index(text[j])
-            places += 1
-            j += 1
-        if places:
-            i = j
-            exponent = -exponent if minus else exponent
-    if i - begin > 100:
-        return None
-    value = sign * mantissa * Fraction(10) ** (exponent - decimals)
+    value = Fraction(found[0].lower().replace("d", "e"))
     if abs(value) >= 2 * Fraction(10) ** 308:
         return None
-    return value, decimals if point else None, places, i
+    return value, found[1] and len(found[1]) - 1, len(found[2] or ""), found.end()
 
 
 def single(token):
@@ -124,36 +81,30 @@ def form_of(token):
 def fortran(lines):
     """The values of all lines, of one form: parted by blanks, or stuck together by their signs."""
     values, parts = [], []
-    for line in lines:
-        for token in line.split():
-            i = 0
-            while i < len(token):
-                if i and token[i] not in "+-":
-                    raise Refused(f"stuck {token[:40]}")
-                found = scan(token, i)
-                if found is None or (i and found[1] is None):
-                    raise Refused(f"number {token[:40]}")
-                values.append(found[0])
-                parts.append(token[i : found[3]])
-                i = found[3]
+    for token in " ".join(lines).split():
+        i = 0
+        while i < len(token):
+            found = scan(token, i)
+            if found is None or (i and (token[i] not in "+-" or found[1] is None)):
+                raise Refused(f"number {token[:40]}")
+            values.append(found[0])
+            parts.append(token[i : found[3]])
+            i = found[3]
     forms = [form_of(part) for part in parts]
-    counts = {}
-    for form in forms:
-        counts[form] = counts.get(form, 0) + 1
-    usual = next((form for form in counts if counts[form] == max(counts.values())), None)
+    counts = Counter(forms)
+    usual = max(counts, key=counts.get, default=None)
     for part, form in zip(parts, forms, strict=True):
-        exponent = part.lower().replace("d", "e").partition("e")[2]
-        small = exponent[:1] == "-" and exponent[1:2] != "0"
+        small = re.search("[ed]-[1-9]", part.lower())
         if form != usual and not (form and usual and usual[1] == 2 and form == (usual[0], 3, usual[2]) and small):
             raise Refused(f"form of {part}")
     lengths = [len(line.rstrip()) for line in [line for line in lines if line.strip()][:-1] if len(line.split()) > 1]
-    if len(set(lengths)) == 2 and len(lengths) > 2 and 1 in [lengths.count(length) for length in lengths]:
+    if len(lengths) > 2 and len(set(lengths)) == 2 and 1 in Counter(lengths).values():
         raise Refused("length of a line")
     return values
 
 
 def whole(token):
-    if not token or len(token) > 9 or any(sign not in DIGITS for sign in token):
+    if not re.fullmatch("[0-9]{1,9}", token):
         raise Refused("count")
     return int(token)
 
@@ -163,9 +114,8 @@ def step_of(token, behind=""):
     found = scan(token, 0)
     if found is None:
         raise Refused("step")
-    glued = token[found[3] :].lower()
-    word = glued or behind.lower()
-    if any(sign not in LETTERS for sign in glued) or (word and word not in TIME_WORDS) or found[0] <= 0:
+    word = token[found[3] :].lower() or behind.lower()
+    if (word and word not in TIME_WORDS) or found[0] <= 0:
         raise Refused("step")
     return found[0] / TIME_WORDS.get(word, 1)
 
@@ -173,37 +123,10 @@ def step_of(token, behind=""):
 # Units
 
 
-def _known_units():
-    """Every spelling of an acceleration this parser knows, in lower case, with its factor to m/s2."""
-    known = {
-        "g": G,
-        "g's": G,
-        "gravity": G,
-        "mg": G / 1000,
-        "%g": G / 100,
-        "gal": Fraction(1, 100),
-        "gals": Fraction(1, 100),
-        "mgal": Fraction(1, 100_000),
-    }
-    for length, factor in LENGTHS.items():
-        known |= {f"{length}/{power}": factor for power in ("ss", "s*s", "s.s")}
-        for time in ("s", "sec"):
-            for power in (
-                f"/{time}2",
-                f"/{time}^2",
-                f"/{time}**2",
-                f"/{time}²",
-                f"/{time}/s",
-                f"/{time}/sec",
-                f"/{time}^",
-                f"/{time}*",
-            ):
-                if power[-1] not in "^*":
-                    known[length + power] = factor
-    return known
-
-
-KNOWN = _known_units()
+SQUARED = [f"/{time}{power}" for time in ("s", "sec") for power in ("2", "^2", "**2", "²", "/s", "/sec")]
+# Every spelling of an acceleration that is known, in lower case, with its factor to m/s2.
+KNOWN = GIVEN | {"g's": G, "gravity": G, "mg": G / 1000, "gals": Fraction(1, 100), "mgal": Fraction(1, 100_000)}
+KNOWN |= {length + power: LENGTHS[length] for length in LENGTHS for power in ("/ss", "/s*s", "/s.s", *SQUARED)}
 RATES = {f"{length}{rate}" for length in LENGTHS for rate in ("/s", "/sec")}
 
 
@@ -214,32 +137,17 @@ def words_of(line):
 
 def glued_words(line):
     """[(word, sign behind it)] of the words of `words_of`."""
-    words, word = [], ""
-    for sign in line.lower() + " ":
-        if sign.isspace() or sign in "()[]:=,;":
-            words += [(word, sign)] if word else []
-            word = ""
-            if words and words[-1][1] is None:
-                words[-1] = (words[-1][0], sign)
-            words += [] if sign.isspace() else [(sign, None)]
-        else:
-            if not word and words and words[-1][1] is None:
-                words[-1] = (words[-1][0], sign)
-            word += sign
-    return words
+    text = line.lower() + " "
+    return [(word[0], text[word.end()]) for word in re.finditer(r"[()\[\]:=,;]|[^\s()\[\]:=,;]+", text)]
 
 
 def stem_of(word):
     """The word without the signs before it."""
-    while word and not (word[0] in LETTERS or word[0] in DIGITS or word[0] == "_"):
-        word = word[1:]
-    return word
+    return re.sub("^[^a-z0-9_]+", "", word)
 
 
 def ends_of(word):
-    while word and word[-1] in ".'\"":
-        word = word[:-1]
-    return word
+    return word.rstrip(".'\"")
 
 
 def letter(sign):
@@ -269,15 +177,7 @@ def _bracketed(words, i):
 
 def _low_lines(flat):
     """Factors of units behind low lines in a line of titles: NS_gal."""
-    factors = set()
-    for at, sign in enumerate(flat):
-        end = at + 1
-        while flat[end : end + 1] and flat[end] in LETTERS:
-            end += 1
-        unit = flat[at + 1 : end] if sign == "_" and flat[at - 1 : at].isalnum() else ""
-        if unit in ("gal", "g", "mg", "mgal") and not flat[end : end + 1].isalnum():
-            factors.add(KNOWN[unit])
-    return factors
+    return {KNOWN[unit] for unit in re.findall(r"(?<=[^\W_])_(mgal|gal|mg|g)(?![^\W_])", flat)}
 
 
 def unit_of(lines, titles):
@@ -290,8 +190,7 @@ def unit_of(lines, titles):
         flat = f"{flat.lower()} ".replace(" per ", "/")
         pairs = glued_words(flat)
         words = [word for word, _ in pairs]
-        parts = "".join(sign if sign in LETTERS else " " for sign in plain(line[:400])).split()
-        named = {QUANTITIES[part] for part in parts if part in QUANTITIES}
+        named = {QUANTITIES[part] for part in re.findall("[a-z]+", plain(line[:400])) if part in QUANTITIES}
         quantities |= named
         for i, word in enumerate(words):
             before = words[max(i - 7, 0) : i]
@@ -309,13 +208,11 @@ def unit_of(lines, titles):
             if word == "in" and words[i + 1 : i + 2] and words[i + 1] not in "()[]:=,;":
                 continue  # no inches
             if before and introduces(before[-1]) and word not in "()[]:=,;" and word not in ("of", "in", "is", "are"):
-                if words[i : i + 3] == ["de", "los", "datos"]:
-                    continue
-                if bare in TIME_WORDS:
-                    continue
-                if not bare or bare[0] not in LETTERS + "%":
-                    if words[i - 1] == "of":
-                        raise Refused(f"unit {word}")
+                if (
+                    words[i : i + 3] == ["de", "los", "datos"]
+                    or bare in TIME_WORDS
+                    or not (re.match("[a-z%]", bare) or words[i - 1] == "of")
+                ):
                     continue
                 factor = _bracketed(pairs, i) if glued else KNOWN.get(bare)
                 if factor is None:

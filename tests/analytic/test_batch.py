@@ -4,10 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from bearing_laws import bearings_of
 
 from analytic import (
-    Base,
-    Bearings,
     Block,
     PulseMotion,
     SampledMotion,
@@ -18,11 +17,11 @@ from analytic import (
     simulate,
     simulate_many,
 )
+from analytic.caryatid import BASE, caryatid_block
 
 G = 9.81
 BLOCK = Block(mass=1.0, radius=3 * G / (4 * 2.14**2), slenderness=0.25, restitution=0.9)
-LRB = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
-CARYATID = Block(mass=3172.05, radius=1.0884, slenderness=0.18)
+CARYATID = caryatid_block(0.18)
 
 
 def rough(seed, peak):
@@ -47,9 +46,8 @@ def mixed_scenes():
         ][k % 6]
         start = Start(tilt=0.02 * (k % 5)) if motion is None else Start()
         scenes.append(Scene(block=CARYATID, motion=motion, start=start, duration=12.0))
-        scenes.append(
-            Scene(block=CARYATID, base=Base(mass=212.0), bearings=LRB, motion=motion, start=start, duration=12.0)
-        )
+        bearings = bearings_of(("algebraic", "bilinear")[k % 4 // 2], count=4)
+        scenes.append(scenes[-1].with_(base=BASE, bearings=bearings))
     return scenes
 
 

@@ -62,26 +62,6 @@ def test_loop_area(amplitude, area):
         assert limit == pytest.approx(loop, rel=1e-9)
 
 
-def literal(x, s, x_j, law, bracket_sign):
-    """Eqs (9), (11) with the paper's x_j, less k_b x; bracket_sign is that of x in the bracket."""
-    bracket = 1 + bracket_sign * (x - x_j) + 2 * law.x0
-    return s * (law.dk * (bracket ** (1 - law.alpha) - law.d0) / (1 - law.alpha) + law.f0)
-
-
-def test_stable_form_is_the_literal_law_and_its_misprint_is_not():
-    # loading from the virgin state to 0.2 m, then unloading; (12) is misprinted, eq. (9) is not
-    x_c = 0.2
-    z_c = PAPER.start(x_c)
-    low, high = x_c - 2 * PAPER.x0, x_c  # bracket 1 ... 1 + 2 x0
-    x_j = brentq(lambda value: literal(x_c, -1, value, PAPER, -1) - z_c, low, high, xtol=1e-15)
-    for x in (0.2, 0.19, 0.1, 0.0, -0.2):
-        z = PAPER.hysteretic(z_c, x - x_c)
-        assert z == pytest.approx(literal(x, -1, x_j, PAPER, -1), abs=1e-9 * PAPER.f0)
-    # with the sign of the loading branch in the bracket, the force jumps by 2 f0 at the reversal
-    misprinted = literal(x_c, -1, x_j, PAPER, +1)
-    assert z_c - misprinted == pytest.approx(2 * PAPER.f0, rel=1e-3)
-
-
 @pytest.mark.parametrize("case", EXTREME)
 def test_closed_form_solves_the_rate_form(case):
     law = bearing(*case)

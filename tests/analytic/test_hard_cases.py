@@ -1,21 +1,25 @@
 """The hard cases that have broken real integrators, by name: each must end right, or say why not."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 
-from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, simulate
+from analytic import Base, Block, PulseMotion, SampledMotion, Scene, Start, simulate
+from analytic.caryatid import BASE, caryatid_block
+from analytic.caryatid import BEARINGS as LRB
 from analytic.polynomial import BISECTIONS, MAX_ORDER, first_root
 from analytic.rocking import RockingModel
+from analytic.twin import simulate_twin
 
+SOLVERS = pytest.mark.parametrize("solve", [simulate, partial(simulate_twin, rtol=1e-12)], ids=["kernel", "twin"])
 G = 9.81
 GAMMA = 0.25
 THRESHOLD = G * math.tan(GAMMA)
 BLOCK = Block(mass=1000.0, radius=1.0, slenderness=GAMMA)
-LRB = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
-CARYATID = Block(mass=3172.05, radius=1.0884, slenderness=0.28)
-ISOLATED = Scene(block=CARYATID, base=Base(mass=212.0), bearings=LRB, duration=10.0)
+CARYATID = caryatid_block(0.28)
+ISOLATED = Scene(block=CARYATID, base=BASE, bearings=LRB, duration=10.0)
 
 
 def sampled(values, dt=0.01):
@@ -58,12 +62,13 @@ def test_trivial_root_just_after_an_impact_is_not_an_impact():
     assert first_root(onset, 8, 1.0, work) == pytest.approx(0.25, rel=1e-14)
 
 
-def test_rest_inside_a_motion_lifts_again():
+@SOLVERS
+def test_rest_inside_a_motion_lifts_again(solve):
     quiet = np.zeros(1500)
     t = np.arange(200) * 0.01
     burst = 1.3 * THRESHOLD * np.sin(2 * np.pi * 2 * t)
     response = sound(
-        simulate(Scene(block=BLOCK, motion=sampled(np.concatenate([burst, quiet, burst, quiet])), duration=40.0))
+        solve(Scene(block=BLOCK, motion=sampled(np.concatenate([burst, quiet, burst, quiet])), duration=40.0))
     )
     assert len(response.uplifts) >= 2
     assert len(response.rests) >= 2
@@ -113,10 +118,11 @@ def test_double_touch_without_crossing_is_no_event():
     assert first_root(f, 2, 1.0, work) == -1.0
 
 
-def test_uplift_just_below_and_above_the_threshold():
+@SOLVERS
+def test_uplift_just_below_and_above_the_threshold(solve):
     below = Scene(block=BLOCK, motion=PulseMotion("one-sine", 0.99 * THRESHOLD, 3.0), duration=5.0)
-    assert sound(simulate(below)).outcome == "stands"
-    above = sound(simulate(below.with_(motion=PulseMotion("one-sine", 1.01 * THRESHOLD, 3.0))))
+    assert sound(solve(below)).outcome == "stands"
+    above = sound(solve(below.with_(motion=PulseMotion("one-sine", 1.01 * THRESHOLD, 3.0))))
     assert above.outcome == "rocks"
     assert above.uplifts[0] == pytest.approx(math.asin(1 / 1.01) / 3.0, abs=1e-12)
 
@@ -129,7 +135,8 @@ def test_grazing_the_threshold_exactly():
     assert sound(simulate(Scene(block=BLOCK, motion=sampled(plateau), duration=5.0))).outcome == "stands"
 
 
-def test_flat_drop_lands_and_stays():
+@SOLVERS
+def test_flat_drop_lands_and_stays(solve):
     # stocky block on a light base: e_phi <= 0, the block lands flat and its momentum goes to the base
     scene = Scene(
         block=Block(mass=1000.0, radius=1.0, slenderness=1.0),
@@ -138,11 +145,13 @@ def test_flat_drop_lands_and_stays():
         start=Start(tilt=0.1),
         duration=5.0,
     )
-    response = sound(simulate(scene))
+    response = sound(solve(scene))
     assert RockingModel.of(scene).restitution == 0.0
     assert response.impact_count == 1
     assert response.impacts[0].rate_after == 0.0
-    assert response.impacts[0].base_velocity_jump != 0.0
+    assert response.rests == (response.impacts[0].time,)
+    momentum = scene.mass_share * scene.block.half_height * response.impacts[0].rate_before
+    assert response.impacts[0].base_velocity_jump == pytest.approx(momentum, rel=1e-14)
 
 
 @pytest.mark.parametrize("share", [1e-9, -1e-9])
@@ -150,13 +159,6 @@ def test_near_critical_start_from_both_sides(share):
     scene = Scene(block=BLOCK, start=Start(tilt=GAMMA * (1 + share)), duration=60.0)
     response = sound(simulate(scene))
     assert response.outcome == ("overturns" if share > 0 else "rocks")
-
-
-@pytest.mark.parametrize("ratio", [1e-6, 1e-4, 1e3, 1e9])
-def test_light_and_heavy_base(ratio):
-    scene = ISOLATED.with_(base=Base(mass=CARYATID.mass * ratio), start=Start(tilt=0.1))
-    sound(simulate(scene))
-    sound(simulate(scene.with_(bearings=None, start=Start(tilt=0.1))))
 
 
 def test_bearing_driven_beyond_the_literal_formula():
@@ -172,12 +174,6 @@ def test_tiny_reversals(amplitude):
     response = sound(simulate(scene))
     assert response.outcome == "stands"
     assert 0 < response.peak_base_displacement < amplitude
-
-
-@pytest.mark.parametrize(("change"), [{"alpha": 1.5}, {"alpha": 1.05}, {"alpha": 200.0}, {"ka": 6.22e3 * 1.0001}])
-def test_extreme_bearings(change):
-    scene = ISOLATED.with_(bearings=change, motion=PulseMotion("one-sine", 3.0, 6.0), start=Start(tilt=0.1))
-    sound(simulate(scene))
 
 
 @pytest.mark.parametrize("e", [0.0, 1.0, 0.999999])
@@ -208,13 +204,6 @@ def test_sampling_from_fine_to_coarse(dt):
     assert one.peak_base_displacement == pytest.approx(other.peak_base_displacement, rel=1e-4)
 
 
-def test_record_with_gaps_of_zeros():
-    t = np.arange(1000) * 0.01
-    a = 2.5 * np.sin(2 * np.pi * t) * (np.sin(2 * np.pi * 0.2 * t) > 0.3)
-    sound(simulate(ISOLATED.with_(motion=sampled(a), block={"slenderness": 0.15})))
-    sound(simulate(Scene(block=BLOCK, motion=sampled(a), duration=15.0)))
-
-
 def test_ten_minutes_at_rest_under_weak_shaking():
     t = np.arange(60000) * 0.01
     motion = sampled(0.3 * np.sin(2 * np.pi * 1.3 * t))
@@ -224,10 +213,29 @@ def test_ten_minutes_at_rest_under_weak_shaking():
     assert sound(simulate(ISOLATED.with_(motion=motion, duration=600.0))).outcome == "stands"
 
 
-def test_hundred_seconds_of_pulses_in_a_row():
-    t = np.arange(10000) * 0.01
-    motion = sampled(1.5 * THRESHOLD * np.sin(2 * np.pi * t) * (t % 5 < 2))
-    sound(simulate(Scene(block=Block(mass=1.0, radius=5.0, slenderness=GAMMA), motion=motion, duration=120.0)))
+TIMES = np.arange(10000) * 0.01
+GAPS = sampled((2.5 * np.sin(2 * np.pi * TIMES) * (np.sin(2 * np.pi * 0.2 * TIMES) > 0.3))[:1000])
+PULSES = sampled(1.5 * THRESHOLD * np.sin(2 * np.pi * TIMES) * (TIMES % 5 < 2))
+RELEASED = ISOLATED.with_(start=Start(tilt=0.1))
+SOUND = {
+    f"base of {ratio:g} blocks, {name}": RELEASED.with_(base=Base(mass=CARYATID.mass * ratio), bearings=bearings)
+    for ratio in (1e-6, 1e-4, 1e3, 1e9)
+    for name, bearings in (("on bearings", LRB), ("sliding", None))
+}
+SOUND |= {
+    f"bearings of {change}": RELEASED.with_(bearings=change, motion=PulseMotion("one-sine", 3.0, 6.0))
+    for change in ({"alpha": 1.5}, {"alpha": 1.05}, {"alpha": 200.0}, {"ka": 6.22e3 * 1.0001})
+}
+SOUND |= {
+    "gaps of zeros, on bearings": ISOLATED.with_(motion=GAPS, block={"slenderness": 0.15}),
+    "gaps of zeros, rigid ground": Scene(block=BLOCK, motion=GAPS, duration=15.0),
+    "pulses in a row": Scene(block=Block(mass=1.0, radius=5.0, slenderness=GAMMA), motion=PULSES, duration=120.0),
+}
+
+
+@pytest.mark.parametrize("scene", SOUND.values(), ids=SOUND)
+def test_scenes_far_from_the_usual_ones_are_sound(scene):
+    sound(simulate(scene))
 
 
 def test_motion_longer_than_the_run_and_shorter():

@@ -9,18 +9,7 @@ from bearing_laws import F0, NAMES, USUAL, bearings_of, to_law
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analytic import (
-    Base,
-    Bearings,
-    Block,
-    PulseMotion,
-    Scene,
-    Start,
-    load_scene,
-    simulate,
-    simulate_many,
-    synthetic_motion,
-)
+from analytic import Base, Bearings, Block, PulseMotion, Scene, Start, load_scene, simulate, synthetic_motion
 from analytic.bearing import BearingLaw
 from analytic.design import properties, steady_cycle
 from analytic.twin import simulate_twin
@@ -200,23 +189,6 @@ def test_equal_stiffnesses_are_a_linear_bearing():
     assert np.diff(np.log10(gaps)) == pytest.approx([-1, -1], abs=0.05)
 
 
-def test_mirror():
-    mirrored = ROCKING.with_(motion=ROCKING.motion.scaled(-1.0))
-    for solve in (simulate, simulate_twin):
-        one, other = solve(ROCKING), solve(mirrored)
-        np.testing.assert_array_equal(one.history.base_displacement, -other.history.base_displacement)
-        np.testing.assert_array_equal(one.history.tilt, -other.history.tilt)
-
-
-def test_kernel_and_second_implementation_agree():
-    kernel, twin = simulate(ROCKING, tolerance=1e-15), simulate_twin(ROCKING, rtol=1e-12)
-    assert kernel.outcome == twin.outcome == "rocks" and kernel.impact_count == twin.impact_count > 3
-    assert [impact.time for impact in kernel.impacts] == pytest.approx([one.time for one in twin.impacts], abs=1e-9)
-    assert kernel.peak_base_displacement == pytest.approx(twin.peak_base_displacement, abs=1e-9)
-    assert kernel.peak_tilt == pytest.approx(twin.peak_tilt, abs=1e-9)
-    assert kernel.end.bearing_force == pytest.approx(twin.end.bearing_force, abs=1e-9 * KA * 4)
-
-
 def test_error_of_the_second_implementation_falls_with_its_tolerance():
     scene = contact(start=Start(base_velocity=0.9), duration=2.0)
     exact = exact_free_vibration(scene)[0]
@@ -234,11 +206,3 @@ def test_corners_keep_the_order_of_the_series(steps):
     exact = exact_free_vibration(scene)[0]
     error = abs(simulate(scene, tolerance=10.0 ** -(steps / 2)).end.base_displacement - exact)
     assert error < max(1e2 * 10.0 ** -(steps / 2), 1e-14)
-
-
-def test_batch_equals_one_run():
-    outcomes = simulate_many([ROCKING, ROCKING.with_(block={"slenderness": 0.1})])
-    for k, slenderness in enumerate((0.2, 0.1)):
-        one = simulate(ROCKING.with_(block={"slenderness": slenderness}))
-        assert outcomes.overturns[k] == (one.outcome == "overturns")
-        assert outcomes.peak_base_displacement[k] == pytest.approx(one.peak_base_displacement, rel=1e-9)

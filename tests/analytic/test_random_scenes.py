@@ -4,9 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from bearing_laws import to_law
 from random_scenes import random_scene
 
-from analytic import Base, Block, Impact, PulseMotion, Scene, overturning_map, simulate
+from analytic import Base, Block, Impact, PulseMotion, Scene, Start, overturning_map, simulate
+from analytic.bearing import BearingLaw
 
 IMBALANCE_LIMIT = 1e-6  # of the largest energy in the run
 LOSS_ROUND_OFF = 1e-12  # an impact may seem to add this share of the energy it meets
@@ -93,7 +95,29 @@ def test_random_scenes_are_sound_and_repeatable():
     }
     assert len(kinds) >= 12
     for index in range(300):
-        assert faults(random_scene(0, index)) == {}, index
+        for scene in with_bilinear_bearings(random_scene(0, index)):
+            assert faults(scene) == {}, index
+
+
+def with_bilinear_bearings(scene):
+    """The scene, and where its bearings yield, the same with bilinear ones."""
+    yield scene
+    bearings = scene.bearings
+    if bearings and bearings.law != "linear":
+        changes = to_law("bilinear", bearings.ka, bearings.kb, BearingLaw.of(bearings).f0)
+        yield scene.with_(bearings=changes | {"delta_k": 1e-20})
+
+
+@pytest.mark.parametrize("index", range(150))
+def test_mirrored_scenes_are_mirrored_bit_for_bit(index):
+    for scene in with_bilinear_bearings(random_scene(2, index)):
+        start = Start(**{name: -value for name, value in scene.start.model_dump().items()})
+        motion = scene.motion.scaled(-1.0) if scene.motion else None
+        one, other = simulate(scene), simulate(scene.with_(start=start, motion=motion))
+        assert one.outcome != "failed", one.failure
+        for name in ("tilt", "tilt_rate", "base_displacement", "base_velocity", "bearing_force"):
+            assert np.array_equal(getattr(one.history, name), -getattr(other.history, name)), name
+        assert [impact.time for impact in one.impacts] == [impact.time for impact in other.impacts]
 
 
 @pytest.mark.slow

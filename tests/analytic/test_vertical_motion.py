@@ -2,13 +2,15 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from record_files import FORMATS, needs_records
 
-from analytic import Base, Bearings, Block, Caution, PulseMotion, SampledMotion, Scene, Start, simulate
+from analytic import Bearings, Caution, PulseMotion, SampledMotion, Scene, Start, simulate
 from analytic.batch import overturning_map, simulate_many
+from analytic.caryatid import BASE, caryatid_block
+from analytic.caryatid import BEARINGS as LRB
 from analytic.decision import RIGID_BEARINGS
 from analytic.pairing import paired
 from analytic.records import read_record
@@ -17,11 +19,10 @@ from analytic.time_stepping import simulate_time_stepping
 from analytic.twin import simulate_twin
 
 G = 9.81
-BLOCK = Block(mass=3172.05, radius=1.0884, slenderness=0.28)
-LRB = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
+BLOCK = caryatid_block(0.28)
 BILINEAR = Bearings(law="bilinear", count=4, ka=6.22e4, kb=6.22e3, yield_force=700.0)
 FREE = Scene(block=BLOCK, duration=4.0)
-SLIDING = FREE.with_(base=Base(mass=212.0))
+SLIDING = FREE.with_(base=BASE)
 ISOLATED = SLIDING.with_(bearings=LRB, block={"slenderness": 0.15})
 
 
@@ -192,12 +193,7 @@ def test_batches_give_what_single_runs_do():
         assert found.peak_tilt[i] == pytest.approx(run.peak_tilt, rel=1e-9)
 
 
-FORMATS = Path(__file__).parents[2].parent / "shared" / "records" / "formats"
-
-
-@pytest.mark.skipif(
-    not FORMATS.exists(), reason="no recorded triple here: the terms of records do not allow passing on"
-)
+@needs_records
 @pytest.mark.parametrize("scene", [FREE, ISOLATED], ids=["rigid", "on bearings"])
 def test_a_recorded_triple(scene):
     level, up = (read_record(FORMATS / "ferndale.v2", channel=channel, scale=2.0) for channel in (1, "up"))

@@ -9,8 +9,7 @@ from bearing_laws import NAMES, to_law
 from engine_cases import needs
 from sampled_traces import SCENES, sampled, seen
 
-from analytic import PulseMotion, simulate
-from analytic.bearing import BearingLaw
+from analytic import PulseMotion
 from engines import get_engine, stepping
 from engines.momentum import IMPULSE_LIMIT, bearing_impulse, check_impulse, impulse_error, missing_impulse
 
@@ -154,15 +153,3 @@ def test_a_force_late_by_a_step_or_off_by_a_hundredth_is_measured(monkeypatch, e
     MUTATE[engine](monkeypatch, gain, delay, LARGEST_STEP)
     _, trace = traced(engine, DRIVEN)
     assert impulse_error(DRIVEN, trace) > 4e-4  # ten times what a clean run shows
-
-
-def test_the_impulse_of_the_paper_bearing_is_that_of_its_history():
-    reference = simulate(DRIVEN, output_step=1e-4)
-    trace, _ = sampled(DRIVEN, 2e-3)
-    history = reference.history
-    exact = np.concatenate(
-        ([0.0], np.cumsum(0.5 * (history.bearing_force[1:] + history.bearing_force[:-1]) * np.diff(history.time)))
-    )
-    impulse = np.interp(trace.time, history.time, exact)
-    assert BearingLaw.of(DRIVEN.bearings).count == 4
-    np.testing.assert_allclose(bearing_impulse(DRIVEN, trace), impulse, atol=2e-4 * np.ptp(impulse))

@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from engine_cases import every_variant, needs
-from released import scene
+from engine_cases import every_variant, needs, scene
 
 from analytic import Start, simulate
 from analytic.response import Failure

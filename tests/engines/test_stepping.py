@@ -1,27 +1,25 @@
 """The loop that steps leapfrog engines: its order, what it gives, how runs end; and what holds for all its engines."""
 
-import hashlib
 import math
-import subprocess
-import sys
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
-from engine_cases import needs
-from released import scene
+from engine_cases import impact_errors as released_errors
+from engine_cases import needs, scene
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Start
 from analytic import Scene as AnyScene
 from analytic import simulate as exact
 from analytic.bearing import BearingLaw
+from analytic.caryatid import BEARINGS
 from analytic.rocking import restitution
 from comparisons.measuring.errors import impact_errors, rms
 from engines import get_engine, stepping
 from engines.checks import energy_gain
 from engines.stepping import NoSolution, march, mean_loads, sampled_loads
 
-BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 LINEAR = Bearings(law="linear", count=1, ka=2e6)
 RULED = ["pybullet", "mujoco", "pymunk", "dart"]
 VARIANTS = [(name, "impact-aware") for name in RULED] + [(name, "fixed-step") for name in RULED[:2]]
@@ -141,6 +139,19 @@ def engine(request):
     return get_engine(request.param)
 
 
+@pytest.mark.parametrize(
+    "name, slenderness, starts, seconds, finer, least, most",
+    [("mujoco", 0.2, 4, 2.5, 8, 4, 16), ("pybullet", 0.45, 8, 3.0, 4, 2.5, 6.5)],
+)
+def test_fixed_steps_are_of_first_order(name, slenderness, starts, seconds, finer, least, most):
+    needs(name)
+    run = partial(get_engine(name).simulate, variant="fixed-step")
+    errors = [
+        released_errors(run, slenderness, None, starts, seconds, step=step)[0] for step in (1.6e-3, 1.6e-3 / finer)
+    ]
+    assert least < errors[0] / errors[1] < most  # `finer` but for the phase of the steps
+
+
 @pytest.mark.parametrize("base, fine, least", [(None, 2e-5, 4.0), (212.0, 5e-5, 1.0)])
 def test_the_error_of_restitution_goes_with_the_largest_step(engine, base, fine, least):
     """From the energies of swings, which count what flight loses; on a light base something else may be left."""
@@ -183,54 +194,12 @@ def test_no_energy_comes_from_nowhere(variant):
         assert energy_gain(given, get_engine(name).traced(given, variant=kind)[1]) < 2e-3
 
 
-def test_the_mirrored_start_moves_mirrored(variant):
-    name, kind = variant
-    ways = [
-        get_engine(name).traced(scene(0.25, 212.0, 1.5, start=Start(tilt=side * 0.15)), variant=kind)[1]
-        for side in (1, -1)
-    ]
-    there = np.interp(ways[0].time, ways[1].time, ways[1].tilt)
-    assert np.abs(ways[0].tilt + there).max() < 1e-6
-
-
-ANSWERED = """
-import hashlib, sys
-from analytic import rocking
-if sys.argv[3] == "wrong":
-    right, impact = rocking.restitution, rocking.RockingModel.impact
-    rocking.restitution = lambda *scene: 0.8 * right(*scene)
-    rocking.RockingModel.impact = lambda self, *rates: tuple(0.8 * value for value in impact(self, *rates))
-from analytic import Base, Bearings, Block, PulseMotion, Scene, Start
-from engines import get_engine
-block, engine = Block(mass=3172.05, radius=1.0884, slenderness=0.25), get_engine(sys.argv[1])
-scenes = (
-    Scene(block=block, start=Start(tilt=0.15), duration=1.2),
-    Scene(block=block, base=Base(mass=212.0), bearings=Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69),
-          motion=PulseMotion("one-sine", 6.0, 6.0), duration=1.5),
-)
-for scene in scenes:
-    trace = engine.run(scene, sys.argv[2], engine.variants[sys.argv[2]].settings).trace
-    print(hashlib.sha256(trace.tilt.tobytes() + trace.base_displacement.tobytes()).hexdigest(), len(trace.time))
-"""
-
-
-@pytest.mark.parametrize("name, kind", [*VARIANTS, ("dart", "first-script"), ("drake", "first-script")])
-def test_nothing_hangs_on_the_answer(name, kind):
-    """With the formula for the restitution replaced by .8 of itself no bit of an engine's motion changes."""
-    needs(name)
-    told = [
-        subprocess.run([sys.executable, "-c", ANSWERED, name, kind, form], capture_output=True, text=True, check=True)
-        for form in ("right", "wrong")
-    ]
-    lines = [[line for line in one.stdout.splitlines() if len(line) > hashlib.sha256().digest_size] for one in told]
-    assert len(lines[0]) == 2 and lines[0] == lines[1]
-
-
 def test_friction_of_the_scene_is_coulombs(engine):
     """A push of .3 g for .05 s on a block that slides at .2 g: (.1 g t^2/2)(1 + .1/.2), and it stays there."""
     given = scene(0.45, duration=0.5, friction=0.2, motion=PulseMotion("rectangular", -0.3 * 9.81, math.pi / 0.05))
     _, trace = engine.traced(given)
     assert abs(trace.centre[-1, 0]) == pytest.approx(0.5 * 0.1 * 9.81 * 0.05**2 * 1.5, rel=0.02)
+    assert engine.simulate(given.with_(friction=0.35)).outcome == "stands"
 
 
 def test_sliding_block_fails(engine):
@@ -253,7 +222,8 @@ def test_bases_on_bearings(engine, base, damping):
 
 
 @pytest.mark.parametrize("radius", [0.1, 10.0])
-def test_steps_go_with_the_size_of_the_block(engine, radius):
+def test_steps_go_with_the_size_of_the_block(variant, radius):
+    name, kind = variant
     mass = 2460.0 * radius**3
     given = AnyScene(
         block=Block(mass=mass, radius=radius, slenderness=0.25),
@@ -261,10 +231,12 @@ def test_steps_go_with_the_size_of_the_block(engine, radius):
         start=Start(tilt=0.15),
         duration=2.0 * math.sqrt(radius),
     )
-    response = engine.simulate(given, history=False)
+    response = get_engine(name).simulate(given, variant=kind, history=False)
     assert len(response.impacts) >= 2
     for impact in response.impacts[:2]:
-        assert impact.rate_after / impact.rate_before == pytest.approx(restitution(given), abs=2e-4)
+        assert impact.rate_after / impact.rate_before == pytest.approx(
+            restitution(given), abs=2e-4 if kind == "impact-aware" else 5e-3
+        )
 
 
 @pytest.mark.parametrize("shape", ["one-cosine", "rectangular"])
@@ -293,7 +265,10 @@ def test_a_block_comes_to_rest_under_a_motion_below_uplift_and_stays_there(engin
     assert np.abs(trace.tilt[late]).max() < 1e-5 * 0.28
 
 
-def test_a_load_that_is_not_finite_fails(engine, monkeypatch):
+@pytest.mark.parametrize("name, kind", [*VARIANTS, *((name, "first-script") for name in RULED)])
+def test_a_load_that_is_not_finite_fails_and_leaves_no_log(name, kind, monkeypatch, tmp_path):
+    needs(name)
+    monkeypatch.chdir(tmp_path)
     calls = []
 
     class Breaking(BearingLaw):
@@ -302,10 +277,11 @@ def test_a_load_that_is_not_finite_fails(engine, monkeypatch):
             return math.nan if len(calls) > 50 else super().hysteretic(z, dx)
 
     monkeypatch.setattr(stepping, "BearingLaw", Breaking)
-    response = engine.simulate(scene(0.2, 212.0, bearings=BEARINGS, motion=PulseMotion("one-sine", 3.0, 4.0)))
-    assert response.outcome == "failed"
+    given = scene(0.2, 212.0, bearings=BEARINGS, motion=PulseMotion("one-sine", 3.0, 4.0))
+    response = get_engine(name).simulate(given, variant=kind)
+    assert response.outcome == "failed" and response.settings
     assert "finite" in response.failure.reason and math.isfinite(response.failure.last_state.tilt)
-    assert "largest_step" in response.settings
+    assert list(tmp_path.iterdir()) == []  # no MUJOCO_LOG.TXT
 
 
 def test_run_that_does_not_advance_is_given_up(engine, monkeypatch):

@@ -10,8 +10,10 @@ PROGRAM = """
 import hashlib, json, sys
 import analytic.rocking
 
-right = analytic.rocking.restitution
-analytic.rocking.restitution = lambda scene: float(sys.argv[1]) * right(scene)  # before an adapter is imported
+factor, right, impact = float(sys.argv[1]), analytic.rocking.restitution, analytic.rocking.RockingModel.impact
+# before an adapter is imported
+analytic.rocking.restitution = lambda scene: factor * right(scene)
+analytic.rocking.RockingModel.impact = lambda self, *rates: tuple(factor * value for value in impact(self, *rates))
 
 from analytic import Base, Bearings, Block, PulseMotion, Scene, Start
 from engines import get_engine, installed_engines

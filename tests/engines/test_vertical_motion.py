@@ -11,7 +11,6 @@ from analytic.decision import RIGID_BEARINGS
 from engines import get_engine
 from engines.checks import energy_balance
 from engines.events import contact_measures
-from engines.ground_velocity import ground_velocity
 from engines.swings import Trace
 
 TUNED = ["exudyn", "pybullet", "mujoco", "pymunk", "dart"]
@@ -113,11 +112,3 @@ def test_measures_on_exact_states():
         balance, kinetic = energy_balance(scene, trace)
         assert np.abs(balance).max() < 1e-4 * kinetic.max()
         assert np.abs(energy_balance(without(scene), trace)[0]).max() > 5e-3 * kinetic.max()
-
-
-@pytest.mark.parametrize("shape", ["one-sine", "half-sine", "one-cosine"])
-def test_velocity_of_a_pulse_with_a_phase(shape):
-    pulse = PulseMotion(shape, 2.0, 5.0, 0.3, phase=0.8)
-    velocity, times = ground_velocity(pulse), np.linspace(0, 2, 200_001)
-    gained = np.concatenate([[0], np.cumsum(np.diff(times) * pulse.acceleration(0.5 * (times[1:] + times[:-1])))])
-    np.testing.assert_allclose([velocity(t) for t in times[::4000].tolist()], gained[::4000], rtol=0, atol=3e-5)

@@ -5,7 +5,7 @@ import pytest
 
 dartpy = pytest.importorskip("dartpy", reason="dartpy is not installed: see README.md")
 
-from released import impact_errors, scene  # noqa: E402
+from engine_cases import impact_errors, scene  # noqa: E402
 
 from analytic import Start  # noqa: E402
 from engines import get_engine  # noqa: E402

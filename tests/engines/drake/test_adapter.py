@@ -5,7 +5,7 @@ import pytest
 
 pytest.importorskip("pydrake", reason="pydrake is not installed: see README.md")
 
-from released import scene  # noqa: E402
+from engine_cases import scene  # noqa: E402
 
 from analytic import PulseMotion, Start  # noqa: E402
 from comparisons.measuring.errors import impact_errors as impact_quantities  # noqa: E402

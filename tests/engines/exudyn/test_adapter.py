@@ -9,8 +9,7 @@ import pytest
 pytest.importorskip("exudyn")
 
 from analytic import simulate as exact  # noqa: E402
-from analytic.errors import SceneError  # noqa: E402
-from analytic.motion import PulseMotion, SampledMotion  # noqa: E402
+from analytic.motion import SampledMotion  # noqa: E402
 from analytic.rocking import restitution  # noqa: E402
 from analytic.scene import Base, Bearings, Block, Scene, Start  # noqa: E402
 from engines import get_engine  # noqa: E402
@@ -32,33 +31,18 @@ def rocking(slenderness, base=None, part=0.6, duration=1.3, **block):
 
 
 def errors(scene, response):
-    """(restitution less eq. (7), base jump less momentum's [m/s]) of the impacts above a tenth of omega_r gamma."""
+    """Restitution less eq. (7) of the impacts above a tenth of omega_r gamma."""
     fast = 0.1 * scene.rocking_frequency * scene.block.slenderness
     impacts = [impact for impact in response.impacts if abs(impact.rate_before) > fast]
     assert impacts
-    lever = scene.mass_share * scene.block.half_height
-    return (
-        np.array([i.rate_after / i.rate_before for i in impacts]) - restitution(scene),
-        np.array([i.base_velocity_jump - lever * (i.rate_before - i.rate_after) for i in impacts]),
-    )
-
-
-@pytest.mark.parametrize("base", [None, 212.0])
-@pytest.mark.parametrize("slenderness", [0.1, 0.2, 0.3, 0.45])
-def test_compliant_corners_give_the_restitution_of_eq_7(slenderness, base):
-    scene = rocking(slenderness, base)
-    response = simulate(scene)
-    assert response.outcome == "rocks"
-    error, jump = errors(scene, response)
-    assert np.sqrt(np.mean(error**2)) < 1e-4
-    assert np.abs(jump).max() < 1e-3
+    return np.array([i.rate_after / i.rate_before for i in impacts]) - restitution(scene)
 
 
 def test_a_stocky_block_that_leaves_the_ground_after_an_impact_is_no_failure():
     scene = rocking(0.45, part=0.8, duration=1.5)
     response = simulate(scene)
     assert response.outcome == "rocks"
-    assert np.abs(errors(scene, response)[0]).max() < 2e-4
+    assert np.abs(errors(scene, response)).max() < 2e-4
 
 
 @pytest.mark.parametrize("part", [0.59, 0.73, 0.8])
@@ -72,7 +56,7 @@ def test_no_impact_of_a_stocky_fast_block_is_lost(part):
 
 def test_error_of_compliant_corners_goes_as_one_over_stiffness():
     scene = rocking(0.1, duration=0.8)
-    soft, stiff = (abs(errors(scene, simulate(scene, stiffness=k))[0][0]) for k in (1e9, 1e10))
+    soft, stiff = (abs(errors(scene, simulate(scene, stiffness=k))[0]) for k in (1e9, 1e10))
     assert 4 < soft / stiff < 25
 
 
@@ -80,47 +64,17 @@ def test_error_of_compliant_corners_goes_as_one_over_stiffness():
 def test_switched_joints_give_the_restitution_to_the_square_of_the_step(base):
     scene = rocking(0.2, base)
     coarse, fine = (
-        np.abs(errors(scene, simulate(scene, variant="switched-joints", step=step))[0]).max() for step in (4e-3, 1e-3)
+        np.abs(errors(scene, simulate(scene, variant="switched-joints", step=step))).max() for step in (4e-3, 1e-3)
     )
     assert fine < 1e-6
     assert coarse > 4 * fine
-
-
-def test_switched_joints_honour_a_given_restitution():
-    scene = rocking(0.2, restitution=0.7)
-    first = simulate(scene, variant="switched-joints").impacts[0]
-    assert first.rate_after / first.rate_before == pytest.approx(0.7, abs=1e-6)
-
-
-def test_contact_variants_refuse_a_given_restitution():
-    with pytest.raises(SceneError, match="switched-joints"):
-        simulate(rocking(0.2, restitution=0.7))
 
 
 @pytest.mark.parametrize("slenderness", [0.1, 0.2])
 def test_native_contact_is_one_to_ten_percent_off(slenderness):
     """A documented fault: a version of exudyn that mends it should be noticed."""
     scene = rocking(slenderness, duration=0.9)
-    error, _ = errors(scene, simulate(scene, variant="native-contact"))
-    assert 0.01 < abs(error[0]) < 0.10
-
-
-def test_bearing_force_is_the_one_that_moves_the_base():
-    """Momentum: the force in the trace integrates to the momentum of a block that stands on its base."""
-    scene = Scene(
-        block=Block(slenderness=0.45, **CARYATID),
-        base=Base(mass=212.0),
-        bearings=Bearings(**BEARINGS),
-        motion=PulseMotion("one-sine", 3.0, 5.0, 0.1),
-        duration=3.0,
-    )
-    settings = get_engine("exudyn").variants["compliant-corners"].settings
-    trace = corners.run(scene, settings).trace
-    t = trace.time
-    push = trace.bearing_force + scene.total_mass * scene.motion.acceleration(t)
-    impulse = -np.sum(0.5 * (push[1:] + push[:-1]) * np.diff(t))
-    gained = scene.total_mass * trace.base_velocity[-1]
-    assert impulse == pytest.approx(gained, abs=1e-4 * scene.total_mass * np.abs(trace.base_velocity).max())
+    assert 0.01 < abs(errors(scene, simulate(scene, variant="native-contact"))[0]) < 0.10
 
 
 @pytest.mark.parametrize("ratio", [1e-4, 1e-2, 1.0, 10.0])
@@ -129,7 +83,7 @@ def test_extreme_bases_do_not_fail_in_silence(ratio):
     response = simulate(scene)
     assert response.outcome == "rocks" or response.failure.reason
     if response.outcome == "rocks":
-        assert np.abs(errors(scene, response)[0]).max() < 2e-3
+        assert np.abs(errors(scene, response)).max() < 2e-3
 
 
 def test_newton_failure_surfaces_with_the_engines_message():

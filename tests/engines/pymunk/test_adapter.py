@@ -5,7 +5,7 @@ import pytest
 
 pytest.importorskip("pymunk", reason="pymunk is not installed: see README.md")
 
-from released import impact_errors, scene  # noqa: E402
+from engine_cases import impact_errors, scene  # noqa: E402
 
 from analytic import PulseMotion, Start  # noqa: E402
 from analytic import simulate as exact  # noqa: E402

@@ -1,21 +1,12 @@
 """CSMIP volume 2: files of three channels made up here, and the real ones where they are."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from mutated_files import VALUES, csmip
+from record_files import FORMATS, needs_records, write
 
 from analytic.errors import SceneError
 from analytic.records import read_record
-
-FORMATS = Path(__file__).parents[2].parent / "shared" / "records" / "formats"
-
-
-def write(folder, text):
-    path = folder / "made-up.v2"
-    path.write_text(text)
-    return path
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n"])
@@ -24,7 +15,7 @@ def test_a_channel_is_chosen_by_number_or_direction(tmp_path, channel, times, en
     motion = read_record(write(tmp_path, csmip(VALUES).replace("\n", end)), channel=channel)
     assert motion.dt == 0.005 and not motion.warnings
     np.testing.assert_allclose(motion.samples, np.array(VALUES) * times, rtol=1e-15)
-    assert motion.label == f"made-up.v2, channel {times} ({['90 Deg', 'Up', 'H1'][times - 1]})"
+    assert motion.label == f"record, channel {times} ({['90 Deg', 'Up', 'H1'][times - 1]})"
 
 
 def test_numbers_that_touch_are_cut_by_position(tmp_path):
@@ -81,7 +72,7 @@ def test_a_file_of_one_channel_has_none_to_choose(tmp_path):
         read_record(write(tmp_path, "0 1\n.01 2\n"), "g", channel=1)
 
 
-@pytest.mark.skipif(not FORMATS.is_dir(), reason="the recorded motions are not here (../shared/records)")
+@needs_records
 @pytest.mark.parametrize(
     "name, dt, counts, directions",
     [

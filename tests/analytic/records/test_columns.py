@@ -3,18 +3,13 @@
 import numpy as np
 import pytest
 from mutated_files import SMOOTH, VALUES
+from record_files import write
 
 from analytic.errors import SceneError
 from analytic.records import read_record
 
 TIMES = [0.005 * i for i in range(12)]
 TITLES = "Time (s){0}x (g){0}y (cm/s2){0}v (cm/s)\n"
-
-
-def write(folder, text):
-    path = folder / "record.csv"
-    path.write_text(text)
-    return path
 
 
 def table(by, decimal=".", digits=4):
@@ -28,7 +23,7 @@ def table(by, decimal=".", digits=4):
 def test_one_of_several_columns_in_the_unit_of_its_own_title(tmp_path, by, decimal, column, factor):
     motion = read_record(write(tmp_path, TITLES.format(by) + table(by, decimal)), column=column)
     np.testing.assert_allclose(motion.samples, np.array(VALUES) * factor, rtol=1e-14)
-    assert motion.dt == 0.005 and motion.label.startswith(f"record.csv, column {column}")
+    assert motion.dt == 0.005 and motion.label.startswith(f"record, column {column}")
 
 
 def test_columns_parted_by_blanks_without_titles(tmp_path):

@@ -8,6 +8,7 @@ import zipfile
 import numpy as np
 import pytest
 from mutated_files import VALUES, cosmos, csmip, damaged_bytes, records
+from record_files import write
 
 from analytic.errors import SceneError
 from analytic.records import content, read_record
@@ -24,12 +25,6 @@ def zipped(files, method=zipfile.ZIP_DEFLATED):
     return packed.getvalue()
 
 
-def write(folder, packed, name="record.zip"):
-    path = folder / name
-    path.write_bytes(packed)
-    return path
-
-
 @pytest.mark.parametrize("name, text, said", records(), ids=[name for name, *_ in records()])
 def test_packed_is_read_as_plain(tmp_path, name, text, said):
     if "velocities" in name or "refused" in name:
@@ -38,7 +33,7 @@ def test_packed_is_read_as_plain(tmp_path, name, text, said):
     for packed in (gzip.compress(text.encode()), zipped({"folder/": "", "folder/x.dat": text, "__MACOSX/x": "-"})):
         motion = read_record(write(tmp_path, packed), **said)
         np.testing.assert_array_equal(motion.samples, plain.samples)
-        assert motion.dt == plain.dt and motion.label.startswith("record.zip")
+        assert motion.dt == plain.dt and motion.label.startswith("record")
 
 
 def locked():

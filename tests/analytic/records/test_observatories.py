@@ -1,22 +1,14 @@
 """COSMOS, K-NET, KiK-net and USGS SMC: files made up here, and the real ones where they are."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from mutated_files import VALUES, cosmos, knet, smc
+from record_files import FORMATS, needs_records, write
 
 from analytic.errors import SceneError
 from analytic.records import read_channels, read_record
 
-FORMATS = Path(__file__).parents[2].parent / "shared" / "records" / "formats"
 COUNTS = [5, -3, 8, 1, -12, 4, 7, 0, 3, -9]  # of mean 0.4: 10 cm/s2 a million counts
-
-
-def write(folder, text):
-    path = folder / "record"
-    path.write_text(text)
-    return path
 
 
 def same(motion, values, dt=0.005):
@@ -170,7 +162,7 @@ def test_what_is_odd_is_said(tmp_path, text, old, new, words):
     assert any(words in warning for warning in found.warnings)
 
 
-@pytest.mark.skipif(not FORMATS.is_dir(), reason="the recorded motions are not here (../shared/records)")
+@needs_records
 @pytest.mark.parametrize(
     "name, dt, count, peak, within, at",
     [

@@ -1,14 +1,12 @@
 """Record readers: small records written here, and the real ones where they are."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from record_files import FORMATS, RECORDS, needs_records, write
 
 from analytic.errors import SceneError
 from analytic.records import G, read_record
 
-RECORDS = Path(__file__).parents[2].parent / "shared" / "records"
 VALUES = [0.001, -0.123, -0.456, 0.25, -1.5, 0.0, 0.75]
 
 AT2_TOP = "PEER STRONG MOTION DATABASE\nMADE UP, 01/01/00, NOWHERE, 000\nACCELERATION TIME HISTORY IN UNITS OF G\n"
@@ -27,12 +25,6 @@ def fortran(values, width=15):
     """Numbers as Fortran prints them: no leading zero, five a line."""
     printed = [f"{value:.7E}".replace("0.", ".") for value in values]
     return "\n".join("".join(text.rjust(width) for text in printed[i : i + 5]) for i in range(0, len(printed), 5))
-
-
-def write(folder, text, name="record.txt"):
-    path = folder / name
-    path.write_bytes(text.encode() if isinstance(text, str) else text)
-    return path
 
 
 @pytest.mark.parametrize("count", COUNTS.values(), ids=COUNTS)
@@ -154,7 +146,7 @@ def test_times_rounded_as_printed_are_uniform(tmp_path):
 def test_scale_and_label(tmp_path):
     motion = read_record(write(tmp_path, "0 1\n0.5 -2\n"), "m/s2", scale=-1.5)
     np.testing.assert_array_equal(motion.samples, [-1.5, 3.0])
-    assert motion.label == "record.txt x -1.5"
+    assert motion.label == "record x -1.5"
 
 
 AT2 = AT2_TOP + "NPTS= 4, DT= .02 SEC\n"
@@ -216,17 +208,12 @@ def test_bad_record(tmp_path, text, units, message):
     assert message in str(caught.value)
 
 
-def test_missing_file(tmp_path):
-    with pytest.raises(SceneError, match="cannot be read .No such file.*give the path of a record"):
-        read_record(tmp_path / "none.AT2")
-
-
 def test_binary_file(tmp_path):
     with pytest.raises(SceneError, match="not a known record format"):
         read_record(write(tmp_path, bytes(range(128, 256))))
 
 
-@pytest.mark.skipif(not RECORDS.is_dir(), reason="the recorded motions are not here (../shared/records)")
+@needs_records
 @pytest.mark.parametrize(
     "name, units, dt, count, peak, unit",
     [
@@ -252,15 +239,15 @@ def test_real_records(name, units, dt, count, peak, unit):
     assert motion.samples[-1] == pytest.approx(last * unit, rel=1e-12)
 
 
-@pytest.mark.skipif(not (RECORDS / "formats").is_dir(), reason="the recorded motions are not here (../shared/records)")
+@needs_records
 def test_real_near_fault_record():
-    motion = read_record(RECORDS / "formats" / "RSN1063_NORTHR_RRS228.AT2")
+    motion = read_record(FORMATS / "RSN1063_NORTHR_RRS228.AT2")
     assert (motion.dt, len(motion.samples), motion.warnings) == (0.01, 1991, ())
     assert motion.peak / G == pytest.approx(0.8741, abs=5e-5)
     assert motion.peak_time == pytest.approx(2.560, abs=1e-9)
 
 
-@pytest.mark.skipif(not (RECORDS / "formats").is_dir(), reason="the recorded motions are not here (../shared/records)")
+@needs_records
 def test_a_real_file_that_is_no_record():
     with pytest.raises(SceneError, match="not a known record format"):
-        read_record(RECORDS / "formats" / "README.md", "g")
+        read_record(FORMATS / "README.md", "g")

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from mutated_files import VALUES
+from record_files import write
 
 from analytic.errors import SceneError
 from analytic.records import read_channels, read_record
@@ -10,12 +11,6 @@ from analytic.records.statements import read_statements, stated_unit
 
 ONE_COLUMN = "".join(f"{value:.4f}\n" for value in VALUES)
 THREE = "".join(f"{value:9.3f} {-2 * value:9.3f} {value / 2:9.3f}\n" for value in VALUES)
-
-
-def write(folder, text, name="record"):
-    path = folder / name
-    path.write_bytes(text) if isinstance(text, bytes) else path.write_text(text, encoding="utf-8")
-    return path
 
 
 @pytest.mark.parametrize(
