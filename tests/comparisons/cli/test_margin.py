@@ -74,18 +74,6 @@ def test_a_limit_of_the_tilt_is_ones_own(rocking, scene_file):
     assert "start 0.03 rad, rad/s -6.67 %" in words and "slenderness 0.28 rad +7.14 %" in words
 
 
-def test_a_span_out_of_range_is_one_message(rocking):
-    status, _, err = rocking("margin", "free-rocking-rigid", "--span", "901")
-    assert status == 2 and err == "Error: --span 901: give per cent, from 0.1 to 900\n"
-
-
-@pytest.mark.parametrize("share", ["0", "-0.5", "1.01", "nan"])
-def test_a_tilt_out_of_range_is_one_message(rocking, share):
-    status, _, err = rocking("margin", "free-rocking-rigid", "--tilt", share)
-    assert status == 2
-    assert err == f"Error: --tilt {float(share):g}: give a share of the slenderness, above 0 and up to 1\n"
-
-
 @pytest.mark.parametrize("name", shipped_scenes())
 @pytest.mark.parametrize("span", [0.2, 9.0])
 def test_what_is_printed_fits_80_columns(capsys, monkeypatch, name, span):

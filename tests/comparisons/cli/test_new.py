@@ -63,25 +63,6 @@ def test_what_follows_as_json(rocking, tmp_path):
     assert values["mass"] == load_scene(file).block.mass
 
 
-@pytest.mark.parametrize(
-    "arguments, words",
-    [
-        (("--height", "1.9", "--mass", "3"), "--width is missing"),
-        (("--height", "1.9", "--width", "0.5"), "--mass [kg], --density [kg/m3] or --material"),
-        ((*BUST[:4], "--material", "cheese"), "choose one of marble"),
-        ((*BUST, "--period", "2.5", "--xmax", "0.2"), "--base-mass"),
-        ((*BUST, "--base-mass", "100", "--period", "2.5"), "--period and --xmax"),
-        ((*BUST, "--record", "absent.csv"), "absent.csv"),
-        ((*BUST, "--units", "g"), "--record"),
-    ],
-)
-def test_what_makes_no_scene_is_one_message_and_no_file(rocking, tmp_path, arguments, words):
-    file = tmp_path / "bust.toml"
-    status, _, err = rocking("new", file, *arguments)
-    assert status == 2 and words in err and len(err.splitlines()) == 1
-    assert not file.exists()
-
-
 IMPLAUSIBLE = {
     "centimetres": (
         ("--height", "190", "--width", "55", "--mass", "1500"),
@@ -138,19 +119,6 @@ def test_new_overwrites_nothing(rocking, tmp_path):
     file.write_text("mine")
     status, _, err = rocking("new", file, *BUST)
     assert status == 2 and "exists" in err and file.read_text() == "mine"
-
-
-@pytest.mark.parametrize("option, value", [("--ratio", 3), ("--damping", 0.2), ("--definition", "paper")])
-def test_what_belongs_to_a_design_is_refused_with_constants(rocking, tmp_path, option, value):
-    constants = ("--base-mass", 400, "--ka", 3e4, "--kb", 3e3, "--alpha", 50)
-    status, _, err = rocking("new", tmp_path / "bust.toml", *BUST, *constants, option, value)
-    assert status == 2 and f"{option} belongs to bearings by design" in err
-    assert not (tmp_path / "bust.toml").exists()
-
-
-def test_a_depth_in_cm_is_asked_about(rocking, tmp_path):
-    status, _, err = rocking("new", tmp_path / "bust.toml", *BUST, "--depth", 55)
-    assert status == 2 and "--depth 55 is longer than any side of a statue, 20 m" in err
 
 
 def test_what_was_asked_for_is_in_the_json_in_the_sense_of_its_row(rocking, tmp_path):

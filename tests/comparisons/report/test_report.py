@@ -12,7 +12,6 @@ from page_numbers import number_in
 
 from analytic import EngineNotInstalled, load_scene, simulate, synthetic_motion
 from analytic.records import read_record
-from comparisons.cli import main
 from comparisons.report import runs, write
 from comparisons.report.study import make_results
 from comparisons.report.write import write_page
@@ -327,21 +326,6 @@ def test_undecided_outcomes_and_warnings_stand_beside_the_outcomes_and_at_the_to
     words = "outside what is modelled, or differing"
     assert page.table("Caryatid isolated: warnings")[last, words] == "the base is light"
     assert any("it is undecided (rocks so far). Warning: the record peaks at 5 g." in item for item in top.items)
-
-
-@pytest.mark.parametrize(
-    "arguments, words",
-    [
-        (["--units", "g"], "--units g: belongs to a record"),
-        (["--record", "no-such-record.AT2"], "motion.record = 'no-such-record.AT2': cannot be read"),
-        (["--output", __file__], "is a file; give a folder"),
-    ],
-)
-def test_mistakes_end_with_one_message(arguments, words, capsys):
-    with pytest.raises(SystemExit) as ended:
-        main(["report", *arguments])
-    assert ended.value.code == 2
-    assert words in capsys.readouterr().err
 
 
 @pytest.mark.skipif(not DUZCE.exists(), reason="the Duzce record does not lie beside the project")
