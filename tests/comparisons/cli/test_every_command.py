@@ -132,11 +132,3 @@ def test_a_base_that_nothing_moves_slides_nowhere(rocking, tmp_path):
     file.write_text(block + "[start]\ntilt = 0.1\nbase_velocity = 0.2\n")
     (warning,) = json.loads(rocking("run", file, "--json", "-")[1])["warnings"]
     assert warning["kind"] == "model" and "slides on at" in warning["text"]
-
-
-def test_what_new_writes_has_the_limit_that_was_typed(rocking, folder, monkeypatch):
-    """Review A2."""
-    monkeypatch.chdir(folder)
-    for name, limit in (("by design, synthetic", 0.2), ("by constants, tilted", 0.3)):
-        assert load_scene(scene_file(rocking, folder, name, False)).bearings.x_max == limit
-    assert load_scene("caryatid-isolated").bearings.x_max == 0.3

@@ -37,12 +37,6 @@ def test_margin_names_the_nearest_change_of_the_outcome_and_draws_it(rocking, tm
     words = " ".join(out.split())
     assert "Nearest change of the outcome: slenderness -7.14 %, the block then overturns." in words
     assert "released: rocks now: lifts, tilt > 0.5 γ" in words
-    assert "No change of up to 20 % of restitution, size changes any of these: lifts, tilt > 0.5 γ, overturns." in words
-    assert [line.split()[0] for line in out.splitlines() if "-7.14 %" in line or "+7.69 %" in line] == [
-        "slenderness",
-        "start",
-        "Nearest",
-    ]
     assert picture.read_bytes().startswith(b"\x89PNG")
     content = json.loads(file.read_text())
     assert content["schema"] == "rocking margin 2" and content["outcome"] == "rocks"
