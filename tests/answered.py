@@ -15,11 +15,11 @@ def by_runs(folder):
     )
 
 
-def by_model(scene=lambda case: case.scene, failure=lambda case: None):
+def by_model(scene=lambda case: case.scene, failure=lambda case: None, history=False):
     """Answer batches by the analytic model in each solver's place, on ``scene(case)``; ``failure(case)`` may be one."""
 
     def row(batch, case):
-        response = dataclasses.replace(simulate(scene(case), history=False), engine=case.solver)
+        response = dataclasses.replace(simulate(scene(case), history=history), engine=case.solver)
         failed = failure(case)
         values = {"outcome": "failed"} if failed else batch.measure(case, response)
         return Row(case, values, failed, {"cpu_seconds": 0.25}, False)

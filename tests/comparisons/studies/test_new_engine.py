@@ -13,7 +13,7 @@ from installed_package import FAKE_ENGINE, install_fake_engine
 
 import engines
 from analytic import synthetic_motion
-from comparisons.report.runs import free_rocking_cases
+from comparisons.report.runs import restitution_cases
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.study import Ask
 from comparisons.sheet.problems import PROBLEMS
@@ -121,7 +121,7 @@ def test_the_study_of_the_paper_runs_and_shows_it(crude, tmp_path):
         batch = next(plan)
         while True:
             batches.append(batch)
-            batch = plan.send(by_model()(batch))
+            batch = plan.send(by_model(history=True)(batch))
     except StopIteration as stop:
         rows, histories = stop.value
     assert {case.solver for batch in batches for case in batch.cases} == {"analytic", "crude"}
@@ -134,7 +134,7 @@ def test_the_study_of_the_paper_runs_and_shows_it(crude, tmp_path):
 def test_the_problem_sheet_runs_and_shows_it(crude, monkeypatch, tmp_path):
     monkeypatch.setattr("comparisons.studies.sheet.PROBLEMS", PROBLEMS[:1])
     study = get_study("sheet")
-    found = answered(study.plan(ASK), by_model())[-1]
+    found = answered(study.plan(ASK), by_model(history=True))[-1]
     assert found.rows[0]["error"] < 1e-5  # the model in its place: what interpolation leaves
     assert rows_with(shown(study, found, tmp_path))
 
@@ -148,7 +148,7 @@ def test_the_tolerances_say_that_it_states_none(crude, tmp_path):
 def test_the_growth_of_cost_and_the_report_run_it(crude):
     (scene,) = (trial.scene for trial in trials() if trial.name == "isolated-standing")
     assert [case.solver for case in growth.growth_cases(scene, ASK.engines, True)].count("crude") == 3
-    cases = free_rocking_cases(ASK.engines, (0.2,))
+    cases = restitution_cases(ASK.engines, [near_overturning().scene])
     assert {case.variant for case in cases if case.solver == "crude"} == {"euler"}
 
 
