@@ -1,7 +1,11 @@
 """A study's plan, answered in this process: by real rows, or by rows of runs that are made up."""
 
+import dataclasses
+
+from analytic import simulate
+from comparisons.running.provenance import read_result, write_result
 from comparisons.running.study import Batch, Found
-from comparisons.running.sweep import Serial, run_sweep
+from comparisons.running.sweep import Row, Serial, run_sweep
 
 
 def by_runs(folder):
@@ -9,6 +13,18 @@ def by_runs(folder):
     return lambda batch: run_sweep(
         batch.cases, store=folder / "runs.jsonl", measure=batch.measure, executor=Serial(), progress=False
     )
+
+
+def by_model(scene=lambda case: case.scene, failure=lambda case: None, history=False):
+    """Answer batches by the analytic model in each solver's place, on ``scene(case)``; ``failure(case)`` may be one."""
+
+    def row(batch, case):
+        response = dataclasses.replace(simulate(scene(case), history=history), engine=case.solver)
+        failed = failure(case)
+        values = {"outcome": "failed"} if failed else batch.measure(case, response)
+        return Row(case, values, failed, {"cpu_seconds": 0.25}, False)
+
+    return lambda batch: [row(batch, case) for case in batch.cases]
 
 
 def answered(plan, run, most=None):
@@ -26,3 +42,11 @@ def answered(plan, run, most=None):
             assert isinstance(step, Batch)
             rows = run(step)
     return answers
+
+
+def stored(folder, name, found, **settings):
+    """The `Result` of a study's `Found`, with these `settings` besides, as it comes back from a file in `folder`."""
+    settings = {"changed_while_running": [], **found.settings, **settings}
+    return read_result(
+        write_result(folder / f"{name}.json", name, settings, found.rows, found.arrays, modules=["analytic"])
+    )

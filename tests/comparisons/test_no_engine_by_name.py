@@ -11,7 +11,6 @@ from engines import BUILT_IN, ENGINES
 
 FOLDER = Path(comparisons.__file__).parent
 VARIANTS = {variant for name in BUILT_IN if ENGINES[name].installed for variant in ENGINES[name].variants}
-VARIANTS -= {"expert"}  # a rung of every engine's as well; studies may ask for a rung
 ENGINE = re.compile(rf"(?<![\w-])({'|'.join(BUILT_IN)})(?![\w-])", re.IGNORECASE)
 VARIANT = re.compile(rf"(^|, )({'|'.join(sorted(VARIANTS))})$")
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from analytic import load_scene, shipped_scenes, simulate
-from analytic.errors import SceneError
 
 ENGINE = "exudyn"
 BUST = ("--height", 1.9, "--width", 0.55, "--material", "marble")
@@ -133,20 +132,3 @@ def test_a_base_that_nothing_moves_slides_nowhere(rocking, tmp_path):
     file.write_text(block + "[start]\ntilt = 0.1\nbase_velocity = 0.2\n")
     (warning,) = json.loads(rocking("run", file, "--json", "-")[1])["warnings"]
     assert warning["kind"] == "model" and "slides on at" in warning["text"]
-
-
-def test_what_new_writes_has_the_limit_that_was_typed(rocking, folder, monkeypatch):
-    """Review A2."""
-    monkeypatch.chdir(folder)
-    for name, limit in (("by design, synthetic", 0.2), ("by constants, tilted", 0.3)):
-        assert load_scene(scene_file(rocking, folder, name, False)).bearings.x_max == limit
-    assert load_scene("caryatid-isolated").bearings.x_max == 0.3
-
-
-def test_a_scene_that_does_not_read_is_not_written(rocking, tmp_path):
-    """Review A16: the message named a temporary file."""
-    file = tmp_path / "bust.toml"
-    status, _, err = rocking("new", file, *BUST, "--tilt", 2)
-    assert status == 2 and err == "Error: --tilt = 2.0: out of range; give a number below 1.5708 [rad]\n"
-    with pytest.raises(SceneError):
-        load_scene(file)

@@ -15,11 +15,6 @@ def test_without_a_command_they_are_listed(rocking):
     assert all(lesson.name in out for lesson in lessons())
 
 
-def test_an_unknown_lesson_is_refused(rocking):
-    status, _, err = rocking("lessons", "open", "tipping-over")
-    assert status == 2 and "choose one of tipping" in err.replace("\n", " ")
-
-
 def test_a_notebook_opens_as_a_copy(rocking, monkeypatch):
     pytest.importorskip("marimo", reason="needs marimo: pip install marimo")
     calls = []

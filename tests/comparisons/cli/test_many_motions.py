@@ -60,13 +60,6 @@ def test_margin_tells_for_each_motion_what_change_of_it_lifts_the_block(rocking,
     assert max(map(len, out.splitlines())) < 400
 
 
-@pytest.mark.parametrize("command", ["run", "margin"])
-def test_directions_without_a_folder_are_refused(rocking, command):
-    status, out, err = rocking(command, "caryatid-rigid", "--directions", 3)
-    assert (status, out) == (2, "")
-    assert "--records" in err
-
-
 @pytest.mark.parametrize(
     ("outcomes", "words"),
     [

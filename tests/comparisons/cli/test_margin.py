@@ -37,12 +37,6 @@ def test_margin_names_the_nearest_change_of_the_outcome_and_draws_it(rocking, tm
     words = " ".join(out.split())
     assert "Nearest change of the outcome: slenderness -7.14 %, the block then overturns." in words
     assert "released: rocks now: lifts, tilt > 0.5 γ" in words
-    assert "No change of up to 20 % of restitution, size changes any of these: lifts, tilt > 0.5 γ, overturns." in words
-    assert [line.split()[0] for line in out.splitlines() if "-7.14 %" in line or "+7.69 %" in line] == [
-        "slenderness",
-        "start",
-        "Nearest",
-    ]
     assert picture.read_bytes().startswith(b"\x89PNG")
     content = json.loads(file.read_text())
     assert content["schema"] == "rocking margin 2" and content["outcome"] == "rocks"
@@ -72,18 +66,6 @@ def test_a_limit_of_the_tilt_is_ones_own(rocking, scene_file):
     words = " ".join(out.split())
     assert "released: rocks now: lifts, tilt > 0.1 γ" in words
     assert "start 0.03 rad, rad/s -6.67 %" in words and "slenderness 0.28 rad +7.14 %" in words
-
-
-def test_a_span_out_of_range_is_one_message(rocking):
-    status, _, err = rocking("margin", "free-rocking-rigid", "--span", "901")
-    assert status == 2 and err == "Error: --span 901: give per cent, from 0.1 to 900\n"
-
-
-@pytest.mark.parametrize("share", ["0", "-0.5", "1.01", "nan"])
-def test_a_tilt_out_of_range_is_one_message(rocking, share):
-    status, _, err = rocking("margin", "free-rocking-rigid", "--tilt", share)
-    assert status == 2
-    assert err == f"Error: --tilt {float(share):g}: give a share of the slenderness, above 0 and up to 1\n"
 
 
 @pytest.mark.parametrize("name", shipped_scenes())

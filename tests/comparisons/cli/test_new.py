@@ -54,34 +54,6 @@ def test_new_names_a_record_as_seen_from_the_scene(rocking, tmp_path):
     assert load_scene(tmp_path / "bust.toml").motion.samples[1] == pytest.approx(0.4)
 
 
-def test_what_follows_as_json(rocking, tmp_path):
-    file = tmp_path / "bust.toml"
-    status, out, _ = rocking("new", file, *BUST, "--json", "-")
-    found = json.loads(out)
-    assert status == 0 and found["schema"] == "rocking new 1" and found["scene"] == "bust"
-    values = {row["name"]: row["value"] for row in found["derived"]}
-    assert values["mass"] == load_scene(file).block.mass
-
-
-@pytest.mark.parametrize(
-    "arguments, words",
-    [
-        (("--height", "1.9", "--mass", "3"), "--width is missing"),
-        (("--height", "1.9", "--width", "0.5"), "--mass [kg], --density [kg/m3] or --material"),
-        ((*BUST[:4], "--material", "cheese"), "choose one of marble"),
-        ((*BUST, "--period", "2.5", "--xmax", "0.2"), "--base-mass"),
-        ((*BUST, "--base-mass", "100", "--period", "2.5"), "--period and --xmax"),
-        ((*BUST, "--record", "absent.csv"), "absent.csv"),
-        ((*BUST, "--units", "g"), "--record"),
-    ],
-)
-def test_what_makes_no_scene_is_one_message_and_no_file(rocking, tmp_path, arguments, words):
-    file = tmp_path / "bust.toml"
-    status, _, err = rocking("new", file, *arguments)
-    assert status == 2 and words in err and len(err.splitlines()) == 1
-    assert not file.exists()
-
-
 IMPLAUSIBLE = {
     "centimetres": (
         ("--height", "190", "--width", "55", "--mass", "1500"),
@@ -140,22 +112,12 @@ def test_new_overwrites_nothing(rocking, tmp_path):
     assert status == 2 and "exists" in err and file.read_text() == "mine"
 
 
-@pytest.mark.parametrize("option, value", [("--ratio", 3), ("--damping", 0.2), ("--definition", "paper")])
-def test_what_belongs_to_a_design_is_refused_with_constants(rocking, tmp_path, option, value):
-    constants = ("--base-mass", 400, "--ka", 3e4, "--kb", 3e3, "--alpha", 50)
-    status, _, err = rocking("new", tmp_path / "bust.toml", *BUST, *constants, option, value)
-    assert status == 2 and f"{option} belongs to bearings by design" in err
-    assert not (tmp_path / "bust.toml").exists()
-
-
-def test_a_depth_in_cm_is_asked_about(rocking, tmp_path):
-    status, _, err = rocking("new", tmp_path / "bust.toml", *BUST, "--depth", 55)
-    assert status == 2 and "--depth 55 is longer than any side of a statue, 20 m" in err
-
-
 def test_what_was_asked_for_is_in_the_json_in_the_sense_of_its_row(rocking, tmp_path):
     design = ("--base-mass", 400, "--period", 2, "--damping", 0.3, "--definition", "paper", "--xmax", 0.2)
-    rows = json.loads(rocking("new", tmp_path / "bust.toml", *BUST, *design, "--json", "-")[1])["derived"]
+    told = json.loads(rocking("new", tmp_path / "bust.toml", *BUST, *design, "--json", "-")[1])
+    scene, rows = load_scene(tmp_path / "bust.toml"), told["derived"]
+    assert (told["schema"], told["scene"], scene.bearings.x_max) == ("rocking new 1", "bust", 0.2)
+    assert {row["name"]: row["value"] for row in rows}["mass"] == scene.block.mass
     asked = {row["name"]: (row["asked"], row["value"]) for row in rows if row["asked"] is not None}
     assert set(asked) == {"secant period at x_max", "equivalent damping at x_max"}
     assert asked["equivalent damping at x_max"][0] == 0.15

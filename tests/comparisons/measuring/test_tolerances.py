@@ -1,5 +1,6 @@
 """The table of tolerances is as tight as it says; its measures see what they should."""
 
+import dataclasses
 import json
 import math
 
@@ -10,7 +11,7 @@ from engine_cases import needs
 from analytic import Scene, simulate
 from analytic.bearing import BearingLaw
 from comparisons.measuring import agreement
-from comparisons.measuring.tolerances import SLACK, TABLE, measure_all
+from comparisons.measuring.tolerances import SLACK, TABLE, measure_all, rows
 from engines import get_engine, installed_engines
 
 ROWS = pytest.mark.parametrize("row", TABLE, ids=lambda row: row.name)
@@ -78,13 +79,27 @@ def test_the_first_boundary_is_the_published_one(monkeypatch, frequency, amplitu
     assert found * math.tan(0.25) / 0.25 == pytest.approx(amplitude, rel=1e-5)
 
 
+def test_a_row_checks_itself_in_the_tests_of_others():
+    engine = installed_engines()[0]
+    row = next(row for row in rows(engine) if row.quantity == "peak tilt")
+    runs = {}
+    assert 0 < row.check(runs) <= row.bound
+    with pytest.raises(AssertionError, match="peak tilt.*tolerated 1e-12"):
+        dataclasses.replace(row, bound=1e-12).check(runs)
+
+
+def test_rows_are_those_of_the_default_variant_or_the_one_named():
+    needs("exudyn")
+    assert {row.variant for row in rows("exudyn")} == {get_engine("exudyn").default_variant}
+    assert {row.variant for row in rows("exudyn", "native-contact")} == {"native-contact"}
+
+
 def test_a_failed_run_is_a_row_that_does_not_hold(monkeypatch):
     row = next(row for row in TABLE if row.quantity == "overturning time")
 
     def fails(*_):
         raise agreement.Unmeasurable("exudyn failed: it sank")
 
-    broken = type(row)(**{**vars(row), "measure": fails})
-    (result,) = measure_all((broken,))
+    (result,) = measure_all((dataclasses.replace(row, measure=fails),))
     assert not result["holds"] and result["found"] is None and "sank" in result["failure"]
     json.dumps(result, allow_nan=False)

@@ -100,6 +100,6 @@ def test_a_report_on_a_million_samples_stays_under_800_mb(tmp_path):
             sleep(0.2)
     assert run.returncode == 0, (tmp_path / "log").read_text()[-2000:]
     assert most < 800e6, f"{most / 1e6:.0f} MB"
-    result = read_result(tmp_path / "report" / runs.CARYATID)
+    result = read_result(tmp_path / "report" / runs.SCENES)
     assert {row["outcome"] for row in result.rows if row["scene"] == "caryatid-rigid"} == {"rocks"}
     assert max(len(values) for values in result.arrays.values()) <= histories.MOST_SHOWN

@@ -2,7 +2,7 @@
 
 import json
 import re
-from html.parser import HTMLParser
+from html import unescape
 from pathlib import Path
 from types import SimpleNamespace
 from xml.etree import ElementTree
@@ -13,7 +13,6 @@ from page_numbers import number_in
 
 from analytic import EngineNotInstalled, load_scene, simulate, synthetic_motion
 from analytic.records import read_record
-from comparisons.cli import main
 from comparisons.report import runs, write
 from comparisons.report.study import make_results
 from comparisons.report.write import write_page
@@ -31,45 +30,32 @@ NO_STUDIES = Path(__file__).parent / "no such folder"
 DUZCE = Path(__file__).parents[4] / "shared" / "records" / "RSN1605_DUZCE_DZC270.AT2"
 
 
-class Page(HTMLParser):
-    """Tables by caption, images, links, texts and tags of a page."""
+def inside(tags, source):
+    """What stands between the tags."""
+    return re.findall(rf"<(?:{tags})\b[^>]*>(.*?)</(?:{tags})>", source, flags=re.DOTALL)
+
+
+def words(source):
+    return " ".join(unescape(re.sub(r"<[^>]*>", "", source)).split())
+
+
+class Page:
+    """Tables by caption, links, list items and tags of a page."""
 
     def __init__(self, path):
-        super().__init__()
         self.source = path.read_text(encoding="utf-8")
-        self.tables, self.images, self.links, self.tags, self.items = {}, [], [], [], []
-        self._inside, self._words, self._row, self._rows = None, [], [], []
-        self.feed(self.source)
-
-    def handle_starttag(self, tag, attributes):
-        attributes = dict(attributes)
-        self.tags.append(tag)
-        self.links += [attributes[key] for key in ("href", "src", "data", "action") if key in attributes]
-        if tag == "img":
-            self.images.append(attributes)
-        if tag == "table":
-            self._rows = []
-        if tag in ("caption", "th", "td", "li"):
-            self._words = []
-
-    def handle_data(self, data):
-        self._words.append(data)
-
-    def handle_endtag(self, tag):
-        words = "".join(self._words).strip()
-        if tag == "caption":
-            self.tables[words] = self._rows
-        if tag in ("th", "td"):
-            self._row.append(words)
-        if tag == "tr":
-            self._rows.append(self._row)
-            self._row = []
-        if tag == "li":
-            self.items.append(" ".join(words.split()))
+        body = re.sub(r"<(script|style).*?</\1>", "", self.source, flags=re.DOTALL)
+        self.tags = set(re.findall(r"<(\w+)", body))
+        self.links = re.findall(r'\s(?:href|src|data|action)="([^"]*)"', body)
+        self.items = [words(item) for item in inside("li", body)]
+        self.tables = {}
+        for table in inside("table", body):
+            rows = [[words(cell) for cell in inside("th|td", row)] for row in inside("tr", table)]
+            self.tables[words(inside("caption", table)[0])] = rows
 
     def table(self, caption):
         """{(row, column): cell} of the table whose caption starts so."""
-        (rows,) = [rows for words, rows in self.tables.items() if words.startswith(caption)]
+        (rows,) = [rows for title, rows in self.tables.items() if title.startswith(caption)]
         return {(row[0], head): cell for row in rows[1:] for head, cell in zip(rows[0], row, strict=True)}
 
 
@@ -113,14 +99,6 @@ def test_outcomes_in_the_page_are_those_of_the_solvers(folder):
         assert table["outcome", "analytic"] == expected.outcome
         assert number_in(table["peak |φ|/γ [-]", "analytic"]) == pytest.approx(expected.peak_tilt_ratio, rel=1e-3)
         assert {head for _, head in table} == {"quantity", "analytic", *engines}
-        if expected.outcome == "overturns":
-            assert number_in(table["overturns at [s]", "analytic"]) == pytest.approx(
-                expected.overturning_time, rel=1e-4
-            )
-        if scene.base:
-            assert number_in(table["peak base displacement [m]", "analytic"]) == pytest.approx(
-                expected.peak_base_displacement, rel=1e-4
-            )
 
 
 def test_every_cell_of_the_outcome_tables_equals_the_result_file(folder):
@@ -190,28 +168,11 @@ def test_every_number_of_the_decision_table_is_that_of_a_study(copied, studies):
     assert "Engines at their best settings" not in Page(write_page(copied, studies=NO_STUDIES)).tables
 
 
-def test_a_worse_restitution_takes_the_recommendation_and_the_trust_away(copied, studies, tmp_path_factory):
-    def spoil(content):
-        for row in content["rows"]:
-            if row.get("scope") == "all":
-                row["rms"] = 0.2
-
-    spoilt = tmp_path_factory.mktemp("spoilt")
-    for file in studies.glob("restitution.*"):
-        (spoilt / file.name).write_bytes(file.read_bytes())
-    assert "no engine that was run here may be trusted" not in Page(write_page(copied, studies=spoilt)).source
-    changed(spoilt / "restitution.json", spoil)
-    page = Page(write_page(copied, studies=spoilt))
-    assert "no engine that was run here may be trusted" in page.source
-    ratings = [cell for (_, head), cell in page.table("Engines at their best settings").items() if head == "rating"]
-    assert ratings and all(rating.startswith("✗") for rating in ratings)
-
-
 def test_pages_need_nothing_but_themselves(folder):
     for file in (folder / "report.html", *(folder / "pages").glob("*.html")):
         page = Page(file)
         assert all(link.startswith(("#", "pages/", "../report.html", "../pages/")) for link in page.links)
-        assert not {"link", "iframe", "object", "img"} & set(page.tags)
+        assert not {"link", "iframe", "object", "img"} & page.tags
         assert not re.search(r"@import|src=|url\((?!#)", page.source)
         assert set(re.findall(r"https?://[^\"']*", page.source)) <= {
             "http://www.w3.org/2000/svg",
@@ -327,21 +288,6 @@ def test_undecided_outcomes_and_warnings_stand_beside_the_outcomes_and_at_the_to
     words = "outside what is modelled, or differing"
     assert page.table("Caryatid isolated: warnings")[last, words] == "the base is light"
     assert any("it is undecided (rocks so far). Warning: the record peaks at 5 g." in item for item in top.items)
-
-
-@pytest.mark.parametrize(
-    "arguments, words",
-    [
-        (["--units", "g"], "--units g: belongs to a record"),
-        (["--record", "no-such-record.AT2"], "motion.record = 'no-such-record.AT2': cannot be read"),
-        (["--output", __file__], "is a file; give a folder"),
-    ],
-)
-def test_mistakes_end_with_one_message(arguments, words, capsys):
-    with pytest.raises(SystemExit) as ended:
-        main(["report", *arguments])
-    assert ended.value.code == 2
-    assert words in capsys.readouterr().err
 
 
 @pytest.mark.skipif(not DUZCE.exists(), reason="the Duzce record does not lie beside the project")

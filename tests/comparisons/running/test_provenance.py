@@ -147,21 +147,25 @@ def test_scrub_keeps_project_files_readable(tmp_path):
     assert str(tmp_path) not in text and "0x7f" not in text
 
 
-def test_files_that_cannot_be_used_are_errors_with_a_remedy(tmp_path):
-    with pytest.raises(ResultError, match="no such result file; run the study"):
-        read_result(tmp_path / "none.json")
+@pytest.mark.parametrize(
+    "spoil, words",
+    [
+        (lambda folder: (folder / "r.json").unlink(), "no such result file; run the study"),
+        (lambda folder: (folder / "r.json").write_text("{"), "not JSON"),
+        (lambda folder: (folder / "r.npz").unlink(), "r.npz: missing"),
+        (lambda folder: np.savez(folder / "r.npz", a=np.arange(4)), "r.npz: missing or not the one r.json was"),
+    ],
+)
+def test_files_that_cannot_be_used_are_errors_with_a_remedy(tmp_path, spoil, words):
+    path = written(tmp_path, arrays={"a": np.arange(3)})
+    spoil(tmp_path)
+    with pytest.raises(ResultError, match=words):
+        read_result(path)
+
+
+def test_a_result_is_a_json_file(tmp_path):
     with pytest.raises(ResultError, match="ends in .json"):
         write_result(tmp_path / "r.txt", "k", {}, [], modules=["analytic"])
-    path = written(tmp_path, arrays={"a": np.arange(3)})
-    np.savez(tmp_path / "r.npz", a=np.arange(4))
-    with pytest.raises(ResultError, match="r.npz: missing or not the one r.json was written with"):
-        read_result(path)
-    (tmp_path / "r.npz").unlink()
-    with pytest.raises(ResultError, match="r.npz: missing"):
-        read_result(path)
-    path.write_text("{")
-    with pytest.raises(ResultError, match="not JSON"):
-        read_result(path)
     with pytest.raises(ResultError, match=r"no result file of a study, rows\.0"):
         write_result(tmp_path / "r.json", "k", {}, [3], modules=["analytic"])
 

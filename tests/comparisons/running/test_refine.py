@@ -88,33 +88,6 @@ def test_every_bracket_holds_an_edge_and_wide_stretches_are_never_missed(edges, 
         assert len(column.transitions) == len(edges)
 
 
-def test_columns_of_a_sweep(tmp_path, monkeypatch):
-    from pathlib import Path
-
-    monkeypatch.syspath_prepend(str(Path(__file__).parent))
-    from fake_solvers import tilt
-
-    from analytic import Start
-    from comparisons.running.sweep import Case, Serial, Store, run_sweep
-
-    with Store(tmp_path / "s.jsonl") as store:
-
-        def evaluate(batch):
-            cases = [
-                Case(
-                    Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.3), duration=1.0, start=Start(tilt=point)),
-                    "fake_solvers:sound",
-                )
-                for _, point in batch
-            ]
-            rows = run_sweep(cases, store=store, executor=Serial(), measure=tilt, progress=False)
-            return [row.values["peak"] > 0.5 for row in rows]  # the fake's peak is the square of the tilt
-
-        (column,) = drive([boundaries(0.0, 1.0, 5, 1e-4)], evaluate)
-        assert len(store) == column.evaluations
-    assert [t.position for t in column.transitions] == pytest.approx([0.5**0.5], abs=1e-4)
-
-
 def test_what_cannot_be_searched_is_an_error():
     for wrong in ((1, 0, 5, 0.1), (0, 1, 1, 0.1), (0, 1, 5, 0.0), (0, 1, 5, 0.1, 0)):
         with pytest.raises(ValueError, match="boundaries needs low < high"):

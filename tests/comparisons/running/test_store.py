@@ -33,10 +33,12 @@ def test_a_torn_last_line_is_dropped_and_the_file_goes_on(tmp_path, cut):
         assert not store.torn and list(store.rows) == ["a", "c"]
 
 
-@pytest.mark.parametrize("damage", ["not json", '{"values": 1}', "[1]", "\x00\x00"])
+@pytest.mark.parametrize(
+    "damage", [b"not json", b'{"values": 1}', b'{"key": []}', b"[1]", b"\x00\x00", b"\xff\xfe", b"[" * 100_000]
+)
 def test_a_damaged_whole_line_is_an_error_that_names_it(tmp_path, damage):
     path = tmp_path / "s.jsonl"
-    path.write_text(line("a", 1) + "\n" + damage + "\n" + line("b", 2) + "\n")
+    path.write_bytes(b"\n".join([line("a", 1).encode(), damage, line("b", 2).encode(), b""]))
     with pytest.raises(StoreError, match="s.jsonl, line 2: not a row of results"):
         Store(path)
 

@@ -7,12 +7,11 @@ import pytest
 from page_numbers import number_in
 
 from comparisons.report.write import SHORT
-from comparisons.running.provenance import RESULTS, Result, read_result
+from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.sources import source_digests
 from comparisons.showing.parts import Head
 from comparisons.showing.rows import where
 from comparisons.studies import BUILT_IN, get_study
-from comparisons.studies.speed_error.page import levels_run, passing
 from comparisons.studies.stability.page import judgement as hard_cases
 
 
@@ -86,39 +85,3 @@ def test_hard_cases_are_counted_as_the_settings_come():
         found = [row["result"] for row in where(result.rows, **own, part="default settings")]
         assert marks[own["engine"], own["variant"]].words == f"{found.count('right')} of {len(found)}"
         assert len(found) == cases - (0 if variant["best"] else 2)  # scenes of ten minutes
-
-
-def ladder(errors, failed=()):
-    """A ladder of one engine from coarse to fine with these errors, the finer the dearer."""
-    rows = [
-        {
-            "part": "work-precision",
-            "scene": "s",
-            "engine": "one",
-            "variant": "fine",
-            "law": None,
-            "level": 10.0**-k,
-            "failure": {"reason": "NaN"} if k in failed else None,
-            "errors": {"impact_time": error},
-            "lost": 0,
-            "cpu_seconds": 1.0 + k,
-        }
-        for k, error in enumerate(errors)
-    ]
-    return Result("speed-error", {"scenes": {"s": {"title": "s", "measures": ["impact_time"]}}}, rows, {})
-
-
-@pytest.mark.parametrize(
-    "errors, failed, chosen",
-    [
-        ([1e-1, 1e-2, 1e-4, 1e-5], (), 2),
-        ([1e-5, 1e-2, 1e-4, 1e-5], (), 2),  # the first passes by luck: a finer one does not
-        ([1e-1, 1e-5, 1e-2], (), None),  # the finest does not pass: nothing may be recommended
-        ([1e-1, 1e-5, 1e-5, 1e-5], (2,), 3),  # one that failed parts the ladder
-    ],
-)
-def test_the_cheapest_setting_is_one_that_no_finer_one_contradicts(errors, failed, chosen):
-    found = passing(levels_run(ladder(errors, failed)), 1e-3)
-    assert {name: row["level"] for name, row in found.items()} == (
-        {} if chosen is None else {"one, fine": 10.0**-chosen}
-    )

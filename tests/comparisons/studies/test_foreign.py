@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import pytest
+from installed_package import install
 
 from comparisons import studies
 from comparisons.running.provenance import PROJECT_FOLDER
@@ -39,53 +40,42 @@ STUDY = Study("swings", "How high does a released block swing?", plan, __name__)
 '''
 
 
-def install(folder, source, name="swings", value="swing_study:STUDY"):
-    """A package as pip leaves it: a module and its metadata."""
-    (folder / "swing_study.py").write_text(source)
-    info = folder / "swing_study-1.0.dist-info"
-    info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: swing-study\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text(f"[rocking.studies]\n{name} = {value}\n")
+def install_study(folder, source):
+    install(folder, "swing-study", {"swings": "swing_study:STUDY"}, group="rocking.studies", swing_study=source)
 
 
-def rocking(folder, *arguments):
-    """(status, output, errors) of the command in `folder`, with what is installed there."""
+def python(folder, *arguments):
+    """(status, output, errors) of Python in `folder`, with what is installed there."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join((str(folder), str(PROJECT_FOLDER)))}
     run = subprocess.run(
-        [sys.executable, "-m", "comparisons", *arguments],
-        cwd=folder,
-        env=environment,
-        text=True,
-        capture_output=True,
-        timeout=300,
+        [sys.executable, *arguments], cwd=folder, env=environment, text=True, capture_output=True, timeout=300
     )
     return run.returncode, run.stdout, run.stderr
 
 
+def study(folder, *arguments):
+    return python(folder, "-m", "comparisons", "study", *arguments)
+
+
+PAGE = """
+import sys; from pathlib import Path; from comparisons.report.studies import stored_studies
+[one] = [one.section for one in stored_studies(Path(sys.argv[1]))]
+print(one.title, one.age, len(one.tables[0].rows))
+"""
+
+
 def test_a_study_of_another_package_gets_command_resumption_and_section(tmp_path):
     assert len(SOURCE.strip().splitlines()) <= 60
-    install(tmp_path, SOURCE)
-    status, out, err = rocking(tmp_path, "study", "swings", "--quick", "--mass", "2", "--workers", "1")
+    install_study(tmp_path, SOURCE)
+    status, out, err = study(tmp_path, "swings", "--quick", "--mass", "2", "--workers", "1")
     assert status == 0, err
     assert (tmp_path / "swings-study" / "swings.json").exists() and (tmp_path / "swings-study" / "swings.html").exists()
     assert "2 swings of 2 kg." in err and "2 runs done, 0 found" in err and "swings.html" in out
-    status, _, err = rocking(tmp_path, "study", "swings", "--mass", "2", "--workers", "1")
+    status, _, err = study(tmp_path, "swings", "--mass", "2", "--workers", "1")
     assert status == 0 and "2 runs done, 2 found" in err
-    page = (
-        "import sys; from pathlib import Path; from comparisons.report.studies import stored_studies\n"
-        "[one] = [one.section for one in stored_studies(Path(sys.argv[1]))]\n"
-        "print(one.title, one.age, len(one.tables[0].rows))"
-    )
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join((str(tmp_path), str(PROJECT_FOLDER)))}
-    shown = subprocess.run(
-        [sys.executable, "-c", page, str(tmp_path / "swings-study")],
-        env=environment,
-        text=True,
-        capture_output=True,
-        timeout=120,
-    )
-    assert shown.stdout.split() == ["Swings:", "how", "high", "they", "go", "None", "4"], shown.stderr
-    assert "swings" in rocking(tmp_path, "study", "--help")[1]
+    _, out, err = python(tmp_path, "-c", PAGE, str(tmp_path / "swings-study"))
+    assert out.split() == ["Swings:", "how", "high", "they", "go", "None", "4"], err
+    assert "swings" in study(tmp_path, "--help")[1]
 
 
 @pytest.mark.parametrize(
@@ -96,10 +86,10 @@ def test_a_study_of_another_package_gets_command_resumption_and_section(tmp_path
     ],
 )
 def test_a_broken_one_is_one_message_that_names_who_declares_it(tmp_path, source, words):
-    install(tmp_path, source)
-    status, _, err = rocking(tmp_path, "study", "swings")
-    assert status == 2 and words in err and "swing-study 1.0" in err and "Traceback" not in err
-    status, out, _ = rocking(tmp_path, "study", "--help")
+    install_study(tmp_path, source)
+    status, _, err = study(tmp_path, "swings")
+    assert status == 2 and words in err and "swing-study 0.1" in err and "Traceback" not in err
+    status, out, _ = study(tmp_path, "--help")
     assert status == 0 and "restitution" in out
 
 

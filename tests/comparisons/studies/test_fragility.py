@@ -6,15 +6,13 @@ import re
 
 import numpy as np
 import pytest
-from answered import answered
+from answered import answered, by_model, stored
 from page_numbers import number_in
 
 from analytic import simulate
 from analytic.linear_oscillator import displacement_spectrum
 from comparisons.measuring.statistics import wilson
-from comparisons.running.provenance import read_result, write_result
 from comparisons.running.study import Ask
-from comparisons.running.sweep import Row
 from comparisons.showing.rows import where
 from comparisons.studies.fragility import STUDY, fits
 from comparisons.studies.fragility.cloud import PERIOD, SCENES, cloud
@@ -27,27 +25,23 @@ ENGINES = Ask(("exudyn", "pybullet"))
 pytestmark = pytest.mark.xdist_group("fragility")  # its runs are made once
 
 
+CRASH = {"kind": "crash", "reason": "the worker process ended", "message": "raw evidence"}
+
+
 def scaled(factor, failing=()):
     """Answers batches by, in the engines' place, the model under `factor` times the motion, failing for some seeds."""
 
-    def row(batch, case):
-        scene, failure = case.scene, None
-        if case.solver != "analytic":
-            scene = scene.with_(motion=scene.motion.scaled(factor))
-            if case.tag["seed"] in failing:
-                failure = {"kind": "crash", "reason": "the worker process ended", "message": "raw evidence"}
-        values = batch.measure(case, simulate(scene, history=False))
-        return Row(case, {"outcome": "failed"} if failure else values, failure, {"cpu_seconds": 0.25}, False)
+    def share(case):
+        return 1.0 if case.solver == "analytic" else factor
 
-    return lambda batch: [row(batch, case) for case in batch.cases]
+    return by_model(
+        lambda case: case.scene.with_(motion=case.scene.motion.scaled(share(case))),
+        lambda case: CRASH if case.solver != "analytic" and case.tag["seed"] in failing else None,
+    )
 
 
 def study(folder, work, scenes=FREE, runs=RUNS):
-    found = answered(plan(ENGINES, scenes=scenes, runs=runs), work)[-1]
-    settings = {**found.settings, "changed_while_running": []}
-    return read_result(
-        write_result(folder / "f.json", "fragility", settings, found.rows, found.arrays, modules=["analytic"])
-    )
+    return stored(folder, "fragility", answered(plan(ENGINES, scenes=scenes, runs=runs), work)[-1])
 
 
 @pytest.fixture(autouse=True, scope="module")

@@ -3,10 +3,9 @@
 import math
 
 import pytest
-from answered import answered, by_runs
+from answered import answered, by_runs, stored
 
 from analytic.twin import METHODS as OFFERED
-from comparisons.running.provenance import read_result, write_result
 from comparisons.running.study import Ask
 from comparisons.studies import get_study
 from comparisons.studies.kernel import page, peers, study
@@ -66,12 +65,9 @@ def few(monkeypatch):
     run_of.cache_clear()
 
 
-def found(folder, run=None):
+def found(folder):
     """The study's `Result`, by runs in this process."""
-    answer = answered(study.plan(Ask(quick=True)), run or by_runs(folder))[-1]
-    path = folder / "kernel.json"
-    settings = {**answer.settings, "changed_while_running": []}
-    return read_result(write_result(path, "kernel", settings, answer.rows, modules=[study.__name__]))
+    return stored(folder, "kernel", answered(study.plan(Ask(quick=True)), by_runs(folder))[-1])
 
 
 def test_error_and_time_are_of_the_same_runs(few):

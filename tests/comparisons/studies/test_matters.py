@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from answered import answered, by_runs
+from answered import answered, by_runs, stored
 from mutated_files import csmip
 from scipy.stats import norm
 
@@ -11,8 +11,7 @@ from analytic.bearing import BearingLaw
 from analytic.errors import SettingError
 from analytic.pairing import paired
 from analytic.rocking import RockingModel
-from comparisons.running.provenance import read_result, write_result
-from comparisons.running.study import Ask
+from comparisons.running.study import Ask, Found
 from comparisons.showing.rows import where
 from comparisons.studies import get_study
 from comparisons.studies.matters.changes import changes, with_vertical
@@ -199,10 +198,8 @@ def page(found, tmp_path):
         *(row for row in found.rows if row["part"] != "change"),
     ]
     settings = {**found.settings, "default_variants": {"pybullet": "impact-aware", "exudyn": "native-contact"}}
-    settings |= {"motions_of_engines": 60, "motions_of_other_variants": 10, "changed_while_running": []}
-    return STUDY.page(
-        read_result(write_result(tmp_path / "matters.json", "matters", settings, rows, modules=["analytic"]))
-    )
+    settings |= {"motions_of_engines": 60, "motions_of_other_variants": 10}
+    return STUDY.page(stored(tmp_path, "matters", Found(settings, rows)))
 
 
 def test_changes_and_engines_are_ranked_and_the_title_sets_the_first_against_the_engines_at_their_best(page):

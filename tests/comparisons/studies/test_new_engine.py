@@ -8,15 +8,14 @@ import importlib
 import sys
 
 import pytest
-from answered import answered, by_runs
+from answered import answered, by_model, by_runs, stored
 from installed_package import FAKE_ENGINE, install_fake_engine
 
 import engines
-from analytic import simulate, synthetic_motion
-from comparisons.report.runs import CARYATID, load_scenes, restitution_cases
-from comparisons.running.provenance import RESULTS, read_result, write_result
+from analytic import synthetic_motion
+from comparisons.report.runs import restitution_cases
+from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.study import Ask
-from comparisons.running.sweep import Row
 from comparisons.sheet.problems import PROBLEMS
 from comparisons.showing.rows import where
 from comparisons.studies import BUILT_IN, get_study
@@ -63,20 +62,9 @@ def crude(request, monkeypatch, tmp_path):
     del sys.modules["crude_engine"]
 
 
-def modelled(batch):
-    """Answer batches by the analytic model in place of the fake, where its runs would take minutes."""
-    rows = []
-    for case in batch.cases:
-        response = dataclasses.replace(simulate(case.scene), engine=case.solver)
-        rows.append(Row(case, batch.measure(case, response), None, {"cpu_seconds": 0.1}, False))
-    return rows
-
-
 def shown(study, found, tmp_path):
     """The study's section of an answer that went through a result file."""
-    settings = {**found.settings, "changed_while_running": []}
-    path = write_result(tmp_path / "r.json", study.name, settings, found.rows, found.arrays, modules=["analytic"])
-    result = read_result(path)
+    result = stored(tmp_path, study.name, found)
     page = study.page(result)
     section, finding = page.whole(), page.opening()
     for one in filter(None, (section, finding)):
@@ -102,7 +90,7 @@ def test_a_study_runs_and_shows_it(crude, tmp_path, name):
     study, options = get_study(name), dict(SHORT[name])
     if name == "speed-error":
         options["scenes"] = [near_overturning()]
-    run = modelled if name in ("fragility", "matters") else by_runs(tmp_path)
+    run = by_model() if name in ("fragility", "matters") else by_runs(tmp_path)
     found = answered(study.plan(ASK, **options), run)[-1]
     section = shown(study, found, tmp_path)
     assert rows_with(section)
@@ -115,7 +103,7 @@ def test_the_overturning_study_runs_and_shows_it(crude, monkeypatch, tmp_path):
     monkeypatch.setitem(overturning.STEPPING, "levels", (1e-2,))
     grid = dataclasses.replace(overturning.QUICK, grounds=("rigid ground",), size=(60, 8))
     study = get_study("overturning")
-    found = answered(study.plan(ASK, grid), modelled)[-1]
+    found = answered(study.plan(ASK, grid), by_model())[-1]
     section = shown(study, found, tmp_path)
     assert section.tables[0].rows[0][:2] == ["crude, euler", "trusted"] and drawn(section)
     (variant,) = (variant for variant in found.settings["variants"] if variant["engine"] == "crude")
@@ -132,7 +120,7 @@ def test_the_study_of_the_paper_runs_and_shows_it(crude, tmp_path):
         batch = next(plan)
         while True:
             batches.append(batch)
-            batch = plan.send(modelled(batch))
+            batch = plan.send(by_model(history=True)(batch))
     except StopIteration as stop:
         rows, histories = stop.value
     assert {case.solver for batch in batches for case in batch.cases} == {"analytic", "crude"}
@@ -146,7 +134,7 @@ def test_the_study_of_the_paper_runs_and_shows_it(crude, tmp_path):
 def test_the_problem_sheet_runs_and_shows_it(crude, monkeypatch, tmp_path):
     monkeypatch.setattr("comparisons.studies.sheet.study.PROBLEMS", PROBLEMS[:1])
     study = get_study("sheet")
-    found = answered(study.plan(ASK), modelled)[-1]
+    found = answered(study.plan(ASK), by_model(history=True))[-1]
     assert found.rows[0]["error"] < 1e-5  # the model in its place: what interpolation leaves
     assert rows_with(shown(study, found, tmp_path))
 
@@ -160,7 +148,7 @@ def test_the_tolerances_say_that_it_states_none(crude, tmp_path):
 def test_the_growth_of_cost_and_the_report_run_it(crude):
     (scene,) = (trial.scene for trial in trials() if trial.name == "isolated-standing")
     assert [case.solver for case in growth.growth_cases(scene, ASK.engines, True)].count("crude") == 3
-    cases = restitution_cases(ASK.engines, list(load_scenes(CARYATID).values()))
+    cases = restitution_cases(ASK.engines, [near_overturning().scene])
     assert {case.variant for case in cases if case.solver == "crude"} == {"euler"}
 
 

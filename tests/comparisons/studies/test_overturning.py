@@ -5,14 +5,12 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from answered import answered
+from answered import answered, by_model, stored
 from page_numbers import number_in
 
 from analytic import Block, PulseMotion, Scene, simulate
-from comparisons.running.provenance import read_result, write_result
 from comparisons.running.refine import drive
 from comparisons.running.study import Ask
-from comparisons.running.sweep import Row
 from comparisons.showing.rows import where
 from comparisons.studies.overturning import STUDY
 from comparisons.studies.overturning.edges import Edge, edges, least_normal, locate, pulse
@@ -94,21 +92,15 @@ def test_a_bracket_too_wide_to_tell_is_no_boundary():
     assert found.shift is None and found.reason == "undecided between -1.2 and +1.2 %"
 
 
-class Shifted:
+FAILURE = {"kind": "solver", "reason": "it failed", "message": "raw evidence"}
+
+
+def shifted(shift, moves=lambda case: True, fails=lambda case: False):
     """In place of the engines: the analytic model under `shift` times larger pulses where it moves, failing at some."""
-
-    def __init__(self, shift, moves=lambda case: True, fails=lambda case: False):
-        self.shift, self.moves, self.fails = shift, moves, fails
-
-    def __call__(self, batch):
-        rows = []
-        for case in batch.cases:
-            scale = 1 / (1 + self.shift * self.moves(case))
-            response = simulate(case.scene.with_(motion=case.scene.motion.scaled(scale)), history=False)
-            failed = {"kind": "solver", "reason": "it failed", "message": "raw evidence"} if self.fails(case) else None
-            values = {"outcome": response.outcome, "end_tilt": response.end.tilt, "decided": response.decided}
-            rows.append(Row(case, values, failed, {"cpu_seconds": 0.1}, False))
-        return rows
+    return by_model(
+        lambda case: case.scene.with_(motion=case.scene.motion.scaled(1 / (1 + shift * moves(case)))),
+        lambda case: FAILURE if fails(case) else None,
+    )
 
 
 def study(tmp_path, work, shape="one-sine", levels=True):
@@ -118,10 +110,7 @@ def study(tmp_path, work, shape="one-sine", levels=True):
     """
     grid = dataclasses.replace(QUICK, grounds=("rigid ground",), shapes=(shape,))
     found = answered(STUDY.plan(Ask(("exudyn", "pybullet"), quick=True), grid), work, None if levels else 1)[-1]
-    path = write_result(
-        tmp_path / "overturning.json", "overturning", found.settings, found.rows, found.arrays, modules=["analytic"]
-    )
-    result = read_result(path)
+    result = stored(tmp_path, "overturning", found)
     page = STUDY.page(result).whole()
     assert page.tables and all(len(row) == len(table.columns) for table in page.tables for row in table.rows)
     return result, page
@@ -139,7 +128,7 @@ def wrong(result, region):
 
 @pytest.mark.parametrize("shift", [0.0, 0.02])
 def test_the_study_measures_the_shift_it_is_given_and_rates_it(tmp_path, shift):
-    result, page = study(tmp_path, Shifted(shift))
+    result, page = study(tmp_path, shifted(shift))
     shifts = where(result.rows, part="shift")
     assert len(shifts) == 12
     # a safe gap narrower than the shift is filled from both sides: its boundaries may not be found
@@ -155,7 +144,7 @@ def test_the_study_measures_the_shift_it_is_given_and_rates_it(tmp_path, shift):
 
 
 def test_failed_runs_are_no_outcomes_and_their_evidence_is_kept(tmp_path):
-    result, page = study(tmp_path, Shifted(0.0, fails=lambda case: case.scene.motion.peak > 25))
+    result, page = study(tmp_path, shifted(0.0, fails=lambda case: case.scene.motion.peak > 25))
     failures = where(result.rows, part="failure", kind="solver")
     undecided = where(result.rows, part="failure", kind="undecided")
     assert failures and all(row["message"] == "raw evidence" for row in failures)
@@ -168,7 +157,7 @@ def test_failed_runs_are_no_outcomes_and_their_evidence_is_kept(tmp_path):
 
 
 def test_the_page_shows_every_boundary_and_every_level(tmp_path):
-    result, page = study(tmp_path, Shifted(0.0))
+    result, page = study(tmp_path, shifted(0.0))
     edges = where(result.rows, part="edge")
     for figure in page.figures[:2]:  # maps, and shifts over frequency
         assert figure.svg.count(b'class="dot') == 2 * len(edges) == 12  # two engines
@@ -190,7 +179,7 @@ def slides(case):
 
 
 def test_boundaries_at_which_the_model_holds_the_corner_down_are_told_apart(tmp_path):
-    result, page = study(tmp_path, Shifted(-0.05, slides), "one-cosine", levels=False)
+    result, page = study(tmp_path, shifted(-0.05, slides), "one-cosine", levels=False)
     pulled = [row["amplitude"] for row in where(result.rows, part="edge") if row["min_normal"] < 0]
     held = where(result.rows, part="held")
     assert len(pulled) == len(held) > 0

@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-from answered import answered, by_runs
+from answered import answered, by_runs, stored
 from page_numbers import number_in
 
 from analytic import load_scene, simulate, synthetic_motion
 from analytic.synthetic import PEAK, G
-from comparisons.running.provenance import read_result, write_result
 from comparisons.running.study import Ask
 from comparisons.studies import get_study
 from comparisons.studies.surface.study import crossing
@@ -50,9 +49,7 @@ def test_half_lies_where_the_share_crosses_it_and_is_shown(found, tmp_path):
         above = int(np.argmax(share >= 0.5))
         assert GRID[1][above - 1] <= row["half"] <= GRID[1][above]
         assert row["falls_by"] == pytest.approx(max(share[: k + 1].max() - share[k] for k in range(len(share))))
-    settings = {**found.settings, "changed_while_running": []}
-    path = write_result(tmp_path / "surface.json", "surface", settings, found.rows, found.arrays, modules=["analytic"])
-    whole = STUDY.page(read_result(path)).whole()
+    whole = STUDY.page(stored(tmp_path, "surface", found)).whole()
     (table,), (figure,) = whole.tables, whole.figures
     assert [(row[0], number_in(row[2])) for row in table.rows] == [
         (row["engine"], pytest.approx(row["half"], rel=5e-3)) for row in found.rows

@@ -1,10 +1,12 @@
-"""``rocking study all``: every study of this project, side by side, and the report on them."""
+"""``rocking study``: all of them side by side, and a stored result checked (running/test_check.py: how)."""
 
 from pathlib import Path
 
 import pytest
 
 from comparisons.commands import study as command
+from comparisons.running import check as module
+from comparisons.running.check import Check
 from comparisons.running.study import Found, Study
 
 
@@ -32,6 +34,15 @@ def test_results_lie_side_by_side_and_a_second_call_keeps_them(rocking, two_stud
     assert (tmp_path / "first" / "first.json").exists()
 
 
-def test_the_report_refuses_a_folder_without_results(rocking, tmp_path):
-    status, _, err = rocking("report", "--studies", tmp_path / "none", "--output", tmp_path / "report")
-    assert status == 2 and "holds no result file" in err and "rocking study all" in err
+@pytest.mark.parametrize("differences, status", [((), 0), (("exudyn: peak: stored 1, now 2",), 1)])
+def test_status_is_whether_all_hold(rocking, monkeypatch, differences, status):
+    asked = []
+
+    def check_all(name, folder, number, seed, workers):
+        asked.append((name, folder, number))
+        return [Check(f"{name}.json", seed, 4, 60, 1408, differences)]
+
+    monkeypatch.setattr(module, "check_all", check_all)
+    found, out, _ = rocking("study", "restitution", "--check", "4", "--output", "mine")
+    assert found == status and asked == [("restitution", "mine", 4)]
+    assert f"{4 - len(differences)} of 4 runs hold" in out and all(words in out for words in differences)

@@ -1,0 +1,122 @@
+"""Ctrl-C, signals and time limits: a long run ends at once, leaves no process and no half result."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import psutil
+import pytest
+
+from comparisons.running.store import Store
+
+ENDLESS = """
+[block]
+mass = 3172.05
+radius = 1.0884
+slenderness = 0.28
+[base]
+mass = 212.0
+[bearings]
+law = "linear"
+count = 4
+ka = 2e4
+[start]
+base_displacement = 0.2
+[run]
+duration = 1e7
+"""
+
+
+def endless(folder):
+    """A scene that takes minutes: on bearings without loss the block lifts again and again."""
+    path = folder / "scene.toml"
+    path.write_text(ENDLESS)
+    return path
+
+
+def started(*arguments):
+    return subprocess.Popen(
+        [sys.executable, "-m", "comparisons", *map(str, arguments)],
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+    )
+
+
+def test_the_time_limit_costs_the_run_alone(rocking, tmp_path):
+    scene = endless(tmp_path)
+    status, out, err = rocking("run", scene, "--time-limit", "1", "--json", "-")
+    assert status == 1 and json.loads(out)["failure"]["reason"] == "the run did not end in time"
+    assert "killed after the time limit of 1 s; --time-limit allows more" in err and err.count("\n") == 1
+
+
+def hears(process, seconds=60):
+    """Seconds until a process that was told to stop has ended, and those it had started that live on."""
+    family = psutil.Process(process.pid).children(recursive=True)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all of them
+    began = time.monotonic()
+    process.wait(seconds)
+    return time.monotonic() - began, psutil.wait_procs(family, timeout=5)[1]
+
+
+@pytest.mark.parametrize("command", ["run", "compare"])
+def test_ctrl_c_in_the_kernel(tmp_path, command):
+    scene = endless(tmp_path)
+    process = started(command, scene, "--json", tmp_path / "r.json")
+    deadline = time.monotonic() + 100
+    while not psutil.Process(process.pid).children() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    time.sleep(1.0)
+    seconds, alive = hears(process)
+    out, err = process.communicate()
+    assert (process.returncode, out, err) == (130, "", "Interrupted.\n")
+    assert seconds < 3 and not alive  # 0.2 s where the machine has nothing else to do
+    assert [path.name for path in tmp_path.iterdir()] == ["scene.toml"]
+
+
+KERNEL_HERE = """
+import sys
+from comparisons import cli
+from analytic import Block, Scene, Start, simulate
+import comparisons.commands.engines as stand_in
+def command():
+    print("begins", flush=True)
+    simulate(Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=0.28), base={"mass": 212.0},
+                   bearings={"law": "linear", "count": 4, "ka": 2e4}, start=Start(base_displacement=0.2), duration=1e7))
+stand_in.command = command
+cli.main(["engines"])
+"""
+
+
+@pytest.mark.parametrize(
+    "number, status, words", [(signal.SIGINT, 130, "Interrupted.\n"), (signal.SIGTERM, 143, "Ended by SIGTERM.\n")]
+)
+def test_signals_while_this_process_itself_is_in_the_kernel(number, status, words):
+    process = subprocess.Popen(
+        [sys.executable, "-c", KERNEL_HERE], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout.readline() == "begins\n"
+    time.sleep(5.0)
+    assert process.poll() is None
+    process.send_signal(number)
+    began = time.monotonic()
+    process.wait(60)
+    assert time.monotonic() - began < 3
+    assert (process.returncode, process.stderr.read()) == (status, words)
+
+
+def test_an_interrupted_study_resumes(tmp_path):
+    process = started("study", "restitution", "--quick", "--output", tmp_path)
+    store, deadline = tmp_path / "runs.jsonl", time.monotonic() + 120
+    while time.monotonic() < deadline and not (store.exists() and store.read_bytes().count(b"\n") > 5):
+        time.sleep(0.05)
+    seconds, alive = hears(process)
+    assert process.returncode == 130 and seconds < 3 and not alive
+    assert "Traceback" not in process.stderr.read()
+    with Store(store) as opened:
+        assert len(opened) > 5 and not opened.torn
+        assert not any("Interrupt" in json.dumps(row["failure"]) for row in opened.rows.values())
