@@ -10,8 +10,7 @@ from analytic.errors import SceneError
 from analytic.files import read_plain
 
 from .observed import Value, solved
-from .pages import COLUMNS
-from .problems import PROBLEMS, Problem
+from .problems import COLUMNS, PROBLEMS, Problem
 from .variants import TIGHTEST, Fault, with_fault
 
 LARGEST = 1_000_000  # bytes of a file of answers, a hundred times what the sheet asks for

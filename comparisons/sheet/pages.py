@@ -12,7 +12,7 @@ from markupsafe import Markup
 from analytic import SampledMotion
 
 from ..showing.templates import templates
-from .problems import DAMPING, PERIOD, PROBLEMS, SCALES, UNITS, VERSION, record
+from .problems import COLUMNS, DAMPING, PERIOD, PROBLEMS, SCALES, UNITS, VERSION, record
 
 if TYPE_CHECKING:
     from .problems import Problem
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 TEMPLATES = templates(Path(__file__).parent / "templates")
 TITLE = "Rocking blocks: problems for a code to be held against"
 ANSWERS, RECORD_FILE = "answers.csv", "record.csv"
-COLUMNS = ("scene", "quantity", "value")
 
 
 def write_sheet(folder: Path) -> list[Path]:

@@ -9,6 +9,7 @@ from typing import Any
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, synthetic_motion
 
+COLUMNS = ("scene", "quantity", "value")
 VERSION = 1  # of the scenes and quantities: answers to another sheet are answers to other questions
 RECORD_SAMPLES = 1601  # of the synthetic motion: its first 8 s
 DAMPING = 0.15  # of the linear bearings, as a share of critical damping
