@@ -11,7 +11,7 @@ from analytic import simulate
 from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel, base_jump_length_as_printed, restitution
 from comparisons.measuring import agreement
-from comparisons.measuring import restitution as errors_of
+from comparisons.measuring import errors as errors_of
 from comparisons.measuring.tolerances import TABLE
 from engines import get_engine
 
