@@ -132,3 +132,17 @@ def _place(name):
     if ":" not in place:
         raise KeyError(f"unknown solver {name!r}: choose one of {', '.join([*SOLVERS, *ENGINES])}")
     return place
+
+
+def variant_settings(engine: str, variant: str, levels: Iterable[float] | None = None) -> dict[str, Any]:
+    """A variant as the settings of a result list it; levels: those that are tried of it, in place of all."""
+    kind = get_engine(engine).variants[variant]
+    return {
+        "engine": engine,
+        "variant": variant,
+        "tier": kind.tier,
+        "parameter": kind.knob,
+        "default": kind.default,
+        "levels": sorted(kind.ladder) if levels is None else levels,
+        "applies_impact": kind.takes_restitution,
+    }

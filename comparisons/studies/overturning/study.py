@@ -14,7 +14,7 @@ from analytic import load_scene, overturning_map, simulate
 from engines import get_engine
 
 from ...measuring.statistics import cohen_kappa, confusion
-from ...running.cases import Case
+from ...running.cases import Case, variant_settings
 from ...running.refine import together
 from ...running.study import Batch, Found, say
 from .edges import HIGHEST, LOWEST, edges, least_normal, locate, pulse
@@ -154,16 +154,7 @@ def plan(ask: Ask, grid: Grid | None = None) -> Plan:
 def _described(engine: str, variant: str, kind: Variant) -> dict[str, Any]:
     """A variant, as the settings list it; levels: those that are tried of it."""
     tried = () if kind.takes_restitution else (kind.default,) if kind.tier == "defaults" else kind.ladder
-    return {
-        "engine": engine,
-        "variant": variant,
-        "tier": kind.tier,
-        "parameter": kind.knob,
-        "default": kind.default,
-        "levels": tried,
-        "applies_impact": kind.takes_restitution,
-        "friction": kind.friction,
-    }
+    return variant_settings(engine, variant, tried) | {"friction": kind.friction}
 
 
 def _refined(described, levels):

@@ -16,6 +16,7 @@ from analytic.twin.run import Event
 from engines import get_engine
 
 from ...measuring.errors import SLOWEST_IMPACT, impact_errors, rms, strong_impacts, worst
+from ...running.cases import variant_settings
 from ...running.study import Batch, Found
 from .cases import (
     CARYATID_BASE,
@@ -110,18 +111,7 @@ def _settings(grid, engines):
         "mass": MASS,
         "radius": RADIUS,
         "engines": engines,
-        "variants": [
-            {
-                "engine": engine,
-                "variant": variant,
-                "tier": kind.tier,
-                "parameter": kind.knob,
-                "default": kind.default,
-                "levels": sorted(kind.ladder),
-                "applies_impact": kind.takes_restitution,
-            }
-            for engine, variant, kind in variants_of(engines)
-        ],
+        "variants": [variant_settings(engine, variant) for engine, variant, _ in variants_of(engines)],
         "default_variants": {engine: get_engine(engine).default_variant for engine in engines},
         "experiments": [_named(one[1:4], "setting") | {"experiment": one[0]} for one in experiments_of(engines)],
         "experiment_slenderness": EXPERIMENT_SLENDERNESS,

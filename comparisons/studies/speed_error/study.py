@@ -26,6 +26,7 @@ from ...measuring.errors import (
     strong_impacts,
     strong_time_errors,
 )
+from ...running.cases import variant_settings
 from ...running.study import Batch, Found
 from .boundary import RUNS, Boundary, searched
 from .cases import Entry, Trial, entries, levels_of, trials
@@ -147,15 +148,7 @@ def plan(
         "rounds": rounds,
         "scenes": {trial.name: description(trial) for trial in scenes},
         "variants": [
-            {
-                "engine": engine,
-                "variant": variant,
-                "tier": kind.tier,
-                "parameter": kind.knob,
-                "default": kind.default,
-                "levels": levels_of(kind, ask.quick),
-                "applies_impact": kind.takes_restitution,
-            }
+            variant_settings(engine, variant, levels_of(kind, ask.quick))
             for engine in ask.engines
             for variant, kind in get_engine(engine).variants.items()
         ],
