@@ -114,9 +114,9 @@ def write_page(
 
 
 def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[str, Any]:
-    """What the first screen shows: of the scenes' own block its restitution, else the studies' numbers."""
+    """What the first screen shows: restitution of the scenes' own block where it rocks, else the studies' numbers."""
     columns = [one.judgement for one in stored if one.judgement is not None]
-    rated = _rated(scenes, block) if scenes.settings["own"] else [row for one in stored for row in one.rated]
+    rated = _rated(scenes, block) if block else [row for one in stored for row in one.rated]
     decision = rows_of(rated, columns)
     return {
         "recommendation": recommendation(decision, in_words()) if decision else [],
@@ -136,8 +136,9 @@ def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[
 def _rated(scenes, block):
     """The variants by the restitution of the scenes' own block."""
     known = scenes.settings["variants"]
-    rows = block.rows if block else ()
-    return [{**row, "best": known[row["engine"]][row["variant"]]["best"]} for row in rows if row["engine"] in known]
+    return [
+        {**row, "best": known[row["engine"]][row["variant"]]["best"]} for row in block.rows if row["engine"] in known
+    ]
 
 
 def _stage(scenes: Result) -> Mapping[str, Any] | None:
