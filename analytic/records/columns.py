@@ -14,8 +14,9 @@ import numpy as np
 from ..errors import SceneError
 from .content import HEADER_WIDTH, UNKNOWN, Asked, Content
 from .numbers import check_last, number
-from .statements import END, Statements, read_statements, stated_unit
+from .statements import TIMES, Statements, read_statements, stated_unit
 from .times import SAME, uniform_step, usable
+from .units import END
 
 NAME = "columns"
 # A line that begins like a number is data and must be read, or else damage would pass as a header.
@@ -24,7 +25,7 @@ COMMENT = ("#", "%", "!", "//")
 HEADER_LINES = 200
 NUMERIC = re.compile(r"[-+]?[.,]?[0-9]")
 SEQUENCE = re.compile(r"datasequence:", re.I)  # Taiwan's line of titles
-TIME_TITLE = re.compile(rf"(?:time|t|zeit|tiempo|temps|zaman){END}", re.I)
+TIME_TITLE = re.compile(rf"(?:{TIMES}){END}", re.I)
 REMEDY = "write time [s] and acceleration, two numbers a line"
 # Of numbers one after the other, neighbours in a line are no rougher than those a line apart, wherever in the line they
 # stand; in columns of their own they are, or some of them are.
@@ -60,14 +61,14 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
         check_last(f"line {table[-1][0]}", [fields for _, fields in table])
     known = asked.dt is not None or stated.step is not None
     timed = width > 1 and (_rises(table) or (_is_time(titles[0]) if titles else not known))
-    if timed:
+    listed = not (timed or asked.column is not None or titles[1:])
+    if not listed:
         _check_widths(table, rows)
     step = _step(table, stated) if timed else stated.step
     no_unit = "the header names no unit" if header else "columns of numbers carry no unit"
-    if not timed and asked.column is None and not titles[1:]:
+    if listed:
         values = np.array(_one_after_the_other(table, rows, known))
         return (Content(step, values, stated_unit(stated.rest, last), no_unit, unread=stated.unread),)
-    _check_widths(table, rows)
     names = [f"{place + 1} ({_name(titles[place])})" if titles else str(place + 1) for place in range(width)]
     places = _places(titles, names, asked.column, timed)
 
@@ -247,8 +248,6 @@ def _is_time(title: str) -> bool:
 def _step(table: Table, stated: Statements) -> float:
     """The step [s] of the times in the first column, or that which the header states where the two agree."""
     tokens = [fields[0] for _, fields in table]
-    for at, fields in table:
-        number(f"line {at}", fields[0])
     # One sample is refused by the caller.
     printed = (uniform_step(tokens) if len(tokens) > 1 else 1.0) / stated.per_second
     if stated.step is None:

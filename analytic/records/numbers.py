@@ -48,12 +48,12 @@ def fortran_values(lines: Sequence[str], begin: int) -> np.ndarray:
     rows = [(f"line {at}", line.rstrip()) for at, line in enumerate(lines[begin:], begin + 1) if line.strip()]
     tokens = [(where, token) for where, line in rows for part in line.split() for token in _parted(where, part)]
     values = np.array([number(where, token) for where, token in tokens])
-    forms = Counter(form_of(token) for _, token in tokens)
+    forms = [form_of(token) for _, token in tokens]
     # The last line may be shorter; lines of one number are as long as that is.
     widths = Counter(len(line) for _, line in rows[:-1] if len(line.split()) > 1)
-    usual = max(forms, key=forms.__getitem__, default=None)
-    for where, token in tokens:
-        if (form := form_of(token)) != usual and not _tiny(form, usual, token):
+    ((usual, _),) = Counter(forms).most_common(1) or [(None, 0)]
+    for (where, token), form in zip(tokens, forms, strict=True):
+        if form != usual and not _tiny(form, usual, token):
             raise SceneError(where, token, "not printed as the other numbers are: a damaged number", REMEDY)
     if len(widths) == 2 and min(widths.values()) == 1 < max(widths.values()):
         where, line = next((where, line) for where, line in rows if widths[len(line)] == 1)

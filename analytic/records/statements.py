@@ -15,10 +15,9 @@ from dataclasses import dataclass
 from ..errors import SceneError
 from .numbers import NUMBER, number
 from .times import OTHER_TIMES, PER_SECOND, SAME, exact, usable
-from .units import NOT_ACCELERATIONS, WORDS, Unit, factor_of, plain
+from .units import END, NOT_ACCELERATIONS, START, WORDS, Unit, factor_of, plain
 
-# A word begins and ends where no letter of any alphabet is.
-START, END = r"(?<![^\W\d_])", r"(?![^\W\d_])"
+TIMES = "time|t|zeit|tiempo|temps|zaman"  # words for it, folded
 _RATE = "|".join(
     (
         r"(?:sampl(?:e|ing)|digiti[sz](?:ing|ation)) ?-?(?:rate|freq(?:uency)?)",
@@ -55,7 +54,7 @@ _STEP = re.compile(
 )
 _FREQUENCY = re.compile(rf"{NUMBER} ?k?hz{END}")
 _TIME = re.compile(
-    rf"{START}(?<!-)(?:time|t|zeit|tiempo|temps|zaman)"
+    rf"{START}(?<!-)(?:{TIMES})"
     r"(?=[ ,:=/(\[]+(?:in |units?[ :=]+)?[(\[]?(µs|[a-z]+)(?![a-z0-9]))"
 )
 

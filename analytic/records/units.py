@@ -36,7 +36,7 @@ WORDS = {
 NOT_ACCELERATIONS = {f"{length}{rate}" for length in LENGTHS for rate in ("", "/s", ".s-1", "s-1")}
 
 # A word begins and ends where no letter of any alphabet is.
-_START, _END = r"(?<![^\W\d_])", r"(?![^\W\d_])"
+START, END = r"(?<![^\W\d_])", r"(?![^\W\d_])"
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def plain(word: str) -> str:
     """
     word = word.lower().strip(" .'\"").replace("²", "2").replace("⁻", "-").replace("−", "-").replace("·", ".")
     for pattern, short in LONG_NAMES:
-        word = re.sub(rf"{_START}(?:{pattern}){_END}", short, word)
+        word = re.sub(rf"{START}(?:{pattern}){END}", short, word)
     word = re.sub(r"(?<![({])(?:\^|\*\*)(?=[-({]*[0-9])", "", word).replace("*", ".")
     if word.count("(") == word.count(")") and word.count("{") == word.count("}"):
         word = re.sub(r"[(){}]", "", word)

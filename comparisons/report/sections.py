@@ -55,9 +55,13 @@ def _histories(result):
     if shown:
         words = (
             "Upper axes: all solvers over each other; lower axes: by how much they differ from the analytic model. A "
-            "block that never lifts in any solver has no tilt to show. The bearings' damping in Table 1(a) of the "
-            "paper, 30 %, is W_D/(2 π E_s); the usual equivalent viscous damping, W_D/(4 π E_s), is half of it."
+            "block that never lifts in any solver has no tilt to show."
         )
+        if not result.settings["own"]:
+            words += (
+                " The bearings' damping in Table 1(a) of the paper, 30 %, is W_D/(2 π E_s); the usual equivalent "
+                "viscous damping, W_D/(4 π E_s), is half of it."
+            )
         yield Section("Histories and hysteresis", (words,), (), tuple(shown))
 
 

@@ -75,6 +75,7 @@ def test_one_that_rocks_gets_its_own_restitution_and_replaces_an_older_report(tm
     assert result.settings["bases"] == [None] and max(row["rms"] for row in result.rows) < 1e-9
     assert sum(row["impacts"] for row in result.rows) >= 8
     assert "Restitution of this block" in page and "slides without friction" not in page
+    assert "Table 1(a)" not in page
     told = json.loads(form(folder / PAGE).text())
     assert told["schema"] == "rocking report 3" and len(told["results"]) == 2
     assert [(row["scene"], row["outcome"]) for row in told["rows"]] == [("bust", "stands"), ("released", "rocks")]
