@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..showing.parts import Mark, number
-from ..showing.wording import TRUSTED, USABLE
+from ..showing.wording import rating
 
 if TYPE_CHECKING:
     from ..showing.parts import Judgement
@@ -68,9 +68,8 @@ def _mark(judgement, one):
 def _restitution(one):
     if one["rms"] is None:
         return Mark("none measured", "bad", f"{one['failed']} runs failed")
-    level = "good" if one["rms"] <= TRUSTED else "fair" if one["rms"] <= USABLE else "bad"
     words = number(one["rms"], 2) + (f", {one['failed']} failed" if one["failed"] else "")
-    return Mark(words, "bad" if one["failed"] else level, f"worst impact {number(one['worst'], 2)}")
+    return Mark(words, rating(one["rms"], one["failed"]), f"worst impact {number(one['worst'], 2)}")
 
 
 def _rating(marks):

@@ -185,7 +185,7 @@ def read_result(path: str | PathLike[str]) -> Result:
 
 def _check_form(name, content):
     """Raise `ResultError` where the content of a file is no result, or one of another layout."""
-    content = dict(content) if isinstance(content, dict) else {}
+    content = content if isinstance(content, dict) else {}
     if content.get("schema") != SCHEMA:
         origin = content.get("provenance")
         commit = origin.get("commit") if isinstance(origin, dict) else None

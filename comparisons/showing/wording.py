@@ -8,19 +8,23 @@ from analytic.response import COMPARED, EDGE, UNCOMPARED, Difference
 TRUSTED, USABLE = 1e-3, 1e-2
 
 
-def solver_name(solver: str, variant: str | None = None) -> str:
-    """A solver as tables and plots call it."""
-    return solver if variant is None else f"{solver}, {variant}"
+RATINGS = {
+    "good": "may be trusted",
+    "fair": "is usable where a per cent does not matter",
+    "bad": "is not to be trusted",
+}
+
+
+def rating(rms: float | None, failed: int) -> str:
+    """The level, a key of `RATINGS`, of a root mean square error of restitution, None for none, and of failed runs."""
+    if rms is None or failed:
+        return "bad"
+    return "good" if rms <= TRUSTED else "fair" if rms <= USABLE else "bad"
 
 
 def trust(rms: float | None, failed: int) -> str:
-    """May restitution be trusted at this root mean square error, None for none, and number of failed runs? In words."""
-    if rms is not None and not failed:
-        if rms <= TRUSTED:
-            return "may be trusted"
-        if rms <= USABLE:
-            return "is usable where a per cent does not matter"
-    return "is not to be trusted"
+    """The `rating` in words."""
+    return RATINGS[rating(rms, failed)]
 
 
 def differing(comparable: str, differences: Iterable[Difference]) -> list[str]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...showing.parts import Page
-from ...showing.rows import Column, grouped, table, where
-from ...showing.wording import USABLE, solver_name
+from ...showing.rows import NAME, Column, grouped, table, where
+from ...showing.wording import USABLE
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
@@ -16,8 +16,8 @@ def page(result: Result) -> Page:
     """The `Page` of a `Result` of the sheet study."""
     scenes = result.settings["scenes"]
     rows = [
-        {"name": solver_name(*names), **dict.fromkeys(scenes), **{row["scene"]: _error(row) for row in own}}
-        for names, own in grouped(result.rows, "engine", "variant").items()
+        {"name": name, **dict.fromkeys(scenes), **{row["scene"]: _error(row) for row in own}}
+        for (name,), own in grouped(result.rows, NAME.text).items()
     ]
     for row in rows:
         within = all(isinstance(row[scene], float) and row[scene] <= USABLE for scene in scenes)
