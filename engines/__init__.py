@@ -16,15 +16,11 @@ from .contract import EXTRA, Engine
 from .plugins import find_engines
 from .simulating import Simulator
 
-# The two that the project began with stand first. Found, and imported by name, not by statement: a result of one engine
-# depends neither on the records of the others nor on which there are.
-BUILT_IN = tuple(
-    sorted(
-        (module.name for module in iter_modules(__path__) if module.ispkg),
-        key=lambda name: (name not in ("exudyn", "pybullet"), name),
-    )
-)
-_declared: dict[str, Engine] = {name: import_module(f"{__name__}.{name}").ENGINE for name in BUILT_IN}
+# Found, and imported by name, not by statement: a result of one engine depends neither on the records of the others nor
+# on which there are. The subject engines stand first.
+_records: list[Engine] = [import_module(f"{__name__}.{one.name}").ENGINE for one in iter_modules(__path__) if one.ispkg]
+_declared = {engine.name: engine for engine in sorted(_records, key=lambda engine: (not engine.subject, engine.name))}
+BUILT_IN = tuple(_declared)
 _found, BROKEN = find_engines(_declared)  # BROKEN: the errors of entries that hold no engine, by name
 ENGINES = {name: Simulator.of(engine) for name, engine in (_declared | _found).items()}
 

@@ -152,6 +152,8 @@ class Engine:
     tolerances : str or None
         Name of a module whose ``TOLERANCES``, {variant: tuple of `engines.bounds.Bound`}, are its rows of the tolerance
         table.
+    subject : bool
+        One of those that the question of the studies is about; the others stand beside them.
     origin : str
         What declared an engine from outside; "" for those of this project.
     """
@@ -164,6 +166,7 @@ class Engine:
     adapter: str
     dashes: str | tuple[float, tuple[float, ...]] = "-"
     tolerances: str | None = None
+    subject: bool = False
     origin: str = ""
 
     def load(self) -> ModuleType:

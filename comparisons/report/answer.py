@@ -1,38 +1,53 @@
-"""The first screen: one recommendation, the decision table, and what not to do; all from result files."""
+"""The first screen: a recommendation, the answers of all studies side by side, what not to do; from results alone."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ..showing.parts import Mark, number
+from engines import ENGINES
+
+from ..showing.parts import COST, RESTITUTION, Judgement, Mark, number
 from ..showing.wording import rating
 
 if TYPE_CHECKING:
-    from ..showing.parts import Judgement
+    from ..running.provenance import Result
 
 # part: good in all that was tested, and something was not
 LEVELS = {"good": "✓ trust", "part": "✓ as far as tested", "fair": "~ with care", "bad": "✗ do not trust"}
 UNTESTED = Mark("not tested", "none")
+MOST_WORDS = 120  # of the paragraph that says the answer
 
 
 @dataclass(frozen=True)
-class Row:
-    """One way to set an engine up. marks: a `Mark` for each column; rating: the worst of them, the one rating that all
-    pages use.
+class Setup:
+    """One way to set an engine up. marks: {heading of a `Judgement`: its `Mark`}; rating: the worst of those that rate,
+    the one rating that all pages use.
 
-    best: it is the engine's default; cpu: s of CPU time per simulated second, of the runs behind its restitution.
+    best: it is the engine's default. subject: `engines.contract.Engine.subject`. applies_impact: the adapter does, by
+    the model's equations. cost: CPU time over the analytic model's.
     """
 
     engine: str
     variant: str
     tier: str
     best: bool
-    marks: tuple[Mark, ...]
-    rating: Mark
-    cpu: float | None
+    subject: bool
     applies_impact: bool
+    marks: Mapping[str, Mark]
+    rating: Mark
+    cost: float | None
+
+    @property
+    def asked(self) -> bool:
+        """Whether it is a column of the first table: a subject engine as a user takes it, tuned or by default."""
+        return self.subject and not self.applies_impact and (self.best or self.tier == "defaults")
+
+    @property
+    def name(self) -> str:
+        return f"{self.engine}, {self.variant}"
 
     @property
     def command(self) -> str:
@@ -43,33 +58,36 @@ class Row:
         return f'get_engine("{self.engine}").simulate(scene, variant="{self.variant}")'
 
 
-def rows_of(rated: Sequence[Mapping[str, Any]], columns: Sequence[Judgement]) -> list[Row]:
-    """Rows of the decision table: trusted ones first, the cheapest of equals first.
+def setups_of(variants: Iterable[Mapping[str, Any]], judgements: Sequence[Judgement]) -> list[Setup]:
+    """The setups that any study judges: those of the first table first, tuned before defaults; then the better rating,
+    then the lower cost.
 
-    rated: of each variant engine, variant, tier, best, applies_impact and, of its restitution, rms, worst, failed,
-    cpu_per_second.
+    variants: of each engine, variant, tier, best and applies_impact.
     """
-    rows = []
-    for one in rated:
-        marks = (_restitution(one), *(_mark(column, one) for column in columns))
+    found = []
+    for one in variants:
+        marks = {each.heading: _mark(each, one) for each in judgements}
+        if all(mark is UNTESTED for mark in marks.values()):
+            continue
         how = {key: one[key] for key in ("engine", "variant", "tier", "best", "applies_impact")}
-        rows.append(Row(**how, marks=marks, rating=_rating(marks), cpu=one["cpu_per_second"]))
-    order = list(LEVELS)
-    return sorted(rows, key=lambda row: (order.index(row.rating.level), row.cpu or 1e9))
+        subject = one["engine"] in ENGINES and ENGINES[one["engine"]].subject
+        cost = next((marks[each.heading].value for each in judgements if each.key == COST), None)
+        rated = _rating([marks[each.heading] for each in judgements if each.rates])
+        found.append(Setup(**how, subject=subject, marks=marks, rating=rated, cost=cost))
+    return sorted(found, key=_place)
+
+
+def _place(one):
+    cost = math.inf if one.cost is None else one.cost
+    if one.asked:
+        return (0, one.tier == "defaults", list(ENGINES).index(one.engine), cost)
+    return (1, False, list(LEVELS).index(one.rating.level), cost)
 
 
 def _mark(judgement, one):
     """What a study says of a variant; one that takes engines as they come knows the default by no name."""
-    marks = judgement.marks
-    unnamed = marks.get((one["engine"], ""), UNTESTED) if one["best"] else UNTESTED
-    return marks.get((one["engine"], one["variant"]), unnamed)
-
-
-def _restitution(one):
-    if one["rms"] is None:
-        return Mark("none measured", "bad", f"{one['failed']} runs failed")
-    words = number(one["rms"], 2) + (f", {one['failed']} failed" if one["failed"] else "")
-    return Mark(words, rating(one["rms"], one["failed"]), f"worst impact {number(one['worst'], 2)}")
+    unnamed = judgement.marks.get((one["engine"], ""), UNTESTED) if one["best"] else UNTESTED
+    return judgement.marks.get((one["engine"], one["variant"]), unnamed)
 
 
 def _rating(marks):
@@ -77,41 +95,66 @@ def _rating(marks):
     return Mark(LEVELS[level], level)
 
 
-def best_of(rows: Sequence[Row]) -> Row | None:
-    """The cheapest row that may be trusted and decides the impact itself; None where there is none."""
-    return next((row for row in rows if row.rating.level in ("good", "part") and not row.applies_impact), None)
+def own_restitution(block: Result) -> Judgement:
+    """Restitution of the scenes' own block, from its free rocking; takes the place of the study's."""
+    marks = {
+        (row["engine"], row["variant"]): Mark(
+            number(row["rms"], 2) + f", {row['failed']} failed" * bool(row["failed"]),
+            rating(row["rms"], row["failed"]),
+            f"{row['impacts']} impacts, worst {number(row['worst'], 2)}",
+            row["rms"],
+        )
+        for row in block.rows
+        if row["engine"] != "analytic"
+    }
+    return Judgement("restitution of this block, free: error, rms", marks, RESTITUTION)
 
 
-def recommendation(rows: Sequence[Row], limits: str) -> list[str]:
+def best_of(setups: Sequence[Setup]) -> Setup | None:
+    """The cheapest that may be trusted and whose engine computes the impact itself; None where there is none."""
+    good = [one for one in setups if one.rating.level in ("good", "part") and not one.applies_impact]
+    return min(
+        good, key=lambda one: (one.rating.level != "good", math.inf if one.cost is None else one.cost), default=None
+    )
+
+
+def recommendation(setups: Sequence[Setup], judgements: Sequence[Judgement], limits: str) -> list[str]:
     """What to use, with error, cost and limits, the range in words, within which it was tested; list of str."""
     words = ["One rigid block, planar, on sharp corners: use the analytic model. It is exact to the closed forms."]
-    row = best_of(rows)
-    if row is None:
-        words.append("More bodies or contacts: no engine that was run here may be trusted in all that was tested.")
+    best = best_of(setups)
+    if best is None:
+        words.append("No engine that was run here may be trusted in all that was tested.")
         return words
-    words.append(
-        f"More bodies or contacts: {row.engine} set as “{row.variant}”: restitution within {row.marks[0].words} at "
-        f"{number(row.cpu, 2)} s of CPU time per simulated second."
-    )
-    words.append(f"Tested for {limits}; planar, no sliding, no jump.")
+    errors = [best.marks[one.heading].words for one in judgements if one.key == RESTITUTION]
+    said = [f"restitution within {error}" for error in errors[:1]]
+    said += [] if best.cost is None else [f"{number(best.cost, 2)} times the analytic model's CPU time"]
+    words.append(f"Where it must be a multibody engine: {best.engine} set as “{best.variant}”: {', at '.join(said)}.")
+    words.append(f"Tested with one block, for {limits}; planar, no sliding, no jump.")
     return words
 
 
-def _error(row):
-    return row.marks[0].words.partition(",")[0]
+def paragraph(setups: Sequence[Setup], judgements: Sequence[Judgement]) -> str:
+    """The first table in words, at most `MOST_WORDS`: of each subject engine, tuned and by default, what differs."""
+    sentences = []
+    for one in (one for one in setups if one.asked):
+        known = [each for each in judgements if each.says and one.marks[each.heading] is not UNTESTED]
+        if known:
+            said = "; ".join(each.says.format(one.marks[each.heading].words) for each in known)
+            how = "tuned" if one.tier == "tuned" else "with default settings"
+            sentences.append(f"{one.engine} {how}: {said}.")
+    return " ".join(sentences)
 
 
-def not_to_do(rows: Sequence[Row]) -> list[str]:
+def not_to_do(setups: Sequence[Setup], judgements: Sequence[Judgement]) -> list[str]:
     """Three lines at most."""
-    first = [row for row in rows if row.tier == "defaults" and row.marks[0].level != "none"]
+    heads = [one.heading for one in judgements if one.key == RESTITUTION]
+    defaults = [one for one in setups if one.tier == "defaults" and any(one.marks[head].value for head in heads)]
     lines = []
-    if first:
-        worst = max(first, key=lambda row: list(LEVELS).index(row.rating.level))
-        bad = [row for row in first if row.rating.level == "bad"]
-        lines.append(
-            f"Do not use default settings: {len(bad)} of {len(first)} fail (restitution off by "
-            f"{', '.join(f'{_error(row)} in {row.engine}' for row in bad or [worst])})."
-        )
+    if defaults:
+        bad = [one for one in defaults if one.rating.level == "bad"]
+        off = ", ".join(f"{number(one.marks[heads[0]].value, 2)} in {one.engine}" for one in bad or defaults)
+        count = f"{len(bad)} of {len(defaults)}"
+        lines.append(f"Do not use default settings: {count} are not to be trusted (restitution off by {off}).")
     lines.append(
         "Check how near the outcome is to changing (rocking margin SCENE): if your data are less certain than that, it "
         "decides nothing."

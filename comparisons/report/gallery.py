@@ -7,24 +7,26 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 from ..running.provenance import PROJECT_FOLDER, RESULTS, read_result
 from ..showing.charts import alone
 from ..studies import get_study
+from .answer import paragraph, setups_of
+from .studies import stored_studies, variants_of
 
 if TYPE_CHECKING:
     from ..showing.parts import Section
 
 GALLERY, README = Path(__file__).with_name("gallery"), PROJECT_FOLDER / "README.md"
 BEGIN, END = "<!-- findings of the stored studies -->", "<!-- end of findings -->"
-HEADLINES = ("restitution", "random-scenes", "overturning", "matters", "speed-error")
 PANELS = {"restitution": 0, "overturning": -1, "matters": 0, "speed-error": -1}  # study: which panel of its finding
 
 
 def stored(studies: Path = RESULTS) -> dict[str, Section]:
-    """{study: its finding}, of those in `HEADLINES` whose result lies in `studies`.
+    """{study: its finding}, of those in `PANELS` whose result lies in `studies`.
 
     Raises
     ------
@@ -33,7 +35,7 @@ def stored(studies: Path = RESULTS) -> dict[str, Section]:
     """
     pages = {
         name: get_study(name).page(read_result(file)).opening()
-        for name in HEADLINES
+        for name in PANELS
         if (file := studies / f"{name}.json").exists()
     }
     return {name: opening for name, opening in pages.items() if opening is not None}
@@ -49,13 +51,16 @@ def gallery(found: Mapping[str, Section]) -> dict[str, str]:
     return made
 
 
-def headlines(found: Mapping[str, Section]) -> str:
-    """What was found, a Markdown list."""
-    lines = []
-    for section in found.values():
-        subject, _, words = section.title.partition(": ")
-        lines.append(f"- **{subject}**: {words}.")
-    return "\n".join(lines)
+def headlines(studies: Path = RESULTS) -> str:
+    """The report's first table and its paragraph as Markdown, from the results in `studies`."""
+    stored = stored_studies(studies)
+    judgements = [each for one in stored for each in one.judgements]
+    asked = [one for one in setups_of(variants_of(stored), judgements) if one.asked]
+    rows = [["", *(f"{one.engine}, {one.tier}" for one in asked)], ["---"] + ["---:"] * len(asked)]
+    rows += [["rating", *(one.rating.words for one in asked)]]
+    rows += [[each.heading, *(one.marks[each.heading].words for one in asked)] for each in judgements]
+    lines = [f"| {' | '.join(row)} |" for row in rows]
+    return "\n".join((*lines, "", *wrap(paragraph(asked, judgements), 120)))
 
 
 def with_findings(readme: str, words: str) -> str:
@@ -67,7 +72,7 @@ def with_findings(readme: str, words: str) -> str:
 
 if __name__ == "__main__":
     found = stored()
-    README.write_text(with_findings(README.read_text(encoding="utf-8"), headlines(found)), encoding="utf-8")
+    README.write_text(with_findings(README.read_text(encoding="utf-8"), headlines()), encoding="utf-8")
     GALLERY.mkdir(exist_ok=True)
     for name, svg in gallery(found).items():
         (GALLERY / name).write_text(svg, encoding="utf-8")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 from ..running.provenance import RESULTS, ResultError, age, last_check, read_result
 from ..showing.parts import Judgement, Section
 from ..studies import StudyBroken, get_study, study_names
-from ..studies.restitution import page as restitution
 
 if TYPE_CHECKING:
     from ..running.provenance import Result
@@ -24,17 +23,18 @@ FEW = 4  # files, drawn here: new processes would take longer
 
 @dataclass(frozen=True)
 class Stored:
-    """One result file. section: all of it; finding: its answer for the first page; judgement: its column there.
+    """One result file. section: all of it; finding: its answer for the first page; judgements: its rows of the first
+    table.
 
-    origin: machine, versions, date and commit in one line. rated: what the study of restitution says of each variant.
+    origin: machine, versions, date and commit in one line. variants: those it knows, as `answer.setups_of` takes them.
     """
 
     name: str
     section: Section
     finding: Section | None = None
-    judgement: Judgement | None = None
+    judgements: tuple[Judgement, ...] = ()
     origin: str = ""
-    rated: Sequence[Mapping[str, Any]] = ()
+    variants: tuple[Mapping[str, Any], ...] = ()
 
 
 def stored_studies(
@@ -58,6 +58,12 @@ def stored_studies(
             stored.append(_aged(next(shown), old))
             progress(len(stored), len(files))
     return stored
+
+
+def variants_of(stored: Iterable[Stored], *more: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Each variant once: `more`, and those that the studies know."""
+    listed = [*more, *(variant for one in stored for variant in one.variants)]
+    return list({(one["engine"], one["variant"]): one for one in reversed(listed)}.values())
 
 
 def origin_of(result: Result) -> str:
@@ -95,9 +101,18 @@ def _stored(file):
     try:
         study = get_study(result.kind)
         page = study.page(result)  # drawn once
-        judgement = study.judgement(result)
+        judgements = study.judgements(result)
     except (KeyError, StudyBroken) as error:
         words = f"{file.name} cannot be shown: {error.args[0]}."
         return Stored(file.stem, Section(f"Study {result.kind}", (words,)), origin=origin_of(result))
-    rated = restitution.rated(result) if result.kind == "restitution" else ()
-    return Stored(file.stem, page.whole(), page.opening(), judgement, origin_of(result), rated)
+    return Stored(file.stem, page.whole(), page.opening(), judgements, origin_of(result), _variants(result.settings))
+
+
+def _variants(settings):
+    """The variants that settings list with their engine's default one."""
+    best = settings.get("default_variants", {})
+    return tuple(
+        {**one, "best": best[one["engine"]] == one["variant"]}
+        for one in settings.get("variants", ())
+        if best and one["engine"] in best
+    )

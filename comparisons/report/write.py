@@ -20,13 +20,13 @@ from ..showing.parts import Section, Table
 from ..showing.wording import TRUSTED, USABLE
 from . import equations
 from .animation import animation
-from .answer import not_to_do, recommendation, rows_of
+from .answer import not_to_do, own_restitution, paragraph, recommendation, setups_of
 from .detail import assets, detail, environment
 from .earthquake import earthquake
 from .runs import RESTITUTION, SCENES
 from .sections import restitution_section, scene_sections
 from .statue import card_of
-from .studies import Stored, commit_of, origin_of, stored_studies
+from .studies import Stored, commit_of, origin_of, stored_studies, variants_of
 from .summary import summary
 
 if TYPE_CHECKING:
@@ -114,31 +114,32 @@ def write_page(
 
 
 def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[str, Any]:
-    """What the first screen shows: restitution of the scenes' own block where it rocks, else the studies' numbers."""
-    columns = [one.judgement for one in stored if one.judgement is not None]
-    rated = _rated(scenes, block) if block else [row for one in stored for row in one.rated]
-    decision = rows_of(rated, columns)
+    """What the first screen shows: the studies' numbers; restitution of the scenes' own block where it rocks."""
+    where = {each.heading: f"{PAGES}/{one.name}.html" for one in stored for each in one.judgements}
+    judgements = [each for one in stored for each in one.judgements]
+    if block:
+        own = own_restitution(block)
+        where[own.heading] = f"{PAGES}/runs.html"
+        judgements = [own, *(each for each in judgements if each.key != own.key)]
+    own_variants = [
+        {**kind, "engine": engine, "variant": variant}
+        for engine, variants in scenes.settings["variants"].items()
+        for variant, kind in variants.items()
+    ]
+    setups = setups_of(variants_of(stored, *own_variants), judgements)
     return {
-        "recommendation": recommendation(decision, in_words()) if decision else [],
+        "recommendation": recommendation(setups, judgements, in_words()) if setups else [],
         "summary": summary(scenes, block),
-        "not_to_do": not_to_do(decision),
-        "decision": decision,
-        "measured": "this report’s own runs of this block" if block else "the study of one impact, default settings",
-        "headings": ["restitution error, rms", *(column.heading for column in columns)],
+        "not_to_do": not_to_do(setups, judgements),
+        "decision": setups,
+        "says": paragraph(setups, judgements),
+        "headings": {each.heading: where[each.heading] for each in judgements},
         "trusted": f"{TRUSTED:g}",
         "usable": f"{USABLE:g}",
         "computed": _computed(scenes),
         "origin": origin_of(scenes),
         "stage": _stage(scenes),
     }
-
-
-def _rated(scenes, block):
-    """The variants by the restitution of the scenes' own block."""
-    known = scenes.settings["variants"]
-    return [
-        {**row, "best": known[row["engine"]][row["variant"]]["best"]} for row in block.rows if row["engine"] in known
-    ]
 
 
 def _stage(scenes: Result) -> Mapping[str, Any] | None:

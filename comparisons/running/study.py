@@ -93,8 +93,8 @@ class Study:
     name: on the command line, of its files, and the kind of its result. question: one line, the command's help.
     plan: ``(ask, **options)`` -> generator, see above; its keyword-only parameters, annotated as Typer wants them, are
     options of the command. shown_by: the module that shows it, imported only there: its ``page(result)`` gives the
-    `comparisons.showing.parts.Page`, and its ``judgement(result)``, if it has one, a column of the report's decision
-    table. problems: result -> sentences that end the command with status 1. all_engines: whether all that are installed
+    `comparisons.showing.parts.Page`, and its ``judgements(result)``, if it has them, rows of the report's first table.
+    problems: result -> sentences that end the command with status 1. all_engines: whether all that are installed
     take part where none is asked for.
     """
 
@@ -109,10 +109,9 @@ class Study:
         """What is shown of a result."""
         return import_module(self.shown_by).page(result)
 
-    def judgement(self, result: Result) -> Judgement | None:
-        """The column of the decision table; None of a study that judges no engine."""
-        judges = getattr(import_module(self.shown_by), "judgement", None)
-        return judges and judges(result)
+    def judgements(self, result: Result) -> tuple[Judgement, ...]:
+        """Rows of the report's first table; none of a study that judges no engine."""
+        return getattr(import_module(self.shown_by), "judgements", lambda result: ())(result)
 
 
 def compute(

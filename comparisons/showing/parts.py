@@ -57,21 +57,34 @@ class Figure:
 
 @dataclass(frozen=True)
 class Mark:
-    """What a study says of one solver: in words, and as "good", "fair" or "bad"; note: what the words leave out."""
+    """What a study says of one solver: in words, and as "good", "fair", "bad" or "none", which says nothing of trust.
+
+    note: the number of runs or scenes behind it, and what else the words leave out. value: the number itself.
+    """
 
     words: str
     level: str
     note: str = ""
+    value: float | None = None
+
+
+RESTITUTION, COST = "restitution", "cost"  # keys of judgements that the report's first screen takes numbers of
 
 
 @dataclass(frozen=True)
 class Judgement:
-    """A study's column of the decision table. heading: with unit. marks: {(engine, variant): `Mark`}; variant "" is the
+    """A row of the report's first table. heading: with unit. marks: {(engine, variant): `Mark`}; variant "" is the
     default one.
+
+    key: by which others find it. rates: whether its levels count in the one rating of a variant. says: how a mark's
+    words stand in a sentence, with {} in their place; "": in none.
     """
 
     heading: str
     marks: dict
+    key: str = ""
+    rates: bool = True
+    says: str = ""
 
 
 @dataclass(frozen=True)

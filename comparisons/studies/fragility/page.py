@@ -54,7 +54,8 @@ def page(result: Result) -> Page:
     best = {row["scene"]: row["measure"] for row in where(fits, state=OVERTURNING, best=True)}
     chosen = [row for row in fits if row["measure"] == best.get(row["scene"], "PGA")]
     tones = dict(zip(dict.fromkeys(row["state"] for row in fits), TONES, strict=False))
-    marks = judgement(result).marks
+    (outcomes,) = judgements(result)
+    marks = outcomes.marks
     few = [", ".join(pair) for pair, mark in marks.items() if mark.level == "none"]
     return Page(
         _title(marks),
@@ -146,7 +147,7 @@ def page(result: Result) -> Page:
     )
 
 
-def judgement(result: Result) -> Judgement:
+def judgements(result: Result) -> tuple[Judgement, ...]:
     """Whether the odds of a limit state differ from the model's, by (engine, variant)."""
     marks = {}
     for variant in result.settings["variants"]:
@@ -165,7 +166,7 @@ def judgement(result: Result) -> Judgement:
         resolved = "no difference" if None in found else f"a difference of {percent(max(found))}"
         note = f"{resolved} would have been found with 80 % probability"
         marks[pair] = Mark(words, "bad" if bad else "none" if few else "good", note)
-    return Judgement("outcomes over many earthquakes", marks)
+    return (Judgement("outcomes under synthetic motions", marks, says="{} of synthetic motions"),)
 
 
 def _title(marks):

@@ -132,15 +132,15 @@ def page(result: Result) -> Page:
     )
 
 
-def judgement(result: Result) -> Judgement:
+def judgements(result: Result) -> tuple[Judgement, ...]:
     """Largest shift of a boundary, by (engine, variant)."""
     marks = {}
     for row in _rated(result):
         lost = row["of"] - row["found"]
         words = "none found" if row["largest"] is None else percent(row["largest"]) + (f", {lost} lost" if lost else "")
         share = f"{row['found']} of {row['of']} boundaries found"
-        marks[row["engine"], row["variant"]] = Mark(words, row["rating"], share)
-    return Judgement("boundary shift, worst", marks)
+        marks[row["engine"], row["variant"]] = Mark(words, row["rating"], share, row["largest"])
+    return (Judgement("overturning boundary under pulses: shift, worst", marks, says="boundary moved by {} at most"),)
 
 
 def _place(row):

@@ -97,12 +97,13 @@ def tallies(result: Result) -> list[dict[str, Any]]:
     return found
 
 
-def judgement(result: Result) -> Judgement:
-    """The column of the decision table."""
+def judgements(result: Result) -> tuple[Judgement, ...]:
+    """Runs that are right, by (engine, variant)."""
     marks = {}
     for row in tallies(result):
         if row["judged"]:
             level = "good" if row["share"] >= TRUSTED else "fair" if row["share"] >= 0.5 else "bad"
             words = f"{row['right']} of {row['judged']}"
-            marks[row["engine"], row["variant"]] = Mark(words, level, f"{row['failed']} failed")
-    return Judgement("random statues right", marks)
+            wrong = f"{row['differs']} differ, {row['failed']} failed"
+            marks[row["engine"], row["variant"]] = Mark(words, level, wrong, row["share"])
+    return (Judgement("random scenes right", marks, says="{} random scenes right"),)

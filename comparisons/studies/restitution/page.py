@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from ...measuring.errors import rms
 from ...showing.figures import beside, lines, shades
-from ...showing.parts import Head, Page, number, percent, short
+from ...showing.parts import RESTITUTION, Head, Judgement, Mark, Page, number, percent, short
 from ...showing.rows import NAME, Column, grouped, setting_of, table, where
-from ...showing.wording import TRUSTED, USABLE, trust
+from ...showing.wording import TRUSTED, USABLE, rating, trust
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
@@ -110,35 +110,61 @@ def _ground(row):
     return "rigid ground" if row["ratio"] is None else "sliding base"
 
 
+def judgements(result: Result) -> tuple[Judgement, ...]:
+    """Error of restitution and of the base velocity jump, by (engine, variant)."""
+    rows = rated(result)
+    return (
+        Judgement(
+            "restitution, free rocking: error, rms",
+            {(row["engine"], row["variant"]): _mark(row, "rms", "worst") for row in rows},
+            RESTITUTION,
+            says="error of restitution {} in free rocking",
+        ),
+        Judgement(
+            "base velocity jump, free base: relative error, rms",
+            {(row["engine"], row["variant"]): _mark(row, "jump_rms", "jump_worst") for row in rows},
+            says="of the base velocity jump {}",
+        ),
+    )
+
+
+def _mark(row, error, worst):
+    """A lost impact is an error: it takes the rating away as a failed run does."""
+    if row[error] is None:
+        return Mark("none measured", "bad", f"{row['failed']} of {row['runs']} runs failed")
+    counts = {"impacts": row["impacts"], "lost": row["lost"], "runs failed": row["failed"]}
+    note = ", ".join(f"{count} {words}" for words, count in counts.items() if count)
+    level = rating(row[error], row["failed"] + row["lost"])
+    return Mark(number(row[error], 2), level, f"{note}; worst {number(row[worst], 2)}", row[error])
+
+
 def rated(result: Result) -> list[dict[str, Any]]:
     """A row for each variant at its default setting, with the worse of both grounds: what the first screen rates it by.
 
-    Settings, rms, worst, failed, runs, orders, cpu_per_second, rating in words, and whether it is its engine's best.
+    Settings, rms, worst, jump_rms, jump_worst, impacts, lost, failed, runs, orders and rating in words.
     """
     variants = {NAME.of(variant): variant for variant in result.settings["variants"]}
     orders = grouped(where(result.rows, part="order"), NAME.of)
     return [
-        _rated(variants[name], rows, orders[name,], result.settings["default_variants"])
+        _rated(variants[name], rows, orders[name,])
         for (name,), rows in grouped(where(result.rows, part="summary", scope="all"), NAME.of).items()
     ]
 
 
-def _rated(variant, rows, orders, defaults):
+def _rated(variant, rows, orders):
     def most(key):
         return max((row[key] for row in rows if row[key] is not None), default=None)
 
-    failed = sum(row["failed"] for row in rows)
+    errors = {key: most(key) for key in ("rms", "worst", "jump_rms", "jump_worst")}
+    counts = {key: sum(row[key] for row in rows) for key in ("runs", "failed", "impacts", "lost")}
+    wrong = counts["failed"] + counts["lost"]
     return {
         **variant,
-        "best": defaults[variant["engine"]] == variant["variant"],
         "level": variant["default"],
-        "rms": most("rms"),
-        "worst": most("worst"),
-        "cpu_per_second": most("cpu_per_second"),
-        "failed": failed,
-        "runs": sum(row["runs"] for row in rows),
+        **errors,
+        **counts,
         "orders": [row["order"] for row in orders if row["order"] is not None],
-        "rating": trust(most("rms"), failed).removesuffix(" where a per cent does not matter"),
+        "rating": trust(errors["rms"], wrong).removesuffix(" where a per cent does not matter"),
     }
 
 

@@ -140,13 +140,17 @@ def page(result: Result) -> Page:
     )
 
 
-def judgement(result: Result) -> Judgement:
+def judgements(result: Result) -> tuple[Judgement, ...]:
     """Hard cases right of all, by (engine, variant)."""
-    marks = {}
-    for row in _counts(result, _cells(result)):
+    marks, cells = {}, _cells(result)
+    for row in _counts(result, cells):
         level = "good" if row[RIGHT] >= MOST * row["run"] else "fair" if row[RIGHT] >= SOME * row["run"] else "bad"
-        marks[row["engine"], row["variant"]] = Mark(f"{row[RIGHT]} of {row['run']}", level)
-    return Judgement("hard cases right", marks)
+        failed = [case for (case, name), cell in cells.items() if name == NAME.of(row) and cell["result"] == FAILED]
+        note = f"failed: {', '.join(map(_readable, failed))}" if failed else "none failed"
+        marks[row["engine"], row["variant"]] = Mark(
+            f"{row[RIGHT]} of {row['run']}", level, note, row[RIGHT] / row["run"]
+        )
+    return (Judgement("hard cases right", marks, says="{} hard cases right"),)
 
 
 def _cells(result):

@@ -2,72 +2,66 @@
 
 import pytest
 
-from comparisons.report.answer import best_of, not_to_do, recommendation, rows_of
-from comparisons.showing.parts import Judgement, Mark
+from comparisons.report.answer import MOST_WORDS, best_of, not_to_do, paragraph, recommendation, setups_of
+from comparisons.showing.parts import COST, RESTITUTION, Judgement, Mark
+from comparisons.showing.wording import rating
+
+FINE, COARSE, GIVEN, OTHER = ("exudyn", "fine"), ("exudyn", "coarse"), ("exudyn", "given"), ("mujoco", "fine")
+TIERS = {FINE: "tuned", COARSE: "defaults", GIVEN: "assisted", OTHER: "tuned"}
+VARIANTS = [
+    dict(engine=engine, variant=variant, tier=tier, best=variant == "fine", applies_impact=tier == "assisted")
+    for (engine, variant), tier in TIERS.items()
+]
 
 
-def rated(engine, variant, tier, rms, cpu, failed=0):
-    return {
-        "engine": engine,
-        "variant": variant,
-        "tier": tier,
-        "best": variant != "coarse",
-        "applies_impact": tier == "assisted",
-        "rms": rms,
-        "worst": 3 * rms,
-        "cpu_per_second": cpu,
-        "failed": failed,
-    }
+def restitution(fine=1e-5):
+    errors = {FINE: fine, COARSE: 0.2, GIVEN: 1e-9, OTHER: 1e-4}
+    marks = {name: Mark(f"{error:g}", rating(error, 0), value=error) for name, error in errors.items()}
+    return Judgement("restitution", marks, RESTITUTION, says="error {}")
 
 
-def decided(*columns, fine=1e-5, failed=0):
-    return rows_of(
-        [
-            rated("one", "coarse", "defaults", 0.2, 0.01),
-            rated("one", "fine", "tuned", fine, 0.05, failed),
-            rated("two", "given", "assisted", 1e-9, 0.02),
-        ],
-        columns,
-    )
-
-
-def of(rows, variant):
-    return next(row for row in rows if row.variant == variant)
+def decided(*judgements):
+    return {(one.engine, one.variant): one for one in setups_of(VARIANTS, judgements)}
 
 
 def test_what_was_not_tested_is_said_and_counts_for_less_than_trust():
-    column = Judgement("boundary", {("one", "fine"): Mark("0.1 %", "good")})
-    rows = decided(column)
-    assert of(rows, "fine").rating.level == "good"
-    assert of(rows, "given").marks[1].words == "not tested" and of(rows, "given").rating.level == "part"
-    assert rows[0].variant == "fine" and rows[-1].variant == "coarse"  # trusted ones first
+    found = decided(restitution(), Judgement("boundary", {FINE: Mark("0.1 %", "good")}))
+    assert found[FINE].rating.level == "good"
+    assert found[GIVEN].marks["boundary"].words == "not tested" and found[GIVEN].rating.level == "part"
+    assert list(found) == [FINE, COARSE, GIVEN, OTHER]  # the subject's tuned and default settings, then the others
+    assert [one.asked for one in found.values()] == [True, True, False, False]
+    assert not decided(Judgement("a", {}))  # nothing judges any of them
 
 
 @pytest.mark.parametrize("level", ["fair", "bad"])
-def test_the_worst_column_is_the_rating(level):
-    columns = [
-        Judgement("a", {("one", "fine"): Mark("x", "good")}),
-        Judgement("b", {("one", "fine"): Mark("y", level)}),
-    ]
-    assert of(decided(*columns), "fine").rating.level == level
+def test_the_worst_mark_is_the_rating(level):
+    judgement = Judgement("a", {FINE: Mark("x", level)})
+    assert decided(restitution(), judgement)[FINE].rating.level == level
+    apart = Judgement("a", {FINE: Mark("x", level)}, rates=False)
+    assert decided(restitution(), apart)[FINE].rating.level == "good"
 
 
 def test_a_study_of_engines_as_they_come_judges_the_default_variant():
-    column = Judgement("odds", {("one", ""): Mark("0 of 9", "good"), ("one", "coarse"): Mark("5 of 9", "bad")})
-    rows = decided(column)
-    assert of(rows, "fine").marks[1].words == "0 of 9" and of(rows, "coarse").marks[1].words == "5 of 9"
+    judgement = Judgement("odds", {("exudyn", ""): Mark("0 of 9", "good"), COARSE: Mark("5 of 9", "bad")})
+    found = decided(judgement)
+    assert found[FINE].marks["odds"].words == "0 of 9" and found[COARSE].marks["odds"].words == "5 of 9"
 
 
-def test_failed_runs_and_errors_take_trust_away():
-    assert of(decided(failed=1), "fine").rating.level == "bad"
-    assert of(decided(fine=5e-3), "fine").rating.level == "fair"
-    assert of(decided(fine=5e-2), "fine").rating.level == "bad"
+def test_the_recommended_engine_computes_its_impacts_itself_and_the_cheapest_wins():
+    judgements = restitution(), Judgement("cost", {FINE: Mark("9", "none", value=9.0)}, COST, rates=False)
+    found = list(decided(*judgements).values())
+    assert (best_of(found).engine, best_of(found).cost) == (
+        "exudyn",
+        9.0,
+    )  # not “given”: its adapter applies the impact
+    words = " ".join(recommendation(found, judgements, "slenderness 0.1 to 0.5"))
+    assert "exudyn set as “fine”: restitution within 1e-05, at 9.0 times" in words and "slenderness 0.1 to 0.5" in words
+    assert "1 of 1 are not to be trusted (restitution off by 0.20 in exudyn)" in not_to_do(found, judgements)[0]
+    assert "No engine that was run here" in " ".join(recommendation([found[1]], judgements, ""))
 
 
-def test_the_recommendation_decides_its_impacts_itself_and_says_where_it_ends():
-    rows = decided()
-    assert best_of(rows).variant == "fine"  # “given” is cheaper, but its adapter applies the impact
-    words = " ".join(recommendation(rows, "slenderness [rad] 0.1 to 0.5"))
-    assert "one set as “fine”" in words and "0.050 s of CPU time" in words and "slenderness [rad] 0.1 to 0.5" in words
-    assert "no engine that was run here" in " ".join(recommendation(decided(fine=0.1), ""))
-    assert "Do not use default settings: 1 of 1 fail" in not_to_do(rows)[0] and len(not_to_do(rows)) == 3
+def test_the_paragraph_says_the_first_table_in_few_words():
+    judgements = restitution(), Judgement("boundary", {FINE: Mark("0.1 %", "good")}, says="boundary off by {}")
+    words = paragraph(list(decided(*judgements).values()), judgements)
+    assert words == "exudyn tuned: error 1e-05; boundary off by 0.1 %. exudyn with default settings: error 0.2."
+    assert len(words.split()) <= MOST_WORDS

@@ -2,7 +2,7 @@
 
 from xml.etree import ElementTree
 
-from comparisons.report.gallery import GALLERY, HEADLINES, README, gallery, headlines, stored, with_findings
+from comparisons.report.gallery import GALLERY, README, gallery, headlines, stored, with_findings
 
 
 def test_the_shipped_figures_are_those_of_the_stored_results_and_stand_in_the_readme():
@@ -17,7 +17,7 @@ def test_the_shipped_figures_are_those_of_the_stored_results_and_stand_in_the_re
 
 
 def test_the_readme_says_what_the_stored_results_say():
-    readme, words = README.read_text(encoding="utf-8"), headlines(stored())
-    assert len(words.splitlines()) == len(HEADLINES) and words in readme
+    readme, words = README.read_text(encoding="utf-8"), headlines()
+    assert words in readme and "| exudyn, tuned |" in words.splitlines()[0]
     assert with_findings(readme, words) == readme
     assert with_findings(readme, "- something else") != readme

@@ -161,7 +161,7 @@ def test_every_number_of_the_decision_table_is_that_of_a_study(copied, studies):
             assert number_in(cell) == pytest.approx(max(row[key] for row in rows), rel=0.06)
             checked += 1
     assert checked >= 8
-    marks = get_study("stability").judgement(read_result(studies / "stability.json")).marks
+    marks = get_study("stability").judgements(read_result(studies / "stability.json"))[0].marks
     for name in {name for name, _ in best}:
         known = marks.get(tuple(name.split(", ")))
         assert best[name, "hard cases right"] == (known.words if known else "not tested")
@@ -252,7 +252,7 @@ def test_a_study_is_shown_by_its_own_page_and_says_when_it_is_old(folder, copied
     assert "fake.json cannot be shown: unknown study" in (copied / "pages/fake.html").read_text()
     tables = [Table(name, ("solver", "kappa [-]"), [["exudyn", "0.75"]]) for name in ("Agreement", "All of it")]
     shown = parts.Page("A fake study: agrees", ("Two paragraphs < one.",), tuple(tables[:1]), tuple(tables[1:]))
-    study = SimpleNamespace(page=lambda result: shown, judgement=lambda result: None)
+    study = SimpleNamespace(page=lambda result: shown, judgements=lambda result: ())
     monkeypatch.setattr("comparisons.report.studies.get_study", lambda kind: study)
     path = write_page(copied, studies=studies)
     for page in (Page(path), Page(copied / "pages/fake.html")):

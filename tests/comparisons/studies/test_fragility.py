@@ -101,7 +101,7 @@ def test_an_engine_that_sees_weaker_motions_is_found_out(weaker):
         low, high = row["median_interval"]
         assert low < 1 / 0.8 < high and row["median_shift"] > 1
     assert min(row["p_holm"] for row in rows) < 0.05
-    assert STUDY.judgement(weaker).marks["pybullet", "impact-aware"].level == "bad"
+    assert STUDY.judgements(weaker)[0].marks["pybullet", "impact-aware"].level == "bad"
 
 
 def test_an_engine_that_is_the_model_does_not_differ_and_the_page_says_what_would_have_been_found(equal):
@@ -112,13 +112,13 @@ def test_an_engine_that_is_the_model_does_not_differ_and_the_page_says_what_woul
         assert row["detectable_shift"] > 1.01
         assert row["left_out"] == 2 and row["both_stand"] + row["both_overturn"] == RUNS[1] - 2
     assert np.isnan(equal.arrays["free-standing/exudyn, compliant-corners/tilt"]).nonzero()[0].tolist() == [3, 7]
-    mark = STUDY.judgement(equal).marks["exudyn", "compliant-corners"]
+    mark = STUDY.judgements(equal)[0].marks["exudyn", "compliant-corners"]
     assert mark.level == "good" and number_in(mark.words) == 0 and "2 failed" in mark.words
     assert number_in(re.search(r"[\d.]+ %", mark.note)[0]) == pytest.approx(
         100 * rows[-1]["detectable_difference"], rel=0.05
     )
     # of the tier "defaults" so few runs are made that no difference acquits nobody
-    assert STUDY.judgement(equal).marks["pybullet", "first-script"].level == "none"
+    assert STUDY.judgements(equal)[0].marks["pybullet", "first-script"].level == "none"
 
 
 def test_the_page_shows_every_row_and_the_messages_of_failed_runs(equal):

@@ -139,7 +139,7 @@ def test_the_study_measures_the_shift_it_is_given_and_rates_it(tmp_path, shift):
     assert bool(where(result.rows, part="disagreement")) == (shift != 0)
     assert [row[1] for row in page.tables[0].rows] == ["trusted" if shift == 0 else "not to be trusted"] * 2
     # at default settings gaps are lost, too; the first script is asked at one frequency, where none is as narrow
-    marks = STUDY.judgement(result).marks
+    marks = STUDY.judgements(result)[0].marks
     assert {mark.level for mark in marks.values()} == ({"good"} if shift == 0 else {"bad", "fair"})
 
 
@@ -192,7 +192,7 @@ def test_boundaries_at_which_the_model_holds_the_corner_down_are_told_apart(tmp_
     assert all(row["min_normal"] < 0 for row in where(result.rows, part="disagreement"))
     # they are not rated, and shown in a table of their own
     assert [row[1] for row in page.tables[0].rows] == ["trusted"] * 2
-    assert [mark.level for mark in STUDY.judgement(result).marks.values()] == ["good", "good"]
+    assert [mark.level for mark in STUDY.judgements(result)[0].marks.values()] == ["good", "good"]
     (table,) = (table for table in page.tables if "exudyn, switched-joints [%]" in table.columns)
     assert [number_in(row[3]) for row in table.rows] == pytest.approx(pulled, rel=1e-5)
     assert [abs(number_in(row[-1])) < 2e-3 for row in table.rows] == [True] * len(held)

@@ -17,7 +17,7 @@ from comparisons.showing.rows import where
 from comparisons.studies.stability import STUDY
 from comparisons.studies.stability.cases import BLOCK, GAP, OVERTURNS_FROM, THRESHOLD, hard_cases
 from comparisons.studies.stability.oracle import oracle
-from comparisons.studies.stability.page import judgement
+from comparisons.studies.stability.page import judgements
 from comparisons.studies.stability.study import (
     DIFFERS,
     FAILED,
@@ -182,7 +182,7 @@ def test_the_study_tries_finer_settings_and_resumes_and_its_page_shows_what_they
         own = where(result.rows, engine=engine, part="default settings")
         assert int(found[0]) == len(where(own, result=RIGHT))
     assert ["zeno", "time-stepping", DIFFERS] in [row[:3] for row in wrong.rows]
-    assert judgement(result).marks["analytic", ""].words == "3 of 3"
+    assert judgements(result)[0].marks["analytic", ""].words == "3 of 3"
 
     (again,) = compute(STUDY, tmp_path, engines=(), workers=1, progress=False, **options)
     assert (tmp_path / "runs.jsonl").read_text() == runs  # nothing ran twice
