@@ -33,7 +33,7 @@ DECIDING = DECIDING.replace("settings.step", "settings.span")
 COLOUR = "#d55e00"
 # study: what its plan is given so that it stays short
 SHORT = {
-    "restitution": {"grid": Grid((0.2,), (None, CARYATID_BASE), (0.6,), ((0.2, None),), 4)},
+    "restitution": {"grid": Grid((0.2,), (None, CARYATID_BASE), (0.6,), ((0.2, None),), 4, ((0.25,), (1.0,), (2.0,)))},
     "fragility": {"scenes": {"free-standing": ("caryatid-rigid", (0.2, 0.3))}, "runs": (40, 6, 2)},
     "matters": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (3, 1, 1)},
     "autopsy": {},
