@@ -419,9 +419,9 @@ def _how(settings):
         "velocity jump is compared with momentum by the run's own rates.",
         f"On bearings: {grid}, each with each, the laws in turn; let go at half of the slenderness, the ground at rest "
         "or under one sine of half the uplift acceleration and three times the rocking frequency. Under these forces a "
-        "swing keeps no energy: restitution is the ratio of the tilt rates after and before the impact, against eq. (7), "
-        "and the base velocity jump is compared with momentum, eq. (8). An impact that a run has not is lost.",
-        f"Trusted: error of both grounds at most {TRUSTED:g}, no failed run, no lost impact; usable: at most "
-        f"{USABLE:g}. Measured restitution of stone scatters by some per cent. The corners are set plastic, non-slipping "
-        "and planar, which are Housner's assumptions: agreement is verification of the engine, not independent physics.",
+        "swing keeps no energy: restitution is the ratio of the tilt rates after and before the impact, against eq. "
+        "(7), and the base velocity jump is compared with momentum, eq. (8). An impact that a run has not is lost.",
+        f"Trusted: error of both grounds at most {TRUSTED:g}, no failed run, no lost impact; usable: at "
+        f"most {USABLE:g}. Measured restitution of stone scatters by some per cent. The corners are set plastic, "
+        "non-slipping and planar, which are Housner's assumptions: agreement is verification of the engine, not independent physics.",
     )
