@@ -423,5 +423,6 @@ def _how(settings):
         "(7), and the base velocity jump is compared with momentum, eq. (8). An impact that a run has not is lost.",
         f"Trusted: error of both grounds at most {TRUSTED:g}, no failed run, no lost impact; usable: at "
         f"most {USABLE:g}. Measured restitution of stone scatters by some per cent. The corners are set plastic, "
-        "non-slipping and planar, which are Housner's assumptions: agreement is verification of the engine, not independent physics.",
+        "non-slipping and planar, which are Housner's assumptions: agreement is verification of the engine, not "
+        "independent physics.",
     )
