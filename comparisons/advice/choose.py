@@ -23,8 +23,8 @@ from ..running.executors import Processes
 from ..running.files import TemporaryFolder
 from ..running.solving import ANALYTIC, named_engines, spinner
 from .answer import Choice, Level, VariantLevels
-from .criteria import CRITERIA, Measure, fitting, lifts, neighbours, safety, until
-from .search import Runner, Search, problem
+from .criteria import CRITERIA, fitting, neighbours, safety, until
+from .search import Search, problem
 from .unneeded import cpu_seconds, model_parts
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def choose(
         family, span = _family(scene, criterion)
         own = cpu_seconds(scene)
     variants: list[VariantLevels] = []
-    if nothing_asked and not any(lifts(one) for one in family.values()):
+    if nothing_asked and all(_stands(one) for one in family.values()):
         chosen: Level | None = _analytic(family)
         best, whole = None, cpu_seconds(family[1.0])
     else:
@@ -140,6 +140,11 @@ def _family(scene, criterion):
     return family, span
 
 
+def _stands(scene):
+    """Whether the block never leaves full contact, however long the run."""
+    return simulate(scene.with_(duration=None), history=False).outcome == "stands"
+
+
 def _analytic(family: Mapping[float, Scene]) -> Level:
     """The analytic model as a level that is without error."""
     scene = family[1.0]
@@ -163,13 +168,12 @@ def _searched(scene, family, names, error, criterion, **options):
     kinds = _kinds(names, scene)
     levels = [(name, variant, value) for name, variant, kind in kinds for value in kind.ladder]
     with TemporaryFolder("choose-") as folder, Processes(None, ("analytic", *names)) as executor:
-        go = Runner(Path(folder), executor, Measure(criterion), family, **options)
-        go(levels, [1.0], "the scene")
-        search = Search(go, error, criterion, lambda level: go.whole(scene, level))
+        search = Search(scene, family, error, criterion, Path(folder), executor=executor, **options)
+        search.run(levels, [1.0], "the scene")
         chosen, whole = search.cheapest(levels)
         if chosen and criterion == "restitution" and get_engine(chosen[0]).variants[chosen[1]].takes_restitution:
             search.cheapest([key for key in levels if not get_engine(key[0]).variants[key[1]].takes_restitution])
-        return chosen, whole, [_variant(*kind, go.rows, error, criterion, len(family)) for kind in kinds]
+        return chosen, whole, [_variant(*kind, search) for kind in kinds]
 
 
 def _kinds(names: Iterable[str], scene: Scene) -> list[tuple[str, str, Variant]]:
@@ -182,21 +186,19 @@ def _kinds(names: Iterable[str], scene: Scene) -> list[tuple[str, str, Variant]]
     ]
 
 
-def _variant(name, variant, kind, runs, error, criterion, size):
+def _variant(name, variant, kind, search):
     """The `VariantLevels` of a variant from what was run."""
     levels: list[Level] = []
     finer = True
     for value in reversed(kind.ladder):
-        rows = runs[name, variant, value]
-        found, why = problem(rows, error, criterion)
+        rows = search.rows[name, variant, value]
+        found, why = problem(rows, search.error, search.criterion)
         if why is None and not finer:
             why = "a finer level does not pass"
-        finer, untried = why is None, why is None and len(rows) < size
+        finer, untried = why is None, why is None and len(rows) < len(search.family)
         sound = [row for row in rows.values() if not row.failed]
-        spent, simulated = (
-            sum(row.cost["cpu_seconds"] for row in sound),
-            sum(row.values["simulated"] for row in sound),
-        )
+        spent = sum(row.cost["cpu_seconds"] for row in sound)
+        simulated = sum(row.values["simulated"] for row in sound)
         levels.insert(
             0,
             Level(
@@ -213,10 +215,13 @@ def _variant(name, variant, kind, runs, error, criterion, size):
                 why="passes the scene; neighbours not run" if untried else why,
             ),
         )
-    order = _order(levels) if criterion != "outcome" else None
-    imposed = kind.takes_restitution
     return VariantLevels(
-        engine=name, variant=variant, tier=kind.tier, applies_impact=imposed, order=order, levels=levels
+        engine=name,
+        variant=variant,
+        tier=kind.tier,
+        applies_impact=kind.takes_restitution,
+        order=_order(levels) if search.criterion != "outcome" else None,
+        levels=levels,
     )
 
 

@@ -47,14 +47,13 @@ def neighbours(scene: Scene, criterion: str) -> dict[float, Scene]:
         raise SettingError(f"{scene.name}: nothing moves; give the scene a [start] or a [motion]")
     if criterion == "outcome":
         scene = scene.with_(duration=None)
-    found = {1.0: scene}
-    for factor in sorted(FACTORS + (MORE_FACTORS if criterion == "outcome" else ())):
-        start = {name: factor * value for name, value in scene.start.model_dump().items()}
-        try:
-            found[factor] = scene.with_(start=start, motion=scene.motion and scene.motion.scaled(factor))
-        except ValueError:  # a tilt beyond pi/2
-            continue
-    return found
+    start = scene.start.model_dump().items()
+    return {1.0: scene} | {
+        factor: scene.with_(
+            start={name: factor * value for name, value in start}, motion=scene.motion and scene.motion.scaled(factor)
+        )
+        for factor in sorted(FACTORS + (MORE_FACTORS if criterion == "outcome" else ()))
+    }
 
 
 def fitting(scene: Scene) -> str:
@@ -62,11 +61,6 @@ def fitting(scene: Scene) -> str:
     if strong_impacts(simulate(scene, history=False)):
         return "restitution"
     return "displacement" if scene.base else "outcome"
-
-
-def lifts(scene: Scene) -> bool:
-    """Whether the block leaves full contact, however long the run."""
-    return simulate(scene.with_(duration=None), history=False).outcome != "stands"
 
 
 def until(scene: Scene, criterion: str) -> float:
