@@ -26,7 +26,7 @@ def test_every_exercise_is_tried_here():
 
 E = 1 - 1.5 * math.sin(0.28) ** 2  # eq. (7) of a rectangle on rigid ground
 H, B, INERTIA = RADIUS * math.cos(0.28), RADIUS * math.sin(0.28), 4 / 3 * MASS * RADIUS**2
-# Horizontal momentum, and angular momentum about the new corner, of an impact at 1 rad/s: two equations, solved as such.
+# Horizontal momentum, and angular about the new corner, of an impact at 1 rad/s: two equations, solved as such.
 JUMP = np.linalg.solve([[MASS * H, MASS + BASE.mass], [INERTIA, MASS * H]], [MASS * H, INERTIA - 2 * MASS * B**2])[1]
 SWINGS = math.log(swing_energy(0.28, 0.1 * 0.28) / swing_energy(0.28, 0.8 * 0.28)) / (2 * math.log(E))
 F0, ALPHA = bearing.LAW.f0, BEARINGS.alpha

@@ -40,20 +40,17 @@ def case_of(gamma, base, motion):
 
 
 def scene_of(gamma, base, motion, duration):
-    parts, values = {}, BEARINGS[base]
-    if values:
-        parts = {
-            "base": Base(mass=values["mass"]),
-            "bearings": Bearings(**{name: values[name] for name in ("count", "ka", "kb", "alpha")}),
-        }
-    if motion:
-        shaking = synthetic_motion().scaled(motion[1])
-        if motion[0] == "pulse":
-            shaking = PulseMotion("one-sine", motion[1], 2 * np.pi / motion[2])
-        parts["motion"] = shaking
-    else:
-        parts["start"] = Start(tilt=0.6 * gamma)
-    return Scene(block=Block(mass=MASS, radius=RADIUS, slenderness=gamma), duration=duration, **parts)
+    scene = Scene(block=Block(mass=MASS, radius=RADIUS, slenderness=gamma), duration=duration)
+    if base != "rigid":
+        mass, *numbers = BEARINGS[base].values()
+        bearings = Bearings(**dict(zip(("count", "ka", "kb", "alpha"), numbers, strict=True)))
+        scene = scene.with_(base=Base(mass=mass), bearings=bearings)
+    if not motion:
+        return scene.with_(start={"tilt": 0.6 * gamma})
+    pulse = motion[0] == "pulse"
+    return scene.with_(
+        motion=PulseMotion("one-sine", motion[1], 2 * np.pi / motion[2]) if pulse else synthetic_motion()
+    )
 
 
 def duration_of(motion):

@@ -1,8 +1,6 @@
 """The problem sheet and its score, by a solver that knows nothing of this project (`tests/sheet_solver.py`)."""
 
 import csv
-import doctest
-import importlib
 import io
 import math
 import re
@@ -12,14 +10,12 @@ from sheet_solver import solve
 
 from analytic.errors import SceneError
 from comparisons.sheet.answers import own_error, read_answers
-from comparisons.sheet.faults import MISTAKES
 from comparisons.sheet.observed import solved
 from comparisons.sheet.pages import markdown, write_sheet
 from comparisons.sheet.problems import PROBLEMS
 from comparisons.sheet.score import score
 
 BY_NAME = {problem.name: problem for problem in PROBLEMS}
-NAMES = {mistake.name for mistake in MISTAKES}
 TURN = 180 / math.pi
 
 
@@ -93,33 +89,38 @@ def test_what_two_mistakes_explain_is_unknown(sheet):
     assert not found.passed and found.cause is None and found.scenes[0].cause is None
 
 
-def first_wrong(changes, names=("free-rigid", "pulse-below")):
-    """Of exact answers with some replaced: {(scene, quantity): what is added}, or a word."""
-    given = {name: dict(solved(BY_NAME[name])) for name in names}
-    for (name, quantity), change in changes.items():
-        given[name][quantity] = change if isinstance(change, str) else given[name][quantity] + change
-    return score(given).first_wrong
+RIGHT = {name: solved(BY_NAME[name]) for name in ("free-rigid", "pulse-below")}
+HIT, LIFTED = RIGHT["free-rigid"]["impact_time_1"], RIGHT["pulse-below"]["uplift_time"]
+TIMELESS = {("free-rigid", "outcome"): "overturns", ("pulse-below", "peak_tilt"): 0.1}
 
 
-def test_the_first_wrong_answer_is_that_of_the_earliest_time():
-    right = solved(BY_NAME["free-rigid"])
-    assert first_wrong({}) is None
-    assert first_wrong({("free-rigid", "impact_time_2"): 1e-6}) is None  # within what counts as right
-    found = first_wrong({("free-rigid", "impact_time_2"): 0.1, ("free-rigid", "rate_after_1"): 0.1})
-    assert (found.scene, found.quantity, found.time) == ("free-rigid", "rate_after_1", right["impact_time_1"])
-    uplift = solved(BY_NAME["pulse-below"])["uplift_time"]
-    assert uplift < right["impact_time_1"]
-    found = first_wrong({("free-rigid", "rate_after_1"): 0.1, ("pulse-below", "uplift_time"): 0.1})
-    assert (found.scene, found.quantity, found.time) == ("pulse-below", "uplift_time", uplift)
-
-
-def test_what_has_no_time_comes_after_what_has_and_in_the_sheets_order():
-    words = {("free-rigid", "outcome"): "overturns", ("pulse-below", "peak_tilt"): 0.1}
-    found = first_wrong(words)
-    assert (found.scene, found.quantity, found.time, found.error) == ("free-rigid", "outcome", None, 1.0)
-    state = next(one for one in BY_NAME["free-rigid"].quantities if one.kind == "angle")
-    found = first_wrong({**words, ("free-rigid", state.name): 0.1})
-    assert (found.quantity, found.time) == (state.name, state.index)
+@pytest.mark.parametrize(
+    "changes, scene, quantity, time",
+    [
+        (
+            {("free-rigid", "impact_time_2"): 0.1, ("free-rigid", "rate_after_1"): 0.1},
+            "free-rigid",
+            "rate_after_1",
+            HIT,
+        ),
+        (
+            {("free-rigid", "rate_after_1"): 0.1, ("pulse-below", "uplift_time"): 0.1},
+            "pulse-below",
+            "uplift_time",
+            LIFTED,
+        ),
+        (TIMELESS, "free-rigid", "outcome", None),  # in the sheet's order, and after what has a time
+        ({**TIMELESS, ("free-rigid", "tilt_at_2.5"): 0.1}, "free-rigid", "tilt_at_2.5", 2.5),
+        ({("free-rigid", "impact_time_2"): 1e-6}, None, None, None),  # within what counts as right
+    ],
+)
+def test_the_first_wrong_answer_is_that_of_the_earliest_time(changes, scene, quantity, time):
+    assert LIFTED < HIT
+    given = {name: dict(answers) for name, answers in RIGHT.items()}
+    for (name, one), change in changes.items():
+        given[name][one] = change if isinstance(change, str) else given[name][one] + change
+    found = score(given).first_wrong
+    assert found is None if scene is None else (found.scene, found.quantity, found.time) == (scene, quantity, time)
 
 
 TOLD = {
@@ -160,10 +161,6 @@ def test_other_faults_are_never_given_a_wrong_name(sheet):
     assert sum(not one.passed for one in found) >= 24  # two digits are too few in any case
     assert {one.cause for one in found} == {None}
     assert {scene.cause for one in found for scene in one.scenes} == {None}
-
-
-def test_the_docstrings_example_is_right():
-    assert doctest.testmod(importlib.import_module("comparisons.sheet.score")) == (0, 4)
 
 
 def test_pages_say_nothing_of_our_code(sheet):
