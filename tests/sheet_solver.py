@@ -24,21 +24,8 @@ IMPACT = "impact_time", "rate_before", "rate_after", "base_velocity_jump"
 STATE = "tilt", "tilt_rate", "displacement", "force"
 
 
-class Linear:
-    """Eq. (4) of the page "record", the force of all bearings together; of none by default."""
-
-    def __init__(self, k=0.0, c=0.0):
-        self.k, self.c = k, c
-
-    def force(self, x, v, sigma):
-        return self.k * x + self.c * v
-
-    def turn(self, x, sigma):
-        pass
-
-
 class Rubber:
-    """Eqs (4) to (6) of the other pages, the force of all bearings together."""
+    """Eqs (4) to (6) of the pages with hysteretic bearings, the force of all together."""
 
     def __init__(self, n, ka, kb, alpha, delta, printed=False):
         self.n, self.kb, self.dk, self.p, self.printed = n, kb, ka - kb, 1 - alpha, printed
@@ -54,7 +41,7 @@ class Rubber:
             bracket = 2 * self.full - Dc + (x - self.xc)
         return sigma * (self.dk * (bracket**self.p - self.D0) / self.p + self.f0)
 
-    def force(self, x, v, sigma):
+    def force(self, x, sigma):
         return self.n * (self.kb * x + self.z(x, sigma))
 
     def turn(self, x, sigma):
@@ -74,13 +61,13 @@ def solve(name, times, record=None, **fault):
     mu = m / M if mb else 0.0
     b, h = R * math.sin(gamma), R * math.cos(gamma)
     e = (1 - 2 * m * b * b / (J - mu * m * h * h)) * fault.get("e", 1.0)
-    bearing, table, dt = Linear(), None, 1.0
+    rubber, spring, damper, table, dt = None, 0.0, 0.0, None, 1.0
     if "rubber" in d:
         numbers = {key: value * fault.get(key, 1) for key, value in d["rubber"].items()}
-        bearing = Rubber(**numbers, printed="printed12" in fault)
-    elif "T" in d:
+        rubber = Rubber(**numbers, printed="printed12" in fault)
+    elif "T" in d:  # eq. (4) of this page
         omega, mass = 2 * math.pi / d["T"], M * fault.get("n", 1.0)
-        bearing = Linear(mass * omega * omega, 2 * mass * d["xi"] * omega * fault.get("c", 1.0))
+        spring, damper = mass * omega * omega, 2 * mass * d["xi"] * omega * fault.get("c", 1.0)
         with open(record, newline="") as file:
             rows = list(csv.reader(file))[1:]
         table, dt = [float(row[1]) for row in rows], float(rows[1][0]) - float(rows[0][0])
@@ -93,7 +80,7 @@ def solve(name, times, record=None, **fault):
         return d["A"] * math.sin(d["w"] * tau) if 0 <= tau <= 2 * math.pi / d["w"] else 0.0
 
     def force(y):
-        return bearing.force(y[2], y[3], now["sigma"] or 1.0)
+        return rubber.force(y[2], now["sigma"] or 1.0) if rubber else spring * y[2] + damper * y[3]
 
     def slope(t, y):
         phi, w, x, v = y
@@ -122,7 +109,7 @@ def solve(name, times, record=None, **fault):
 
     late, now = fault.get("late"), dict(side=math.copysign(1, d["phi0"]) if d["phi0"] else 0.0, sigma=0.0)
     out = dict(outcome="rocks" if now["side"] else "stands", peak_tilt=abs(d["phi0"]), peak_displacement=0.0)
-    impacts = []
+    impacts = {}
     y, t = [d["phi0"], 0.0, 0.0, 0.0], 0.0
     grid = dt / 4 if table else STEP
     stops = sorted({*times, d["end"], d["t0"], d["t0"] + 2 * math.pi / d["w"]})
@@ -160,33 +147,31 @@ def solve(name, times, record=None, **fault):
         y, t = new, t + first
         out["peak_tilt"] = max(out["peak_tilt"], abs(y[0]))
         out["peak_displacement"] = max(out["peak_displacement"], abs(y[2]))
+        if kind == "over":
+            return out | impacts | dict(outcome="overturns", overturning_time=t)
+        if rubber and kind in ("turn", "impact"):
+            rubber.turn(y[2], now["sigma"])
         if kind == "turn":
             y[3] = 0.0
-            bearing.turn(y[2], now["sigma"])
-        elif kind == "over":
-            out |= dict(outcome="overturns", overturning_time=t)
-            break
         elif kind == "impact":
             before = y[1]
-            after = before if len(impacts) + 1 == fault.get("lost") else e * before
+            k = len(impacts) // len(IMPACT) + 1
+            after = before if k == fault.get("lost") else e * before
             jump = mu * h * (before - after) * (h if "printed8" in fault else 1.0)
             y[0] = y[0] if late else 0.0
             y[1] = after
             if mb:
-                bearing.turn(y[2], now["sigma"])
                 y[3] += jump
                 now["sigma"] = math.copysign(1, y[3])
             now["side"] = math.copysign(1, after)
-            impacts.append((t, before, after, jump))
+            impacts |= {f"{IMPACT[i]}_{k}": value for i, value in enumerate((t, before, after, jump))}
             back = -now["side"] * slope(t, y)[1]
             if abs(after) < 1e-7 and back > 0:
                 out.setdefault("rest_time", t + 2 * abs(after) / back / (1 - e))
                 y[0] = y[1] = now["side"] = 0.0
         for stop in [stop for stop in times if abs(stop - t) < 1e-11]:
             out |= {f"{name}_at_{stop:g}": value for name, value in zip(STATE, (*y[:3], force(y)), strict=True)}
-    for k, impact in enumerate(impacts[:3], 1):
-        out |= {f"{name}_{k}": value for name, value in zip(IMPACT, impact, strict=True)}
-    return out
+    return out | impacts
 
 
 def bisect(happens, high):

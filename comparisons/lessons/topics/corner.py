@@ -80,8 +80,18 @@ def view(step: float) -> View:
 def _frame(axis, middle, tilt, words, old_corner):
     """The foot of the block, its angle exaggerated; old_corner: it still turns about the corner it comes from."""
     pivot = middle + (1 if tilt > 0 or old_corner else -1)
-    turned = {"angle": -math.degrees(EXAGGERATED * tilt), "rotation_point": (pivot, 0)}
-    axis.add_patch(Rectangle((middle - 1, 0), 2, 1.15, facecolor=STONE, edgecolor=MODEL, linewidth=1.6, **turned))
+    axis.add_patch(
+        Rectangle(
+            (middle - 1, 0),
+            2,
+            1.15,
+            angle=-math.degrees(EXAGGERATED * tilt),
+            rotation_point=(pivot, 0),
+            facecolor=STONE,
+            edgecolor=MODEL,
+            linewidth=1.6,
+        )
+    )
     axis.text(middle, -1.15, words, ha="center", fontsize=10, color=SOFT)
 
 

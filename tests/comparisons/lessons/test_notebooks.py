@@ -1,5 +1,6 @@
 """Every notebook runs from top to bottom, and its few lines give the lesson's own number."""
 
+import functools
 import runpy
 import textwrap
 
@@ -7,7 +8,7 @@ import pytest
 
 from comparisons.lessons import engine_runs
 from comparisons.lessons.notebook import code_of, notebook_of
-from comparisons.lessons.topics import NAMES, lesson
+from comparisons.lessons.topics import NAMES, corner, cost, lesson
 from engines import installed_engines
 
 pytest.importorskip("marimo", reason="needs marimo: pip install marimo")
@@ -28,18 +29,6 @@ def run(name, folder):
     return outputs
 
 
-@pytest.fixture
-def only(monkeypatch):
-    """only(names): no other engines are installed."""
-
-    def choose(names):
-        engine_runs.engine_runs.cache_clear()
-        monkeypatch.setattr(engine_runs, "installed_engines", lambda: names)
-
-    yield choose
-    engine_runs.engine_runs.cache_clear()
-
-
 @pytest.mark.parametrize(
     "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in NAMES]
 )
@@ -48,19 +37,18 @@ def test_it_runs_to_its_end(name, tmp_path):
     assert len(outputs) == 6 and outputs[-1] is not None
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("engine", installed_engines())
+@pytest.mark.parametrize(
+    "engines", [(), *(pytest.param((engine,), marks=pytest.mark.slow) for engine in installed_engines())], ids=str
+)
 @pytest.mark.parametrize("name", ["corner", "cost"])
-def test_it_runs_with_one_engine(name, engine, only, tmp_path):
-    only((engine,))
+def test_it_runs_with_one_engine_or_none(name, engines, monkeypatch, tmp_path):
+    asked = functools.cache(engine_runs.engine_runs.__wrapped__)
+    monkeypatch.setattr(engine_runs, "engine_runs", asked)
+    for module in (corner, cost):
+        monkeypatch.setattr(module, "engine_runs", asked)
+    monkeypatch.setattr(engine_runs, "installed_engines", lambda: engines)
     run(name, tmp_path)
-    assert {one.solver for one in engine_runs.engine_runs()} == {engine}
-
-
-def test_without_engines_the_lessons_on_them_still_show_the_fixed_steps(only):
-    only(())
-    for name in ("corner", "cost"):
-        assert lesson(name).first().numbers
+    assert tuple({one.solver: 0 for one in asked()}) == engines
 
 
 @pytest.mark.parametrize("name", NAMES)

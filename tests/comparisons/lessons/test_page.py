@@ -31,20 +31,9 @@ def value(page, name):
     return float(page.get_attribute(f"#{name}", "data-value"))
 
 
-def slide(page, name, to):
-    page.evaluate(
-        """([name, to]) => {
-            const slider = document.getElementById(name);
-            slider.value = to;
-            slider.dispatchEvent(new Event("input"));
-        }""",
-        [f"s-{name}", to],
-    )
-
-
 def test_a_moved_slider_gives_the_kernels_number(opened):
     page = opened("#amplitude=0.35&period=0.5")
-    slide(page, "slenderness", 0.2)
+    page.fill("#s-slenderness", "0.2")
     scene = load_scene("caryatid-rigid").with_(block={"slenderness": 0.2})
     scene = scene.with_(motion=PulseMotion("one-sine", 0.35 * 9.81, 2 * math.pi / 0.5), duration=10.0)
     response = simulate(scene)
@@ -107,7 +96,7 @@ def test_a_view_out_of_sight_is_painted_when_it_is_seen(opened):
     picture = "document.getElementById('phase').toDataURL()"
     page.wait_for_selector("body[data-map=done]")
     before = page.evaluate(picture)
-    slide(page, "slenderness", 0.2)
+    page.fill("#s-slenderness", "0.2")
     page.wait_for_selector("body[data-map=done]")
     assert page.evaluate(picture) == before  # nobody sees it: no time is spent on it
     page.locator("#phase").scroll_into_view_if_needed()
