@@ -3,8 +3,9 @@
 Nothing of the project is imported. `solve(name, **faults)` returns {quantity: value}; a fault is one line marked so.
 """
 
-import csv
 import math
+
+import numpy as np
 
 STEP = 1e-3
 G = 9.81
@@ -61,21 +62,18 @@ def solve(name, times, record=None, **fault):
     mu = m / M if mb else 0.0
     b, h = R * math.sin(gamma), R * math.cos(gamma)
     e = (1 - 2 * m * b * b / (J - mu * m * h * h)) * fault.get("e", 1.0)
-    rubber, spring, damper, table, dt = None, 0.0, 0.0, None, 1.0
+    rubber, spring, damper, table = None, 0.0, 0.0, None
     if "rubber" in d:
         numbers = {key: value * fault.get(key, 1) for key, value in d["rubber"].items()}
         rubber = Rubber(**numbers, printed="printed12" in fault)
     elif "T" in d:  # eq. (4) of this page
         omega, mass = 2 * math.pi / d["T"], M * fault.get("n", 1.0)
         spring, damper = mass * omega * omega, 2 * mass * d["xi"] * omega * fault.get("c", 1.0)
-        with open(record, newline="") as file:
-            rows = list(csv.reader(file))[1:]
-        table, dt = [float(row[1]) for row in rows], float(rows[1][0]) - float(rows[0][0])
+        table = np.loadtxt(record, delimiter=",", skiprows=1, unpack=True)
 
     def ground(t):
         if table is not None:
-            i = min(int(t / dt + 1e-9), len(table) - 2)
-            return fault.get("A", 1.0) * (table[i] + (table[i + 1] - table[i]) * (t / dt - i))
+            return fault.get("A", 1.0) * float(np.interp(t, *table))
         tau = t - d["t0"]
         return d["A"] * math.sin(d["w"] * tau) if 0 <= tau <= 2 * math.pi / d["w"] else 0.0
 
@@ -111,7 +109,7 @@ def solve(name, times, record=None, **fault):
     out = dict(outcome="rocks" if now["side"] else "stands", peak_tilt=abs(d["phi0"]), peak_displacement=0.0)
     impacts = {}
     y, t = [d["phi0"], 0.0, 0.0, 0.0], 0.0
-    grid = dt / 4 if table else STEP
+    grid = STEP if table is None else table[0, 1] / 4
     stops = sorted({*times, d["end"], d["t0"], d["t0"] + 2 * math.pi / d["w"]})
     while t < d["end"] - 1e-12:
         if mb and y[3] == 0:

@@ -85,25 +85,21 @@ def test_errors_are_those_of_the_criterion(criterion, response, error):
 
 
 @pytest.mark.parametrize(
-    "rows, why",
+    "rows, asked, error, why",
     [
-        ({1.0: row(4e-4), 0.95: row(4.9e-4)}, None),
-        ({1.0: row(4e-4), 0.95: row(6e-4)}, "less than 2 times below"),
-        ({1.0: row(4e-4), 0.95: row(2e-3)}, "error 2.0e-03"),
-        ({1.0: row(1e-6), 0.95: row(None)}, "shows no tilt at 0.95"),
-        ({1.0: row(math.nan)}, "shows no tilt"),
-        ({1.0: row(1e-6, failure={"reason": "it fell"})}, "it fell"),
+        ((row(4e-4), row(4.9e-4)), (1e-3, "tilt"), 4.9e-4, None),
+        ((row(4e-4), row(6e-4)), (1e-3, "tilt"), 6e-4, "less than 2 times below"),
+        ((row(4e-4), row(2e-3)), (1e-3, "tilt"), 2e-3, "error 2.0e-03"),
+        ((row(1e-6), row(None)), (1e-3, "tilt"), None, "shows no tilt at 1 "),
+        ((row(math.nan),), (1e-3, "tilt"), None, "shows no tilt"),
+        ((row(1e-6, failure={"reason": "it fell"}),), (1e-3, "tilt"), None, "it fell"),
+        ((*[row(0.0)] * 7, row(1.0)), (0.13, "outcome"), 0.125, None),  # the share counts
+        ((*[row(0.0)] * 7, row(1.0)), (0.12, "outcome"), 0.125, "error"),
     ],
 )
-def test_what_keeps_a_setting_from_passing(rows, why):
-    found = problem(rows, 1e-3, "tilt")[1]
-    assert found is None if why is None else why in found
-
-
-def test_of_outcomes_the_share_counts():
-    alike = {float(k): row(0.0) for k in range(7)} | {8.0: row(1.0)}
-    assert problem(alike, 0.13, "outcome") == (0.125, None)
-    assert problem(alike, 0.12, "outcome")[1] is not None
+def test_what_keeps_a_setting_from_passing(rows, asked, error, why):
+    found, words = problem(dict(enumerate(rows)), *asked)
+    assert found == error and (words is None if why is None else why in words)
 
 
 class Made(Search):

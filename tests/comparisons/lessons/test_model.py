@@ -43,16 +43,17 @@ def case_of(gamma, base, motion):
 
 
 def scene_of(gamma, base, motion, duration):
-    scene = Scene(block=Block(mass=MASS, radius=RADIUS, slenderness=gamma), duration=duration)
-    if base != "rigid":
-        mass, *numbers = BEARINGS[base].values()
-        bearings = Bearings(**dict(zip(("count", "ka", "kb", "alpha"), numbers, strict=True)))
-        scene = scene.with_(base=Base(mass=mass), bearings=bearings)
-    if not motion:
-        return scene.with_(start={"tilt": 0.6 * gamma})
-    pulse = motion[0] == "pulse"
-    return scene.with_(
-        motion=PulseMotion("one-sine", motion[1], 2 * np.pi / motion[2]) if pulse else synthetic_motion()
+    rubber = dict(BEARINGS[base] or {})
+    mass, shaking = rubber.pop("mass", None), motion and synthetic_motion()
+    if motion and motion[0] == "pulse":
+        shaking = PulseMotion("one-sine", motion[1], 2 * np.pi / motion[2])
+    return Scene(
+        block=Block(mass=MASS, radius=RADIUS, slenderness=gamma),
+        base=mass and Base(mass=mass),
+        bearings=Bearings(**rubber) if rubber else None,
+        motion=shaking,
+        start=Start(tilt=0.0 if motion else 0.6 * gamma),
+        duration=duration,
     )
 
 

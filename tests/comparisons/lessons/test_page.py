@@ -62,8 +62,8 @@ def test_an_engine_with_long_steps_errs_as_the_preset_says(opened):
     assert page.inner_text("#verdict") == "rocks" and "overturns" in page.inner_text("#ghost-verdict")
 
 
-def test_keys_move_slider_map_and_time(opened):
-    page = opened("#amplitude=0.35")
+def test_keys_and_clicks_move_slider_map_and_time(opened):
+    page = opened("#amplitude=0.35", viewport={"width": 1280, "height": 1100})
     before = page.evaluate("Playground.state.period")
     page.press("#s-slenderness", "ArrowRight")
     assert page.evaluate("Playground.state.slenderness") == pytest.approx(0.285)
@@ -72,10 +72,6 @@ def test_keys_move_slider_map_and_time(opened):
     assert page.evaluate("Playground.state.period") > before
     page.press("#tilt", "ArrowRight")
     assert page.get_attribute("#tilt", "aria-valuenow") is not None
-
-
-def test_a_click_on_the_map_sets_the_sliders(opened):
-    page = opened(viewport={"width": 1280, "height": 1100})
     page.wait_for_function("Playground.painted()")
     box = page.locator("#map").bounding_box()
     page.mouse.click(box["x"] + 0.8 * box["width"], box["y"] + 0.2 * box["height"])
