@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -92,8 +92,9 @@ def choose(
         chosen: Level | None = _analytic(family)
         best, whole = None, cpu_seconds(family[1.0])
     else:
-        options: dict[str, Any] = {"time_limit": time_limit, "progress": progress}
-        key, whole, variants = _searched(scene, family, names, error, criterion, **options)
+        key, whole, variants = _searched(
+            scene, family, names, error, criterion, time_limit=time_limit, progress=progress
+        )
         levels = [one for variant in variants for one in variant.levels]
         chosen = next((one for one in levels if (one.engine, one.variant, one.value) == key), None)
         known = [one for one in levels if one.error is not None and not chosen]
@@ -147,7 +148,6 @@ def _stands(scene):
 
 def _analytic(family: Mapping[float, Scene]) -> Level:
     """The analytic model as a level that is without error."""
-    scene = family[1.0]
     return Level(
         engine=ANALYTIC,
         variant="kernel",
@@ -156,7 +156,7 @@ def _analytic(family: Mapping[float, Scene]) -> Level:
         default=True,
         runs=len(family),
         error=0.0,
-        cpu_per_second=cpu_seconds(scene) / simulate(scene, history=False).end.time,
+        cpu_per_second=cpu_seconds(family[1.0]) / simulate(family[1.0], history=False).end.time,
         passes=True,
         untried=False,
         why=None,

@@ -88,10 +88,9 @@ def until(scene: Scene, criterion: str) -> float:
     cut = scene.with_(duration=reference.end.time)
     history = simulate(cut).history
     assert history is not None
-    column = np.abs(history.tilt if criterion == "tilt" else history.base_displacement)
-    peak = float(history.time[column.argmax()])
+    column = history.tilt if criterion == "tilt" else history.base_displacement
     after = PERIODS * 2 * np.pi / scene.rocking_frequency
-    return min(sensitivity_horizon(cut).horizon, peak + after)
+    return min(sensitivity_horizon(cut).horizon, float(history.time[np.abs(column).argmax()]) + after)
 
 
 @dataclass(frozen=True)

@@ -25,19 +25,16 @@ ROUNDS = 3  # the least CPU time of so many
 
 @dataclass(frozen=True)
 class EngineRun:
-    """One run: who, with which knob; error: of the tilt rate after the first impact, nan without one; cpu [s]."""
+    """One run: who, by name and variant, with which knob; error: of the tilt rate after the first impact, nan without
+    one; cpu [s]."""
 
     solver: str
-    variant: str
+    name: str
     tier: str
     knob: str
     value: float
     error: float
     cpu: float
-
-    @property
-    def name(self) -> str:
-        return f"{self.solver}, {self.variant}" if self.variant else self.solver
 
 
 @functools.cache
@@ -58,7 +55,7 @@ def timed(solver: str, knob: str, values: Iterable[float], simulated: Callable[.
     for value in values:
         runs = [simulated(SCENE, history=False, **{knob: value}) for _ in range(ROUNDS)]
         cpu = min(run.cpu_seconds for run in runs)
-        found.append(EngineRun(solver, "", "", knob, value, error_of(runs[0]), cpu))
+        found.append(EngineRun(solver, solver, "", knob, value, error_of(runs[0]), cpu))
     return tuple(found)
 
 
@@ -78,5 +75,7 @@ def engine_runs() -> tuple[EngineRun, ...]:
             for value in kind.ladder:
                 response = engine.simulate(SCENE, variant=variant, history=False, compare=False, **{kind.knob: value})
                 error = math.nan if response.outcome == "failed" else error_of(response)
-                found.append(EngineRun(name, variant, kind.tier, kind.knob, value, error, response.cpu_seconds))
+                found.append(
+                    EngineRun(name, f"{name}, {variant}", kind.tier, kind.knob, value, error, response.cpu_seconds)
+                )
     return tuple(found)

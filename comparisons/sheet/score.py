@@ -146,7 +146,6 @@ def _scene_score(problem, errors, cause, stored):
 def _causes(problems, given, errors):
     """({scene: `Mistake`} of wrong scenes whose cause is known, name of the one behind all that is wrong or None)."""
     wrong = [problem for problem in problems if _is_wrong(problem, errors[problem.name])]
-    sound = [problem for problem in problems if problem not in wrong]
     verdicts = {
         mistake: {problem.name: _verdict(mistake, problem, given[problem.name]) for problem in wrong}
         for mistake in MISTAKES
@@ -156,7 +155,9 @@ def _causes(problems, given, errors):
         for mistake, found in verdicts.items()
         if True in found.values()
         and False not in found.values()
-        and not any(_verdict(mistake, problem, given[problem.name]) is False for problem in sound)
+        and not any(
+            _verdict(mistake, problem, given[problem.name]) is False for problem in problems if problem not in wrong
+        )
     ]
     if len(whole) == 1:
         return {scene: whole[0] for scene, found in verdicts[whole[0]].items() if found}, whole[0].name

@@ -98,11 +98,9 @@ def misprint_factor() -> float:
 
 def observed_order() -> float:
     """Of the fixed steps: halvings of the step against the defect of the closed form."""
-    levels = np.array([3.0, 4.0, 5.0, 6.0, 7.0, 8.0])
-    block = scene()
+    block, steps = scene(), 0.02 / 2 ** np.arange(3.0, 9.0)
     known = free_rocking(block.rocking_frequency, SLENDERNESS, restitution(block), START * SLENDERNESS, 1)
     rate = known.rates_after[0]
-    steps = 0.02 / 2**levels
     # the envelope over neighbouring steps: where the impact falls within its step is chance
     errors = [
         max(

@@ -8,7 +8,7 @@ import math
 import numpy as np
 from matplotlib.patches import Rectangle
 
-from analytic import Response, simulate
+from analytic import simulate
 from analytic.caryatid import RADIUS
 from analytic.time_stepping import simulate_time_stepping
 
@@ -20,12 +20,6 @@ from ..lesson import Control, Equation, Exercise, Lesson, View
 STEPS = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0, 40.0)  # ms
 SCAN = np.geomspace(4e-4, 0.05, 160)  # s
 EXAGGERATED = 12  # angles of the four frames
-
-
-@functools.cache
-def stepped(step: float) -> Response:
-    """The block let go, in equal steps [s]."""
-    return simulate_time_stepping(SCENE, step=step)
 
 
 def rate_error(step: float) -> float:
@@ -41,7 +35,7 @@ def scanned() -> np.ndarray:
 
 def view(step: float) -> View:
     """Four steps around the first impact, and the error over all steps; step [ms]."""
-    run = stepped(1e-3 * step)
+    run = simulate_time_stepping(SCENE, step=1e-3 * step)
     exact = simulate(SCENE, history=False).impacts[0].time
     history = run.history
     landed = int(np.argmax(history.tilt <= 0))

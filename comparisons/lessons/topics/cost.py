@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import functools
 import math
-from itertools import takewhile
+from itertools import groupby, takewhile
+from operator import attrgetter
 
 from analytic import simulate
 
@@ -28,10 +29,7 @@ def model_runs() -> tuple[EngineRun, ...]:
 
 def ladders(runs: tuple[EngineRun, ...]) -> dict[str, list[EngineRun]]:
     """{solver: its runs}, coarse to fine as they come."""
-    found: dict[str, list[EngineRun]] = {}
-    for run in runs:
-        found.setdefault(run.name, []).append(run)
-    return found
+    return {name: list(ladder) for name, ladder in groupby(runs, attrgetter("name"))}
 
 
 def trusted(runs: tuple[EngineRun, ...], target: float) -> dict[str, EngineRun]:
@@ -102,15 +100,12 @@ def table() -> Table:
 
 def coarsest_step() -> float:
     """Of the fixed-step integrator's steps: the largest [ms] below 1 % with all finer ones."""
-    finest = takewhile(lambda run: run.error < TARGET, reversed(own_runs()))  # it strikes at each of its steps
-    return 1e3 * max(run.value for run in finest)
+    return 1e3 * max(run.value for run in takewhile(lambda run: run.error < TARGET, reversed(own_runs())))
 
 
 def event_driven_share() -> float:
     """CPU time of a run of fixed steps at 1 % over that of the event-driven model."""
-    model = min(run.cpu for run in model_runs())
-    steps = trusted(own_runs(), TARGET)
-    return next(iter(steps.values())).cpu / model
+    return trusted(own_runs(), TARGET)[OWN].cpu / min(run.cpu for run in model_runs())
 
 
 def passing_solvers() -> float:
