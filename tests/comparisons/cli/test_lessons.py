@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from comparisons.lessons import export, notebook
-from comparisons.lessons.topics import lessons
+from comparisons.lessons.topics import lesson, lessons
 
 
 def test_without_a_command_they_are_listed(rocking):
@@ -40,7 +40,7 @@ def test_without_marimo_it_says_what_to_install(rocking, monkeypatch):
 @pytest.mark.parametrize("names", [["bearing"], pytest.param(None, marks=pytest.mark.slow)])
 def test_pages_lead_to_nothing_outside(rocking, tmp_path, monkeypatch, names):
     if names:
-        monkeypatch.setattr(export, "NAMES", names)
+        monkeypatch.setattr(export, "lessons", lambda: [lesson(name) for name in names])
         monkeypatch.setattr(export, "_lesson_page", lambda *parts: "<!DOCTYPE html><title>left out</title>")
     status, out, _ = rocking("lessons", "export", "--output", tmp_path / "pages")
     assert status == 0 and out.strip() == str(tmp_path / "pages" / "index.html")
