@@ -98,7 +98,7 @@ def _again(runs, workers, progress):
     groups: dict[Any, list[tuple[int, Any]]] = {}
     for place, run in enumerate(runs):
         try:
-            case, measure = case_of(run), run["measure"] and named(run["measure"])
+            case, measure = case_of(run), named(run["measure"])
             solver(case.solver)
         except (KeyError, ImportError, AttributeError, SceneError) as error:
             found[place] = f"it cannot be run any more ({error.args[0] if isinstance(error, KeyError) else error})"

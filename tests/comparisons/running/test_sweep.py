@@ -11,50 +11,32 @@ from pathlib import Path
 import psutil
 import pytest
 
+import fake_solvers
 from analytic import EngineNotInstalled
-from comparisons.running.sweep import Case, Processes, Serial, Store, run_sweep
+from answered import Here
+from comparisons.running.cases import Case
+from comparisons.running.executors import Processes
+from comparisons.running.store import Store
+from fake_solvers import cases, results, scene, sweep
 
-HERE = Path(__file__).parent
-
-
-sys.path.insert(0, str(HERE))  # and from there to the workers
-import fake_solvers  # noqa: E402
-from fake_solvers import cases, scene  # noqa: E402
-
-
-@pytest.fixture
-def fakes():
-    return fake_solvers
+TESTS = Path(fake_solvers.__file__).parent
 
 
-def sweep(which, store, **options):
-    return run_sweep(which, store=store, progress=False, **options)
-
-
-def results(rows):
-    """Everything that must not depend on order, workers or interruption."""
-    return [(row.case.tag, row.values, row.failure) for row in rows]
-
-
-def test_rows_come_in_the_order_of_the_cases_with_costs_apart(tmp_path, fakes):
-    rows = sweep(cases(), tmp_path / "s.jsonl", measure=fakes.tilt)
+def test_rows_come_in_the_order_of_the_cases_with_costs_apart(tmp_path):
+    rows = sweep(cases(), tmp_path / "s.jsonl")
     assert [row.case.tag["i"] for row in rows] == list(range(10))
     assert [row.values for row in rows] == [{"outcome": "stands", "peak": round(0.01 * i, 6) ** 2} for i in range(10)]
     assert all(row.cost["cpu_seconds"] > 0 and "cpu_seconds" not in row.values for row in rows)
     assert not any(row.reused or row.failed for row in rows)
 
 
-def test_without_a_measure_the_row_holds_the_whole_response(tmp_path):
-    (row,) = sweep(cases(count=1), tmp_path / "s.jsonl", executor=Serial())
-    assert row.values["outcome"] == "stands" and row.values["end"]["time"] == 1.0
-
-
-def test_one_and_two_workers_and_this_process_agree_in_any_order(tmp_path, fakes):
-    which = cases(count=60)
-    one = sweep(which, tmp_path / "1.jsonl", workers=1, measure=fakes.tilt)
-    two = sweep(which[::-1], tmp_path / "2.jsonl", workers=2, measure=fakes.tilt)
-    here = sweep(which, tmp_path / "0.jsonl", executor=Serial(), measure=fakes.tilt)
-    assert results(one) == results(two)[::-1] == results(here)
+def test_one_and_two_workers_and_this_process_agree_in_any_order(tmp_path):
+    # Of the analytic model, too: compiling takes longer than this limit; compile_kernels has left the workers a cache.
+    which = [*cases(count=60), *(Case(scene(0.05 * i), settings={"history": False}) for i in range(1, 6))]
+    here = sweep(which, tmp_path / "0.jsonl", executor=Here())
+    one = sweep(which, tmp_path / "1.jsonl", workers=1, time_limit=8.0)
+    two = sweep(which[::-1], tmp_path / "2.jsonl", workers=2, time_limit=8.0)
+    assert results(one) == results(two)[::-1] == results(here) and not any(row.failed for row in here)
 
 
 def test_rows_are_reused_and_equal_cases_run_once(tmp_path):
@@ -67,17 +49,12 @@ def test_rows_are_reused_and_equal_cases_run_once(tmp_path):
     assert all(row.reused for row in again) and not any(row.reused for row in first)
 
 
-def test_a_key_follows_scene_solver_variant_settings_tag_and_measure(fakes):
-    base = Case(scene(0.1), "fake_solvers:sound", settings={"work": 1})
-    others = [
-        Case(scene(0.2), "fake_solvers:sound", settings={"work": 1}),
-        Case(scene(0.1), "fake_solvers:raises", settings={"work": 1}),
-        Case(scene(0.1), "fake_solvers:sound", "fast", {"work": 1}),
-        Case(scene(0.1), "fake_solvers:sound", settings={"work": 2}),
-        Case(scene(0.1), "fake_solvers:sound", settings={"work": 1}, tag={"i": 1}),
-    ]
-    assert len({base.key(), base.key(fakes.tilt), *(other.key() for other in others)}) == 7
-    assert Case(scene(0.1), base.solver, settings={"work": 1}).key() == base.key()
+def test_a_key_follows_scene_solver_variant_settings_tag_and_measure():
+    base = {"scene": scene(0.1), "solver": "fake_solvers:sound", "settings": {"work": 1}}
+    changes = ({"scene": scene(0.2)}, {"solver": "fake_solvers:raises"}, {"variant": "fast"}, {"settings": {}})
+    keys = [Case(**base | change).key(fake_solvers.tilt) for change in ({}, *changes, {"tag": {"i": 1}})]
+    assert len({*keys, Case(**base).key(fake_solvers.broken)}) == 7
+    assert Case(**base | {"scene": scene(0.1)}).key(fake_solvers.tilt) == keys[0]
 
 
 def test_a_key_follows_versions_and_source_code(tmp_path, monkeypatch):
@@ -90,7 +67,7 @@ def test_a_key_follows_versions_and_source_code(tmp_path, monkeypatch):
         file.write_text(text)
         os.utime(file, ns=(time.time_ns(), time.time_ns()))
         module.fingerprint.cache_clear()
-        return Case(scene(0.1), "changing_solver:simulate").key()
+        return Case(scene(0.1), "changing_solver:simulate").key(fake_solvers.tilt)
 
     first = key("def simulate(scene):\n    return 1\n")
     assert key('"""Better words."""\ndef simulate(scene):\n    return 1  # one\n') == first
@@ -128,16 +105,15 @@ def test_a_worker_killed_from_outside_is_a_failed_row_and_runs_again_next_time(t
     assert not sweep(cases("killed", 1), tmp_path / "s.jsonl")[0].reused
 
 
-def test_exceptions_and_failed_responses_become_failed_rows(tmp_path, fakes):
-    raised = sweep(cases("raises"), tmp_path / "s.jsonl", executor=Serial(), measure=fakes.tilt)
+def test_exceptions_and_failed_responses_become_failed_rows(tmp_path):
+    which = [*cases("raises"), *cases("fails", 1), *cases("never_steps", 1)]
+    *raised, failed, unstepped = sweep(which, tmp_path / "s.jsonl", executor=Here())
     assert [row.case.tag["i"] for row in raised if row.failed] == [5]
     assert raised[5].failure["reason"] == "ValueError: Newton did not converge"
-    (failed,) = sweep(cases("fails", 1), tmp_path / "s.jsonl", executor=Serial(), measure=fakes.tilt)
     assert failed.failure["kind"] == "solver" and failed.failure["reason"] == "energy gain"
     assert failed.failure["last_state"]["time"] == 0.5 and failed.values["outcome"] == "failed"
-    (unstepped,) = sweep(cases("never_steps", 1), tmp_path / "s.jsonl", executor=Serial(), measure=fakes.tilt)
     assert unstepped.failure["reason"] == "too many steps" and "cpu_seconds" not in unstepped.cost
-    (unfit,) = sweep(cases(count=1), tmp_path / "s.jsonl", executor=Serial(), measure=fakes.broken)
+    (unfit,) = sweep(cases(count=1), tmp_path / "s.jsonl", executor=Here(), measure=fake_solvers.broken)
     assert unfit.failure["reason"].startswith("TypeError") and "JSON" in unfit.failure["reason"]
 
 
@@ -145,8 +121,7 @@ def test_failures_name_no_path_of_this_machine(tmp_path):
     rows = sweep(cases("raises", 6) + cases("segfaults", 6), tmp_path / "s.jsonl")
     text = json.dumps([row.failure for row in rows if row.failed])
     assert text.count("fake_solvers.py") >= 2
-    for root in (str(HERE), str(Path.home()) + "/", sys.prefix, str(tmp_path)):
-        assert root not in text
+    assert not any(root in text for root in (str(TESTS), f"{Path.home()}/", sys.prefix, str(tmp_path)))
 
 
 def test_unknown_solvers_and_measures_that_cannot_travel_are_errors_before_anything_runs(tmp_path, monkeypatch):
@@ -160,12 +135,6 @@ def test_unknown_solvers_and_measures_that_cannot_travel_are_errors_before_anyth
     with pytest.raises(EngineNotInstalled, match="pip install"):
         sweep([*first, Case(scene(0.1), "pybullet")], tmp_path / "s.jsonl")
     assert not log.exists()
-
-
-def test_an_executor_is_shared_by_several_sweeps(tmp_path):
-    with Processes(1) as executor, Store(tmp_path / "s.jsonl") as store:
-        rows = [sweep(cases(count=n), store, executor=executor) for n in (3, 6)]
-    assert [row.reused for row in rows[1]] == [True] * 3 + [False] * 3
 
 
 def test_two_workers_do_nearly_twice_as_much_as_one(tmp_path):
@@ -185,7 +154,8 @@ def test_workers_killed_while_idle_are_replaced(tmp_path):
         sweep(cases(count=3), store, executor=executor)
         for worker in executor._pool._pool_manager.worker_manager.workers.values():
             worker.kill()
-        assert not any(row.failed for row in sweep(cases(count=12), store, executor=executor))
+        rows = sweep(cases(count=12), store, executor=executor)
+    assert not any(row.failed for row in rows) and [row.reused for row in rows] == [True] * 3 + [False] * 9
 
 
 def test_workers_that_cannot_start_are_an_error_not_an_endless_loop(tmp_path, monkeypatch):
@@ -196,28 +166,19 @@ def test_workers_that_cannot_start_are_an_error_not_an_endless_loop(tmp_path, mo
         sweep(cases(count=3), tmp_path / "s.jsonl", workers=1)
 
 
-def test_the_analytic_model_gives_the_same_rows_here_and_in_workers_without_compiling_there(tmp_path, fakes):
-    which = [Case(scene(0.05 * i), settings={"history": False}) for i in range(1, 6)]
-    here = sweep(which, tmp_path / "0.jsonl", executor=Serial(), measure=fakes.tilt)
-    # Compiling takes longer than this limit; compile_kernels has left the workers a cache.
-    there = sweep(which, tmp_path / "2.jsonl", workers=2, measure=fakes.tilt, time_limit=8.0)
-    assert results(here) == results(there) and not any(row.failed for row in there)
-
-
 KILLED_SWEEP = """
 import sys
-from fake_solvers import slow
-from comparisons.running.sweep import run_sweep
+from fake_solvers import slow, sweep
 if __name__ == "__main__":
     log, store = sys.argv[1:]
-    run_sweep(slow(log, 40), store=store, workers=2, progress=False)
+    sweep(slow(log, 40), store, workers=2)
 """
 
 
 def test_kill_9_then_resume_equals_an_uninterrupted_sweep(tmp_path):
     script, log, store, whole = (tmp_path / name for name in ("study.py", "log", "s.jsonl", "whole.jsonl"))
     script.write_text(KILLED_SWEEP)
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE), str(HERE.parents[2])])}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(TESTS), str(TESTS.parent)])}
 
     def command(into):
         return [sys.executable, str(script), str(log), str(into)]
@@ -234,9 +195,7 @@ def test_kill_9_then_resume_equals_an_uninterrupted_sweep(tmp_path):
     gone, alive = psutil.wait_procs(family, timeout=10)
     assert not alive  # no orphan goes on computing
     begun = len(log.read_text().split())
-    # Lost at most: the tasks in flight, two workers' worth of a few runs each.
-    assert begun - saved <= 2 * 6
-
+    assert begun - saved <= 2 * 6  # lost at most: the tasks in flight, two workers' worth of a few runs each
     subprocess.run(command(store), env=environment, check=True, timeout=60)
     assert len(log.read_text().split()) - begun == 40 - saved
     subprocess.run(command(whole), env=environment, check=True, timeout=60)
