@@ -2,9 +2,10 @@
 
 import json
 
-import pytest
-
 import fake_solvers
+import pytest
+from fake_solvers import cases, scene
+
 from analytic import PulseMotion, SampledMotion, synthetic_motion
 from analytic.pairing import paired
 from comparisons.report.studies import origin_of
@@ -15,7 +16,6 @@ from comparisons.running.provenance import ResultError, age, last_check, read_re
 from comparisons.running.run_sample import case_of, sample_of
 from comparisons.running.study import Batch, Found, Study, compute
 from comparisons.running.sweep import Case, Row
-from fake_solvers import cases, scene
 
 
 def _plan(ask):

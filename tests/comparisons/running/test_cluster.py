@@ -14,16 +14,18 @@ from pathlib import Path
 import psutil
 import pytest
 
-Client = pytest.importorskip("distributed").Client
+pytest.importorskip("distributed")
 
 import fake_solvers
+from distributed import Client
+from fake_solvers import cases, results, scene, sweep
+
 from analytic import SettingError
 from analytic.motion import PulseMotion
 from comparisons.running import cluster as module
 from comparisons.running.cases import Case
 from comparisons.running.cluster import Cluster, ClusterError
 from engines import installed_engines
-from fake_solvers import cases, results, scene, sweep
 
 TESTS = Path(fake_solvers.__file__).parent
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join([str(TESTS), str(TESTS.parent)])}

@@ -25,7 +25,7 @@ def package(tmp_path, monkeypatch):
 
     def write(name, text):
         (folder / f"{name}.py").write_text(text)
-        os.utime(folder / f"{name}.py", ns=(time.time_ns(), time.time_ns()))
+        os.utime(folder / f"{name}.py", ns=(time.time_ns(), time.time_ns()))  # finer than the system's clock of files
 
     for name, text in files.items():
         write(name, text)
@@ -79,8 +79,7 @@ def test_types_of_functions_do_not_count_and_those_of_fields_do(package):
 
 
 def test_the_reference_does_not_depend_on_engines_nor_studies():
-    names = list(source_digests(["analytic"]))
-    assert "analytic.scene" in names and all(name.startswith("analytic") for name in names)
+    assert {name.partition(".")[0] for name in source_digests(["analytic"])} == {"analytic"}
 
 
 def test_an_unknown_module_is_an_error():

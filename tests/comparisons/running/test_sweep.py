@@ -8,16 +8,16 @@ import sys
 import time
 from pathlib import Path
 
+import fake_solvers
 import psutil
 import pytest
-
-import fake_solvers
-from analytic import EngineNotInstalled
 from answered import Here
+from fake_solvers import cases, results, scene, sweep
+
+from analytic import EngineNotInstalled
 from comparisons.running.cases import Case
 from comparisons.running.executors import Processes
 from comparisons.running.store import Store
-from fake_solvers import cases, results, scene, sweep
 
 TESTS = Path(fake_solvers.__file__).parent
 
