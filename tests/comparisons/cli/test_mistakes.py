@@ -221,18 +221,6 @@ def test_a_pipe_a_device_and_a_folder_are_refused(rocking, place, arguments, kin
     assert status == 2 and told(status, text), text
 
 
-def test_studies_that_are_pipes_are_refused(rocking, place):
-    os.mkfifo(place / "restitution.json")
-    status, text = ended(rocking, ["report", "rigid.toml", "--studies", place])
-    assert status in (0, 2) and "Traceback" not in text
-
-
-def test_the_history_goes_to_standard_output(rocking, place):
-    """Review A8: a file called "-" was written."""
-    status, out, _ = rocking("run", "rigid.toml", "--csv", "-")
-    assert status == 0 and out.startswith("time,tilt,tilt_rate") and not (place / "-").exists()
-
-
 WORDS = (
     "",
     "-",

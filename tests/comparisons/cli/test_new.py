@@ -4,8 +4,10 @@ import io
 import json
 
 import pytest
+from mutated_files import VALUES, cosmos
 
 from analytic import load_scene
+from analytic.records import read_record
 
 BUST = ("--height", "1.9", "--width", "0.55", "--material", "marble")
 
@@ -47,12 +49,14 @@ def test_bearings_by_constants_keep_their_x_max_and_say_what_they_give_there(roc
     assert "secant period at x_max " in out and "equivalent damping at x_max " in out and "asked" not in out
 
 
-def test_new_names_a_record_as_seen_from_the_scene(rocking, tmp_path):
-    (tmp_path / "records").mkdir()
-    record = tmp_path / "records" / "own.csv"
-    record.write_text("time [s];acc [m/s2]\n0,00;0,1\n0,01;0,4\n0,02;-0,2\n")
-    assert new(rocking, tmp_path, *BUST, "--record", record)[0].motion.samples[1] == pytest.approx(0.4)
-    assert 'record = "records/own.csv"' in (tmp_path / "bust.toml").read_text()
+def test_new_names_a_record_as_seen_from_the_scene_and_a_channel_of_it(rocking, tmp_path):
+    record = tmp_path / "records" / "own.v2c"
+    record.parent.mkdir()
+    record.write_text(cosmos(VALUES))
+    scene, _ = new(rocking, tmp_path, *BUST, "--record", record, "--channel", "Up")
+    assert scene.motion.digest() == read_record(record, channel="Up").digest()
+    text = (tmp_path / "bust.toml").read_text()
+    assert 'record = "records/own.v2c"' in text and 'channel = "Up"' in text
 
 
 IMPLAUSIBLE = {

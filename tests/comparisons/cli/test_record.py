@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from mutated_files import VALUES, cosmos, csmip, knet
+from mutated_files import VALUES, csmip, knet
 
 from analytic import SampledMotion
 from analytic.records import G, read_record
@@ -67,14 +67,6 @@ def test_what_the_file_does_not_say_is_asked_for_and_taken(rocking, tmp_path):
     channel = json.loads(out)["channels"][0]
     assert status == 0 and channel["peak"] == pytest.approx(1.5 * G)
     assert (channel["units"], channel["units_from"], channel["dt"]) == ("g", "units", 0.02)
-
-
-def test_new_takes_a_channel(rocking, tmp_path):
-    scene, record = tmp_path / "scene.toml", tmp_path / "record.v2c"
-    record.write_text(cosmos(VALUES))
-    bust = ("--height", "2", "--width", "0.5", "--mass", "900")
-    assert rocking("new", scene, *bust, "--record", record, "--channel", "Up")[0] == 0
-    assert 'channel = "Up"' in scene.read_text()
 
 
 def test_spectrum_is_that_of_the_equation_of_motion():

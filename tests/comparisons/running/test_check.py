@@ -77,6 +77,7 @@ def test_a_run_that_differs_is_named_with_both_numbers(result):
         ("engine", "nosuchengine", "cannot be run any more (unknown solver 'nosuchengine'"),
         ("measure", "fake_solvers:gone", "cannot be run any more (module 'fake_solvers' has no attribute 'gone'"),
         ("settings", {"spring": 1.0}, "sound when stored, now exception: TypeError"),
+        ("variant", "springs-of-old", "springs-of-old: sound when stored, now exception: TypeError"),
         ("failure", {"kind": "crash", "reason": "killed"}, "crash: killed when stored, now sound"),
         ("digest", "0", "digest: stored 0, now"),
     ],
@@ -89,13 +90,6 @@ def test_what_is_gone_or_fails_otherwise_does_not_hold(result, part, value, word
     changed(result, change)
     found = check(result, 30, 1, workers=1, progress=False)
     assert found.held == 9 and all(words in each for each in found.differences), found.differences
-
-
-def test_a_variant_that_is_gone_does_not_hold_and_is_named(tmp_path):
-    (run,) = sampled(Case(scene(0.1), "exudyn", "springs-of-old", {"history": False}))
-    write_result(tmp_path / "r.json", "k", {}, [], modules=["analytic"], runs=[run], run_count=1)
-    found = check(tmp_path / "r.json", 1, 0, workers=1, progress=False)
-    assert found.held == 0 and "springs-of-old" in found.differences[0]
 
 
 def test_results_without_stored_runs_say_what_to_do(tmp_path):

@@ -4,7 +4,6 @@ All of it: python -m pytest -m slow tests/comparisons/running
 """
 
 import functools
-import json
 import os
 import random
 import resource
@@ -95,10 +94,3 @@ def test_a_study_on_a_full_disk_says_so_and_resumes_when_there_is_room(tmp_path,
     with Store(tmp_path / "runs.jsonl") as store:
         assert 0 < len(store.rows) < len(expected[1])
     assert finished("surface", tmp_path) == expected
-
-
-@pytest.mark.parametrize("study", ["surface", "stability"])
-def test_a_cluster_finds_what_this_machine_finds(tmp_path, whole, study):
-    pytest.importorskip("distributed")
-    assert finished(study, tmp_path, "--scheduler", "local:2") == whole(study)[0]
-    assert json.loads((tmp_path / f"{study}.json").read_text())["rows"]

@@ -55,14 +55,6 @@ def test_all_transitions_of_columns_are_found_in_common_rounds():
     assert sum(map(len, seen)) == sum(column.evaluations for column in columns)
 
 
-def test_a_gap_thinner_than_the_scan_is_found_between_two_ways_to_overturn():
-    edges = (1.2509, 7.30001, 7.30051)
-    ways = (steps(*edges, labels=["safe", "one", "safe", "none"]), steps(*edges))
-    labelled, plain = along(*((boundaries(0.5, 20.5, 41, 1e-5), way) for way in ways))
-    assert positions(labelled) == pytest.approx(edges, abs=1e-5)
-    assert positions(plain) == pytest.approx(edges[:1], abs=1e-5)  # it cannot: why labels should say more
-
-
 def test_a_thin_gap_beside_a_change_is_found_by_the_closer_look():
     edges = (5.9, 6.05, 6.20)  # scan step 0.5; gap 0.15 wide, not hit by the scan's points, in neighbouring steps
     near, without = along(*((boundaries(0.5, 20.5, 41, 1e-4, near), steps(*edges)) for near in (4, 1)))
