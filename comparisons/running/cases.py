@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import functools
 import hashlib
-import importlib
 import json
+import pkgutil
 import platform
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -81,13 +81,7 @@ def solver(name: str) -> Callable:
     """
     if name in ENGINES:
         return get_engine(name).simulate
-    return named(_place(name))
-
-
-def named(name: str) -> Callable:
-    """The function that ``module:function`` names, see `name_of`."""
-    module, _, function = name.partition(":")
-    return getattr(importlib.import_module(module), function)
+    return pkgutil.resolve_name(_place(name))
 
 
 def compile_for(names: Iterable[str]) -> None:

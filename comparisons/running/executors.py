@@ -102,8 +102,12 @@ class Processes(Executor):
         if server:
             self._context.set_forkserver_preload(["comparisons.running.executors", *map(module_of, solvers)])
             resource_tracker.ensure_running()  # of the forkserver, whose start would undo the blocking
-            with _one_thread(), _ctrl_c_blocked():  # the server and its workers leave Ctrl-C to this process
-                forkserver.ensure_running()
+            before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            try:  # the server and its workers leave Ctrl-C to this process
+                with _one_thread():
+                    forkserver.ensure_running()
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, before)
         self._under_way: dict[Any, tuple[Task, str]] = {}  # future: task and its log
         self._broken = 0
         self._pool = self._new_pool()
@@ -210,22 +214,10 @@ def lines_of(task: Task) -> tuple[str, ...]:
     return tuple(lines)
 
 
-@contextlib.contextmanager
-def _ctrl_c_blocked():
-    """What is started inside does not hear Ctrl-C."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
 def _start_worker(path):
     sys.path[:] = path  # a preloaded server keeps its own
     end_with_parent()
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        threading.Thread(target=end_with, args=(parent,), daemon=True).start()
+    threading.Thread(target=end_with, args=(multiprocessing.parent_process(),), daemon=True).start()
 
 
 def end_with(parent: Any) -> None:
