@@ -3,11 +3,18 @@
 import math
 import os
 import time
+from pathlib import Path
 
 from analytic import Block, Failure, Response, Scene, Start, State
 from comparisons.running.cases import Case
 from comparisons.running.executors import Processes
 from comparisons.running.sweep import run_sweep
+
+# Of new processes that import this and the project.
+ENVIRONMENT = {
+    **os.environ,
+    "PYTHONPATH": os.pathsep.join(map(str, (Path(__file__).parent, Path(__file__).parents[1]))),
+}
 
 
 def response(scene, *, peak=0.0, outcome="stands", failure=None, settings=None, cpu_seconds=None):

@@ -1,7 +1,6 @@
 """Runs on a Dask cluster: the same rows as here, one case for a crash or a hang, nothing lost with a worker."""
 
 import contextlib
-import json
 import os
 import signal
 import socket
@@ -9,7 +8,6 @@ import subprocess
 import sys
 import threading
 import time
-from pathlib import Path
 
 import psutil
 import pytest
@@ -27,8 +25,6 @@ from comparisons.running.cases import Case
 from comparisons.running.cluster import Cluster, ClusterError
 from engines import installed_engines
 
-TESTS = Path(fake_solvers.__file__).parent
-ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join([str(TESTS), str(TESTS.parent)])}
 pytestmark = pytest.mark.xdist_group("cluster")  # its two workers are started once
 
 
@@ -160,7 +156,7 @@ def scheduler(folder, workers):
     """(address, process) of a scheduler with so many workers, each a program of its own, as on a cluster."""
     port = free_port()
     worker = ("worker", f"127.0.0.1:{port}", "--nthreads", "1", "--death-timeout", "30")
-    options = dict(cwd=folder, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    options = dict(cwd=folder, env=fake_solvers.ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     started = [
         subprocess.Popen(
             [sys.executable, "-m", f"distributed.cli.dask_{name}", *arguments, "--no-dashboard"],
@@ -182,26 +178,20 @@ LONG_STUDY = """
 import sys
 from fake_solvers import slow, sweep
 from comparisons.running.cluster import Cluster, ClusterError
-if __name__ == "__main__":
-    address, log, store, count = sys.argv[1:]
-    try:
-        with Cluster(address, ["fake_solvers:counted"]) as executor:
-            sweep(slow(log, int(count)), store, executor)
-    except ClusterError as error:
-        sys.exit(f"error: {error}")
+try:
+    with Cluster(sys.argv[1], ["fake_solvers:counted"]) as executor:
+        sweep(slow(sys.argv[2], 120), sys.argv[3], executor)
+except ClusterError as error:
+    sys.exit(f"error: {error}")
 """
 
 
 @pytest.mark.slow
 def test_a_scheduler_that_dies_ends_the_sweep_with_one_message_and_the_same_command_resumes(tmp_path):
-    script, log, store, count = tmp_path / "study.py", tmp_path / "log", tmp_path / "s.jsonl", 120
-    script.write_text(LONG_STUDY)
-
-    def command(address):
-        return [sys.executable, str(script), address, str(log), str(store), str(count)]
-
+    log, store = tmp_path / "log", tmp_path / "s.jsonl"
     with scheduler(tmp_path, 2) as (address, process):
-        study = subprocess.Popen(command(address), env=ENVIRONMENT, stderr=subprocess.PIPE, text=True)
+        command = [sys.executable, "-c", LONG_STUDY, address, log, store]
+        study = subprocess.Popen(command, env=fake_solvers.ENVIRONMENT, stderr=subprocess.PIPE, text=True)
         while study.poll() is None and not (store.exists() and store.read_bytes().count(b"\n") >= 10):
             time.sleep(0.02)
         process.send_signal(signal.SIGKILL)
@@ -210,8 +200,8 @@ def test_a_scheduler_that_dies_ends_the_sweep_with_one_message_and_the_same_comm
         assert time.monotonic() - began < 10
     assert study.returncode == 1 and words.count("\n") == 1 and "is gone; rows done so far are kept" in words, words
     kept = store.read_bytes().count(b"\n")
-    assert 10 <= kept < count
-    with scheduler(tmp_path, 1) as (address, _):
-        subprocess.run(command(address), env=ENVIRONMENT, check=True, timeout=120)
-    peaks = [json.loads(line)["values"]["peak"] for line in store.read_text().splitlines()]
-    assert sorted(peaks) == [(1e-3 * i) ** 2 for i in range(count)]
+    assert 10 <= kept < 120
+    with scheduler(tmp_path, 1) as (address, _), Cluster(address, ["fake_solvers:counted"]) as executor:
+        rows = sweep(fake_solvers.slow(log, 120), store, executor)
+    assert [row.values["peak"] for row in rows] == [(1e-3 * i) ** 2 for i in range(120)]
+    assert sum(row.reused for row in rows) == kept

@@ -2,7 +2,6 @@
 
 import json
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -19,8 +18,7 @@ from comparisons.running.cases import Case
 from comparisons.running.executors import Processes
 from comparisons.running.store import Store
 
-TESTS = Path(fake_solvers.__file__).parent
-OURS = (str(TESTS), f"{Path.home()}/", sys.prefix)  # folders that no stored failure names
+OURS = (str(Path(__file__).parents[2]), f"{Path.home()}/", sys.prefix)  # folders that no stored failure names
 
 
 def test_rows_come_in_the_order_of_the_cases_with_costs_apart(tmp_path):
@@ -160,39 +158,23 @@ def test_workers_that_cannot_start_are_an_error_not_an_endless_loop(tmp_path, mo
 KILLED_SWEEP = """
 import sys
 from fake_solvers import slow, sweep
-if __name__ == "__main__":
-    log, store = sys.argv[1:]
-    sweep(slow(log, 40), store, workers=2)
+sweep(slow(sys.argv[1], 40), sys.argv[2], workers=2)
 """
 
 
 def test_kill_9_then_resume_equals_an_uninterrupted_sweep(tmp_path):
-    script, log, store, whole = (tmp_path / name for name in ("study.py", "log", "s.jsonl", "whole.jsonl"))
-    script.write_text(KILLED_SWEEP)
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(TESTS), str(TESTS.parent)])}
-
-    def command(into):
-        return [sys.executable, str(script), str(log), str(into)]
-
-    process = subprocess.Popen(command(store), env=environment)
-    deadline = time.monotonic() + 60
-    while time.monotonic() < deadline and not (store.exists() and store.read_bytes().count(b"\n") >= 10):
+    log, store = tmp_path / "log", tmp_path / "s.jsonl"
+    process = subprocess.Popen([sys.executable, "-c", KILLED_SWEEP, log, store], env=fake_solvers.ENVIRONMENT)
+    while process.poll() is None and not (store.exists() and store.read_bytes().count(b"\n") >= 10):
         time.sleep(0.01)
     family = psutil.Process(process.pid).children(recursive=True)
-    process.send_signal(signal.SIGKILL)
+    process.kill()
     process.wait()
     saved = store.read_bytes().count(b"\n")
     assert 10 <= saved < 40
-    gone, alive = psutil.wait_procs(family, timeout=10)
-    assert not alive  # no orphan goes on computing
+    assert not psutil.wait_procs(family, timeout=10)[1]  # no orphan goes on computing
     begun = len(log.read_text().split())
     assert begun - saved <= 2 * 6  # lost at most: the tasks in flight, two workers' worth of a few runs each
-    subprocess.run(command(store), env=environment, check=True, timeout=60)
-    assert len(log.read_text().split()) - begun == 40 - saved
-    subprocess.run(command(whole), env=environment, check=True, timeout=60)
-
-    def content(file):
-        with Store(file) as opened:
-            return {key: (row["values"], row["failure"]) for key, row in opened.rows.items()}
-
-    assert content(store) == content(whole) and len(content(store)) == 40
+    rows = sweep(fake_solvers.slow(log, 40), store)
+    assert sum(row.reused for row in rows) == saved and len(log.read_text().split()) - begun == 40 - saved
+    assert [row.values["peak"] for row in rows] == [(1e-3 * i) ** 2 for i in range(40)]
