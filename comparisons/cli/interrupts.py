@@ -65,7 +65,7 @@ def _end(number):
         words = "Interrupted." if number == signal.SIGINT else f"Ended by {signal.Signals(number).name}."
         with contextlib.suppress(OSError):
             os.write(2, (SHOW_CURSOR if os.isatty(2) else b"") + words.encode() + b"\n")
-    with contextlib.suppress(Exception):
+    with contextlib.suppress(Exception):  # a module that is not loaded, too: nothing may be imported now
         _end_children()
     with contextlib.suppress(Exception):
         _remove_folders()
@@ -73,9 +73,7 @@ def _end(number):
 
 
 def _end_children():
-    psutil = sys.modules.get("psutil")  # where processes are started it has been imported; guarded runs end anyway
-    if psutil is None:
-        return
+    psutil = sys.modules["psutil"]  # where processes are started it has been imported; guarded runs end anyway
     for child in psutil.Process().children(recursive=True):
         with contextlib.suppress(psutil.Error):
             child.kill()
@@ -83,11 +81,8 @@ def _end_children():
 
 def _remove_folders():
     """This project's temporary folders, and the one of multiprocessing's sockets: removed at an exit in good order."""
-    files, util = (sys.modules.get(name) for name in ("comparisons.running.files", "multiprocessing.util"))
-    if files is not None:
-        files.remove_temporary_folders()
-    if util is not None:
-        shutil.rmtree(util.get_temp_dir(), ignore_errors=True)
+    sys.modules["comparisons.running.files"].remove_temporary_folders()
+    shutil.rmtree(sys.modules["multiprocessing.util"].get_temp_dir(), ignore_errors=True)
 
 
 def open_streams() -> None:
