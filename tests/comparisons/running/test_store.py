@@ -27,10 +27,10 @@ def test_rows_come_back_and_the_last_of_a_key_counts(tmp_path):
 @pytest.mark.parametrize("cut", [1, 5, 20])
 def test_a_torn_last_line_is_dropped_and_the_file_goes_on(tmp_path, cut):
     path = tmp_path / "s.jsonl"
-    rows(path, line("a", 1), line("b", 2))
+    rows(path, line("a", 1), line("b", 2), line("c", 3))
     path.write_bytes(path.read_bytes()[:-cut])
-    assert rows(path) == {"a": 1} and path.read_bytes().endswith(b"\n")
-    assert rows(path, line("c", 3)) == rows(path) == {"a": 1, "c": 3}
+    assert rows(path) == {"a": 1, "b": 2} and path.read_bytes().endswith(b"\n")
+    assert rows(path, line("d", 4)) == rows(path) == {"a": 1, "b": 2, "d": 4}
 
 
 @pytest.mark.parametrize(

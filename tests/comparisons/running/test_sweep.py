@@ -30,11 +30,11 @@ def test_rows_come_in_the_order_of_the_cases_with_costs_apart(tmp_path):
 
 
 def test_one_and_two_workers_and_this_process_agree_in_any_order(tmp_path):
-    # Of the analytic model, too: compiling takes longer than this limit; compile_kernels has left the workers a cache.
+    # Of the analytic model, too: compiling takes longer than this limit; compile_kernels has left a cache.
     which = [*cases(count=60), *(Case(scene(0.05 * i), settings={"history": False}) for i in range(1, 6))]
     here = sweep(which, tmp_path / "0.jsonl", executor=Here())
-    one = sweep(which, tmp_path / "1.jsonl", workers=1, time_limit=8.0)
-    two = sweep(which[::-1], tmp_path / "2.jsonl", workers=2, time_limit=8.0)
+    one = sweep(which, tmp_path / "1.jsonl", workers=1, time_limit=20.0)
+    two = sweep(which[::-1], tmp_path / "2.jsonl", workers=2, time_limit=20.0)
     assert results(one) == results(two)[::-1] == results(here) and not any(row.failed for row in here)
 
 
