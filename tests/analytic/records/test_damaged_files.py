@@ -48,7 +48,7 @@ def judged(kind, path, content, said):
     assert time.process_time() - begin < HANG
     try:
         expected = strict_records.read(content, **said) if kind == "record" else strict_scenes.read(content)
-    except (strict_records.Refused, strict_scenes.Refused):
+    except strict_records.REFUSED:
         return "both refuse" if found is None else "only the project reads"
     if found is None:
         return "only the strict one reads"
