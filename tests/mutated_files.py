@@ -50,8 +50,7 @@ def csmip(values, step=".005", layout="8f10.5", words="in cm/sec2."):
         text += (
             f"Corrected accelerogram   00000-X0000-00000.00       Chan  {number}: {name:10s}from\n"
             "Uncorrected Accelerogram Data             Processed: 01/01/00\n"
-            + "Nowhere\n"
-            * 13
+            + ("Nowhere\n" * 13)
             + f" {count} points of instrument- and baseline-corrected accel, veloc and displ data\n"
             f"At equally-spaced intervals of {step} sec.\n"
             f"Peak acceleration = {max(samples, key=abs):9.3f}    cm/sec/sec  at  .020   sec.\n"
