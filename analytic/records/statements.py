@@ -5,8 +5,6 @@ number with a point or a comma, its unit before or behind: "Sampling rate: 100 H
 "Abtastrate 200", "dt [ms] = 5", "200 samples/s". A rate without a unit is in Hz, an interval in seconds.
 """
 
-from __future__ import annotations
-
 import re
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
