@@ -29,12 +29,12 @@ def number(where: str, token: str) -> float:
     SceneError
         It is not one, or not finite; names `where`.
     """
-    if len(token) <= LONGEST and _NUMBER.fullmatch(token):
-        value = float(token.replace("D", "E").replace("d", "e"))
-        if math.isfinite(value):
-            return value
-        raise SceneError(where, token, "not finite", REMEDY)
-    raise SceneError(where, token, "not finite" if _NOT_FINITE.fullmatch(token) else "not a number", REMEDY)
+    known = len(token) <= LONGEST and _NUMBER.fullmatch(token)
+    value = float(token.replace("D", "E").replace("d", "e")) if known else math.nan
+    if not math.isfinite(value):
+        problem = "not finite" if known or _NOT_FINITE.fullmatch(token) else "not a number"
+        raise SceneError(where, token, problem, REMEDY)
+    return value
 
 
 def fortran_values(lines: Sequence[str], begin: int) -> np.ndarray:

@@ -161,9 +161,7 @@ def _step(where: str, line: str, match: re.Match[str]) -> _Step | None:
 
 def _kind(word: str) -> str:
     """Whether a word is a unit of a rate or of an interval; "" of another."""
-    if not word:
-        return ""
-    return "interval" if word in PER_SECOND else "rate" if re.fullmatch(_HERTZ, word) else ""
+    return "rate" if re.fullmatch(_HERTZ, word) else "interval" if word and word in PER_SECOND else ""
 
 
 def _positive(where: str, token: str) -> float:
