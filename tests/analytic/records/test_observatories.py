@@ -28,9 +28,16 @@ def test_csmip_numbers_that_touch_are_cut_by_position(tmp_path):
     assert same(read_record(write(tmp_path, csmip(values)), channel=1), values)
 
 
-def test_the_csmip_step_that_the_line_before_the_data_rounds_is_read_from_the_reals(tmp_path):
-    text = csmip(VALUES, step=".0025").replace("spaced at .0025", "spaced at .003")
-    assert read_record(write(tmp_path, text), channel=1).dt == 0.0025
+@pytest.mark.parametrize(
+    "step, old, new, dt",
+    [
+        (".0025", "spaced at .0025", "spaced at .003", 0.0025),
+        (".005", "   0.00500", "-999.00000", 0.005),  # unknown to the reals
+    ],
+)
+def test_the_csmip_step_that_the_line_before_the_data_rounds_is_read_from_the_reals(tmp_path, step, old, new, dt):
+    text = csmip(VALUES, step).replace(old, new)
+    assert new in text and read_record(write(tmp_path, text), channel=1).dt == dt
 
 
 @pytest.mark.parametrize("channel, times", [(1, 1), ("340 deg", 1), ("2", 2), ("UP", 2)])
@@ -78,6 +85,7 @@ def test_smc(tmp_path, high):
 
 WORDS = "12 acceleration pts"
 BAD = {
+    "comments not counted": (cosmos(VALUES), "Comment line(s)", "line(s)", "not the count of comment lines"),
     "counts": (
         cosmos(VALUES),
         "units=cm/sec2(04)",
@@ -153,6 +161,7 @@ def test_refused(tmp_path, text, old, new, message):
 
 
 CSMIP = {
+    "no channel named": ({"channel": 1}, "Chan  2:", "Chan  Up", "names no channel, as Chan 1: 90 Deg"),
     "no channel": ({}, "", "", "motion.channel: missing; the file holds channels 1 (90 Deg) or 2 (Up) or 3 (H1)"),
     "no such channel": ({"channel": 4}, "", "", "motion.channel = 4: not a channel of the file; choose one of 1 (90"),
     "two of a name": ({"channel": "up"}, "1: 90 Deg", "1: Up", "motion.channel = 'up': names several channels"),
@@ -171,7 +180,12 @@ CSMIP = {
     "stars": ({"channel": 1}, " -45.60000", "**********", "= '**********': not a number"),
     "cut": ({"channel": 1}, "/&  ----------  End of data for channel  3", "/ 3", "channel 3 has no last line /&"),
     "two steps": ({"channel": 1}, "spaced at .005", "spaced at .010", "line 40, step = 0.005: but line 46 says 0.01 s"),
-    "no step": ({"channel": 1}, "spaced at .005", "spaced at .000", "line 46, step = 0.0: not a sampling interval"),
+    "no step": (
+        {"channel": 1},
+        "spaced at .005",
+        "spaced at .000",
+        "line 46, step = 0.0: not a sampling interval; give a step above 0",
+    ),
 }
 
 

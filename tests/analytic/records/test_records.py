@@ -29,6 +29,7 @@ AT2_FILES = {
     **{name: f"{AT2_TOP}{count}\n{DATA[0]}" for name, count in COUNTS.items()},
     **{f"data {at}": f"{AT2_TOP}{COUNTS['padded']}\n{data}" for at, data in enumerate(DATA)},
     **{repr(end): f"{AT2_TOP}{COUNTS['padded']}\n{DATA[0]}\x1a".replace("\n", end) for end in ("\r\n", "\r\r\n", "\r")},
+    "UTF-16": f"{AT2_TOP}{COUNTS['padded']}\n{DATA[0]}".encode("utf-16"),
 }
 
 
@@ -131,7 +132,7 @@ BAD = {
     "NaN in AT2": (AT2 + "1 2\n3 NaN\n", None, "line 6 = 'NaN': not finite; mend or remove it"),
     "infinite in AT2": (AT2 + "1 2\n3 -Inf\n", None, "line 6 = '-Inf': not finite"),
     "stars": (AT2 + "1 2 3 *******\n", None, "line 5 = '*******': not a number"),
-    "dt of zero": (AT2.replace(".02", ".00") + "1 2 3 4", None, "line 4, step = 0.0: not a sampling interval"),
+    "dt of zero": (AT2.replace(".02", ".00") + "1 2 3 4", None, "line 4, step = 0.0: not a sampling interval or rate"),
     "unreadable dt": (AT2.replace(".02", "?") + "1 2 3 4", None, "line 4, step = 'NPTS= 4, DT= ? SEC': its sampling"),
     "unreadable count": (AT2.replace("NPTS= 4", "NPTS= many") + "1 2 3 4", None, "NPTS = 'many': not a number of"),
     "velocity": (
@@ -164,6 +165,9 @@ BAD = {
     "small jitter": ("0 1\n.0100 2\n.0200 3\n.0304 4\n.0400 5\n.0500 5\n", "g", "sampling is not uniform"),
     "time going back": ("0 1\n-0.01 2\n-0.02 3\n", "g", "sampling is not uniform"),
     "time standing still": ("0 1\n0 2\n0 3\n", "g", "sampling is not uniform"),
+    "minutes": ("time [min],a [g]\n0.0,1.0\n1.0,2.0\n", None, "not a time in s or ms; write the times in seconds"),
+    "two units of time": ("# time [s]\ntime [ms],a [g]\n0.0,1.0\n1.0,2.0\n", None, "line 2: times in s and in ms"),
+    "step of days": (AT2.replace(".02", "86400.") + "1 2 3 4", None, "not a sampling interval of a ground motion"),
     "binary": (bytes(range(128, 256)), None, "not a known record format"),
     "unknown format": ("hello\nworld\n", None, "line 1 = 'hello': not a known record format; give PEER AT2"),
 }
