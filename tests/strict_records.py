@@ -2,7 +2,7 @@
 
 It shares no code, no pattern and no floating-point step with the reader of the project, so that the two can be held
 against each other on damaged files. It is slow (its test of uniform times takes every pair) and as strict as the rules:
-what is not surely a record is refused by one of `REFUSED`.
+what is not surely a record is refused by one of `strict_words.REFUSED`, without words.
 """
 
 import re
@@ -11,9 +11,7 @@ from fractions import Fraction
 import strict_columns
 import strict_formats
 from strict_statements import blanked, step_of_all
-from strict_words import GIVEN, KNOWN, REFUSED, G, fortran, need, step_of, unit_of, whole
-
-__all__ = ["REFUSED", "read"]
+from strict_words import GIVEN, KNOWN, G, fortran, need, step_of, unit_of, whole
 
 
 def read(content, units=None, dt=None, column=None, channel=None):
@@ -27,7 +25,7 @@ def read(content, units=None, dt=None, column=None, channel=None):
     step, samples, factor = found or strict_columns.columns(lines, dt is not None, column)
     need(units is None or factor in (None, GIVEN[units]))
     factor = GIVEN[units] if factor is None else factor
-    need(len(samples) > 1 and not step is dt is None)
+    need(len(samples) > 1 and (step or dt is not None))
     step = step or (Fraction(dt), Fraction(dt))
     need(dt is None or abs(Fraction(dt) - sum(step) / 2) <= sum(step) / 2 / 10**6)
     need(all(Fraction(1, 10**7) <= bound <= 1000 for bound in step))

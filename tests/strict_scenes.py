@@ -9,7 +9,7 @@ import tomllib
 MOST, LEAST = 1e20, 1e-20
 POSITIVE, NOT_NEGATIVE, ANY, SEED = (float, LEAST, MOST), (float, 0, MOST), (float, -MOST, MOST), (int, 0, 2**64 - 1)
 UPRIGHT = math.nextafter(math.pi / 2, 0)
-ABOVE_0, ABOVE_1 = math.nextafter(0, 1), math.nextafter(1, 2)
+ABOVE_1 = math.nextafter(1, 2)
 PULSES = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
 # {table: {key: (type, least, largest), or the words it may be; None: any text}}
 KEYS = {
@@ -17,7 +17,7 @@ KEYS = {
     "block": {
         "mass": POSITIVE,
         "radius": POSITIVE,
-        "slenderness": (float, ABOVE_0, UPRIGHT),
+        "slenderness": (float, LEAST, UPRIGHT),
         "corner_inertia": POSITIVE,
         "restitution": (float, 0, 1),
     },

@@ -93,6 +93,12 @@ def test_refused(tmp_path, text, said, message):
     assert_refused(write(tmp_path, text), message, **{"units": "m/s2"} | said)
 
 
-def test_channels_side_by_side_are_read_when_one_is_chosen(tmp_path):
-    motion = read_record(write(tmp_path, STEEP), "m/s2", dt=0.01, column=2)
-    assert motion.samples.tolist() == [-2 * value for value in SMOOTH]
+@pytest.mark.parametrize(
+    "text, column, values",
+    [
+        (STEEP, 2, [-2 * value for value in SMOOTH]),
+        ("0 2\n0 3\n1 2\n1 4\n", 1, [0, 0, 1, 1]),  # times would rise
+    ],
+)
+def test_channels_side_by_side_are_read_when_one_is_chosen(tmp_path, text, column, values):
+    assert read_record(write(tmp_path, text), "m/s2", dt=0.01, column=column).samples.tolist() == values

@@ -13,6 +13,7 @@ import strict_records
 import strict_scenes
 from mutated_files import cases, cosmos, records, scenes
 from record_files import write
+from strict_words import REFUSED
 
 from analytic import SceneError, load_scene
 from analytic.errors import FILE_LENGTH, KEY_LENGTH, TEXT_LENGTH, VALUE_LENGTH
@@ -48,7 +49,7 @@ def judged(kind, path, content, said):
     assert time.process_time() - begin < HANG
     try:
         expected = strict_records.read(content, **said) if kind == "record" else strict_scenes.read(content)
-    except strict_records.REFUSED:
+    except REFUSED:
         return "both refuse" if found is None else "only the project reads"
     if found is None:
         return "only the strict one reads"
