@@ -149,6 +149,7 @@ BAD = {
         "integers of the header = 12.5: not a whole number",
     ),
     "numbers left": (smc(VALUES), "        12", "         8", "the 17th integer = 8: more numbers follow than these"),
+    "another exponent": (smc(VALUES), "-4.5600E+1", "4.5600E+01", "not printed as the other numbers are"),
     "a row short": (smc(VALUES), "    -32768\n", "\n", "not 8 header values; the file is cut or damaged"),
 }
 
