@@ -43,6 +43,7 @@ def test_two_files_that_differ_in_the_component_are_a_pair(tmp_path, names):
         ("record1.csv", "record2.csv"),
         ("record_1.csv", "record_2.csv"),
         ("A_000.csv", "A_045.csv"),
+        ("A_000.csv", "A_180.csv"),
         ("A_N.csv", "B_E.csv"),
         ("A_001.csv", "A_002.csv", "A_091.csv"),  # a count
         ("A_N.csv", "A_Y.csv"),
