@@ -41,3 +41,10 @@ def sampled(scene, mean_step, *, contact_tilt=EDGE, seed=0, side=1, noise=0.0, s
 def seen(scene, trace, **changes):
     given = dict(engine="test", variant="", cpu_seconds=0.0, steps=len(trace.time), settings={}, versions={})
     return observe(scene, trace, **{**given, **changes})
+
+
+def observed(scene, mean_step, **given):
+    """(scene, trace, analytic response, the trace's response) of a scene or the name of one; given: as of `sampled`."""
+    scene = SCENES.get(scene, scene) if isinstance(scene, str) else scene
+    trace, reference = sampled(scene, mean_step, **given)
+    return scene, trace, reference, seen(scene, trace)
