@@ -19,13 +19,7 @@ def damped(damping, base=0.067, **changes):
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(
     "scene",
-    [
-        (damped(1e6),
-        (damped(1e5),
-        (damped(1e4),
-        (damped(0.0, ka=1e9, kb=1e8),
-        (damped(1e6, base=212.0, ka=1e9, kb=1e8),
-    ],
+    [damped(1e6), damped(1e5), damped(1e4), damped(0.0, ka=1e9, kb=1e8), damped(1e6, base=212.0, ka=1e9, kb=1e8)],
     ids=["1e6 N s/m", "1e5 N s/m", "1e4 N s/m", "1e9 N/m", "both"],
 )
 @pytest.mark.parametrize("settle", [0.0, 6e-3])
