@@ -25,9 +25,7 @@ from engines import get_engine  # noqa: E402
 from engines.contract import Mismatch  # noqa: E402
 from engines.events import find_events  # noqa: E402
 from engines.exudyn import corners, phases, stepping  # noqa: E402
-from engines.exudyn.ground import Ground  # noqa: E402
 from engines.exudyn.model import Bearing  # noqa: E402
-from engines.exudyn.scene import build  # noqa: E402
 from engines.swings import find_swings  # noqa: E402
 
 simulate, VARIANTS = get_engine("exudyn").simulate, sorted(get_engine("exudyn").variants)
@@ -166,16 +164,6 @@ def test_small_swings_on_the_stiff_corners_they_ask_for_are_stepped_implicitly()
     response, expected = simulate(given, stiffness=5e13), exact(given)
     assert response.peak_tilt == pytest.approx(expected.peak_tilt, rel=0.02)
     assert response.steps < 40_000
-
-
-def test_equal_steps_meet_the_ends_of_segments():
-    ground = Ground(build(scene(0.2, motion=SampledMotion(0.005, np.sin(np.arange(101))), duration=1.0)))
-    for begin, step, end, count in ((0.0112, 1e-3, 0.015, 4), (0.015, 1e-3, 0.5, 97 * 5), (0.5, 1e-3, 1.0, 500)):
-        ground.begin(begin, None)
-        assert ground.equal(begin, step) == (pytest.approx(end), count)
-    pulse = Ground(build(scene(0.2, motion=PulseMotion("one-sine", 3.0, 6.0, start=0.25), duration=3.0)))
-    pulse.begin(0.1, None)
-    assert pulse.equal(0.1, 1e-2) == (0.25, 15)
 
 
 # Coulomb's law.

@@ -159,16 +159,6 @@ def test_the_error_of_restitution_goes_with_the_largest_step(engine, base, fine,
     assert least * errors[1] < errors[0] < 1e-3
 
 
-def test_the_rule_is_worth_a_hundred_times_as_many_equal_steps(engine):
-    """No equal steps that cost as much come near."""
-    given, variant = scene(0.2, duration=2.0, start=Start(tilt=0.1)), "impact-aware"
-    ruled = engine.run(given, variant, engine.variants[variant].settings)
-    equal = engine.run(given, variant, stepping.FixedStep(given.duration / ruled.steps))
-    assert ruled.steps == pytest.approx(equal.steps, rel=0.1)
-    own, other, wanted = (-tilt.min() for tilt in (ruled.trace.tilt, equal.trace.tilt, exact(given).history.tilt))
-    assert abs(own - wanted) < 0.1 * abs(other - wanted)
-
-
 def test_momentum_is_kept_and_no_energy_comes_from_nowhere(run):
     """Nothing pushes a free base and its block from outside: m x' + m_b v = 0, through impacts."""
     for base in (None, 212.0):

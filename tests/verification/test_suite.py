@@ -52,17 +52,6 @@ def test_plain_pytest_finds_the_same_tests_from_every_folder():
     assert len(found) == 1 and found.pop() > 1000
 
 
-@pytest.mark.slow
-@pytest.mark.timeout(1400)
-@pytest.mark.parametrize(
-    "folder, files",
-    [(TESTS / "analytic", ["test_design.py"]), (Path("/"), ["-n", "2", str(TESTS / "analytic" / "test_design.py")])],
-)
-def test_plain_pytest_runs_from_another_folder_and_on_workers(folder, files):
-    status, words = said(plain_pytest(folder, *files))
-    assert status == 0, words
-
-
 @pytest.mark.xdist_group("shared")
 def test_workers_keep_groups_together(request):
     """Else what a group shares is made on every worker, in silence."""
