@@ -5,7 +5,8 @@ import numpy as np
 from analytic import SampledMotion, Scene, Start, simulate
 from analytic.caryatid import BASE, BEARINGS
 from analytic.caryatid import caryatid_block as block
-from engines.observe import Trace, observe
+from engines.observe import observe
+from engines.swings import Trace
 
 EDGE = 1e-6
 

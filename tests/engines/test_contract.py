@@ -134,8 +134,11 @@ def test_start_in_flight(engine, variant):
 
 @every_variant
 @pytest.mark.parametrize("start, base", [(0.1, None), (0.0, None), (0.1, 212.0), (0.0, 212.0)])
-def test_ground_motion_that_is_not_finite_fails_with_the_last_finite_state(engine, variant, start, base):
-    """Behind the reader's back the record turns to NaN: whatever the engine makes of it must surface."""
+def test_ground_motion_that_is_not_finite_fails_with_the_last_finite_state(
+    engine, variant, start, base, monkeypatch, tmp_path
+):
+    """Behind the reader's back the record turns to NaN: what the engine makes of it must surface, and leave no log."""
+    monkeypatch.chdir(tmp_path)
     motion = shaking(0.5)
     samples = motion.samples.copy()
     samples[50:] = math.nan
@@ -149,6 +152,7 @@ def test_ground_motion_that_is_not_finite_fails_with_the_last_finite_state(engin
     assert 0.48 < state.time < 0.5 and response.end == state
     assert all(np.isfinite(getattr(response.history, name)).all() for name in History.COLUMNS[:-1])
     assert response.settings and response.versions and response.cpu_seconds > 0
+    assert list(tmp_path.iterdir()) == []  # no MUJOCO_LOG.TXT
 
 
 @default_variant

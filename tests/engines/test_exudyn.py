@@ -183,13 +183,6 @@ def test_a_block_that_slid_stays_where_it_came_to_rest(friction, slenderness, pu
     assert abs(trace.centre[-1, 2]) < max(1e-4 * speed, 1e-6)
 
 
-def test_joints_that_cannot_slide_say_where_the_block_would():
-    given = scene(0.3, friction=0.1, duration=0.5, start=Start(tilt=0.2))
-    (warning,) = simulate(given, variant="switched-joints").warnings
-    assert (warning.kind, warning.quantity, warning.limit) == ("model", "friction_demand", 0.1) and warning.value > 0.1
-    assert simulate(given.with_(friction=2.0), variant="switched-joints").warnings == ()
-
-
 # How runs end.
 
 

@@ -14,11 +14,12 @@ from engines.checks import (
     SLIDING_TOLERANCE,
     check_place,
     energy_balance,
+    energy_gain,
     pivoting_centre,
+    replay_bearing,
     replayed_force,
 )
-from engines.observe import Trace, energy_gain, replay_bearing
-from engines.swings import find_swings
+from engines.swings import Trace, find_swings
 
 
 def strong(response):

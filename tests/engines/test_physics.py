@@ -8,18 +8,8 @@ import math
 
 import numpy as np
 import pytest
-from bearing_laws import NAMES
-from engine_cases import (
-    PULSE,
-    accurate,
-    accurate_variant,
-    bearings,
-    every_variant,
-    impact_errors,
-    scene,
-    shaking,
-    simulate,
-)
+from bearing_laws import NAMES, bearings_of
+from engine_cases import PULSE, accurate, accurate_variant, every_variant, impact_errors, scene, shaking, simulate
 from record_files import RECORDS, needs_records
 
 from analytic import PulseMotion, Start, load_scene
@@ -131,7 +121,7 @@ def test_a_shock_beyond_the_engines_numbers_is_not_survived_in_silence(engine, v
     "law, damping", [("algebraic", 0.0), ("bouc-wen", 0.0), ("bilinear", 0.0), *((law, 500.0) for law in NAMES)]
 )
 def test_bearing_force_is_the_law_on_the_engines_own_path(engine, variant, law, damping):
-    given = scene(0.15, 212.0, 2.0, bearings=bearings(law, damping), motion=PULSE)
+    given = scene(0.15, 212.0, 2.0, bearings=bearings_of(law, count=4, damping=damping), motion=PULSE)
     _, trace = get_engine(engine).traced(given, variant=variant)
     rule = BearingLaw.of(given.bearings)
     z, x, worst = rule.start(trace.base_displacement[0]), trace.base_displacement[0], 0.0
@@ -201,7 +191,7 @@ def test_isolated_block_moves_as_the_exact_solution(engine, variant, law, dampin
         0.5,
         212.0,
         4.0,
-        bearings=bearings(law, damping),
+        bearings=bearings_of(law, count=4, damping=damping),
         motion=PulseMotion("one-sine", 2.0, 5.0),
         start=Start(base_displacement=0.02, base_velocity=-0.1),
     )

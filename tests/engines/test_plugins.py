@@ -69,23 +69,12 @@ if __name__ == "__main__":
 def test_the_commands_know_it(folder):
     listed = python(folder, "-m", "comparisons", "engines")
     assert listed.returncode == 0 and " euler " in listed.stdout
-    ran = python(
-        folder,
-        "-m",
-        "comparisons",
-        "run",
-        "free-rocking-rigid",
-        "--engine",
-        "crude",
-        "--set",
-        "step=1e-3",
-        "--json",
-        "-",
-    )
+    run = ("-m", "comparisons", "run", "free-rocking-rigid", "--engine", "crude", "--set")
+    ran = python(folder, *run, "step=1e-3", "--json", "-")
     assert ran.returncode == 0, ran.stderr
     found = json.loads(ran.stdout)
     assert (found["engine"], found["outcome"], found["settings"]) == ("crude", "rocks", {"step": 1e-3})
-    wrong = python(folder, "-m", "comparisons", "run", "free-rocking-rigid", "--engine", "crude", "--set", "stop=1")
+    wrong = python(folder, *run, "stop=1")
     assert wrong.returncode == 2 and "crude euler has no setting 'stop'" in wrong.stderr
     compared = python(folder, "-m", "comparisons", "compare", "free-rocking-isolated", "--json", "-")
     assert compared.returncode == 0, compared.stderr

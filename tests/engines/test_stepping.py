@@ -11,7 +11,6 @@ from engine_cases import needs, scene
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start
 from analytic import simulate as exact
-from analytic.bearing import BearingLaw
 from analytic.caryatid import BEARINGS
 from analytic.rocking import restitution
 from comparisons.measuring.errors import impact_errors, rms
@@ -227,25 +226,6 @@ def test_a_block_comes_to_rest_under_a_motion_below_uplift_and_stays_there(engin
     assert response.peak_tilt == pytest.approx(model.peak_tilt, rel=2e-2)
     late = trace.time > model.rests[-1] + 0.2
     assert np.abs(trace.tilt[late]).max() < 1e-5 * 0.28 < 1e-2 * model.peak_tilt
-
-
-@pytest.mark.parametrize("name, kind", [*VARIANTS, *((name, "first-script") for name in RULED)])
-def test_a_load_that_is_not_finite_fails_and_leaves_no_log(name, kind, monkeypatch, tmp_path):
-    needs(name)
-    monkeypatch.chdir(tmp_path)
-    calls = []
-
-    class Breaking(BearingLaw):
-        def hysteretic(self, z, dx):
-            calls.append(dx)
-            return math.nan if len(calls) > 50 else super().hysteretic(z, dx)
-
-    monkeypatch.setattr(stepping, "BearingLaw", Breaking)
-    given = scene(0.2, 212.0, bearings=BEARINGS, motion=PulseMotion("one-sine", 3.0, 4.0))
-    response = get_engine(name).simulate(given, variant=kind)
-    assert response.outcome == "failed" and response.settings
-    assert "finite" in response.failure.reason and math.isfinite(response.failure.last_state.tilt)
-    assert list(tmp_path.iterdir()) == []  # no MUJOCO_LOG.TXT
 
 
 def test_bearings_too_stiff_for_any_number_of_steps_fail_at_once(engine):

@@ -34,6 +34,15 @@ def assert_caught(rows):
         assert not one.holds(value), f"{one.name}: the mutation is not seen, {value:.3g} {one.unit}"
 
 
+def run_otherwise(monkeypatch, change=lambda scene: scene, **settings):
+    """Every run of an engine is of another scene, or has other settings."""
+
+    def traced(engine, variant, scene, history=True):
+        return get_engine(engine).traced(change(scene), variant=variant, history=history, **settings)
+
+    monkeypatch.setattr(agreement, "traced", traced)
+
+
 # Impact law. What an engine does at an impact is its own: the model it is held against is changed instead, and in
 # switched-joints, where the adapter applies the law, the adapter.
 
@@ -107,12 +116,7 @@ def test_switched_joints_with_another_impact_fail(monkeypatch, quantity, scenes,
 @pytest.mark.parametrize("engine, variant", DEFAULTS)
 def test_another_alpha_in_the_engine_fails(monkeypatch, engine, variant):
     """The engine is given alpha 1 % larger than the law that its force is held against."""
-
-    def traced(engine, variant, scene, history=True):
-        scene = scene.with_(bearings={"alpha": 1.01 * scene.bearings.alpha})
-        return get_engine(engine).traced(scene, variant=variant, history=history)
-
-    monkeypatch.setattr(agreement, "traced", traced)
+    run_otherwise(monkeypatch, lambda scene: scene.with_(bearings={"alpha": 1.01 * scene.bearings.alpha}))
     isolated = "isolated Caryatid, synthetic motion"
     assert_caught(
         [row("bearing force replayed", engine, variant, isolated), row("peak displacement", engine, variant, isolated)]
@@ -249,10 +253,5 @@ def test_the_share_of_a_penetration_that_bullet_takes_back_does_not_matter(monke
     ],
 )
 def test_a_coarse_step_fails(monkeypatch, engine, variant, changes, quantity, scenes):
-    one = row(quantity, engine, variant, scenes)
-
-    def coarse(engine, variant, scene, history=True):
-        return get_engine(engine).traced(scene, variant=variant, history=history, **changes)
-
-    monkeypatch.setattr(agreement, "traced", coarse)
-    assert_caught([one])
+    run_otherwise(monkeypatch, **changes)
+    assert_caught([row(quantity, engine, variant, scenes)])
