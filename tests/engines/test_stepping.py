@@ -17,6 +17,7 @@ from comparisons.measuring.errors import impact_errors, rms
 from engines import get_engine, stepping
 from engines.checks import energy_gain
 from engines.stepping import NoSolution, march, mean_loads, sampled_loads
+from engines.vibration import added_mass
 
 LINEAR = Bearings(law="linear", count=1, ka=2e6)
 RULED = ["pybullet", "mujoco", "pymunk", "dart"]
@@ -83,6 +84,13 @@ def test_a_damper_of_any_strength_is_stable(damping):
     pushed = scene(0.2, 212.0, 0.1, bearings=bearings, motion=PulseMotion("rectangular", -2.0, math.pi / 0.1))
     rows, _ = flown(pushed, 1e-3)
     assert np.abs(rows[:, 5]).max() <= 2.0 * 212.0 / damping + 2e-3 and np.isfinite(rows).all()
+
+
+@pytest.mark.parametrize("damping", [1e-9, 1.0, 50.0, 1e9])
+def test_mass_added_for_damping_is_exact_and_bounded(damping):
+    """v' after an interval under c v alone: v exp(-c t/m)."""
+    after = 1 - damping * 0.1 / (2.0 + added_mass(damping, 0.1, 2.0))
+    assert after == pytest.approx(math.exp(-damping * 0.05), abs=1e-9)
 
 
 class Lost(Flying):
