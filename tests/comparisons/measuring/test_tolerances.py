@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from analytic import simulate
+from analytic import Scene, simulate
 from analytic.bearing import BearingLaw
 from comparisons.measuring import agreement
 from comparisons.measuring.tolerances import QUANTITIES, SLACK, TABLE, measure_all, rows
@@ -20,6 +20,8 @@ def test_bounds_are_no_looser_than_twice_the_measured_worst_and_rows_are_named_a
         row for row in TABLE if not row.measured <= row.bound <= (math.inf if row.round_off else SLACK * row.measured)
     ]
     assert len({row.name for row in TABLE}) == len(TABLE)
+    named = {row.scenes for row in TABLE if row.measure is not agreement.boundary_shift} - {*agreement.FREE_ROCKING}
+    assert all(isinstance(agreement.named_scene(scenes), Scene) for scenes in named)
 
 
 def test_every_installed_tuned_default_variant_has_its_rows():
