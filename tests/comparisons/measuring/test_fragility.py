@@ -77,17 +77,6 @@ def test_intervals_cover_a_known_curve_as_often_as_they_say():
     assert np.mean(covered) == pytest.approx(0.95, abs=0.06)  # 3 standard errors of 120 intervals
 
 
-def test_a_measure_that_knows_less_is_less_efficient_by_what_it_does_not_know():
-    """Capacity known in x but for .3; y is x times what has a deviation of .4: its dispersion is that of both."""
-    x, exceeded = cloud(6000, 0.3, 1)
-    y = x * np.exp(0.4 * np.random.Generator(np.random.PCG64(2)).standard_normal(len(x)))
-    weights = draws(40, len(x))
-    (_, of_x), (_, of_y) = (resampled(measure, exceeded, weights) for measure in (x, y))
-    low, high = interval(fit_fragility(y, exceeded).dispersion / fit_fragility(x, exceeded).dispersion, of_y / of_x)
-    assert low < 0.5 / 0.3 < high and high / low < 1.3
-    assert fit_fragility(y, exceeded).median == pytest.approx(0.6, rel=0.05)
-
-
 def test_the_test_of_fit_rejects_a_true_curve_as_often_as_it_says_and_a_wrong_one_always():
     clouds = [cloud(400, 0.6, seed) for seed in range(300)]
     p_values = [goodness(*one, fit_fragility(*one)) for one in clouds]

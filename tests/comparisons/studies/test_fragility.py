@@ -71,17 +71,10 @@ def test_measures_are_those_of_the_motions_and_blocks():
         frequency = math.sqrt(block.mass * 9.81 * block.radius / block.inertia)
         uplift = 9.81 * math.tan(block.slenderness)
         moved = displacement_spectrum(motion, [PERIOD], [0.05])[0, 0]
-        expected = {
-            "PGA": np.abs(motion.samples).max() / 9.81,
-            "PGV": speed,
-            "ω_r PGV/(g tan γ)": frequency * speed / uplift,
-            "Sa/(g tan γ)": moved * (2 * np.pi / PERIOD) ** 2 / uplift,
-        }
-        tolerances = (1e-6, 2e-3, 2e-3, 1e-6)
-        assert all(
-            drawn.measures[name][k] == pytest.approx(value, rel=rel)
-            for (name, value), rel in zip(expected.items(), tolerances, strict=True)
-        )
+        own = {name: values[k] for name, values in drawn.measures.items()}
+        expected = [np.abs(motion.samples).max() / 9.81, moved * (2 * np.pi / PERIOD) ** 2 / uplift]
+        assert [own["PGA"], own["Sa/(g tan γ)"]] == pytest.approx(expected)
+        assert [own["PGV"], own["ω_r PGV/(g tan γ)"]] == pytest.approx([speed, frequency * speed / uplift], rel=2e-3)
     assert len({scene.motion.dt for scene in drawn.scenes}) == 5  # each slower or faster than the next
     again = cloud("caryatid-isolated", (0.1, 0.25), 5)
     assert [scene.digest() for scene in again.scenes] == [scene.digest() for scene in drawn.scenes]

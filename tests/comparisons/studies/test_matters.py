@@ -10,7 +10,7 @@ from analytic import load_scene, simulate, synthetic_motion
 from analytic.bearing import BearingLaw
 from analytic.errors import SettingError
 from analytic.pairing import paired
-from analytic.rocking import restitution
+from analytic.rocking import RockingModel
 from comparisons.running.study import Ask, Found
 from comparisons.showing.rows import where
 from comparisons.studies import get_study
@@ -63,7 +63,7 @@ def test_changes_are_of_the_size_their_names_say():
 
     for name, size, value in (
         ("slenderness ±1 %", 0.01, lambda one: one.block.slenderness),
-        ("restitution ±5 %", 0.05, restitution),
+        ("restitution ±5 %", 0.05, lambda one: RockingModel.of(one).restitution),
         ("scale of the motion ±1 %", 0.01, lambda one: one.motion.peak),
         ("bearing stiffness kb ±10 %", 0.1, lambda one: one.bearings.kb),
     ):

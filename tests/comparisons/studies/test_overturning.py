@@ -32,14 +32,12 @@ def test_edges_are_the_published_boundaries_and_the_safe_gap():
         assert [(edge.rises, edge.mode) for edge in column] == [(True, 1), (False, 1), (True, 0)][-len(amplitudes) :]
         for one, other in zip(column, column[1:], strict=False):
             assert one.high == other.low == pytest.approx(np.sqrt(one.amplitude * other.amplitude))
+    for edge in found:
+        beside = [pulse(SCENE, edge.shape, edge.frequency, edge.amplitude * side) for side in (1 - 1e-4, 1 + 1e-4)]
+        runs = [simulate(SCENE.with_(motion=motion)) for motion in beside]
+        assert [run.outcome == "overturns" for run in runs] == [not edge.rises, edge.rises]
+        assert all(run.decided for run in runs)
     assert edges(SCENE, "rigid", "one-cosine", (8.0,)) == []  # where none overturns
-
-
-def test_a_run_beside_a_boundary_is_decided():
-    for edge in edges(SCENE, "rigid", "one-sine", (4.0,)):
-        for side, falls in ((1 - 1e-4, not edge.rises), (1 + 1e-4, edge.rises)):
-            response = simulate(SCENE.with_(motion=pulse(SCENE, edge.shape, edge.frequency, edge.amplitude * side)))
-            assert response.decided and (response.outcome == "overturns") == falls
     assert least_normal(SCENE, PulseMotion("one-sine", 0.1, 5.0)) == 1.0
 
 
