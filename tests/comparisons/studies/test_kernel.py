@@ -81,7 +81,6 @@ def test_the_study_runs_and_shows_ratios_side_by_side(few, tmp_path):
     assert ratio > 20  # some 300 on a machine left alone
     section = get_study("kernel").page(result).whole()
     assert [f"{page.number(ratio, 3)} ×" in row[2] for row in section.tables[0].rows].count(True) == 1
-    assert all(len(row) == len(one.columns) for one in section.tables for row in one.rows)
     assert len(section.figures) == 1 and not section.evidence
 
 
