@@ -71,10 +71,6 @@ def test_impact_never_adds_energy(slenderness, base, own):
     assert model.m * h * after + model.M * jump == pytest.approx(model.m * h * w, rel=1e-12)
 
 
-
-
-
-
 SIDES = st.sampled_from([-1.0, 1.0])
 
 
@@ -90,8 +86,6 @@ def test_accelerations_solve_equations_3_and_4(side, size, rate, ground, force):
     assert abs(horizontal) < 1e-9 * model.M * 9.81 and abs(moment) < 1e-9 * MASS * 9.81 * RADIUS
 
 
-
-
 @given(SIDES, st.floats(0.0, 1.5), st.floats(-3, 3), st.floats(-5, 5), st.floats(-1e4, 1e4))
 def test_contact_force_drives_the_base(side, size, rate, ground, force):
     # the block's horizontal force and the bearings' accelerate the base alone
@@ -102,8 +96,6 @@ def test_contact_force_drives_the_base(side, size, rate, ground, force):
     # rotation about the centre of mass: J_c phi'' = -(H c + N n)
     c, n = model.lever(side, tilt)
     assert (model.J - MASS * RADIUS**2) * spin == pytest.approx(-horizontal * c - normal * n, rel=1e-9, abs=1e-5)
-
-
 
 
 def test_uplift_threshold_is_where_the_block_starts_to_turn():
