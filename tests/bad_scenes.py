@@ -64,6 +64,7 @@ BAD = {
         replaced("mass = 212.0", "mass = 212.0\nheight = 2"),
         "base.height = 2: unknown key; remove it, known are mass",
     ),
+    "key called self": (lambda text: "self = 1\n" + text, "self = 1: unknown key"),
     "unknown table": (replaced("[run]", "[runs]"), "runs = {'duration': 20.0}: unknown key; write run"),
     "unknown law": (
         replaced("algebraic", "cubic"),
@@ -87,6 +88,25 @@ BAD = {
     "unknown units": (
         motion('record = "two.txt"\nunits = "inch"'),
         "motion.units = 'inch': not known; choose 'm/s2', 'cm/s2', 'g', 'gal'",
+    ),
+    # measured or asked for, and computed by a command
+    **{
+        key: (
+            replaced("[block]", f"[block]\n{key} = 2"),
+            f"block.{key} = 2: unknown key; give {instead}, which `rocking new FILE --height ... --width ...",
+        )
+        for key, instead in {
+            "height": "radius and slenderness",
+            "width": "radius and slenderness",
+            "depth": "mass",
+            "density": "mass",
+            "material": "mass",
+        }.items()
+    },
+    "period of bearings": (
+        replaced("[bearings]", "[bearings]\nperiod = 2.5"),
+        "bearings.period = 2.5: unknown key; give ka, kb and alpha, which `rocking new FILE --height ... --width ... "
+        "--mass ... --base-mass ... --period ... --xmax ...` computes",
     ),
     # missing
     "no mass": (replaced("mass = 3172.05\n", ""), "block.mass: missing; add mass = ... [kg]"),

@@ -4,7 +4,10 @@ import math
 
 import numpy as np
 
+from bearing_laws import NAMES, to_law
+
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start
+from analytic.bearing import BearingLaw
 from analytic.motion import PULSES
 
 
@@ -49,7 +52,7 @@ def _block(rng):
 
 
 def _bearings(rng, carried):
-    law, count = str(rng.choice(["algebraic", "linear", "bouc-wen"])), int(rng.integers(1, 9))
+    law, count = str(rng.choice(NAMES)), int(rng.integers(1, 9))
     frequency = _log(rng, 0.3, 60.0)
     ka = carried * frequency**2 / count
     dk = ka * _log(rng, 1e-9, 0.999)
@@ -58,9 +61,11 @@ def _bearings(rng, carried):
         return Bearings(law=law, count=count, ka=ka, damping=viscous)
     delta = 1e-20 if rng.random() < 0.5 else (ka - (ka - dk)) * _log(rng, 1e-20, 1e-2)
     kb = 0.0 if rng.random() < 0.05 else ka - dk
-    return Bearings(
-        law=law, count=count, ka=ka, kb=kb, alpha=1 + _log(rng, 0.05, 199.0), delta_k=delta, damping=viscous
-    )
+    made = Bearings(count=count, ka=ka, kb=kb, alpha=1 + _log(rng, 0.05, 199.0), delta_k=delta, damping=viscous)
+    if law == "bilinear":
+        delta = 1e-20
+    changes = {**to_law(law, ka, kb, BearingLaw.of(made).f0), "delta_k": delta}
+    return Bearings(**made.model_dump() | changes)
 
 
 def _motion(rng, omega, unit):

@@ -32,12 +32,6 @@ def test_within_it_nothing_is_said_and_nothing_changes(x_max):
     assert response.end == simulate(SCENE, history=False).end
 
 
-def test_the_digest_of_a_scene_without_it_is_as_before():
-    without = SCENE.with_(bearings={"x_max": None})
-    assert without.digest() != SCENE.digest()
-    assert without.digest() == SCENE.with_(bearings=Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)).digest()
-
-
 def test_the_start_counts():
     scene = SCENE.with_(motion=None, start=Start(base_displacement=0.06))
     assert [warning.kind for warning in simulate(scene).warnings] == ["limit"]

@@ -2,6 +2,7 @@
 
 import math
 import pickle
+import re
 
 import numba
 import numpy as np
@@ -58,9 +59,8 @@ def test_scaled_and_digest():
     ],
 )
 def test_bad_samples(dt, samples, message):
-    with pytest.raises(SceneError) as caught:
+    with pytest.raises(SceneError, match=re.escape(message)):
         SampledMotion(dt, samples)
-    assert message in str(caught.value)
 
 
 @pytest.mark.parametrize("shape", PULSES)
@@ -92,11 +92,6 @@ def test_velocity_gained_in_a_pulse(shape, gain):
     assert gained == pytest.approx(gain / 2.0, abs=1e-9)
 
 
-def test_ricker_ends_below_rounding():
-    pulse = PulseMotion("ricker", 1.0, 2.0)
-    assert abs(pulse.acceleration(0.0)) < 1e-15
-
-
 @pytest.mark.parametrize(
     "arguments, message",
     [
@@ -110,9 +105,8 @@ def test_ricker_ends_below_rounding():
     ],
 )
 def test_bad_pulse(arguments, message):
-    with pytest.raises(SceneError) as caught:
+    with pytest.raises(SceneError, match=re.escape(message)):
         PulseMotion(*arguments)
-    assert message in str(caught.value)
 
 
 def test_jumps_are_where_the_acceleration_jumps():

@@ -1,7 +1,6 @@
 """The shipped synthetic motion: its peaks, its determinism, the paper's three outcomes."""
 
 import math
-import time
 
 import numpy as np
 import pytest
@@ -47,13 +46,6 @@ def test_ensemble_varies_within_the_stated_ranges():
     assert all(abs(velocity(motion)[-1]) < 1e-4 for motion in motions)
 
 
-def test_ensemble_is_affordable():
-    begin = time.process_time()
-    for seed in range(20):
-        synthetic_motion(seed=seed)
-    assert (time.process_time() - begin) / 20 < 5e-3
-
-
 def test_energy_lies_in_the_stated_band():
     """Above 0.3 Hz comes the pulse, and above 20 Hz nearly nothing."""
     motion = synthetic_motion(seed=3)
@@ -80,18 +72,16 @@ def test_pulse_acceleration_is_the_derivative_of_the_velocity_pulse(phase):
     )
 
 
-def test_the_papers_three_outcomes():
-    free = simulate(load_scene("caryatid-rigid"), history=False)
+def test_the_papers_isolated_caryatid_stands():
     isolated = simulate(load_scene("caryatid-isolated"), history=False)
-    assert free.outcome == "overturns"
     assert isolated.outcome == "stands"
     assert 0.15 < isolated.peak_base_displacement < 0.30
 
 
 @pytest.mark.parametrize(
-    "changes", [{"slenderness": 0.26}, {"slenderness": 0.29}, {"restitution": 0.87}, {"restitution": 0.90}]
+    "changes", [{}, {"slenderness": 0.26}, {"slenderness": 0.29}, {"restitution": 0.87}, {"restitution": 0.90}]
 )
-def test_overturning_is_no_accident_of_the_last_digit(changes):
+def test_the_papers_free_caryatid_overturns_by_no_accident_of_the_last_digit(changes):
     scene = load_scene("caryatid-rigid").with_(block=changes)
     assert simulate(scene, history=False).outcome == "overturns"
 
