@@ -2,10 +2,12 @@
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from bearing_laws import bearings_of
+from rough_motions import rough
 
 from analytic import (
     Block,
@@ -25,31 +27,15 @@ BLOCK = Block(mass=1.0, radius=3 * G / (4 * 2.14**2), slenderness=0.25, restitut
 CARYATID = caryatid_block(0.18)
 
 
-def rough(seed, peak):
-    rng = np.random.default_rng(seed)
-    t = np.arange(0, 8, 0.01)
-    a = np.exp(-(((t - 3) / 1.5) ** 2)) * (np.sin(2 * np.pi * 0.8 * t) + 0.5 * rng.standard_normal(len(t)))
-    return SampledMotion(0.01, peak * a / np.abs(a).max())
-
-
 def mixed_scenes():
-    """Rigid and isolated, pulses, two records and free motion, in no order."""
-    records = [rough(1, 4.0), rough(2, 6.0)]
-    scenes = []
-    for k in range(24):
-        motion = [
-            records[0],
-            None,
-            PulseMotion("ricker", 4.0, 5.0),
-            records[1],
-            PulseMotion("one-cosine", 5.0, 7.0),
-            PulseMotion("rectangular", 4.0, 3.0),
-        ][k % 6]
-        start = Start(tilt=0.02 * (k % 5)) if motion is None else Start()
-        scenes.append(Scene(block=CARYATID, motion=motion, start=start, duration=12.0))
-        bearings = bearings_of(("algebraic", "bilinear")[k % 4 // 2], count=4)
-        scenes.append(scenes[-1].with_(base=BASE, bearings=bearings))
-    return scenes
+    """Rigid and isolated, pulses, two records and free motion, with and without vertical motion, in no order."""
+    pulses = PulseMotion("ricker", 4.0, 5.0), PulseMotion("one-cosine", 5.0, 7.0), PulseMotion("rectangular", 4.0, 3.0)
+    rigid = [Scene(block=CARYATID, motion=motion, duration=12.0) for motion in (rough(1, 4.0), *pulses, rough(2, 6.0))]
+    rigid[2:2] = [Scene(block=CARYATID, start=Start(tilt=0.02 * k), duration=12.0) for k in range(5)]
+    bearings = [bearings_of(law, count=4) for law in ("algebraic", "bilinear")]
+    scenes = [scene.with_(base=BASE, bearings=one) for one in bearings for scene in rigid[::-1]] + rigid
+    shaken = [(scene, scene.motion) for scene in scenes if scene.motion]
+    return [scene.with_(motion=replace(motion, vertical=motion.scaled(0.5))) for scene, motion in shaken] + scenes
 
 
 def test_simulate_many_equals_one_at_a_time():
@@ -98,15 +84,15 @@ def test_an_overturning_map_is_that_of_full_runs(shape, vertical, fine):
 
 
 def test_a_rocking_spectrum_runs_until_decided_and_is_that_of_full_runs():
-    motion, periods = rough(5, 5.0), np.linspace(0.8, 7.0, 21)
+    motion, periods = rough(5, 5.0, duration=8.0), np.linspace(0.8, 7.0, 21)
     cut = SampledMotion(motion.dt, motion.samples[: round(4.0 / motion.dt)])  # in the strong shaking
     found = rocking_spectrum(cut, periods, 0.25)
     assert found.decided.all() and 0 < found.overturns.sum() < len(periods)
     for i, period in enumerate(periods):
-        block = Block(mass=7.0, radius=0.75 * G * (period / (2 * math.pi)) ** 2, slenderness=0.25)
+        block = Block(mass=1.0, radius=0.75 * G * (period / (2 * math.pi)) ** 2, slenderness=0.25)
         one = simulate(Scene(block=block, motion=cut, duration=cut.end + 60.0), history=False)
         assert found.overturns[i] == (one.outcome == "overturns")
-        # the mass only scales the equations, to rounding and what the motion makes of it
-        assert found.peak_tilt[i] == pytest.approx(one.peak_tilt, rel=1e-6)
+        # to rounding, and what the motion makes of it where the block hardly rocks
+        assert found.peak_tilt[i] == pytest.approx(one.peak_tilt, abs=1e-8)
     short = rocking_spectrum(cut, periods, 0.25, duration=0.9 * cut.end)
     assert not short.decided[~short.overturns].any()

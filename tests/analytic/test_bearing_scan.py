@@ -61,9 +61,8 @@ def test_the_bearings_named_hold_in_a_run_of_their_own(name):
 def test_least_stroke_is_the_least_and_softest_the_longest():
     scan = scan_bearings(SCENE, [SCENE.motion], 0.25)
     run = ~np.isnan(scan.stroke) & (scan.demand <= 1)
-    period, damping = scan.least_stroke
-    row, column = int(np.abs(scan.dampings - damping).argmin()), int(np.abs(scan.periods - period).argmin())
-    assert scan.stroke[row, column] == scan.stroke[run].min()
+    row, column = np.unravel_index(np.where(run, scan.stroke, np.inf).argmin(), run.shape)
+    assert scan.least_stroke == (scan.periods[column], scan.dampings[row])
     assert scan.softest[0] == scan.periods[run.any(axis=0)].max()
 
 

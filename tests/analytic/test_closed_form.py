@@ -63,12 +63,9 @@ def test_tilt_is_mirrored_and_continuous_at_impacts():
 
 
 @pytest.mark.parametrize("tilt", (0.0, 0.25, -0.3))
-def test_free_rocking_refuses_tilts_that_do_not_rock(tilt):
+def test_tilts_that_do_not_rock_are_refused(tilt):
     with pytest.raises(ValueError, match="slenderness"):
         closed_form.free_rocking(*A[:3], tilt, 3)
-
-
-def test_unstable_point_has_no_quarter_period():
     with pytest.raises(ValueError, match="unstable"):
         closed_form.quarter_period(2.6, 0.25, math.sin(0.125) ** 2)
 

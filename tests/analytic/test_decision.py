@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from bearing_laws import bearings_of
 from random_scenes import random_scene
 from scipy.optimize import brentq
 
@@ -38,32 +39,27 @@ from analytic.twin import simulate_twin
 
 G = 9.81
 BLOCK = Block(mass=1500.0, radius=1.0, slenderness=0.12)
-LAWS = [dict(law="algebraic", ka=6.22e4, kb=6.22e3, alpha=alpha) for alpha in (1.2, 2.0, 3.0, 44.69, 150.0)]
-LAWS.append(dict(law="bouc-wen", ka=6.22e4, kb=6.22e3, alpha=44.69))
-LAWS.append(dict(law="bilinear", ka=6.22e4, kb=6.22e3, yield_force=700.0))
-
-
-def law_of(constants):
-    return BearingLaw.of(Bearings(**constants))
+ALPHAS = (1.2, 2.0, 3.0, 44.69, 150.0)
+LAWS = {f"algebraic {alpha}": BearingLaw.of(bearings_of("algebraic", alpha=alpha)) for alpha in ALPHAS}
+LAWS |= {name: BearingLaw.of(bearings_of(name)) for name in ("bouc-wen", "bilinear")}
 
 
 def stored(law, z):
     return recoverable_energy(law.law, law.dk, law.alpha, law.d0, law.f0, z)
 
 
-@pytest.mark.parametrize("constants", LAWS, ids=lambda c: f"{c['law']} {c.get('alpha')}")
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 @pytest.mark.parametrize("share", [-0.999999, -0.5, 0.03, 0.8])
-def test_recoverable_energy_is_the_work_on_the_way_back_to_no_force(constants, share):
-    law = law_of(constants)
+def test_recoverable_energy_is_the_work_on_the_way_back_to_no_force(law, share):
     z = share * law.f0
     back = brentq(lambda travel: law.hysteretic(z, travel), 0.0, -math.copysign(10 * law.f0 / law.kb, z), xtol=1e-15)
     assert stored(law, z) == pytest.approx(-law.work(z, back), rel=1e-6)
     assert stored(law, z) >= 0.5 * z * z / law.dk
 
 
-@pytest.mark.parametrize("constants", LAWS, ids=lambda c: f"{c['law']} {c.get('alpha')}")
-def test_a_bearing_never_gives_back_more_than_it_holds(constants):
-    law, rng, z = law_of(constants), np.random.default_rng(3), 0.0
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+def test_a_bearing_never_gives_back_more_than_it_holds(law):
+    rng, z = np.random.default_rng(3), 0.0
     for move in rng.standard_normal(60) * law.f0 / law.dk * 10.0 ** rng.uniform(-2, 1, 60):
         work, after = law.work(z, move), law.hysteretic(z, move)
         assert stored(law, after) - stored(law, z) <= work + 1e-9 * (abs(work) + stored(law, after))

@@ -13,31 +13,20 @@ SLENDERNESS = 0.25
 UPLIFT = 9.81 * math.tan(SLENDERNESS)
 
 
-def parts(radius, on_base):
-    """Block and, on request, base and bearings of twice its rocking period, all scaled with the radius."""
-    block, omega = Block(mass=100.0, radius=radius, slenderness=SLENDERNESS), math.sqrt(0.75 * 9.81 / radius)
-    if not on_base:
-        return {"block": block}, omega
-    kb = (omega / 2) ** 2 * 150 / 4
-    law = {"law": "bilinear", "count": 4, "ka": 5 * kb, "kb": kb, "yield_force": 0.2 * kb * radius}
-    return {"block": block, "base": Base(mass=50.0), "bearings": Bearings(**law)}, omega
-
-
-def record(omega, scale):
-    """120 samples of smoothed noise: the block rocks under them and stays upright."""
-    noise = np.convolve(np.random.default_rng(3).normal(size=120), np.ones(12) / 12, "same")
-    return SampledMotion(0.1 / omega, scale * UPLIFT * noise)
-
-
 def scene_of(kind, radius, on_base, duration):
-    made, omega = parts(radius, on_base)
-    if kind == "free":
-        made["start"] = Start(tilt=0.2)
-    elif kind == "tail":
-        made["motion"] = record(omega, 3.5 if on_base else 2.5)
-    else:
-        amplitude = (6.0 if on_base else 2.0) * UPLIFT
-        made["motion"] = PulseMotion("one-sine", amplitude, (3 if on_base else 5) * omega, start=0.5 * duration)
+    """A block, on request with a base and bearings of twice its rocking period, all scaled with the radius."""
+    made, omega = {"block": Block(mass=100.0, radius=radius, slenderness=SLENDERNESS)}, math.sqrt(0.75 * 9.81 / radius)
+    if on_base:
+        kb = (omega / 2) ** 2 * 150 / 4
+        law = {"law": "bilinear", "count": 4, "ka": 5 * kb, "kb": kb, "yield_force": 0.2 * kb * radius}
+        made |= {"base": Base(mass=50.0), "bearings": Bearings(**law)}
+    noise = np.convolve(np.random.default_rng(3).normal(size=120), np.ones(12) / 12, "same")
+    amplitude, frequency = (6.0 * UPLIFT, 3 * omega) if on_base else (2.0 * UPLIFT, 5 * omega)
+    made |= {
+        "free": {"start": Start(tilt=0.2)},
+        "tail": {"motion": SampledMotion(0.1 / omega, (3.5 if on_base else 2.5) * UPLIFT * noise)},
+        "late pulse": {"motion": PulseMotion("one-sine", amplitude, frequency, start=0.5 * duration)},
+    }[kind]
     return Scene(**made, duration=duration)
 
 

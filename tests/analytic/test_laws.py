@@ -9,7 +9,7 @@ from bearing_laws import F0, NAMES, USUAL, bearings_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analytic import Base, Bearings, Block, PulseMotion, Scene, Start, simulate
+from analytic import Base, Block, PulseMotion, Scene, Start, simulate
 from analytic.bearing import BearingLaw
 from analytic.design import properties, steady_cycle
 from analytic.twin import simulate_twin
@@ -122,12 +122,6 @@ def test_loss_of_a_cycle_and_equivalent_stiffness_are_those_of_the_codes():
     got = properties(bearings, 3384.05, X)
     assert got.secant_stiffness == pytest.approx(KB + F0 / X, rel=1e-14)
     assert got.damping_equivalent == pytest.approx(2 * F0 * (X - YIELD) / (math.pi * (KB + F0 / X) * X**2), rel=1e-13)
-
-
-def test_yield_force_is_where_ka_ends():
-    one, at = BearingLaw.of(Bearings(law="bilinear", ka=KA, kb=KB, yield_force=900.0)), 900.0 / KA
-    for x, expected in ((0.5 * at, 450.0), (at, 900.0), (3 * at, 900.0 + 2 * at * KB), (-3 * at, -900.0 - 2 * at * KB)):
-        assert one.force(x, one.start(x)) == pytest.approx(expected, rel=1e-13)
 
 
 def test_equal_stiffnesses_are_a_linear_bearing():

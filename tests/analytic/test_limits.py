@@ -28,8 +28,7 @@ def test_a_base_beyond_its_bearings_limit_is_said(solver):
 @pytest.mark.parametrize("x_max", [None, 1.0])
 def test_within_it_nothing_is_said_and_nothing_changes(x_max):
     response = simulate(SCENE.with_(bearings={"x_max": x_max}), history=False)
-    assert not response.warnings
-    assert response.end == simulate(SCENE, history=False).end
+    assert not response.warnings and response.end == simulate(SCENE, history=False).end
 
 
 def test_the_start_counts():

@@ -8,7 +8,7 @@ import pytest
 from analytic import Bearings, load_scene, simulate
 from analytic.bearing import BearingLaw
 from analytic.design import properties, steady_cycle
-from analytic.rocking import base_jump_length, base_jump_length_as_printed, restitution
+from analytic.rocking import base_jump_length, base_jump_length_as_printed
 
 ISOLATED = load_scene("caryatid-isolated")
 LAW = BearingLaw.of(ISOLATED.bearings)
@@ -21,15 +21,6 @@ def fails(check, *arguments):
         check(*arguments)
 
 
-def conserves_momentum(jump_length):
-    """Eq. (8): m h w + (m + m_b) x' is the same before and after an impact, at any scale and slenderness."""
-    for change in ({}, {"slenderness": 0.15}, {"radius": 0.3}, {"radius": 5.0}):
-        scene = ISOLATED.with_(block=change)
-        w, mh = -0.8, scene.block.mass * scene.block.half_height
-        after = mh * restitution(scene) * w - scene.total_mass * jump_length(scene) * w
-        assert after == pytest.approx(mh * w, rel=1e-12)
-
-
 def agrees_with_the_simulation(jump_length):
     """Eq. (8) against every impact of a rocking run: x'+ - x'- = -e_x phi'-."""
     scene = ISOLATED.with_(block={"slenderness": 0.15})
@@ -39,10 +30,9 @@ def agrees_with_the_simulation(jump_length):
         assert impact.base_velocity_jump == pytest.approx(-jump_length(scene) * impact.rate_before, rel=1e-9)
 
 
-@pytest.mark.parametrize("check", [conserves_momentum, agrees_with_the_simulation])
-def test_equation_8(check):
-    check(base_jump_length)
-    fails(check, base_jump_length_as_printed)
+def test_equation_8():
+    agrees_with_the_simulation(base_jump_length)
+    fails(agrees_with_the_simulation, base_jump_length_as_printed)
 
 
 def unloading(bracket_sign):

@@ -11,11 +11,14 @@ from analytic.new_scene import DAMPING, MATERIALS, PERIOD, block_from, derived, 
 BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 
 
+def rows_of(scene):
+    return {name: value for name, value, _ in derived(scene)}
+
+
 def test_a_block_follows_from_its_dimensions():
     block = block_from(1.9, 0.55, depth=0.4, density=2700.0)
     assert block.mass == pytest.approx(2700 * 1.9 * 0.55 * 0.4, rel=1e-14)
-    assert 2 * block.half_height == pytest.approx(1.9, rel=1e-14)
-    assert 2 * block.half_width == pytest.approx(0.55, rel=1e-14)
+    assert (2 * block.half_height, 2 * block.half_width) == pytest.approx((1.9, 0.55), rel=1e-14)
     # of a homogeneous rectangle about its centre m (h^2 + w^2)/12
     assert block.centre_inertia == pytest.approx(block.mass * (1.9**2 + 0.55**2) / 12, rel=1e-14)
 
@@ -36,7 +39,7 @@ def test_the_file_reads_back_as_what_was_asked_for(tmp_path):
 
 def test_derived_numbers_are_the_closed_forms():
     scene = Scene(block=block_from(1.9, 0.55, mass=1500.0), base=Base(mass=400.0), bearings=BEARINGS)
-    rows = {name: value for name, value, _ in derived(scene)}
+    rows = rows_of(scene)
     gamma, radius = math.atan(0.55 / 1.9), 0.5 * math.hypot(1.9, 0.55)
     assert rows["rocking frequency omega_r, eq. (1)"] == pytest.approx(math.sqrt(3 * 9.81 / (4 * radius)), rel=1e-13)
     assert rows["uplift acceleration g tan(slenderness)"] == pytest.approx(9.81 * 0.55 / 1.9, rel=1e-13)
@@ -44,21 +47,19 @@ def test_derived_numbers_are_the_closed_forms():
         2 * math.pi * math.sqrt(1900 / (4 * 6.22e3)), rel=1e-13
     )
     # eq. (7) with J_O = 4/3 m R^2
-    share = 1500 / 1900
-    expected = 1 - 2 * math.sin(gamma) ** 2 / (4 / 3 - share * math.cos(gamma) ** 2)
+    expected = 1 - 2 * math.sin(gamma) ** 2 / (4 / 3 - 1500 / 1900 * math.cos(gamma) ** 2)
     assert rows["restitution e_phi, eq. (7)"] == pytest.approx(expected, rel=1e-13)
 
 
 def test_what_bearings_give_at_x_max_is_derived():
     parts = {"block": block_from(1.9, 0.55, mass=1500.0), "base": Base(mass=400.0)}
     designed = Scene(**parts, bearings=design_bearings(1900.0, 2.5, 0.15, 0.2))
-    rows = {name: value for name, value, _ in derived(designed)}
-    assert rows[PERIOD] == pytest.approx(2.5, rel=1e-3) and rows[DAMPING] == pytest.approx(0.15, rel=1e-3)
+    assert [rows_of(designed)[name] for name in (PERIOD, DAMPING)] == pytest.approx([2.5, 0.15], rel=1e-3)
     linear = Scene(**parts, bearings=Bearings(law="linear", ka=1e4, x_max=0.2))
-    rows = {name: value for name, value, _ in derived(linear)}
-    assert rows[PERIOD] == pytest.approx(2 * math.pi * math.sqrt(0.19), rel=1e-13) and rows[DAMPING] == 0
+    expected = [2 * math.pi * math.sqrt(0.19), 0.0]
+    assert [rows_of(linear)[name] for name in (PERIOD, DAMPING)] == pytest.approx(expected, rel=1e-13)
     for bearings in (BEARINGS, Bearings(**{**BEARINGS.model_dump(), "x_max": 1e-20})):  # none, and one without yielding
-        assert PERIOD not in {name for name, *_ in derived(Scene(**parts, bearings=bearings))}
+        assert PERIOD not in rows_of(Scene(**parts, bearings=bearings))
 
 
 @pytest.mark.parametrize(

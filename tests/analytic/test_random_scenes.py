@@ -1,6 +1,7 @@
 """Random valid scenes through the kernel: no NaN, no hang, no failure, no energy from nothing."""
 
 import math
+from dataclasses import astuple
 
 import numpy as np
 import pytest
@@ -14,28 +15,18 @@ IMBALANCE_LIMIT = 1e-6  # of the largest energy in the run
 ROUND_OFF = 1e-9
 
 
-def faults(scene):
-    """What is wrong with the kernel's run of `scene`: a dict of findings, empty for a sound one."""
+def assert_sound(scene):
+    """The kernel's run of `scene` ends, with finite numbers, the model's impacts and an energy balance."""
     response = simulate(scene, history=False)
-    wrong = {}
-    if response.failure:
-        wrong["failure"] = response.failure.reason
-    found, ledger = response.end, response.energy
-    numbers = [response.peak_tilt, response.peak_base_displacement, response.peak_base_acceleration]
-    numbers += [found.tilt, found.tilt_rate, found.base_displacement, found.base_velocity, found.bearing_force]
-    terms = [ledger.kinetic, ledger.potential, ledger.input, ledger.hysteretic, ledger.viscous, ledger.impact_loss]
-    if not np.isfinite(numbers + terms).all():
-        return wrong | {"not finite": numbers + terms}
-    scale = max(_energy_scale(scene, response), *map(abs, terms))
-    if abs(ledger.imbalance) > IMBALANCE_LIMIT * scale:
-        wrong["energy imbalance"] = abs(ledger.imbalance) / scale
-    impact = RockingModel.of(scene).impact
-    for one in response.impacts:  # it never adds energy: test_rocking
-        if (one.rate_after, one.base_velocity_jump) != pytest.approx(impact(one.rate_before), rel=1e-9, abs=1e-15):
-            wrong["not the model's impact"] = one
-    if response.end.time < scene.duration * (1 - 1e-12) and response.outcome not in ("overturns", "failed"):
-        wrong["ended early"] = response.end.time
-    return wrong
+    ledger, model = response.energy, RockingModel.of(scene)
+    assert response.failure is None and (response.outcome == "overturns" or response.end.time == scene.duration)
+    peaks = response.peak_tilt, response.peak_base_displacement, response.peak_base_acceleration
+    assert np.isfinite([*peaks, *astuple(response.end), *astuple(ledger)]).all()
+    scale = max(_energy_scale(scene, response), *map(abs, astuple(ledger)))
+    assert abs(ledger.imbalance) <= IMBALANCE_LIMIT * scale
+    for one in response.impacts:  # they never add energy: test_rocking
+        expected = pytest.approx(model.impact(one.rate_before), rel=1e-9, abs=1e-15)
+        assert (one.rate_after, one.base_velocity_jump) == expected
 
 
 def _energy_scale(scene, response):
@@ -45,30 +36,19 @@ def _energy_scale(scene, response):
     if bearings:
         k = bearings.ka if bearings.law == "linear" else bearings.kb
         scale += 0.5 * bearings.count * k * response.peak_base_displacement**2
-    weight = block.mass * scene.gravity * block.radius
-    reached = min(response.peak_tilt, block.slenderness)
-    scale += weight * (math.cos(block.slenderness - reached) - math.cos(block.slenderness))
-    scale += ROUND_OFF * weight * (1 - math.cos(block.slenderness))
-    if scene.base and scene.motion:  # what a base gains and loses again when the ground stops
-        scale += 0.5 * scene.total_mass * _peak_velocity(scene.motion) ** 2
+    left = math.cos(block.slenderness - min(response.peak_tilt, block.slenderness)) - math.cos(block.slenderness)
+    scale += block.mass * scene.gravity * block.radius * (left + ROUND_OFF * (1 - math.cos(block.slenderness)))
+    if scene.base and scene.motion:  # what a base gains and loses again when the ground stops: by the rectangle rule
+        times = np.linspace(0.0, scene.motion.end, 2000)
+        velocity = np.cumsum(scene.motion.acceleration(times)) * times[1]
+        scale += 0.5 * scene.total_mass * np.abs(velocity).max() ** 2
     return scale
-
-
-def _peak_velocity(motion):
-    """Bound on the ground velocity [m/s], by the rectangle rule."""
-    times = np.linspace(0.0, motion.end, 2000)
-    return float(np.abs(np.cumsum(motion.acceleration(times))).max() * times[1])
 
 
 def test_random_scenes_are_sound_and_repeatable():
     assert random_scene(0, 7).digest() == random_scene(0, 7).digest()
-    kinds = {
-        (scene.base is None, scene.bearings and scene.bearings.law, type(scene.motion).__name__)
-        for scene in (random_scene(0, i) for i in range(200))
-    }
-    assert len(kinds) >= 15
     for index in range(400):
-        assert faults(random_scene(0, index)) == {}, index
+        assert_sound(random_scene(0, index))
 
 
 @pytest.mark.parametrize("index", range(150))
@@ -87,8 +67,8 @@ def test_mirrored_scenes_are_mirrored_bit_for_bit(index):
 @pytest.mark.timeout(1400)
 @pytest.mark.parametrize("begin", range(400, 50_400, 5000))
 def test_many_more_random_scenes_are_sound(begin):
-    faulty = {index: found for index in range(begin, begin + 5000) if (found := faults(random_scene(0, index)))}
-    assert not faulty
+    for index in range(begin, begin + 5000):
+        assert_sound(random_scene(0, index))
 
 
 @pytest.mark.parametrize("ratio", [1.0, 10 / 3, 17 / 3, 8.0])

@@ -20,8 +20,7 @@ def velocity(motion):
 
 def test_peaks_and_end():
     motion = synthetic_motion()
-    assert motion.dt == DT
-    assert motion.end == pytest.approx(25.0, abs=0.01)
+    assert (motion.dt, motion.end) == (DT, pytest.approx(25.0, abs=0.01))
     assert motion.peak == pytest.approx(0.515 * G, abs=10.0**-DECIMALS)
     assert np.abs(velocity(motion)).max() == pytest.approx(0.80, abs=0.02)
     assert velocity(motion)[-1] == pytest.approx(0.0, abs=1e-5)
@@ -49,8 +48,7 @@ def test_ensemble_varies_within_the_stated_ranges():
 def test_energy_lies_in_the_stated_band():
     """Above 0.3 Hz comes the pulse, and above 20 Hz nearly nothing."""
     motion = synthetic_motion(seed=3)
-    power = np.abs(np.fft.rfft(motion.samples)) ** 2
-    frequency = np.fft.rfftfreq(len(motion.samples), motion.dt)
+    power, frequency = np.abs(np.fft.rfft(motion.samples)) ** 2, np.fft.rfftfreq(len(motion.samples), motion.dt)
     assert power[frequency > 20].sum() < 1e-3 * power.sum()
     assert power[frequency < 0.3].sum() < 0.05 * power.sum()
 

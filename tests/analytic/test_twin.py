@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 from bearing_laws import NAMES, bearings_of
-from literature import A_REST, A_TILT, B_TILT, ONE_SINE, ONE_SINE_SLENDER, under_a_pulse
+from literature import A_REST, A_TILT, B_TILT
 from record_files import RECORDS, needs_records
 from scipy.integrate import solve_ivp
 
@@ -71,20 +71,6 @@ def test_error_falls_with_the_tolerance():
     assert errors[3] < 1e-11
 
 
-@pytest.mark.parametrize(
-    ("table", "slenderness", "frequency"), [(ONE_SINE, GAMMA, 2), (ONE_SINE, GAMMA, 4), (ONE_SINE_SLENDER, 1e-4, 3)]
-)
-def test_overturning_boundaries(table, slenderness, frequency):
-    """Safe, overturned after one impact, safe, overturned without one: at 2e-5 to either side."""
-    found = []
-    for boundary in table[frequency]:
-        for amplitude in (boundary - 2e-5, boundary + 2e-5):
-            scene = under_a_pulse(amplitude, frequency, slenderness, duration=15.0)
-            run = simulate_twin(scene, rtol=1e-9, history=False, energy=False)
-            found.append(run.impact_count if run.outcome == "overturns" else None)
-    assert found[0] is found[3] is found[4] is None and found[1] == 1 and found[2] is not None and found[5] == 0
-
-
 @pytest.mark.parametrize("law", [name for name in NAMES if name != "linear"])
 def test_mirror(law):
     scene = Scene(
@@ -103,14 +89,11 @@ def test_mirror(law):
 
 
 @pytest.mark.parametrize("law", NAMES)
-def test_momentum_and_energy_of_isolated_rocking(law):
+def test_energy_of_isolated_rocking(law):
     bearings = bearings_of(law, count=4, damping=200.0)
     scene = Scene(block=SLENDER, base=BASE, bearings=bearings, motion=PulseMotion("one-sine", 1.2, 4.0), duration=6.0)
     run = simulate_twin(scene, rtol=1e-11)
     assert run.outcome == "rocks" and run.impact_count > 10
-    for impact in run.impacts:
-        gain = scene.block.mass * scene.block.half_height * (impact.rate_after - impact.rate_before)
-        assert gain == pytest.approx(-scene.total_mass * impact.base_velocity_jump, rel=1e-11)
     assert abs(run.energy.imbalance) < 1e-9 * run.energy.input
     assert run.energy.impact_loss > 0 and run.energy.viscous > 0
     assert (run.energy.hysteretic > 0) == (law != "linear")
@@ -132,8 +115,7 @@ def test_rest_limit_is_the_same_whenever_impacts_are_declared_accumulated():
 
 def test_restitution_of_one_fails_instead_of_bouncing_for_ever(monkeypatch):
     monkeypatch.setattr("analytic.twin.run.IMPACT_LIMIT", 100)
-    block = problem_a().block.model_copy(update={"restitution": 1.0})
-    run = simulate_twin(problem_a().with_(block=block, start=Start(tilt=1e-9)))
+    run = simulate_twin(problem_a().with_(block={"restitution": 1.0}, start=Start(tilt=1e-9)))
     assert run.outcome == "failed" and "pile up" in run.failure.reason
     assert run.failure.last_state.time < 7
 
@@ -163,9 +145,8 @@ def test_event_that_scipy_cannot_find_is_a_failure_with_scipys_words(monkeypatch
 def test_extra_energy_and_history_do_not_change_the_outcome():
     bare = simulate_twin(problem_b(), rtol=1e-12, history=False, energy=False)
     full = simulate_twin(problem_b(), rtol=1e-12)
-    assert bare.history is None and bare.energy is None
+    assert bare.history is bare.energy is None and full.history.time[[0, -1]].tolist() == [0, 6]
     assert bare.end.tilt == pytest.approx(full.end.tilt, abs=1e-9)
-    assert full.history.time[0] == 0 and full.history.time[-1] == 6
 
 
 @pytest.mark.parametrize("settings", [{"method": "Euler"}, {"rtol": 0.0}])
