@@ -174,7 +174,7 @@ def test_nothing_changes_after_the_end_of_a_decided_run(index):
         assert later.peak_base_acceleration <= response.peak_base_acceleration * 1.005 + 1e-15
     many = simulate_many([scene])
     assert many.decided[0] and many.overturns[0] == (response.outcome == "overturns")
-    if response.outcome != "overturns" and scene.base is not None:
+    if response.outcome != "overturns" and scene.bearings is not None:
         assert many.peak_base_displacement[0] == pytest.approx(response.peak_base_displacement, rel=PEAK_TOLERANCE)
 
 
