@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-
 from bearing_laws import NAMES, to_law
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start

@@ -11,11 +11,13 @@ from random_scenes import random_scene
 from analytic import Block, PulseMotion, Scene, SettingError, Start, load_scene, simulate
 from analytic.margins import (
     BISECTIONS,
+    FINER,
     LIMIT_STATES,
     QUANTITIES,
     STEP,
     Band,
     Margin,
+    _finer,
     contact_margins,
     limit_states,
     margins,
@@ -78,8 +80,8 @@ def test_a_wide_span_finds_the_uplift_at_several_times_the_motion():
     assert margin.leaves_model == pytest.approx(scene.friction * G / a - 1, abs=step / 2**BISECTIONS)
     assert margin.leaves_model < lift < margin.change("tilt") < margin.change("overturns") < lift + step
     assert [outcome for _, _, outcome in margin.outcomes] == ["stands", "rocks", "overturns"] and not margin.frayed
-    assert margin.bands[0].low == pytest.approx(-43 * step, abs=1e-9), "44 leave less than half a step"
-    assert margin.bands[-1].high == 9.0
+    # 44 steps down would leave less than half a step
+    assert (margin.bands[0].low, margin.bands[-1].high) == (pytest.approx(-43 * step, abs=1e-9), 9.0)
 
 
 @pytest.mark.parametrize("span, step", [(1.0, 0.0025), (2.0, 1 / 49), (9.0, 0.1)])
@@ -194,6 +196,15 @@ def test_changes_of_other_states_are_no_change_of_the_outcome():
     assert margin.change("tilt") == -0.05 and margin.change("overturns") == -0.1 and margin.change("lifts") is None
     assert margin.beyond(-0.1) == margin.beyond(0.15) == "overturns"
     assert [outcome for _, _, outcome in margin.outcomes] == ["overturns", "rocks", "overturns"]
+
+
+def test_before_a_frayed_boundary_the_scan_is_finer():
+    margin = banded((-0.2, OVERTURNS), (-0.1, ROCKS), (0.05, OVERTURNS), (0.0504, ROCKS))
+    coarse = STEP * np.arange(-400, 401)
+    finer = _finer(margin, coarse)
+    assert set(coarse) <= set(finer) and len(finer) == 801 + 19 * 300
+    gap = finer[(finer > -0.1) & (finer < 0.05)]
+    assert np.diff(gap).max() == pytest.approx(STEP / FINER, rel=1e-9)
 
 
 def scanned(scene, name, count, span=0.2):

@@ -45,8 +45,7 @@ def _energy_scale(scene, response):
     return scale
 
 
-def test_random_scenes_are_sound_and_repeatable():
-    assert random_scene(0, 7).digest() == random_scene(0, 7).digest()
+def test_random_scenes_are_sound():
     for index in range(400):
         assert_sound(random_scene(0, index))
 

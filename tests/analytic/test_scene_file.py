@@ -92,8 +92,10 @@ def test_vertical_file_beside_the_record(tmp_path, words, level, vertical):
     (tmp_path / "h.txt").write_text("0 1\n0.5 2\n")
     (tmp_path / "v.txt").write_text(words + "0, 3\n0.5, 4\n1.0, 5\n")
     motion = with_motion(tmp_path, 'record = "h.txt"\nvertical = "v.txt"\nunits = "cm/s2"\nscale = 3')
-    assert motion.samples.tolist() == pytest.approx(level)
-    assert motion.vertical.samples.tolist() == pytest.approx(vertical)
+    assert (motion.samples.tolist(), motion.vertical.samples.tolist()) == (
+        pytest.approx(level),
+        pytest.approx(vertical),
+    )
     assert motion.label == "h.txt x 3, vertical v.txt x 3"
     assert motion.warnings[-1] == "h.txt x 3: 0.5 s of zeros put at its end, as the other component is longer"
 

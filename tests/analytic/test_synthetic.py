@@ -24,7 +24,6 @@ def test_peaks_and_end():
     assert motion.peak == pytest.approx(0.515 * G, abs=10.0**-DECIMALS)
     assert np.abs(velocity(motion)).max() == pytest.approx(0.80, abs=0.02)
     assert velocity(motion)[-1] == pytest.approx(0.0, abs=1e-5)
-    assert "synthetic" in motion.label
 
 
 def test_the_same_bits_every_time():
