@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from bearing_laws import bearings_of
+from bearing_laws import NAMES, bearings_of
 from random_scenes import random_scene
 from scipy.optimize import brentq
 
@@ -159,7 +159,7 @@ def test_a_duration_that_cuts_a_base_still_full_of_energy_leaves_the_outcome_und
 
 @pytest.mark.parametrize("index", range(120))
 def test_nothing_changes_after_the_end_of_a_decided_run(index):
-    scene = random_scene(5, index).with_(duration=None)
+    scene = random_scene(5, index, NAMES).with_(duration=None)
     response = simulate(scene, history=False)
     assert response.outcome != "failed"
     if not response.decided:

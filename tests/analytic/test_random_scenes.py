@@ -5,6 +5,7 @@ from dataclasses import astuple
 
 import numpy as np
 import pytest
+from bearing_laws import NAMES
 from random_scenes import random_scene
 
 from analytic import Block, Scene, Start, overturning_map, simulate
@@ -47,12 +48,12 @@ def _energy_scale(scene, response):
 
 def test_random_scenes_are_sound():
     for index in range(400):
-        assert_sound(random_scene(0, index))
+        assert_sound(random_scene(0, index, NAMES))
 
 
 @pytest.mark.parametrize("index", range(150))
 def test_mirrored_scenes_are_mirrored_bit_for_bit(index):
-    scene = random_scene(2, index)
+    scene = random_scene(2, index, NAMES)
     start = Start(**{name: -value for name, value in scene.start.model_dump().items()})
     motion = scene.motion.scaled(-1.0) if scene.motion else None
     one, other = simulate(scene), simulate(scene.with_(start=start, motion=motion))
@@ -67,7 +68,7 @@ def test_mirrored_scenes_are_mirrored_bit_for_bit(index):
 @pytest.mark.parametrize("begin", range(400, 50_400, 5000))
 def test_many_more_random_scenes_are_sound(begin):
     for index in range(begin, begin + 5000):
-        assert_sound(random_scene(0, index))
+        assert_sound(random_scene(0, index, NAMES))
 
 
 @pytest.mark.parametrize("ratio", [1.0, 10 / 3, 17 / 3, 8.0])
