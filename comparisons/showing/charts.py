@@ -331,7 +331,6 @@ def figure(
         "".join(chart.svg() for chart in charts).encode(),
         " ".join(chart.says for chart in charts),
         caption,
-        wide=len(charts) > 1,
         solvers=tuple(dict.fromkeys(solvers)),
         keys={name: Markup(key) for name, key in (keys or {}).items()},
     )

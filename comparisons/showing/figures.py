@@ -133,7 +133,7 @@ def beside(*figures: Figure | None) -> Figure | None:
     svg, alt = b"".join(one.svg for one in found), " ".join(one.alt for one in found)
     caption = " ".join(dict.fromkeys(one.caption.removesuffix(MOVED) for one in found))
     moved = MOVED if any(one.caption.endswith(MOVED) for one in found) else ""
-    return Figure(svg, alt, caption + moved, True, tuple(keys), keys)
+    return Figure(svg, alt, caption + moved, tuple(keys), keys)
 
 
 def _drawn(value: Any, log: bool) -> bool:

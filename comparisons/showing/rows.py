@@ -117,6 +117,13 @@ def table(caption: str, rows: Iterable[Row], *columns: Column) -> Table:
     )
 
 
+def across(caption: str, rows: Iterable[Row], name: Column, *columns: Column) -> Table:
+    """The `Table` with a column for each of these rows, named by `name`, and a row for each of the `columns`."""
+    rows = list(rows)
+    cells = [[column.head, *map(column.text, rows)] for column in columns]
+    return Table(caption, (name.head, *map(name.text, rows)), cells)
+
+
 def setting_of(row: Row) -> str:
     """The level of a row's accuracy parameter, with its name and unit: step = 0.001 s."""
     return f"{row['parameter'].replace('_', ' ')} = {short(row['level'])} {UNITS.get(row['parameter'], '')}".rstrip()
