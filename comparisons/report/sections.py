@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from analytic.response import UNCOMPARED, Difference
 
 from ..showing.charts import figure
-from ..showing.parts import Section, Table, number
+from ..showing.parts import Section, Table
 from ..showing.rows import NAME, Column, across, table
 from ..showing.wording import TRUSTED, USABLE, differing, trust
 from . import figures
@@ -50,9 +50,8 @@ def _histories(result, name):
     """Figures of the histories of a scene, none where every run failed or it stands on rigid ground."""
     scene = result.settings["scenes"][name]
     solvers = [row["engine"] for row in figures.drawn(result, name)]
-    parts = scene["horizon"] and f" The earliest sensitivity horizon of a solver: {number(scene['horizon'])} s."
     for charts in figures.pairs(result, name):
-        yield figure(charts, charts[-1].says + (parts or ""), solvers)
+        yield figure(charts, charts[-1].says, solvers)
     if scene["bearings"] and solvers:
         chart = figures.loops(result, name)
         yield figure([chart], chart.says, solvers)
