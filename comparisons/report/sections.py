@@ -9,7 +9,7 @@ from analytic.response import UNCOMPARED, Difference
 
 from ..showing.charts import figure
 from ..showing.parts import Section, Table
-from ..showing.rows import NAME, Column, across, table
+from ..showing.rows import NAME, Column, across, grouped, table
 from ..showing.wording import TRUSTED, USABLE, differing, trust
 from . import figures
 
@@ -169,12 +169,15 @@ def _outcomes(result, name):
 
 def warned(result: Result, name: str) -> dict[str, list[str]]:
     """{warning, or difference from the analytic model: the solvers whose runs of a scene carry it}."""
-    carried = {}
-    for row in result.rows:
-        if row["scene"] == name:
-            for words in (*different(row), *(warning["text"] for warning in row.get("warnings", ()))):
-                carried.setdefault(words, []).append(row["engine"])
-    return carried
+    rows = [row for row in result.rows if row["scene"] == name]
+    texts = [[*different(row), *(warning["text"] for warning in row.get("warnings", ()))] for row in rows]
+    return _carried([row["engine"] for row in rows], texts)
+
+
+def _carried(names, texts):
+    """{text: the names whose texts hold it}; texts: of each name its own."""
+    pairs = [(name, text) for name, own in zip(names, texts, strict=True) for text in own]
+    return {text: [name for name, _ in found] for (text,), found in grouped(pairs, lambda pair: pair[1]).items()}
 
 
 def different(row: Mapping[str, Any]) -> list[str]:
@@ -249,15 +252,6 @@ def restitution_section(result: Result) -> Section:
                 Column("CPU time per simulated second [s/s]", "cpu_per_second"),
                 Column("failed runs [-]", "{failed} of {runs}"),
             ),
-            *_warnings("Free rocking", _carried(result.rows)),
+            *_warnings("Free rocking", _carried(map(NAME.text, result.rows), [row["warnings"] for row in result.rows])),
         ),
     )
-
-
-def _carried(rows):
-    """{warning: names of the variants whose runs carry it}."""
-    carried: dict[str, list[str]] = {}
-    for row in rows:
-        for warning in row["warnings"]:
-            carried.setdefault(warning, []).append(NAME.text(row))
-    return carried

@@ -144,8 +144,7 @@ def card_of(result: Result, name: str) -> Card:
     own = found["own"]
     undecided = "" if own["decided"] else " (not decided when the run ended)"
     title = f"{scene['name']}: the block {WORDS[own['outcome']]}{undecided}"
-    said = [*_isolation(found), *_nearest(found["margins"]), *_signs(found), *_odds(found)]
-    said += [("Warning", text) for text in own["warnings"]]
+    said = [*_said(found), *(("Warning", text) for text in own["warnings"])]
     said.append(("Engines", _engines([row for row in result.rows if row["scene"] == name])))
     tables = [_main(found)]
     if found["near"]:
@@ -156,10 +155,20 @@ def card_of(result: Result, name: str) -> Card:
     return Card(title, found["cautions"], scene, nearest, said, tables)
 
 
-def _isolation(found):
-    if "free" not in found:
-        return []
-    return [("Without isolation", f"Free-standing, the block {WORDS[found['free']['outcome']]}.")]
+def _said(found):
+    """(heading, sentence) of what the model says beyond the scene's own run."""
+    said = []
+    if "free" in found:
+        said.append(("Without isolation", f"Free-standing, the block {WORDS[found['free']['outcome']]}."))
+    said += _nearest(found["margins"])
+    if "reversed" in found:
+        said.append(("Motion reversed", f"the block {WORDS[found['reversed']['outcome']]}"))
+    elif found["near"]:
+        said.append(("Motion reversed", "The same, mirrored: block and start are symmetric."))
+    if rows := found["motions"]:
+        words = f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}."
+        said.append(("Records", words))
+    return said
 
 
 def _nearest(found):
@@ -181,21 +190,6 @@ def _nearest(found):
             quantity, reached, change = min(changing, key=lambda one: abs(one[2]))
             said.append((label, f"{'No longer from' if reached else 'From'} {quantity} {signed(change)} on."))
     return said
-
-
-def _signs(found):
-    if "reversed" in found:
-        return [("Motion reversed", f"the block {WORDS[found['reversed']['outcome']]}")]
-    if found["near"]:
-        return [("Motion reversed", "The same, mirrored: block and start are symmetric.")]
-    return []
-
-
-def _odds(found):
-    rows = found["motions"]
-    if not rows:
-        return []
-    return [("Records", f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}.")]
 
 
 def _engines(rows):

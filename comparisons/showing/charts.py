@@ -124,17 +124,14 @@ class Chart:
         tone: str = "",
     ) -> None:
         """A line of one solver, or in a colour `tone`; points that are not finite part it."""
-        path, pen = [], False
-        last = None
-        for x, y in self.at(xs, ys):
-            if not (math.isfinite(x) and math.isfinite(y)):
-                pen = False
-                continue
-            place = (round(x, 1), round(y, 1))
-            if place != last:
-                path.append(f"{'L' if pen else 'M'}{place[0]:g} {place[1]:g}")
-            pen, last = True, place
-        self.parts.append(f'{_group(who, grey, tone)}<path class="line" d="{"".join(path)}"/></g>')
+        places = self.at(xs, ys).round(1)
+        new = np.append(True, (np.diff(places, axis=0) != 0).any(axis=1))[: len(places)]
+        places = places[new]
+        sound = np.isfinite(places).all(axis=1)
+        begins = sound & ~np.append(False, sound)[:-1]
+        pairs = zip(places[sound], begins[sound], strict=True)
+        path = "".join(f"{'M' if begin else 'L'}{x:g} {y:g}" for (x, y), begin in pairs)
+        self.parts.append(f'{_group(who, grey, tone)}<path class="line" d="{path}"/></g>')
 
     def dots(
         self,

@@ -45,10 +45,7 @@ def test_what_was_not_tested_is_said_and_counts_for_less_than_trust():
 
 @pytest.mark.parametrize("level", ["fair", "bad"])
 def test_the_worst_column_is_the_rating(level):
-    columns = [
-        Judgement("a", {("one", "fine"): Mark("x", "good")}),
-        Judgement("b", {("one", "fine"): Mark("y", level)}),
-    ]
+    columns = [Judgement("a", {("one", "fine"): Mark("x", mark)}) for mark in ("good", level)]
     assert of(decided(*columns), "fine").rating.level == level
 
 
@@ -58,10 +55,11 @@ def test_a_study_of_engines_as_they_come_judges_the_default_variant():
     assert of(rows, "fine").marks[1].words == "0 of 9" and of(rows, "coarse").marks[1].words == "5 of 9"
 
 
-def test_failed_runs_and_errors_take_trust_away():
-    assert of(decided(failed=1), "fine").rating.level == "bad"
-    assert of(decided(fine=5e-3), "fine").rating.level == "fair"
-    assert of(decided(fine=5e-2), "fine").rating.level == "bad"
+@pytest.mark.parametrize(
+    "found, level", [({"failed": 1}, "bad"), ({"fine": 5e-3}, "fair"), ({"fine": 5e-2}, "bad")], ids=str
+)
+def test_failed_runs_and_errors_take_trust_away(found, level):
+    assert of(decided(**found), "fine").rating.level == level
 
 
 def test_the_recommendation_decides_its_impacts_itself_and_says_where_it_ends():

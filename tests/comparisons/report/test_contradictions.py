@@ -24,12 +24,10 @@ def decision():
     return {(row.engine, row.variant): row for row in rows_of([row for one in stored for row in one.rated], columns)}
 
 
-def judgement_of(name):
-    return get_study(name).judgement(read_result(RESULTS / f"{name}.json"))
-
-
-def page_of(name):
-    return get_study(name).page(read_result(RESULTS / f"{name}.json")).whole()
+def shown(name):
+    """(page, judgement) of a study's stored result."""
+    study, result = get_study(name), read_result(RESULTS / f"{name}.json")
+    return study.page(result).whole(), study.judgement(result)
 
 
 def numbers_of(tables):
@@ -47,7 +45,7 @@ def numbers_of(tables):
 
 @pytest.mark.parametrize("name", STORED)
 def test_every_number_of_a_title_is_one_of_its_tables(name):
-    page = page_of(name)
+    page, _ = shown(name)
     known = numbers_of(page.tables)
     if name == "random-scenes":  # its title adds up the tuned engines
         tuned = [row for row in page.tables[0].rows if row[1] == "tuned"]
@@ -55,10 +53,8 @@ def test_every_number_of_a_title_is_one_of_its_tables(name):
         known |= {str(right), str(right + differs + failed), str(failed)}
     if name == "sheet":  # the last row is that of the exact answers
         known.add(str(len(page.tables[0].rows) - 1))
-    heads = {
-        number for table in page.tables for text in (table.caption, *table.columns) for number in NUMBER.findall(text)
-    }
-    assert not set(NUMBER.findall(page.title)) - known - heads
+    heads = " ".join(text for table in page.tables for text in (table.caption, *table.columns))
+    assert not set(NUMBER.findall(page.title)) - known - set(NUMBER.findall(heads))
 
 
 def test_the_rating_of_restitution_is_the_same_on_the_first_screen_and_on_its_page(decision):
@@ -69,19 +65,17 @@ def test_the_rating_of_restitution_is_the_same_on_the_first_screen_and_on_its_pa
         assert row["rating"] == words[decision[row["engine"], row["variant"]].marks[0].level]
 
 
-@pytest.mark.parametrize("name", [name for name in STORED if judgement_of(name)])
+@pytest.mark.parametrize("name", [name for name in STORED if shown(name)[1]])
 def test_what_a_study_says_on_the_first_screen_stands_in_its_own_tables(name):
-    judgement = judgement_of(name)
-    page = page_of(name)
-    marks = {key: mark for key, mark in judgement.marks.items() if key[0] in ENGINES}
+    page, judgement = shown(name)
+    marks = {", ".join(filter(None, key)): mark for key, mark in judgement.marks.items() if key[0] in ENGINES}
     assert marks
-    for names, mark in marks.items():
-        rows = [row for table in page.tables for row in table.rows if row[0] == ", ".join(filter(None, names))]
-        cells = " ".join(itertools.chain.from_iterable(rows))
+    for who, mark in marks.items():
+        rows = [row for table in page.tables for row in table.rows if row[0] == who]
         first = NUMBER.findall(mark.words)[:1]  # of "36 of 41": the cases are counted elsewhere
-        assert rows and set(first) <= set(NUMBER.findall(cells))
+        assert rows and set(first) <= set(NUMBER.findall(" ".join(itertools.chain.from_iterable(rows))))
 
 
 def test_the_cheapest_engine_of_the_cost_study_is_one_that_the_first_screen_trusts(decision):
-    named = re.search(r"([a-z]+), ([\w-]+), at [\d.]+ times", page_of("speed-error").title)
+    named = re.search(r"([a-z]+), ([\w-]+), at [\d.]+ times", shown("speed-error")[0].title)
     assert decision[named[1], named[2]].rating.level in ("good", "part")

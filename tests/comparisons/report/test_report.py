@@ -5,7 +5,6 @@ import re
 from html import unescape
 from pathlib import Path
 from types import SimpleNamespace
-from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -73,38 +72,17 @@ def copied(copy_of, tmp_path):
     return copy_of(tmp_path)
 
 
-def displacement(folder):
-    """Peak base displacement of the isolated Caryatid in the analytic model [m], from the result file."""
-    (peak,) = [
-        row["peak_base_displacement"]
-        for row in read_result(folder / runs.SCENES).rows
-        if (row["scene"], row["engine"]) == ("caryatid-isolated", "analytic")
-    ]
-    return peak
-
-
 def changed(path, change):
     content = json.loads(path.read_text())
     change(content)
     path.write_text(json.dumps(content))
 
 
-def test_outcomes_in_the_page_are_those_of_the_solvers(folder):
-    page = Page(folder / RUNS)
-    engines = installed_engines()
-    for name in runs.CARYATID:
-        scene = load_scene(name)
-        expected = simulate(scene)
-        table = page.table(f"{scene.name}, until decided")
-        assert table["outcome", "analytic"] == expected.outcome
-        assert number_in(table["peak |φ|/γ [-]", "analytic"]) == pytest.approx(expected.peak_tilt_ratio, rel=1e-3)
-        assert {head for _, head in table} == {"quantity", "analytic", *engines}
-
-
-def test_every_cell_of_the_outcome_tables_equals_the_result_file(folder):
+def test_the_outcome_tables_say_what_the_result_file_says_and_that_is_the_models(folder):
     page, result = Page(folder / RUNS), read_result(folder / runs.SCENES)
     shown = {
         "overturns at [s]": "overturning_time",
+        "peak |φ|/γ [-]": "peak_tilt_ratio",
         "peak base displacement [m]": "peak_base_displacement",
         "CPU time [s]": "cpu_seconds",
         "work of the bearings [J]": "bearing_work",
@@ -112,12 +90,16 @@ def test_every_cell_of_the_outcome_tables_equals_the_result_file(folder):
     compared = 0
     for row in result.rows:
         table = page.table(f"{result.settings['scenes'][row['scene']]['name']}, until decided")
-        for label, key in shown.items():
-            cell = table.get((label, row["engine"]), "–")
-            if cell != "–":
-                assert number_in(cell) == pytest.approx(row[key], rel=0.05 if key == "cpu_seconds" else 1e-4)
-                compared += 1
-    assert compared >= 2 * len(result.rows)
+        assert {head for _, head in table} == {"quantity", "analytic", *installed_engines()}
+        cells = {key: table.get((label, row["engine"]), "–") for label, key in shown.items()}
+        for key in (key for key, cell in cells.items() if cell != "–"):
+            assert number_in(cells[key]) == pytest.approx(row[key], rel=0.05 if key == "cpu_seconds" else 1e-3)
+            compared += 1
+        if row["engine"] == "analytic":
+            expected = simulate(load_scene(row["scene"]))
+            assert (row["outcome"], row["peak_tilt_ratio"]) == (expected.outcome, expected.peak_tilt_ratio)
+            assert table["outcome", "analytic"] == expected.outcome
+    assert compared >= 3 * len(result.rows)
 
 
 def test_histories_in_the_result_file_are_those_of_the_model(folder):
@@ -127,42 +109,35 @@ def test_histories_in_the_result_file_are_those_of_the_model(folder):
         np.testing.assert_array_equal(arrays[f"caryatid-isolated/analytic/{column}"], getattr(history, column))
 
 
-def test_summary_follows_the_numbers(folder, copied):
+def test_summary_follows_the_numbers(copied):
     def items():
-        return Page(write_page(copied, studies=NO_STUDIES)).items
-
-    rows = [row for row in read_result(copied / runs.SCENES).rows if row["scene"] == "caryatid-rigid"]
-    off = [row["engine"] for row in rows if row["differences"]]
-    names = [row["engine"] for row in rows]
-    solvers = {1: "analytic", 2: "both solvers"}.get(len(rows), f"all {len(rows)} solvers")
-    words = (
-        f"in {' and '.join(names)} it overturns; {' and '.join(off)} differ" if off else f"in {solvers} it overturns"
-    )
-    assert any(words in item for item in items())
-    assert any("it never lifts" in item and f"{displacement(folder):.4f} m" in item for item in items())
+        return " ".join(Page(write_page(copied, studies=NO_STUDIES)).items)
 
     def analytic_stands(content):
-        (row,) = [row for row in content["rows"] if (row["scene"], row["engine"]) == ("caryatid-rigid", "analytic")]
-        row.update(outcome="rocks", overturning_time=None)
+        content["rows"][0].update(outcome="rocks", overturning_time=None)
 
+    rows = read_result(copied / runs.SCENES).rows
+    assert [(row["scene"], row["engine"]) for row in rows[:2]] == [(name, "analytic") for name in runs.CARYATID]
+    found = items()
+    assert f"it never lifts; the base moves by at most {rows[1]['peak_base_displacement']:.4f} m" in found
+    assert "solvers it overturns" in found or "and pybullet it overturns" in found
+    for name in (row["engine"] for row in rows if row["scene"] == runs.CARYATID[0] and row["differences"]):
+        assert re.search(rf"\b{name}\b.* differ", found)
     changed(copied / runs.SCENES, analytic_stands)
-    assert any("in analytic it rocks and stays upright" in item for item in items())
+    assert "in analytic it rocks and stays upright" in items()
 
 
 def test_every_number_of_the_decision_table_is_that_of_a_study(copied, studies):
     page = Page(write_page(copied, studies))
     best = page.table("Engines at their best settings")
-    summaries = [row for row in read_result(studies / "restitution.json").rows if row.get("scope") == "all"]
-    checked = 0
-    for (name, head), cell in best.items():
-        key = {"restitution error, rms": "rms", "CPU s per simulated s": "cpu_per_second"}.get(head)
-        if key:
-            rows = [row for row in summaries if f"{row['engine']}, {row['variant']}" == name]
-            assert number_in(cell) == pytest.approx(max(row[key] for row in rows), rel=0.06)
-            checked += 1
-    assert checked >= 8
+    result = read_result(studies / "restitution.json")
+    rows = {f"{row['engine']}, {row['variant']}": row for row in result.rows if row.get("scope") == "all"}
     marks = get_study("stability").judgement(read_result(studies / "stability.json")).marks
-    for name in {name for name, _ in best}:
+    names = {name for name, _ in best}
+    assert len(names) >= 4
+    for name in names:
+        for head, key in (("restitution error, rms", "rms"), ("CPU s per simulated s", "cpu_per_second")):
+            assert number_in(best[name, head]) == pytest.approx(rows[name][key], rel=0.06)
         known = marks.get(tuple(name.split(", ")))
         assert best[name, "hard cases right"] == (known.words if known else "not tested")
     assert "Engines at their best settings" not in Page(write_page(copied, studies=NO_STUDIES)).tables
@@ -185,29 +160,20 @@ def test_pages_need_nothing_but_themselves(folder):
 
 
 def test_every_picture_is_drawn_of_text_and_has_words_for_those_who_cannot_see_it(folder):
-    pictures = re.findall(r'<svg class="(chart|drawn)"[^>]*aria-label="([^"]*)"', (folder / "report.html").read_text())
-    assert len(pictures) >= 4 and all(len(words) > 30 for _, words in pictures)
-    runs_page = (folder / RUNS).read_text()
-    drawn = re.findall(r'<svg class="drawn".*?</svg>', runs_page, flags=re.DOTALL)
-    assert len(drawn) == 5
-    for picture in drawn:
-        root = ElementTree.fromstring(picture.replace("xlink:href", "href"))
-        assert root.get("role") == "img" and len(root.get("aria-label")) > 40
-        assert len(list(root.iter("text"))) > 4  # lettering is text, to be found and read aloud
+    for file, least in ((folder / "report.html", 4), (folder / RUNS, 8)):
+        drawn = re.findall(r'<svg class="(?:chart|drawn)" .*?</svg>(?:.*?</svg>)?', file.read_text(), flags=re.DOTALL)
+        named = [words for picture in drawn for words in re.findall('role="img" aria-label="([^"]*)"', picture)]
+        assert len(named) >= least and all(len(words) > 30 for words in named)
+        assert all("<text" in picture for picture in drawn if 'role="img"' in picture)  # to be found and read aloud
 
 
-def test_synthetic_motion_is_named_so(folder):
-    page = Page(folder / "report.html")
-    title = re.search("<title>(.*?)</title>", page.source).group(1)
-    assert "synthetic" in title
-    assert page.source.count("synthetic duzce-like motion") == 2  # title, earthquake
-    assert (folder / RUNS).read_text().count("synthetic duzce-like motion") >= 4
-
-
-def test_no_path_of_this_machine_and_no_leftovers(folder):
-    names = {file.name for file in folder.iterdir()}
-    assert names == {"scenes.json", "scenes.npz", "pages", "report.html"}
-    assert str(Path(__file__).parents[3]) not in (folder / "report.html").read_text()
+def test_synthetic_motion_is_named_so_and_nothing_else_is_left_in_the_folder(folder):
+    source, all_of_it = ((folder / name).read_text() for name in ("report.html", RUNS))
+    assert "synthetic" in re.search("<title>(.*?)</title>", source).group(1)
+    assert source.count("synthetic duzce-like motion") == 2  # title, earthquake
+    assert all_of_it.count("synthetic duzce-like motion") >= 4
+    assert {file.name for file in folder.iterdir()} == {"scenes.json", "scenes.npz", "pages", "report.html"}
+    assert str(Path(__file__).parents[3]) not in source
 
 
 def test_equal_result_files_give_equal_pages(folder, copied, monkeypatch):
@@ -224,13 +190,12 @@ def test_missing_engines_are_named_with_their_remedy(tmp_path, monkeypatch):
 
     monkeypatch.setattr("engines.get_engine", nothing_installed)
     make_results(tmp_path, synthetic_motion(), duration=CUT)
-    page, all_of_it = Page(write_page(tmp_path, studies=NO_STUDIES)), Page(tmp_path / RUNS)
-    assert any(
-        "Not in this report: engine 'pybullet' needs the package pybullet: install it so" in item for item in page.items
-    )
-    assert all_of_it.table("Caryatid on rigid ground, 7 s")["outcome", "analytic"] == "overturns"
-    assert all_of_it.table("Caryatid isolated, 7 s")["outcome", "analytic"] == "undecided (stands so far)"
-    assert any("in analytic it is undecided (stands so far)" in item for item in page.items)
+    items = " ".join(Page(write_page(tmp_path, studies=NO_STUDIES)).items)
+    page = Page(tmp_path / RUNS)
+    assert "Not in this report: engine 'pybullet' needs the package pybullet: install it so" in items
+    assert page.table("Caryatid on rigid ground, 7 s")["outcome", "analytic"] == "overturns"
+    assert page.table("Caryatid isolated, 7 s")["outcome", "analytic"] == "undecided (stands so far)"
+    assert "in analytic it is undecided (stands so far)" in items
 
 
 def test_a_failed_run_shows_its_evidence(folder, copied):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from analytic import load_scene, simulate
-from comparisons.showing.plots import draw_histories, marker, style
+from comparisons.showing.plots import draw_histories, style
 from engines import ENGINES
 
 
@@ -50,9 +50,8 @@ def test_what_lies_beyond_the_horizon_is_shaded(horizon, shown):
     assert "analytic, kernel: overturns" in labels
 
 
-def test_solvers_differ_in_colour_in_dashes_and_in_marker():
+def test_solvers_differ_in_colour_and_in_dashes():
     """Those of the model's second implementations too, which stand beside the engines."""
     solvers = ("analytic", *ENGINES, "time-stepping")
     looks = [style(solver) for solver in solvers]
     assert len({look["color"] for look in looks}) == len({look["linestyle"] for look in looks}) == len(solvers)
-    assert len({marker(solver) for solver in ("analytic", *ENGINES)}) == len(solvers) - 1
