@@ -1,11 +1,13 @@
-"""No two places contradict each other: one rating of a variant everywhere; each number of a title is in a table."""
+"""No two places contradict each other: one rating of a variant everywhere, titles as tables, the README as results."""
 
 import itertools
 import re
+from xml.etree import ElementTree
 
 import pytest
 
 from comparisons.report.answer import rows_of
+from comparisons.report.gallery import GALLERY, HEADLINES, README, gallery, headlines, stored, with_findings
 from comparisons.report.studies import stored_studies
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.studies import BUILT_IN, get_study
@@ -19,9 +21,9 @@ NUMBER = re.compile(r"(?<![\w.,−·])\d+(?:\.\d+)?(?![\w.])")
 @pytest.fixture(scope="module")
 def decision():
     """The rows of the first screen's table from the stored results."""
-    stored = stored_studies()
-    columns = [one.judgement for one in stored if one.judgement is not None]
-    return {(row.engine, row.variant): row for row in rows_of([row for one in stored for row in one.rated], columns)}
+    studies = stored_studies()
+    columns = [one.judgement for one in studies if one.judgement is not None]
+    return {(row.engine, row.variant): row for row in rows_of([row for one in studies for row in one.rated], columns)}
 
 
 def shown(name):
@@ -79,3 +81,15 @@ def test_what_a_study_says_on_the_first_screen_stands_in_its_own_tables(name):
 def test_the_cheapest_engine_of_the_cost_study_is_one_that_the_first_screen_trusts(decision):
     named = re.search(r"([a-z]+), ([\w-]+), at [\d.]+ times", shown("speed-error")[0].title)
     assert decision[named[1], named[2]].rating.level in ("good", "part")
+
+
+def test_the_readme_shows_and_says_what_the_stored_results_do():
+    made, readme, words = gallery(stored()), README.read_text(encoding="utf-8"), headlines(stored())
+    assert {file.name: file.read_text(encoding="utf-8") for file in GALLERY.iterdir()} == made and len(made) == 4
+    for name, svg in made.items():
+        root = ElementTree.fromstring(svg)
+        assert f"comparisons/report/gallery/{name}" in readme
+        assert root.tag == "{http://www.w3.org/2000/svg}svg" and root.get("aria-label")
+        assert "prefers-color-scheme" in svg and "http://" not in svg.replace("http://www.w3.org", "")
+    assert len(words.splitlines()) == len(HEADLINES) and words in readme
+    assert with_findings(readme, words) == readme != with_findings(readme, "- something else")

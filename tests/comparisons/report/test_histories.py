@@ -16,17 +16,13 @@ from comparisons.report import histories, runs
 from comparisons.running.provenance import ResultError, read_result
 
 
-def test_responses_survive_the_way_through_a_result_file(tmp_path):
+def test_responses_survive_the_way_through_a_result_file_and_a_lost_history_is_said(tmp_path):
     response = simulate(load_scene("caryatid-isolated").with_(duration=5.0))
     values = json.loads(json.dumps(histories.ToFile(str(tmp_path))(None, response)))
     again = histories.response_of(values, tmp_path)
     assert again.to_json() == response.to_json()
     for column in History.COLUMNS:
         np.testing.assert_array_equal(getattr(again.history, column), getattr(response.history, column))
-
-
-def test_a_lost_history_of_a_report_that_was_broken_off_is_said(tmp_path):
-    values = histories.ToFile(str(tmp_path))(None, simulate(load_scene("caryatid-rigid").with_(duration=0.1)))
     (tmp_path / values["history"]).unlink()
     with pytest.raises(ResultError, match="missing; remove the folder"):
         histories.response_of(values, tmp_path)

@@ -1,4 +1,4 @@
-"""Figures from rows: every row is drawn where it belongs, series are told apart, numbers stand in their cells."""
+"""Charts can be read back; figures draw every row where it belongs, tell series apart, and write numbers in cells."""
 
 import json
 import math
@@ -8,11 +8,96 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from contrast import contrast
+from page_numbers import number_in
 
-from comparisons.showing.charts import HAIR, INK, NEAR, STYLE, Axis, figure
+from comparisons.showing.charts import HAIR, INK, NEAR, SHAPES, STYLE, Axis, Chart, figure, key_of, log_axis, marker
 from comparisons.showing.figures import MOVED, beside, lines, ranks, regions, shades
 from comparisons.showing.rows import NAME, Column
 from engines import ENGINES
+
+LINEAR, LOG = Axis("x [m]", -2.0, 6.0), Axis("error [-]", 1e-6, 1e2, "log")
+
+
+def value(read, place):
+    """What the page's script makes of a place."""
+    share = (place - read["at"][0]) / (read["at"][1] - read["at"][0])
+    return (
+        read["low"] * (read["high"] / read["low"]) ** share
+        if read["log"]
+        else read["low"] + share * (read["high"] - read["low"])
+    )
+
+
+def element(chart):
+    return ElementTree.fromstring(chart.svg())
+
+
+def drawn_lines(root):
+    """The paths of the lines in a panel, those in the margin aside."""
+    (inside,) = root.findall("svg")
+    return [part.get("d") for part in inside.iter("path") if part.get("class") == "line"]
+
+
+def points(path):
+    return [tuple(map(float, pair.split())) for pair in re.split("[ML]", path)[1:]]
+
+
+def test_a_line_read_back_from_its_path_is_the_data():
+    xs, ys = np.linspace(-1.5, 5.5, 40), np.geomspace(1e-5, 10, 40)
+    chart = Chart(LINEAR, LOG, "A line.")
+    chart.line(xs, ys, "exudyn")
+    root = element(chart)
+    read = json.loads(root.get("data-read"))
+    found = np.array([(value(read["x"], x), value(read["y"], y)) for x, y in points(*drawn_lines(root))])
+    np.testing.assert_allclose(found[:, 0], xs, atol=8.0 / 300)  # a tenth of a unit of some 330
+    np.testing.assert_allclose(np.log10(found[:, 1]), np.log10(ys), atol=8.0 / 200)
+
+
+def test_a_line_is_parted_where_there_is_no_number_and_says_equal_points_once():
+    chart = Chart(LINEAR, LINEAR, "A gap.")
+    chart.line([0, 1, 1, 2, 3, 4], [0, 1, 1, np.nan, 1, 0])
+    chart.line([], [])
+    assert [re.sub("[^ML]", "", path) for path in drawn_lines(element(chart))] == ["MLML", ""]
+
+
+def test_ticks_lie_between_the_ends_and_say_their_values():
+    for axis in (LINEAR, LOG, Axis("t", 0.0, 32.2), log_axis("e", [3e-9, 0.0, 2e-4])):
+        marks = axis.marks()
+        assert len(marks) >= 3
+        for place, word in marks:
+            assert -1e-9 <= axis.share([place])[0] <= 1 + 1e-9
+            number = number_in(f"1·{word}") if axis.scale == "log" else number_in(word)
+            assert number == pytest.approx(place, rel=1e-9, abs=1e-12)
+    assert log_axis("e", [3e-9, 0.0, 2e-4]).low == 1e-9
+
+
+def test_every_solver_has_a_marker_of_its_own_and_its_name_on_what_it_drew():
+    assert {marker(name) for name in ENGINES} <= set(SHAPES) and len({marker(name) for name in ENGINES}) == len(ENGINES)
+    chart = Chart(LINEAR, LINEAR, "Two.")
+    for name in ("exudyn", "analytic"):
+        chart.line([0, 1], [0, 1], name)
+        chart.dots([0, 1], [0, 1], name, says=["first", "second < third"])
+    root = element(chart)
+    assert {part.get("data-who") for part in root.iter("g")} - {None} == {"exudyn", "analytic"}
+    told = [part.get("data-says") for part in root.iter("path") if part.get("data-says")]
+    assert told == 2 * ["first", "second < third"]
+    assert ENGINES["exudyn"].colour in chart.svg() and ENGINES["exudyn"].colour in key_of("exudyn")
+
+
+def test_scipy_and_time_stepping_are_told_apart_in_one_ink():
+    scipy, stepping = key_of("scipy, DOP853"), key_of("time-stepping")
+    assert all("--c:var(--soft)" in key for key in (scipy, stepping))
+    assert SHAPES[marker("scipy")] in scipy and SHAPES[marker("time-stepping")] in stepping
+    assert "--d:7 4" in scipy and "--d:2 3.5" in stepping and "--d:none" in key_of("analytic")
+
+
+def test_labels_are_pushed_apart_and_stay_inside():
+    chart = Chart(LINEAR, LINEAR, "Labels.", right=80)
+    for k in range(8):
+        chart.label(-1.9 + 0.01 * k, f"line {k}")
+    tops = sorted(float(text.get("y")) for text in element(chart).iter("text") if (text.text or "").startswith("line"))
+    assert len(tops) == 8 and min(np.diff(tops)) >= 13 and tops[-1] <= chart.bottom + 5
+
 
 X, Y = Column("slenderness γ [rad]", "x", digits=None), Column("error [-]", "y")
 FIRST, SECOND = list(ENGINES)[:2]
@@ -71,9 +156,7 @@ def test_marks_stand_on_their_line_and_tell_their_values():
         f"{FIRST}, fine: 1.0·10⁻⁵ at 0.1",
         f"{FIRST}, fine: 1.0·10⁻⁴ at 0.2",
     ]
-    (line,) = [part.get("d") for part in panel.iter("path") if part.get("class") == "line" and "L" in part.get("d")]
-    places = [pytest.approx(tuple(map(float, pair.split()))) for pair in re.split("[ML]", line)[1:]]
-    assert [place_of(one) for one in marks] == places
+    assert [place_of(one) for one in marks] == points(*drawn_lines(panel))
 
 
 def test_variants_of_an_engine_share_its_colour_and_differ_in_their_marks():
@@ -217,13 +300,12 @@ def test_a_map_of_many_cells_draws_a_rectangle_for_each_run_of_equal_ones():
     made = figure(charts, "Who overturns.", keys, keys)
     (panel,) = panels(made)
     read = json.loads(panel.get("data-read"))
-    scale = {key: (read[key]["high"] - read[key]["low"]) / np.diff(read[key]["at"])[0] for key in "xy"}
     (drawn,) = [group for group in panel.iter("g") if group.get("data-who")]
     sides = []
     for rect in drawn.iter("rect"):
         x, y, width, height = (float(rect.get(key)) for key in ("x", "y", "width", "height"))
-        left, top = (read[k]["low"] + (at - read[k]["at"][0]) * scale[k] for k, at in (("x", x), ("y", y)))
-        sides.append((left, left + (width - HAIR) * scale["x"], top + (height - HAIR) * scale["y"], top))
+        ends = [value(read["x"], at) for at in (x, x + width - HAIR)]
+        sides.append([*ends, *(value(read["y"], at) for at in (y + height - HAIR, y))])
         assert rect.get("class") == "falls"
     np.testing.assert_allclose(sides, [(0.5, 1.5, 15, 35), (1.5, 2.5, 5, 15), (1.5, 2.5, 25, 35)], atol=0.02)
     assert drawn.get("data-who") == "overturns" and made.solvers == ("stands", "overturns")
