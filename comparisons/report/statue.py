@@ -15,7 +15,8 @@ from analytic.records.folder import reversed_sign
 from analytic.response import COMPARED, about_record
 
 from ..showing.motions import LIFTED, odds
-from ..showing.parts import Table, number, signed
+from ..showing.parts import number, signed
+from ..showing.rows import Column, across, table
 from .sections import different
 
 if TYPE_CHECKING:
@@ -207,26 +208,25 @@ def _engines(rows):
 
 
 def _main(found):
-    columns = {"this scene": found["own"]} | ({"free-standing": found["free"]} if "free" in found else {})
-
-    def row(label, pick):
-        return [label, *(pick(one) for one in columns.values())]
+    columns = [{"name": "this scene", **found["own"]}]
+    columns += [{"name": "free-standing", **found["free"]}] if "free" in found else []
 
     def share(value, limit):
         return number(value) if limit is None else f"{number(value)} of {number(limit)}"
 
-    moves = row("base displacement, of x_max [m]", lambda one: share(one["stroke"], one["x_max"]))
-    base = [moves] if found["own"]["stroke"] is not None else []
-    rows = [
-        row("outcome", lambda one: one["outcome"]),
-        row("peak tilt over slenderness [-]", lambda one: _tilt(one["outcome"], one["tilt"])),
-        row("peak ground acceleration [g]", lambda one: number(one["pga"] and one["pga"] / one["gravity"], 3)),
-        row("uplift acceleration g tan γ [g]", lambda one: number(one["uplift"] / one["gravity"], 3)),
-        *base,
-        row("friction demand, of the coefficient [-]", lambda one: share(one["demand"], one["friction"])),
-        row("least normal force N/(m g) [-]", lambda one: number(one["normal"], 3)),
-    ]
-    return Table("The analytic model", ("quantity", *columns), rows)
+    sway = Column("base displacement, of x_max [m]", lambda one: share(one["stroke"], one["x_max"]))
+    return across(
+        "The analytic model",
+        columns,
+        Column("quantity", "name"),
+        Column("outcome", "outcome"),
+        Column("peak tilt over slenderness [-]", lambda one: _tilt(one["outcome"], one["tilt"])),
+        Column("peak ground acceleration [g]", lambda one: one["pga"] and one["pga"] / one["gravity"], 3),
+        Column("uplift acceleration g tan γ [g]", lambda one: one["uplift"] / one["gravity"], 3),
+        *([sway] if found["own"]["stroke"] is not None else []),
+        Column("friction demand, of the coefficient [-]", lambda one: share(one["demand"], one["friction"])),
+        Column("least normal force N/(m g) [-]", "normal", 3),
+    )
 
 
 def _tilt(outcome, value):
@@ -234,29 +234,27 @@ def _tilt(outcome, value):
 
 
 def _near_table(near, scene):
-    heads = ["change of the motion", "outcome", "peak tilt over slenderness [-]"]
-    heads += ["base displacement [m]"] if scene["base"] else []
-    rows = []
-    for one in near:
-        label = "anywhere between" if one["change"] is None else signed(one["change"])
-        row = [label, one["outcome"], _tilt(one["outcome"], one["tilt"])]
-        rows.append(row + ([number(one["stroke"], 3)] if scene["base"] else []))
-    return Table(f"Within {100 * SHARE:g} % of the motion", tuple(heads), rows)
+    return table(
+        f"Within {100 * SHARE:g} % of the motion",
+        near,
+        Column(
+            "change of the motion", lambda one: "anywhere between" if one["change"] is None else signed(one["change"])
+        ),
+        Column("outcome", "outcome"),
+        Column("peak tilt over slenderness [-]", lambda one: _tilt(one["outcome"], one["tilt"])),
+        *([Column("base displacement [m]", "stroke", 3)] if scene["base"] else []),
+    )
 
 
 def _motion_table(motions, scene):
-    heads = ["record", "motions", "largest peak [g]", "lifts", "overturns", "largest tilt over slenderness [-]"]
-    heads += ["largest base displacement [m]"] if scene["base"] else []
-    rows = [
-        [
-            one["record"],
-            str(one["motions"]),
-            number(one["pga"] / scene["gravity"], 3),
-            str(one["lifts"]),
-            str(one["overturns"]),
-            "overturned" if one["overturns"] else number(one["tilt"]),
-            *([number(one["stroke"], 3)] if scene["base"] else []),
-        ]
-        for one in motions
-    ]
-    return Table("Under other motions", tuple(heads), rows)
+    return table(
+        "Under other motions",
+        motions,
+        Column("record", "record"),
+        Column("motions", "motions"),
+        Column("largest peak [g]", lambda one: one["pga"] / scene["gravity"], 3),
+        Column("lifts", "lifts"),
+        Column("overturns", "overturns"),
+        Column("largest tilt over slenderness [-]", lambda one: _tilt(one["outcome"], one["tilt"])),
+        *([Column("largest base displacement [m]", "stroke", 3)] if scene["base"] else []),
+    )
