@@ -77,7 +77,7 @@ def test_the_block_is_where_the_history_says(folder, browser):
         for which, track in enumerate(tracks):
             moved = page.locator(f'svg[data-scene="0"] [data-track="{which}"]').get_attribute("transform")
             tilt = track["tilt"][min(frame, len(track["tilt"]) - 1)]
-            corner = math.copysign(data["scenes"][0]["size"][0], tilt)
+            corner = data["scenes"][0]["size"][0] * (-1 if tilt < 0 else 1)
             found = list(map(float, re.search(r"rotate\(([-\d.]+) ([-\d.]+)", moved).groups()))
             assert found == [pytest.approx(math.degrees(tilt), abs=2e-3), corner]
     x = data["scenes"][1]["tracks"][0]["x"][140]
