@@ -98,7 +98,7 @@ def test_the_outcome_tables_say_what_the_result_file_says_and_that_is_the_models
             expected = simulate(load_scene(row["scene"]))
             assert (row["outcome"], row["peak_tilt_ratio"]) == (expected.outcome, expected.peak_tilt_ratio)
             assert table["outcome", "analytic"] == expected.outcome
-    assert compared >= 3 * len(result.rows)
+    assert compared >= 2 * len(result.rows)
 
 
 def test_histories_in_the_result_file_are_those_of_the_model(folder):
@@ -116,8 +116,7 @@ def test_summary_follows_the_numbers(copied):
         content["rows"][0].update(outcome="rocks", overturning_time=None)
 
     rows = read_result(copied / runs.SCENES).rows
-    assert [(row["scene"], row["engine"]) for row in rows[:2]] == [(name, "analytic") for name in runs.CARYATID]
-    free = [row for row in rows if row["scene"] == runs.CARYATID[0]]
+    free, isolated = ([row for row in rows if row["scene"] == name] for name in runs.CARYATID)
     names, off = [row["engine"] for row in free], [row["engine"] for row in free if row["differences"]]
     solvers = {1: "analytic", 2: "both solvers"}.get(len(names), f"all {len(names)} solvers")
     words = (
@@ -125,7 +124,8 @@ def test_summary_follows_the_numbers(copied):
     )
     found = items()
     assert words in found
-    assert f"it never lifts; the base moves by at most {rows[1]['peak_base_displacement']:.4f} m" in found
+    assert "it never lifts" in found
+    assert f"the base moves by at most {isolated[0]['peak_base_displacement']:.4f} m" in found  # the model's
     changed(copied / runs.SCENES, analytic_stands)
     assert "in analytic it rocks and stays upright" in items()
 
@@ -172,16 +172,17 @@ def test_every_picture_is_drawn_of_text_and_has_words_for_those_who_cannot_see_i
 
 
 def test_figures_of_the_runs_say_how_far_the_engines_are_apart(folder):
-    page, arrays = (folder / RUNS).read_text(), read_result(folder / runs.SCENES).arrays
+    page, result = (folder / RUNS).read_text(), read_result(folder / runs.SCENES)
     for name, column, label, scale in (
         ("caryatid-rigid", "tilt", "tilt φ/γ [-]", load_scene("caryatid-rigid").block.slenderness),
         ("caryatid-isolated", "base_displacement", "base displacement x [m]", 1.0),
     ):
         largest = re.search(rf"analytic model in {re.escape(label)}; largest: (.*?)\.[ <\"]", page)[1]
         found = {who: number_in(number) for who, number in map(str.split, largest.split("; "))}
-        assert set(found) == set(installed_engines())
+        rows = [row["engine"] for row in result.rows if row["scene"] == name and not row["failure"]]
+        assert set(found) == {*rows} - {"analytic"}
         for who, number in found.items():
-            most = np.abs(arrays[f"{name}/{who}/apart/{column}"]).max() / scale
+            most = np.abs(result.arrays[f"{name}/{who}/apart/{column}"]).max() / scale
             assert number == pytest.approx(max(most, 1e-9), rel=0.05)
 
 
