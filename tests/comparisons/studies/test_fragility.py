@@ -90,12 +90,7 @@ def test_an_engine_that_sees_weaker_motions_is_found_out(weaker):
     for row in known:
         low, high = row["median_interval"]
         assert low < 1 / 0.8 < high and row["median_shift"] > 1
-<<<<<<< HEAD
-    assert min(row["p_holm"] for row in rows) < 0.05
     assert STUDY.judgements(weaker)[0].marks["pybullet", "impact-aware"].level == "bad"
-=======
-    assert STUDY.judgement(weaker).marks["pybullet", "impact-aware"].level == "bad"
->>>>>>> cut-studies
 
 
 def test_an_engine_that_is_the_model_does_not_differ_and_the_page_says_what_would_have_been_found(equal):
