@@ -27,7 +27,6 @@ from .errors import SettingError
 from .layout import Ground, Options, Vertical
 from .limits import limit_warnings
 from .motion import RICKER_PERIODS, SampledMotion
-from .polynomial import MAX_ORDER
 from .response import Caution, Energy, Failure, History, Impact, Response, State, about_record
 from .rocking import RockingModel
 from .taylor import HARMONIC, LINEAR_GROUND, QUIET, RICKER, SHORT_ORDER, Parameters
@@ -107,7 +106,6 @@ def ground(motion: Motion | None, scale: float = 1.0) -> Ground:
 
 def options(
     tolerance: float = TOLERANCE,
-    order: int = ORDER,
     rest_rate: float = REST_RATE,
     record: bool = True,
     decide: bool = False,
@@ -125,14 +123,12 @@ def options(
     """
     if not 1e-17 <= tolerance <= 1e-2:
         raise SettingError(f"tolerance = {tolerance!r}: give a value from 1e-17 to 1e-2")
-    if not (isinstance(order, int) and 4 <= order <= MAX_ORDER):
-        raise SettingError(f"order = {order!r}: give an integer from 4 to {MAX_ORDER}")
     if not 0 < rest_rate <= 1e-2:
         raise SettingError(f"rest_rate = {rest_rate!r}: give a value above 0, up to 1e-2")
     if shortest is None:
         shortest = 0.0 if decide else math.inf
     return Options(
-        float(tolerance), order, float(rest_rate), record, decide, float(output_step), capacity, float(shortest), steps
+        float(tolerance), ORDER, float(rest_rate), record, decide, float(output_step), capacity, float(shortest), steps
     )
 
 

@@ -20,7 +20,7 @@ from analytic.limits import limit_warnings
 from analytic.motion import SampledMotion
 from analytic.response import Caution, Failure, History, Response, about_record
 
-from .checks import check_energy, check_place, energy_gain, replay_bearing
+from .checks import check_energy, check_place
 from .endings import ended_early, finite_part, last_state, unstable_time, upright_part, upto_overturning
 from .events import check_impacts, contact_measures, find_events
 from .momentum import check_impulse
@@ -28,8 +28,6 @@ from .swings import Trace, find_swings
 
 if TYPE_CHECKING:
     from analytic import Scene
-
-__all__ = ["Trace", "energy_gain", "failed_response", "observe", "replay_bearing"]
 
 HISTORY_POINTS = 2000
 

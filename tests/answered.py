@@ -3,15 +3,31 @@
 import dataclasses
 
 from analytic import simulate
+from comparisons.running.executors import Done, Executor, lines_of
 from comparisons.running.provenance import read_result, write_result
 from comparisons.running.study import Batch, Found
-from comparisons.running.sweep import Row, Serial, run_sweep
+from comparisons.running.sweep import Row, run_sweep
+
+
+class Here(Executor):
+    """Runs in this process, one task at a time."""
+
+    slots = 1
+
+    def submit(self, task):
+        self.task = task
+
+    def next(self):
+        return Done(self.task.ticket, lines_of(self.task))
+
+    def __exit__(self, *_):
+        pass
 
 
 def by_runs(folder):
     """Answers batches by runs in this process, kept in a folder."""
     return lambda batch: run_sweep(
-        batch.cases, store=folder / "runs.jsonl", measure=batch.measure, executor=Serial(), progress=False
+        batch.cases, store=folder / "runs.jsonl", measure=batch.measure, executor=Here(), progress=False
     )
 
 

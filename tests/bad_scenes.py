@@ -88,6 +88,7 @@ BAD = {
         motion('record = "two.txt"\nunits = "inch"'),
         "motion.units = 'inch': not known; choose 'm/s2', 'cm/s2', 'g', 'gal'",
     ),
+    "key called self": (lambda text: "self = 1\n" + text, "self = 1: unknown key"),
     # missing
     "no mass": (replaced("mass = 3172.05\n", ""), "block.mass: missing; add mass = ... [kg]"),
     "no block": (

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from bearing_laws import bearings_of
 
 import analytic
 from analytic import Base, PulseMotion, SampledMotion, Scene, Start
@@ -75,10 +74,6 @@ def released(base, slenderness=0.2, tilt=0.5, rate=0.0):
 
 def simulate(engine, variant, given, **settings):
     return get_engine(engine).simulate(given, variant=variant, **settings)
-
-
-def bearings(law, damping):
-    return bearings_of(law, count=4, damping=damping)
 
 
 def shaking(peak, duration=6.0):

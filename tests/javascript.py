@@ -32,17 +32,12 @@ def evaluate(source, expression, data=None):
     """Value of a JavaScript `expression` after the scripts `source`, with `data` as DATA; skips without an engine."""
     script = f"{source}\nconst DATA = {json.dumps(data)};\n"
     if node := shutil.which("node"):
-        print_it = f"process.stdout.write(JSON.stringify({expression}));"
-        run = subprocess.run([node, "-"], input=script + print_it, capture_output=True, text=True, timeout=120)
-        assert run.returncode == 0, run.stderr
-        return json.loads(run.stdout)
+        script += f"process.stdout.write(JSON.stringify({expression}));"
+        return json.loads(subprocess.check_output([node, "-"], input=script, text=True, timeout=120))
     if not (path := chromium()):
         pytest.skip(NEEDED)
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as play:
-        browser = play.chromium.launch(executable_path=path, args=["--no-sandbox"])
-        page = browser.new_page()
-        value = page.evaluate(f"() => {{ {script} return {expression}; }}")
-        browser.close()
-    return value
+        page = play.chromium.launch(executable_path=path, args=["--no-sandbox"]).new_page()
+        return page.evaluate(f"() => {{ {script} return {expression}; }}")

@@ -1,5 +1,6 @@
 """Small records and scenes, made up here, and what damage makes of them: the same for the same seed."""
 
+import itertools
 import math
 import random
 
@@ -7,12 +8,13 @@ VALUES = [0.001, -0.123, -0.456, 0.25, -1.5, 0.0, 0.75, 0.031, -0.2, 0.11, 0.4, 
 SMOOTH = [math.sin(0.3 * i) * math.exp(-0.02 * i) for i in range(46)]
 
 
+def _lines(words, per_line):
+    return "".join("".join(words[i : i + per_line]) + "\n" for i in range(0, len(words), per_line))
+
+
 def _fortran(values, width=15, digits=7, exponent=2):
-    words = []
-    for value in values:
-        mantissa, power = f"{value:.{digits}E}".split("E")
-        words.append(f"{mantissa}E{int(power):+0{exponent + 1}d}".rjust(width))
-    return "".join("".join(words[i : i + 5]) + "\n" for i in range(0, len(words), 5))
+    parts = [f"{value:.{digits}E}".split("E") for value in values]
+    return _lines([f"{part}E{int(power):+0{exponent + 1}d}".rjust(width) for part, power in parts], 5)
 
 
 def _at2(third, fourth, data):
@@ -20,22 +22,19 @@ def _at2(third, fourth, data):
 
 
 def _dyna(values):
-    keys = {
-        "EVENT_NAME": "MADE UP",
-        "EVENT_DATE_YYYYMMDD": "20000101",
-        "STATION_ELEVATION_M": "746.0",
-        "VS30_M/S": "294",
-        "SAMPLING_INTERVAL_S": "0.005000",
-        "NDATA": len(values),
-        "UNITS": "cm/s^2",
-        "PGA_CM/S^2": "-150.000000",
-        "HEADER_FORMAT": "DYNA 1.2",
-        "DATA_TYPE": "ACCELERATION",
-        "USER5": "",
-    }
-    return "".join(f"{key}: {value}\n" for key, value in keys.items()) + "".join(
-        f"{100 * value:.6f}\n" for value in values
-    )
+    head = f"""\
+EVENT_NAME: MADE UP
+EVENT_DATE_YYYYMMDD: 20000101
+STATION_ELEVATION_M: 746.0
+VS30_M/S: 294
+SAMPLING_INTERVAL_S: 0.005000
+NDATA: {len(values)}
+UNITS: cm/s^2
+PGA_CM/S^2: -150.000000
+HEADER_FORMAT: DYNA 1.2
+DATA_TYPE: ACCELERATION
+USER5: \n"""
+    return head + "".join(f"{100 * value:.6f}\n" for value in values)
 
 
 def _rows(row, step=0.005, origin=0.0, count=24):
@@ -44,21 +43,25 @@ def _rows(row, step=0.005, origin=0.0, count=24):
 
 def csmip(values, step=".005", layout="8f10.5", words="in cm/sec2."):
     """Three channels of volume 2, 25 lines of text each; velocities and displacements as long as the accelerations."""
-    text, decimals = "", int(layout[-1])
-    for number, name in ((1, "90 Deg"), (2, "Up"), (3, "H1")):
+    names, text, count = ("90 Deg", "Up", "H1"), "", len(values)
+    for number, name in enumerate(names, 1):
         samples = [100 * value * number for value in values]
-        data = _columns(samples, 8, 10, decimals)
-        count, reals = len(values), _columns([0.0] * 60 + [float(step)] + [-999.0] * 39, 8, 10, 5)
-        text += f"Corrected accelerogram   00000-X0000-00000.00       Chan  {number}: {name:10s}from\n"
-        text += "Uncorrected Accelerogram Data             Processed: 01/01/00\n" + "Nowhere\n" * 13
-        text += f" {count} points of instrument- and baseline-corrected accel, veloc and displ data\n"
-        text += f"At equally-spaced intervals of {step} sec.\n"
-        text += f"Peak acceleration = {max(samples, key=abs):9.3f}    cm/sec/sec  at  .020   sec.\n"
-        text += "Nowhere\n" * 7 + _columns(range(100), 16, 5) + reals
-        text += f" {count} points of accel data equally spaced at {step} sec, {words} ({layout})\n{data}"
-        text += f" {count} points of veloc data equally spaced at {step} sec, in cm/sec. ({layout})\n{data}"
-        text += f" {count} points of displ data equally spaced at {step} sec, in cm. ({layout})\n{data}"
-        text += f"/&  ----------  End of data for channel  {number}  ----------\n"
+        data = _columns(samples, 8, 10, int(layout[-1]))
+        text += (
+            f"Corrected accelerogram   00000-X0000-00000.00       Chan  {number}: {name:10s}from\n"
+            "Uncorrected Accelerogram Data             Processed: 01/01/00\n"
+            + ("Nowhere\n" * 13)
+            + f" {count} points of instrument- and baseline-corrected accel, veloc and displ data\n"
+            f"At equally-spaced intervals of {step} sec.\n"
+            f"Peak acceleration = {max(samples, key=abs):9.3f}    cm/sec/sec  at  .020   sec.\n"
+            + "Nowhere\n" * 7
+            + _columns(range(100), 16, 5)
+            + _columns([0.0] * 60 + [float(step)] + [-999.0] * 39, 8, 10, 5)
+            + f" {count} points of accel data equally spaced at {step} sec, {words} ({layout})\n{data}"
+            f" {count} points of veloc data equally spaced at {step} sec, in cm/sec. ({layout})\n{data}"
+            f" {count} points of displ data equally spaced at {step} sec, in cm. ({layout})\n{data}"
+            f"/&  ----------  End of data for channel  {number}  ----------\n"
+        )
     return text
 
 
@@ -73,38 +76,38 @@ def cosmos(
     for times, name in enumerate(channels, 1):
         samples = [100 * value * times for value in values]
         reals = [-999.0] * 33 + [0.02] + [-999.0] * 27 + [step, step * len(values) / 1000, max(samples, key=abs), 0.02]
-        text += f"{volume} acceleration    (Format v01.20 with 13 text lines)\n" + "Nowhere\n" * 7
-        text += f"Sta Chan   {name} (Rcrdr Chan  1) Location:\n" + "Nowhere\n" * 4
-        text += " 100 Integer-header values follow on  10 lines, Format= (10I8)\n"
-        text += _columns([2, 1, 4, 120, 1] + [-999] * 95, 10, 8)
-        text += " 100 Real-header values follow on  20 lines, Format= (5F15.6)\n"
-        text += _columns(reals + [-999.0] * (100 - len(reals)), 5, 15, 6)
-        text += '   1 Comment line(s) follow, each starting with a "|":\n| made up\n'
-        text += f"{len(values):8d} acceleration pts, approx    0 secs, units={units}{form}Format=({layout})\n"
+        words = [f"{value:15.6e}" for value in samples]
         text += (
-            _columns(samples, 8, 10, 5) if layout.startswith("8") else "".join(f"{value:15.6e}\n" for value in samples)
+            f"{volume} acceleration    (Format v01.20 with 13 text lines)\n"
+            + "Nowhere\n" * 7
+            + f"Sta Chan   {name} (Rcrdr Chan  1) Location:\n"
+            + "Nowhere\n" * 4
+            + " 100 Integer-header values follow on  10 lines, Format= (10I8)\n"
+            + _columns([2, 1, 4, 120, 1] + [-999] * 95, 10, 8)
+            + " 100 Real-header values follow on  20 lines, Format= (5F15.6)\n"
+            + _columns(reals + [-999.0] * (100 - len(reals)), 5, 15, 6)
+            + '   1 Comment line(s) follow, each starting with a "|":\n| made up\n'
+            f"{len(values):8d} acceleration pts, approx    0 secs, units={units}{form}Format=({layout})\n"
+            + (_columns(samples, 8, 10, 5) if layout.startswith("8") else _lines(words, 1))
+            + f"End-of-data for Chan  {times} acceleration\n"
         )
-        text += f"End-of-data for Chan  {times} acceleration\n"
     return text
 
 
 def knet(counts, direction="E-W", frequency=200):
     """A K-NET file of 10 gals a million counts."""
-    keys = {
-        "Origin Time": "2000/01/01 00:00:00",
-        "Lat.": "0.0",
-        "Station Code": "NWH001",
-        "Sampling Freq(Hz)": f"{frequency}Hz",
-        "Duration Time(s)": f"{len(counts) / frequency:g}",
-        "Dir.": direction,
-        "Scale Factor": "2000(gal)/200000000",
-        "Max. Acc. (gal)": f"{max(abs(count - sum(counts) / len(counts)) for count in counts) / 1e5:.3f}",
-        "Last Correction": "2000/01/01 00:00:00",
-        "Memo.": "",
-    }
-    text = "".join(f"{key:18s}{value}\n" for key, value in keys.items())
-    words = [f"{count:8d} " for count in counts]
-    return text + "".join("".join(words[i : i + 8]) + "\n" for i in range(0, len(words), 8))
+    mean = sum(counts) / len(counts)
+    return f"""\
+Origin Time       2000/01/01 00:00:00
+Lat.              0.0
+Station Code      NWH001
+Sampling Freq(Hz) {frequency}Hz
+Duration Time(s)  {len(counts) / frequency:g}
+Dir.              {direction}
+Scale Factor      2000(gal)/200000000
+Max. Acc. (gal)   {max(abs(count - mean) for count in counts) / 1e5:.3f}
+Last Correction   2000/01/01 00:00:00
+Memo.             \n""" + _lines([f"{count:8d} " for count in counts], 8)
 
 
 def smc(values, high=False, rate=200.0, first="2 CORRECTED ACCELEROGRAM"):
@@ -116,39 +119,40 @@ def smc(values, high=False, rate=200.0, first="2 CORRECTED ACCELEROGRAM"):
     reals[1], reals[29], reals[31] = rate, max(samples), min(samples)
     per_line, width, digits = (5, 14, 7) if high else (8, 10, 4)
     words = [f"{value:.{digits}E}".replace("E+0", "E+").replace("E-0", "E-").rjust(width) for value in samples]
-    data = "".join("".join(words[i : i + per_line]) + "\n" for i in range(0, len(words), per_line))
     text = f"{first}\n" + "*\n" * 5 + "station = Nowhere          component=    360\n" + "*\n" * 4
-    return text + _columns(integers, 8, 10) + _fortran(reals) + "|\n| made up\n" + data
+    return text + _columns(integers, 8, 10) + _fortran(reals) + "|\n| made up\n" + _lines(words, per_line)
 
 
 def _columns(values, per_line, width, decimals=0):
-    words = [f"{value:{width}.{decimals}f}" for value in values]
-    return "".join("".join(words[i : i + per_line]) + "\n" for i in range(0, len(words), per_line))
+    return _lines([f"{value:{width}.{decimals}f}" for value in values], per_line)
 
 
 def cwa(values):
     """A file of Taiwan's weather administration: times and three components, the second the made-up one."""
-    text = "#StationCode: X001\n#InstrumentKind: made up\n#StartTime: 2000/01/01-00:00:00.000\n"
-    text += f"#RecordLength(sec): {len(values) / 200:g}\n#SampleRate(Hz): 200\n#AmplitudeUnit:  gal. DCoffset(corr)\n"
-    text += "#AmplitudeMAX.  U: 1.0~ -1.0\n#DataSequence: Time U(+); N(+); E(+)\n#Data: 4F10.3\n"
-    return text + "".join(
+    return (
+        "#StationCode: X001\n#InstrumentKind: made up\n#StartTime: 2000/01/01-00:00:00.000\n"
+        f"#RecordLength(sec): {len(values) / 200:g}\n#SampleRate(Hz): 200\n#AmplitudeUnit:  gal. DCoffset(corr)\n"
+        "#AmplitudeMAX.  U: 1.0~ -1.0\n#DataSequence: Time U(+); N(+); E(+)\n#Data: 4F10.3\n"
+    ) + "".join(
         f"{0.005 * i:10.3f}{10 * value:10.3f}{100 * value:10.3f}{-value:10.3f}\n" for i, value in enumerate(values)
     )
 
 
 def jma(values, titles="NS,EW,UD"):
     """A CSV of Japan's weather agency."""
-    text = "SITE CODE= 47000NOWHERE\nLAT.= 35.0\nLON.= 135.0\nSAMPLING RATE= 100Hz\nUNIT  = gal(cm/s/s)\n"
-    text += f"INITIAL TIME = 2000 01 01 00 00 00\n{titles}\n"
-    return text + "".join(f"{100 * value:.3f},{-50 * value:.3f},{value:.3f}\n" for value in values)
+    return (
+        "SITE CODE= 47000NOWHERE\nLAT.= 35.0\nLON.= 135.0\nSAMPLING RATE= 100Hz\nUNIT  = gal(cm/s/s)\n"
+        f"INITIAL TIME = 2000 01 01 00 00 00\n{titles}\n"
+    ) + "".join(f"{100 * value:.3f},{-50 * value:.3f},{value:.3f}\n" for value in values)
 
 
 def turkey(values):
     """Columns of Turkey's disaster management."""
-    text = "STRONG GROUND MOTION RECORDS OF TURKEY\nPLACE                  : NOWHERE\n"
-    text += f"NUMBER OF DATA         : {len(values)}\nSAMPLING INTERVAL (sec) : 0.02\n"
-    text += "RAW PGA VALUES (gal)   : (N-S) 1.0 (E-W) 2.0 (U-D) 3.0\n\n       N-S        E-W        U-D\n"
-    return text + "".join(f"{100 * value:11.6f}{-50 * value:11.6f}{value:11.6f}\n" for value in values)
+    return (
+        "STRONG GROUND MOTION RECORDS OF TURKEY\nPLACE                  : NOWHERE\n"
+        f"NUMBER OF DATA         : {len(values)}\nSAMPLING INTERVAL (sec) : 0.02\n"
+        "RAW PGA VALUES (gal)   : (N-S) 1.0 (E-W) 2.0 (U-D) 3.0\n\n       N-S        E-W        U-D\n"
+    ) + "".join(f"{100 * value:11.6f}{-50 * value:11.6f}{value:11.6f}\n" for value in values)
 
 
 # What headers say of the step, and whether in a line of its own (else the line is that of the title as well)
@@ -199,28 +203,21 @@ UNITS = (
 
 def stated():
     """(name, text, what the user says) of lists and columns whose headers say the step in words."""
-    for at, step in enumerate(STATED):
-        unit = UNITS[at % len(UNITS)]
-        if at % 3 == 0:
-            yield f"words {at}", f"{step}\n{unit}\n" + _rows("{a:.4f}"), {}
-        elif at % 3 == 1:
-            yield (
-                f"words {at}",
-                f"# {unit.replace('NS_gal', 'gal: units: gal')}\n# {step}\n" + _list(SMOOTH).rstrip("\n"),
-                {},
-            )
-        else:
-            text = f"{step}; {unit}\nNS  EW  UD\n" + _rows("{a:.4f}  -{t:.4f} 1.0")
-            yield (
-                f"words {at}",
-                text,
-                {"column": ("EW", 1, "2", "ns")[at % 4], "units": "gal" if unit == "NS_gal" else None},
-            )
+    rows = _rows("{a:.4f}  -{t:.4f} 1.0")
+    for at, (step, unit) in enumerate(zip(STATED, itertools.cycle(UNITS), strict=False)):
+        column = {"column": ("EW", 1, "2", "ns")[at % 4], "units": "gal" if unit == "NS_gal" else None}
+        comment = f"# {unit.replace('NS_gal', 'gal: units: gal')}\n# {step}\n"
+        forms = (
+            (f"{step}\n{unit}\n" + _rows("{a:.4f}"), {}),
+            (comment + _list(SMOOTH).rstrip("\n"), {}),
+            (f"{step}; {unit}\nNS  EW  UD\n{rows}", column),
+        )
+        yield f"words {at}", *forms[at % 3]
 
 
 def _list(values, per_line=6):
-    words = [f"{value:.5f}" for value in values]
-    return "".join(" ".join(words[i : i + per_line]) + "\n" for i in range(0, len(words), per_line))
+    parts = [values[i : i + per_line] for i in range(0, len(values), per_line)]
+    return "".join(" ".join(f"{value:.5f}" for value in part) + "\n" for part in parts)
 
 
 def records():
@@ -455,15 +452,13 @@ def damaged_bytes(content, chance):
     """Bytes after one to three of them were changed, lost, doubled or cut away."""
     for _ in range(chance.choice((1, 1, 2, 3))):
         at, length = chance.randrange(len(content) + 1), chance.choice((1, 1, 4, 30))
-        kind = chance.randrange(4)
-        if kind == 0:
-            content = content[:at] + bytes([chance.randrange(256)]) + content[at + 1 :]
-        elif kind == 1:
-            content = content[:at] + content[at + length :]
-        elif kind == 2:
-            content = content[: at + length] + content[at:]
-        else:
-            content = content[:at]
+        changes = (
+            content[:at] + bytes([chance.randrange(256)]) + content[at + 1 :],
+            content[:at] + content[at + length :],
+            content[: at + length] + content[at:],
+            content[:at],
+        )
+        content = chance.choice(changes)
     return content
 
 
@@ -488,18 +483,16 @@ def _cut(text, chance):
 
 
 def _line(text, chance):
+    """A line lost, doubled elsewhere, exchanged with another, or joined to the next."""
     lines = text.split("\n")
-    at, other = chance.randrange(len(lines)), chance.randrange(len(lines))
-    kind = chance.randrange(4)
-    if kind == 0:
-        del lines[at]
-    elif kind == 1:
-        lines.insert(other, lines[at])
-    elif kind == 2:
-        lines[at], lines[other] = lines[other], lines[at]
-    else:
-        lines[at : at + 2] = ["".join(lines[at : at + 2])]
-    return "\n".join(lines)
+    low, high = sorted(chance.choices(range(len(lines)), k=2))
+    changes = (
+        lines[:low] + lines[low + 1 :],
+        lines[:high] + lines[low : low + 1] + lines[high:],
+        lines[:low] + lines[high : high + 1] + lines[low + 1 : high] + lines[low : low + 1] + lines[high + 1 :],
+        lines[:low] + ["".join(lines[low : low + 2])] + lines[low + 2 :],
+    )
+    return "\n".join(chance.choice(changes))
 
 
 def _word(text, chance):

@@ -3,18 +3,22 @@
 import math
 
 import numpy as np
+from bearing_laws import to_law
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start
+from analytic.bearing import BearingLaw
 from analytic.motion import PULSES
 
+LAWS = ("algebraic", "linear", "bouc-wen")
 
-def random_scene(seed, index):
-    """Scene number `index` of the ensemble `seed`; parameters cover what a scene may hold, extremes included."""
+
+def random_scene(seed, index, laws=LAWS):
+    """Scene number `index` of the ensemble `seed`, its bearings of one of the laws; extremes included."""
     rng = np.random.default_rng([seed, index])
     block = _block(rng)
     omega = math.sqrt(block.mass * 9.81 * block.radius / block.inertia)
     base = Base(mass=float(block.mass * _log(rng, 1e-4, 1e3))) if rng.random() < 0.7 else None
-    bearings = _bearings(rng, block.mass + base.mass) if base and rng.random() < 0.85 else None
+    bearings = _bearings(rng, block.mass + base.mass, laws) if base and rng.random() < 0.85 else None
     motion = _motion(rng, omega, 9.81 * math.tan(block.slenderness))
     duration = min(rng.uniform(0.5, 15) * 2 * math.pi / omega, 40.0)
     return Scene(
@@ -48,8 +52,8 @@ def _block(rng):
     )
 
 
-def _bearings(rng, carried):
-    law, count = str(rng.choice(["algebraic", "linear", "bouc-wen"])), int(rng.integers(1, 9))
+def _bearings(rng, carried, laws):
+    law, count = str(rng.choice(laws)), int(rng.integers(1, 9))
     frequency = _log(rng, 0.3, 60.0)
     ka = carried * frequency**2 / count
     dk = ka * _log(rng, 1e-9, 0.999)
@@ -58,9 +62,11 @@ def _bearings(rng, carried):
         return Bearings(law=law, count=count, ka=ka, damping=viscous)
     delta = 1e-20 if rng.random() < 0.5 else (ka - (ka - dk)) * _log(rng, 1e-20, 1e-2)
     kb = 0.0 if rng.random() < 0.05 else ka - dk
-    return Bearings(
-        law=law, count=count, ka=ka, kb=kb, alpha=1 + _log(rng, 0.05, 199.0), delta_k=delta, damping=viscous
-    )
+    made = Bearings(count=count, ka=ka, kb=kb, alpha=1 + _log(rng, 0.05, 199.0), delta_k=delta, damping=viscous)
+    if law == "bilinear":
+        delta = 1e-20
+    changes = {**to_law(law, ka, kb, BearingLaw.of(made).f0), "delta_k": delta}
+    return Bearings(**made.model_dump() | changes)
 
 
 def _motion(rng, omega, unit):

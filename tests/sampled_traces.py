@@ -5,7 +5,8 @@ import numpy as np
 from analytic import SampledMotion, Scene, Start, simulate
 from analytic.caryatid import BASE, BEARINGS
 from analytic.caryatid import caryatid_block as block
-from engines.observe import Trace, observe
+from engines.observe import observe
+from engines.swings import Trace
 
 EDGE = 1e-6
 
@@ -41,3 +42,10 @@ def sampled(scene, mean_step, *, contact_tilt=EDGE, seed=0, side=1, noise=0.0, s
 def seen(scene, trace, **changes):
     given = dict(engine="test", variant="", cpu_seconds=0.0, steps=len(trace.time), settings={}, versions={})
     return observe(scene, trace, **{**given, **changes})
+
+
+def observed(scene, mean_step, **given):
+    """(scene, trace, analytic response, the trace's response) of a scene or the name of one; given: as of `sampled`."""
+    scene = SCENES.get(scene, scene) if isinstance(scene, str) else scene
+    trace, reference = sampled(scene, mean_step, **given)
+    return scene, trace, reference, seen(scene, trace)

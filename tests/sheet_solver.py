@@ -3,31 +3,30 @@
 Nothing of the project is imported. `solve(name, **faults)` returns {quantity: value}; a fault is one line marked so.
 """
 
-import csv
 import math
+
+import numpy as np
 
 STEP = 1e-3
 G = 9.81
-
-
-def data(name):
-    """The numbers of a page."""
-    rubber = dict(n=4, ka=2.4e4, kb=2.4e3, alpha=40.0, delta=1e-20)
-    page = {
-        "free-rigid": dict(gamma=0.25, phi0=0.2, end=4.0),
-        "free-sliding": dict(gamma=0.2, phi0=0.15, mb=300.0, end=4.0),
-        "isolated-standing": dict(gamma=0.35, mb=300.0, rubber=rubber, A=-3.0, w=6.0, end=4.0),
-        "isolated-rocking": dict(gamma=0.17, mb=300.0, rubber=rubber, A=-3.0, w=8.0, end=4.0),
-        "pulse-below": dict(gamma=0.25, A=3.14, w=6.0, end=4.0),
-        "pulse-above": dict(gamma=0.25, A=3.3, w=6.0, end=4.0),
-        "record": dict(gamma=0.18, mb=300.0, T=2.0, xi=0.15, n=4, end=6.0),
-        "hard": dict(gamma=0.45, phi0=0.1, A=6.0, w=6.5, t0=2.0, end=6.0),
-    }[name]
-    return dict(m=1000.0, R=1.2, mb=None, phi0=0.0, A=0.0, w=1.0, t0=0.0) | page
+RUBBER = dict(n=4, ka=2.4e4, kb=2.4e3, alpha=40.0, delta=1e-20)
+PAGES = {  # their numbers
+    "free-rigid": dict(gamma=0.25, phi0=0.2, end=4.0),
+    "free-sliding": dict(gamma=0.2, phi0=0.15, mb=300.0, end=4.0),
+    "isolated-standing": dict(gamma=0.35, mb=300.0, rubber=RUBBER, A=-3.0, w=6.0, end=4.0),
+    "isolated-rocking": dict(gamma=0.17, mb=300.0, rubber=RUBBER, A=-3.0, w=8.0, end=4.0),
+    "pulse-below": dict(gamma=0.25, A=3.14, w=6.0, end=4.0),
+    "pulse-above": dict(gamma=0.25, A=3.3, w=6.0, end=4.0),
+    "record": dict(gamma=0.18, mb=300.0, T=2.0, xi=0.15, n=4, end=6.0),
+    "hard": dict(gamma=0.45, phi0=0.1, A=6.0, w=6.5, t0=2.0, end=6.0),
+}
+OTHERS = dict(m=1000.0, R=1.2, mb=None, phi0=0.0, A=0.0, w=1.0, t0=0.0)  # where a page says nothing else
+IMPACT = "impact_time", "rate_before", "rate_after", "base_velocity_jump"
+STATE = "tilt", "tilt_rate", "displacement", "force"
 
 
 class Rubber:
-    """Eqs (4) to (6) of the pages, the force of all bearings together."""
+    """Eqs (4) to (6) of the pages with hysteretic bearings, the force of all together."""
 
     def __init__(self, n, ka, kb, alpha, delta, printed=False):
         self.n, self.kb, self.dk, self.p, self.printed = n, kb, ka - kb, 1 - alpha, printed
@@ -43,83 +42,49 @@ class Rubber:
             bracket = 2 * self.full - Dc + (x - self.xc)
         return sigma * (self.dk * (bracket**self.p - self.D0) / self.p + self.f0)
 
-    def force(self, x, v, sigma):
+    def force(self, x, sigma):
         return self.n * (self.kb * x + self.z(x, sigma))
 
     def turn(self, x, sigma):
         self.zc, self.xc = self.z(x, sigma), x
 
 
-class Damped:
-    """Eq. (4) of the page "record"."""
-
-    def __init__(self, mass, T, xi):
-        w = 2 * math.pi / T
-        self.k, self.c = mass * w * w, 2 * mass * xi * w
-
-    def force(self, x, v, sigma):
-        return self.k * x + self.c * v
-
-    def turn(self, x, sigma):
-        pass
-
-
-class Nothing:
-    def force(self, x, v, sigma):
-        return 0.0
-
-    def turn(self, x, sigma):
-        pass
-
-
-def read(path):
-    with open(path, newline="") as file:
-        rows = list(csv.reader(file))[1:]
-    return [float(row[1]) for row in rows], float(rows[1][0]) - float(rows[0][0])
-
-
 def solve(name, times, record=None, **fault):
     """The answers to one page; times: those at which states are asked for. record: path of record.csv.
 
-    fault: printed8, printed12, lost (number of an impact), late (impacts at the end of the step), J, e, g, A, m, R,
-    mb, gamma, phi0, c, k, n, shift, w (factors), mirror.
+    fault: printed8, printed12, lost (number of an impact), late (impacts at the end of the step, "held" or "smeared"),
+    J, e, g, A, R, mb, gamma, phi0, w, c, n, ka, kb, alpha (factors).
     """
-    d = data(name)
-    for key in ("m", "R", "mb", "gamma", "phi0", "A", "w", "t0"):
-        if key in fault and d[key] is not None:
-            d[key] *= fault[key]
+    d = OTHERS | PAGES[name]
+    d |= {key: value * fault.get(key, 1.0) for key, value in d.items() if isinstance(value, float)}
     m, R, gamma, mb, g = d["m"], d["R"], d["gamma"], d["mb"], G * fault.get("g", 1.0)
     J, M = 4 / 3 * m * R * R * fault.get("J", 1.0), m + (mb or 0.0)
     mu = m / M if mb else 0.0
     b, h = R * math.sin(gamma), R * math.cos(gamma)
-    e = (1 - 2 * m * b * b / (J * fault.get("Je", 1.0) - mu * m * h * h)) * fault.get("e", 1.0)
-    bearing = Nothing()
+    e = (1 - 2 * m * b * b / (J - mu * m * h * h)) * fault.get("e", 1.0)
+    rubber, spring, damper, table = None, 0.0, 0.0, None
     if "rubber" in d:
-        numbers = dict(d["rubber"])
-        for key in ("n", "ka", "kb", "alpha"):
-            numbers[key] *= fault.get(key, 1)
-        bearing = Rubber(**numbers, printed="printed12" in fault)
-    elif "T" in d:
-        bearing = Damped(M * fault.get("n", 1.0), d["T"], d["xi"])
-        bearing.c *= fault.get("c", 1.0)
-        bearing.k *= fault.get("k", 1.0)
-    table, dt = read(record) if name == "record" else (None, 1.0)
+        numbers = {key: value * fault.get(key, 1) for key, value in d["rubber"].items()}
+        rubber = Rubber(**numbers, printed="printed12" in fault)
+    elif "T" in d:  # eq. (4) of this page
+        omega, mass = 2 * math.pi / d["T"], M * fault.get("n", 1.0)
+        spring, damper = mass * omega * omega, 2 * mass * d["xi"] * omega * fault.get("c", 1.0)
+        table = np.loadtxt(record, delimiter=",", skiprows=1, unpack=True)
 
     def ground(t):
         if table is not None:
-            i = min(int(t / dt + 1e-9), len(table) - 2)
-            return fault.get("A", 1.0) * (table[i] + (table[i + 1] - table[i]) * (t / dt - i))
+            return fault.get("A", 1.0) * float(np.interp(t, *table))
         tau = t - d["t0"]
         return d["A"] * math.sin(d["w"] * tau) if 0 <= tau <= 2 * math.pi / d["w"] else 0.0
 
-    side, sigma, late = (math.copysign(1, d["phi0"]) if d["phi0"] else 0.0), 0.0, fault.get("late")
+    def force(y):
+        return rubber.force(y[2], now["sigma"] or 1.0) if rubber else spring * y[2] + damper * y[3]
 
-    def slope(t, y, side=None):
+    def slope(t, y):
         phi, w, x, v = y
-        s, a = (now["side"] if side is None else side), ground(t)
-        if late == "smeared" and now["side"]:
-            s = math.copysign(1, phi) if phi else now["side"]
-        F = bearing.force(x, v, now["sigma"] or 1.0)
+        s, a, F = now["side"], ground(t), force(y)
+        if late == "smeared" and s:
+            s = math.copysign(1, phi) if phi else s
         if not s:
             return (0.0, 0.0, v, (-F / M - a) if mb else 0.0)
         c, n = R * math.cos(s * gamma - phi), R * math.sin(s * gamma - phi)
@@ -137,12 +102,14 @@ def solve(name, times, record=None, **fault):
         return [u + H / 6 * (a + 2 * b + 2 * c + f) for u, a, b, c, f in zip(y, k1, k2, k3, k4, strict=True)]
 
     def excess(t, y):
-        a = ground(t) if not mb else -bearing.force(y[2], y[3], now["sigma"] or 1.0) / M
+        a = -force(y) / M if mb else ground(t)
         return abs(a) - g * math.tan(gamma), a
 
-    out = dict(outcome="rocks" if side else "stands", impacts=[], peak=abs(d["phi0"]), peakx=0.0, states={})
-    now = dict(side=side, sigma=sigma)
+    late, now = fault.get("late"), dict(side=math.copysign(1, d["phi0"]) if d["phi0"] else 0.0, sigma=0.0)
+    out = dict(outcome="rocks" if now["side"] else "stands", peak_tilt=abs(d["phi0"]), peak_displacement=0.0)
+    impacts = {}
     y, t = [d["phi0"], 0.0, 0.0, 0.0], 0.0
+    grid = STEP if table is None else table[0, 1] / 4
     stops = sorted({*times, d["end"], d["t0"], d["t0"] + 2 * math.pi / d["w"]})
     while t < d["end"] - 1e-12:
         if mb and y[3] == 0:
@@ -154,7 +121,7 @@ def solve(name, times, record=None, **fault):
                 out["outcome"] = "rocks"
                 out.setdefault("uplift_time", t)
         s = now["side"]
-        H = min(step_to(t, dt if table is not None else None), next(u for u in stops if u > t + 1e-12) - t)
+        H = min((math.floor(t / grid + 1e-9) + 1) * grid, next(u for u in stops if u > t + 1e-12)) - t
         if s and y[1] and y[0] == 0 and not late:
             H = min(H, 0.5 * abs(y[1] / (slope(t, y)[1] or 1.0)))
         tests = {
@@ -163,55 +130,46 @@ def solve(name, times, record=None, **fault):
             "turn": lambda z, at: now["sigma"] * z[3] < 0,
             "uplift": lambda z, at: excess(at, z)[0] > 0,
         }
-        kinds = [*(("impact", "over") if s else ("uplift",)), *(("turn",) if mb else ())]
         new, first, kind = rk(t, y, H), H, None
-        for each in kinds:
+        for each in (*(("impact", "over") if s else ("uplift",)), *(("turn",) if mb else ())):
             if tests[each](new, t + H):
-                at = (
-                    H
-                    if each == "impact" and late
-                    else bisect(lambda u, f=tests[each], y=y, t=t: f(rk(t, y, u), t + u), H)
-                )
+                at = H
+                if each != "impact" or not late:
+                    at = bisect(lambda u, f=tests[each], y=y, t=t: f(rk(t, y, u), t + u), H)
                 if at <= first:
                     first, kind = at, each
         new = rk(t, y, first)
         if s and y[1] * new[1] < 0:  # a peak of the tilt within the step
-            out["peak"] = max(
-                out["peak"], abs(rk(t, y, bisect(lambda u, y=y, t=t: rk(t, y, u)[1] * y[1] < 0, first))[0])
-            )
+            top = rk(t, y, bisect(lambda u, y=y, t=t: rk(t, y, u)[1] * y[1] < 0, first))
+            out["peak_tilt"] = max(out["peak_tilt"], abs(top[0]))
         y, t = new, t + first
-        out["peak"], out["peakx"] = max(out["peak"], abs(y[0])), max(out["peakx"], abs(y[2]))
+        out["peak_tilt"] = max(out["peak_tilt"], abs(y[0]))
+        out["peak_displacement"] = max(out["peak_displacement"], abs(y[2]))
+        if kind == "over":
+            return out | impacts | dict(outcome="overturns", overturning_time=t)
+        if rubber and kind in ("turn", "impact"):
+            rubber.turn(y[2], now["sigma"])
         if kind == "turn":
             y[3] = 0.0
-            bearing.turn(y[2], now["sigma"])
-        elif kind == "over":
-            out.update(outcome="overturns", overturning_time=t)
-            break
         elif kind == "impact":
             before = y[1]
-            k = len(out["impacts"]) + 1
+            k = len(impacts) // len(IMPACT) + 1
             after = before if k == fault.get("lost") else e * before
             jump = mu * h * (before - after) * (h if "printed8" in fault else 1.0)
-            if not late:
-                y[0] = 0.0
+            y[0] = y[0] if late else 0.0
             y[1] = after
             if mb:
-                if isinstance(bearing, Rubber):
-                    bearing.turn(y[2], now["sigma"])
                 y[3] += jump
                 now["sigma"] = math.copysign(1, y[3])
             now["side"] = math.copysign(1, after)
-            out["impacts"].append((t, before, after, jump))
+            impacts |= {f"{IMPACT[i]}_{k}": value for i, value in enumerate((t, before, after, jump))}
             back = -now["side"] * slope(t, y)[1]
             if abs(after) < 1e-7 and back > 0:
                 out.setdefault("rest_time", t + 2 * abs(after) / back / (1 - e))
-                y[0] = y[1] = 0.0
-                now["side"] = 0.0
-        for stop in times:
-            if abs(stop - t) < 1e-11:
-                force = bearing.force(y[2], y[3], now["sigma"] or 1.0)
-                out["states"][stop] = (y[0], y[1], y[2], force)
-    return told(out)
+                y[0] = y[1] = now["side"] = 0.0
+        for stop in [stop for stop in times if abs(stop - t) < 1e-11]:
+            out |= {f"{name}_at_{stop:g}": value for name, value in zip(STATE, (*y[:3], force(y)), strict=True)}
+    return out | impacts
 
 
 def bisect(happens, high):
@@ -221,21 +179,3 @@ def bisect(happens, high):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if happens(middle) else (middle, high)
     return high
-
-
-def step_to(t, dt):
-    """To the next multiple of STEP, or of half a sampling interval."""
-    grid = STEP if dt is None else dt / 4
-    return (math.floor(t / grid + 1e-9) + 1) * grid - t
-
-
-def told(out):
-    values = {"outcome": out["outcome"], "peak_tilt": out["peak"], "peak_displacement": out["peakx"]}
-    values |= {name: out[name] for name in ("uplift_time", "rest_time", "overturning_time") if name in out}
-    for k, impact in enumerate(out["impacts"][:3], 1):
-        names = "impact_time", "rate_before", "rate_after", "base_velocity_jump"
-        values |= {f"{name}_{k}": value for name, value in zip(names, impact, strict=True)}
-    for t, state in out["states"].items():
-        names = "tilt", "tilt_rate", "displacement", "force"
-        values |= {f"{name}_at_{t:g}": value for name, value in zip(names, state, strict=True)}
-    return values

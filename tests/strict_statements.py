@@ -5,7 +5,7 @@ import unicodedata
 from fractions import Fraction
 from itertools import product
 
-from strict_words import TIME_WORDS, Refused, scan
+from strict_words import NUMBER, TIME_WORDS, need, plain, printed, single
 
 GAP = ("", " ", "-", " -")
 SAMPLING_FR = (" dechantillonnage", " d?echantillonnage")  # ?: any sign
@@ -52,15 +52,18 @@ def _one_of(words):
     return "|".join(re.escape(word).replace(r"\?", ".") for word in sorted(words, key=len, reverse=True))
 
 
-LETTER = r"[^\W\d_]"
-KEY = re.compile(f"(?<!{LETTER})(?:{_one_of(RATE_KEYS | INTERVAL_KEYS)})(?!{LETTER})")
+END = r"(?![^\W\d_])"
+KEY = re.compile(rf"(?<![^\W\d_])(?:{_one_of(RATE_KEYS | INTERVAL_KEYS)}){END}")
 RATE_KEY = re.compile(_one_of(RATE_KEYS))
-UNIT = re.compile(f"(?:{_one_of(RATES)}|[a-zµ]*)(?!{LETTER})")
-DECIMAL_COMMA = re.compile("[0-9]+,([0-9]+)")
-LARGE = re.compile(r"[+-]?\.?[0-9][0-9.]*(?:[ed][+-]?[0-9]+)?")
-GOES_ON = re.compile("[.,]?[0-9]")
-OPENED, SAID = re.compile(r" ?[(\[]? ?"), re.compile(r" ?[)\]]? ?([:=]|is|of|at)? ?")
-SAMPLES = re.compile("[0-9.,ed+-]*")
+UNIT = f"(?:{_one_of(RATES)}|[a-zµ]+){END}"
+SAID = re.compile(rf" ?[(\[]? ?((?!(?:is|of|at){END}){UNIT})? ?[)\]]? ?([:=]|is|of|at)? ?")
+BEHIND = re.compile(rf" ?[(\[]? ?({UNIT})| ?(?=[,;|)\]]|$)")
+DECIMAL_COMMA, GOES_ON = re.compile("[0-9]+,[0-9]+"), re.compile("[.,]?[0-9]")
+# A number of samples a second, of which no sign is left out before it
+SAMPLES = re.compile(
+    r"(?:(?=[+-])|(?<![0-9+-])(?<![0-9][.,ed]))(?=[0-9.+-])(?=[.,ed+-]*[0-9])([0-9.,ed+-]*[0-9.])"
+    f" ?(?:{_one_of(PER_SECOND)}){END}"
+)
 
 
 def flat(line):
@@ -69,23 +72,20 @@ def flat(line):
 
 
 def fold(text):
-    """As many signs as the text has: lower case, without accents, blanks for low lines."""
-    plain = "".join(unicodedata.normalize("NFD", sign.lower()[:1])[:1] for sign in text)
-    return plain.replace("ı", "i").replace("_", " ")
+    """The text in lower case without accents; low lines are blanks."""
+    return plain(text).replace("_", " ")
 
 
 def blanked(lines):
     """(statements, lines without them) of lines of a header: [(is a rate, step [s], half a printed unit [s])]."""
     statements, kept = [], []
-    for line in lines:
-        line = flat(line)
+    for line in map(flat, lines):
         text, i = fold(line), 0
         while i < len(text):
             key = KEY.match(text, i)
-            found = _stated(text, i, key.end()) if key else _alone(text, i)
-            end = found[1] if found else key.end() if key else i + 1
+            found, end = _stated(text, key) if key else _alone(text, i)
             if found:
-                statements.append(found[0])
+                statements.append(found)
                 line = line[:i] + " " * (end - i) + line[end:]
             i = end
         kept.append(line)
@@ -99,86 +99,43 @@ def step_of_all(statements):
         return None
     step = rates[0] if rates else statements[0][1]
     for is_rate, other, half in statements:
-        room = half if rates and not is_rate else 0
-        if abs(other - step) > room + step / 10**6:
-            raise Refused("two steps")
-    if not Fraction(1, 10**7) <= step <= 1000:
-        raise Refused("step")
+        need(abs(other - step) <= (half if rates and not is_rate else 0) + step / 10**6)
+    need(Fraction(1, 10**7) <= step <= 1000)
     return step
 
 
-def _word(text, i):
-    """A unit of rates or a word of letters at i, "" without one."""
-    found = UNIT.match(text, i)
-    return found[0] if found else ""
-
-
 def _number(text, i):
-    """(value, unit of its last digit, next i) of a number or one with a decimal comma at i; None without one."""
-    found, large, comma = scan(text, i), LARGE.match(text, i), DECIMAL_COMMA.match(text, i)
-    if found and not GOES_ON.match(text, found[3]):
-        power = text[i : found[3]].replace("d", "e").partition("e")[2]
-        return found[0], Fraction(10) ** (int(power or 0) - (found[1] or 0)), found[3]
-    if not found and large and not GOES_ON.match(text, large.end()):
-        return None, Fraction(1), large.end()
-    if not comma or len(comma[0]) > 100 or GOES_ON.match(text, comma.end()):
-        return None
-    return Fraction(comma[0].replace(",", ".")), Fraction(1, 10 ** len(comma[1])), comma.end()
+    """(token, next i) of a number or one with a decimal comma at i; None without one."""
+    found = [pattern.match(text, i) for pattern in (NUMBER, DECIMAL_COMMA)]
+    return next(((one[0], one.end()) for one in found if one and not GOES_ON.match(text, one.end())), None)
 
 
-def _sure(text, i, end):
-    """Refuses a number too large, or a decimal comma that may part thousands or has an exponent behind it."""
-    if "," not in text[i:end] and not scan(text, i):
-        raise Refused("not finite")
-    whole, comma, decimals = text[i:end].partition(",")
-    if comma and (len(decimals) == 3 and whole[0] != "0" or re.match("[ed][0-9+-]", text[end:])):
-        raise Refused("thousands, or an exponent behind a decimal comma")
+def _sure(token, behind=""):
+    """(value, half the unit of its last digit); no comma that may part thousands or has an exponent behind it."""
+    need(not re.fullmatch("[1-9][0-9]*,[0-9]{3}", token) and not ("," in token and re.match("[ed][0-9+-]", behind)))
+    token = token.replace(",", ".")
+    value = single(token)
+    need(value > 0)
+    return value, Fraction(10) ** printed(token)[1] / 2
 
 
-def _value(text, i):
-    """(value, unit of its last digit, word behind, next i) of a number with what may stand behind it."""
-    found = _number(text, i)
-    if not found:
-        return None
-    at = found[2]
-    after = at + (text[at : at + 1] == " ")
-    inside = after + (text[after : after + 1] in ("(", "["))
-    for begin in (inside + (text[inside : inside + 1] == " "), inside, after):
-        word = _word(text, begin)
-        if word:
-            return *found[:2], word, begin + len(word)
-    if text[after : after + 1] not in ("", ",", ";", "|", ")", "]"):
-        return None
-    return *found[:2], "", after
-
-
-def _stated(text, begin, key_end):
-    """(statement, where it ends) of what stands behind the key from begin to its end; None if it states nothing."""
-    i = OPENED.match(text, key_end).end()
-    before = _word(text, i)
-    before = "" if before in ("is", "of", "at") else before
-    says = SAID.match(text, i + len(before))
-    i = says.end()
-    found = _value(text, i)
-    if not found or (before and not _known(before) and not found[2]):
-        if says[1] in (":", "="):
-            raise Refused("no number")
-        return None
-    _sure(text, i, _number(text, i)[2])
-    value, last, behind, end = found
-    unit = behind if _known(behind) else before if _known(before) else ""
-    if behind and not unit:
-        raise Refused("unit of a step")
-    is_rate = unit in RATES if unit else bool(RATE_KEY.fullmatch(text, begin, key_end))
-    if is_rate and not unit and value < 1:
-        raise Refused("rate below 1")
-    return _meant(is_rate, value, last, TIME_WORDS.get(unit, 1)), end
-
-
-def _meant(is_rate, value, last, per_second):
-    if value <= 0:
-        raise Refused("step")
-    return (True, 1 / value, 0) if is_rate else (False, value / per_second, last / 2 / per_second)
+def _stated(text, key):
+    """(statement, where it ends) of what stands behind a key; (None, end of the key) if it states nothing."""
+    said = SAID.match(text, key.end())
+    before, sign = said.groups()
+    number = _number(text, said.end())
+    after = BEHIND.match(text, number[1]) if number else None
+    if not after or (before and not _known(before) and not after[1]):
+        need(sign not in (":", "="))
+        return None, key.end()
+    unit = next((word for word in (after[1], before) if _known(word)), None)
+    need(unit or not after[1])
+    value, half = _sure(number[0], text[number[1] :])
+    if unit in RATES or (not unit and RATE_KEY.fullmatch(key[0])):
+        need(unit or value >= 1)
+        return (True, 1 / value, 0), after.end()
+    per_second = TIME_WORDS[unit or "s"]
+    return (False, value / per_second, half / per_second), after.end()
 
 
 def _known(word):
@@ -186,19 +143,10 @@ def _known(word):
 
 
 def _alone(text, i):
-    """A number of samples a second that begins at i."""
-    within = re.search("[0-9+-]$|[0-9][.,ed]$", text[:i]) if text[i] not in "+-" else None
-    if within or not re.match("[0-9.+-]", text[i]):
-        return None
-    found = _number(text, i)
-    end = found[2] if found else SAMPLES.match(text, i).end()
-    begin, end = end, end + (text[end : end + 1] == " ")
-    word = _word(text, end)
-    if word not in PER_SECOND or not re.match("[0-9.]", text[begin - 1]):
-        return None
-    if not found:
-        if not re.search("[0-9]", text[i:begin]):
-            return None
-        raise Refused("no number of samples a second")
-    _sure(text, i, begin)
-    return _meant(True, found[0], found[1], 1), end + len(word)
+    """(statement, where it ends) of samples a second that begin at i; (None, i + 1) without them."""
+    found = SAMPLES.match(text, i)
+    number = found and _number(text, i)
+    if not found or (number and number[1] != found.end(1)):
+        return None, i + 1
+    need(number)
+    return (True, 1 / _sure(number[0])[0], 0), found.end()

@@ -12,6 +12,8 @@ import pytest
         "analytic.new_scene",
         "analytic.records",
         "comparisons.sheet.pages",
+        "comparisons.sheet.score",
+        pytest.param("comparisons.advice.choose", marks=pytest.mark.slow),
         pytest.param("comparisons.measuring.tolerances", marks=pytest.mark.slow),
         pytest.param("comparisons.report.study", marks=pytest.mark.slow),
     ],

@@ -1,30 +1,22 @@
 """Readers of recorded ground acceleration. A format is a module that recognises its lines and reads them."""
 
-from __future__ import annotations
-
+from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 
 from ..errors import SceneError
 from ..motion import SampledMotion
 from . import columns, cosmos, csmip, dyna, foreign, knet, peer, smc
-from .content import Asked, read_lines
+from .content import Asked, Content, read_lines
 from .times import resolved_step
 from .units import UNITS, G, Unit, resolve
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from .content import Content
-
 __all__ = ["FORMATS", "G", "UNITS", "Channel", "read_channels", "read_record"]
 
-# The first that recognises the lines reads them.
-FORMATS: tuple[Format, ...] = (foreign, peer, dyna, csmip, cosmos, knet, smc, columns)
 NOT_ACCELERATIONS = {".vt2": "velocities", ".dt2": "displacements"}
 USUAL_PEAK = (1e-4 * G, 3 * G)  # m/s2
 USUAL_STEP = (1e-4, 0.1)  # s
@@ -41,6 +33,10 @@ class Format(Protocol):
 
     def read(self, lines: Sequence[str], asked: Asked) -> Sequence[Content]:
         """The `Content` of each channel, in the order of the file; raises `SceneError`."""
+
+
+# The first that recognises the lines reads them.
+FORMATS: tuple[Format, ...] = (foreign, peer, dyna, csmip, cosmos, knet, smc, columns)
 
 
 @dataclass(frozen=True, eq=False)

@@ -60,7 +60,7 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     if lines[-1].strip():
         check_last(f"line {table[-1][0]}", [fields for _, fields in table])
     known = asked.dt is not None or stated.step is not None
-    timed = width > 1 and (_rises(table) or (_is_time(titles[0]) if titles else not known))
+    timed = width > 1 and (_rises(table) or (bool(TIME_TITLE.match(titles[0])) if titles else not known))
     listed = not (timed or asked.column is not None or titles[1:])
     if not listed:
         _check_widths(table, rows)
@@ -76,10 +76,10 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
         said = read_statements([*words, (titles_at, titles[place])]) if titles else stated
         unit = stated_unit(said.rest, titles_at or last)
         values = np.array([number(f"line {at}", fields[place]) for at, fields in table])
-        if asked.column is None and width == 2 and timed:
-            return Content(step, values, unit, no_unit, unread=stated.unread)
-        name = _name(titles[place]) if titles else ""
-        return Content(step, values, unit, no_unit, channel=str(place + 1), direction=name, unread=stated.unread)
+        channel, name = str(place + 1), _name(titles[place]) if titles else ""
+        if asked.column is None and width == 2 and timed:  # times and accelerations: nothing to choose
+            channel = name = ""
+        return Content(step, values, unit, no_unit, channel=channel, direction=name, unread=stated.unread)
 
     try:
         return tuple(content(place) for place in places)
@@ -170,32 +170,23 @@ def _dialect(rows: Sequence[tuple[int, str]]) -> tuple[str | None, str]:
     """(separator, decimal sign) of all rows; the separator of blanks is None."""
     texts = [row for _, row in rows]
     points = sum("." in text for text in texts)
+    semicolon = ";" if any(";" in text for text in texts) else None
     first = next((row for row in rows if "," in row[1]), None)
     if first is None:
-        return (";" if any(";" in text for text in texts) else None), "."
-    if any(";" in text for text in texts):
-        separator = ";"
-    elif any(re.search(r",[ \t]|[ \t],|^,|,$", text) for text in texts):
-        separator = ","
-    elif all(len(text.split()) > 1 for text in texts):
-        separator = None
-    elif 2 * points >= len(texts):
-        separator = ","
-    else:
+        return semicolon, "."
+    spaced = any(re.search(r",[ \t]|[ \t],|^,|,$", text) for text in texts)
+    blanks = all(len(text.split()) > 1 for text in texts)
+    if not semicolon and (spaced or (not blanks and 2 * points >= len(texts))):
+        return ",", "."
+    if not (semicolon or blanks):
+        problem = "its comma may part columns or be a decimal sign"
         raise SceneError(
-            f"line {first[0]}",
-            first[1],
-            "its comma may part columns or be a decimal sign",
-            "write decimal points, or part the columns by semicolons",
+            f"line {first[0]}", first[1], problem, "write decimal points, or part the columns by semicolons"
         )
-    if separator != "," and points:
-        raise SceneError(
-            f"line {first[0]}",
-            first[1],
-            "a decimal comma in a file that has decimal points too",
-            "write decimal points throughout",
-        )
-    return separator, "." if separator == "," else ","
+    if points:
+        problem = "a decimal comma in a file that has decimal points too"
+        raise SceneError(f"line {first[0]}", first[1], problem, "write decimal points throughout")
+    return semicolon, ","
 
 
 def _fields(row: str, separator: str | None) -> list[str]:
@@ -239,10 +230,6 @@ def _titles(header: Sequence[tuple[int, str]], separator: str | None, width: int
 def _name(title: str) -> str:
     """A title without what stands in brackets: U(+) is U."""
     return " ".join(re.sub(r"[(\[][^)\]]*[)\]]?", " ", title).split())
-
-
-def _is_time(title: str) -> bool:
-    return bool(TIME_TITLE.match(title))
 
 
 def _step(table: Table, stated: Statements) -> float:

@@ -1,6 +1,7 @@
 """What every reader of a record starts from and hands back: lines of text; step, values and their unit."""
 
 import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -51,6 +52,16 @@ class Content:
     direction: str = ""
     note: str = ""
     unread: tuple[str, ...] = ()
+
+
+def first_of(lines: Sequence[str]) -> str:
+    """The first line that is not blank, "" without one."""
+    return next((line for line in lines if line.strip()), "")
+
+
+def begun_by(pattern: re.Pattern[str]) -> Callable[[Sequence[str]], bool]:
+    """The `recognises` of a format whose first line is of the pattern."""
+    return lambda lines: bool(pattern.match(first_of(lines)[:HEADER_WIDTH]))
 
 
 def read_lines(path: str | PathLike[str]) -> tuple[list[str], str]:

@@ -5,13 +5,11 @@ says what is measured; of the reals the 62nd is the step of these data [ms] (the
 63rd their length [s] and the 64th their peak.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Sequence
 
 from ..errors import SceneError
-from .content import HEADER_WIDTH, Asked, Content
+from .content import HEADER_WIDTH, Asked, Content, begun_by
 from .fixed import DAMAGED, fixed_values, stated_layout
 from .numbers import number, odd_peak
 from .times import usable
@@ -36,9 +34,7 @@ CODES = {"2": G, "4": 0.01}  # of units -> m/s2
 REMEDY = "give a COSMOS file of corrected accelerations (.V2c), or two columns, time [s] and acceleration"
 
 
-def recognises(lines: Sequence[str]) -> bool:
-    """Whether the first line names the format."""
-    return bool(FIRST.match(next((line for line in lines if line.strip()), "")[:HEADER_WIDTH]))
+recognises = begun_by(FIRST)
 
 
 def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:

@@ -4,15 +4,11 @@ A. F. Shakal and M. J. Huang 1985, Standard tape format for CSMIP strong-motion 
 text, 100 integers in 16I5, 100 reals in 8F10, the data in 8F10, and a line /& behind each channel.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 
-import numpy as np
-
 from ..errors import SceneError
-from .content import HEADER_WIDTH, Asked, Content
+from .content import HEADER_WIDTH, Asked, Content, begun_by
 from .fixed import DAMAGED, Layout, fixed_values, stated_layout
 from .numbers import NUMBER, number, odd_peak
 from .statements import stated_unit
@@ -29,9 +25,7 @@ REALS, STEP = 13, (7, slice(40, 50))  # lines of reals before the data; the 61st
 REMEDY = "give a CSMIP volume 2 file (.V2), or two columns, time [s] and acceleration"
 
 
-def recognises(lines: Sequence[str]) -> bool:
-    """Whether the first line is that of a volume of corrected data."""
-    return bool(FIRST.match(next((line for line in lines if line.strip()), "")))
+recognises = begun_by(FIRST)
 
 
 def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
@@ -53,7 +47,7 @@ def _channel(lines: Sequence[str], begin: int, end: int) -> Content:
     if not named:
         raise SceneError(where, lines[begin].strip(), "names no channel, as Chan 1: 90 Deg", REMEDY)
     data = next((index for index in range(begin, end) if DATA.match(lines[index])), None)
-    found = None if data is None else DATA.match(lines[data])
+    found = DATA.match(lines[data]) if data is not None else None
     if data is None or found is None or found[2].lower() != "accel":
         raise SceneError(where, None, f"no line N points of accel data follows for channel {named[1]}", REMEDY)
     values, behind = fixed_values(lines, data + 1, int(found[1]), stated_layout(lines[data][:HEADER_WIDTH]) or LAYOUT)
@@ -61,11 +55,12 @@ def _channel(lines: Sequence[str], begin: int, end: int) -> Content:
         raise SceneError(f"line {data + 1}", int(found[1]), "more numbers follow than these", DAMAGED)
     if not any(line.startswith(END) for line in lines[behind:end]):
         raise SceneError(where, None, f"channel {named[1]} has no last line {END}", DAMAGED)
+    peak = next((number("peak", match[1]) for match in map(PEAK.match, lines[begin:data]) if match), None)
     return Content(
         _step(lines, begin, data, found),
         values,
         stated_unit([(data + 1, lines[data][:HEADER_WIDTH])]),
-        warnings=_peak(lines[begin:data], values),
+        warnings=odd_peak(peak, "cm/s2", values),
         channel=str(int(named[1])),
         direction=" ".join(named[2].split()),
     )
@@ -85,9 +80,3 @@ def _step(lines: Sequence[str], begin: int, data: int, found: re.Match[str]) -> 
             f"line {data - REALS + row + 1}, step", exact, f"but line {data + 1} says {rounded} s", DAMAGED
         )
     return interval(where, text)
-
-
-def _peak(header: Sequence[str], values: np.ndarray) -> tuple[str, ...]:
-    """A sentence if the header states another peak than the data have."""
-    stated = next((match[1] for match in map(PEAK.match, header) if match), None)
-    return () if stated is None else odd_peak(number("peak", stated), "cm/s2", values)

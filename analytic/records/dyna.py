@@ -1,12 +1,10 @@
 """ESM/DYNA 1.2 ASCII, also as AFAD writes it: lines KEY: value, then one value a line."""
 
 import re
-from collections.abc import Mapping, Sequence
-
-import numpy as np
+from collections.abc import Sequence
 
 from ..errors import SceneError
-from .content import HEADER_WIDTH, Asked, Content
+from .content import HEADER_WIDTH, Asked, Content, first_of
 from .numbers import NUMBER, check_count, count, fortran_values, number, odd_peak
 from .times import interval
 from .units import Unit, factor_of
@@ -20,8 +18,7 @@ REMEDY = "give a complete ESM/DYNA 1.2 ASCII file"
 
 def recognises(lines: Sequence[str]) -> bool:
     """Whether the lines are an ESM/DYNA file."""
-    first = next((line for line in lines if line.strip()), "")
-    return bool(KEY.match(first)) and any(line.startswith(SIGNS) for line in lines[:HEADER_LINES])
+    return bool(KEY.match(first_of(lines))) and any(line.startswith(SIGNS) for line in lines[:HEADER_LINES])
 
 
 def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
@@ -45,7 +42,10 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     values = fortran_values(lines, begin)
     check_count("NDATA", count("NDATA", header["NDATA"][0]), values)
     dt = interval("SAMPLING_INTERVAL_S", header["SAMPLING_INTERVAL_S"][0])
-    return (Content(dt, values, Unit(stated, factor, f"line {line}"), warnings=_peak(header, values)),)
+    pga = header.get("PGA_CM/S^2", ("",))[0]
+    peak = number("PGA_CM/S^2", pga) if re.fullmatch(NUMBER, pga) else None
+    unit = Unit(stated, factor, f"line {line}")
+    return (Content(dt, values, unit, warnings=odd_peak(peak, "cm/s2", values)),)
 
 
 def _header(lines: Sequence[str]) -> tuple[dict[str, tuple[str, int]], int]:
@@ -61,9 +61,3 @@ def _header(lines: Sequence[str]) -> tuple[dict[str, tuple[str, int]], int]:
         header[key] = (value, begin + 1)
         begin += 1
     return header, begin
-
-
-def _peak(header: Mapping[str, tuple[str, int]], values: np.ndarray) -> tuple[str, ...]:
-    """A sentence if the header states another peak than the data have."""
-    stated = header.get("PGA_CM/S^2", ("",))[0]
-    return odd_peak(number("PGA_CM/S^2", stated), "cm/s2", values) if re.fullmatch(NUMBER, stated) else ()

@@ -4,8 +4,6 @@ Numbers that fill their columns touch each other, so that blanks do not part the
 moves what is behind it, which shows.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass

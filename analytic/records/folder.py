@@ -1,21 +1,16 @@
 """The records of a folder as motions of a scene, and two horizontal components turned into other directions."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ..errors import SceneError, SettingError
 from ..motion import SampledMotion
 from ..pairing import paired
-
-if TYPE_CHECKING:
-    from ..types import Motion
+from ..types import Motion
 
 VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "dwn", "ver", "v", "z", "u")  # how files call it
 PAIRS = (("e", "n"), ("ew", "ns"), ("e-w", "n-s"), ("x", "y"), ("1", "2"))  # and the two horizontal components

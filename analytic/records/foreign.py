@@ -1,15 +1,10 @@
 """Formats that are known and not read: each is refused by its name, with what to do."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 from ..errors import SceneError
-
-if TYPE_CHECKING:
-    from .content import Asked
 
 NAME = "a format that is not read"
 COLUMNS = "write its accelerations as two columns, time [s] and acceleration, and give their units"
@@ -39,9 +34,9 @@ def recognises(lines: Sequence[str]) -> bool:
     return _name(lines) is not None
 
 
-def read(lines: Sequence[str], asked: Asked) -> NoReturn:
+def read(lines: Sequence[str], asked: object) -> NoReturn:
     """Refuse the file, saying what to do instead."""
-    name = _name(lines) or ""
+    name = _name(lines) or ""  # `recognises` found one
     raise _refused(name, SIGNS[name][1])
 
 

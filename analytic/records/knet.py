@@ -3,21 +3,20 @@
 NIED strong-motion seismograph networks, K-NET ASCII format: acceleration = (count - mean of all) times scale factor.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 
 import numpy as np
 
 from ..errors import SceneError
-from .content import HEADER_WIDTH, Asked, Content
+from .content import HEADER_WIDTH, Asked, Content, begun_by
 from .fixed import DAMAGED
 from .numbers import NUMBER, number, odd_peak
 from .times import usable
 from .units import Unit
 
 NAME = "K-NET"
+FIRST = re.compile("origin time ", re.I)
 HEADER_LINES = 30  # 17 in every known file
 SCALE = re.compile(r"Scale Factor *([0-9]{1,9}(?:\.[0-9]*)?) *\(gal\) */ *([0-9]{1,12}(?:\.[0-9]*)?) *", re.I)
 FREQUENCY = re.compile(r"Sampling Freq *\(Hz\) *([0-9]{1,6}(?:\.[0-9]*)?) *(?:Hz)? *", re.I)
@@ -28,9 +27,7 @@ COUNT = re.compile(r"[+-]?[0-9]{1,9}")
 REMEDY = "give the ASCII file as the network sends it"
 
 
-def recognises(lines: Sequence[str]) -> bool:
-    """Whether the first line is that of a K-NET or KiK-net file."""
-    return next((line for line in lines if line.strip()), "").lower().startswith("origin time ")
+recognises = begun_by(FIRST)
 
 
 def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
@@ -58,13 +55,13 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     size, total = len(counts), sum(counts)
     # The difference from the mean is taken in whole numbers: nothing is lost of small counts on a large mean.
     values = np.array([float(size * count - total) for count in counts]) * (gal / (steps * max(size, 1)))
-    peak = next((match[1] for match in map(PEAK.fullmatch, header) if match), None)
+    peak = next((number("Max. Acc. (gal)", match[1]) for match in map(PEAK.fullmatch, header) if match), None)
     return (
         Content(
             usable("Sampling Freq(Hz)", 1 / frequency),
             values,
             Unit("gal", 0.01, "Scale Factor"),
-            warnings=() if peak is None else odd_peak(number("Max. Acc. (gal)", peak), "gal", values),
+            warnings=odd_peak(peak, "gal", values),
             direction=_found(header, "Dir.", DIRECTION)[1].strip(),
             note="mean removed",
         ),

@@ -29,12 +29,12 @@ def number(where: str, token: str) -> float:
     SceneError
         It is not one, or not finite; names `where`.
     """
-    if len(token) <= LONGEST and _NUMBER.fullmatch(token):
-        value = float(token.replace("D", "E").replace("d", "e"))
-        if math.isfinite(value):
-            return value
-        raise SceneError(where, token, "not finite", REMEDY)
-    raise SceneError(where, token, "not finite" if _NOT_FINITE.fullmatch(token) else "not a number", REMEDY)
+    known = len(token) <= LONGEST and _NUMBER.fullmatch(token)
+    value = float(token.replace("D", "E").replace("d", "e")) if known else math.nan
+    if not math.isfinite(value):
+        problem = "not finite" if known or _NOT_FINITE.fullmatch(token) else "not a number"
+        raise SceneError(where, token, problem, REMEDY)
+    return value
 
 
 def fortran_values(lines: Sequence[str], begin: int) -> np.ndarray:
@@ -98,10 +98,10 @@ def _tiny(form: tuple[int, int, bool] | None, usual: tuple[int, int, bool] | Non
     return (form[0], form[2]) == (usual[0], usual[2]) and token[-3] != "0" and token[-4] == "-"
 
 
-def odd_peak(stated: float, unit: str, values: Sequence[float] | np.ndarray) -> tuple[str, ...]:
+def odd_peak(stated: float | None, unit: str, values: Sequence[float] | np.ndarray) -> tuple[str, ...]:
     """A sentence if the largest of the values is off by more than 1 % from the peak that the header states [unit]."""
     peak = float(np.abs(values).max()) if len(values) else 0.0
-    if not peak or abs(abs(stated) - peak) <= 0.01 * peak:
+    if stated is None or not peak or abs(abs(stated) - peak) <= 0.01 * peak:
         return ()
     return (f"the header states a peak of {stated:.6g} {unit}, the data have {peak:.6g}: check that the file is whole",)
 

@@ -1,7 +1,5 @@
 """Packed files: gzip, and zip of one file."""
 
-from __future__ import annotations
-
 import gzip
 import io
 import lzma
@@ -15,8 +13,10 @@ GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
 OTHERS = {b"BZh": ("bzip2", "bunzip2"), b"\xfd7zXZ": ("xz", "unxz"), b"PK\x05\x06": ("zip, and empty", "give a record")}
 LISTED = 5  # names of files in a message
 # What gzip and zipfile raise where a file is damaged.
-DAMAGE: tuple[type[Exception], ...] = (OSError, EOFError, ValueError, RuntimeError, IndexError, OverflowError)
-DAMAGE += (zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error)
+DAMAGE = (
+    *(OSError, EOFError, ValueError, RuntimeError, IndexError, OverflowError),
+    *(zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error),
+)
 
 
 def unpacked(content: bytes, name: str, limit: int) -> tuple[bytes, str]:

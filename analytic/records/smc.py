@@ -5,13 +5,11 @@ the data have 7 decimals; of the reals the second is the sampling frequency, the
 minimum. U.S. Geological Survey Open-File Report 92-296 and D. M. Boore's SMCWrite.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 
 from ..errors import SceneError
-from .content import HEADER_WIDTH, Asked, Content
+from .content import HEADER_WIDTH, Asked, Content, begun_by
 from .fixed import DAMAGED, Layout, fixed_values
 from .numbers import number, odd_peak
 from .times import usable
@@ -26,9 +24,7 @@ LAYOUTS = {True: Layout(5, 14, 7), False: Layout(8, 10, 4)}
 LARGEST = 1e30  # 1.7e38 stands for an unknown real
 
 
-def recognises(lines: Sequence[str]) -> bool:
-    """Whether the first line is that of an SMC file."""
-    return bool(FIRST.match(next((line for line in lines if line.strip()), "")[:HEADER_WIDTH]))
+recognises = begun_by(FIRST)
 
 
 def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
@@ -57,13 +53,13 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     if any(line.strip() for line in lines[behind:]):
         raise SceneError("the 17th integer", count, "more numbers follow than these", DAMAGED)
     warnings = ("its header flags a problem: see its comments",) if integers[PROBLEM] == 1 else ()
-    extremes = [abs(reals[index]) for index in EXTREMES if abs(reals[index]) < LARGEST]
+    peak = max((abs(reals[index]) for index in EXTREMES if abs(reals[index]) < LARGEST), default=None)
     return (
         Content(
             usable("the second real", 1 / frequency),
             values,
             Unit("cm/s2", 0.01, "as SMC has it"),
-            warnings=warnings + (odd_peak(max(extremes), "cm/s2", values) if extremes else ()),
+            warnings=warnings + odd_peak(peak, "cm/s2", values),
         ),
     )
 

@@ -5,8 +5,6 @@ number with a point or a comma, its unit before or behind: "Sampling rate: 100 H
 "Abtastrate 200", "dt [ms] = 5", "200 samples/s". A rate without a unit is in Hz, an interval in seconds.
 """
 
-from __future__ import annotations
-
 import re
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
@@ -163,9 +161,7 @@ def _step(where: str, line: str, match: re.Match[str]) -> _Step | None:
 
 def _kind(word: str) -> str:
     """Whether a word is a unit of a rate or of an interval; "" of another."""
-    if not word:
-        return ""
-    return "interval" if word in PER_SECOND else "rate" if re.fullmatch(_HERTZ, word) else ""
+    return "rate" if re.fullmatch(_HERTZ, word) else "interval" if word and word in PER_SECOND else ""
 
 
 def _positive(where: str, token: str) -> float:

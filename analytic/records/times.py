@@ -9,32 +9,12 @@ import numpy as np
 from ..errors import SceneError
 from .numbers import NUMBER, number
 
-_SECONDS: tuple[str, ...] = (
-    "s",
-    "sec",
-    "secs",
-    "second",
-    "seconds",
-    "seg",
-    "segundo",
-    "segundos",
-    "sek",
-    "sekunde",
-    "sekunden",
+_SECONDS = "s sec secs second seconds seg segundo segundos sek sekunde sekunden seconde secondes sn saniye"
+_MILLISECONDS = (
+    "ms msec msecs millisec millisecs millisecond milliseconds milisegundo milisegundos millisekunde millisekunden"
+    " milliseconde millisecondes milisaniye"
 )
-_SECONDS += ("seconde", "secondes", "sn", "saniye")
-_MILLISECONDS: tuple[str, ...] = (
-    "ms",
-    "msec",
-    "msecs",
-    "millisec",
-    "millisecs",
-    "millisecond",
-    "milliseconds",
-    "milisegundo",
-)
-_MILLISECONDS += ("milisegundos", "millisekunde", "millisekunden", "milliseconde", "millisecondes", "milisaniye")
-PER_SECOND = dict.fromkeys(("", *_SECONDS), 1) | dict.fromkeys(_MILLISECONDS, 1000)
+PER_SECOND = dict.fromkeys(("", *_SECONDS.split()), 1) | dict.fromkeys(_MILLISECONDS.split(), 1000)
 OTHER_TIMES = {"us", "µs", "usec", "ns", "min", "minute", "minutes", "h", "hour", "hours", "samples"}
 USABLE = (1e-7, 1e3)  # s: beyond it no step is one of a ground motion
 SAME = 1e-6  # of a step: two that differ by less are one, printed twice
@@ -141,8 +121,8 @@ def exact(token: str) -> Decimal:
 
 def _printed_unit(tokens: Sequence[str]) -> np.ndarray:
     """Unit of the last printed digit of each time, shape (n,): all have as many decimals, or as many digits."""
-    parts = np.array([(len(number.digits), number.exponent) for token in tokens if (number := exact(token).as_tuple())])
-    digits, exponents = parts.T
+    numbers = [exact(token).as_tuple() for token in tokens]
+    digits, exponents = np.array([(len(number.digits), number.exponent) for number in numbers]).T
     return 10.0 ** np.maximum(exponents.min(), exponents + digits - digits.max())
 
 

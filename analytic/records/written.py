@@ -1,7 +1,5 @@
 """A ground motion as the text of a file that `read_record` reads back bit for bit."""
 
-from __future__ import annotations
-
 from ..motion import SampledMotion
 
 

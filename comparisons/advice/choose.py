@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,8 +23,8 @@ from ..running.executors import Processes
 from ..running.files import TemporaryFolder
 from ..running.solving import ANALYTIC, named_engines, spinner
 from .answer import Choice, Level, VariantLevels
-from .criteria import CRITERIA, Measure, fitting, lifts, neighbours, safety, until
-from .search import Runner, Search, problem
+from .criteria import CRITERIA, fitting, neighbours, safety, until
+from .search import Search, problem
 from .unneeded import cpu_seconds, model_parts
 
 if TYPE_CHECKING:
@@ -88,12 +88,13 @@ def choose(
         family, span = _family(scene, criterion)
         own = cpu_seconds(scene)
     variants: list[VariantLevels] = []
-    if nothing_asked and not any(lifts(one) for one in family.values()):
+    if nothing_asked and all(_stands(one) for one in family.values()):
         chosen: Level | None = _analytic(family)
         best, whole = None, cpu_seconds(family[1.0])
     else:
-        options: dict[str, Any] = {"time_limit": time_limit, "progress": progress}
-        key, whole, variants = _searched(scene, family, names, error, criterion, **options)
+        key, whole, variants = _searched(
+            scene, family, names, error, criterion, time_limit=time_limit, progress=progress
+        )
         levels = [one for variant in variants for one in variant.levels]
         chosen = next((one for one in levels if (one.engine, one.variant, one.value) == key), None)
         known = [one for one in levels if one.error is not None and not chosen]
@@ -140,9 +141,13 @@ def _family(scene, criterion):
     return family, span
 
 
+def _stands(scene):
+    """Whether the block never leaves full contact, however long the run."""
+    return simulate(scene.with_(duration=None), history=False).outcome == "stands"
+
+
 def _analytic(family: Mapping[float, Scene]) -> Level:
     """The analytic model as a level that is without error."""
-    scene = family[1.0]
     return Level(
         engine=ANALYTIC,
         variant="kernel",
@@ -151,7 +156,7 @@ def _analytic(family: Mapping[float, Scene]) -> Level:
         default=True,
         runs=len(family),
         error=0.0,
-        cpu_per_second=cpu_seconds(scene) / simulate(scene, history=False).end.time,
+        cpu_per_second=cpu_seconds(family[1.0]) / simulate(family[1.0], history=False).end.time,
         passes=True,
         untried=False,
         why=None,
@@ -163,13 +168,12 @@ def _searched(scene, family, names, error, criterion, **options):
     kinds = _kinds(names, scene)
     levels = [(name, variant, value) for name, variant, kind in kinds for value in kind.ladder]
     with TemporaryFolder("choose-") as folder, Processes(None, ("analytic", *names)) as executor:
-        go = Runner(Path(folder), executor, Measure(criterion), family, **options)
-        go(levels, [1.0], "the scene")
-        search = Search(go, error, criterion, lambda level: go.whole(scene, level))
+        search = Search(scene, family, error, criterion, Path(folder), executor=executor, **options)
+        search.run(levels, [1.0], "the scene")
         chosen, whole = search.cheapest(levels)
         if chosen and criterion == "restitution" and get_engine(chosen[0]).variants[chosen[1]].takes_restitution:
             search.cheapest([key for key in levels if not get_engine(key[0]).variants[key[1]].takes_restitution])
-        return chosen, whole, [_variant(*kind, go.rows, error, criterion, len(family)) for kind in kinds]
+        return chosen, whole, [_variant(*kind, search) for kind in kinds]
 
 
 def _kinds(names: Iterable[str], scene: Scene) -> list[tuple[str, str, Variant]]:
@@ -182,21 +186,19 @@ def _kinds(names: Iterable[str], scene: Scene) -> list[tuple[str, str, Variant]]
     ]
 
 
-def _variant(name, variant, kind, runs, error, criterion, size):
+def _variant(name, variant, kind, search):
     """The `VariantLevels` of a variant from what was run."""
     levels: list[Level] = []
     finer = True
     for value in reversed(kind.ladder):
-        rows = runs[name, variant, value]
-        found, why = problem(rows, error, criterion)
+        rows = search.rows[name, variant, value]
+        found, why = problem(rows, search.error, search.criterion)
         if why is None and not finer:
             why = "a finer level does not pass"
-        finer, untried = why is None, why is None and len(rows) < size
+        finer, untried = why is None, why is None and len(rows) < len(search.family)
         sound = [row for row in rows.values() if not row.failed]
-        spent, simulated = (
-            sum(row.cost["cpu_seconds"] for row in sound),
-            sum(row.values["simulated"] for row in sound),
-        )
+        spent = sum(row.cost["cpu_seconds"] for row in sound)
+        simulated = sum(row.values["simulated"] for row in sound)
         levels.insert(
             0,
             Level(
@@ -213,10 +215,13 @@ def _variant(name, variant, kind, runs, error, criterion, size):
                 why="passes the scene; neighbours not run" if untried else why,
             ),
         )
-    order = _order(levels) if criterion != "outcome" else None
-    imposed = kind.takes_restitution
     return VariantLevels(
-        engine=name, variant=variant, tier=kind.tier, applies_impact=imposed, order=order, levels=levels
+        engine=name,
+        variant=variant,
+        tier=kind.tier,
+        applies_impact=kind.takes_restitution,
+        order=_order(levels) if search.criterion != "outcome" else None,
+        levels=levels,
     )
 
 

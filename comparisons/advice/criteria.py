@@ -47,14 +47,13 @@ def neighbours(scene: Scene, criterion: str) -> dict[float, Scene]:
         raise SettingError(f"{scene.name}: nothing moves; give the scene a [start] or a [motion]")
     if criterion == "outcome":
         scene = scene.with_(duration=None)
-    found = {1.0: scene}
-    for factor in sorted(FACTORS + (MORE_FACTORS if criterion == "outcome" else ())):
-        start = {name: factor * value for name, value in scene.start.model_dump().items()}
-        try:
-            found[factor] = scene.with_(start=start, motion=scene.motion and scene.motion.scaled(factor))
-        except ValueError:  # a tilt beyond pi/2
-            continue
-    return found
+    start = scene.start.model_dump().items()
+    return {1.0: scene} | {
+        factor: scene.with_(
+            start={name: factor * value for name, value in start}, motion=scene.motion and scene.motion.scaled(factor)
+        )
+        for factor in sorted(FACTORS + (MORE_FACTORS if criterion == "outcome" else ()))
+    }
 
 
 def fitting(scene: Scene) -> str:
@@ -62,11 +61,6 @@ def fitting(scene: Scene) -> str:
     if strong_impacts(simulate(scene, history=False)):
         return "restitution"
     return "displacement" if scene.base else "outcome"
-
-
-def lifts(scene: Scene) -> bool:
-    """Whether the block leaves full contact, however long the run."""
-    return simulate(scene.with_(duration=None), history=False).outcome != "stands"
 
 
 def until(scene: Scene, criterion: str) -> float:
@@ -94,10 +88,9 @@ def until(scene: Scene, criterion: str) -> float:
     cut = scene.with_(duration=reference.end.time)
     history = simulate(cut).history
     assert history is not None
-    column = np.abs(history.tilt if criterion == "tilt" else history.base_displacement)
-    peak = float(history.time[column.argmax()])
+    column = history.tilt if criterion == "tilt" else history.base_displacement
     after = PERIODS * 2 * np.pi / scene.rocking_frequency
-    return min(sensitivity_horizon(cut).horizon, peak + after)
+    return min(sensitivity_horizon(cut).horizon, float(history.time[np.abs(column).argmax()]) + after)
 
 
 @dataclass(frozen=True)

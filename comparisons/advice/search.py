@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,47 +16,11 @@ from ..running.sweep import Row, run_sweep
 from .criteria import SAFETY, Measure, safety
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from analytic import Scene
 
-    from ..running.executors import Executor
-
 LevelKey = tuple[str, str, float]  # engine, variant, value of its accuracy parameter
-
-
-class Runner:
-    """Runs levels on some of the family and files the rows."""
-
-    def __init__(
-        self, folder: Path, executor: Executor, measure: Measure, family: dict[float, Scene], **options: Any
-    ) -> None:
-        self.folder, self.executor, self.measure, self.family = folder, executor, measure, family
-        self.options = options  # time_limit and progress of a sweep
-        self.rows: dict[LevelKey, dict[float, Row]] = {}
-
-    def __call__(self, levels: Sequence[LevelKey], factors: Sequence[float], label: str) -> None:
-        wanted = [(level, factor) for factor in factors for level in levels]
-        cases = [case_of(self.family[factor], level) for level, factor in wanted]
-        if not cases:
-            return
-        found = self._sweep(cases, self.measure, label)
-        for (level, factor), row in zip(wanted, found, strict=True):
-            self.rows.setdefault(level, {})[factor] = row
-
-    def whole(self, scene: Scene, level: LevelKey) -> float | None:
-        """CPU seconds of the whole scene, None where it fails."""
-        (row,) = self._sweep([case_of(scene, level)], Measure("outcome"), "the whole scene")
-        return None if row.failed else row.cost["cpu_seconds"]
-
-    def _sweep(self, cases, measure, label):
-        store = self.folder / f"{measure.criterion}.jsonl"
-        return run_sweep(cases, store=store, measure=measure, executor=self.executor, label=label, **self.options)
-
-
-def case_of(scene: Scene, level: LevelKey) -> Case:
-    """The run of a level on a scene."""
-    engine, variant, value = level
-    kind = get_engine(engine).variants[variant]
-    return Case(scene, engine, variant, {} if value == kind.default else {kind.knob: value})
 
 
 def problem(rows: Mapping[float, Row], limit: float, criterion: str) -> tuple[float | None, str | None]:
@@ -75,37 +38,70 @@ def problem(rows: Mapping[float, Row], limit: float, criterion: str) -> tuple[fl
 
 
 class Search:
-    """Looks for the cheapest level that passes: the neighbours are run of hopeful ones only, the cheapest first."""
+    """Runs levels on a scene and its neighbours, files the rows, and looks for the cheapest level that passes.
 
-    def __init__(self, go: Runner, error: float, criterion: str, whole: Callable[[LevelKey], float | None]) -> None:
-        self.go, self.error, self.criterion, self.whole = go, error, criterion, whole
+    family: the scene and its neighbours by their factor, as long as they are looked at. error: asked for, in the sense
+    of `criterion`. options: of the sweeps, whose stores are in `folder`. rows: {level: {factor: `Row`}}, of all that
+    was run.
+    """
+
+    def __init__(
+        self, scene: Scene, family: dict[float, Scene], error: float, criterion: str, folder: Path, **options: Any
+    ) -> None:
+        self.scene, self.family, self.error, self.criterion = scene, family, error, criterion
+        self.folder, self.options = folder, options
+        self.rows: dict[LevelKey, dict[float, Row]] = {}
+
+    def run(self, levels: Sequence[LevelKey], factors: Sequence[float], label: str) -> None:
+        """Run levels on the scene and neighbours of these factors."""
+        wanted = [(level, factor) for factor in factors for level in levels]
+        found = self._sweep([(level, self.family[factor]) for level, factor in wanted], self.criterion, label)
+        for (level, factor), row in zip(wanted, found, strict=True):
+            self.rows.setdefault(level, {})[factor] = row
+
+    def whole(self, level: LevelKey) -> float | None:
+        """CPU seconds of the whole scene, None where it fails."""
+        (row,) = self._sweep([(level, self.scene)], "outcome", "the whole scene")
+        return None if row.failed else row.cost["cpu_seconds"]
+
+    def _sweep(self, runs, criterion, label):
+        cases = []
+        for (engine, variant, value), scene in runs:
+            kind = get_engine(engine).variants[variant]
+            cases.append(Case(scene, engine, variant, {} if value == kind.default else {kind.knob: value}))
+        store = self.folder / f"{criterion}.jsonl"
+        return run_sweep(cases, store=store, measure=Measure(criterion), label=label, **self.options)
 
     def cheapest(self, levels: Sequence[LevelKey]) -> tuple[LevelKey | None, float | None]:
-        """(the level, CPU seconds of the whole scene with it), None where none passes."""
+        """(the level, CPU seconds of the whole scene with it), None where none passes; of levels run on the scene,
+        neighbours are run of hopeful ones only, the cheapest first."""
         for level in sorted(filter(self._hopeful, levels), key=self._cost):
             suffix = self._suffix(level)
-            missing = [factor for factor in self.go.family if any(factor not in self.go.rows[one] for one in suffix)]
+            missing = [factor for factor in self.family if any(factor not in self.rows[one] for one in suffix)]
             if self._hopeful(level):  # what was run meanwhile may tell
-                self.go(suffix, missing, f"{level[0]}, {level[1]}: neighbours")
-            if all(problem(self.go.rows[one], self.error, self.criterion)[1] is None for one in suffix):
+                self.run(suffix, missing, f"{level[0]}, {level[1]}: neighbours")
+            if self._pass(suffix):
                 spent = self.whole(level)
                 if spent is not None:
                     return level, spent
                 failed = {"reason": "the whole scene failed"}
-                self.go.rows[level][1.0] = replace(self.go.rows[level][1.0], failure=failed)
+                self.rows[level][1.0] = replace(self.rows[level][1.0], failure=failed)
         return None, None
 
     def _suffix(self, level):
         ladder = get_engine(level[0]).variants[level[1]].ladder
         return [(*level[:2], value) for value in ladder[ladder.index(level[2]) :]]
 
+    def _pass(self, levels):
+        return all(problem(self.rows[one], self.error, self.criterion)[1] is None for one in levels)
+
     def _hopeful(self, level):
         """Whether a level and all finer ones of its variant pass on what they have run."""
-        rows = [row for one in self._suffix(level) for row in self.go.rows[one].values()]
+        suffix = self._suffix(level)
         if self.criterion == "outcome":  # one run that differs does not tell a share
-            return not any(row.failed for row in rows)
-        return all(problem(self.go.rows[one], self.error, self.criterion)[1] is None for one in self._suffix(level))
+            return not any(row.failed for one in suffix for row in self.rows[one].values())
+        return self._pass(suffix)
 
     def _cost(self, level):
-        row = self.go.rows[level][1.0]
+        row = self.rows[level][1.0]
         return row.cost["cpu_seconds"] / row.values["simulated"]

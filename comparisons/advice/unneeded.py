@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from analytic import SampledMotion, Scene, simulate
+from analytic import simulate
 from engines import get_engine
 
 from ..measuring.models import on_heavy_base, on_stiff_springs
@@ -15,7 +14,7 @@ from ..running.cases import Case
 from .answer import Level, ModelPart
 
 if TYPE_CHECKING:
-    from analytic import Response
+    from analytic import Scene
 
 REPEATS = 7  # of a timing, of which the least counts
 
@@ -32,66 +31,62 @@ def model_parts(
     `cpu_seconds` of the scene."""
     runs = [simulate(one, history=False) for one in family.values()]
     engine = None if found is None or found.cpu_per_second is None else found.cpu_per_second * runs[0].end.time / own
-    return [_rocking(runs, engine), _base(scene, own), _vertical(scene, runs[0], own, error), _space(scene, engines)]
+    parts = {
+        "rocking": _rocking(runs, engine),
+        "base": _base(scene, own),
+        "vertical motion": _vertical(scene, runs[0], own, error),
+        "third dimension": _space(scene, engines),
+    }
+    return [ModelPart(part=part, needed=need, why=why, cost=cost) for part, (need, why, cost) in parts.items()]
+
+
+# Each returns (needed, why, cost) of its `ModelPart`.
 
 
 def _rocking(runs, engine):
     lifted = sum(run.outcome != "stands" for run in runs)
     if lifted:
-        return ModelPart(
-            part="rocking", needed=True, why=f"the block lifts in {lifted} of {len(runs)} scenes looked at", cost=None
-        )
+        return True, f"the block lifts in {lifted} of {len(runs)} scenes looked at", None
     why = "the block never lifts, nor in any neighbour: block and base are one mass on the bearings"
-    return ModelPart(
-        part="rocking", needed=False, why=f"{why}; an engine's contact is modelled for nothing", cost=engine
-    )
+    return False, f"{why}; an engine's contact is modelled for nothing", engine
 
 
 def _base(scene, own):
     if scene.base is not None:
-        return ModelPart(part="base", needed=True, why="the block stands on a base that moves", cost=None)
+        return True, "the block stands on a base that moves", None
     if scene.motion is None:
-        cost = cpu_seconds(on_heavy_base(scene)) / own
-        return ModelPart(part="base", needed=False, why="the ground is rigid; in its place a heavy base", cost=cost)
-    cost = cpu_seconds(on_stiff_springs(scene)) / own
-    return ModelPart(part="base", needed=False, why="the ground is rigid; in its place a support of 50 Hz", cost=cost)
+        more, words = on_heavy_base(scene), "a heavy base"
+    else:
+        more, words = on_stiff_springs(scene), "a support of 50 Hz"
+    return False, f"the ground is rigid; in its place {words}", cpu_seconds(more) / own
 
 
-def _vertical(scene: Scene, reference: Response, own: float, error: float) -> ModelPart:
-    part = "vertical motion"
+def _vertical(scene, reference, own, error):
     if scene.motion is None or scene.motion.vertical is None:
-        return ModelPart(part=part, needed=False, why="the scene has none", cost=None)
-    motion = scene.motion
-    level = scene.with_(
-        motion=SampledMotion(motion.dt, motion.samples, motion.label, motion.warnings)
-        if isinstance(motion, SampledMotion)
-        else type(motion)(motion.shape, motion.amplitude, motion.frequency, motion.start, motion.phase)
-    )
+        return False, "the scene has none", None
+    level = scene.with_(motion=dataclasses.replace(scene.motion, vertical=None))
     without = simulate(level, history=False)
     apart = abs(without.peak_tilt - reference.peak_tilt) / scene.block.slenderness
     if reference.peak_base_displacement:
         apart = max(apart, abs(without.peak_base_displacement / reference.peak_base_displacement - 1))
     same = without.outcome == reference.outcome and apart <= error
     why = f"without it the outcome is {without.outcome} and the peaks differ by {apart:.1e}"
-    return ModelPart(part=part, needed=not same, why=why, cost=own / cpu_seconds(level))
+    return not same, why, own / cpu_seconds(level)
 
 
 def _space(scene, engines):
-    """The third dimension: a free block of six degrees of freedom against the planar one, at one step."""
+    """A free block of six degrees of freedom against the planar one, at one step."""
     why = "nothing acts out of the plane"
-    part = "third dimension"
     able = [] if scene.bearings is not None else [get_engine(name) for name in engines]
     scene = scene.with_(duration=simulate(scene, history=False).end.time)
     for engine, variant, kind in [(one, *each) for one in able for each in one.variants.items()]:
         if kind.free_block and kind.step:
             step = kind.default if kind.knob == kind.step else min(kind.ladder)
-            runs = [
+            free, planar = (
                 Case(scene, kind.free_block, settings={"step": step, "history": False}).run(),
                 Case(scene, engine.name, variant, {kind.step: step, "history": False}).run(),
-            ]
-            if not any(run.failure for run in runs):
-                spent = np.array([run.cpu_seconds / run.end.time for run in runs])
-                return ModelPart(
-                    part=part, needed=False, why=f"{why}; in {engine.name}", cost=float(spent[0] / spent[1])
-                )
-    return ModelPart(part=part, needed=False, why=why, cost=None)
+            )
+            if not free.failure and not planar.failure:
+                dearer = free.cpu_seconds / free.end.time / (planar.cpu_seconds / planar.end.time)
+                return False, f"{why}; in {engine.name}", dearer
+    return False, why, None

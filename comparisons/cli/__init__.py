@@ -9,19 +9,8 @@ import os
 import sys
 from collections.abc import Sequence
 
+from ..running.readable import Mendable, readable
 from .interrupts import open_streams, stoppable
-
-
-def mendable() -> tuple[type[Exception], ...]:
-    """The errors a user can mend: told without a traceback."""
-    from analytic.errors import EngineNotInstalled, SceneError, SettingError
-
-    from ..running.cluster import ClusterError
-    from ..running.files import PlaceError
-    from ..running.provenance import ResultError
-    from ..running.store import StoreError
-
-    return SceneError, SettingError, EngineNotInstalled, PlaceError, ResultError, StoreError, ClusterError
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -54,23 +43,21 @@ def _status(arguments):
             return _mistake("the input ended where an answer was wanted; give options instead")
         if hasattr(error, "format_message"):  # click's, wherever Typer keeps it: a usage error or a help page
             return _usage(error)
-        if isinstance(error, mendable()):
+        from analytic.errors import EngineNotInstalled, SceneError, SettingError
+
+        if isinstance(error, SceneError | SettingError | EngineNotInstalled | Mendable):
             return _mistake(*getattr(error, "lines", [error]))  # a scene's mistakes, one a line
         raise
 
 
 def _mistake(*lines):
-    from ..running.readable import readable
-
     with contextlib.suppress(OSError):
         print("Error: " + "\n".join(map(readable, lines)), file=sys.stderr, flush=True)
-    _silence(only_if_broken=True)
+    _silence()
     return 2
 
 
 def _usage(error):
-    from ..running.readable import readable
-
     if error.message and "\n" not in error.message:  # a help page stays whole
         error.message = readable(error.message)
     with contextlib.suppress(OSError):
@@ -78,13 +65,8 @@ def _usage(error):
     return error.exit_code
 
 
-def _silence(only_if_broken=False):
-    """Send what is left for standard output nowhere: the interpreter would fail to write it at its end."""
-    if only_if_broken:
-        try:
-            return sys.stdout.flush()
-        except OSError:
-            pass
+def _silence():
+    """Send what broken streams have left nowhere: the interpreter would fail to write it at its end."""
     null = os.open(os.devnull, os.O_WRONLY)
     for stream in (sys.stdout, sys.stderr):
         try:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING
 
-from ..running.files import STANDARD_OUTPUT, write_all
+from ..running.files import STANDARD_OUTPUT, PlaceError, write, write_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,16 +27,22 @@ def give(
     PlaceError
         Something could not be written; the rest is written and shown all the same.
     """
-    files: dict[str, Any] = {
-        path: content if isinstance(content, str) else content.text() for path, content in results.items() if path
-    }
+    files = {path: content for path, content in results.items() if path}
+    writers = [
+        partial(write_text, path, content if isinstance(content, str) else content.text())
+        for path, content in files.items()
+    ]
     if plot and draw:
         from ..showing.plots import save
 
-        figure = draw()
-        files[plot] = lambda path: save(figure, path)
-    problem = write_all(files)
+        writers.append(partial(write, plot, partial(save, draw())))
+    problems = []
+    for writer in writers:
+        try:
+            writer()
+        except PlaceError as error:
+            problems.append(str(error))
     if STANDARD_OUTPUT not in files:
         show()
-    if problem:
-        raise problem
+    if problems:
+        raise PlaceError("; ".join(problems))

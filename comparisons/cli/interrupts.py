@@ -9,41 +9,36 @@ import threading
 from collections.abc import Iterator
 
 GRACE_SECONDS = 0.5  # to close workers and files in good order; then the process is ended
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_ending = threading.Lock()  # of the thread that says so
 SHOW_CURSOR = b"\x1b[?25h"  # a progress bar that was cut off has hidden it
 
 
 class Stopped(BaseException):
-    """The command was told to end. No KeyboardInterrupt: libraries turn that into something of their own."""
+    """The command was told to end, by a signal of this number.
 
-    def __init__(self, number: int) -> None:
-        super().__init__(number)
-        self.status = 128 + number
-        self.words = "Interrupted." if number == signal.SIGINT else f"Ended by {signal.Signals(number).name}."
+    No KeyboardInterrupt: libraries turn that into something of their own.
+    """
 
 
 @contextlib.contextmanager
 def stoppable() -> Iterator[None]:
     """SIGINT and SIGTERM raise `Stopped` inside, and then end the process with status 130 or 143.
 
-    Where compiled code does not let the exception through, the process is ended in the midst. Does nothing outside the
-    main thread, where signals cannot be handled.
+    Where compiled code does not let the exception through, the process is ended in the midst. For the main thread.
     """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    state = _State()
     read, write = os.pipe()
     os.set_blocking(write, False)
     wakeup = signal.set_wakeup_fd(write, warn_on_full_buffer=False)  # written to in C, at once
-    watch = threading.Thread(target=_watch, args=(read, state), daemon=True)
+    watch = threading.Thread(target=_watch, args=(read,), daemon=True)
     watch.start()
-    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    handlers = {number: signal.getsignal(number) for number in SIGNALS}
     try:
-        for number in handlers:
-            signal.signal(number, state.handle)
+        for number in SIGNALS:
+            signal.signal(number, _stop)
         yield
     except Stopped as stop:  # all is closed by now
-        _end(state, stop)
+        _end(stop.args[0])
     finally:
         for number, handler in handlers.items():
             signal.signal(number, handler)
@@ -53,43 +48,32 @@ def stoppable() -> Iterator[None]:
         os.close(read)
 
 
-class _State:
-    def __init__(self) -> None:
-        self.stopped = self.told = False
-
-    def handle(self, number, _frame):
-        if not self.stopped:  # a second Ctrl-C must not break off the closing
-            self.stopped = True
-            raise Stopped(number)
-
-    def tell(self, stop):
-        if not self.told:
-            self.told = True
-            with contextlib.suppress(OSError, ValueError):
-                os.write(2, (SHOW_CURSOR if os.isatty(2) else b"") + stop.words.encode() + b"\n")
+def _stop(number, _frame):
+    for each in SIGNALS:
+        signal.signal(each, signal.SIG_IGN)  # a second Ctrl-C must not break off the closing
+    raise Stopped(number)
 
 
-def _watch(read, state):
-    told = os.read(read, 1)
-    if not told:
-        return
-    threading.Event().wait(GRACE_SECONDS)
-    _end(state, Stopped(told[0]))
+def _watch(read):
+    if told := os.read(read, 1):
+        threading.Event().wait(GRACE_SECONDS)
+        _end(told[0])
 
 
-def _end(state, stop):
-    state.tell(stop)
-    with contextlib.suppress(Exception):
+def _end(number):
+    if _ending.acquire(blocking=False):
+        words = "Interrupted." if number == signal.SIGINT else f"Ended by {signal.Signals(number).name}."
+        with contextlib.suppress(OSError):
+            os.write(2, (SHOW_CURSOR if os.isatty(2) else b"") + words.encode() + b"\n")
+    with contextlib.suppress(Exception):  # a module that is not loaded, too: nothing may be imported now
         _end_children()
     with contextlib.suppress(Exception):
         _remove_folders()
-    os._exit(stop.status)
+    os._exit(128 + number)
 
 
 def _end_children():
-    psutil = sys.modules.get("psutil")  # where processes are started it has been imported; guarded runs end anyway
-    if psutil is None:
-        return
+    psutil = sys.modules["psutil"]  # where processes are started it has been imported; guarded runs end anyway
     for child in psutil.Process().children(recursive=True):
         with contextlib.suppress(psutil.Error):
             child.kill()
@@ -97,11 +81,8 @@ def _end_children():
 
 def _remove_folders():
     """This project's temporary folders, and the one of multiprocessing's sockets: removed at an exit in good order."""
-    files, util = (sys.modules.get(name) for name in ("comparisons.running.files", "multiprocessing.util"))
-    if files is not None:
-        files.remove_temporary_folders()
-    if util is not None:
-        shutil.rmtree(util.get_temp_dir(), ignore_errors=True)
+    sys.modules["comparisons.running.files"].remove_temporary_folders()
+    shutil.rmtree(sys.modules["multiprocessing.util"].get_temp_dir(), ignore_errors=True)
 
 
 def open_streams() -> None:

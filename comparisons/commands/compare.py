@@ -64,11 +64,9 @@ def command(
 
         return draw_histories(what, drawn, horizon)
 
-    def tell():
-        show(comparison(what, responses, horizons), responses)
-
     tell_failures(responses)
-    give({json_file: _form(what, responses, horizons, horizon)}, tell, plot, draw)
+    form = _form(what, responses, horizons, horizon)
+    give({json_file: form}, lambda: show(comparison(what, responses, horizons), responses), plot, draw)
     if responses[0].failure:
         raise typer.Exit(1)
 

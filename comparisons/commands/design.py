@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import typer
 
 from analytic.errors import SceneError, SettingError
 
 from ..cli.give import give
+from ..running.files import check_writable
 from ..running.motion_options import BothSigns, Directions, Records, motions_of
 from ..running.options import DEFINITION, OPTIONS, RATIO, told_by_options
 from ..running.record_options import Units
-
-if TYPE_CHECKING:
-    from analytic.bearing_scan import BearingScan
+from ..running.solving import bar, compile_kernels, scene_of
 
 LEAST, SOFTEST = "least-stroke", "softest"
 WRITTEN = ("ka", "kb", "alpha")  # numbers that a file holds to six digits
@@ -86,7 +84,6 @@ def _by_targets(targets, made, json_file):
 
     from analytic.design import design_bearings, properties
 
-    from ..running.files import check_writable
     from ..schemas.advice import Constants, Design, Properties
     from ..showing.terminal import tell
 
@@ -114,8 +111,6 @@ def _for_scene(place, stroke, tilt, made, many, write, plot, json_file):
     from analytic.bearing_scan import scan_bearings
     from analytic.scene_file import load_scene, shipped_scenes
 
-    from ..running.files import check_writable
-    from ..running.solving import bar, compile_kernels
     from ..showing.bearings import draw_bearings, nothing_holds, print_bearings
 
     check_writable([json_file], picture=plot, inputs=[place])
@@ -127,7 +122,8 @@ def _for_scene(place, stroke, tilt, made, many, write, plot, json_file):
     compile_kernels(any(motion.vertical for motion in motions))
     with bar(f"{scene.name}: bearings") as progress, told_by_options(OPTIONS | {"tilt": "--tilt"}):
         scan = scan_bearings(scene, motions, stroke, tilt=tilt, **made, progress=progress)
-    chosen = {name: _chosen(scene, scan, point, motions) for name, point in _points(scan).items()}
+    points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None where none hold
+    chosen = {name: _chosen(scene, scan, point, motions) for name, point in points.items() if point is not None}
     if write and write not in chosen:
         raise SettingError(f"--write: {nothing_holds(scan, stroke)}")
     results = {json_file: _form(scene, stroke, tilt, motions, scan, chosen)}
@@ -141,12 +137,6 @@ def _for_scene(place, stroke, tilt, made, many, write, plot, json_file):
     )
     if write and json_file != "-":
         print(f"written into {place}: {write}")
-
-
-def _points(scan: BearingScan) -> dict[str, tuple[float, float]]:
-    """{name: (period, damping)} of the bearings that are named, none where none hold."""
-    points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}
-    return {name: point for name, point in points.items() if point is not None}
 
 
 def _chosen(scene, scan, point, motions):
@@ -174,16 +164,12 @@ def _chosen(scene, scan, point, motions):
 def _written(place, bearings):
     """The text of the scene file with these bearings; refused where the file holds them in another form."""
     from analytic.new_scene import with_bearings
-    from analytic.scene_file import load_scene
 
     text = with_bearings(Path(place).read_text(encoding="utf-8-sig"), bearings)
-    with tempfile.NamedTemporaryFile("w", suffix=".toml", dir=Path(place).resolve().parent, encoding="utf-8") as part:
-        part.write(text)
-        part.flush()
-        try:
-            same = load_scene(part.name).bearings == bearings
-        except SceneError:
-            same = False
+    try:
+        same = scene_of(text, place).bearings == bearings
+    except SceneError:
+        same = False
     if not same:
         raise SettingError(f"--write: {place} holds its bearings in another form; write them as a table [bearings]")
     return text

@@ -1,5 +1,6 @@
 """``rocking lessons``: teaching material."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -38,10 +39,11 @@ def open_(name: Annotated[str, typer.Argument(help="Lesson: see rocking lessons.
 def export(output: Annotated[str, typer.Option(metavar="DIR", help="Folder for the pages.")] = "lessons") -> None:
     """Write the pages: playground, lessons, derivation, teacher's page with figures. They open by double click."""
     from ..lessons.export import export_pages
-    from ..running.files import check_folder, make_folder
+    from ..running.files import check_folder
     from ..running.solving import bar, stdout_to_stderr
 
     check_folder(output)
+    Path(output).mkdir(parents=True, exist_ok=True)
     with stdout_to_stderr(), bar("lessons") as progress:  # engines greet on standard output
-        paths = export_pages(make_folder(output), progress=progress)
+        paths = export_pages(Path(output), progress=progress)
     print(next(path for path in paths if path.name == "index.html"))

@@ -8,6 +8,7 @@ import typer
 from ..cli.give import give
 from ..running.motion_options import BothSigns, Directions, Records, other_motions
 from ..running.record_options import Units
+from ..running.solving import compile_kernels, spinner
 
 LEAST_SPAN = 0.1  # per cent
 
@@ -43,7 +44,6 @@ def command(
     from analytic.scene_file import load_scene
 
     from ..running.files import check_writable
-    from ..running.solving import compile_kernels, spinner
     from ..showing.margins import draw_margins, named, print_margins
     from ..showing.motions import print_motions
 
@@ -90,8 +90,6 @@ def _form(scene, nearest, contact, rows, span, tilt):
 def _under(scene, record, motions, span, tilt):
     """A row for each motion of a record: its outcome, and the change of the motion that reaches each limit state."""
     from analytic.margins import limit_states, margins
-
-    from ..running.solving import spinner
 
     rows = []
     for motion in motions:

@@ -2,18 +2,18 @@
 
 import os
 import sys
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from analytic.errors import SceneError, SettingError
+from analytic.errors import SettingError
 
 from ..cli.give import give
 from ..running.options import DEFINITION, OPTIONS, RATIO, told_by_options
 from ..running.record_options import Channel, Column, Step, Units
+from ..running.solving import ground_motion, say, scene_of
 
 
 def command(
@@ -84,7 +84,7 @@ def command(
         about = f"A block {height:g} m high and {width:g} m wide along the motion; rocking run {Path(file).name}"
         parts = {"base": base, "bearings": bearings, "motion": motion, "tilt": tilt, "friction": friction}
         text = scene_text(name or Path(file).stem, block, **parts, about=(about,))
-        scene = _scene(file, text)
+        scene = scene_of(text, file)
         if not anyway:
             given = {"weighed": mass is not None, "designed": period is not None}
             ask_back(doubts(scene, height, width, depth, **given))
@@ -133,8 +133,6 @@ def _bearings(
     from analytic.design import design_bearings
     from analytic.scene import Bearings
 
-    from ..running.solving import say
-
     by_design, by_constants = targets["period"] is not None, any(value is not None for value in constants.values())
     if carried is None:
         if by_design or by_constants or xmax is not None:
@@ -163,34 +161,13 @@ def _asked_for(period: float, damping: float, definition: str) -> dict[str, tupl
 
 def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str, Any]) -> dict[str, Any] | None:
     """The table [motion]; a record is named as seen from the scene file. `said`: what it does not say itself."""
-    from analytic.records import read_record
-
     if record is not None and tilt is not None:
         raise SettingError("give --record or --tilt, not both")
-    said = {name: value for name, value in said.items() if value is not None}
-    if record is None and said:
-        raise SettingError(f"--{min(said)} {said[min(said)]}: belongs to a record; give --record FILE")
-    if tilt is not None:
-        return None
+    ground_motion(record, **said)  # one that cannot be read is said by its own name
     if record is None:
-        return {"synthetic": "duzce-like"}
-    read_record(record, **said)  # one that cannot be read is said by its own name
+        return {"synthetic": "duzce-like"} if tilt is None else None
     place = os.path.relpath(record, Path(file).resolve().parent)
-    return {"record": place, **said}
-
-
-def _scene(file: str, text: str) -> Any:
-    """The `Scene` that the text makes as `file`."""
-    from analytic.scene_file import load_scene
-
-    # read before it is kept: a record that cannot be read, say, leaves no file behind
-    with tempfile.NamedTemporaryFile("w", suffix=".toml", dir=Path(file).resolve().parent, encoding="utf-8") as part:
-        part.write(text)
-        part.flush()
-        try:
-            return load_scene(part.name)
-        except SceneError as error:
-            raise error.in_file(file) from None
+    return {"record": place, **{name: value for name, value in said.items() if value is not None}}
 
 
 def _tell(file: str, scene: Any, json_file: str | None, asked: Mapping[str, tuple[float, str]]) -> None:

@@ -12,6 +12,7 @@ from analytic.errors import SettingError
 from ..running.motion_options import BothSigns, Directions, Records, other_motions
 from ..running.options import RECORD_OPTIONS, told_by_options
 from ..running.record_options import Channel, Column, Step, Units
+from ..running.solving import ANALYTIC, bar, check_solver, ground_motion, say, stdout_to_stderr
 
 if TYPE_CHECKING:
     from ..schemas.results import Report
@@ -63,7 +64,6 @@ def command(
 
     from ..report.write import write_page
     from ..running.files import check_folder, check_writable, write_text
-    from ..running.solving import ANALYTIC, bar, check_solver
 
     check_folder(output)
     shown = _studies(studies)
@@ -86,14 +86,11 @@ def command(
 
 def _motion(scene, record, said):
     """The motion of the record, or the shipped one; None where scenes bring theirs."""
-    from ..running.solving import ground_motion, say
-
-    if scene and record is None and any(value is not None for value in said.values()):
-        ground_motion(record, **said)  # says what belongs to a record
     with told_by_options(RECORD_OPTIONS):
-        motion = None if scene and record is None else ground_motion(record, **said)
-    if motion is not None:
-        say(f"ground motion: {motion.label}")
+        motion = ground_motion(record, **said)  # says what belongs to a record, too
+    if scene and record is None:
+        return None
+    say(f"ground motion: {motion.label}")
     return motion
 
 
@@ -101,7 +98,6 @@ def _simulate(output, scene, motion, engines, variants, many):
     """The result files of the page."""
     from ..report.runs import load_scenes
     from ..report.study import make_own_results, make_results
-    from ..running.solving import stdout_to_stderr
 
     with stdout_to_stderr():  # engines greet on standard output
         if scene:

@@ -1,5 +1,6 @@
 """``rocking sheet``: problems for codes that are not ours."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -18,20 +19,15 @@ def command(
     With them go the input record and answers.csv, to be filled in and handed to rocking score.
     Example: rocking sheet --output problems
     """
-    from ..running.files import check_folder, check_writable, make_folder
+    from ..running.files import check_folder, check_writable
+    from ..schemas.results import Asked, Problem, Sheet
     from ..sheet.pages import write_sheet
+    from ..sheet.problems import PROBLEMS, UNITS, VERSION
 
     check_folder(output)
     check_writable([json_file])
-    paths = write_sheet(make_folder(output))
-    give({json_file: _form(paths)}, lambda: print(*paths, sep="\n"))
-
-
-def _form(paths):
-    """What the JSON file holds."""
-    from ..schemas.results import Asked, Problem, Sheet
-    from ..sheet.problems import PROBLEMS, UNITS, VERSION
-
+    Path(output).mkdir(parents=True, exist_ok=True)
+    paths = write_sheet(Path(output))
     problems = []
     for problem in PROBLEMS:
         asked = [
@@ -39,4 +35,5 @@ def _form(paths):
             for one in problem.quantities
         ]
         problems.append(Problem(scene=problem.name, title=problem.title, quantities=asked))
-    return Sheet(sheet=VERSION, files=[str(path) for path in paths], problems=problems)
+    form = Sheet(sheet=VERSION, files=[str(path) for path in paths], problems=problems)
+    give({json_file: form}, lambda: print(*paths, sep="\n"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -55,17 +56,12 @@ Check = Annotated[
 
 
 def _options(function):
-    """The keyword-only parameters of a plan, with annotations that Typer can read."""
-    return [
-        parameter.replace(annotation=_known(parameter.annotation, function))
-        for parameter in inspect.signature(function).parameters.values()
-        if parameter.kind is inspect.Parameter.KEYWORD_ONLY
-    ]
-
-
-def _known(annotation, function):
-    """What an annotation that is kept as text stands for, where the function was written."""
-    return eval(annotation, function.__globals__) if isinstance(annotation, str) else annotation
+    """The keyword-only parameters of a plan; annotations that are kept as text stand for what they do where it is."""
+    for parameter in inspect.signature(function).parameters.values():
+        if parameter.kind is inspect.Parameter.KEYWORD_ONLY:
+            kind = parameter.annotation
+            known = eval(kind, function.__globals__) if isinstance(kind, str) else kind
+            yield parameter.replace(annotation=known)
 
 
 def command_of(study: Study) -> Callable[..., None]:
@@ -96,7 +92,8 @@ def command_of(study: Study) -> Callable[..., None]:
         folder = f"{study.name}-study" if output is None else output
         check_folder(folder)
         if replot is not None:
-            return _tell(write_study(study, replot, output)[:1])
+            print(write_study(study, replot, output)[0])
+            return
         problems = []
         if scheduler is not None and workers is not None:
             raise SettingError("--workers: are those of --scheduler; give one of the two")
@@ -104,12 +101,11 @@ def command_of(study: Study) -> Callable[..., None]:
         for path in compute(study, folder, engines=engine or None, quick=quick, **place, **options):
             with spinner(f"{path.name}: page"):
                 file, page = write_study(study, path)
-            _tell([path, file])
-            for paragraph in (page.title, *page.text):
-                typer.echo(paragraph, err=True)
+            print(path, file, sep="\n")
+            print(page.title, *page.text, sep="\n", file=sys.stderr)
             problems += study.problems(read_result(path))
         if problems:
-            _tell(problems)
+            print(*problems, sep="\n")
             raise typer.Exit(1)
 
     own = list(inspect.signature(command, eval_str=True).parameters.values())[:-1]  # without the others
@@ -129,14 +125,9 @@ def _check(name, output, number, workers):
     with stdout_to_stderr():  # engines greet on standard output
         checks = check_all(name, RESULTS if output is None else output, number, commit_seed(), workers=workers)
     for check in checks:
-        _tell([check.words(), *(f"  does not hold: {words}" for words in check.differences)])
+        print(check.words(), *(f"  does not hold: {words}" for words in check.differences), sep="\n")
     if any(check.differences for check in checks):
         raise typer.Exit(1)
-
-
-def _tell(lines):
-    for line in lines:
-        print(line)
 
 
 def every(
@@ -186,9 +177,7 @@ class _Studies(TyperGroup):
             function = _broken(error)
         app = typer.Typer(add_completion=False, rich_markup_mode=None)
         app.command(name)(function)
-        command = typer.main.get_command(app)
-        command.name = name
-        return command
+        return typer.main.get_command(app)
 
 
 def _broken(error):

@@ -7,7 +7,7 @@ import typer
 from analytic.errors import SettingError
 
 from ..cli.give import give
-from ..running.solving import TIME_LIMIT, check_time_limit, named_engines
+from ..running.solving import TIME_LIMIT, check_time_limit, compile_kernels, named_engines, say, spinner
 
 
 def command(
@@ -53,7 +53,6 @@ def _verified(name, table, time_limit):
     from engines.guard import alone
 
     from ..measuring.tolerances import measure_all
-    from ..running.solving import compile_kernels, say, spinner
 
     compile_kernels(vertical=True)
     found, failure = alone(

@@ -31,6 +31,6 @@ def overturns(scene: Scene) -> bool:
     return simulate(scene, history=False).outcome == "overturns"
 
 
-def history_until(scene: Scene, duration: float, step: float = 0.01) -> Response:
-    """The response of the first `duration` [s], with its history every `step` [s]."""
-    return simulate(scene.with_(duration=duration), output_step=step)
+def history_until(scene: Scene, duration: float) -> Response:
+    """The response of the first `duration` [s], with its history every 0.01 s."""
+    return simulate(scene.with_(duration=duration), output_step=0.01)

@@ -51,11 +51,11 @@ WIDE = (9.6, 5.4)  # inch, 16:9, of the figures for slides
 LICENCE = "rocking lessons, MIT licence"
 
 
-def canvas(rows: int = 1, heights: tuple[float, ...] = (1,), columns: int = 1, **more: Any) -> tuple[Figure, Any]:
+def canvas(rows: int = 1, heights: tuple[float, ...] = (1,), **more: Any) -> tuple[Figure, Any]:
     """(figure, its axes as of `Figure.subplots`) in the lessons' style."""
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(WIDTH, HEIGHT))
-        axes = figure.subplots(rows, columns, height_ratios=heights, **more)
+        axes = figure.subplots(rows, height_ratios=heights, **more)
         figure.subplots_adjust(left=0.14, right=0.97, top=0.965, bottom=0.125, hspace=0.42, wspace=0.12)
     return figure, axes
 
@@ -85,13 +85,14 @@ def svg(figure: Figure, name: str) -> str:
     return text
 
 
-def download(figure: Figure, kind: str) -> bytes:
-    """The figure for slides, 16:9, with its licence line: "svg", or "png" of 1920 by 1080 pixels."""
+def downloads(figure: Figure) -> dict[str, bytes]:
+    """{kind: file} of the figure for slides, 16:9, with its licence line: "svg", and "png" of 1920 by 1080 pixels."""
     figure.set_size_inches(*WIDE)
     figure.subplots_adjust(left=figure.subplotpars.left * WIDTH / WIDE[0], bottom=0.13)
-    mark = figure.text(0.985, 0.012, LICENCE, ha="right", color=SOFT, fontsize=7)
-    file = io.BytesIO()
+    figure.text(0.985, 0.012, LICENCE, ha="right", color=SOFT, fontsize=7)
+    files = {"svg": io.BytesIO(), "png": io.BytesIO()}
     with matplotlib.rc_context({**STYLE, "svg.hashsalt": "download"}):
-        figure.savefig(file, format=kind, dpi=200, facecolor="white", metadata={"Date": None} if kind == "svg" else {})
-    mark.remove()
-    return file.getvalue()
+        for kind, file in files.items():
+            undated = {"Date": None} if kind == "svg" else {}
+            figure.savefig(file, format=kind, dpi=200, facecolor="white", metadata=undated)
+    return {kind: file.getvalue() for kind, file in files.items()}

@@ -6,13 +6,14 @@ Which engines there are is asked of `engines`; without any the lessons run on th
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from analytic import Response, Scene, Start, simulate
 from analytic.caryatid import caryatid_block
 from analytic.time_stepping import simulate_time_stepping
-from engines import ENGINES, get_engine, installed_engines
+from engines import get_engine, installed_engines
 
 SLENDERNESS, START = 0.28, 0.6  # rad, tilt over slenderness
 SCENE = Scene(block=caryatid_block(SLENDERNESS), start=Start(tilt=START * SLENDERNESS), duration=1.5)
@@ -24,19 +25,16 @@ ROUNDS = 3  # the least CPU time of so many
 
 @dataclass(frozen=True)
 class EngineRun:
-    """One run: who, with which knob; error: of the tilt rate after the first impact, None without one; cpu [s]."""
+    """One run: who, by name and variant, with which knob; error: of the tilt rate after the first impact, nan without
+    one; cpu [s]."""
 
     solver: str
-    variant: str
+    name: str
     tier: str
     knob: str
     value: float
-    error: float | None
+    error: float
     cpu: float
-
-    @property
-    def name(self) -> str:
-        return f"{self.solver}, {self.variant}" if self.variant else self.solver
 
 
 @functools.cache
@@ -45,10 +43,10 @@ def exact_rate() -> float:
     return simulate(SCENE, history=False).impacts[0].rate_after
 
 
-def error_of(response: Response) -> float | None:
-    """Relative error of the tilt rate after the first impact, None where there is none."""
+def error_of(response: Response) -> float:
+    """Relative error of the tilt rate after the first impact, nan where there is none."""
     hits = [impact for impact in response.impacts if impact.time < FIRST]
-    return abs(hits[0].rate_after / exact_rate() - 1) if hits else None
+    return abs(hits[0].rate_after / exact_rate() - 1) if hits else math.nan
 
 
 def timed(solver: str, knob: str, values: Iterable[float], simulated: Callable[..., Response]) -> tuple[EngineRun, ...]:
@@ -57,7 +55,7 @@ def timed(solver: str, knob: str, values: Iterable[float], simulated: Callable[.
     for value in values:
         runs = [simulated(SCENE, history=False, **{knob: value}) for _ in range(ROUNDS)]
         cpu = min(run.cpu_seconds for run in runs)
-        found.append(EngineRun(solver, "", "", knob, value, error_of(runs[0]), cpu))
+        found.append(EngineRun(solver, solver, "", knob, value, error_of(runs[0]), cpu))
     return tuple(found)
 
 
@@ -76,14 +74,8 @@ def engine_runs() -> tuple[EngineRun, ...]:
         for variant, kind in engine.variants.items():
             for value in kind.ladder:
                 response = engine.simulate(SCENE, variant=variant, history=False, compare=False, **{kind.knob: value})
-                error = None if response.outcome == "failed" else error_of(response)
-                found.append(EngineRun(name, variant, kind.tier, kind.knob, value, error, response.cpu_seconds))
+                error = math.nan if response.outcome == "failed" else error_of(response)
+                found.append(
+                    EngineRun(name, f"{name}, {variant}", kind.tier, kind.knob, value, error, response.cpu_seconds)
+                )
     return tuple(found)
-
-
-def colour_of(run: EngineRun) -> str | None:
-    return ENGINES[run.solver].colour if run.solver in ENGINES else None
-
-
-def marker_of(run: EngineRun) -> str:
-    return ENGINES[run.solver].marker if run.solver in ENGINES else "o"

@@ -13,50 +13,43 @@ from markupsafe import Markup
 from ..showing import diagrams
 from ..showing.mathml import mathml, prose
 from ..showing.templates import templates
-from .drawing import LICENCE, download, svg
+from .drawing import LICENCE, downloads, svg
 from .lesson import Lesson, View
 from .notebook import PAGES, answer, code_of, written
 from .playground import PAGE, playground_page
-from .topics import NAMES, lesson
+from .topics import lessons
 
 OTHERS = (("index.html", "Lessons"), ("derivations.html", "Derivation"), ("teacher.html", "For teachers"))
 
 
 def export_pages(
-    folder: str | PathLike[str],
-    names: Sequence[str] | None = None,
-    progress: Callable[[int, int], object] = lambda done, total: None,
+    folder: str | PathLike[str], progress: Callable[[int, int], object] = lambda done, total: None
 ) -> list[Path]:
     """Write playground, lessons, derivation and teacher's page into `folder`, which exists; returns their paths.
 
-    names : the lessons whose pages are made, all without it. progress : is told how many lessons are done, of how many.
+    progress : is told how many lessons are done, of how many.
     """
-    folder, environment = Path(folder), _environment()
-    written_files: list[Path] = []
-
-    def keep(name: str, content: str | bytes) -> None:
-        path = folder / name
-        path.parent.mkdir(exist_ok=True)
-        path.write_bytes(content.encode() if isinstance(content, str) else content)
-        written_files.append(path)
-
-    chosen = [lesson(name) for name in names or NAMES]
-    keep(PAGE, playground_page(OTHERS))
-    keep("index.html", environment.get_template("index.html").render(lessons=chosen))
+    environment, chosen = _environment(), lessons()
     drawings = {name: Markup(getattr(diagrams, name)()) for name in ("rocking", "impact", "isolated")}
-    keep("derivations.html", environment.get_template("derivations.html").render(**drawings))
+    files: dict[str, str | bytes] = {
+        PAGE: playground_page(OTHERS),
+        "index.html": environment.get_template("index.html").render(lessons=chosen),
+        "derivations.html": environment.get_template("derivations.html").render(**drawings),
+    }
     exercises, firsts = [], []
     for done, one in enumerate(chosen):
         progress(done, len(chosen))
         exercises.append([(exercise, answer(exercise)) for exercise in one.exercises])
-        keep(f"lesson-{one.number}.html", _lesson_page(environment, one, chosen, exercises[-1]))
+        files[f"lesson-{one.number}.html"] = _lesson_page(environment, one, chosen, exercises[-1])
         first = one.first()
         firsts.append(first.says)
-        for kind in ("svg", "png"):
-            keep(f"figures/lesson-{one.number}.{kind}", download(first.figure, kind))
+        files |= {f"figures/lesson-{one.number}.{kind}": file for kind, file in downloads(first.figure).items()}
     page = environment.get_template("teacher.html")
-    keep("teacher.html", page.render(lessons=chosen, exercises=exercises, firsts=firsts, licence=LICENCE))
-    return written_files
+    files["teacher.html"] = page.render(lessons=chosen, exercises=exercises, firsts=firsts, licence=LICENCE)
+    (Path(folder) / "figures").mkdir(exist_ok=True)
+    for name, content in files.items():
+        (Path(folder) / name).write_bytes(content.encode() if isinstance(content, str) else content)
+    return [Path(folder) / name for name in files]
 
 
 def _environment() -> Environment:
@@ -67,12 +60,12 @@ def _environment() -> Environment:
     return environment
 
 
-def _lesson_page(environment: Environment, one: Lesson, chosen: list[Lesson], exercises: list) -> str:
+def _lesson_page(environment: Environment, one: Lesson, chosen: Sequence[Lesson], exercises: list) -> str:
     titles = {other.number: other.title for other in chosen}
     views = [_view_parts(one.view(*values), f"{one.name}-{k}") for k, values in enumerate(one.places())]
     return environment.get_template("lesson.html").render(
         lesson=one,
-        count=len(NAMES),
+        count=len(chosen),
         before=titles.get(one.number - 1),
         after=titles.get(one.number + 1),
         code=code_of(one),

@@ -24,7 +24,6 @@ from .topics import lesson
 PAGES = Path(__file__).parent / "pages"
 # Cells run when the notebook opens, which marimo does not do unasked.
 SETTINGS = "[tool.marimo.runtime]\nauto_instantiate = true\n"
-INSTALL = "pip install marimo, or this project with .[lessons]"
 # Stand-ins of `drawing` in a notebook, light or dark.
 COLOURS = (
     "--ink: currentColor; --soft: #8a867e; --grid: #88888844; --panel: #ffffff; --model: #2b8fd0; --ghost: #e0701a; "
@@ -51,17 +50,15 @@ def open_notebook(name: str) -> int:
     SettingError
         There is no such lesson, or marimo is not installed.
     """
-    try:
-        chosen = lesson(name)
-    except KeyError as error:
-        raise SettingError(str(error.args[0])) from None
+    text = notebook_of(lesson(name))
     if importlib.util.find_spec("marimo") is None:
         raise SettingError(
-            f"notebooks need the package marimo: {INSTALL}; rocking lessons export writes pages without it"
+            "notebooks need the package marimo: pip install marimo, or this project with .[lessons]; rocking lessons "
+            "export writes pages without it"
         )
     with TemporaryFolder("rocking-lesson-") as folder:
         file = Path(folder) / f"{name}.py"
-        file.write_text(notebook_of(chosen), encoding="utf-8")
+        file.write_text(text, encoding="utf-8")
         file.with_name("pyproject.toml").write_text(SETTINGS, encoding="utf-8")
         return subprocess.call([sys.executable, "-m", "marimo", "edit", str(file)])
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,7 +15,7 @@ from markupsafe import Markup, escape
 from ..running.provenance import age, read_result
 from ..showing.charts import STYLE, colour, key_of
 from ..showing.mathml import mathml
-from ..showing.parts import Section, number
+from ..showing.parts import Section, number, signed
 from ..showing.templates import templates
 from . import equations
 from .studies import origin_of
@@ -63,6 +64,7 @@ def detail(
     return template.render(**shown, pages=pages, home=home, file=file, **assets())
 
 
+@cache
 def environment() -> Environment:
     """The templates, with what they write numbers, formulas and the glossary's words by."""
     found = templates(HERE)
@@ -84,7 +86,8 @@ def environment() -> Environment:
     found.filters |= {
         "math": lambda tex: Markup(mathml(tex, display=True)),
         "glossed": glossed,
-        "number": lambda value: number(value, 2),
+        "number": number,
+        "signed": signed,
         "key": lambda who: Markup(key_of(who)),
         "colour": colour,
     }

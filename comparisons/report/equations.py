@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from analytic import Block, Scene, Start, simulate
+from markupsafe import Markup
+
+from analytic import Scene, Start, simulate
 from analytic.caryatid import caryatid_block
 from analytic.time_stepping import simulate_time_stepping
 
@@ -94,16 +96,11 @@ EXAGGERATED = 8  # angles of the four frames
 SIZE = 190, 112  # of a frame
 
 
-@dataclass(frozen=True)
-class Frame:
-    """One of four pictures of an impact."""
+def frames() -> list[tuple[Markup, str]]:
+    """(drawing, words) of four frames of one impact in equal steps of `STEP`: why engines err at a corner.
 
-    svg: str
-    words: str
-
-
-def frames() -> tuple[Frame, ...]:
-    """Why engines err at a corner: four frames of one impact in equal steps of `STEP`, with the numbers of that run."""
+    The numbers are those of that run.
+    """
     block = caryatid_block(SLENDERNESS)
     scene = Scene(block=block, start=Start(tilt=START * SLENDERNESS), duration=1.2)
     exact = simulate(scene, history=False).impacts[0]
@@ -112,7 +109,7 @@ def frames() -> tuple[Frame, ...]:
     assert history is not None  # it was asked for
     landed = int((history.tilt <= 0).argmax())
     before, inside, after = (float(history.tilt[landed + k]) for k in (-1, 0, 1))
-    depth = 1e3 * _depth(block, inside)
+    depth = 1e3 * 2 * block.half_width * math.sin(abs(inside))  # of the far corner below the ground, mm
     rate = run.impacts[0].rate_after / exact.rate_after - 1
     late = 1e3 * (run.impacts[0].time - exact.time)
     words = (
@@ -127,24 +124,12 @@ def frames() -> tuple[Frame, ...]:
         _foot(-0.4 * abs(inside), -1, "bouncing", lift=14.0),
         _foot(after, -1, "turning about the new corner"),
     )
-    return tuple(Frame(svg, one) for svg, one in zip(feet, words, strict=True))
-
-
-def _depth(block: Block, tilt: float) -> float:
-    """How far the far corner lies below the ground [m]."""
-    return 2 * block.half_width * math.sin(abs(tilt))
+    return list(zip(feet, words, strict=True))
 
 
 def _foot(tilt, corner, says, lift=0.0):
     """The foot of a block, its angle exaggerated, about its right (1) or left (-1) corner, `lift` above the ground."""
     drawing = Drawing(*SIZE, 98, f"The foot of the block, {says}")
-    angle, b, height = EXAGGERATED * tilt, 50.0, 74.0
-    pivot = corner * b
-
-    def turned(u, w):
-        across, up = math.cos(angle), math.sin(angle)
-        return 95 + pivot + (u - pivot) * across + w * up, lift - (u - pivot) * up + w * across
-
     drawing.line((6, 0), (184, 0), "floor")
-    drawing.polygon([turned(*point) for point in ((-b, 0.0), (b, 0.0), (b, height), (-b, height))], "stone")
+    drawing.block((95 + 50.0 * corner, lift), EXAGGERATED * tilt, 50.0, 74.0, corner)
     return drawing.svg()

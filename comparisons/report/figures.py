@@ -1,109 +1,142 @@
-"""The figures of the report, each drawn from the arrays and rows of a result file."""
+"""The figures of the report's own runs, each drawn from the arrays and rows of a result file."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ..showing.parts import figure_of, number
-from ..showing.plots import style
+from analytic.records import G
+
+from ..showing.charts import Axis, Chart, figure
+from ..showing.parts import Figure, number
+from .detail import environment
+from .histories import thinned
 
 if TYPE_CHECKING:
     from ..running.provenance import Result
-    from ..showing.parts import Figure as Picture
+    from ..showing.rows import Row
 
-WIDTH = 5.4  # in: narrow, so that the words stay readable on a phone
+ANALYTIC = "analytic"
+TILT = 0.01, 1.6  # least and greatest limit of a tilt's axis, over slenderness: contact noise is no tilt to look at
+SHOWN = 700  # samples of a line
+LEAST = 1e-9  # of a difference drawn
 
 
-def ground_motion(result: Result) -> Picture:
-    """Ground acceleration over time."""
-    motion = result.settings["motion"]
-    figure = Figure(figsize=(WIDTH, 2.3), layout="constrained")
-    axis = figure.subplots()
-    axis.plot(result.arrays["motion/time"], result.arrays["motion/acceleration"], color="0.25", linewidth=0.8)
-    axis.axvline(motion["peak_time"], color="0.7", linewidth=0.8, linestyle=":", zorder=0)
-    axis.set(xlabel="time [s]", ylabel="ground acceleration [m/s²]", title=motion["label"])
-    return figure_of(
-        figure,
-        f"Ground acceleration over time; its peak of {motion['peak']:.3f} m/s² is at {motion['peak_time']:.2f} s.",
-        f"Ground acceleration, {motion['label']}: peak {number(motion['peak'])} m/s² "
-        f"({number(motion['peak'] / 9.81)} g) at {number(motion['peak_time'])} s, dotted.",
+def pairs(result: Result, name: str) -> Iterator[list[Chart]]:
+    """Of a scene tilt where the block moves, and base displacement where there is a base: all solvers over each other,
+    and how far the engines are from the analytic model.
+    """
+    scene = result.settings["scenes"][name]
+    rows = drawn(result, name)
+    if any(row["outcome"] != "stands" for row in rows):
+        yield _pair(result, name, rows, "tilt", "tilt φ/γ [-]", scene["block"]["slenderness"])
+    if scene["base"] and rows:
+        yield _pair(result, name, rows, "base_displacement", "base displacement x [m]", 1.0)
+
+
+def drawn(result: Result, name: str) -> list[Row]:
+    """The rows of a scene whose histories are there."""
+    rows = [row for row in result.rows if row["scene"] == name and not row["failure"]]
+    return [row for row in rows if f"{name}/{row['engine']}/time" in result.arrays]
+
+
+def _pair(result, name, rows, column, label, scale):
+    scene = result.settings["scenes"][name]
+    lines, apart = {}, {}
+    for row in rows:
+        key = f"{name}/{row['engine']}"
+        lines[row["engine"]] = _line(result, key, column, scale)
+        if f"{key}/apart/time" in result.arrays and row["engine"] != ANALYTIC:
+            apart[row["engine"]] = _line(result, f"{key}/apart", column, scale)
+    end = max(float(time[-1]) for time, _ in lines.values())
+    limit = 1.08 * (max(float(np.abs(values).max()) for _, values in lines.values()) or 1.0)
+    limit = float(np.clip(limit, *TILT)) if column == "tilt" else limit
+    whole = Chart(
+        Axis("time [s]", 0.0, end),
+        Axis(label, -limit, limit),
+        f"{scene['name']}: {label} over time in {', '.join(lines)}.",
+        title=scene["name"],
+        height=240,
     )
-
-
-def histories(
-    result: Result,
-    name: str,
-    column: str,
-    label: str,
-    scale: float = 1.0,
-    limits: tuple[float | None, float | None] = (None, None),
-) -> Picture:
-    """One column of all solvers over each other, and below what the engines differ by from the analytic model."""
-    solvers = [
-        row["engine"] for row in result.rows if row["scene"] == name and f"{name}/{row['engine']}/time" in result.arrays
-    ]
-    figure = Figure(figsize=(WIDTH, 4.0), layout="constrained")
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 2])
-    worst = {}
-    for solver in solvers:
-        time, values = (result.arrays[f"{name}/{solver}/{key}"] for key in ("time", column))
-        above.plot(time, values / scale, label=solver, **style(solver))
-        if solver != "analytic" and f"{name}/{solver}/apart/time" in result.arrays:
-            time, apart = (result.arrays[f"{name}/{solver}/apart/{key}"] for key in ("time", column))
-            below.plot(time, apart / scale, **style(solver))
-            worst[solver] = np.abs(apart / scale).max()
-    horizon = result.settings["scenes"][name]["horizon"]
-    ends = [result.arrays[f"{name}/{solver}/time"][-1] for solver in solvers]
+    for who, (time, values) in lines.items():
+        whole.line(time, values, who)
+    if not apart:
+        return [whole]
+    sizes = {who: np.maximum(np.abs(values), LEAST) for who, (_, values) in apart.items()}
+    most = max(float(values.max()) for values in sizes.values())
+    largest = "; ".join(f"{who} {number(float(values.max()), 2)}" for who, values in sizes.items())
+    beside = Chart(
+        Axis("time [s]", 0.0, end),
+        Axis("|engine − model|", LEAST, 10.0 ** max(np.ceil(np.log10(most)), -7), "log"),
+        f"{scene['name']}: how far the engines are from the analytic model in {label}; largest: {largest}.",
+        title="difference from the analytic model",
+        height=240,
+    )
+    for who, values in sizes.items():
+        beside.line(apart[who][0], values, who)
     # copies of a block that overturns part as it falls: nothing to mark
-    parts = horizon is not None and horizon < 0.99 * max(ends)
-    for axis in (above, below):
-        axis.axhline(0, color="0.85", linewidth=0.8, zorder=0)
-        if parts:
-            axis.axvline(horizon, color="0.5", linewidth=1, linestyle=":")
-    title = result.settings["scenes"][name]["name"]
-    above.set(ylabel=label, ylim=limits, title=title)
-    above.legend(fontsize=9, loc="best")
-    below.set(xlabel="time [s]", ylabel="engine − analytic")
-    below.ticklabel_format(axis="y", scilimits=(-2, 2))
-    apart = "; ".join(f"{solver} {number(value, 2)}" for solver, value in worst.items()) or "no engine ran"
-    dotted = (
-        ""
-        if not parts
-        else (
-            f" Dotted: the earliest sensitivity horizon of a solver, {number(horizon)} s; after it "
-            "no two solutions can be compared point by point."
+    if scene["horizon"] and scene["horizon"] < 0.99 * end:
+        beside.rule(scene["horizon"], "x", "sensitivity horizon")
+        beside.says += f" Dashed: the earliest sensitivity horizon of a solver, {number(scene['horizon'])} s."
+    return [whole, beside]
+
+
+def _line(result, key, column, scale):
+    time, values = result.arrays[f"{key}/time"], result.arrays[f"{key}/{column}"] / scale
+    kept = thinned(values, most=SHOWN, parts=SHOWN // 2)
+    return time[kept], values[kept]
+
+
+def loops(result: Result, name: str) -> Chart:
+    """Force over displacement of all bearings of a scene together."""
+    scene, lines = result.settings["scenes"][name], {}
+    for row in drawn(result, name):
+        key = f"{name}/{row['engine']}"
+        lines[row["engine"]] = result.arrays[f"{key}/base_displacement"], result.arrays[f"{key}/bearing_force"] / 1e3
+    x, force = (1.08 * max(float(np.abs(line[k]).max()) for line in lines.values()) or 1.0 for k in (0, 1))
+    chart = Chart(
+        Axis("base displacement x [m]", -x, x),
+        Axis("force of all bearings [kN]", -force, force),
+        f"{scene['name']}: hysteresis loops of {', '.join(lines)} over each other.",
+        title=f"{scene['name']}: the bearings together",
+    )
+    for who, line in lines.items():
+        chart.line(*line, who)
+    return chart
+
+
+def blocks(scenes: Sequence[Mapping[str, Any]]) -> Figure:
+    """The blocks of scenes, as they stand in a result's settings, to scale on what carries them."""
+    draw = environment().get_template("statue.html").module.block  # type: ignore[attr-defined]  # a macro there
+    words = "; ".join(
+        f"{scene['name']}: a block of {scene['block']['mass']:g} kg, {2 * scene['half_width']:.3f} m wide and "
+        f"{2 * scene['half_height']:.3f} m high, "
+        + (
+            f"on a base of {scene['base']['mass']:g} kg carried by {scene['bearings']['count']} bearings"
+            if scene["bearings"]
+            else "on rigid ground"
         )
+        for scene in scenes
     )
-    return figure_of(
-        figure,
-        f"{title}: {label} over time, {', '.join(solvers)} over each other.",
-        f"{title}: {label}. Below, the difference from the analytic model; largest: {apart}.{dotted}",
-    )
+    svg = "".join(f'<div class="block">{draw(scene)}</div>' for scene in scenes)
+    return Figure(svg.encode(), words, f"Blocks to scale. {words}.")
 
 
-def loops(result: Result, name: str) -> Picture:
-    """Force over displacement of all bearings together."""
-    figure = Figure(figsize=(WIDTH, 3.4), layout="constrained")
-    axis = figure.subplots()
-    solvers = []
-    for row in result.rows:
-        key = f"{name}/{row['engine']}/"
-        if row["scene"] == name and key + "time" in result.arrays:
-            axis.plot(
-                result.arrays[key + "base_displacement"],
-                result.arrays[key + "bearing_force"] / 1e3,
-                label=row["engine"],
-                **style(row["engine"]),
-            )
-            solvers.append(row["engine"])
-    title = result.settings["scenes"][name]["name"]
-    axis.set(xlabel="base displacement x [m]", ylabel="force of all bearings [kN]", title=title)
-    axis.legend(fontsize=9)
-    return figure_of(
-        figure,
-        f"{title}: hysteresis loops of {', '.join(solvers)} over each other.",
-        f"{title}: hysteresis of the bearings, all of them together.",
+def ground_motion(result: Result) -> Figure:
+    """Ground acceleration over time."""
+    motion, time = result.settings["motion"], result.arrays["motion/time"]
+    chart = Chart(
+        Axis("time [s]", 0.0, float(time[-1])),
+        Axis("ground acceleration [m/s²]", -1.08 * motion["peak"], 1.08 * motion["peak"]),
+        f"Ground acceleration over time; its peak of {motion['peak']:.3f} m/s² is at {motion['peak_time']:.2f} s.",
+        title=motion["label"],
     )
+    chart.line(time, result.arrays["motion/acceleration"])
+    chart.rule(motion["peak_time"])
+    caption = (
+        f"Ground acceleration, {motion['label']}: peak {number(motion['peak'])} m/s² "
+        f"({number(motion['peak'] / G)} g) at {number(motion['peak_time'])} s, dashed."
+    )
+    return figure([chart], caption)

@@ -1,79 +1,75 @@
-"""The sections of the report, from the result files; every number in them stands there."""
+"""The sections of the page of the report's own runs; every number in them stands in the result files."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from analytic.response import UNCOMPARED, Difference
 
-from ..showing.drawing import draw_scenes
-from ..showing.parts import Section, Table, number
-from ..showing.rows import Column, table
+from ..showing.charts import figure
+from ..showing.parts import Section, Table
+from ..showing.rows import NAME, Column, across, grouped, table
 from ..showing.wording import TRUSTED, USABLE, differing, trust
 from . import figures
 
 if TYPE_CHECKING:
     from ..running.provenance import Result
 
-NAME = Column("engine, variant", lambda row: ", ".join(filter(None, (row["engine"], row["variant"]))))
-
 
 def scene_sections(result: Result) -> list[Section]:
     """Scenes and motion, outcomes, and the histories that the scenes have."""
-    scenes = result.settings["scenes"]
-    pictures = [draw_scenes(list(scenes.values()))]
+    scenes, own = result.settings["scenes"], result.settings["own"]
+    pictures = [figures.blocks(list(scenes.values()))]
     if result.settings["motion"]:
         pictures.append(figures.ground_motion(result))
     words = (
         "The Caryatid as a rigid block, once on rigid ground and once on a base carried by lead-rubber bearings (Table "
         "1 of the paper). The slenderness is not printed in the paper; 0.28 rad reproduces its claims under the record "
-        "it used (Duzce 1999). Under another motion they need not hold.",
+        "it used (Duzce 1999). Under another motion they need not hold."
     )
-    return [
-        Section("The scenes", () if result.settings["own"] else words, (parameters(scenes),), tuple(pictures)),
+    sections = [
+        Section("The scenes", () if own else (words,), (parameters(scenes),), tuple(pictures)),
         outcome_section(result),
-        *_histories(result),
     ]
-
-
-def _histories(result):
-    """The section of the histories, none where every run failed or stands on rigid ground."""
-    shown = []
-    for name, scene in result.settings["scenes"].items():
-        rows = [row for row in result.rows if row["scene"] == name and not row["failure"]]
-        if not rows:
-            continue
-        gamma = scene["block"]["slenderness"]
-        if any(row["outcome"] != "stands" for row in rows):
-            limits = tilt_limits(result, name, gamma)
-            shown.append(figures.histories(result, name, "tilt", "tilt φ/γ [-]", gamma, limits))
-        if scene["base"]:
-            shown.append(figures.histories(result, name, "base_displacement", "base displacement x [m]"))
-        if scene["bearings"]:
-            shown.append(figures.loops(result, name))
-    if shown:
+    if shown := [picture for name in scenes for picture in _histories(result, name)]:
         words = (
-            "Upper axes: all solvers over each other; lower axes: by how much they differ from the analytic model. A "
-            "block that never lifts in any solver has no tilt to show."
+            "Left: all solvers over each other; right: by how much they differ from the analytic model. A block that "
+            "never lifts in any solver has no tilt to show."
         )
-        if not result.settings["own"]:
+        if not own:
             words += (
                 " The bearings' damping in Table 1(a) of the paper, 30 %, is W_D/(2 π E_s); the usual equivalent "
                 "viscous damping, W_D/(4 π E_s), is half of it."
             )
-        yield Section("Histories and hysteresis", (words,), (), tuple(shown))
+        sections.append(Section("Histories and hysteresis", (words,), (), tuple(shown)))
+    return sections
+
+
+def _histories(result, name):
+    """Figures of the histories of a scene, none where every run failed or it stands on rigid ground."""
+    scene = result.settings["scenes"][name]
+    solvers = [row["engine"] for row in figures.drawn(result, name)]
+    for charts in figures.pairs(result, name):
+        yield figure(charts, charts[-1].says, solvers)
+    if scene["bearings"] and solvers:
+        chart = figures.loops(result, name)
+        yield figure([chart], chart.says, solvers)
+
+
+def failures(result: Result) -> tuple[tuple[str, str], ...]:
+    """(run and reason, its message) of runs that failed."""
+    return tuple(
+        (f"{row['engine']} on {row['scene']}: {row['failure']['reason']}", row["failure"].get("message", ""))
+        for row in result.rows
+        if row["failure"]
+    )
 
 
 def outcome_section(result: Result) -> Section:
     """What each solver found, and how far it is from the analytic model."""
     scenes = result.settings["scenes"]
     motion = "; ".join(dict.fromkeys(filter(None, (scene["motion"] for scene in scenes.values())))) or "no motion"
-    failed = tuple(
-        (f"{row['engine']} on {row['scene']}: {row['failure']['reason']}", row["failure"].get("message", ""))
-        for row in result.rows
-        if row["failure"]
-    )
     return Section(
         "Outcomes",
         (
@@ -101,90 +97,87 @@ def outcome_section(result: Result) -> Section:
                 *_agreement(result, name),
             )
         ),
-        evidence=failed,
+        evidence=failures(result),
     )
 
 
-def tilt_limits(result: Result, name: str, gamma: float) -> tuple[float | None, float | None]:
-    """Contact noise of an engine is no tilt to look at: at least a hundredth of the slenderness up and down."""
-    peaks = [row["peak_tilt"] for row in result.rows if row["scene"] == name and row.get("peak_tilt")]
-    return (-0.01, 0.01) if max(peaks, default=0.0) < 0.01 * gamma else (None, None)
+PARAMETERS: tuple[tuple[str, Callable[[Mapping[str, Any]], Any]], ...] = (
+    ("mass of the block m [kg]", lambda scene: scene["block"]["mass"]),
+    ("corner to centre of mass R [m]", lambda scene: scene["block"]["radius"]),
+    ("slenderness γ [rad]", lambda scene: scene["block"]["slenderness"]),
+    ("rocking frequency ω_r [rad/s], eq. (1)", lambda scene: scene["rocking_frequency"]),
+    ("restitution e_φ [-], eq. (7)", lambda scene: scene["restitution"]),
+    ("mass of the base m_b [kg]", lambda scene: (scene["base"] or {}).get("mass")),
+    ("bearings [-]", lambda scene: (scene["bearings"] or {}).get("count")),
+    ("k_a of each [N/m]", lambda scene: (scene["bearings"] or {}).get("ka")),
+    ("k_b of each [N/m]", lambda scene: (scene["bearings"] or {}).get("kb")),
+    ("α [-]", lambda scene: (scene["bearings"] or {}).get("alpha")),
+    ("duration [s]", lambda scene: scene["duration"] or "until decided"),
+    ("ground motion", lambda scene: scene.get("motion")),
+)
 
 
 def parameters(scenes: Mapping[str, Any]) -> Table:
-    """The numbers of the scenes, a column each; rows that none of them has are left out."""
+    """The numbers of the scenes, a column each; a row that none of them has is left out."""
 
-    def rows():
-        for label, pick in (
-            ("mass of the block m [kg]", lambda scene: scene["block"]["mass"]),
-            ("corner to centre of mass R [m]", lambda scene: scene["block"]["radius"]),
-            ("slenderness γ [rad]", lambda scene: scene["block"]["slenderness"]),
-            ("rocking frequency ω_r [rad/s], eq. (1)", lambda scene: scene["rocking_frequency"]),
-            ("restitution e_φ [-], eq. (7)", lambda scene: scene["restitution"]),
-            ("mass of the base m_b [kg]", lambda scene: (scene["base"] or {}).get("mass")),
-            ("bearings [-]", lambda scene: (scene["bearings"] or {}).get("count")),
-            ("k_a of each [N/m]", lambda scene: (scene["bearings"] or {}).get("ka")),
-            ("k_b of each [N/m]", lambda scene: (scene["bearings"] or {}).get("kb")),
-            ("α [-]", lambda scene: (scene["bearings"] or {}).get("alpha")),
-            ("duration [s]", lambda scene: scene["duration"] or "until decided"),
-            ("ground motion", lambda scene: scene.get("motion")),
-        ):
-            values = [pick(scene) for scene in scenes.values()]
-            if all(value is None for value in values):
-                continue
-            yield [
-                label,
-                *("–" if value is None else value if isinstance(value, str) else f"{value:.6g}" for value in values),
-            ]
+    def cell(value):
+        return "–" if value is None else value if isinstance(value, str) else f"{value:.6g}"
 
-    return Table("Parameters", ("quantity", *(scene["name"] for scene in scenes.values())), list(rows()))
+    found = {label: [pick(scene) for scene in scenes.values()] for label, pick in PARAMETERS}
+    rows = [[label, *map(cell, values)] for label, values in found.items() if values.count(None) < len(values)]
+    return Table("Parameters", ("quantity", *(scene["name"] for scene in scenes.values())), rows)
 
 
-# quantity with unit, key of the row, significant digits; a base's own last
+def _got(head: str, key: str, digits: int = 2) -> Column:
+    """A quantity that not every run has."""
+    return Column(head, lambda row: row.get(key), digits)
+
+
 OUTCOMES = (
-    ("outcome", "verdict", None),
-    ("overturns at [s]", "overturning_time", 5),
-    ("peak |φ|/γ [-]", "peak_tilt_ratio", 4),
-    ("impacts [-]", "impact_count", None),
-    ("peak |H|/N [-]", "friction_demand", 3),
-    ("least N/(m g) [-]", "min_normal_ratio", 3),
-    ("warnings [-]", "warnings", None),
-    ("run until [s]", "end", 5),
-    ("steps [-]", "steps", None),
-    ("CPU time [s]", "cpu_seconds", 2),
-    ("CPU time per simulated second [s/s]", "cpu_per_second", 2),
+    Column("outcome", "verdict"),
+    _got("overturns at [s]", "overturning_time", 5),
+    _got("peak |φ|/γ [-]", "peak_tilt_ratio", 4),
+    _got("impacts [-]", "impact_count"),
+    Column("peak |H|/N [-]", lambda row: _demand(row), 3),
+    _got("least N/(m g) [-]", "min_normal_ratio", 3),
+    Column("warnings [-]", lambda row: len(row.get("warnings") or ()) or "none"),
+    Column("run until [s]", lambda row: (row.get("end") or {}).get("time"), 5),
+    _got("steps [-]", "steps"),
+    _got("CPU time [s]", "cpu_seconds"),
+    _got("CPU time per simulated second [s/s]", "cpu_per_second"),
 )
 BASE_OUTCOMES = (
-    ("peak base displacement [m]", "peak_base_displacement", 5),
-    ("peak absolute base acceleration [m/s²]", "peak_base_acceleration", 4),
-    ("work of the bearings [J]", "bearing_work", 5),
+    _got("peak base displacement [m]", "peak_base_displacement", 5),
+    _got("peak absolute base acceleration [m/s²]", "peak_base_acceleration", 4),
+    _got("work of the bearings [J]", "bearing_work", 5),
 )
+
+
+def _demand(row):
+    demand = row.get("friction_demand")
+    return "∞ (N ≤ 0)" if demand is None and row.get("min_normal_ratio", 1) <= 0 else demand
 
 
 def _outcomes(result, name):
     """A row for each quantity, a column for each solver."""
     rows = [row for row in result.rows if row["scene"] == name]
     scene = result.settings["scenes"][name]
+    span = "until decided" if scene["duration"] is None else f"{scene['duration']:g} s at most"
     quantities = [*OUTCOMES, *(BASE_OUTCOMES if scene["base"] else ())]
-    return Table(
-        f"{scene['name']}, {_span(scene)}",
-        ("quantity", *(row["engine"] for row in rows)),
-        [[label, *(_value(row, key, digits) for row in rows)] for label, key, digits in quantities],
-    )
-
-
-def _span(scene):
-    return "until decided" if scene["duration"] is None else f"{scene['duration']:g} s at most"
+    return across(f"{scene['name']}, {span}", rows, Column("quantity", "engine"), *quantities)
 
 
 def warned(result: Result, name: str) -> dict[str, list[str]]:
     """{warning, or difference from the analytic model: the solvers whose runs of a scene carry it}."""
-    carried = {}
-    for row in result.rows:
-        if row["scene"] == name:
-            for words in (*different(row), *(warning["text"] for warning in row.get("warnings", ()))):
-                carried.setdefault(words, []).append(row["engine"])
-    return carried
+    rows = [row for row in result.rows if row["scene"] == name]
+    texts = [[*different(row), *(warning["text"] for warning in row.get("warnings", ()))] for row in rows]
+    return _carried([row["engine"] for row in rows], texts)
+
+
+def _carried(names, texts):
+    """{text: the names whose texts hold it}; texts: of each name its own."""
+    pairs = [(name, text) for name, own in zip(names, texts, strict=True) for text in own]
+    return {text: [name for name, _ in found] for (text,), found in grouped(pairs, lambda pair: pair[1]).items()}
 
 
 def different(row: Mapping[str, Any]) -> list[str]:
@@ -199,17 +192,21 @@ def _warnings(name, found):
     return (Table(f"{name}: warnings", ("solver", "outside what is modelled, or differing"), rows),) if rows else ()
 
 
-def _value(row, key, digits):
-    value = row.get(key)
-    if key == "end":
-        value = value["time"] if value else None
-    if key == "warnings":
-        value = str(len(value)) if value else "none"
-    if key == "friction_demand" and value is None and row.get("min_normal_ratio", 1) <= 0:
-        return "∞ (N ≤ 0)"
-    if digits is None:
-        return "–" if value is None else str(value)
-    return number(value, digits)
+def _apart(head: str, key: str, digits: int = 2, *, percent: bool = False) -> Column:
+    """How far a run is from the analytic model's."""
+    return Column(head, lambda row: row["agreement"][key], digits, percent)
+
+
+AGREEMENT = (
+    Column("same outcome", lambda row: "yes" if row["agreement"]["same_outcome"] else "no"),
+    _apart("overturning time [s]", "overturning_time_error"),
+    _apart("peak |φ|/γ [-]", "peak_tilt_error"),
+    Column("size of its errors: change of the model that does as much [-]", "perturbation"),
+    _apart("up to its own sensitivity horizon [s]:", "until", 4),
+    _apart("impact times, rms [s]", "impact_time_error"),
+    _apart("lost impacts [-]", "lost_impacts"),
+    _apart("distance of the tilt graphs [-]", "graph_distance"),
+)
 
 
 def _agreement(result, name):
@@ -217,37 +214,14 @@ def _agreement(result, name):
     rows = [row for row in result.rows if row["scene"] == name and row["engine"] != "analytic" and "agreement" in row]
     if not rows:
         return ()
-    scene = result.settings["scenes"][name]
-    agreements = [row["agreement"] for row in rows]
-    measures = [
-        ["same outcome", *("yes" if agreement["same_outcome"] else "no" for agreement in agreements)],
-        ["overturning time [s]", *(number(agreement["overturning_time_error"], 2) for agreement in agreements)],
-        ["peak |φ|/γ [-]", *(number(agreement["peak_tilt_error"], 2) for agreement in agreements)],
-        [
-            "size of its errors: change of the model that does as much [-]",
-            *(number(row["perturbation"], 2) for row in rows),
-        ],
-        ["up to its own sensitivity horizon [s]:", *(number(agreement["until"], 4) for agreement in agreements)],
-        ["impact times, rms [s]", *(number(agreement["impact_time_error"], 2) for agreement in agreements)],
-        ["lost impacts [-]", *(str(agreement["lost_impacts"]) for agreement in agreements)],
-        ["distance of the tilt graphs [-]", *(number(agreement["graph_distance"], 2) for agreement in agreements)],
-    ]
+    scene, measures = result.settings["scenes"][name], [*AGREEMENT]
     if scene["base"]:
-        measures += [
-            [
-                "peak base displacement [%]",
-                *(number(100 * agreement["peak_displacement_error"], 2) for agreement in agreements),
-            ]
-        ]
+        measures.append(_apart("peak base displacement", "peak_displacement_error", percent=True))
     if scene["bearings"]:
         work = next(row["bearing_work"] for row in result.rows if row["scene"] == name and row["engine"] == "analytic")
-        errors = (100 * (row["bearing_work"] / work - 1) if work else None for row in rows)
-        measures += [["work of the bearings [%]", *(number(error, 2) for error in errors)]]
-    return (
-        Table(
-            f"{scene['name']}: engine minus analytic model", ("difference", *(row["engine"] for row in rows)), measures
-        ),
-    )
+        error = Column("work of the bearings", lambda row: row["bearing_work"] / work - 1 if work else None, 2, True)
+        measures.append(error)
+    return (across(f"{scene['name']}: engine minus analytic model", rows, Column("difference", "engine"), *measures),)
 
 
 def restitution_section(result: Result) -> Section:
@@ -278,15 +252,6 @@ def restitution_section(result: Result) -> Section:
                 Column("CPU time per simulated second [s/s]", "cpu_per_second"),
                 Column("failed runs [-]", "{failed} of {runs}"),
             ),
-            *_warnings("Free rocking", _carried(result.rows)),
+            *_warnings("Free rocking", _carried(map(NAME.text, result.rows), [row["warnings"] for row in result.rows])),
         ),
     )
-
-
-def _carried(rows):
-    """{warning: names of the variants whose runs carry it}."""
-    carried: dict[str, list[str]] = {}
-    for row in rows:
-        for warning in row["warnings"]:
-            carried.setdefault(warning, []).append(NAME.text(row))
-    return carried

@@ -5,10 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from html import escape
 from typing import TYPE_CHECKING, Any
-
-from markupsafe import Markup
 
 from analytic import simulate, simulate_many
 from analytic.errors import SceneError
@@ -18,7 +15,8 @@ from analytic.records.folder import reversed_sign
 from analytic.response import COMPARED, about_record
 
 from ..showing.motions import LIFTED, odds
-from ..showing.parts import Table, number
+from ..showing.parts import number, signed
+from ..showing.rows import Column, across, table
 from .sections import different
 
 if TYPE_CHECKING:
@@ -35,20 +33,20 @@ WORDS = {
     "failed": "leaves the model",
 }
 STATES = {"tilt": f"Tilt above {TILT:g} γ", "stroke": "Base beyond x_max"}  # beside the outcome
-SHADES = {"stands": "right", "rocks": "degraded", "overturns": "wrong", "failed": "failed"}
 
 
 @dataclass(frozen=True)
 class Card:
-    """title: name and outcome. loud: sentences as important as that. drawing, bar: inline SVG; bar may be empty.
+    """title: name and outcome. loud: sentences as important as that. scene: as the result's settings have it.
 
-    said: (heading, sentence) pairs. tables: page parts.
+    margin: of the quantity whose outcome changes nearest, None where none does. said: (heading, sentence) pairs.
+    tables: page parts.
     """
 
     title: str
     loud: list
-    drawing: Markup
-    bar: Markup
+    scene: Mapping[str, Any]
+    margin: Mapping[str, Any] | None
     said: list
     tables: list
 
@@ -147,21 +145,31 @@ def card_of(result: Result, name: str) -> Card:
     own = found["own"]
     undecided = "" if own["decided"] else " (not decided when the run ended)"
     title = f"{scene['name']}: the block {WORDS[own['outcome']]}{undecided}"
-    said = [*_isolation(found), *_nearest(found["margins"]), *_signs(found), *_odds(found)]
-    said += [("Warning", text) for text in own["warnings"]]
+    said = [*_said(found), *(("Warning", text) for text in own["warnings"])]
     said.append(("Engines", _engines([row for row in result.rows if row["scene"] == name])))
     tables = [_main(found)]
     if found["near"]:
         tables.append(_near_table(found["near"], scene))
     if found["motions"]:
         tables.append(_motion_table(found["motions"], scene))
-    return Card(title, found["cautions"], _drawing(scene), _bar(found["margins"]), said, tables)
+    nearest = next((margin for margin in found["margins"][:1] if margin["nearest"] is not None), None)
+    return Card(title, found["cautions"], scene, nearest, said, tables)
 
 
-def _isolation(found):
-    if "free" not in found:
-        return []
-    return [("Without isolation", f"Free-standing, the block {WORDS[found['free']['outcome']]}.")]
+def _said(found):
+    """(heading, sentence) of what the model says beyond the scene's own run."""
+    said = []
+    if "free" in found:
+        said.append(("Without isolation", f"Free-standing, the block {WORDS[found['free']['outcome']]}."))
+    said += _nearest(found["margins"])
+    if "reversed" in found:
+        said.append(("Motion reversed", f"the block {WORDS[found['reversed']['outcome']]}"))
+    elif found["near"]:
+        said.append(("Motion reversed", "The same, mirrored: block and start are symmetric."))
+    if rows := found["motions"]:
+        words = f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}."
+        said.append(("Records", words))
+    return said
 
 
 def _nearest(found):
@@ -172,7 +180,7 @@ def _nearest(found):
     if first["nearest"] is None:
         said = [("Nearest change", f"No change of one quantity by up to {span} changes the outcome.")]
     else:
-        text = f"{first['quantity']} {_signed(first['nearest'])}: the block then {WORDS[first['then']]}."
+        text = f"{first['quantity']} {signed(first['nearest'])}: the block then {WORDS[first['then']]}."
         if first["frayed"]:
             text += " Outcomes alternate there: do not rest a decision on this distance."
         said = [("Nearest change", text)]
@@ -181,23 +189,8 @@ def _nearest(found):
         changing = [one for one in known if one[2] is not None]
         if changing:
             quantity, reached, change = min(changing, key=lambda one: abs(one[2]))
-            said.append((label, f"{'No longer from' if reached else 'From'} {quantity} {_signed(change)} on."))
+            said.append((label, f"{'No longer from' if reached else 'From'} {quantity} {signed(change)} on."))
     return said
-
-
-def _signs(found):
-    if "reversed" in found:
-        return [("Motion reversed", f"the block {WORDS[found['reversed']['outcome']]}")]
-    if found["near"]:
-        return [("Motion reversed", "The same, mirrored: block and start are symmetric.")]
-    return []
-
-
-def _odds(found):
-    rows = found["motions"]
-    if not rows:
-        return []
-    return [("Records", f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}.")]
 
 
 def _engines(rows):
@@ -215,26 +208,25 @@ def _engines(rows):
 
 
 def _main(found):
-    columns = {"this scene": found["own"]} | ({"free-standing": found["free"]} if "free" in found else {})
-
-    def row(label, pick):
-        return [label, *(pick(one) for one in columns.values())]
+    columns = [{"name": "this scene", **found["own"]}]
+    columns += [{"name": "free-standing", **found["free"]}] if "free" in found else []
 
     def share(value, limit):
         return number(value) if limit is None else f"{number(value)} of {number(limit)}"
 
-    moves = row("base displacement, of x_max [m]", lambda one: share(one["stroke"], one["x_max"]))
-    base = [moves] if found["own"]["stroke"] is not None else []
-    rows = [
-        row("outcome", lambda one: one["outcome"]),
-        row("peak tilt over slenderness [-]", lambda one: _tilt(one["outcome"], one["tilt"])),
-        row("peak ground acceleration [g]", lambda one: number(one["pga"] and one["pga"] / one["gravity"], 3)),
-        row("uplift acceleration g tan γ [g]", lambda one: number(one["uplift"] / one["gravity"], 3)),
-        *base,
-        row("friction demand, of the coefficient [-]", lambda one: share(one["demand"], one["friction"])),
-        row("least normal force N/(m g) [-]", lambda one: number(one["normal"], 3)),
-    ]
-    return Table("The analytic model", ("quantity", *columns), rows)
+    sway = Column("base displacement, of x_max [m]", lambda one: share(one["stroke"], one["x_max"]))
+    return across(
+        "The analytic model",
+        columns,
+        Column("quantity", "name"),
+        Column("outcome", "outcome"),
+        Column("peak tilt over slenderness [-]", lambda one: _tilt(one["outcome"], one["tilt"])),
+        Column("peak ground acceleration [g]", lambda one: one["pga"] and one["pga"] / one["gravity"], 3),
+        Column("uplift acceleration g tan γ [g]", lambda one: one["uplift"] / one["gravity"], 3),
+        *([sway] if found["own"]["stroke"] is not None else []),
+        Column("friction demand, of the coefficient [-]", lambda one: share(one["demand"], one["friction"])),
+        Column("least normal force N/(m g) [-]", "normal", 3),
+    )
 
 
 def _tilt(outcome, value):
@@ -242,106 +234,27 @@ def _tilt(outcome, value):
 
 
 def _near_table(near, scene):
-    heads = ["change of the motion", "outcome", "peak tilt over slenderness [-]"]
-    heads += ["base displacement [m]"] if scene["base"] else []
-    rows = []
-    for one in near:
-        label = "anywhere between" if one["change"] is None else _signed(one["change"])
-        row = [label, one["outcome"], _tilt(one["outcome"], one["tilt"])]
-        rows.append(row + ([number(one["stroke"], 3)] if scene["base"] else []))
-    return Table(f"Within {100 * SHARE:g} % of the motion", tuple(heads), rows)
+    return table(
+        f"Within {100 * SHARE:g} % of the motion",
+        near,
+        Column(
+            "change of the motion", lambda one: "anywhere between" if one["change"] is None else signed(one["change"])
+        ),
+        Column("outcome", "outcome"),
+        Column("peak tilt over slenderness [-]", lambda one: _tilt(one["outcome"], one["tilt"])),
+        *([Column("base displacement [m]", "stroke", 3)] if scene["base"] else []),
+    )
 
 
 def _motion_table(motions, scene):
-    heads = ["record", "motions", "largest peak [g]", "lifts", "overturns", "largest tilt over slenderness [-]"]
-    heads += ["largest base displacement [m]"] if scene["base"] else []
-    rows = [
-        [
-            one["record"],
-            str(one["motions"]),
-            number(one["pga"] / scene["gravity"], 3),
-            str(one["lifts"]),
-            str(one["overturns"]),
-            "overturned" if one["overturns"] else number(one["tilt"]),
-            *([number(one["stroke"], 3)] if scene["base"] else []),
-        ]
-        for one in motions
-    ]
-    return Table("Under other motions", tuple(heads), rows)
-
-
-def _signed(change):
-    return "as it is" if change == 0 else f"{'+' if change > 0 else '−'}{number(abs(100 * change), 3)} %"
-
-
-def _bar(found):
-    """The outcomes over the change of the quantity whose outcome changes nearest; nothing where none does."""
-    if not found or found[0]["nearest"] is None:
-        return Markup("")
-    first = found[0]
-    low, high = first["bands"][0][0], first["bands"][-1][1]
-    width, left = 360.0, 20.0
-
-    def at(change):
-        return round(left + width * (change - low) / (high - low), 2)
-
-    strips = "".join(
-        f'<rect class="{SHADES[outcome]}" x="{at(a)}" y="18" width="{round(at(b) - at(a), 2)}" height="20"/>'
-        for a, b, outcome in first["bands"]
-    )
-    marks = {low: "start", 0.0: "middle", high: "end"}
-    ticks = "".join(
-        f'<text class="soft" x="{at(change)}" y="54" text-anchor="{anchor}">{_signed(change)}</text>'
-        for change, anchor in marks.items()
-    )
-    names = list(dict.fromkeys(outcome for _, _, outcome in first["bands"]))
-    key = "".join(
-        f'<rect class="{SHADES[outcome]}" x="{20 + 120 * k}" y="62" width="12" height="12"/>'
-        f'<text x="{36 + 120 * k}" y="72">{outcome}</text>'
-        for k, outcome in enumerate(names)
-    )
-    says = f"Outcome over the change of {first['quantity']}"
-    return Markup(
-        f'<svg class="chart" viewBox="0 0 400 80" role="img" aria-label="{escape(says)}">'
-        f'<text class="title" x="20" y="12">{escape(says)}</text>{strips}'
-        f'<path d="M{at(0.0)} 14V42" style="stroke: var(--ink); stroke-width: 2"/>{ticks}{key}</svg>'
-    )
-
-
-def _drawing(scene):
-    """The block to scale with its height and width, on its base and bearings if it has them."""
-    width, height = 2 * scene["half_width"], 2 * scene["half_height"]
-    unit = max(width, height)
-    slab, rubber = (0.08 * unit, 0.1 * unit) if scene["base"] else (0.0, 0.0)
-    bearing = rubber if scene["bearings"] else 0.0
-    floor, side, font = slab + bearing, 0.5 * width + 0.15 * unit, 0.065 * unit
-    parts = [f'<path class="floor" d="M{-1.3 * side - 0.2 * unit:.4f} 0H{1.3 * side + 0.2 * unit:.4f}"/>']
-    if scene["base"]:
-        parts.append(
-            f'<rect class="steel" x="{-side:.4f}" y="{-floor:.4f}" width="{2 * side:.4f}" height="{slab:.4f}"/>'
-        )
-    if scene["bearings"]:
-        for place in (-0.7 * side, 0.7 * side):
-            parts.append(
-                f'<rect class="rubber" x="{place - 0.06 * unit:.4f}" y="{-bearing:.4f}" width="{0.12 * unit:.4f}" '
-                f'height="{bearing:.4f}"/>'
-            )
-    top, across = -floor - height, 0.5 * width
-    parts.append(
-        f'<rect class="stone" x="{-across:.4f}" y="{top:.4f}" width="{width:.4f}" height="{height:.4f}"/>'
-        f'<text x="{across + 0.06 * unit:.4f}" y="{top + 0.5 * height:.4f}">{number(height, 3)} m</text>'
-        f'<text x="0" y="{top - 0.05 * unit:.4f}" text-anchor="middle">{number(width, 3)} m</text>'
-        f'<text x="{across + 0.06 * unit:.4f}" y="{top + 0.5 * height + 1.4 * font:.4f}">'
-        f"{number(scene['block']['mass'], 4)} kg</text>"
-    )
-    if scene["base"]:
-        words = f"base {number(scene['base']['mass'], 4)} kg"
-        words += f", {scene['bearings']['count']} bearings" if scene["bearings"] else ", free to slide"
-        parts.append(f'<text x="0" y="{1.6 * font:.4f}" text-anchor="middle">{escape(words)}</text>')
-    reach = max(1.3 * side + 0.2 * unit, across + 0.45 * unit)
-    box = f"{-reach:.4f} {top - 2.2 * font:.4f} {2 * reach:.4f} {floor + height + 5 * font:.4f}"
-    says = f"{scene['name']}: a block {number(height, 3)} m high and {number(width, 3)} m wide"
-    return Markup(
-        f'<svg viewBox="{box}" role="img" aria-label="{escape(says)}" style="font-size: {font:.4f}px">'
-        f"{''.join(parts)}</svg>"
+    return table(
+        "Under other motions",
+        motions,
+        Column("record", "record"),
+        Column("motions", "motions"),
+        Column("largest peak [g]", lambda one: one["pga"] / scene["gravity"], 3),
+        Column("lifts", "lifts"),
+        Column("overturns", "overturns"),
+        Column("largest tilt over slenderness [-]", lambda one: _tilt(one["outcome"], one["tilt"])),
+        *([Column("largest base displacement [m]", "stroke", 3)] if scene["base"] else []),
     )

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Callable, Iterable, Mapping
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import nullcontext
 from dataclasses import dataclass, replace
-from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,8 +13,6 @@ from ..studies import StudyBroken, get_study, study_names
 
 if TYPE_CHECKING:
     from ..running.provenance import Result
-
-FEW = 4  # files, drawn here: new processes would take longer
 
 
 @dataclass(frozen=True)
@@ -44,19 +38,12 @@ def stored_studies(
 
     progress : is told how many of them are done, of how many.
     """
-    order = study_names()
-
-    def place(file):
-        return (order.index(file.stem) if file.stem in order else len(order), file.stem)
-
-    files = sorted(folder.glob("*.json"), key=place)
+    order = {name: place for place, name in enumerate(study_names())}
+    files = sorted(folder.glob("*.json"), key=lambda file: (order.get(file.stem, len(order)), file.stem))
     stored = []
-    with ProcessPoolExecutor(mp_context=get_context("spawn")) if len(files) >= FEW else nullcontext() as workers:
-        shown = iter(workers.map(_stored, files) if workers else map(_stored, files))
-        for file in files:
-            old = _age(file)  # meanwhile: all code is read for the first of them
-            stored.append(_aged(next(shown), old))
-            progress(len(stored), len(files))
+    for file in files:
+        stored.append(_stored(file))
+        progress(len(stored), len(files))
     return stored
 
 
@@ -81,31 +68,23 @@ def commit_of(origin: Mapping[str, Any]) -> str:
     return origin["commit"][:12] + (", with uncommitted changes" if origin["dirty"] else "")
 
 
-def _age(file):
-    """How the result is older than the code, None if it is not or cannot be read."""
-    with contextlib.suppress(ResultError):
-        return age(read_result(file))
-
-
-def _aged(stored, old):
-    finding = stored.finding and replace(stored.finding, age=old)
-    return replace(stored, section=replace(stored.section, age=old), finding=finding)
-
-
 def _stored(file):
-    """What is shown of a file; whether it is old is not asked here."""
+    """What is shown of a file."""
     try:
         result = read_result(file)
     except ResultError as error:
         return Stored(file.stem, Section(f"Study {file.stem}", (f"{file.name} cannot be shown: {error}",)))
+    old, origin = age(result), origin_of(result)
     try:
         study = get_study(result.kind)
         page = study.page(result)  # drawn once
         judgements = study.judgements(result)
     except (KeyError, StudyBroken) as error:
         words = f"{file.name} cannot be shown: {error.args[0]}."
-        return Stored(file.stem, Section(f"Study {result.kind}", (words,)), origin=origin_of(result))
-    return Stored(file.stem, page.whole(), page.opening(), judgements, origin_of(result), _variants(result.settings))
+        return Stored(file.stem, Section(f"Study {result.kind}", (words,), age=old), origin=origin)
+    finding = page.opening()
+    finding = finding and replace(finding, age=old)
+    return Stored(file.stem, replace(page.whole(), age=old), finding, judgements, origin, _variants(result.settings))
 
 
 def _variants(settings):

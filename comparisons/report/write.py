@@ -91,8 +91,8 @@ def write_page(
             contents=_contents(scenes, stored),
             explained="autopsy" if any(one.name == "autopsy" for one in stored) else "impact",
             equations=equations.EQUATIONS,
-            drawings=[Markup(getattr(diagrams, name)()) for name in ("rocking", "impact", "isolated")],
-            frames=[{"svg": Markup(frame.svg), "words": frame.words} for frame in equations.frames()],
+            drawings=[diagrams.rocking(), diagrams.impact(), diagrams.isolated()],
+            frames=equations.frames(),
             glossary=equations.GLOSSARY,
             references=equations.REFERENCES,
             provenance=_provenance(scenes, block),
@@ -154,7 +154,7 @@ def _stage(scenes: Result) -> Mapping[str, Any] | None:
         falls = any(abs(tilt) > 1.0 for track in scene["tracks"] for tilt in track["tilt"])
         scene["width"] = 2 * (max(b + 2 * h if falls else 0.0, b + 0.5) + scene["reach"] + 0.15)
         scene["poses"] = [_pose(track, frame, b) for track in scene["tracks"]]
-        scene["skew"] = _skew(scene["poses"][0][0])
+        scene["skew"] = round(-math.degrees(math.atan2(scene["poses"][0][0], 0.2)), 3)  # of a bearing .2 m high
     peak = max((abs(value) for value in stage["ground"]), default=0.0) or 1.0
     path = "M" + "L".join(f"{k} {-value / peak:.3f}" for k, value in enumerate(stage["ground"]))
     return {**stage, "data": Markup(data), "path": path, "at": frame}
@@ -165,11 +165,6 @@ def _pose(track, frame, b):
     tilt = track["tilt"][min(frame, len(track["tilt"]) - 1)]
     x = track["x"][min(frame, len(track["x"]) - 1)] if "x" in track else 0.0
     return round(x, 4), round(math.degrees(tilt), 3), -b if tilt < 0 else b
-
-
-def _skew(x):
-    """Angle [degrees] of a bearing .2 m high."""
-    return round(-math.degrees(math.atan2(x, 0.2)), 3)
 
 
 def _contents(scenes: Result, stored: list[Stored]) -> list[Part]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import functools
 import hashlib
-import importlib
 import json
+import pkgutil
 import platform
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -48,7 +48,7 @@ class Case:
         object.__setattr__(self, "settings", dict(self.settings))
         object.__setattr__(self, "tag", dict(self.tag))
 
-    def key(self, measure: Callable[..., Any] | None = None) -> str:
+    def key(self, measure: Callable[..., Any]) -> str:
         """Hash of all that the row depends on: scene, solver, variant, settings, tag, measure, versions, sources."""
         content = (
             self.scene.digest(),
@@ -57,7 +57,7 @@ class Case:
             self.settings,
             self.tag,
             name_of(measure),
-            fingerprint(self.solver, measure and measure.__module__),
+            fingerprint(self.solver, measure.__module__),
         )
         return hashlib.sha256(json.dumps(content, sort_keys=True, allow_nan=False).encode()).hexdigest()[:32]
 
@@ -81,13 +81,7 @@ def solver(name: str) -> Callable:
     """
     if name in ENGINES:
         return get_engine(name).simulate
-    return named(_place(name))
-
-
-def named(name: str) -> Callable:
-    """The function that ``module:function`` names, see `name_of`."""
-    module, _, function = name.partition(":")
-    return getattr(importlib.import_module(module), function)
+    return pkgutil.resolve_name(_place(name))
 
 
 def compile_for(names: Iterable[str]) -> None:
@@ -110,10 +104,8 @@ def versions(name: str) -> dict[str, str | None]:
     return {"python": platform.python_version(), **{package: version_of(package) for package in packages}}
 
 
-def name_of(function: Callable[..., Any] | None) -> str | None:
-    """``module:function`` of a module-level function, ``module:class`` of an object that is called; None for None."""
-    if function is None:
-        return None
+def name_of(function: Callable[..., Any]) -> str:
+    """``module:function`` of a module-level function, ``module:class`` of an object that is called."""
     name = f"{function.__module__}:{getattr(function, '__qualname__', type(function).__qualname__)}"
     if "<" in name:
         raise ValueError(f"measure {name} cannot travel to a worker process; make it a module-level function")
@@ -121,9 +113,9 @@ def name_of(function: Callable[..., Any] | None) -> str | None:
 
 
 @functools.cache  # of the code this process has loaded: it cannot change under it
-def fingerprint(name: str, measuring: str | None = None) -> str:
+def fingerprint(name: str, measuring: str) -> str:
     """Digest of the versions and of the project's source files behind a solver and the module of a measure."""
-    sources = source_digests([module_of(name), *([measuring] if measuring else [])])
+    sources = source_digests([module_of(name), measuring])
     return hashlib.sha256(json.dumps([versions(name), sorted(sources.values())]).encode()).hexdigest()
 
 

@@ -10,11 +10,12 @@ from datetime import UTC, datetime
 from itertools import zip_longest
 from os import PathLike
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any
 
 from analytic.errors import SceneError
 
-from .cases import named, solver
+from .cases import solver
 from .executors import Processes
 from .files import TemporaryFolder
 from .provenance import ResultError, checkout, read_result, record_check
@@ -98,7 +99,7 @@ def _again(runs, workers, progress):
     groups: dict[Any, list[tuple[int, Any]]] = {}
     for place, run in enumerate(runs):
         try:
-            case, measure = case_of(run), run["measure"] and named(run["measure"])
+            case, measure = case_of(run), resolve_name(run["measure"])
             solver(case.solver)
         except (KeyError, ImportError, AttributeError, SceneError) as error:
             found[place] = f"it cannot be run any more ({error.args[0] if isinstance(error, KeyError) else error})"

@@ -26,6 +26,7 @@ from analytic.errors import SettingError
 
 from .cases import compile_for, module_of, versions
 from .executors import Done, Executor, Processes, Task, end_with, number_of
+from .readable import Mendable
 from .solving import say
 from .sources import PROJECT, source_digests
 
@@ -35,7 +36,7 @@ GRACE = 1.0  # s, for an idle guard to end
 INSTALL = 'pip install -e ".[cluster]" in a checkout of this project'
 
 
-class ClusterError(RuntimeError):
+class ClusterError(Mendable):
     """A cluster that cannot do the runs, or no longer; says which part of it, and the remedy."""
 
 
@@ -96,7 +97,7 @@ class Cluster(Executor):
             return _crashed(task.ticket, "several workers of the cluster ended while they did it")
         raise ClusterError(f"a worker of the cluster cannot do the runs: {type(error).__name__}: {error}")
 
-    def close(self) -> None:
+    def __exit__(self, *_: object) -> None:
         self._exits.close()
 
     def _check_workers(self):
@@ -257,8 +258,3 @@ def guard_runs(connection: Any, solvers: tuple[str, ...]) -> None:
 
 def _crashed(ticket, reason):
     return Done(ticket, lost={"kind": "crash", "reason": reason, "exit_code": -9, "message": ""})
-
-
-def workers_at(scheduler: str | None, workers: int | None, solvers: Iterable[str]) -> Any:
-    """The executor of a Dask scheduler at an address, or without one of so many worker processes here."""
-    return Processes(workers, solvers) if scheduler is None else Cluster(scheduler, solvers)

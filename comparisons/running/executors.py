@@ -1,4 +1,4 @@
-"""Where the runs of a sweep are done: in this process, or in worker processes that may crash or hang."""
+"""Where the runs of a sweep are done: in worker processes that may crash or hang."""
 
 import contextlib
 import faulthandler
@@ -12,14 +12,13 @@ import sys
 import threading
 import time
 import traceback
-from abc import ABC, abstractmethod
-from collections import deque
+from abc import abstractmethod
 from collections.abc import Callable, Iterable
 from concurrent.futures import TimeoutError
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from multiprocessing import forkserver, resource_tracker
-from typing import Any, Self
+from typing import Any
 
 from pebble import ProcessExpired, ProcessPool
 
@@ -50,7 +49,7 @@ class Task:
     ticket: str
     cases: tuple[Case, ...]
     keys: tuple[str, ...]
-    measure: Callable | None
+    measure: Callable
     time_limit: float
 
 
@@ -63,8 +62,8 @@ class Done:
     lost: dict | None = None  # failure: kind, reason, message
 
 
-class Executor(ABC):
-    """The place where the runs of a sweep are done; a `with` statement closes it."""
+class Executor(contextlib.AbstractContextManager["Executor"]):
+    """The place where the runs of a sweep are done; the end of a `with` statement drops what is under way."""
 
     slots: int  # tasks to keep submitted so that no worker waits
 
@@ -75,35 +74,6 @@ class Executor(ABC):
     @abstractmethod
     def next(self) -> Done:
         """Wait for any submitted task to end; every task ends, lost or done."""
-
-    @abstractmethod
-    def close(self) -> None:
-        """Stop working, drop what is under way."""
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-
-class Serial(Executor):
-    """Runs in this process: for debugging. A crash or a hang of a solver is a crash or a hang of the sweep."""
-
-    slots = 1
-
-    def __init__(self) -> None:
-        self._tasks: deque[Task] = deque()
-
-    def submit(self, task: Task) -> None:
-        self._tasks.append(task)
-
-    def next(self) -> Done:
-        task = self._tasks.popleft()
-        return Done(task.ticket, _lines(task))
-
-    def close(self) -> None:
-        self._tasks.clear()
 
 
 def number_of(workers: int | None) -> int:
@@ -132,8 +102,12 @@ class Processes(Executor):
         if server:
             self._context.set_forkserver_preload(["comparisons.running.executors", *map(module_of, solvers)])
             resource_tracker.ensure_running()  # of the forkserver, whose start would undo the blocking
-            with _one_thread(), _ctrl_c_blocked():  # the server and its workers leave Ctrl-C to this process
-                forkserver.ensure_running()
+            before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            try:  # the server and its workers leave Ctrl-C to this process
+                with _one_thread():
+                    forkserver.ensure_running()
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, before)
         self._under_way: dict[Any, tuple[Task, str]] = {}  # future: task and its log
         self._broken = 0
         self._pool = self._new_pool()
@@ -176,7 +150,7 @@ class Processes(Executor):
             lost["message"] = _tail(log)
             return Done(task.ticket, lost=lost)
 
-    def close(self) -> None:
+    def __exit__(self, *_: object) -> None:
         self._close_pool()
         self._evidence.cleanup()
 
@@ -188,8 +162,8 @@ class Processes(Executor):
         self._broken += 1
         if self._broken > MOST_BROKEN:
             raise RuntimeError(
-                "worker processes end before they take up any run; try one case with the Serial "
-                "executor to see why. Rows done so far are kept"
+                "worker processes end before they take up any run; try one case by its method `run` to see why. "
+                "Rows done so far are kept"
             )
         self._close_pool()
         self._pool = self._new_pool()
@@ -207,10 +181,11 @@ class Processes(Executor):
         self._pool.join()
 
 
-def _lines(task):
+def lines_of(task: Task) -> tuple[str, ...]:
+    """The rows of a task's first cases, run in this process, as lines of JSON."""
     start, lines = time.monotonic(), []
     for case, key in zip(task.cases, task.keys, strict=True):
-        row = {"key": key, "values": {}, "failure": None, "cost": {}}
+        row: dict[str, Any] = {"key": key, "values": {}, "failure": None, "cost": {}}
         try:
             response = case.run()
             if math.isfinite(response.cpu_seconds):  # nan: nothing was stepped
@@ -220,7 +195,7 @@ def _lines(task):
                 row["values"] = response.to_json()
                 row["failure"] = {"kind": "solver", **row["values"].pop("failure")}
             else:
-                row["values"] = response.to_json() if task.measure is None else task.measure(case, response)
+                row["values"] = task.measure(case, response)
                 row["cost"] |= row["values"].pop("cost", {})
             row["values"] = json_ready(row["values"])
             row["values"].pop("cpu_seconds", None)
@@ -239,22 +214,10 @@ def _lines(task):
     return tuple(lines)
 
 
-@contextlib.contextmanager
-def _ctrl_c_blocked():
-    """What is started inside does not hear Ctrl-C."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
 def _start_worker(path):
     sys.path[:] = path  # a preloaded server keeps its own
     end_with_parent()
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        threading.Thread(target=end_with, args=(parent,), daemon=True).start()
+    threading.Thread(target=end_with, args=(multiprocessing.parent_process(),), daemon=True).start()
 
 
 def end_with(parent: Any) -> None:
@@ -272,7 +235,7 @@ def _work(task, log):
             signal.signal(signal.SIGALRM, signal.SIG_DFL)
             signal.setitimer(signal.ITIMER_REAL, task.time_limit + 10 * GRACE_SECONDS)
         try:
-            result = _lines(task)
+            result = lines_of(task)
         finally:
             faulthandler.cancel_dump_traceback_later()
             faulthandler.disable()

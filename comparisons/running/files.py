@@ -6,11 +6,13 @@ import shutil
 import stat
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from os import PathLike
 from pathlib import Path
 
 from analytic.errors import SettingError
+
+from .readable import Mendable
 
 PICTURES = (".png", ".svg", ".pdf")
 STANDARD_OUTPUT = "-"
@@ -18,7 +20,7 @@ _TEMPORARY: set[str] = set()  # folders of this process
 PROBE_BYTES = 4096  # a place without room for this is full
 
 
-class PlaceError(RuntimeError):
+class PlaceError(Mendable):
     """A result could not be written where it was asked for; the message says where it is instead."""
 
 
@@ -48,34 +50,18 @@ def check_writable(paths: Iterable[str | None], picture: str | None = None, inpu
         taken[place] = "is given for two results"
 
 
-def make_folder(folder: str | PathLike[str]) -> Path:
-    """The folder of ``--output``, made if it does not exist.
-
-    Raises
-    ------
-    SettingError
-        It cannot be made.
-    """
-    folder = Path(folder)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise SettingError(f"--output {folder.name}: no folder can be made there ({error.strerror})") from error
-    return folder
-
-
-def check_folder(output: str | PathLike[str], option: str = "--output") -> None:
+def check_folder(output: str | PathLike[str]) -> None:
     """Raise `SettingError` if `output`, the folder to write to, is a file or cannot be written; it need not exist."""
-    mode = _mode(output, f"{option} {output}")
+    named, above = f"--output {output}", Path(output)
+    mode = _mode(output, named)
     if mode is not None and not stat.S_ISDIR(mode):
         what = "is a file" if stat.S_ISREG(mode) else "is a device or a pipe"
-        raise SettingError(f"{option} {output}: {what}; give a folder")
-    above = Path(output)
+        raise SettingError(f"{named}: {what}; give a folder")
     while not above.exists():
         above = above.parent
     if not above.is_dir():
-        raise SettingError(f"{option} {output}: {above} is no folder; give another place")
-    _probe(_part(above, ""), f"{option} {output}")
+        raise SettingError(f"{named}: {above} is no folder; give another place")
+    _probe(_part(above, ""), named)
 
 
 def write(path: str | PathLike[str], writer: Callable[[Path], object]) -> None:
@@ -115,20 +101,6 @@ def write_text(path: str | PathLike[str], text: str) -> None:
         raise
     except OSError as error:
         raise _kept("standard output", error, writer, ".json") from error
-
-
-def write_all(writers: Mapping[str, str | Callable[[Path], object]]) -> PlaceError | None:
-    """Write several results, {path: function of a path, or text}; return the `PlaceError` of those that failed.
-
-    One that fails does not keep the others from being written. None: all are written.
-    """
-    problems = []
-    for path, content in writers.items():
-        try:
-            write_text(path, content) if isinstance(content, str) else write(path, content)
-        except PlaceError as error:
-            problems.append(str(error))
-    return PlaceError("; ".join(problems)) if problems else None
 
 
 def _mode(path, named):
@@ -176,13 +148,13 @@ def _part(folder, suffix):
 
 def _kept(path, error, writer, suffix):
     reason = f"{path}: could not be written ({error.strerror or error})"
-    for folder in dict.fromkeys((_temporary(), os.getcwd(), str(Path.home()))):
-        kept = Path(folder) / f"rocking-{os.getpid()}{suffix}"
-        try:
-            writer(kept)
-            return PlaceError(f"{reason}; the result is in {kept}")
-        except OSError:
-            with contextlib.suppress(OSError):
+    for folder in (tempfile.gettempdir, os.getcwd, Path.home):
+        with contextlib.suppress(OSError):
+            kept = Path(folder()) / f"rocking-{os.getpid()}{suffix}"
+            try:
+                writer(kept)
+                return PlaceError(f"{reason}; the result is in {kept}")
+            except OSError:
                 kept.unlink(missing_ok=True)
     return PlaceError(f"{reason}, nor anywhere else; make room and run again")
 
@@ -203,10 +175,3 @@ def remove_temporary_folders() -> None:
     """Before a process ends without clearing up behind itself."""
     for folder in tuple(_TEMPORARY):
         shutil.rmtree(folder, ignore_errors=True)
-
-
-def _temporary():
-    try:
-        return tempfile.gettempdir()
-    except OSError:  # no folder can be written
-        return os.getcwd()

@@ -25,6 +25,7 @@ from analytic.files import read_plain
 from engines import ENGINES
 
 from ..schemas.study import StudyResult
+from .readable import Mendable
 from .sources import PROJECT, digests_of_all, source_digests, version_of
 
 NAMED = 3  # modules that a sentence on a stale result names
@@ -36,7 +37,7 @@ RESULTS = PROJECT_FOLDER / "comparisons" / "results"  # those that the project s
 PACKAGES = ("numpy", "scipy", "numba", *(engine.package for engine in ENGINES.values()))
 
 
-class ResultError(RuntimeError):
+class ResultError(Mendable):
     """A result file that cannot be written or read; the message names it and the remedy."""
 
 
@@ -125,11 +126,9 @@ def write_result(
     Raises
     ------
     ResultError
-        The content names a path of this machine, rows are no dicts, or `path` is no ``.json``.
+        The content names a path of this machine, or rows are no dicts.
     """
     path = Path(path)
-    if path.suffix != ".json":
-        raise ResultError(f"{path.name}: a result file ends in .json; rename it")
     content = json_ready(
         {
             "schema": SCHEMA,

@@ -3,6 +3,10 @@
 MOST_CHARACTERS = 600
 
 
+class Mendable(RuntimeError):
+    """An error a user can mend by what its message says: told without a traceback."""
+
+
 def readable(text: object, most: int = MOST_CHARACTERS) -> str:
     """`text` with its middle left out beyond `most` characters; what is not printable is shown as its code."""
     text = str(text)

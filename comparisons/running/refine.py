@@ -58,20 +58,18 @@ def together(
         It was sent another number of outcomes than it gave points.
     """
     results = [None] * len(searches)
-    answers = dict.fromkeys(range(len(searches)))
+    answers: dict[int, Any] = dict.fromkeys(range(len(searches)))
     while answers:
         asked = {}
         for index, answer in answers.items():
             try:
-                asked[index] = list(searches[index].send(answer))  # type: ignore[arg-type]  # None starts a search
+                asked[index] = list(searches[index].send(answer))
             except StopIteration as stop:
                 results[index] = stop.value
         batch = [(index, point) for index, points in asked.items() for point in points]
-        outcomes = list((yield batch)) if batch else []
-        if len(outcomes) != len(batch):
-            raise ValueError(f"{len(outcomes)} outcomes were sent for {len(batch)} points")
-        arriving = iter(outcomes)
-        answers = {index: [next(arriving) for _ in points] for index, points in asked.items()}
+        answers = {index: [] for index in asked}
+        for (index, _), outcome in zip(batch, (yield batch) if batch else (), strict=True):
+            answers[index].append(outcome)
     return results
 
 
@@ -112,15 +110,6 @@ def boundaries(
     generator
         For `together`; yields lists of float, returns a `Column`.
     """
-    if not (low < high and scan >= 2 and tolerance > 0 and near >= 1):
-        raise ValueError(
-            f"boundaries needs low < high, scan >= 2, tolerance > 0 and near >= 1, not low = {low!r}, "
-            f"high = {high!r}, scan = {scan!r}, tolerance = {tolerance!r}, near = {near!r}"
-        )
-    return _boundaries(low, high, scan, tolerance, near)
-
-
-def _boundaries(low, high, scan, tolerance, near):
     known: dict[float, Any] = {}
 
     def learn(points):

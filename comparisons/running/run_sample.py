@@ -34,7 +34,7 @@ def sample_of(runs: Iterable[tuple[Batch, Row]]) -> list[dict[str, Any]]:
     Left out are runs under recorded motions, whose values may not be passed on; under long motions made by a formula;
     and those whose measure is not a function.
     """
-    known = [(batch, row) for batch, row in runs if batch.measure is None or inspect.isfunction(batch.measure)]
+    known = [(batch, row) for batch, row in runs if inspect.isfunction(batch.measure)]
     found: list[dict[str, Any]] = []
     stored: set[str] = set()  # digests of motions stored sample by sample
     for batch, row in random.Random(SEED).sample(known, len(known)):

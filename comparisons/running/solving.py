@@ -9,12 +9,14 @@ import json
 import math
 import os
 import sys
+import tempfile
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from analytic.errors import SettingError
+from analytic.errors import SceneError, SettingError
 
 from .readable import readable
 
@@ -73,6 +75,25 @@ def ground_motion(record: str | PathLike[str] | None = None, **said: Any) -> Sam
         if value is not None:
             raise SettingError(f"--{name} {value}: belongs to a record; give --record FILE")
     return synthetic_motion()
+
+
+def scene_of(text: str, file: str) -> Scene:
+    """The scene that a text makes as the file called `file`, before it is one.
+
+    Raises
+    ------
+    SceneError
+        As of that file.
+    """
+    from analytic.scene_file import load_scene
+
+    with tempfile.NamedTemporaryFile("w", suffix=".toml", dir=Path(file).resolve().parent, encoding="utf-8") as part:
+        part.write(text)
+        part.flush()
+        try:
+            return load_scene(part.name)
+        except SceneError as error:
+            raise error.in_file(file) from None
 
 
 def simulate(
@@ -134,7 +155,6 @@ def simulate(
 
 def near_motion(scene: Scene) -> tuple[Caution, ...]:
     """`analytic.nearby.cliffs` of a scene with a motion, or that it was not looked for; none without a motion."""
-    from analytic.errors import SceneError
     from analytic.nearby import SHARE, cliffs, nearby
     from analytic.response import Caution
 
@@ -192,9 +212,7 @@ def _simulate(scene, solver, variant, settings, history, compare):
     if solver != ANALYTIC:
         from engines import get_engine
 
-        engine = get_engine(solver)
-        _check_types(engine, variant, settings)
-        return engine.simulate(scene, variant=variant, history=history, compare=compare, **settings)
+        return get_engine(solver).simulate(scene, variant=variant, history=history, compare=compare, **settings)
     response = _analytic(scene, variant, settings, history)
     if compare and response.decided:
         from ..measuring.horizon import unsure_outcome
@@ -214,31 +232,9 @@ def _analytic(scene, variant, settings, history):
     for name, value in settings.items():
         if name not in known:
             raise SettingError(f"the analytic model has no setting {name!r}: its settings are {', '.join(known)}")
-        _check_number(name, value)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise SettingError(f"{name} = {value!r}: give a number")
     return analytic.simulate(scene, history=history, **settings)
-
-
-def _check_types(engine, variant, settings):
-    """Unknown names are the engine's to refuse; a text where a number belongs is refused here."""
-    chosen = engine.variants.get(variant or engine.default_variant)
-    if chosen is None:
-        return
-    for field in dataclasses.fields(chosen.settings):
-        default = getattr(chosen.settings, field.name)
-        if field.name not in settings or default is None:
-            continue
-        value = settings[field.name]
-        if isinstance(default, bool) or isinstance(default, str):
-            if type(value) is not type(default):
-                raise SettingError(f"{field.name} = {value!r}: give a value such as {json.dumps(default)}")
-        elif isinstance(default, int | float):
-            _check_number(field.name, value, whole=isinstance(default, int))
-
-
-def _check_number(name, value, whole=False):
-    if isinstance(value, bool) or not isinstance(value, int if whole else int | float):
-        raise SettingError(f"{name} = {value!r}: give a {'whole ' if whole else ''}number")
-    _check_size(name, value)
 
 
 def _check_size(name, value):

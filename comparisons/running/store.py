@@ -5,10 +5,11 @@ import io
 import json
 import os
 import time
-from collections.abc import Iterable
+from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any, Self
+
+from .readable import Mendable
 
 try:
     import fcntl
@@ -18,15 +19,15 @@ except ImportError:  # Windows has none: no lock there
 SYNC_SECONDS = 1.0  # a killed process loses nothing written; only a power cut can cost this much
 
 
-class StoreError(RuntimeError):
+class StoreError(Mendable):
     """A file of results that cannot be used; the message names file, line and remedy."""
 
 
-class Store:
+class Store(contextlib.AbstractContextManager["Store"]):
     """Append-only file of rows keyed by their case: a context manager around one JSONL file.
 
     A row is a dict with at least "key". A torn last line (the process was killed while it wrote) is
-    dropped when the file is opened; `torn` says so.
+    dropped when the file is opened.
 
     Raises
     ------
@@ -36,7 +37,6 @@ class Store:
 
     def __init__(self, path: str | PathLike[str]) -> None:
         self.path = Path(path)
-        self.torn = False
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             if self.path.exists() and not self.path.is_file():
@@ -52,47 +52,34 @@ class Store:
             raise
         self._synced = time.monotonic()
 
-    def __enter__(self) -> Self:
-        return self
-
     def __exit__(self, *_: object) -> None:
-        self.close()
+        with contextlib.suppress(OSError):  # said when the rows were written
+            self._sync()
+        self._file.close()
 
-    def __len__(self) -> int:
-        return len(self.rows)
-
-    def append(self, lines: Iterable[str]) -> list[dict[str, Any]]:
-        """Write rows given as lines of JSON (str, no line end) and return them as dicts.
+    def append(self, lines: Sequence[str]) -> None:
+        """Write rows given as lines of JSON (str, no line end).
 
         Raises
         ------
         StoreError
             The disk is full or failed; the file holds the rows before these.
         """
-        rows = [json.loads(line) for line in lines]
         data, end = memoryview("".join(line + "\n" for line in lines).encode()), self._file.seek(0, os.SEEK_END)
         try:
             while data:
                 data = data[self._file.write(data) :]
             if time.monotonic() - self._synced > SYNC_SECONDS:
-                self.sync()
+                self._sync()
         except OSError as error:
             with contextlib.suppress(OSError):
                 self._file.truncate(end)
             raise self._unusable(error, "the rows so far are kept: make room and run again") from error
-        self.rows.update((row["key"], row) for row in rows)
-        return rows
+        self.rows.update((row["key"], row) for row in map(json.loads, lines))
 
-    def sync(self) -> None:
-        """Force what was written onto the disk."""
+    def _sync(self):
         os.fsync(self._file.fileno())
         self._synced = time.monotonic()
-
-    def close(self) -> None:
-        if not self._file.closed:
-            with contextlib.suppress(OSError):  # said when the rows were written
-                self.sync()
-            self._file.close()
 
     def _unusable(self, error, remedy="give another place"):
         return StoreError(f"{self.path}: rows cannot be stored there ({getattr(error, 'strerror', error)}); {remedy}")
@@ -114,7 +101,6 @@ class Store:
         rows, end = {}, 0
         for number, line in enumerate(io.BufferedReader(io.FileIO(self._file.fileno(), closefd=False)), 1):
             if not line.endswith(b"\n"):
-                self.torn = True
                 self._file.truncate(end)
                 break
             end += len(line)

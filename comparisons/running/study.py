@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any
 from engines import ENGINES, installed_engines
 
 from .cases import Case, module_of
-from .cluster import workers_at
+from .cluster import Cluster
 from .executors import Processes, number_of
 from .files import check_folder
 from .provenance import Result, write_result
@@ -62,7 +62,7 @@ class Batch:
     """
 
     cases: Sequence[Case]
-    measure: Callable | None
+    measure: Callable
     label: str
     time_limit: float = TIME_LIMIT
     alone: bool = False
@@ -166,17 +166,23 @@ def compute(
         store = stack.enter_context(Store(folder / RUNS))
         stack.callback(_leave_nothing_empty, folder)
         with spinner(f"{study.name}: engines and code") if progress else contextlib.nullcontext():
-            ask = _asked(study, engines, quick)  # loads engines: after what is wrong with the place was found
-            code = digests_of_all(_packages(study))
-        pool = stack.enter_context(workers_at(scheduler, workers, ("analytic", *ask.engines)))
-        return _carry_out(study, study.plan(ask, **options), folder, ask, code, store, pool, progress)
+            if engines is None:  # loads engines: after what is wrong with the place was found
+                asked = installed_engines() if study.all_engines else ()
+            else:
+                asked = named_engines(engines)
+            modules = (study.plan.__module__, *(engine.adapter for engine in ENGINES.values()))
+            code = digests_of_all({*PROJECT, *(name.partition(".")[0] for name in modules)})
+        solvers = ("analytic", *asked)
+        pool = Processes(workers, solvers) if scheduler is None else Cluster(scheduler, solvers)
+        plan = study.plan(Ask(asked, quick), **options)
+        return _carry_out(study, plan, folder, solvers, code, store, stack.enter_context(pool), progress)
 
 
-def _carry_out(study, plan, folder, ask, code, store, pool, progress):
+def _carry_out(study, plan, folder, always, code, store, pool, progress):
     """Run what the plan asks for and write what it finds; returns the paths written."""
     done: list[tuple[Batch, Row]] = []
     written, answer, ended = {}, None, False
-    solvers = dict.fromkeys(("analytic", *ask.engines))
+    solvers = dict.fromkeys(always)
     while not ended:
         try:
             step = plan.send(answer)
@@ -201,13 +207,6 @@ def _carry_out(study, plan, folder, ask, code, store, pool, progress):
     return list(written)
 
 
-def _asked(study, engines, quick):
-    """The `Ask` for engines by name; None: all that are installed, if the study wants them."""
-    if engines is None:
-        return Ask(installed_engines() if study.all_engines else (), quick)
-    return Ask(named_engines(engines), quick)
-
-
 def say(text: str) -> None:
     """A line of progress on standard error, with the time."""
     print(f"{time.strftime('%H:%M:%S')} {text}", file=sys.stderr, flush=True)
@@ -219,16 +218,6 @@ def _leave_nothing_empty(folder):
         if (folder / RUNS).stat().st_size == 0:
             (folder / RUNS).unlink()
             folder.rmdir()
-
-
-def _packages(study):
-    return dict.fromkeys(
-        (
-            *PROJECT,
-            study.plan.__module__.partition(".")[0],
-            *(engine.adapter.partition(".")[0] for engine in ENGINES.values()),
-        )
-    )
 
 
 def _run(batch, store, pool, progress):

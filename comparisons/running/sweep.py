@@ -1,6 +1,7 @@
 """Many runs: a list of cases in, a row for each out, in parallel, resumable, proof against crashes and hangs.
 
-    rows = run_sweep(cases, store="results/map.jsonl", measure=outcome)
+    with Processes() as executor:
+        rows = run_sweep(cases, store="results/map.jsonl", measure=outcome, executor=executor)
 
 The store can be reused: rows whose scene, solver, variant, settings, tag, measure, versions and source code are
 unchanged are not run again.
@@ -15,21 +16,17 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from .cases import Case, compile_for, name_of, solver
-from .cluster import workers_at
-from .executors import Done, Executor, Processes, Serial, Task
+from analytic import Response
+
+from .cases import Case, compile_for, solver
+from .executors import Executor, Task
 from .provenance import json_ready
 from .store import Store
-
-if TYPE_CHECKING:
-    from analytic import Response
-
-__all__ = ["Case", "Done", "Executor", "Processes", "Row", "Serial", "Store", "Task", "run_sweep"]
 
 MOST_CASES = 512  # in a task
 
@@ -38,7 +35,7 @@ MOST_CASES = 512  # in a task
 class Row:
     """Result of one case.
 
-    values: what the measure returned, deterministic (or the whole `Response.to_json()` without a measure).
+    values: what the measure returned, deterministic; of a run that failed in the solver the whole response.
     failure: None, or kind ("solver", "exception", "time limit", "crash"), reason and message; the
     outcome in values is then "failed". cost: cpu_seconds and whatever else of the measure's "cost" differs from run to
     run.
@@ -59,11 +56,9 @@ def run_sweep(
     cases: Iterable[Case],
     *,
     store: str | PathLike[str] | Store,
-    workers: int | None = None,
+    measure: Callable[[Case, Response], dict[str, Any]],
+    executor: Executor,
     time_limit: float = 300.0,
-    measure: Callable[[Case, Response], dict[str, Any]] | None = None,
-    executor: Executor | None = None,
-    scheduler: str | None = None,
     progress: bool = True,
     label: str = "runs",
 ) -> list[Row]:
@@ -75,17 +70,13 @@ def run_sweep(
         Equal cases are run once.
     store : path or Store
         JSONL file of rows, appended to as they arrive. Rows found there are not run again.
-    workers : int or None
-        Worker processes; None takes one per core. Not used with `executor` or `scheduler`.
     time_limit : float
         Seconds a run may take; beyond, its row is "failed". A row that failed so is run again when the
         limit is raised, and so is one whose worker was killed from outside.
-    measure : callable or None
+    measure : callable
         Module-level, (`Case`, `Response`) -> dict of JSON values; runs in the worker, on responses that did not fail.
-    executor : Executor or None
-        Where to run, to share workers between sweeps; it stays open.
-    scheduler : str or None
-        Address of a Dask scheduler, or "local:N"; see `comparisons.running.cluster`.
+    executor : Executor
+        Where to run, `Processes` or a `comparisons.running.cluster.Cluster`; it stays open.
     progress : bool
         Show a bar with the remaining time on standard error.
 
@@ -96,10 +87,12 @@ def run_sweep(
     StoreError
         The store is in use or damaged.
     ClusterError
-        The scheduler's workers differ from this process, or it is gone.
+        The scheduler is gone.
     """
     cases = list(cases)
-    names, keys = _checked(cases, measure)
+    for name in sorted({case.solver for case in cases}):
+        solver(name)  # what cannot run is an error now, not a failed row each
+    keys = [case.key(measure) for case in cases]
     with ExitStack() as stack:
         if not isinstance(store, Store):
             store = stack.enter_context(Store(store))
@@ -109,23 +102,12 @@ def run_sweep(
         if waiting:
             compile_for({case.solver for case in waiting.values()})
             advance = _bar(stack, progress, label, len(waiting))
-            if executor is None:
-                executor = stack.enter_context(workers_at(scheduler, workers, names))
             _run(waiting, store, executor, measure, time_limit, advance)
         rows = [store.rows[key] for key in keys]
     return [
         Row(case, row["values"], row["failure"], row["cost"], key not in waiting)
         for case, key, row in zip(cases, keys, rows, strict=True)
     ]
-
-
-def _checked(cases, measure):
-    """(names of the solvers, keys of the cases); what cannot run is an error now, not a failed row each."""
-    name_of(measure)
-    names = sorted({case.solver for case in cases})
-    for name in names:
-        solver(name)
-    return names, [case.key(measure) for case in cases]
 
 
 def _run(waiting, store, executor, measure, time_limit, advance):

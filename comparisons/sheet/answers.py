@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Mapping
 from os import PathLike
 
 from analytic.errors import SceneError
@@ -33,14 +34,11 @@ def read_answers(path: str | PathLike[str]) -> dict[str, dict[str, Value]]:
         raise SceneError("answers", str(path), problem, "give the file of answers") from None
     except UnicodeDecodeError as error:
         raise SceneError("answers", str(path), "no text in UTF-8", "save it as CSV in UTF-8") from error
-    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip() and line[0] != "#"]
-    rows = [
-        (number, [cell.strip() for cell in row])
-        for (number, _), row in zip(lines, csv.reader(line for _, line in lines), strict=True)
-    ]
-    if not rows or rows[0][1] != list(COLUMNS):
-        found = ",".join(rows[0][1]) if rows else ""
-        raise SceneError("answers", found, f"{path}: not the head {','.join(COLUMNS)}", "begin with that line")
+    reader = csv.reader("" if line.isspace() or line[:1] == "#" else line for line in text.splitlines())
+    rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader if row]
+    head = ",".join(rows[0][1] if rows else [])
+    if head != ",".join(COLUMNS):
+        raise SceneError("answers", head, f"{path}: not the head {','.join(COLUMNS)}", "begin with that line")
     asked = {problem.name: {one.name: one for one in problem.quantities} for problem in PROBLEMS}
     given: dict[str, dict[str, Value]] = {}
     for number, row in rows[1:]:
@@ -73,7 +71,7 @@ def _value(kind, text, place):
     return value
 
 
-def error(problem: Problem, given: dict[str, Value], right: dict[str, Value]) -> dict[str, float]:
+def error(problem: Problem, given: Mapping[str, Value], right: Mapping[str, Value]) -> dict[str, float]:
     """{quantity: error over its scale} of the answers given; of a word 0, or 1 where it is another."""
     return {
         one.name: float(given[one.name] != right[one.name])

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from .observed import Value, solved
-from .variants import Fault, Printed8, with_fault
+from .variants import Fault, with_fault
 
 if TYPE_CHECKING:
     from .problems import Problem
@@ -36,7 +36,7 @@ def _lost(problem, given):
         yield solved(problem, problem.scene.with_(block={"restitution": 1.0}))
     for k in range(1, asked + 1):
         for seen in (True, False):
-            yield with_fault(problem, Fault(lost=(k,), seen=seen))
+            yield with_fault(problem, Fault(lost=k, seen=seen))
 
 
 def _late(problem, given):
@@ -51,12 +51,12 @@ def _late(problem, given):
 
 def _printed_8(problem, given):
     if problem.scene.base is not None and any(one.source == "base_velocity_jump" for one in problem.quantities):
-        yield with_fault(problem, Fault(model=Printed8))
+        yield with_fault(problem, Fault(printed_8=True))
 
 
 def _printed_12(problem, given):
     if problem.scene.bearings is not None and problem.scene.bearings.law == "algebraic":
-        yield with_fault(problem, Fault(unloading=True))
+        yield with_fault(problem, Fault(printed_12=True))
 
 
 def _inertia(problem, given):
@@ -116,12 +116,10 @@ def _mirrored(problem, given):
 
 def _reported(problem, answers, factors):
     """Right answers told in another unit or sign: by kind, peaks stay positive."""
-    told = {}
+    told = dict(answers)
     for one in problem.quantities:
-        if one.name in answers:
-            factor = factors.get(one.kind, 1)
-            factor = abs(factor) if one.source.startswith("peak") else factor
-            told[one.name] = answers[one.name] if one.kind == "outcome" else answers[one.name] * factor
+        if one.name in told and one.kind in factors:
+            told[one.name] *= abs(factors[one.kind]) if one.source.startswith("peak") else factors[one.kind]
     return told
 
 

@@ -31,21 +31,21 @@ def _value(quantity: Quantity, response: Response, states: Mapping[float, State]
     """The answer; None where the run has no such event or state."""
     if quantity.source in STATE:
         return getattr(states.get(quantity.index), quantity.source, None)
-    of_impact = quantity.source in IMPACT
-    found: Any = response.impacts if of_impact else getattr(response, quantity.source)
-    if quantity.index:
-        k = int(quantity.index) - 1
-        found = found[k] if k < len(found) else None
-    return getattr(found, quantity.source, None) if of_impact else found
+    if quantity.source in IMPACT:
+        hits = response.impacts[int(quantity.index) - 1 :]
+        return getattr(hits[0], quantity.source) if hits else None
+    found: Any = getattr(response, quantity.source)
+    return found if not isinstance(found, tuple) else found[0] if found else None  # of uplifts and rests, the first
 
 
 def of_response(problem: Problem, response: Response) -> dict[str, Value]:
     """The answers of a `Response` with a history."""
-    history, states = response.history, {}
-    for t in problem.times:
-        if history is not None and t <= history.time[-1]:
-            columns = (getattr(history, name) for name in State.__dataclass_fields__ if name != "time")
-            states[t] = State(t, *(float(np.interp(t, history.time, column)) for column in columns))
+    history = response.history
+    states = {
+        t: State(*(float(np.interp(t, history.time, getattr(history, name))) for name in State.__dataclass_fields__))
+        for t in problem.times
+        if history is not None and t <= history.time[-1]
+    }
     return answers_of(problem, response, states)
 
 

@@ -54,9 +54,16 @@ def write_sheet(folder: Path) -> list[Path]:
 
 def markdown(problem: Problem) -> str:
     """The page of a problem as Markdown."""
-    recorded = isinstance(problem.scene.motion, SampledMotion)
-    constants = {"period": PERIOD, "damping": DAMPING, "units": UNITS, "scales": SCALES}
-    return _text("problem", problem=problem, recorded=recorded, record_file=RECORD_FILE, **constants)
+    return _text(
+        "problem",
+        problem=problem,
+        recorded=isinstance(problem.scene.motion, SampledMotion),
+        record_file=RECORD_FILE,
+        period=PERIOD,
+        damping=DAMPING,
+        units=UNITS,
+        scales=SCALES,
+    )
 
 
 def _text(name: str, **values: Any) -> str:

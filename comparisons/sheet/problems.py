@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -32,8 +32,8 @@ class Quantity:
     """One number, or word, that is asked for.
 
     kind: "time", "angle", "rate", "length", "speed", "force" or "outcome". source: what of a run it is: an attribute
-    of an `Impact`, of a `State`, or of `observed.Observed`. index: which impact, uplift or rest, from 1 on, or
-    the time [s] of the state.
+    of an `Impact`, of a `State`, or of the `Response`, of whose uplifts and rests the first. index: which impact, from
+    1 on, or the time [s] of the state.
     """
 
     name: str
@@ -63,7 +63,7 @@ class Problem:
         if quantity.source in STATE:
             return quantity.index
         if quantity.source in IMPACT:
-            return right.get(f"{IMPACT['time'][0]}_{quantity.index:g}")
+            return right.get(IMPACT["time"][0].format(quantity.index))
         return right.get(quantity.name) if quantity.kind == "time" else None
 
     def scale(self, quantity: Quantity) -> float:
@@ -80,17 +80,18 @@ class Problem:
         }[quantity.kind]
 
 
+# By source: name, kind and words, of the impact of a number or the state at a time [s].
 IMPACT = {
-    "time": ("impact_time", "time", "time of impact {k}"),
-    "rate_before": ("rate_before", "rate", "φ′ just before impact {k}"),
-    "rate_after": ("rate_after", "rate", "φ′ just after impact {k}"),
-    "base_velocity_jump": ("base_velocity_jump", "speed", "x′ just after impact {k} less x′ just before it"),
+    "time": ("impact_time_{:g}", "time", "time of impact {:g}"),
+    "rate_before": ("rate_before_{:g}", "rate", "φ′ just before impact {:g}"),
+    "rate_after": ("rate_after_{:g}", "rate", "φ′ just after impact {:g}"),
+    "base_velocity_jump": ("base_velocity_jump_{:g}", "speed", "x′ just after impact {:g} less x′ just before it"),
 }
 STATE = {
-    "tilt": ("tilt", "angle", "φ at t = {t:g} s"),
-    "tilt_rate": ("tilt_rate", "rate", "φ′ at t = {t:g} s"),
-    "base_displacement": ("displacement", "length", "x at t = {t:g} s"),
-    "bearing_force": ("force", "force", "force F of all bearings together at t = {t:g} s"),
+    "tilt": ("tilt_at_{:g}", "angle", "φ at t = {:g} s"),
+    "tilt_rate": ("tilt_rate_at_{:g}", "rate", "φ′ at t = {:g} s"),
+    "base_displacement": ("displacement_at_{:g}", "length", "x at t = {:g} s"),
+    "bearing_force": ("force_at_{:g}", "force", "force F of all bearings together at t = {:g} s"),
 }
 OTHERS = {
     "outcome": Quantity(
@@ -103,30 +104,21 @@ OTHERS = {
         "largest |x| within the duration; of a block that overturns, up to the last time of |φ| = γ",
         "peak_base_displacement",
     ),
-    "uplift": Quantity("uplift_time", "time", "time at which the block first lifts", "uplifts", 1),
+    "uplift": Quantity("uplift_time", "time", "time at which the block first lifts", "uplifts"),
     "rest": Quantity(
-        "rest_time", "time", "limit of the times of the impacts of the first free rocking: it then rests", "rests", 1
+        "rest_time", "time", "limit of the times of the impacts of the first free rocking: it then rests", "rests"
     ),
     "overturning": Quantity("overturning_time", "time", "time at which |φ| = π/2", "overturning_time"),
 }
 
 
-def impacts(count: int, *sources: str) -> list[Quantity]:
-    """The first impacts, each by these of `IMPACT`."""
-    found = []
-    for k in range(1, count + 1):
-        for source in sources:
-            name, kind, words = IMPACT[source]
-            found.append(Quantity(f"{name}_{k}", kind, words.format(k=k), source, k))
-    return found
-
-
-def states(times: Sequence[float], *sources: str) -> list[Quantity]:
-    """The state at these times [s], each by these of `STATE`."""
+def asked(indices: Iterable[float], *sources: str) -> list[Quantity]:
+    """The impacts of these numbers, or the states at these times [s], each by these of `IMPACT` or `STATE`."""
+    rows = {source: (IMPACT | STATE)[source] for source in sources}
     return [
-        Quantity(f"{STATE[source][0]}_at_{t:g}", STATE[source][1], STATE[source][2].format(t=t), source, t)
-        for t in times
-        for source in sources
+        Quantity(name.format(index), kind, words.format(index), source, index)
+        for index in indices
+        for source, (name, kind, words) in rows.items()
     ]
 
 
@@ -141,11 +133,9 @@ def record() -> SampledMotion:
 
 
 BASE = Base(mass=300.0)
-WORD = OTHERS["outcome"]
 RUBBER = Bearings(count=4, ka=2.4e4, kb=2.4e3, alpha=40.0)
 OMEGA = 2 * math.pi / PERIOD  # rad/s
 SPRINGS = Bearings(law="linear", count=4, ka=1300 * OMEGA**2 / 4, damping=2 * DAMPING * OMEGA * 1300 / 4)
-PULSES = (("pulse-below", "overturning is near", 3.14), ("pulse-above", "the amplitude is 5 % larger", 3.3))
 
 
 def _pulse(name, words, amplitude):
@@ -159,9 +149,9 @@ def _pulse(name, words, amplitude):
         (
             OTHERS["outcome"],
             OTHERS["uplift"],
-            *impacts(1, "time", "rate_before", "rate_after"),
+            *asked((1,), "time", "rate_before", "rate_after"),
             OTHERS["peak_tilt" if below else "overturning"],
-            *states((0.5, 1.0, 2.0), "tilt"),
+            *asked((0.5, 1.0, 2.0), "tilt"),
         ),
     )
 
@@ -172,7 +162,11 @@ PROBLEMS = (
         "Free rocking on rigid ground",
         "The block is tilted, let go from rest, and rocks on rigid ground that does not move.",
         Scene(block=_block(0.25), start=Start(tilt=0.2), duration=4.0),
-        (WORD, *impacts(3, "time", "rate_before", "rate_after"), *states((1.5, 2.5, 4.0), "tilt", "tilt_rate")),
+        (
+            OTHERS["outcome"],
+            *asked((1, 2, 3), "time", "rate_before", "rate_after"),
+            *asked((1.5, 2.5, 4.0), "tilt", "tilt_rate"),
+        ),
     ),
     Problem(
         "free-sliding",
@@ -181,9 +175,9 @@ PROBLEMS = (
         "not move.",
         Scene(block=_block(0.2), base=BASE, start=Start(tilt=0.15), duration=4.0),
         (
-            WORD,
-            *impacts(3, "time", "rate_before", "rate_after", "base_velocity_jump"),
-            *states((1.0, 2.0), "tilt", "base_displacement"),
+            OTHERS["outcome"],
+            *asked((1, 2, 3), "time", "rate_before", "rate_after", "base_velocity_jump"),
+            *asked((1.0, 2.0), "tilt", "base_displacement"),
         ),
     ),
     Problem(
@@ -193,9 +187,9 @@ PROBLEMS = (
         "stocky to lift.",
         Scene(block=_block(0.35), base=BASE, bearings=RUBBER, motion=PulseMotion("one-sine", -3.0, 6.0), duration=4.0),
         (
-            WORD,
+            OTHERS["outcome"],
             OTHERS["peak_displacement"],
-            *states((0.75, 1.25, 1.5, 2.0, 2.25), "base_displacement", "bearing_force"),
+            *asked((0.75, 1.25, 1.5, 2.0, 2.25), "base_displacement", "bearing_force"),
         ),
     ),
     Problem(
@@ -204,15 +198,16 @@ PROBLEMS = (
         "Block and base start at rest on hysteretic bearings. The ground moves by one sine, and the block lifts.",
         Scene(block=_block(0.17), base=BASE, bearings=RUBBER, motion=PulseMotion("one-sine", -3.0, 8.0), duration=4.0),
         (
-            WORD,
+            OTHERS["outcome"],
             OTHERS["uplift"],
-            *impacts(2, "time", "rate_before", "rate_after", "base_velocity_jump"),
+            *asked((1, 2), "time", "rate_before", "rate_after", "base_velocity_jump"),
             OTHERS["peak_tilt"],
             OTHERS["peak_displacement"],
-            *states((0.5, 1.25), "tilt", "base_displacement", "bearing_force"),
+            *asked((0.5, 1.25), "tilt", "base_displacement", "bearing_force"),
         ),
     ),
-    *(_pulse(*words) for words in PULSES),
+    _pulse("pulse-below", "overturning is near", 3.14),
+    _pulse("pulse-above", "the amplitude is 5 % larger", 3.3),
     Problem(
         "record",
         "A recorded motion, linear bearings with a damper",
@@ -220,11 +215,11 @@ PROBLEMS = (
         "the file inputs/record.csv, linear between its samples.",
         Scene(block=_block(0.18), base=BASE, bearings=SPRINGS, motion=record(), duration=6.0),
         (
-            WORD,
+            OTHERS["outcome"],
             OTHERS["uplift"],
-            *impacts(1, "time", "rate_before", "rate_after", "base_velocity_jump"),
+            *asked((1,), "time", "rate_before", "rate_after", "base_velocity_jump"),
             OTHERS["peak_displacement"],
-            *states((3.0, 4.0, 5.0, 6.0), "tilt", "base_displacement", "bearing_force"),
+            *asked((3.0, 4.0, 5.0, 6.0), "tilt", "base_displacement", "bearing_force"),
         ),
     ),
     Problem(
@@ -236,12 +231,12 @@ PROBLEMS = (
             block=_block(0.45), start=Start(tilt=0.1), motion=PulseMotion("one-sine", 6.0, 6.5, start=2.0), duration=6.0
         ),
         (
-            WORD,
-            *impacts(3, "time"),
+            OTHERS["outcome"],
+            *asked((1, 2, 3), "time"),
             OTHERS["rest"],
             OTHERS["uplift"],
             OTHERS["peak_tilt"],
-            *states((2.4, 3.0), "tilt", "tilt_rate"),
+            *asked((2.4, 3.0), "tilt", "tilt_rate"),
         ),
     ),
 )

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pydantic import Field
 
@@ -22,7 +22,6 @@ from .problems import PROBLEMS, VERSION
 
 if TYPE_CHECKING:
     from .observed import Value
-    from .problems import Problem
 
 MATCHING = 1e-5  # largest error of answers against those of the mistake they come from
 WRONG = 1e-3  # error from which a cause is looked for: far beyond what `MATCHING` allows for
@@ -84,7 +83,7 @@ def score(given: Mapping[str, Mapping[str, Value]], tell: Callable[[str], object
     for problem in problems:
         tell(problem.name)
         right[problem.name] = solved(problem)
-        errors[problem.name] = error(problem, dict(given[problem.name]), right[problem.name])
+        errors[problem.name] = error(problem, given[problem.name], right[problem.name])
     causes, whole = _causes(problems, given, errors)
     table, stored = stored_errors()
     scenes = [
@@ -147,7 +146,6 @@ def _scene_score(problem, errors, cause, stored):
 def _causes(problems, given, errors):
     """({scene: `Mistake`} of wrong scenes whose cause is known, name of the one behind all that is wrong or None)."""
     wrong = [problem for problem in problems if _is_wrong(problem, errors[problem.name])]
-    sound = [problem for problem in problems if problem not in wrong]
     verdicts = {
         mistake: {problem.name: _verdict(mistake, problem, given[problem.name]) for problem in wrong}
         for mistake in MISTAKES
@@ -157,7 +155,9 @@ def _causes(problems, given, errors):
         for mistake, found in verdicts.items()
         if True in found.values()
         and False not in found.values()
-        and not any(_verdict(mistake, problem, given[problem.name]) is False for problem in sound)
+        and not any(
+            _verdict(mistake, problem, given[problem.name]) is False for problem in problems if problem not in wrong
+        )
     ]
     if len(whole) == 1:
         return {scene: whole[0] for scene, found in verdicts[whole[0]].items() if found}, whole[0].name
@@ -174,8 +174,5 @@ def _verdict(mistake, problem, given):
     """Whether a mistake explains the answers of a scene; None where it is not known what it would answer, or where it
     would answer all of that right."""
     forms = [form for form in mistake.answers(problem, given) if form]
-    return any(_matches(problem, given, form) for form in forms) if forms else None
-
-
-def _matches(problem: Problem, given: Mapping[str, Any], form: Mapping[str, Any]) -> bool:
-    return form.keys() >= given.keys() and max(error(problem, dict(given), dict(form)).values()) <= MATCHING
+    whole = [form for form in forms if form.keys() >= given.keys()]
+    return any(max(error(problem, given, form).values()) <= MATCHING for form in whole) if forms else None

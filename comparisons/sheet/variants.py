@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,13 +26,6 @@ REVERSALS = 200  # of the base in one run: more are a fault's chatter, which has
 TIGHTEST = 1e-13  # of the estimate of the answers' own error
 
 
-class Lossless(RockingModel):
-    """No impact at all: the block passes to its other corner as if nothing had happened."""
-
-    def impact(self, rate: Any) -> tuple[Any, Any]:
-        return rate, 0.0 * rate
-
-
 class Printed8(RockingModel):
     """Eq. (8) as printed: a factor R cos(gamma) too many."""
 
@@ -53,27 +46,22 @@ class Printed12(BearingLaw):
         return -(self.dk * (bracket**power - self.d0) / power + self.f0)
 
 
-def _as(kind, thing):
-    """A frozen dataclass as one of its subclasses."""
-    return kind(**{field.name: getattr(thing, field.name) for field in fields(thing)})
-
-
 @dataclass(frozen=True)
 class Fault:
     """What is wrong in a run.
 
-    lost: numbers of the impacts that do nothing, from 1 on. seen: whether these are noticed all the same. model: in
-    place of the equations, a subclass of `RockingModel`. inertia: factor on J_O in the equation of motion, and with
-    `restitution` in eq. (7). unloading: eq. (12) as printed. step [s]: impacts happen at its next multiple, and with
-    `smeared` the step that holds one is a Runge-Kutta step of fourth order across it, each stage on its own side.
+    lost: number of an impact that does nothing, from 1 on. seen: whether it is noticed all the same. printed_8,
+    printed_12: these equations as printed. inertia: factor on J_O in the equation of motion, and with `restitution` in
+    eq. (7). step [s]: impacts happen at its next multiple, and with `smeared` the step that holds one is a Runge-Kutta
+    step of fourth order across it, each stage on its own side.
     """
 
-    lost: tuple[int, ...] = ()
+    lost: int | None = None
     seen: bool = True
-    model: type[RockingModel] | None = None
+    printed_8: bool = False
+    printed_12: bool = False
     inertia: float = 1.0
     restitution: bool = True
-    unloading: bool = False
     step: float | None = None
     smeared: bool = False
 
@@ -86,20 +74,20 @@ class FaultyRun(Run):
         super().__init__(problem.scene, settings, history=False, energy=False)
         self.max_step = min(self.max_step, LONGEST)
         self.fault, model = fault, self.model
-        if fault.unloading:
-            self.law = _as(Printed12, self.law)
+        if fault.printed_12:
+            self.law = Printed12(**vars(self.law))
             model = replace(model, bearing=self.law)
         if fault.inertia != 1:
             inertia = fault.inertia * model.J
             e = 1 - 2 * model.m * (model.R * math.sin(model.gamma)) ** 2 / inertia  # (7), on rigid ground
             model = replace(model, J=inertia, restitution=max(e, 0.0) if fault.restitution else model.restitution)
-        self.model = self.right = model if fault.model is None else _as(fault.model, model)
-        self.lossless, self.reversals = _as(Lossless, model), 0
+        self.right, self.reversals = Printed8(**vars(model)) if fault.printed_8 else model, 0
+        self.model = self.right
 
     def answers(self, problem: Problem) -> dict[str, Value] | None:
         """The answers of the run, made now; None where it fails."""
         states: dict[float, State] = {}
-        for t in (*problem.times, float(problem.scene.duration or 0.0)):
+        for t in (*problem.times, problem.scene.end):
             self.scene = problem.scene.with_(duration=t)
             with np.errstate(all="ignore"):
                 if self.go():
@@ -107,9 +95,9 @@ class FaultyRun(Run):
             if self.overturning is not None:
                 break
             states[t] = self.state()
-        hidden = () if self.fault.seen else self.fault.lost
-        seen = tuple(impact for k, impact in enumerate(self.impacts, 1) if k not in hidden)
-        return answers_of(problem, replace(self.response(0.0, None), impacts=seen), states)
+        if self.fault.lost and not self.fault.seen:
+            del self.impacts[self.fault.lost - 1 : self.fault.lost]
+        return answers_of(problem, self.response(0.0, None), states)
 
     def at_reversal(self, ground: float) -> None:
         self.reversals += 1
@@ -118,7 +106,8 @@ class FaultyRun(Run):
         super().at_reversal(ground)
 
     def at_impact(self, ground: float) -> None:
-        self.model = self.lossless if len(self.impacts) + 1 in self.fault.lost else self.right
+        lost = len(self.impacts) + 1 == self.fault.lost  # without loss the base is not pushed
+        self.model = replace(self.right, restitution=1.0) if lost else self.right
         tilt = self._late() if self.fault.step else 0.0
         super().at_impact(ground)
         if self.side:

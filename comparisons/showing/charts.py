@@ -23,7 +23,9 @@ from engines import ENGINES
 
 from .parts import Figure, power_of_ten
 from .plots import OTHERS, marker
+from .templates import templates
 
+DRAWN = templates(Path(__file__).parent).get_template("chart.html")
 STYLE = Path(__file__).with_name("charts.css")  # colours of pages, light and dark, and the rules of charts
 WIDTH = 400
 LETTER = 13
@@ -122,17 +124,14 @@ class Chart:
         tone: str = "",
     ) -> None:
         """A line of one solver, or in a colour `tone`; points that are not finite part it."""
-        path, pen = [], False
-        last = None
-        for x, y in self.at(xs, ys):
-            if not (math.isfinite(x) and math.isfinite(y)):
-                pen = False
-                continue
-            place = (round(x, 1), round(y, 1))
-            if place != last:
-                path.append(f"{'L' if pen else 'M'}{place[0]:g} {place[1]:g}")
-            pen, last = True, place
-        self.parts.append(f'{_group(who, grey, tone)}<path class="line" d="{"".join(path)}"/></g>')
+        places = self.at(xs, ys).round(1)
+        new = np.append(True, (np.diff(places, axis=0) != 0).any(axis=1))[: len(places)]
+        places = places[new]
+        sound = np.isfinite(places).all(axis=1)
+        begins = sound & ~np.append(False, sound)[:-1]
+        pairs = zip(places[sound], begins[sound], strict=True)
+        path = "".join(f"{'M' if begin else 'L'}{x:g} {y:g}" for (x, y), begin in pairs)
+        self.parts.append(f'{_group(who, grey, tone)}<path class="line" d="{path}"/></g>')
 
     def dots(
         self,
@@ -234,59 +233,28 @@ class Chart:
 
     def svg(self) -> str:
         """The element."""
-        inside = self.right - self.left, self.bottom - self.top
         read = {"x": _read(self.x, self.left, self.right), "y": _read(self.y, self.bottom, self.top)}
-        title = f'<text class="title" x="{self.left}" y="17">{escape(self.title)}</text>' if self.title else ""
-        return (
-            f'<svg class="chart" viewBox="0 0 {WIDTH} {self.height}" role="img" aria-label="{escape(self.says)}" '
-            f"data-read='{escape(json.dumps(read, ensure_ascii=False))}'>{title}{self._axes()}"
-            f'<svg x="{self.left}" y="{self.top}" width="{inside[0]}" height="{inside[1]}" '
-            f'viewBox="{self.left} {self.top} {inside[0]} {inside[1]}">{"".join(self.parts)}</svg>'
-            f"{''.join(self.over)}{self._labels()}</svg>"
+        across, up = self.x.marks(), self.y.marks()
+        xs = self.at([value for value, _ in across], [self.y.low] * len(across))[:, 0].round(1).tolist()
+        ys = self.at([self.x.low] * len(up), [value for value, _ in up])[:, 1].round(1).tolist()
+        return DRAWN.render(
+            chart=self,
+            width=WIDTH,
+            read=json.dumps(read, ensure_ascii=False),
+            across=[(x, word) for x, (_, word) in zip(xs, across, strict=True)],
+            up=[(y, word) for y, (_, word) in zip(ys, up, strict=True)],
+            slanted=slanting([word for _, word in across], self.right - self.left),
+            labels=self._labels(),
         )
 
-    def _axes(self):
-        parts = [f'<path class="axis" d="M{self.left} {self.top}V{self.bottom}H{self.right}"/>']
-        marks = self.x.marks()
-        slanted = slanting([word for _, word in marks], self.right - self.left)
-        for value, word in marks:
-            x = self.at([value], [self.y.low])[0][0]
-            parts.append(f'<path class="grid" d="M{x:.1f} {self.top}V{self.bottom}"/>')
-            anchor = 'y="0" text-anchor="middle"' if not slanted else 'transform="rotate(-35)" text-anchor="end"'
-            parts.append(
-                f'<g transform="translate({x:.1f} {self.bottom + 17})">'
-                f'<text class="soft" {anchor}>{escape(word)}</text></g>'
-            )
-        for value, word in self.y.marks():
-            y = self.at([self.x.low], [value])[0][1]
-            parts.append(f'<path class="grid" d="M{self.left} {y:.1f}H{self.right}"/>')
-            parts.append(
-                f'<text class="soft" x="{self.left - 6}" y="{y + 4.5:.1f}" text-anchor="end">{escape(word)}</text>'
-            )
-        middle = (self.left + self.right) / 2, (self.top + self.bottom) / 2
-        if self.x.label:
-            parts.append(
-                f'<text x="{middle[0]:g}" y="{self.height - 8}" text-anchor="middle">{escape(self.x.label)}</text>'
-            )
-        if self.y.label:
-            parts.append(
-                f'<text transform="translate(13 {middle[1]:g})rotate(-90)" text-anchor="middle">'
-                f"{escape(self.y.label)}</text>"
-            )
-        return "".join(parts)
-
     def _labels(self):
-        """Names of lines, pushed apart."""
+        """(height, name, beginning of its group) of names of lines, pushed apart."""
         placed, last = [], -math.inf
         for y, text, who, tone in sorted(self.ends):
             last = max(y, last + LETTER + 2)
-            placed.append((last, text, who, tone))
-        over = max(0.0, (placed[-1][0] if placed else 0.0) - self.bottom)
-        return "".join(
-            f'{_group(who, False, tone)}<path class="line" d="M{self.right + 5} {y - over:.1f}h10"/>'
-            f'<text x="{self.right + 19}" y="{y - over + 4:.1f}">{escape(text)}</text></g>'
-            for y, text, who, tone in placed
-        )
+            placed.append((last, text, _group(who, False, tone)))
+        over = max(0.0, last - self.bottom)
+        return [(y - over, text, opening) for y, text, opening in placed]
 
 
 def slanting(words: Sequence[str], width: float) -> bool:
@@ -331,7 +299,6 @@ def figure(
         "".join(chart.svg() for chart in charts).encode(),
         " ".join(chart.says for chart in charts),
         caption,
-        wide=len(charts) > 1,
         solvers=tuple(dict.fromkeys(solvers)),
         keys={name: Markup(key) for name, key in (keys or {}).items()},
     )

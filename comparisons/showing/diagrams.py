@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from html import escape
 
+from markupsafe import Markup
+
 GAMMA, PHI, R = 0.36, 0.17, 118.0  # rad, rad, pixels: stockier than a statue, to be read
 ARROW = 46.0  # length of a force
 
@@ -59,9 +61,22 @@ class Drawing:
         (x0, y0), (x1, y1) = self.at(*ends[0]), self.at(*ends[1])
         self.parts.append(f'<path class="line" d="M{x0} {y0}A{radius} {radius} 0 0 {int(end > begin)} {x1} {y1}"/>')
 
-    def svg(self) -> str:
+    def block(
+        self, pivot: tuple[float, float], tilt: float, half: float, height: float, side: int = 1
+    ) -> list[tuple[float, float]]:
+        """A block turned clockwise by `tilt` [rad] about its right corner (side 1) or its left one (-1).
+
+        Returns its corners: those of the foot from left to right, then those of the top from right to left.
+        """
+        c, s = math.cos(tilt), math.sin(tilt)
+        corners = [(x - side * half, y) for x, y in ((-half, 0), (half, 0), (half, height), (-half, height))]
+        turned = [(pivot[0] + x * c + y * s, pivot[1] - x * s + y * c) for x, y in corners]
+        self.polygon(turned, "stone")
+        return turned
+
+    def svg(self) -> Markup:
         body = "".join(self.parts)
-        return (
+        return Markup(
             f'<svg viewBox="0 0 {self.width:g} {self.height:g}" role="img" aria-label="{escape(self.says)}" '
             f'stroke-width="1.6">{body}</svg>'
         )
@@ -70,20 +85,13 @@ class Drawing:
 def _block(drawing: Drawing, corner: tuple[float, float], tilt: float) -> tuple[float, float]:
     """The block, turned clockwise by `tilt` about its right corner; returns its centre."""
     b, h = R * math.sin(GAMMA), R * math.cos(GAMMA)
-
-    def turned(u, w):
-        dx = u - b
-        return corner[0] + dx * math.cos(tilt) + w * math.sin(tilt), corner[1] - dx * math.sin(tilt) + w * math.cos(
-            tilt
-        )
-
-    drawing.polygon([turned(*point) for point in ((-b, 0), (b, 0), (b, 2 * h), (-b, 2 * h))], "stone")
-    centre = turned(0, h)
+    left, _, above, _ = drawing.block(corner, tilt, b, 2 * h)
+    centre = (left[0] + above[0]) / 2, (left[1] + above[1]) / 2
     drawing.dot(centre)
     return centre
 
 
-def rocking() -> str:
+def rocking() -> Markup:
     """The block about its right corner, with all that acts on it."""
     drawing = Drawing(
         400, 330, 285, "A block tilted about its right corner: weight, inertia force and the corner’s forces"
@@ -104,7 +112,7 @@ def rocking() -> str:
     return drawing.svg()
 
 
-def impact() -> str:
+def impact() -> Markup:
     """The instant of impact: the old corner leaves, the impulse acts at the new one."""
     drawing = Drawing(400, 330, 275, "The block upright at the impact: the impulse acts at the new corner on the left")
     b, h = R * math.sin(GAMMA), R * math.cos(GAMMA)
@@ -127,7 +135,7 @@ def impact() -> str:
     return drawing.svg()
 
 
-def isolated() -> str:
+def isolated() -> Markup:
     """The block on its base: what passes between them, and the bearings' force."""
     drawing = Drawing(400, 370, 330, "The block on a base that moves by x; the bearings push back")
     slab = 62.0

@@ -22,7 +22,7 @@ from .parts import Figure
 from .rows import Column, Key, Row, grouped, value_of
 
 # Of the first, second, ... series of one engine; all have the engine's colour, dashes and shape of marks.
-LOOKS: tuple[dict[str, bool], ...] = (
+LOOKS: tuple[dict[str, Any], ...] = (
     {"filled": True, "small": False},
     {"filled": False, "small": False},
     {"filled": True, "small": True},
@@ -88,7 +88,8 @@ def lines(
     coloured = list(grouped((row for row in kept if not grey(row)), "engine", name))
     # of all rows: a series looks the same where another of its engine's has nothing to draw
     ranked = grouped([*like, *(row for row in rows if not grey(row))], "engine", name)
-    looks = {who: LOOKS[rank % len(LOOKS)] for (_, who), rank in _ranks(ranked)}
+    engines = grouped(ranked, lambda pair: pair[0]).values()
+    looks = {who: LOOKS[rank % len(LOOKS)] for pairs in engines for rank, (_, who) in enumerate(pairs)}
     panels = grouped(kept, panel)
     ends = joined and len({engine for engine, _ in coloured}) == len(coloured)
     charts = []
@@ -133,19 +134,11 @@ def beside(*figures: Figure | None) -> Figure | None:
     svg, alt = b"".join(one.svg for one in found), " ".join(one.alt for one in found)
     caption = " ".join(dict.fromkeys(one.caption.removesuffix(MOVED) for one in found))
     moved = MOVED if any(one.caption.endswith(MOVED) for one in found) else ""
-    return Figure(svg, alt, caption + moved, True, tuple(keys), keys)
+    return Figure(svg, alt, caption + moved, tuple(keys), keys)
 
 
 def _drawn(value: Any, log: bool) -> bool:
     return value is not None and math.isfinite(value) and (value > 0 or not log)
-
-
-def _ranks(pairs):
-    """(pair, which of its engine's it is) of (engine, name)."""
-    seen: dict[str, int] = {}
-    for pair in pairs:
-        seen[pair[0]] = seen.get(pair[0], -1) + 1
-        yield pair, seen[pair[0]]
 
 
 def _linear_axis(label, values):

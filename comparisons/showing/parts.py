@@ -2,27 +2,13 @@
 
 from __future__ import annotations
 
-import io
 import math
 import re
 from dataclasses import dataclass, field, replace
-from html import escape
-from typing import TYPE_CHECKING, Any
 
-import matplotlib
 from markupsafe import Markup
-from matplotlib.backends.backend_svg import FigureCanvasSVG
-from matplotlib.ticker import FuncFormatter, LogFormatter, NullLocator
-
-if TYPE_CHECKING:
-    import matplotlib.figure
 
 MINUS_DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-# Text as text, to search and to scale. The salt makes equal figures equal bytes; the caption keeps parts' names apart.
-SVG: Any = {"svg.fonttype": "none"}  # keys of matplotlib, a type of its own
-SALT = "rocking"
-# Greys up to a lightness [0 to 255] take a colour of the page, light or dark.
-GREYS = ((110, "currentColor"), (190, "var(--soft)"), (245, "var(--grid)"), (255, "var(--paper)"))
 
 
 @dataclass(frozen=True)
@@ -38,14 +24,13 @@ class Table:
 class Figure:
     """svg: the picture. alt: what it shows, for those who cannot see it. caption: what to look at.
 
-    wide: it takes the whole width of the page. solvers: those whose lines can be told apart and hidden; keys: {one of
-    them: the picture of its line}, where it is not as everywhere.
+    solvers: those whose lines can be told apart and hidden; keys: {one of them: the picture of its line}, where it is
+    not as everywhere.
     """
 
     svg: bytes
     alt: str
     caption: str
-    wide: bool = False
     solvers: tuple = ()
     keys: dict = field(default_factory=dict)
 
@@ -150,49 +135,9 @@ class Page:
         return Section(self.title, self.lead, tables, figures, measured=self.how, parts=parts)
 
 
-# Width [inch] from which a figure would be unreadable in half of the page.
-WIDE = 7.0
-
-
-def figure_of(figure: matplotlib.figure.Figure, alt: str, caption: str) -> Figure:
-    """The `Figure` of a matplotlib figure, in the colours of its page."""
-    _plain_powers(figure)
-    file = io.BytesIO()
-    with matplotlib.rc_context({**SVG, "svg.hashsalt": SALT + caption}):
-        _lay_out(figure)
-        figure.savefig(file, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
-    wide = figure.get_size_inches()[0] > WIDE
-    return Figure(_inline(file.getvalue().decode(), alt).encode(), alt, caption, wide)
-
-
-def _lay_out(figure):
-    """Places all parts now: to do it while saving, matplotlib draws everything once more than is written."""
-    FigureCanvasSVG(figure)  # whose letters it measures
-    if engine := figure.get_layout_engine():
-        engine.execute(figure)
-        figure.set_layout_engine(None)
-
-
-def _plain_powers(figure):
-    """Powers of ten of logarithmic axes as plain text: mathematics takes most of the time of drawing."""
-    for axes in figure.axes:
-        for axis in (axes.xaxis, axes.yaxis):
-            if axis.get_scale() == "log" and isinstance(axis.get_major_formatter(), LogFormatter):
-                axis.set_major_formatter(FuncFormatter(lambda value, _: power_of_ten(value)))
-                axis.set_minor_locator(NullLocator())
-
-
 def power_of_ten(value: float) -> str:
     """A power of ten in plain letters."""
     return f"10{str(round(math.log10(value))).translate(MINUS_DIGITS)}" if value > 0 else "0"
-
-
-def _inline(text, alt):
-    """An SVG file of matplotlib as an element: no header, no names that nothing refers to, greys of the page."""
-    text = element_of(text, f'class="drawn" role="img" aria-label="{escape(alt)}"')
-    named = set(re.findall(r"#([\w.-]+)", text))
-    text = re.sub(r' id="([^"]+)"', lambda found: found[0] if found[1] in named else "", text)
-    return re.sub(r"#([0-9a-f]{2})\1\1\b", _grey, text)
 
 
 def element_of(text: str, attributes: str) -> str:
@@ -202,11 +147,6 @@ def element_of(text: str, attributes: str) -> str:
     text = re.sub(opening, lambda found: f'<svg {attributes} viewBox="{found[1]}">', text, count=1)
     text = re.sub(r"(\d+\.\d{2})\d+", r"\1", text)  # a hundredth of a point is enough
     return re.sub(r"\s*\n\s*", " ", text)
-
-
-def _grey(found):
-    lightness = int(found[1], 16)
-    return next(colour for most, colour in GREYS if lightness <= most)
 
 
 def number(value: float | None, digits: int = 3) -> str:
@@ -233,3 +173,8 @@ def short(value: float | None) -> str:
 def percent(fraction: float | None, digits: int = 2) -> str:
     """A fraction in per cent."""
     return "–" if fraction is None else f"{number(100 * fraction, digits)} %"
+
+
+def signed(change: float) -> str:
+    """A relative change in words."""
+    return "as it is" if change == 0 else f"{'+' if change > 0 else '−'}{number(abs(100 * change), 3)} %"

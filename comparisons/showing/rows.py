@@ -16,7 +16,7 @@ from typing import Any
 from .parts import Table, number, percent, short
 
 Row = Mapping[str, Any]
-Key = str | Callable[[Row], Any]
+Key = str | Callable[[Any], Any]
 UNITS = {"stiffness": "N/m", "step": "s", "largest_step": "s"}  # of accuracy parameters
 
 
@@ -33,7 +33,7 @@ def where(rows: Iterable[Row], **wanted: Any) -> list[Any]:
     return [row for row in rows if all(chosen(row, key, value) for key, value in wanted.items())]
 
 
-def grouped(rows: Iterable[Row], *keys: Key) -> dict[tuple[Any, ...], list[Any]]:
+def grouped(rows: Iterable[Any], *keys: Key) -> dict[tuple[Any, ...], list[Any]]:
     """{values of the keys: their rows}, in the order in which they come; a key is a column or a function of a row.
 
     >>> grouped([{"x": 2, "y": 1}, {"x": 1, "y": 2}, {"x": 2, "y": 3}], "x")
@@ -115,6 +115,13 @@ def table(caption: str, rows: Iterable[Row], *columns: Column) -> Table:
     return Table(
         caption, tuple(column.head for column in columns), [[column.text(row) for column in columns] for row in rows]
     )
+
+
+def across(caption: str, rows: Iterable[Row], name: Column, *columns: Column) -> Table:
+    """The `Table` with a column for each of these rows, named by `name`, and a row for each of the `columns`."""
+    rows = list(rows)
+    cells = [[column.head, *map(column.text, rows)] for column in columns]
+    return Table(caption, (name.head, *map(name.text, rows)), cells)
 
 
 def setting_of(row: Row) -> str:

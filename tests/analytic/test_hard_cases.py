@@ -1,12 +1,13 @@
 """The hard cases that have broken real integrators, by name: each must end right, or say why not."""
 
 import math
+from dataclasses import astuple
 from functools import partial
 
 import numpy as np
 import pytest
 
-from analytic import Base, Block, PulseMotion, SampledMotion, Scene, Start, simulate
+from analytic import Base, Block, SampledMotion, Scene, Start, simulate
 from analytic.caryatid import BASE, caryatid_block
 from analytic.caryatid import BEARINGS as LRB
 from analytic.polynomial import BISECTIONS, MAX_ORDER, first_root
@@ -29,110 +30,62 @@ def sampled(values, dt=0.01):
 def sound(response):
     """Finite, not failed, and energy neither made nor lost unaccounted."""
     assert response.outcome != "failed", response.failure
-    values = [getattr(response.end, name) for name in ("tilt", "tilt_rate", "base_displacement", "base_velocity")]
-    assert np.isfinite(values).all()
     energy = response.energy
+    assert np.isfinite([*astuple(response.end), *astuple(energy)]).all()
     turnover = max(abs(energy.input), abs(energy.kinetic), abs(energy.potential), energy.impact_loss, 1e-12)
-    assert abs(energy.imbalance) <= 1e-8 * turnover
-    assert energy.impact_loss >= -1e-12 * turnover
+    assert abs(energy.imbalance) <= 1e-8 * turnover and energy.impact_loss >= -1e-12 * turnover
     return response
-
-
-def test_zeno_decay_comes_to_rest_and_stays_above_the_floor():
-    response = sound(simulate(Scene(block=BLOCK, start=Start(tilt=0.6 * GAMMA), duration=30.0)))
-    assert len(response.rests) == 1
-    assert response.end.tilt == 0.0 == response.end.tilt_rate
-    # every swing lies on its own side: impacts alternate in direction, none is lost
-    directions = [math.copysign(1, impact.rate_before) for impact in response.impacts]
-    assert all(a == -b for a, b in zip(directions, directions[1:], strict=False))
-    rates = np.abs([impact.rate_before for impact in response.impacts])
-    after = np.abs([impact.rate_after for impact in response.impacts])
-    assert rates[1:] == pytest.approx(after[:-1], rel=1e-9)  # energy is conserved in flight
-
-
-def test_trivial_root_just_after_an_impact_is_not_an_impact():
-    work = np.empty((BISECTIONS + 2, MAX_ORDER + 1))
-    # phi = w t - q t^2/2: the root at 0 is the impact just left, the next lies at 2 w/q
-    hop = np.zeros(MAX_ORDER + 2)
-    hop[1], hop[2] = 1e-9, -0.5
-    assert first_root(hop, 8, 1.0, work) == pytest.approx(2e-9, rel=1e-14)
-    # a third-order onset that turns back
-    onset = np.zeros(MAX_ORDER + 2)
-    onset[3], onset[4] = 1.0, -4.0
-    assert first_root(onset, 8, 1.0, work) == pytest.approx(0.25, rel=1e-14)
 
 
 @SOLVERS
 def test_rest_inside_a_motion_lifts_again(solve):
-    quiet = np.zeros(1500)
-    t = np.arange(200) * 0.01
-    burst = 1.3 * THRESHOLD * np.sin(2 * np.pi * 2 * t)
-    response = sound(
-        solve(Scene(block=BLOCK, motion=sampled(np.concatenate([burst, quiet, burst, quiet])), duration=40.0))
-    )
-    assert len(response.uplifts) >= 2
-    assert len(response.rests) >= 2
+    burst = [*1.3 * THRESHOLD * np.sin(2 * np.pi * 2 * np.arange(200) * 0.01), *np.zeros(1500)]
+    response = sound(solve(Scene(block=BLOCK, motion=sampled(burst + burst), duration=40.0)))
+    assert len(response.uplifts) >= 2 and len(response.rests) >= 2
     assert response.uplifts[-1] > 17.0 > response.rests[0]
 
 
-def test_third_order_onset_takes_its_side_from_the_acceleration():
-    for sign in (1.0, -1.0):
-        ramp = sign * np.linspace(0.9, 1.2, 101) * THRESHOLD
-        response = sound(simulate(Scene(block=BLOCK, motion=sampled(ramp), duration=0.6), output_step=1e-3))
-        time, tilt = response.history.time, response.history.tilt
-        uplift = response.uplifts[0]
-        assert uplift == pytest.approx(1.0 / 3, abs=1e-9)
-        # phi'' = -s p^2 slope (t - t_u)/g cos: phi grows with the third power, against the acceleration
-        p2 = 0.75 * G
-        slope = 0.3 * THRESHOLD
-        later = time > uplift + 0.02
-        predicted = -sign * p2 * slope / G * math.cos(GAMMA) * (time[later] - uplift) ** 3 / 6
-        assert tilt[later][0] == pytest.approx(predicted[0], rel=0.02)
-
-
-def test_several_crossings_within_one_step_are_all_found():
-    work = np.empty((BISECTIONS + 2, MAX_ORDER + 1))
-    roots = np.array([0.11, 0.12, 0.5, 0.500001, 0.93])
-    f = np.zeros(MAX_ORDER + 2)
-    f[: len(roots) + 1] = -np.polynomial.polynomial.polyfromroots(roots)  # positive at 0
-    assert f[0] > 0
-    found, start = [], 0.0
-    while True:
-        shifted = np.zeros_like(f)
-        taylor = np.polynomial.Polynomial(f[: len(roots) + 1])(np.polynomial.Polynomial([start, 1.0])).coef
-        shifted[: len(taylor)] = taylor if found and len(found) % 2 == 0 or not found else -taylor
-        if found:
-            shifted[0] = 0.0
-        root = first_root(shifted, len(roots), 1.0 - start, work)
-        if root < 0:
-            break
-        start += root
-        found.append(start)
-    assert found == pytest.approx(roots, abs=1e-8)
-
-
-def test_double_touch_without_crossing_is_no_event():
-    work = np.empty((BISECTIONS + 2, MAX_ORDER + 1))
-    f = np.zeros(MAX_ORDER + 2)
-    f[:3] = 0.25, -1.0, 1.0  # (t - 1/2)^2
-    assert first_root(f, 2, 1.0, work) == -1.0
-
-
 @SOLVERS
-def test_uplift_just_below_and_above_the_threshold(solve):
-    below = Scene(block=BLOCK, motion=PulseMotion("one-sine", 0.99 * THRESHOLD, 3.0), duration=5.0)
-    assert sound(solve(below)).outcome == "stands"
-    above = sound(solve(below.with_(motion=PulseMotion("one-sine", 1.01 * THRESHOLD, 3.0))))
-    assert above.outcome == "rocks"
-    assert above.uplifts[0] == pytest.approx(math.asin(1 / 1.01) / 3.0, abs=1e-12)
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_third_order_onset_takes_its_side_from_the_acceleration(solve, sign):
+    """phi = -s p^2 cos(gamma) a' t^3/(6 g) after the uplift: against the acceleration, with the third power of time."""
+    ramp = SampledMotion(0.01, sign * np.linspace(0.9, 1.2, 101) * THRESHOLD)
+    for after in (0.01, 0.02):
+        response = sound(solve(Scene(block=BLOCK, motion=ramp, duration=1 / 3 + after)))
+        assert response.uplifts == (pytest.approx(1 / 3, abs=1e-9),)
+        predicted = -sign * 0.75 * math.cos(GAMMA) * 0.3 * THRESHOLD * after**3 / 6
+        assert response.end.tilt == pytest.approx(predicted, rel=5e-3)
 
 
-def test_grazing_the_threshold_exactly():
-    # the peak touches the threshold at a sample and turns back: nothing may loop
-    triangle = np.concatenate([np.linspace(0, THRESHOLD, 50), np.linspace(THRESHOLD, 0, 50)[1:]])
-    assert sound(simulate(Scene(block=BLOCK, motion=sampled(triangle), duration=3.0))).outcome == "stands"
-    plateau = np.full(300, THRESHOLD)
-    assert sound(simulate(Scene(block=BLOCK, motion=sampled(plateau), duration=5.0))).outcome == "stands"
+POLYNOMIALS = {  # order of the lowest power, roots in ascending order: positive between the first power's 0 and a root
+    "five within one step": (0, [0.11, 0.12, 0.5, 0.500001, 0.93], 1e-8),
+    "just after an impact": (1, [2e-9], 1e-14),
+    "third-order onset that turns back": (3, [0.25], 1e-14),
+    "a touch is none": (0, [], 1e-14),
+}
+
+
+@pytest.mark.parametrize(("lowest", "roots", "accuracy"), POLYNOMIALS.values(), ids=POLYNOMIALS)
+def test_every_crossing_within_a_step_is_found_and_not_the_trivial_root(lowest, roots, accuracy):
+    work = np.empty((BISECTIONS + 2, MAX_ORDER + 1))
+    for k in range(max(len(roots), 1)):
+        start = roots[k - 1] if k else 0.0
+        left = np.array(roots[k:]) - start  # what is left after k crossings, from the last one on
+        f = np.zeros(MAX_ORDER + 2)
+        shape = np.polynomial.polynomial.polyfromroots(left if roots else [0.5, 0.5])
+        power = lowest or min(k, 1)
+        f[power : power + len(shape)] = shape * np.sign(shape[0])
+        found = first_root(f, power + len(shape) - 1, 1.0 - start, work)
+        assert found == pytest.approx(left[0] if roots else -1.0, rel=accuracy)
+
+
+RAMP = np.linspace(0, THRESHOLD, 50)
+
+
+@pytest.mark.parametrize("samples", [[*RAMP, *RAMP[-2::-1]], np.full(300, THRESHOLD)], ids=["peak", "plateau"])
+def test_grazing_the_threshold_exactly(samples):
+    # the motion touches the threshold at a sample and turns back: nothing may loop
+    assert sound(simulate(Scene(block=BLOCK, motion=sampled(samples), duration=5.0))).outcome == "stands"
 
 
 @SOLVERS
@@ -146,25 +99,10 @@ def test_flat_drop_lands_and_stays(solve):
         duration=5.0,
     )
     response = sound(solve(scene))
-    assert RockingModel.of(scene).restitution == 0.0
-    assert response.impact_count == 1
-    assert response.impacts[0].rate_after == 0.0
-    assert response.rests == (response.impacts[0].time,)
-    momentum = scene.mass_share * scene.block.half_height * response.impacts[0].rate_before
-    assert response.impacts[0].base_velocity_jump == pytest.approx(momentum, rel=1e-14)
-
-
-@pytest.mark.parametrize("share", [1e-9, -1e-9])
-def test_near_critical_start_from_both_sides(share):
-    scene = Scene(block=BLOCK, start=Start(tilt=GAMMA * (1 + share)), duration=60.0)
-    response = sound(simulate(scene))
-    assert response.outcome == ("overturns" if share > 0 else "rocks")
-
-
-def test_bearing_driven_beyond_the_literal_formula():
-    scene = ISOLATED.with_(start=Start(base_velocity=8.0), block={"slenderness": 0.6}, duration=6.0)
-    response = sound(simulate(scene))
-    assert response.peak_base_displacement > 1.34
+    (impact,) = response.impacts
+    assert RockingModel.of(scene).restitution == impact.rate_after == 0.0 and response.rests == (impact.time,)
+    momentum = scene.mass_share * scene.block.half_height * impact.rate_before
+    assert impact.base_velocity_jump == pytest.approx(momentum, rel=1e-14)
 
 
 @pytest.mark.parametrize("amplitude", [1e-3, 1e-6, 1e-9, 1e-13])
@@ -180,17 +118,8 @@ def test_tiny_reversals(amplitude):
 def test_given_restitution_from_plastic_to_elastic(e):
     scene = Scene(block=BLOCK.model_copy(update={"restitution": e}), start=Start(tilt=0.1), duration=20.0)
     response = sound(simulate(scene))
-    if e == 1.0:
-        assert response.energy.impact_loss == 0.0
-        assert response.peak_tilt == pytest.approx(0.1, rel=1e-9)
-    if e == 0.0:
-        assert response.impact_count == 1
-
-
-def test_elastic_block_with_hardly_any_energy_ends():
-    # 1e12 bounces would follow; they are below what rest means
-    scene = Scene(block=BLOCK.model_copy(update={"restitution": 1.0}), start=Start(tilt_rate=1e-10), duration=20.0)
-    assert simulate(scene).impact_count < 10
+    assert response.peak_tilt == pytest.approx(0.1, rel=1e-9)
+    assert (response.energy.impact_loss == 0) == (e == 1) and (response.impact_count == 1) == (e == 0)
 
 
 @pytest.mark.parametrize("dt", [1e-4, 0.05, 0.5])
@@ -204,43 +133,8 @@ def test_sampling_from_fine_to_coarse(dt):
     assert one.peak_base_displacement == pytest.approx(other.peak_base_displacement, rel=1e-4)
 
 
-def test_ten_minutes_at_rest_under_weak_shaking():
-    t = np.arange(60000) * 0.01
-    motion = sampled(0.3 * np.sin(2 * np.pi * 1.3 * t))
-    rigid = sound(simulate(Scene(block=BLOCK, motion=motion, duration=600.0)))
-    assert rigid.outcome == "stands"
-    assert rigid.peak_tilt == 0.0
-    assert sound(simulate(ISOLATED.with_(motion=motion, duration=600.0))).outcome == "stands"
-
-
-TIMES = np.arange(10000) * 0.01
-GAPS = sampled((2.5 * np.sin(2 * np.pi * TIMES) * (np.sin(2 * np.pi * 0.2 * TIMES) > 0.3))[:1000])
-PULSES = sampled(1.5 * THRESHOLD * np.sin(2 * np.pi * TIMES) * (TIMES % 5 < 2))
-RELEASED = ISOLATED.with_(start=Start(tilt=0.1))
-SOUND = {
-    f"base of {ratio:g} blocks, {name}": RELEASED.with_(base=Base(mass=CARYATID.mass * ratio), bearings=bearings)
-    for ratio in (1e-6, 1e-4, 1e3, 1e9)
-    for name, bearings in (("on bearings", LRB), ("sliding", None))
-}
-SOUND |= {
-    f"bearings of {change}": RELEASED.with_(bearings=change, motion=PulseMotion("one-sine", 3.0, 6.0))
-    for change in ({"alpha": 1.5}, {"alpha": 1.05}, {"alpha": 200.0}, {"ka": 6.22e3 * 1.0001})
-}
-SOUND |= {
-    "gaps of zeros, on bearings": ISOLATED.with_(motion=GAPS, block={"slenderness": 0.15}),
-    "gaps of zeros, rigid ground": Scene(block=BLOCK, motion=GAPS, duration=15.0),
-    "pulses in a row": Scene(block=Block(mass=1.0, radius=5.0, slenderness=GAMMA), motion=PULSES, duration=120.0),
-}
-
-
-@pytest.mark.parametrize("scene", SOUND.values(), ids=SOUND)
-def test_scenes_far_from_the_usual_ones_are_sound(scene):
-    sound(simulate(scene))
-
-
-def test_motion_longer_than_the_run_and_shorter():
-    motion = sampled(np.sin(np.arange(1000) * 0.06))
-    short = simulate(ISOLATED.with_(motion=motion, duration=3.3333))
-    assert short.end.time == 3.3333
-    long = simulate(ISOLATED.with_(motion=motion, duration=33.0))
-    assert long.end.time == 33.0
+@pytest.mark.parametrize("scene", [Scene(block=BLOCK), ISOLATED], ids=["rigid", "isolated"])
+def test_ten_minutes_at_rest_under_weak_shaking(scene):
+    motion = sampled(0.3 * np.sin(2 * np.pi * 1.3 * np.arange(60000) * 0.01))
+    response = sound(simulate(scene.with_(motion=motion, duration=600.0)))
+    assert (response.outcome, response.peak_tilt) == ("stands", 0.0)

@@ -19,21 +19,19 @@ def test_long_step_gives_the_overshoot_of_a_damped_oscillator():
     assert (displacement_spectrum(step, periods, ratios)[0] >= overshoot[0] * (1 - 1e-12)).all()
 
 
-def test_rectangular_pulse_undamped():
-    # after a pulse of length t1 the free vibration has amplitude 2 a/w^2 |sin(w t1/2)|; during it 2 a/w^2 at most
-    w, a = 2.0, 1.5
-    for t1 in (0.3, 1.0):  # both shorter than half a period: the peak lies in the free vibration
-        pulse = PulseMotion("rectangular", a, math.pi / t1)
-        exact = 2 * a / w**2 * math.sin(w * t1 / 2)
-        assert displacement_spectrum(pulse, [2 * math.pi / w], [0.0])[0, 0] == pytest.approx(exact, rel=1e-12)
-
-
-def test_resonant_sine_grows_linearly():
-    # x = -(a/2w^2)(sin u - u cos u), u = w t: after one full turn free vibration of amplitude pi a/w^2
-    w, a = 3.0, 1.0
-    pulse = PulseMotion("one-sine", a, w)
-    peak = displacement_spectrum(pulse, [2 * math.pi / w], [0.0])[0, 0]
-    assert peak == pytest.approx(math.pi * a / w**2, rel=1e-6)
+@pytest.mark.parametrize(
+    "shape, frequency, w, response",
+    [
+        # after a pulse of length t1 the free vibration has amplitude 2 a/w^2 |sin(w t1/2)|; during it 2 a/w^2 at most
+        ("rectangular", math.pi / 0.3, 2.0, 2 * math.sin(0.3)),
+        ("rectangular", math.pi, 2.0, 2 * math.sin(1.0)),
+        # x = -(a/2w^2)(sin u - u cos u), u = w t: after one full turn free vibration of amplitude pi a/w^2
+        ("one-sine", 3.0, 3.0, math.pi),
+    ],
+)
+def test_undamped_under_a_pulse(shape, frequency, w, response):
+    peak = displacement_spectrum(PulseMotion(shape, 1.5, frequency), [2 * math.pi / w], [0.0])[0, 0]
+    assert peak == pytest.approx(response * 1.5 / w**2, rel=1e-12 if shape == "rectangular" else 1e-6)
 
 
 def test_agrees_with_scipy_on_noise():
@@ -60,17 +58,6 @@ def test_shape_scale_and_mirror():
     assert spectrum.shape == (3, 17)
     np.testing.assert_array_equal(displacement_spectrum(motion, periods, ratios, scale=-1.0), spectrum)
     np.testing.assert_array_equal(displacement_spectrum(motion, periods, ratios, scale=2.0), 2 * spectrum)
-
-
-def test_very_stiff_follows_the_acceleration_and_very_soft_the_ground():
-    t = np.linspace(0, 4, 4001)
-    motion = SampledMotion(0.001, np.sin(2 * math.pi * t / 4) ** 2)
-    w = 2 * math.pi / 0.02
-    assert displacement_spectrum(motion, [0.02], [0.05])[0, 0] == pytest.approx(1 / w**2, rel=1e-3)
-    velocity = np.concatenate([[0], np.cumsum((motion.samples[1:] + motion.samples[:-1]) / 2 * 0.001)])
-    # omega -> 0: free flight at the final ground velocity, turned after a quarter period at v/omega
-    soft = displacement_spectrum(motion, [1e4], [0.0])[0, 0]
-    assert soft == pytest.approx(velocity[-1] * 1e4 / (2 * math.pi), rel=1e-3)
 
 
 @pytest.mark.parametrize(("periods", "ratios"), [([0.0], [0.1]), ([math.nan], [0.1]), ([1.0], [1.0]), ([1.0], [-0.1])])

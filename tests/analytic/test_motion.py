@@ -2,6 +2,8 @@
 
 import math
 import pickle
+import re
+from dataclasses import replace
 
 import numba
 import numpy as np
@@ -30,17 +32,28 @@ def test_samples_are_kept_read_only_and_apart_from_the_callers():
     mine = np.array([1.0, 2.0])
     motion = SampledMotion(0.1, mine)
     mine[0] = 9
-    assert motion.samples[0] == 1.0
-    with pytest.raises(ValueError):
-        motion.samples[0] = 9
+    assert motion.samples[0] == 1.0 and not motion.samples.flags.writeable
 
 
-def test_scaled_and_digest():
-    motion = SampledMotion(0.1, [1.0, -2.0], "a")
-    assert motion.scaled(-2).samples.tolist() == [-2.0, 4.0]
-    assert motion.digest() == SampledMotion(0.1, [1.0, -2.0], "b").digest()
-    assert motion.digest() != SampledMotion(0.1, [1.0, np.nextafter(-2.0, 0)]).digest()
-    assert motion.digest() != SampledMotion(0.2, [1.0, -2.0]).digest()
+@pytest.mark.parametrize(
+    "motion",
+    [
+        SampledMotion(0.1, [1.0, -2.0], vertical=SampledMotion(0.1, [0.5, 0.3])),
+        PulseMotion("one-sine", 4.0, 5.0, vertical=PulseMotion("one-sine", 2.0, 5.0, phase=1.0)),
+    ],
+)
+def test_scaled_takes_both_and_digests_tell_them_apart(motion):
+    up, twice, bare, times = motion.vertical, motion.scaled(-2), replace(motion, vertical=None), np.linspace(0, 0.1, 50)
+    np.testing.assert_array_equal(twice.acceleration(times), -2 * motion.acceleration(times))
+    np.testing.assert_array_equal(twice.vertical.acceleration(times), -2 * up.acceleration(times))
+    assert len({motion.digest(), twice.digest(), bare.digest(), up.digest()}) == 4
+    assert replace(bare, vertical=up).digest() == motion.digest()
+
+
+def test_a_digest_is_of_the_samples_and_their_step():
+    one, other = SampledMotion(0.1, [1.0, -2.0], "a"), SampledMotion(0.1, [1.0, np.nextafter(-2.0, 0)])
+    assert one.digest() == SampledMotion(0.1, [1.0, -2.0], "b").digest()
+    assert len({one.digest(), other.digest(), SampledMotion(0.2, [1.0, -2.0]).digest()}) == 3
 
 
 @pytest.mark.parametrize(
@@ -58,9 +71,8 @@ def test_scaled_and_digest():
     ],
 )
 def test_bad_samples(dt, samples, message):
-    with pytest.raises(SceneError) as caught:
+    with pytest.raises(SceneError, match=re.escape(message)):
         SampledMotion(dt, samples)
-    assert message in str(caught.value)
 
 
 @pytest.mark.parametrize("shape", PULSES)
@@ -70,9 +82,6 @@ def test_pulse_is_zero_outside_and_peaks_where_it_says(shape):
     assert pulse.acceleration(pulse.peak_time) == pytest.approx(-2.0, rel=1e-12)
     times = np.linspace(1.5, pulse.end, 20001)
     assert np.abs(pulse.acceleration(times)).max() == pytest.approx(pulse.peak, rel=1e-6)
-    twice = pulse.scaled(-2)
-    np.testing.assert_array_equal(twice.acceleration(times), -2 * pulse.acceleration(times))
-    assert twice.digest() != pulse.digest()
 
 
 @pytest.mark.parametrize(
@@ -92,11 +101,6 @@ def test_velocity_gained_in_a_pulse(shape, gain):
     assert gained == pytest.approx(gain / 2.0, abs=1e-9)
 
 
-def test_ricker_ends_below_rounding():
-    pulse = PulseMotion("ricker", 1.0, 2.0)
-    assert abs(pulse.acceleration(0.0)) < 1e-15
-
-
 @pytest.mark.parametrize(
     "arguments, message",
     [
@@ -110,9 +114,8 @@ def test_ricker_ends_below_rounding():
     ],
 )
 def test_bad_pulse(arguments, message):
-    with pytest.raises(SceneError) as caught:
+    with pytest.raises(SceneError, match=re.escape(message)):
         PulseMotion(*arguments)
-    assert message in str(caught.value)
 
 
 def test_jumps_are_where_the_acceleration_jumps():
@@ -121,5 +124,4 @@ def test_jumps_are_where_the_acceleration_jumps():
         for time in (pulse.start, pulse.end):
             change = abs(pulse.acceleration(time + 1e-9) - pulse.acceleration(time - 1e-9))
             assert (time in pulse.jumps) == (change > 0.1)
-    assert PulseMotion("rectangular", 1.0, 5.0).jumps == (PulseMotion("rectangular", 1.0, 5.0).end,)
     assert SampledMotion(0.1, [0.0, 1.0, 0.5]).jumps == (0.2,) and SampledMotion(0.1, [1.0, 1.0, 0.0]).jumps == ()

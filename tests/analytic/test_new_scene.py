@@ -25,9 +25,8 @@ def test_the_file_reads_back_as_what_was_asked_for(tmp_path):
     text = scene_text(
         'bust "of" a man', block, base=Base(mass=400.0), bearings=BEARINGS, tilt=0.1, friction=0.6, about=("first",)
     )
-    path = tmp_path / "bust.toml"
-    path.write_text(text, encoding="utf-8")
-    scene = load_scene(path)
+    (tmp_path / "bust.toml").write_text(text, encoding="utf-8")
+    scene = load_scene(tmp_path / "bust.toml")
     assert scene.name == 'bust "of" a man' and scene.friction == 0.6 and scene.start.tilt == 0.1
     assert scene.bearings == BEARINGS and scene.base.mass == 400.0
     assert scene.block.radius == pytest.approx(block.radius, rel=1e-5)
@@ -37,14 +36,13 @@ def test_the_file_reads_back_as_what_was_asked_for(tmp_path):
 def test_derived_numbers_are_the_closed_forms():
     scene = Scene(block=block_from(1.9, 0.55, mass=1500.0), base=Base(mass=400.0), bearings=BEARINGS)
     rows = {name: value for name, value, _ in derived(scene)}
-    gamma, radius = math.atan(0.55 / 1.9), 0.5 * math.hypot(1.9, 0.55)
+    gamma, radius, share = math.atan(0.55 / 1.9), 0.5 * math.hypot(1.9, 0.55), 1500 / 1900
     assert rows["rocking frequency omega_r, eq. (1)"] == pytest.approx(math.sqrt(3 * 9.81 / (4 * radius)), rel=1e-13)
     assert rows["uplift acceleration g tan(slenderness)"] == pytest.approx(9.81 * 0.55 / 1.9, rel=1e-13)
     assert rows["isolation period after yielding"] == pytest.approx(
         2 * math.pi * math.sqrt(1900 / (4 * 6.22e3)), rel=1e-13
     )
     # eq. (7) with J_O = 4/3 m R^2
-    share = 1500 / 1900
     expected = 1 - 2 * math.sin(gamma) ** 2 / (4 / 3 - share * math.cos(gamma) ** 2)
     assert rows["restitution e_phi, eq. (7)"] == pytest.approx(expected, rel=1e-13)
 

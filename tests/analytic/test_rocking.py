@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
-from analytic.scene import Base, Bearings, Block, Scene
+from analytic.scene import Base, Block, Scene
 
 RADIUS, MASS, BASE = 1.088388, 3172.05, 212.0
 # slenderness: e on rigid ground, e_phi and e_x [m] with the base of 212 kg, e_x as printed
@@ -30,7 +30,7 @@ def scene(slenderness, base=BASE, **block):
 def test_impact_table(slenderness):
     rigid, isolated, jump, printed = TABLE[slenderness]
     assert restitution(scene(slenderness, base=None)) == pytest.approx(rigid, abs=5e-7)
-    assert restitution(scene(slenderness, base=None)) == pytest.approx(1 - 1.5 * math.sin(slenderness) ** 2)
+    assert RockingModel.of(scene(slenderness, base=None)).impact(-1.0) == (pytest.approx(-rigid, abs=5e-7), 0.0)
     assert restitution(scene(slenderness)) == pytest.approx(isolated, abs=5e-7)
     # half the last digit of the table, and of the radius it was made with (lengths go with R or R^2)
     digits = 5e-7 + 2 * 5e-7 / RADIUS * abs(printed)
@@ -55,12 +55,9 @@ def impact_by_momentum(case, rate):
 @pytest.mark.parametrize("base", [50.0, 212.0, 1e5])
 def test_impact_follows_from_momentum(slenderness, base):
     case = scene(slenderness, base)
-    after, jump = RockingModel.of(case).impact(-0.7)
-    expected = impact_by_momentum(case, -0.7)
-    assert restitution(case) * -0.7 == pytest.approx(expected[0], rel=1e-12)
-    if restitution(case) > 0:
-        assert (after, jump) == pytest.approx(tuple(expected), rel=1e-12)
-        assert -base_jump_length(case) * -0.7 == pytest.approx(expected[1], rel=1e-12)
+    expected = pytest.approx(impact_by_momentum(case, -0.7), rel=1e-12)
+    assert np.array(RockingModel.of(case).impact(-0.7)) == expected
+    assert np.array([restitution(case), -base_jump_length(case)]) * -0.7 == expected
 
 
 @given(st.floats(0.02, 1.5), st.floats(1e-3, 1e6), st.floats(0.0, 1.0) | st.none())
@@ -69,26 +66,9 @@ def test_impact_never_adds_energy(slenderness, base, own):
     model, w = RockingModel.of(case), -0.8
     after, jump = model.impact(w)
     h = case.block.half_height
-
-    def kinetic(rate, v):
-        return 0.5 * model.M * v * v + model.m * h * rate * v + 0.5 * model.J * rate * rate
-
-    assert kinetic(after, jump) <= kinetic(w, 0.0) * (1 + 1e-12)
+    assert model.kinetic_energy(1, 0.0, after, jump) <= model.kinetic_energy(1, 0.0, w, 0.0) * (1 + 1e-12)
     # momentum holds for any restitution, the scene's own and a clipped one included
     assert model.m * h * after + model.M * jump == pytest.approx(model.m * h * w, rel=1e-12)
-
-
-def test_negative_restitution_is_clipped_to_a_flat_landing():
-    case = scene(0.7, 1.0)
-    assert restitution(case) < 0
-    assert RockingModel.of(case).restitution == 0
-
-
-def test_heavy_base_is_rigid_ground():
-    rigid = restitution(scene(0.28, base=None))
-    errors = [restitution(scene(0.28, base)) - rigid for base in (1e7, 1e8)]
-    assert errors[0] / errors[1] == pytest.approx(10, rel=1e-2)
-    assert RockingModel.of(scene(0.28, None)).impact(-1.0) == (pytest.approx(-rigid), 0.0)
 
 
 SIDES = st.sampled_from([-1.0, 1.0])
@@ -106,17 +86,6 @@ def test_accelerations_solve_equations_3_and_4(side, size, rate, ground, force):
     assert abs(horizontal) < 1e-9 * model.M * 9.81 and abs(moment) < 1e-9 * MASS * 9.81 * RADIUS
 
 
-@given(SIDES, st.floats(0.0, 1.5), st.floats(-3, 3), st.floats(-1e4, 1e4))
-def test_free_motion_conserves_energy(side, size, rate, force):
-    # power of gravity and bearing force = rate of kinetic energy, differentiated by hand
-    model, tilt, v = RockingModel.of(scene(0.28)), side * size, 0.3
-    spin, push = model.accelerations(side, tilt, rate, 0.0, force)
-    c, n = model.lever(side, tilt)
-    # d/dt [M v^2/2 + m c w v + J w^2/2], c' = n w
-    kinetic = model.M * v * push + MASS * (n * rate**2 * v + c * spin * v + c * rate * push) + model.J * rate * spin
-    assert kinetic == pytest.approx(-MASS * 9.81 * n * rate - force * v, rel=1e-9, abs=1e-6)
-
-
 @given(SIDES, st.floats(0.0, 1.5), st.floats(-3, 3), st.floats(-5, 5), st.floats(-1e4, 1e4))
 def test_contact_force_drives_the_base(side, size, rate, ground, force):
     # the block's horizontal force and the bearings' accelerate the base alone
@@ -129,24 +98,10 @@ def test_contact_force_drives_the_base(side, size, rate, ground, force):
     assert (model.J - MASS * RADIUS**2) * spin == pytest.approx(-horizontal * c - normal * n, rel=1e-9, abs=1e-5)
 
 
-def test_mirrored_states_have_mirrored_accelerations():
-    model = RockingModel.of(scene(0.28))
-    one = model.accelerations(1.0, 0.1, -0.4, 2.0, 300.0)
-    other = model.accelerations(-1.0, -0.1, 0.4, -2.0, -300.0)
-    assert other == (-one[0], -one[1])
-
-
 def test_uplift_threshold_is_where_the_block_starts_to_turn():
     # in full contact at |a_abs| = g tan(gamma) the tilt acceleration about the corner is zero, on any foundation
     for case in (scene(0.28), scene(0.28, base=None)):
         model = RockingModel.of(case)
         a = model.uplift_acceleration
-        spin, _ = model.accelerations(-1.0, 0.0, 0.0, a, -model.M * a)
-        assert abs(spin) < 1e-12
+        assert abs(model.accelerations(-1.0, 0.0, 0.0, a, -model.M * a)[0]) < 1e-12
         assert model.accelerations(-1.0, 0.0, 0.0, 1.01 * a, -1.01 * model.M * a)[0] < 0
-    assert RockingModel.of(scene(0.28)).contact_acceleration(1000.0) == pytest.approx(-1000 / (MASS + BASE))
-
-
-def test_bearing_is_part_of_the_model():
-    case = scene(0.28).with_(bearings=Bearings(law="linear", ka=1e5, count=2))
-    assert RockingModel.of(case).bearing.force(0.1, 0.0) == pytest.approx(2e4)

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 from bearing_laws import NAMES, bearings_of
-from literature import A_REST, A_TILT, B_TILT, ONE_SINE, ONE_SINE_SLENDER, under_a_pulse
+from literature import A_REST, A_TILT, B_TILT
 from record_files import RECORDS, needs_records
 from scipy.integrate import solve_ivp
 
@@ -16,7 +16,7 @@ from analytic.problems import problem_a, problem_b
 from analytic.records import read_record
 from analytic.scene import Block, Scene, Start
 from analytic.segments import segments
-from analytic.twin import METHODS, simulate_twin
+from analytic.twin import simulate_twin
 
 P, GAMMA = 2.60, 0.25
 HOUSNER = 1 - 1.5 * math.sin(GAMMA) ** 2
@@ -42,11 +42,14 @@ def test_problem_a(method, rtol, tolerance):
 
 
 def test_rest_of_problem_a():
-    run = simulate_twin(problem_a(12.0), rtol=1e-12)
+    scene = problem_a(12.0)
+    run = simulate_twin(scene, rtol=1e-12)
     assert [count_to(run, share * P) for share in A_REST] == [count for count, _ in A_REST.values()]
     assert run.impact_count == 177
     assert run.rests[0] == pytest.approx(closed_form.rest_time(P, GAMMA, HOUSNER, 0.9 * GAMMA), abs=1e-9)
-    assert (run.end.tilt, run.end.tilt_rate) == (0, 0)
+    assert (run.end.tilt, run.end.tilt_rate, run.energy.input, run.energy.kinetic) == (0, 0, 0, 0)
+    released = scene.block.mass * 9.81 * scene.block.radius * (math.cos(0.025) - math.cos(0.25))
+    assert (-run.energy.potential, run.energy.impact_loss) == pytest.approx((released, released), rel=1e-10)
 
 
 @pytest.mark.parametrize("method", ["DOP853", "RK45"])
@@ -68,20 +71,6 @@ def test_error_falls_with_the_tolerance():
     assert errors[3] < 1e-11
 
 
-@pytest.mark.parametrize(
-    ("table", "slenderness", "frequency"), [(ONE_SINE, GAMMA, 2), (ONE_SINE, GAMMA, 4), (ONE_SINE_SLENDER, 1e-4, 3)]
-)
-def test_overturning_boundaries(table, slenderness, frequency):
-    """Safe, overturned after one impact, safe, overturned without one: at 2e-5 to either side."""
-    found = []
-    for boundary in table[frequency]:
-        for amplitude in (boundary - 2e-5, boundary + 2e-5):
-            scene = under_a_pulse(amplitude, frequency, slenderness, duration=15.0)
-            run = simulate_twin(scene, rtol=1e-9, history=False, energy=False)
-            found.append(run.impact_count if run.outcome == "overturns" else None)
-    assert found[0] is found[3] is found[4] is None and found[1] == 1 and found[2] is not None and found[5] == 0
-
-
 @pytest.mark.parametrize("law", [name for name in NAMES if name != "linear"])
 def test_mirror(law):
     scene = Scene(
@@ -99,35 +88,15 @@ def test_mirror(law):
         np.testing.assert_array_equal(getattr(one.history, name), -getattr(other.history, name))
 
 
-def momentum_before_and_after(scene, impact):
-    """Horizontal momentum of block and base about an impact, the base velocity before taken as 0."""
-    h = scene.block.half_height
-    before = scene.block.mass * h * impact.rate_before
-    after = scene.block.mass * h * impact.rate_after + scene.total_mass * impact.base_velocity_jump
-    return before, after
-
-
 @pytest.mark.parametrize("law", NAMES)
-def test_momentum_and_energy_of_isolated_rocking(law):
+def test_energy_of_isolated_rocking(law):
     bearings = bearings_of(law, count=4, damping=200.0)
     scene = Scene(block=SLENDER, base=BASE, bearings=bearings, motion=PulseMotion("one-sine", 1.2, 4.0), duration=6.0)
     run = simulate_twin(scene, rtol=1e-11)
     assert run.outcome == "rocks" and run.impact_count > 10
-    for impact in run.impacts:
-        before, after = momentum_before_and_after(scene, impact)
-        assert after == pytest.approx(before, rel=1e-12)
     assert abs(run.energy.imbalance) < 1e-9 * run.energy.input
     assert run.energy.impact_loss > 0 and run.energy.viscous > 0
     assert (run.energy.hysteretic > 0) == (law != "linear")
-
-
-def test_ledger_of_problem_a_is_the_energy_released():
-    run = simulate_twin(problem_a(12.0), rtol=1e-12)
-    scene = problem_a()
-    released = scene.block.mass * 9.81 * scene.block.radius * (math.cos(0.025) - math.cos(0.25))
-    assert run.energy.potential == pytest.approx(-released, rel=1e-13)
-    assert run.energy.impact_loss == pytest.approx(released, rel=1e-10)
-    assert run.energy.input == run.energy.kinetic == 0
 
 
 def test_start_flat_with_a_rate_rocks_to_the_side_of_the_rate():
@@ -136,33 +105,16 @@ def test_start_flat_with_a_rate_rocks_to_the_side_of_the_rate():
         assert run.end.tilt * rate > 0 and run.outcome == "rocks" and run.uplifts == ()
 
 
-def test_uplift_is_third_order():
-    # phi = s p^2 a'/(g..) t^3/6 after the onset: tilt grows eightfold when the time doubles
-    run_at = [simulate_twin(problem_b(math.asin(1 / 1.2) / 5.2 + t), rtol=1e-12).end.tilt for t in (1e-3, 2e-3)]
-    assert run_at[1] / run_at[0] == pytest.approx(8, rel=0.01)
-    slope = 1.2 * 9.81 * math.tan(GAMMA) * 5.2 * math.cos(math.asin(1 / 1.2))
-    exact = -(P**2) * math.cos(GAMMA) / 9.81 * slope * 1e-9 / 6
-    assert run_at[0] == pytest.approx(exact, rel=5e-3)
-
-
 def test_rest_limit_is_the_same_whenever_impacts_are_declared_accumulated():
     # under a bearing force the two corners are pressed down unequally
     scene = Scene(block=SLENDER, base=BASE, bearings=LRB, duration=4.0, start=Start(tilt=0.02, base_displacement=0.1))
     limits = [simulate_twin(scene, rtol=1e-12, rest_rate=rate).rests[0] for rate in (1e-5, 1e-7, 1e-9)]
-    assert abs(limits[1] - limits[2]) < 1e-9
-    assert abs(limits[0] - limits[2]) < 1e-6
-
-
-def test_overturning_and_unstable_point():
-    run = simulate_twin(problem_a().with_(start=Start(tilt=0.24, tilt_rate=0.5)))
-    assert run.outcome == "overturns" and run.end.tilt == pytest.approx(math.pi / 2, abs=1e-12)
-    assert 0 < run.unstable_time < run.overturning_time < 7
+    assert abs(limits[1] - limits[2]) < 1e-9 and abs(limits[0] - limits[2]) < 1e-6
 
 
 def test_restitution_of_one_fails_instead_of_bouncing_for_ever(monkeypatch):
     monkeypatch.setattr("analytic.twin.run.IMPACT_LIMIT", 100)
-    block = problem_a().block.model_copy(update={"restitution": 1.0})
-    run = simulate_twin(problem_a().with_(block=block, start=Start(tilt=1e-9)))
+    run = simulate_twin(problem_a().with_(block={"restitution": 1.0}, start=Start(tilt=1e-9)))
     assert run.outcome == "failed" and "pile up" in run.failure.reason
     assert run.failure.last_state.time < 7
 
@@ -181,32 +133,25 @@ def test_event_that_scipy_cannot_find_is_a_failure_with_scipys_words(monkeypatch
     whole = simulate_twin(scene, method="LSODA", rtol=1e-8)
     monkeypatch.setattr("analytic.twin.run.solve_ivp", third_call_raises)
     run = simulate_twin(scene, method="LSODA", rtol=1e-8)
-    assert len(calls) == 3 and whole.outcome == "rocks"
-    assert run.outcome == "failed" and run.failure.reason == "scipy could not find an event"
-    assert run.failure.message == words
+    assert whole.outcome == "rocks" and run.outcome == "failed"
+    assert (run.failure.reason, run.failure.message) == ("scipy could not find an event", words)
     # it broke off where the third stretch began, and says so; what was found before is kept
     assert run.failure.last_state == run.end and 0 < run.end.time == calls[2][0] < 3.0
-    assert math.isfinite(run.end.tilt) and run.peak_tilt == 0.1
     assert run.impacts == tuple(impact for impact in whole.impacts if impact.time <= run.end.time)
-    assert run.history.time[-1] == run.end.time and run.steps > 1
-    assert run.variant == run.settings["method"] == "LSODA"
-    assert run.to_json()["failure"]["message"] == words
+    assert run.history.time[-1] == run.end.time and run.peak_tilt == 0.1
 
 
 def test_extra_energy_and_history_do_not_change_the_outcome():
     bare = simulate_twin(problem_b(), rtol=1e-12, history=False, energy=False)
     full = simulate_twin(problem_b(), rtol=1e-12)
-    assert bare.history is None and bare.energy is None
+    assert bare.history is bare.energy is None and full.history.time[[0, -1]].tolist() == [0, 6]
     assert bare.end.tilt == pytest.approx(full.end.tilt, abs=1e-9)
-    assert full.history.time[0] == 0 and full.history.time[-1] == 6
 
 
-def test_settings_are_checked():
-    with pytest.raises(SettingError, match="Euler"):
-        simulate_twin(problem_a(), method="Euler")
-    with pytest.raises(SettingError, match="rtol"):
-        simulate_twin(problem_a(), rtol=0.0)
-    assert "DOP853" in METHODS
+@pytest.mark.parametrize("settings", [{"method": "Euler"}, {"rtol": 0.0}])
+def test_settings_are_checked(settings):
+    with pytest.raises(SettingError, match=str(next(iter(settings.values())))):
+        simulate_twin(problem_a(), **settings)
 
 
 def test_segments_cover_the_run_and_equal_the_motion():

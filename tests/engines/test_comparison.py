@@ -22,13 +22,8 @@ def told(scene, **changed):
 
 
 @SCENES
-def test_the_models_own_run_does_not_differ(scene):
-    assert told(scene) == []
-
-
-@SCENES
 @pytest.mark.parametrize("quantity", ["peak_tilt", "peak_base_displacement"])
-@pytest.mark.parametrize("share, found", [(0.9 * PEAK, False), (1.1 * PEAK, True), (float("nan"), True)])
+@pytest.mark.parametrize("share, found", [(0.0, False), (0.9 * PEAK, False), (1.1 * PEAK, True), (float("nan"), True)])
 def test_peaks_differ_by_more_than_the_limit(scene, quantity, share, found):
     value = getattr(simulate(scene, history=False), quantity)
     wanted = [quantity] if found and (value > 0 or share != share) else []
@@ -70,31 +65,21 @@ def test_impacts_that_are_missing_and_too_many(scene):
     assert "missing_impacts" in told(scene, impacts=())
 
 
-def test_small_late_impacts_do_not_count():
+def test_small_late_impacts_and_ones_out_of_phase_are_not_missed():
+    """In a motion in which each swing takes 1 % longer: after some impacts there is no match to speak of."""
     own = impacts(FREE)
     fastest = max(abs(impact.rate_before) for impact in own)
     assert told(FREE, impacts=tuple(impact for impact in own if abs(impact.rate_before) > 0.1 * fastest)) == []
-
-
-def test_impacts_out_of_phase_are_not_missed():
-    """A motion in which each swing takes 1 % longer: after some impacts there is no match to speak of."""
-    late = tuple(replace(impact, time=1.04 * impact.time) for impact in impacts(FREE))
-    assert told(FREE, impacts=late) == []
+    assert told(FREE, impacts=tuple(replace(impact, time=1.04 * impact.time) for impact in own)) == []
 
 
 def test_what_cannot_be_compared():
     jumps = Scene(block=Block(mass=1.0, radius=1.0, slenderness=1.2), start=Start(tilt_rate=3.4), duration=0.5)
-    run = simulate(jumps, history=False)
-    assert run.min_normal_ratio <= 0 and "normal force" in compare(jumps, run).comparable
+    assert "normal force" in compare(jumps, simulate(jumps, history=False)).comparable
     slides = FREE.with_(friction=0.5 * simulate(FREE, history=False).friction_demand)
     run = compare(slides, replace(simulate(slides, history=False), peak_tilt=1.0))
     assert "friction demand" in run.comparable and run.differences == ()
-
-
-def test_a_failed_run_is_not_compared():
-    failed = Response.unmeasured(
-        engine="e", variant="v", outcome="failed", failure=Failure("it broke"), settings={}, versions={}
-    )
+    failed = replace(run, outcome="failed", failure=Failure("it broke"))
     assert compare(FREE, failed) is failed
 
 
@@ -108,9 +93,7 @@ def test_on_an_edge_a_copy_of_the_scene_differs_too():
 
 
 def test_a_difference_is_data_and_a_sentence():
-    for quantity in DIFFERENCES:
-        word = "rocks" if quantity == "outcome" else 7
-        assert str(word) in str(Difference(quantity, word, word, None))
+    assert all("7" in str(Difference(quantity, 7, 7, None)) for quantity in DIFFERENCES)
     run = compare(FREE, replace(simulate(FREE, history=False), peak_tilt=0.2))
     assert Response.from_json(run.to_json()).differences == run.differences
     (found,) = run.differences

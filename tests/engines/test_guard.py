@@ -8,7 +8,6 @@ import time
 import pytest
 
 from analytic import Block, Scene, SettingError, Start, simulate
-from engines import get_engine
 from engines.guard import OUT_OF_TIME, alone, check_time_limit
 
 SCENE = Scene(block=Block(mass=1000.0, radius=1.0, slenderness=0.2), start=Start(tilt=0.1), duration=1.0, name="nod")
@@ -50,10 +49,6 @@ def wrong_setting():
     raise SettingError("step = 0.001: unknown")
 
 
-def in_exudyn(**settings):
-    return get_engine("exudyn").simulate(SCENE, **settings)
-
-
 @pytest.mark.parametrize(
     "run, arguments, limit, evidence",
     [
@@ -82,11 +77,8 @@ def test_a_good_run_comes_back_as_it_is():
     assert (response.history.tilt == here.history.tilt).all()
 
 
-def test_ctrl_c_is_the_parents_to_handle():
+def test_ctrl_c_is_the_parents_to_handle_and_a_wrong_setting_the_callers_mistake():
     assert alone(ignores_ctrl_c, time_limit=60.0) == ("went on", None)
-
-
-def test_a_wrong_setting_is_the_callers_mistake():
     with pytest.raises(SettingError, match="step"):
         alone(wrong_setting, time_limit=30.0)
 
@@ -95,10 +87,3 @@ def test_a_wrong_setting_is_the_callers_mistake():
 def test_a_time_limit_that_no_timer_takes_is_refused(limit):
     with pytest.raises(ValueError, match="time_limit"):
         check_time_limit(limit)
-
-
-def test_a_real_engine_runs_alone_as_it_does_here_and_is_killed_at_its_limit():
-    pytest.importorskip("exudyn", reason="exudyn is not installed")
-    here, (there, _) = in_exudyn(), alone(in_exudyn, time_limit=120.0)
-    assert here.impacts == there.impacts and here.end == there.end
-    assert alone(in_exudyn, time_limit=0.01)[1].reason == OUT_OF_TIME

@@ -8,18 +8,8 @@ import math
 
 import numpy as np
 import pytest
-from bearing_laws import NAMES
-from engine_cases import (
-    PULSE,
-    accurate,
-    accurate_variant,
-    bearings,
-    every_variant,
-    impact_errors,
-    scene,
-    shaking,
-    simulate,
-)
+from bearing_laws import NAMES, bearings_of
+from engine_cases import PULSE, accurate, accurate_variant, every_variant, impact_errors, scene, shaking, simulate
 from record_files import RECORDS, needs_records
 
 from analytic import PulseMotion, Start, load_scene
@@ -27,6 +17,7 @@ from analytic import simulate as exact
 from analytic.bearing import BearingLaw
 from analytic.caryatid import BEARINGS
 from analytic.records import read_record
+from analytic.rocking import restitution
 from engines import get_engine
 from engines.checks import pivoting_centre
 
@@ -93,21 +84,23 @@ def test_block_rests_under_shaking_below_uplift(engine, variant, base):
     assert response.peak_tilt * 1.0884 < bound
     if trace.centre is not None:  # a first script need not look where its block is
         assert np.abs(trace.centre - pivoting_centre(given, trace))[:, :2].max() < bound
-    # the history is on the motion's own grid
-    np.testing.assert_allclose(response.history.time, 0.01 * np.arange(601), rtol=0, atol=1e-11)
-    np.testing.assert_array_equal(response.history.ground_acceleration, motion.acceleration(response.history.time))
+    np.testing.assert_allclose(response.history.time, 0.01 * np.arange(601), rtol=0, atol=1e-11)  # the motion's own
 
 
 @every_variant
-def test_overturning_under_a_pulse_stops_cleanly(engine, variant):
-    given = scene(0.2, motion=PulseMotion("one-sine", 3.8 * 9.81 * 0.2, 5.2), duration=5.0)
+@pytest.mark.parametrize(
+    "shape, peak, frequency, late", [("one-sine", 7.4556, 5.2, 2e-3), ("half-sine", 9.6, 3.0, 0.17)]
+)
+def test_overturning_stops_cleanly(engine, variant, shape, peak, frequency, late):
+    """By the second it is thrown off its corner, which the model does not allow: engines fall up to 0.09 s later."""
+    given = scene(0.2, motion=PulseMotion(shape, peak, frequency), duration=8.0)
     response, reference = simulate(engine, variant, given), exact(given)
     assert response.outcome == reference.outcome == "overturns"
     assert response.end.time == response.history.time[-1] == pytest.approx(response.overturning_time)
     assert abs(response.end.tilt) == response.peak_tilt == pytest.approx(math.pi / 2)
-    assert response.unstable_time < response.overturning_time < 5.0
+    assert response.unstable_time < response.overturning_time < 8.0
     if accurate(engine, variant):
-        assert response.overturning_time == pytest.approx(reference.overturning_time, abs=2e-3)
+        assert response.overturning_time == pytest.approx(reference.overturning_time, abs=late)
 
 
 @accurate_variant
@@ -120,17 +113,6 @@ def test_a_shock_beyond_the_engines_numbers_is_not_survived_in_silence(engine, v
     assert response.failure is None or (response.failure.message and math.isfinite(response.failure.last_state.tilt))
 
 
-@accurate_variant
-def test_overturning_by_a_shock_stops_cleanly(engine, variant):
-    """The block is thrown off its corner, which the model does not allow: the engines fall up to 0.09 s later."""
-    given = scene(0.25, motion=PulseMotion("half-sine", 12.0, 3.0), duration=8.0)
-    response = simulate(engine, variant, given)
-    assert response.outcome == "overturns"
-    assert response.end.time == pytest.approx(response.overturning_time)
-    assert response.overturning_time == pytest.approx(exact(given).overturning_time, abs=0.17)
-    assert abs(response.end.tilt) == pytest.approx(math.pi / 2)
-
-
 # The bearings' law, and agreement with the analytic model.
 
 
@@ -139,7 +121,7 @@ def test_overturning_by_a_shock_stops_cleanly(engine, variant):
     "law, damping", [("algebraic", 0.0), ("bouc-wen", 0.0), ("bilinear", 0.0), *((law, 500.0) for law in NAMES)]
 )
 def test_bearing_force_is_the_law_on_the_engines_own_path(engine, variant, law, damping):
-    given = scene(0.15, 212.0, 2.0, bearings=bearings(law, damping), motion=PULSE)
+    given = scene(0.15, 212.0, 2.0, bearings=bearings_of(law, count=4, damping=damping), motion=PULSE)
     _, trace = get_engine(engine).traced(given, variant=variant)
     rule = BearingLaw.of(given.bearings)
     z, x, worst = rule.start(trace.base_displacement[0]), trace.base_displacement[0], 0.0
@@ -163,6 +145,26 @@ def test_impacts_are_as_momentum_asks(engine, variant, slenderness, base):
     error, jump, largest_jump, _ = impact_errors(run, slenderness, base)
     assert error < IMPACTS.get((engine, variant), 1e-4)
     assert jump < 1e-3 and largest_jump < 1e-3  # relative; m/s
+
+
+# Error of restitution at starts of .01 slendernesses: slow impacts err as the inverse square of their speed.
+SMALL = {("pymunk", "impact-aware"): 2e-3}  # measured 1.8e-3
+
+
+@accurate_variant
+@pytest.mark.parametrize(
+    "slenderness, inertia, tilt, radius",
+    [(0.1, 1.2, 0.6, 1.0), (0.1, 2.0, 0.6, 1.0), (0.5, 1.2, 0.6, 1.0), (0.5, 2.0, 0.6, 1.0)]
+    + [(0.1, 4 / 3, 0.01, 1.0), (0.5, 4 / 3, 0.01, 1.0), (0.2, 4 / 3, 0.6, 0.1), (0.2, 4 / 3, 0.6, 10.0)],
+)
+def test_restitution_at_the_ends_of_the_range(engine, variant, slenderness, inertia, tilt, radius):
+    block = {"radius": radius, "corner_inertia": inertia * 3172.05 * radius**2}
+    given = scene(slenderness, duration=60.0, start=Start(tilt=tilt * slenderness)).with_(block=block)
+    _, second, third, *_ = exact(given, history=False).impacts
+    response = simulate(engine, variant, given.with_(duration=0.5 * (second.time + third.time)), history=False)
+    found = [impact.rate_after / impact.rate_before for impact in response.impacts]
+    bound = 1e-4 if tilt > 0.1 else SMALL.get((engine, variant), 1e-3)
+    assert found == pytest.approx([restitution(given)] * 2, abs=bound)
 
 
 # Largest error of the tilt [rad].
@@ -189,7 +191,7 @@ def test_isolated_block_moves_as_the_exact_solution(engine, variant, law, dampin
         0.5,
         212.0,
         4.0,
-        bearings=bearings(law, damping),
+        bearings=bearings_of(law, count=4, damping=damping),
         motion=PulseMotion("one-sine", 2.0, 5.0),
         start=Start(base_displacement=0.02, base_velocity=-0.1),
     )

@@ -1,10 +1,11 @@
 """Every engine under a vertical motion, against the analytic model, within the rows of its tolerance table."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
-from engine_cases import needs
+from engine_cases import every_variant, needs
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start, simulate
 from analytic.decision import RIGID_BEARINGS
@@ -14,7 +15,6 @@ from engines.events import contact_measures
 from engines.swings import Trace
 
 TUNED = ["exudyn", "pybullet", "mujoco", "pymunk", "dart"]
-ENGINES = [*TUNED, "drake"]  # whose only variant has default settings
 BLOCK = Block(mass=3172.05, radius=1.0884, slenderness=0.2)
 LRB = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 TIMES = np.arange(0, 4.001, 0.005)
@@ -68,47 +68,34 @@ def test_peaks_on_bearings(name):
     needs(name)
     engine, exact, level = get_engine(name), simulate(DRIVEN), simulate(without(DRIVEN))
     found = engine.simulate(DRIVEN, history=False)
-    limit = bound(engine, "peak tilt", "rocking on bearings, one-sine")
-    assert found.peak_tilt_ratio == pytest.approx(exact.peak_tilt_ratio, abs=limit)
-    assert abs(level.peak_tilt_ratio - exact.peak_tilt_ratio) > 50 * limit
-    limit = bound(engine, "peak displacement", "rocking on bearings, one-sine")
-    assert found.peak_base_displacement == pytest.approx(exact.peak_base_displacement, rel=limit)
+    tilt, displacement = (
+        bound(engine, f"peak {one}", "rocking on bearings, one-sine") for one in ("tilt", "displacement")
+    )
+    assert found.peak_tilt_ratio == pytest.approx(exact.peak_tilt_ratio, abs=tilt)
+    assert abs(level.peak_tilt_ratio - exact.peak_tilt_ratio) > 50 * tilt
+    assert found.peak_base_displacement == pytest.approx(exact.peak_base_displacement, rel=displacement)
     assert found.min_normal_ratio == pytest.approx(exact.min_normal_ratio, abs=2e-3)
     assert RIGID_BEARINGS in map(str, found.warnings)
 
 
-@pytest.mark.parametrize("name", ENGINES)
-def test_every_variant_feels_it(name):
-    needs(name)
-    engine, scenes = get_engine(name), [one.with_(duration=0.6) for one in (RELEASED, without(RELEASED))]
-    wanted = np.subtract(*(first_impacts(simulate(scene))[0] for scene in scenes))
-    for variant in engine.variants:
-        runs = (engine.simulate(scene, variant=variant, history=False) for scene in scenes)
-        assert np.subtract(*(first_impacts(run)[0] for run in runs)) == pytest.approx(wanted, rel=0.15), variant
-
-
-@pytest.mark.parametrize("name", ENGINES)
-def test_a_block_that_would_jump_is_said(name):
-    needs(name)
+@every_variant
+def test_every_variant_feels_it_and_says_where_a_block_would_jump(engine, variant):
+    run = partial(get_engine(engine).simulate, variant=variant, history=False)
+    heaving, level = (one.with_(duration=0.6) for one in (RELEASED, without(RELEASED)))
+    wanted, felt = (first_impacts(solve(heaving))[0] - first_impacts(solve(level))[0] for solve in (simulate, run))
+    assert felt == pytest.approx(wanted, rel=0.15)
     up = SampledMotion(0.005, 12.0 * np.sin(9.0 * TIMES))
-    scene = RELEASED.with_(motion=replace(HEAVING, vertical=up), start=Start(tilt=0.05), duration=1.0)
-    found = get_engine(name).simulate(scene, history=False)
+    found = run(RELEASED.with_(motion=replace(HEAVING, vertical=up), start=Start(tilt=0.05), duration=1.0))
     assert found.failure is not None or any("the block would jump" in warning.text for warning in found.warnings)
-
-
-def kernel_trace(scene):
-    history = simulate(scene, output_step=1e-3).history
-    columns = [getattr(history, column) for column in Trace.COLUMNS]
-    return Trace(*columns, contact_tilt=1e-6)
 
 
 def test_measures_on_exact_states():
     for scene in (RELEASED.with_(duration=0.4), DRIVEN.with_(duration=0.7)):
-        exact, trace = simulate(scene), kernel_trace(scene)
+        exact = simulate(scene, output_step=1e-3)
         assert exact.impact_count == 0
-        demand, normal, acceleration = contact_measures(scene, trace)
-        assert demand == pytest.approx(exact.friction_demand, rel=1e-3)
-        assert normal == pytest.approx(exact.min_normal_ratio, rel=1e-3)
+        trace = Trace(*(getattr(exact.history, column) for column in Trace.COLUMNS), contact_tilt=1e-6)
+        demand, normal, _ = contact_measures(scene, trace)
+        assert (demand, normal) == pytest.approx((exact.friction_demand, exact.min_normal_ratio), rel=1e-3)
         balance, kinetic = energy_balance(scene, trace)
         assert np.abs(balance).max() < 1e-4 * kinetic.max()
         assert np.abs(energy_balance(without(scene), trace)[0]).max() > 5e-3 * kinetic.max()

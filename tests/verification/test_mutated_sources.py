@@ -34,7 +34,7 @@ class Mutation:
     limit: float = LIMIT
 
 
-RANGE, PHYSICS = "tests/engines/exudyn/test_range.py", "tests/engines/test_physics.py"
+RANGE, PHYSICS = "tests/engines/test_exudyn.py", "tests/engines/test_physics.py"
 MUTATIONS = {
     "exudyn: a corner is drawn back to where it stood": Mutation(
         "engines.exudyn.model",

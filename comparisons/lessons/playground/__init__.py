@@ -32,15 +32,17 @@ def sources(names: tuple[str, ...] = SHARED) -> str:
 def playground_page(pages: Sequence[tuple[str, str]] = ()) -> str:
     """The page as HTML; pages: (file, title) of those it leads to, beside it."""
     motion = synthetic_motion()
-    environment = templates(FOLDER)
-    samples = base64.b64encode(motion.samples.astype("<f8").tobytes()).decode()
-    return environment.get_template("page.html").render(
-        style=Markup((FOLDER / "style.css").read_text(encoding="utf-8")),
-        shared=[Markup(sources((name,))) for name in SHARED],
-        scripts=[Markup(sources((name,))) for name in SCRIPTS],
-        pages=pages,
-        motion_label=motion.label[0].upper() + motion.label[1:],
-        motion_step=repr(motion.dt),
-        motion_peak=repr(float(np.abs(motion.samples).max())),
-        motion_samples=samples,
+    return (
+        templates(FOLDER)
+        .get_template("page.html")
+        .render(
+            style=Markup((FOLDER / "style.css").read_text(encoding="utf-8")),
+            shared=[Markup(sources((name,))) for name in SHARED],
+            scripts=[Markup(sources((name,))) for name in SCRIPTS],
+            pages=pages,
+            motion_label=motion.label[0].upper() + motion.label[1:],
+            motion_step=repr(motion.dt),
+            motion_peak=repr(float(np.abs(motion.samples).max())),
+            motion_samples=base64.b64encode(motion.samples.astype("<f8").tobytes()).decode(),
+        )
     )

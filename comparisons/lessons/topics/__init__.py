@@ -5,6 +5,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from analytic.errors import SettingError
+
 if TYPE_CHECKING:
     from ..lesson import Lesson
 
@@ -16,11 +18,11 @@ def lesson(name: str) -> Lesson:
 
     Raises
     ------
-    KeyError
+    SettingError
         There is none; the message lists them.
     """
     if name not in NAMES:
-        raise KeyError(f"unknown lesson {name!r}: choose one of {', '.join(NAMES)}")
+        raise SettingError(f"unknown lesson {name!r}: choose one of {', '.join(NAMES)}")
     return import_module(f"{__name__}.{name}").LESSON
 
 

@@ -8,21 +8,15 @@ from analytic import PulseMotion, Scene, simulate, synthetic_motion
 from analytic.caryatid import BASE, BEARINGS, caryatid_block
 from analytic.types import Motion
 
-from ..computing import G, edge, history_until
+from ..computing import G, edge, history_until, overturns
 from ..drawing import OTHER, SOFT, canvas, legend, tilt_axis
 from ..lesson import Control, Equation, Exercise, Lesson, View
 
 BEARING_CHOICE = {"none": None, "as designed": 1.0, "twice as stiff": 2.0}
-MOTIONS = ("near-fault", "long pulse")
-LONG_PULSE = (0.22, 1.8)  # g, s
+NEAR_FAULT = synthetic_motion()
+LONG = 2 * math.pi / 1.8  # rad/s, near that of the bearings
+MOTIONS: dict[str, Motion] = {"near-fault": NEAR_FAULT, "long pulse": PulseMotion("one-sine", 0.22 * G, LONG)}
 WINDOW = 12.0  # s
-
-
-def motion_of(name: str) -> Motion:
-    """The motions of the lesson: the synthetic one, and a sine near the period of the bearings."""
-    if name == "near-fault":
-        return synthetic_motion()
-    return PulseMotion("one-sine", LONG_PULSE[0] * G, 2 * math.pi / LONG_PULSE[1])
 
 
 def scene_of(slenderness: float, stiffness: float | None, motion: Motion) -> Scene:
@@ -36,7 +30,7 @@ def scene_of(slenderness: float, stiffness: float | None, motion: Motion) -> Sce
 
 def view(slenderness: float, bearings: str, motion: str) -> View:
     """Tilt and base displacement of the statue."""
-    scene = scene_of(slenderness, BEARING_CHOICE[bearings], motion_of(motion))
+    scene = scene_of(slenderness, BEARING_CHOICE[bearings], MOTIONS[motion])
     decided, response = simulate(scene, history=False), history_until(scene, WINDOW)
     figure, (tilt, base) = canvas(2, (1, 1), sharex=True)
     tilt_axis(tilt, response.history.time, response.history.tilt / slenderness, WINDOW)
@@ -64,28 +58,20 @@ def view(slenderness: float, bearings: str, motion: str) -> View:
 
 def least_slenderness() -> float:
     """Slenderness [rad] below which the isolated statue lifts under the synthetic motion."""
-    shaking = synthetic_motion()
-
-    def lifts(gamma):
-        return simulate(scene_of(gamma, 1.0, shaking), history=False).outcome != "stands"
-
-    return edge(lifts, 0.2, 0.35)
+    return edge(lambda gamma: simulate(scene_of(gamma, 1.0, NEAR_FAULT), history=False).outcome != "stands", 0.2, 0.35)
 
 
 def reserve() -> float:
     """How far the peak acceleration of the isolated Caryatid is below what lifts it [%]."""
-    response = simulate(scene_of(0.28, 1.0, synthetic_motion()), history=False)
+    response = simulate(scene_of(0.28, 1.0, NEAR_FAULT), history=False)
     return 100 * (1 - response.peak_base_acceleration / G / math.tan(0.28))
 
 
 def harmful_pulse() -> float:
     """Least amplitude [g] of a sine of 1.8 s that overturns the isolated statue; free-standing, it lifts at 0.288 g."""
-
-    def falls(amplitude):
-        pulse = PulseMotion("one-sine", amplitude * G, 2 * math.pi / LONG_PULSE[1])
-        return simulate(scene_of(0.28, 1.0, pulse), history=False).outcome == "overturns"
-
-    return edge(falls, 0.15, 0.25)
+    return edge(
+        lambda amplitude: overturns(scene_of(0.28, 1.0, PulseMotion("one-sine", amplitude * G, LONG))), 0.15, 0.25
+    )
 
 
 def code() -> object:
@@ -126,7 +112,7 @@ LESSON = Lesson(
     (
         Control("slenderness γ", (0.16, 0.20, 0.24, 0.26, 0.28, 0.30), 0.28, "rad"),
         Control("bearings", tuple(BEARING_CHOICE), "as designed"),
-        Control("motion", MOTIONS, "near-fault"),
+        Control("motion", tuple(MOTIONS), "near-fault"),
     ),
     view,
     "Move the slenderness, change the bearings, and then the motion.",

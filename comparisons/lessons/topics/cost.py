@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import functools
-from itertools import takewhile
+import math
+from itertools import groupby, takewhile
+from operator import attrgetter
 
 from analytic import simulate
 
 from ...showing.parts import Table, number
+from ...showing.plots import marker, style
 from ..drawing import INK, OTHER, SOFT, THIRD, canvas, legend
-from ..engine_runs import OWN_STEPS, EngineRun, colour_of, engine_runs, marker_of, own_runs, timed
+from ..engine_runs import OWN, OWN_STEPS, EngineRun, engine_runs, own_runs, timed
 from ..lesson import Control, Equation, Exercise, Lesson, View
 
 TARGET = 0.01  # error asked for
+MODEL = "event-driven"
 TOLERANCES = (1e-2, 1e-4, 1e-6, 1e-9)  # of the event-driven model
 FLOOR = 1e-12  # smaller errors are drawn here
 
@@ -20,24 +24,21 @@ FLOOR = 1e-12  # smaller errors are drawn here
 @functools.cache
 def model_runs() -> tuple[EngineRun, ...]:
     """The event-driven model at several tolerances."""
-    return timed("event-driven", "tolerance", TOLERANCES, simulate)
+    return timed(MODEL, "tolerance", TOLERANCES, simulate)
 
 
 def ladders(runs: tuple[EngineRun, ...]) -> dict[str, list[EngineRun]]:
     """{solver: its runs}, coarse to fine as they come."""
-    found: dict[str, list[EngineRun]] = {}
-    for run in runs:
-        found.setdefault(run.name, []).append(run)
-    return found
+    return {name: list(ladder) for name, ladder in groupby(runs, attrgetter("name"))}
 
 
 def trusted(runs: tuple[EngineRun, ...], target: float) -> dict[str, EngineRun]:
     """The cheapest run of each solver whose error, and that of every finer setting, is below the target."""
 
-    def passes(run):
-        return run.error is not None and run.error < target
-
-    passing = {name: list(takewhile(passes, reversed(ladder))) for name, ladder in ladders(runs).items()}
+    passing = {
+        name: list(takewhile(lambda run: run.error < target, reversed(ladder)))
+        for name, ladder in ladders(runs).items()
+    }
     return {name: min(those, key=lambda run: run.cpu) for name, those in passing.items() if those}
 
 
@@ -49,14 +50,13 @@ def view(step: float) -> View:
     """Error against CPU time; step [ms] of the fixed-step integrator."""
     figure, axis = canvas()
     for name, ladder in ladders(everything()).items():
-        own = ladder[0].solver == own_runs()[0].solver
-        colour = THIRD if own else INK if ladder[0].solver == "event-driven" else colour_of(ladder[0])
-        known = [run for run in ladder if run.error is not None]
-        first = ladder[0].tier == "defaults"
+        solver, first = ladder[0].solver, ladder[0].tier == "defaults"
+        colour = {OWN: THIRD, MODEL: INK}.get(solver) or style(solver)["color"]
+        known = [run for run in ladder if not math.isnan(run.error)]
         axis.loglog(
-            [max(100 * (run.error or 0), 100 * FLOOR) for run in known],
+            [max(100 * run.error, 100 * FLOOR) for run in known],
             [max(1e3 * run.cpu, 1e-3) for run in known],
-            marker=marker_of(ladder[0]),
+            marker=marker(solver),
             linestyle=":" if first else "-",
             color=colour,
             linewidth=1.2,
@@ -88,7 +88,7 @@ def table() -> Table:
     """The cheapest trusted setting of each solver below 1 %."""
     best = trusted(everything(), TARGET)
     rows = [
-        [run.name, f"{run.knob} = {run.value:g}", number(100 * (run.error or 0), 2), number(1e3 * run.cpu, 2)]
+        [run.name, f"{run.knob} = {run.value:g}", number(100 * run.error, 2), number(1e3 * run.cpu, 2)]
         for run in sorted(best.values(), key=lambda run: run.cpu)
     ]
     return Table(
@@ -100,15 +100,12 @@ def table() -> Table:
 
 def coarsest_step() -> float:
     """Of the fixed-step integrator's steps: the largest [ms] below 1 % with all finer ones."""
-    finest = takewhile(lambda run: run.error < TARGET, reversed(own_runs()))  # it strikes at each of its steps
-    return 1e3 * max(run.value for run in finest)
+    return 1e3 * max(run.value for run in takewhile(lambda run: run.error < TARGET, reversed(own_runs())))
 
 
 def event_driven_share() -> float:
     """CPU time of a run of fixed steps at 1 % over that of the event-driven model."""
-    model = min(run.cpu for run in model_runs())
-    steps = trusted(own_runs(), TARGET)
-    return next(iter(steps.values())).cpu / model
+    return trusted(own_runs(), TARGET)[OWN].cpu / min(run.cpu for run in model_runs())
 
 
 def passing_solvers() -> float:

@@ -8,7 +8,7 @@ import math
 import numpy as np
 from matplotlib.colors import ListedColormap
 
-from analytic import Block, Outcomes, PulseMotion, Scene, overturning_map, simulate
+from analytic import Block, PulseMotion, Scene, overturning_map, simulate
 from analytic.caryatid import MASS, RADIUS, caryatid_block
 from analytic.rocking import RockingModel
 
@@ -28,17 +28,11 @@ def pulse_scene(amplitude: float, period: float = PERIOD, slenderness: float = S
 
 
 @functools.cache
-def overturning() -> Outcomes:
-    """Outcomes over `AMPLITUDES` and `PERIODS`."""
-    scene = Scene(block=caryatid_block(SLENDERNESS))
-    unit = math.tan(SLENDERNESS)
-    return overturning_map(scene, "one-sine", 2 * math.pi / PERIODS / scene.rocking_frequency, AMPLITUDES / unit)
-
-
-def kinds(outcomes: Outcomes) -> np.ndarray:
-    """0 stands, 1 rocks, 2 overturns after impacts, 3 overturns without one."""
-    falls = np.where(outcomes.impacts > 0, 2, 3)
-    return np.where(outcomes.overturns, falls, np.where(outcomes.lifted, 1, 0))
+def overturning() -> np.ndarray:
+    """Over `AMPLITUDES` and `PERIODS`: 0 stands, 1 rocks, 2 overturns after impacts, 3 overturns without one."""
+    scene, unit = Scene(block=caryatid_block(SLENDERNESS)), math.tan(SLENDERNESS)
+    found = overturning_map(scene, "one-sine", 2 * math.pi / PERIODS / scene.rocking_frequency, AMPLITUDES / unit)
+    return np.where(found.overturns, np.where(found.impacts > 0, 2, 3), np.where(found.lifted, 1, 0))
 
 
 def view(amplitude: float) -> View:
@@ -49,7 +43,7 @@ def view(amplitude: float) -> View:
     tilt_axis(tilt, response.history.time, response.history.tilt / SLENDERNESS, WINDOW, xlabel="time [s]")
     edges = [np.append(v - (v[1] - v[0]) / 2, v[-1] + (v[1] - v[0]) / 2) for v in (PERIODS, AMPLITUDES)]
     field.imshow(
-        kinds(overturning()),
+        overturning(),
         origin="lower",
         aspect="auto",
         extent=(edges[0][0], edges[0][-1], edges[1][0], edges[1][-1]),

@@ -1,11 +1,10 @@
-"""COSMOS, K-NET, KiK-net and USGS SMC: files made up here, and the real ones where they are."""
+"""CSMIP volume 2, COSMOS, K-NET, KiK-net and USGS SMC: files made up here, and the real ones where they are."""
 
 import numpy as np
 import pytest
-from mutated_files import VALUES, cosmos, knet, smc
-from record_files import FORMATS, needs_records, write
+from mutated_files import VALUES, cosmos, csmip, knet, smc
+from record_files import FORMATS, assert_refused, needs_records, write
 
-from analytic.errors import SceneError
 from analytic.records import read_channels, read_record
 
 COUNTS = [5, -3, 8, 1, -12, 4, 7, 0, 3, -9]  # of mean 0.4: 10 cm/s2 a million counts
@@ -16,6 +15,31 @@ def same(motion, values, dt=0.005):
     return motion.dt == dt
 
 
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+@pytest.mark.parametrize("channel, times", [(1, 1), ("2", 2), ("up", 2), ("90 deg", 1), (" H1 ", 3)])
+def test_a_csmip_channel_is_chosen_by_number_or_direction(tmp_path, channel, times, end):
+    motion = read_record(write(tmp_path, csmip(VALUES).replace("\n", end)), channel=channel)
+    assert same(motion, np.array(VALUES) * times) and not motion.warnings
+    assert motion.label == f"record, channel {times} ({['90 Deg', 'Up', 'H1'][times - 1]})"
+
+
+def test_csmip_numbers_that_touch_are_cut_by_position(tmp_path):
+    values = [12.3456, 2.0, -1.5, 4.25] * 3  # 1234.56000 fills its ten columns
+    assert same(read_record(write(tmp_path, csmip(values)), channel=1), values)
+
+
+@pytest.mark.parametrize(
+    "step, old, new, dt",
+    [
+        (".0025", "spaced at .0025", "spaced at .003", 0.0025),
+        (".005", "   0.00500", "-999.00000", 0.005),  # unknown to the reals
+    ],
+)
+def test_the_csmip_step_that_the_line_before_the_data_rounds_is_read_from_the_reals(tmp_path, step, old, new, dt):
+    text = csmip(VALUES, step).replace(old, new)
+    assert new in text and read_record(write(tmp_path, text), channel=1).dt == dt
+
+
 @pytest.mark.parametrize("channel, times", [(1, 1), ("340 deg", 1), ("2", 2), ("UP", 2)])
 @pytest.mark.parametrize("layout, units", [("8F10.5", "cm/sec2(04)"), ("1E15.6", "cm/s^2 (4)"), ("1F15.6E", "cm/s^2")])
 def test_cosmos(tmp_path, channel, times, layout, units):
@@ -24,18 +48,9 @@ def test_cosmos(tmp_path, channel, times, layout, units):
     assert motion.label == f"record, channel {times} ({['340 deg', 'Up'][times - 1]})"
 
 
-def test_cosmos_step_is_that_of_these_data_and_not_of_the_raw_record(tmp_path):
-    text = cosmos(VALUES)
-    assert "0.020000" in text  # the 34th real
-    assert read_record(write(tmp_path, text), channel=1).dt == 0.005
-
-
 def test_cosmos_without_its_step_asks_for_one(tmp_path):
     path = write(tmp_path, cosmos(VALUES, step=-999.0))
-    with pytest.raises(
-        SceneError, match="motion.dt: missing; the record states no sampling interval; add dt, the step"
-    ):
-        read_record(path, channel=1)
+    assert_refused(path, "motion.dt: missing; the record states no sampling interval; add dt, the step", channel=1)
     assert read_record(path, channel=1, dt=0.02).dt == 0.02
 
 
@@ -62,15 +77,15 @@ def test_knet_loses_nothing_of_small_counts_on_a_large_mean(tmp_path):
     np.testing.assert_array_equal(near.samples, far.samples)
 
 
-@pytest.mark.parametrize("high, rtol", [(False, 1e-15), (True, 1e-15)])
-def test_smc(tmp_path, high, rtol):
+@pytest.mark.parametrize("high", [False, True])
+def test_smc(tmp_path, high):
     motion = read_record(write(tmp_path, smc(VALUES, high)))
-    np.testing.assert_allclose(motion.samples, VALUES, rtol=rtol)
-    assert motion.dt == 0.005 and not motion.warnings and motion.label == "record"
+    assert same(motion, VALUES) and not motion.warnings and motion.label == "record"
 
 
 WORDS = "12 acceleration pts"
 BAD = {
+    "comments not counted": (cosmos(VALUES), "Comment line(s)", "line(s)", "not the count of comment lines"),
     "counts": (
         cosmos(VALUES),
         "units=cm/sec2(04)",
@@ -134,6 +149,7 @@ BAD = {
         "integers of the header = 12.5: not a whole number",
     ),
     "numbers left": (smc(VALUES), "        12", "         8", "the 17th integer = 8: more numbers follow than these"),
+    "another exponent": (smc(VALUES), "-4.5600E+1", "4.5600E+01", "not printed as the other numbers are"),
     "a row short": (smc(VALUES), "    -32768\n", "\n", "not 8 header values; the file is cut or damaged"),
 }
 
@@ -142,14 +158,52 @@ BAD = {
 def test_refused(tmp_path, text, old, new, message):
     assert old in text
     path = write(tmp_path, text.replace(old, new) if old else text)
-    with pytest.raises(SceneError) as caught:
-        read_record(path, channel=2 if "Sta Chan" in text else None)
-    assert str(caught.value).startswith(f"{path}: ") and message in str(caught.value)
+    assert_refused(path, message, channel=2 if "Sta Chan" in text else None)
+
+
+CSMIP = {
+    "no channel named": ({"channel": 1}, "Chan  2:", "Chan  Up", "names no channel, as Chan 1: 90 Deg"),
+    "no channel": ({}, "", "", "motion.channel: missing; the file holds channels 1 (90 Deg) or 2 (Up) or 3 (H1)"),
+    "no such channel": ({"channel": 4}, "", "", "motion.channel = 4: not a channel of the file; choose one of 1 (90"),
+    "two of a name": ({"channel": "up"}, "1: 90 Deg", "1: Up", "motion.channel = 'up': names several channels"),
+    "other units": ({"channel": 1, "units": "g"}, "", "", "but the record carries its own unit, cm/sec2 (line 46)"),
+    "velocities alone": ({"channel": 1}, "points of accel data", "points of other data", "no line N points of accel"),
+    "too many": ({"channel": 1}, " 12 points of accel", " 20 points of accel", "not 8 numbers of 10 characters"),
+    "too few": ({"channel": 1}, " 12 points of accel", " 8 points of accel", "= 8: more numbers follow than these"),
+    "a digit lost": (
+        {"channel": 1},
+        "-45.60000",
+        "-4.60000",
+        "not 8 numbers of 10 characters; 12 samples are stated; the file is cut",
+    ),
+    "a digit moved": ({"channel": 1}, " -45.60000", " -45.6000 ", "line 47 = '-45.6000 ': not a number"),
+    "another digit behind": ({"channel": 1}, " -45.60000", "  -45.6000", "not printed as the other numbers are"),
+    "stars": ({"channel": 1}, " -45.60000", "**********", "= '**********': not a number"),
+    "cut": ({"channel": 1}, "/&  ----------  End of data for channel  3", "/ 3", "channel 3 has no last line /&"),
+    "two steps": ({"channel": 1}, "spaced at .005", "spaced at .010", "line 40, step = 0.005: but line 46 says 0.01 s"),
+    "no step": (
+        {"channel": 1},
+        "spaced at .005",
+        "spaced at .000",
+        "line 46, step = 0.0: not a sampling interval; give a step above 0",
+    ),
+}
+
+
+@pytest.mark.parametrize("said, old, new, message", CSMIP.values(), ids=CSMIP)
+def test_csmip_refused(tmp_path, said, old, new, message):
+    assert_refused(write(tmp_path, csmip(VALUES).replace(old, new) if old else csmip(VALUES)), message, **said)
+
+
+def test_a_file_of_one_channel_has_none_to_choose(tmp_path):
+    words = "motion.channel = 1: but the file has no several channels; remove channel"
+    assert_refused(write(tmp_path, "0 1\n.01 2\n"), words, units="g", channel=1)
 
 
 @pytest.mark.parametrize(
     "text, old, new, words",
     [
+        (csmip(VALUES), "=  -150.000", "=  -152.000", "states a peak of -152 cm/s2, the data have 150"),
         (cosmos(VALUES), "   -150.000000", "   -152.000000", "states a peak of -152 cm/sec2, the data have 150"),
         (knet(COUNTS), "0.000", "7.500", "states a peak of 7.5 gal, the data have 0.000124"),
         (smc(VALUES), "-1.5000000E+02", "-1.6000000E+02", "states a peak of 160 cm/s2, the data have 150"),
@@ -158,8 +212,9 @@ def test_refused(tmp_path, text, old, new, message):
 )
 def test_what_is_odd_is_said(tmp_path, text, old, new, words):
     assert text.count(old) >= 1
-    found = read_channels(write(tmp_path, text.replace(old, new)))[0].motion
-    assert any(words in warning for warning in found.warnings)
+    first, *others = read_channels(write(tmp_path, text.replace(old, new)))
+    assert any(words in warning for warning in first.motion.warnings)
+    assert not any(other.motion.warnings for other in others)
 
 
 @needs_records
@@ -178,3 +233,26 @@ def test_real_files(name, dt, count, peak, within, at):
     largest = motion.samples[int(np.abs(motion.samples).argmax())]
     assert 100 * largest == pytest.approx(peak, abs=within)
     assert at is None or motion.peak_time == pytest.approx(at, abs=1e-9)
+
+
+@needs_records
+@pytest.mark.parametrize(
+    "name, dt, counts, directions",
+    [
+        ("ferndale.v2", 0.01, (10100, 10100, 10100), ("180 Deg", "90 Deg", "Up")),
+        ("ce36456p_CE36456.V2", 0.02, (3251, 3250, 3250), ("90 DEG", "UP", "0 DEG")),
+        ("CE89146.V2", 0.005, (12000, 12000, 12000), ("360 Deg", "Up", "90 Deg")),
+        ("CE58667.V2", 0.01, (7500, 7500, 7500), ("H1", "Up", "H2")),
+    ],
+)
+def test_real_csmip_files(name, dt, counts, directions):
+    """Against the peak and its time, which each channel's header states."""
+    lines = (FORMATS / name).read_text().splitlines()
+    stated = [line.split() for line in lines if line.lower().startswith("peak acceleration")]
+    for channel, (count, direction) in enumerate(zip(counts, directions, strict=True), 1):
+        motion = read_record(FORMATS / name, channel=direction)
+        assert (motion.dt, len(motion.samples), motion.warnings) == (dt, count, ())
+        assert f"channel {channel} ({direction})" in motion.label
+        at = int(np.abs(motion.samples).argmax())
+        assert motion.samples[at] == pytest.approx(float(stated[channel - 1][3]) / 100, abs=5.01e-6)
+        assert at * dt == pytest.approx(float(stated[channel - 1][6]), abs=1e-9)

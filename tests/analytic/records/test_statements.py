@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from mutated_files import VALUES
-from record_files import write
+from record_files import assert_refused, write
 
 from analytic.errors import SceneError
 from analytic.records import read_channels, read_record
@@ -52,8 +52,7 @@ def test_a_step_in_words(tmp_path, words, step):
     path = write(tmp_path, f"# {words}\n{ONE_COLUMN}")
     motion = read_record(path, "m/s2")
     assert motion.dt == step and motion.samples.tolist() == VALUES and not motion.warnings
-    with pytest.raises(SceneError, match="motion.dt = 0.01: but the step of the record itself is"):
-        read_record(path, "m/s2", dt=0.01)
+    assert_refused(path, "motion.dt = 0.01: but the step of the record itself is", units="m/s2", dt=0.01)
 
 
 @pytest.mark.parametrize(
@@ -69,8 +68,7 @@ def test_a_step_in_words(tmp_path, words, step):
     ],
 )
 def test_a_faulty_statement_is_refused(tmp_path, words, problem):
-    with pytest.raises(SceneError, match=problem):
-        read_record(write(tmp_path, f"# {words}\n{ONE_COLUMN}"), "m/s2", dt=0.01)
+    assert_refused(write(tmp_path, f"# {words}\n{ONE_COLUMN}"), problem, units="m/s2", dt=0.01)
 
 
 @pytest.mark.parametrize("words", ["corner at 200 Hz", "Sampling interval of channel 2, in s: 0.005"])
@@ -82,11 +80,10 @@ def test_what_is_not_understood_of_the_sampling_is_a_warning_where_the_user_give
     assert not read_record(stated, "m/s2").warnings
 
 
-@pytest.mark.parametrize("comment, problem", [("# Sampling rate: 50 Hz", "inside"), ("# acceleration [g]", "inside")])
-def test_a_statement_inside_the_data_is_refused(tmp_path, comment, problem):
+@pytest.mark.parametrize("comment", ["# Sampling rate: 50 Hz", "# acceleration [g]"])
+def test_a_statement_inside_the_data_is_refused(tmp_path, comment):
     head = f"# dt = .01 s, acceleration [m/s2]\n{ONE_COLUMN}"
-    with pytest.raises(SceneError, match=problem):
-        read_record(write(tmp_path, f"{head}{comment}\n{ONE_COLUMN}"))
+    assert_refused(write(tmp_path, f"{head}{comment}\n{ONE_COLUMN}"), "a statement inside the data")
     assert len(read_record(write(tmp_path, f"{head}# a remark\n{ONE_COLUMN}")).samples) == 2 * len(VALUES)
 
 
@@ -111,9 +108,8 @@ def test_units_in_words(line, titles, word):
     assert (unit and unit.word) == word
 
 
-def test_two_names_of_one_unit_must_agree():
-    with pytest.raises(SceneError, match="not an acceleration"):
-        stated_unit([(1, "UNIT = gal(m/s/s)")])
+def test_two_names_of_one_unit_must_agree(tmp_path):
+    assert_refused(write(tmp_path, f"UNIT = gal(m/s/s)\n{ONE_COLUMN}"), "not an acceleration", dt=0.01)
 
 
 JMA = "SITE CODE= 1\nLAT.= 35.0\nSAMPLING RATE= 100Hz\nUNIT  = gal(cm/s/s)\nINITIAL TIME = 2000\n NS,EW,UD\n"
@@ -148,40 +144,24 @@ def test_columns_of_networks(tmp_path, text, names, step, first):
         for column in (place, str(place), name, name.lower()):
             found = read_record(path, column=column).samples
             np.testing.assert_allclose(found, np.array(VALUES) * factor * 0.01, atol=0.5e-5 + 1e-12)
-    with pytest.raises(SceneError, match="motion.column: missing; the file holds columns"):
-        read_record(path)
-    with pytest.raises(SceneError, match="motion.column = 'Z': but the file has . columns; give column, ."):
-        read_record(path, column="Z")
-    with pytest.raises(SceneError, match="motion.units = 'g': but the record carries its own unit, gal"):
-        read_record(path, "g", column=3)
-
-
-@pytest.mark.parametrize("units, factor", [("gal", 0.01), ("mm/s2", 1e-3), ("%g", 0.0981)])
-def test_units_that_the_user_gives(tmp_path, units, factor):
-    motion = read_record(write(tmp_path, ONE_COLUMN), units, dt=0.01)
-    np.testing.assert_allclose(motion.samples, np.array(VALUES) * factor, rtol=1e-15)
+    width = 4 if first else 3
+    assert_refused(path, "motion.column: missing; the file holds columns")
+    assert_refused(path, f"motion.column = 'Z': but the file has {width} columns; give column, ", column="Z")
+    assert_refused(path, "motion.units = 'g': but the record carries its own unit, gal", units="g", column=3)
 
 
 def test_a_table_with_velocities_names_its_columns(tmp_path):
     rows = "".join(f"{0.01 * i:.2f},{a:.3f},{a:.3f}\n" for i, a in enumerate(VALUES))
     path = write(tmp_path, "Time (s),x (g),v (cm/s)\n" + rows)
-    with pytest.raises(SceneError, match=r"motion.column: missing; not all columns .*add column, 2 \(x\) or 3 \(v\)"):
-        read_channels(path)
+    assert_refused(path, "motion.column: missing; not all columns are accelerations (line 1, unit: not")
+    assert_refused(path, "add column, 2 (x) or 3 (v)")
     assert read_record(path, column="x").dt == 0.01
 
 
-CUT = ONE_COLUMN.rstrip("\n")
-
-
 def test_a_number_that_the_end_of_the_file_cuts_is_refused(tmp_path):
-    assert len(read_record(write(tmp_path, CUT), "g", dt=0.01).samples) == len(VALUES)
-    with pytest.raises(SceneError, match="the last number is cut"):
-        read_record(write(tmp_path, CUT[:-2]), "g", dt=0.01)
-
-
-def test_numbers_of_many_forms_are_read_as_ever(tmp_path):
-    text = "0,0.00012\n0.01,9.5e-05\n0.02,0.25\n0.03,0"
-    assert read_record(write(tmp_path, text), "m/s2").samples.tolist() == [0.00012, 9.5e-05, 0.25, 0.0]
+    cut = ONE_COLUMN.rstrip("\n")
+    assert len(read_record(write(tmp_path, cut), "g", dt=0.01).samples) == len(VALUES)
+    assert_refused(write(tmp_path, cut[:-2]), "the last number is cut", units="g", dt=0.01)
 
 
 AT2 = "PEER\nMADE UP\nACCELERATION TIME HISTORY IN UNITS OF G\nNPTS= 4, DT= .01 SEC\n .1250E+00 -.2500E-01  .1000E+00 "
@@ -217,8 +197,7 @@ def test_a_sign_that_is_lost_from_a_column_is_told_by_the_length_of_the_line(tmp
     text = "PEER\nMADE UP\nACCELERATION TIME HISTORY IN UNITS OF G\nNPTS= 12, DT= .01 SEC\n"
     assert len(read_record(write(tmp_path, text + "".join(rows))).samples) == 12
     rows[1] = rows[1].replace("-.25", ".25")
-    with pytest.raises(SceneError, match="line 6 = .*not as long as all other lines"):
-        read_record(write(tmp_path, text + "".join(rows)))
+    assert_refused(write(tmp_path, text + "".join(rows)), "not as long as all other lines")
 
 
 @pytest.mark.parametrize(
@@ -243,5 +222,4 @@ def test_a_sign_that_is_lost_from_a_column_is_told_by_the_length_of_the_line(tmp
     ],
 )
 def test_a_known_format_that_is_not_read_is_refused_by_its_name(tmp_path, name, text):
-    with pytest.raises(SceneError, match=f"is a {name} file, which is not read; .+"):
-        read_record(write(tmp_path, text), "g", dt=0.01)
+    assert_refused(write(tmp_path, text), f"is a {name} file, which is not read; ", units="g", dt=0.01)

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 from bad_scenes import SCENE, write_scene
 
-from comparisons.running.files import check_writable
 from comparisons.running.store import Store
 from comparisons.studies import BUILT_IN
 
@@ -26,19 +25,9 @@ def test_places_where_nothing_can_be_written_are_refused_before_the_run(rocking,
     monkeypatch.setattr("comparisons.commands.run.simulate", lambda *_, **__: pytest.fail("it ran"))
     os.mkfifo(tmp_path / "fifo")
     (tmp_path / "file").write_text("")
-    for place in (
-        tmp_path,
-        tmp_path / "fifo",
-        "/dev/full",
-        "/dev/null",
-        "/dev/tty",
-        "/proc/x.json",
-        "a\0b",
-        tmp_path / ("x" * 300),
-        tmp_path / "file" / "x.json",
-        tmp_path / "none" / "x.json",
-        "",
-    ):
+    inside = (".", "fifo", "x" * 300, "file/x.json", "none/x.json")
+    outside = ("/dev/full", "/dev/null", "/dev/tty", "/proc/x.json", "a\0b", "")
+    for place in (*(tmp_path / name for name in inside), *outside):
         assert told(*rocking(*QUICK, option, place)), place
     assert sorted(path.name for path in tmp_path.iterdir()) == ["fifo", "file"]  # nothing left of the trials
 
@@ -50,7 +39,10 @@ def test_a_result_does_not_overwrite_what_is_read_nor_another_result(rocking, tm
     assert scene.read_text() == SCENE
 
 
-@pytest.mark.parametrize("command", [["report"], *(["study", name] for name in BUILT_IN)], ids=" ".join)
+FOLDERS = [["report"], ["lessons", "export"], ["sheet"], *(["study", name] for name in BUILT_IN)]
+
+
+@pytest.mark.parametrize("command", FOLDERS, ids=" ".join)
 def test_folders_where_nothing_can_be_written_are_refused_before_the_work(rocking, tmp_path, command):
     (tmp_path / "file").write_text("")
     os.mkfifo(tmp_path / "fifo")
@@ -62,15 +54,15 @@ def test_a_disk_that_is_full_after_the_run_costs_no_result(rocking, tmp_path, mo
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    check_writable([str(tmp_path / "r.json")])
     monkeypatch.setattr("comparisons.running.files.os.replace", full)
+    (tmp_path / "else").mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "else"))
     status, out, err = rocking(*QUICK, "--json", tmp_path / "r.json", "--csv", tmp_path / "r.csv")
     assert status == 2 and "outcome" in out  # the table is printed all the same
-    kept = [Path(part.split("the result is in ")[1]) for part in err.strip().split("; ") if "the result is in" in part]
-    assert [path.suffix for path in kept] == [".json", ".csv"] and list(tmp_path.iterdir()) == []
+    kept = sorted((tmp_path / "else").iterdir(), reverse=True)
+    assert [path.suffix for path in kept] == [".json", ".csv"] and list(tmp_path.iterdir()) == [tmp_path / "else"]
+    assert all(f"the result is in {path}" in err for path in kept)
     assert json.loads(kept[0].read_text())["outcome"] == "rocks"
-    for path in kept:
-        path.unlink()
 
 
 def test_standard_output_that_is_full_closed_or_not_read(tmp_path):

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from analytic import PulseMotion, Scene, load_scene, shipped_scenes
+from analytic import PulseMotion, Scene, load_scene
 from analytic.margins import Band, Margin, contact_margins, margins
 from comparisons.showing.margins import draw_margins, print_margins
 from comparisons.studies.stability.cases import BLOCK, GAP, THRESHOLD
@@ -20,27 +20,20 @@ tilt = {tilt}
 """
 
 
-@pytest.fixture
-def scene_file(tmp_path):
-    def write(tilt):
-        path = tmp_path / "released.toml"
-        path.write_text(RELEASED.format(tilt=tilt))
-        return path
-
-    return write
-
-
-def test_margin_names_the_nearest_change_of_the_outcome_and_draws_it(rocking, tmp_path, scene_file):
-    picture, file = tmp_path / "margin.png", tmp_path / "margin.json"
-    status, out, _ = rocking("margin", scene_file(0.26), "--plot", picture, "--json", file)
+def released(rocking, folder, tilt, *options):
+    """(what is printed, the JSON) of the margins of a block released from a tilt."""
+    (folder / "released.toml").write_text(RELEASED.format(tilt=tilt))
+    status, out, _ = rocking("margin", folder / "released.toml", *options, "--json", folder / "margin.json")
     assert status == 0
-    words = " ".join(out.split())
+    return " ".join(out.split()), json.loads((folder / "margin.json").read_text())
+
+
+def test_margin_names_the_nearest_change_of_the_outcome_and_draws_it(rocking, tmp_path):
+    words, content = released(rocking, tmp_path, 0.26, "--plot", tmp_path / "margin.png")
     assert "Nearest change of the outcome: slenderness -7.14 %, the block then overturns." in words
     assert "released: rocks now: lifts, tilt > 0.5 γ" in words
-    assert picture.read_bytes().startswith(b"\x89PNG")
-    content = json.loads(file.read_text())
-    assert content["schema"] == "rocking margin 2" and content["outcome"] == "rocks"
-    assert content["tilt"] == 0.5
+    assert (tmp_path / "margin.png").read_bytes().startswith(b"\x89PNG")
+    assert (content["schema"], content["outcome"], content["tilt"]) == ("rocking margin 2", "rocks", 0.5)
     nearest = content["margins"][0]
     assert nearest["quantity"] == "slenderness"
     assert nearest["nearest"] == pytest.approx(0.26 / 0.28 - 1, abs=1e-7)
@@ -52,32 +45,23 @@ def test_margin_names_the_nearest_change_of_the_outcome_and_draws_it(rocking, tm
     assert content["contact"]["friction"] == 0.3 and 0 < content["contact"]["friction_demand"] < 0.3
 
 
-def test_margin_says_when_nothing_changes_the_outcome(rocking, scene_file):
-    status, out, _ = rocking("margin", scene_file(0.01), "--span", "5")
-    assert status == 0
-    words = " ".join(out.split())
-    assert "No change of up to 5 % of any one quantity changes the outcome." in words
-    assert "No change of up to 5 % of slenderness, restitution, size, start changes any of these" in words
+SAID = {
+    (0.01, "--span", "5"): (
+        "No change of up to 5 % of any one quantity changes the outcome.",
+        "No change of up to 5 % of slenderness, restitution, size, start changes any of these",
+    ),
+    (0.03, "--tilt", "0.1"): (  # a limit of one's own
+        "released: rocks now: lifts, tilt > 0.1 γ",
+        "start 0.03 rad, rad/s -6.67 %",
+        "slenderness 0.28 rad +7.14 %",
+    ),
+}
 
 
-def test_a_limit_of_the_tilt_is_ones_own(rocking, scene_file):
-    status, out, _ = rocking("margin", scene_file(0.03), "--tilt", "0.1")
-    assert status == 0
-    words = " ".join(out.split())
-    assert "released: rocks now: lifts, tilt > 0.1 γ" in words
-    assert "start 0.03 rad, rad/s -6.67 %" in words and "slenderness 0.28 rad +7.14 %" in words
-
-
-@pytest.mark.parametrize("name", shipped_scenes())
-@pytest.mark.parametrize("span", [0.2, 9.0])
-def test_what_is_printed_fits_80_columns(capsys, monkeypatch, name, span):
-    """Nothing is cut for it, either."""
-    monkeypatch.setenv("COLUMNS", "80")
-    scene = load_scene(name)
-    found = margins(scene, span=span, step=span / 8)
-    print_margins(scene, found, contact_margins(scene), 100 * span, 0.25)
-    shown = capsys.readouterr().out
-    assert max(map(len, shown.splitlines())) <= 80 and "…" not in shown
+@pytest.mark.parametrize("arguments, sentences", SAID.items())
+def test_margin_says_what_changes_a_limit_state_and_when_nothing_does(rocking, tmp_path, arguments, sentences):
+    words, _ = released(rocking, tmp_path, *arguments)
+    assert all(sentence in words for sentence in sentences)
 
 
 def test_every_limit_state_has_its_column_and_the_widest_numbers_fit(capsys, monkeypatch):
@@ -96,12 +80,10 @@ def test_every_limit_state_has_its_column_and_the_widest_numbers_fit(capsys, mon
     )
     print_margins(scene, [found], contact_margins(scene), 900.0, 0.25)
     shown = capsys.readouterr().out
-    assert max(map(len, shown.splitlines())) <= 80 and "…" not in shown
-    assert "now: lifts\n" in shown and "quantity value lifts > 0.25 γ > x_max overturns left at" in " ".join(
-        shown.split()
-    )
-    row = "yield force 1.2345e-11 kg -0.123 % -0.123 % -0.123 % +123 % -12.3 %"
-    assert row in " ".join(shown.split())
+    assert max(map(len, shown.splitlines())) <= 80 and "…" not in shown and "now: lifts\n" in shown
+    words = " ".join(shown.split())
+    assert "quantity value lifts > 0.25 γ > x_max overturns left at" in words
+    assert "yield force 1.2345e-11 kg -0.123 % -0.123 % -0.123 % +123 % -12.3 %" in words
 
 
 def test_interleaved_outcomes_are_said(capsys):

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from mutated_files import VALUES, cosmos, csmip, knet
+from mutated_files import VALUES, csmip, knet
 
 from analytic import SampledMotion
 from analytic.records import G, read_record
@@ -27,23 +27,18 @@ def test_every_channel_is_shown_drawn_and_written(rocking, tmp_path, three_chann
     rows = [line.split() for line in out.splitlines() if "(" in line]
     assert [row[:3] for row in rows] == [["1", "(90", "Deg)"], ["2", "(Up)", "cm/sec2"], ["3", "(H1)", "cm/sec2"]]
     content = json.loads(file.read_text())
-    assert (content["schema"], content["file"], content["format"]) == (
-        "rocking record 1",
-        "made-up.v2",
-        "CSMIP volume 2",
-    )
-    up = content["channels"][1]
-    assert (up["channel"], up["direction"], up["units"], up["dt"]) == ("2", "Up", "cm/sec2", 0.005)
-    assert (up["samples"], up["warnings"], up["note"]) == (12, [], "")
-    assert (up["peak"], up["peak_time"], up["duration"]) == pytest.approx((3.0, 0.02, 0.055))
+    assert {"schema": "rocking record 1", "file": "made-up.v2", "format": "CSMIP volume 2"}.items() <= content.items()
+    up = {"channel": "2", "direction": "Up", "units": "cm/sec2", "dt": 0.005, "samples": 12, "warnings": [], "note": ""}
+    found = content["channels"][1]
+    assert up.items() <= found.items()
+    assert (found["peak"], found["peak_time"], found["duration"]) == pytest.approx((3.0, 0.02, 0.055))
 
 
 def test_one_channel_is_written_as_columns_that_are_read_back(rocking, tmp_path, three_channels):
     file = tmp_path / "up.txt"
     status, out, _ = rocking("record", three_channels, "--channel", "up", "--to", file)
     assert status == 0 and "2 (Up)" in out and "1 (90" not in out
-    motion, wanted = read_record(file), read_record(three_channels, channel=2)
-    assert motion.digest() == wanted.digest()
+    assert read_record(file).digest() == read_record(three_channels, channel=2).digest()
 
 
 @pytest.mark.parametrize("dt", [0.005, 1 / 120, 1 / 256, 1 / 119.9, 1e-4, 1e-5, 0.1])
@@ -51,9 +46,8 @@ def test_columns_are_read_back_bit_for_bit(tmp_path, dt):
     samples = np.random.default_rng(1).normal(size=3000) * 10.0 ** np.linspace(-9, 0, 3000)
     path = tmp_path / "written.txt"
     path.write_text(two_columns(SampledMotion(dt, samples)))
-    motion = read_record(path)
-    assert motion.dt == dt
-    np.testing.assert_array_equal(motion.samples, samples)
+    assert read_record(path).dt == dt
+    np.testing.assert_array_equal(read_record(path).samples, samples)
 
 
 def test_what_was_done_and_what_is_odd_are_said(rocking, tmp_path):
@@ -73,14 +67,6 @@ def test_what_the_file_does_not_say_is_asked_for_and_taken(rocking, tmp_path):
     channel = json.loads(out)["channels"][0]
     assert status == 0 and channel["peak"] == pytest.approx(1.5 * G)
     assert (channel["units"], channel["units_from"], channel["dt"]) == ("g", "units", 0.02)
-
-
-def test_new_takes_a_channel(rocking, tmp_path):
-    scene, record = tmp_path / "scene.toml", tmp_path / "record.v2c"
-    record.write_text(cosmos(VALUES))
-    bust = ("--height", "2", "--width", "0.5", "--mass", "900")
-    assert rocking("new", scene, *bust, "--record", record, "--channel", "Up")[0] == 0
-    assert 'channel = "Up"' in scene.read_text()
 
 
 def test_spectrum_is_that_of_the_equation_of_motion():

@@ -1,6 +1,7 @@
 """``rocking study``: all of them side by side, and a stored result checked (running/test_check.py: how)."""
 
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
@@ -15,34 +16,21 @@ def _plan(ask):
     yield  # a plan is a generator
 
 
-def _study(name):
-    return Study(name, "A study that asks for no run?", _plan)
-
-
-@pytest.fixture
-def two_studies(monkeypatch):
+def test_results_lie_side_by_side_and_a_second_call_keeps_them(rocking, monkeypatch, tmp_path):
     monkeypatch.setattr(command, "BUILT_IN", ("first", "second"))
-    monkeypatch.setattr(command, "get_study", _study)
-
-
-def test_results_lie_side_by_side_and_a_second_call_keeps_them(rocking, two_studies, tmp_path):
+    monkeypatch.setattr(command, "get_study", lambda name: Study(name, "A study that asks for no run?", _plan))
     for _ in range(2):
         status, out, _ = rocking("study", "all", "--quick", "--output", tmp_path)
         assert status == 0
         assert [Path(line).name for line in out.split()] == ["first.json", "second.json"]
-    assert {file.name for file in tmp_path.glob("*.json")} == {"first.json", "second.json"}
-    assert (tmp_path / "first" / "first.json").exists()
+    found = sorted(file.relative_to(tmp_path).as_posix() for file in tmp_path.rglob("*.json"))
+    assert found == ["first.json", "first/first.json", "second.json", "second/second.json"]
 
 
 @pytest.mark.parametrize("differences, status", [((), 0), (("exudyn: peak: stored 1, now 2",), 1)])
 def test_status_is_whether_all_hold(rocking, monkeypatch, differences, status):
-    asked = []
-
-    def check_all(name, folder, number, seed, workers):
-        asked.append((name, folder, number))
-        return [Check(f"{name}.json", seed, 4, 60, 1408, differences)]
-
+    check_all = Mock(return_value=[Check("restitution.json", 1, 4, 60, 1408, differences)])
     monkeypatch.setattr(module, "check_all", check_all)
     found, out, _ = rocking("study", "restitution", "--check", "4", "--output", "mine")
-    assert found == status and asked == [("restitution", "mine", 4)]
+    assert found == status and check_all.call_args.args[:3] == ("restitution", "mine", 4)
     assert f"{4 - len(differences)} of 4 runs hold" in out and all(words in out for words in differences)

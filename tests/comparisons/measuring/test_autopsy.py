@@ -90,12 +90,6 @@ def test_frames_are_json_and_hold_the_step_that_is_struck():
     assert told["energy"]["energy"][-1] == pytest.approx(told["energy"]["exact"], abs=2e-3)
 
 
-def test_what_cannot_be_told_is_said():
-    scene, trace = exact("rigid ground")
-    with pytest.raises(Unmeasurable, match=r"impact 99: the trace has \d+ between two swings"):
-        contact_of(scene, trace, 99)
-
-
 def test_without_its_place_only_the_whole_is_told():
     scene = released(None)
     trace = fixed_steps(scene, 4e-3)
@@ -106,7 +100,10 @@ def test_without_its_place_only_the_whole_is_told():
     assert sorted(frames(blind)) == ["energy", "straddle"]
 
 
-def test_a_block_that_turns_in_the_air_is_struck_nowhere():
+def test_what_cannot_be_told_is_said():
+    """Of an impact that is not there, and of a block that turns in the air."""
+    with pytest.raises(Unmeasurable, match=r"impact 99: the trace has \d+ between two swings"):
+        contact_of(*exact("rigid ground"), 99)
     scene, time = SCENES["rigid ground"], np.linspace(0.0, 0.2, 201)
     rest, fall = np.zeros_like(time), 9.81 * time
     centre = np.column_stack([rest, 1.0 - 0.5 * fall * time, rest, -fall])

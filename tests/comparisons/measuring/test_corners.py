@@ -7,7 +7,7 @@ import pytest
 from sampled_traces import SCENES
 
 from analytic import simulate
-from comparisons.measuring.corners import corner_impulses, corner_motion, pivot_forces
+from comparisons.measuring.corners import corner_impulses, corner_motion
 from engines.checks import pivoting_centre
 from engines.events import contact_measures
 from engines.swings import Trace
@@ -43,11 +43,3 @@ def test_a_pivoting_block_is_borne_by_its_pivot_alone(name):
     found = np.abs(told["friction"]) / told["impulse"][:, 1]
     assert found.max() == pytest.approx(demand, rel=1e-2)
     assert (told["impulse"][:, 1] / weight).min() == pytest.approx(normal, rel=1e-2)
-
-
-def test_forces_of_the_pivot_are_those_of_the_last_step_before_the_impact():
-    scene, trace = first_swing("isolated")
-    before, after = pivot_forces(scene, trace, 1.0, trace.time[-1], (trace.tilt_rate[-1], 0.0))
-    last = corner_impulses(scene, trace, 1.0)["impulse"][-1, 1] / np.diff(trace.time)[-1]
-    assert before == pytest.approx(last, rel=1e-2)
-    assert 0.0 < after < scene.total_mass * scene.gravity

@@ -1,5 +1,7 @@
 """What the tests of the report share: its runs are made once."""
 
+import shutil
+
 import pytest
 
 from analytic import synthetic_motion
@@ -18,13 +20,7 @@ def results(tmp_path_factory):
 @pytest.fixture(scope="session")
 def copy_of(results):
     """Copies the result files into a folder."""
-
-    def copy(folder):
-        for file in results.glob("*.*"):
-            (folder / file.name).write_bytes(file.read_bytes())
-        return folder
-
-    return copy
+    return lambda folder: shutil.copytree(results, folder, dirs_exist_ok=True)
 
 
 @pytest.fixture(scope="session")
@@ -33,5 +29,5 @@ def studies(tmp_path_factory):
     folder = tmp_path_factory.mktemp("studies")
     for name in ("restitution", "matters", "stability"):
         for file in RESULTS.glob(f"{name}.*"):
-            (folder / file.name).write_bytes(file.read_bytes())
+            shutil.copy(file, folder)
     return folder

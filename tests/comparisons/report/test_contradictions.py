@@ -1,11 +1,13 @@
-"""No two places contradict each other: one rating of a variant everywhere; each number of a title is in a table."""
+"""No two places contradict each other: one rating of a variant everywhere, titles as tables, the README as results."""
 
 import itertools
 import re
+from xml.etree import ElementTree
 
 import pytest
 
 from comparisons.report.answer import setups_of
+from comparisons.report.gallery import GALLERY, README, gallery, headlines, stored, with_findings
 from comparisons.report.studies import stored_studies, variants_of
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.studies import BUILT_IN, get_study
@@ -19,17 +21,15 @@ NUMBER = re.compile(r"(?<![\w.,−·])\d+(?:\.\d+)?(?![\w.])")
 @pytest.fixture(scope="module")
 def decision():
     """The setups of the first screen from the stored results."""
-    stored = stored_studies()
-    judgements = [each for one in stored for each in one.judgements]
-    return {(one.engine, one.variant): one for one in setups_of(variants_of(stored), judgements)}
+    studies = stored_studies()
+    judgements = [each for one in studies for each in one.judgements]
+    return {(one.engine, one.variant): one for one in setups_of(variants_of(studies), judgements)}
 
 
-def judgements_of(name):
-    return get_study(name).judgements(read_result(RESULTS / f"{name}.json"))
-
-
-def page_of(name):
-    return get_study(name).page(read_result(RESULTS / f"{name}.json")).whole()
+def shown(name):
+    """(page, judgements) of a study's stored result."""
+    study, result = get_study(name), read_result(RESULTS / f"{name}.json")
+    return study.page(result).whole(), study.judgements(result)
 
 
 def numbers_of(tables):
@@ -47,7 +47,7 @@ def numbers_of(tables):
 
 @pytest.mark.parametrize("name", STORED)
 def test_every_number_of_a_title_is_one_of_its_tables(name):
-    page = page_of(name)
+    page, _ = shown(name)
     known = numbers_of(page.tables)
     if name == "random-scenes":  # its title adds up the tuned engines
         tuned = [row for row in page.tables[0].rows if row[1] == "tuned"]
@@ -55,10 +55,8 @@ def test_every_number_of_a_title_is_one_of_its_tables(name):
         known |= {str(right), str(right + differs + failed), str(failed)}
     if name == "sheet":  # the last row is that of the exact answers
         known.add(str(len(page.tables[0].rows) - 1))
-    heads = {
-        number for table in page.tables for text in (table.caption, *table.columns) for number in NUMBER.findall(text)
-    }
-    assert not set(NUMBER.findall(page.title)) - known - heads
+    heads = " ".join(text for table in page.tables for text in (table.caption, *table.columns))
+    assert not set(NUMBER.findall(page.title)) - known - set(NUMBER.findall(heads))
 
 
 def test_the_rating_of_restitution_is_the_same_on_the_first_screen_and_on_its_page(decision):
@@ -70,19 +68,29 @@ def test_the_rating_of_restitution_is_the_same_on_the_first_screen_and_on_its_pa
         assert row["rating"] == words[marks["restitution, free rocking: error, rms"].level]
 
 
-@pytest.mark.parametrize("name, k", [(name, k) for name in STORED for k, _ in enumerate(judgements_of(name))])
+@pytest.mark.parametrize("name, k", [(name, k) for name in STORED for k, _ in enumerate(shown(name)[1])])
 def test_what_a_study_says_on_the_first_screen_stands_in_its_own_tables(name, k):
-    judgement = judgements_of(name)[k]
-    page = page_of(name)
-    marks = {key: mark for key, mark in judgement.marks.items() if key[0] in ENGINES}
+    page, judgements = shown(name)
+    marks = {", ".join(filter(None, key)): mark for key, mark in judgements[k].marks.items() if key[0] in ENGINES}
     assert marks
-    for names, mark in marks.items():
-        rows = [row for table in page.tables for row in table.rows if row[0] == ", ".join(filter(None, names))]
-        cells = " ".join(itertools.chain.from_iterable(rows))
+    for who, mark in marks.items():
+        rows = [row for table in page.tables for row in table.rows if row[0] == who]
         first = NUMBER.findall(mark.words)[:1]  # of "36 of 41": the cases are counted elsewhere
-        assert rows and set(first) <= set(NUMBER.findall(cells))
+        assert rows and set(first) <= set(NUMBER.findall(" ".join(itertools.chain.from_iterable(rows))))
 
 
 def test_the_cheapest_engine_of_the_cost_study_is_one_that_the_first_screen_trusts(decision):
-    named = re.search(r"([a-z]+), ([\w-]+), at [\d.]+ times", page_of("speed-error").title)
+    named = re.search(r"([a-z]+), ([\w-]+), at [\d.]+ times", shown("speed-error")[0].title)
     assert decision[named[1], named[2]].rating.level in ("good", "part")
+
+
+def test_the_readme_shows_and_says_what_the_stored_results_do():
+    made, readme, words = gallery(stored()), README.read_text(encoding="utf-8"), headlines()
+    assert {file.name: file.read_text(encoding="utf-8") for file in GALLERY.iterdir()} == made and len(made) == 4
+    for name, svg in made.items():
+        root = ElementTree.fromstring(svg)
+        assert f"comparisons/report/gallery/{name}" in readme
+        assert root.tag == "{http://www.w3.org/2000/svg}svg" and root.get("aria-label")
+        assert "prefers-color-scheme" in svg and "http://" not in svg.replace("http://www.w3.org", "")
+    assert words in readme and "| exudyn, tuned |" in words.splitlines()[0]
+    assert with_findings(readme, words) == readme != with_findings(readme, "- something else")

@@ -1,17 +1,20 @@
-"""The card of a statue: each of its sentences against runs."""
+"""The report on one's own scenes: each sentence of a statue's card against runs, and nothing of the Caryatid."""
 
+import json
 import re
 
-import numpy as np
 import pytest
 from own_scenes import BRONZE, BUST, CLIFF
 
-from analytic import load_scene, simulate, synthetic_motion
+from analytic import PulseMotion, load_scene, simulate, synthetic_motion
+from analytic.errors import SceneError
 from analytic.response import COMPARED, EDGE
-from comparisons.report.runs import load_scenes
+from comparisons.commands.report import form
+from comparisons.report.runs import RESTITUTION, SCENES, load_scenes
 from comparisons.report.statue import _engines, statue_of
 from comparisons.report.study import make_own_results
-from comparisons.report.write import write_page
+from comparisons.report.write import PAGE, write_page
+from comparisons.running.provenance import read_result
 
 BEARINGS = """[bearings]
 ka = 22950.5
@@ -61,13 +64,13 @@ def cards(page):
 
 
 def test_each_scene_has_its_card_first_with_its_outcome_in_the_title(page, scenes):
-    found = cards(page)
+    found, titles = cards(page), page[: page.index("</title>")]
     assert len(found) == len(scenes)
     for card, (name, scene) in zip(found, scenes.items(), strict=True):
         outcome = simulate(scene, history=False).outcome
         words = {"stands": "does not lift", "rocks": "rocks and stays upright", "overturns": "overturns"}[outcome]
-        assert card.startswith(f"{name}: the block {words}")
-        assert f"{name}: the block {words}" in page[: page.index("</title>")]
+        assert card.startswith(f"{name}: the block {words}") and f"{name}: the block {words}" in titles
+        assert "Engines None was run." in card
     assert page.index('class="statue"') < page.index("Which engine may be trusted")
 
 
@@ -115,18 +118,10 @@ def test_free_standing_beside_isolated(page, scenes):
 
 
 def test_other_motions_are_counted_by_record(page, scenes):
-    bust = cards(page)[1]
-    found = [
-        simulate(scenes["bust"].with_(motion=motion, duration=None), history=False)
-        for motion in (synthetic_motion(seed=7), synthetic_motion(seed=8).scaled(2.5))
-    ]
-    lifts = any(response.outcome != "stands" for response in found)
-    assert f"lifts under {int(lifts)} of 1 records" in bust
-    assert f"{np.max([response.peak_base_displacement for response in found]):.3f}" in bust
-
-
-def test_the_card_needs_no_engine(page):
-    assert all("Engines None was run." in card for card in cards(page))
+    bust, motions = cards(page)[1], (synthetic_motion(seed=7), synthetic_motion(seed=8).scaled(2.5))
+    found = [simulate(scenes["bust"].with_(motion=motion, duration=None), history=False) for motion in motions]
+    assert f"lifts under {int(any(one.outcome != 'stands' for one in found))} of 1 records" in bust
+    assert f"{max(one.peak_base_displacement for one in found):.3f}" in bust
 
 
 def test_the_engines_that_agree_and_what_the_others_have_other():
@@ -149,3 +144,46 @@ def test_the_engines_that_agree_and_what_the_others_have_other():
     assert said[2].startswith(f"three is {EDGE}")
     assert said[3].startswith("four cannot be compared with the analytic model: N <= 0")
     assert said[4:] == ["five failed: it gave up", "six was not compared."]
+
+
+BUST_ON_PULSE = load_scene("caryatid-isolated").with_(name="bust", motion=PulseMotion("one-sine", 1.0, 6.0))
+
+
+def page_of(folder, **scenes):
+    """The HTML of a report on these scenes, and of the page of its runs."""
+    make_own_results(folder, scenes, engines=[])
+    return write_page(folder, studies=folder / "none").read_text() + (folder / "pages/runs.html").read_text()
+
+
+def test_one_that_rocks_gets_its_own_restitution_and_replaces_an_older_report(tmp_path):
+    (tmp_path / SCENES).write_text("of an older report")
+    page = page_of(tmp_path, bust=BUST_ON_PULSE, released=load_scene("free-rocking-rigid").with_(name="released"))
+    result = read_result(tmp_path / RESTITUTION)
+    assert result.settings["bases"] == [None] and max(row["rms"] for row in result.rows) < 1e-9
+    assert sum(row["impacts"] for row in result.rows) >= 8
+    assert "Restitution of this block" in page and "slides without friction" not in page
+    assert "Table 1(a)" not in page and "aryatid" not in page
+    told = json.loads(form(tmp_path / PAGE).text())
+    assert told["schema"] == "rocking report 3" and len(told["results"]) == 2
+    assert [(row["scene"], row["outcome"]) for row in told["rows"]] == [("bust", "stands"), ("released", "rocks")]
+    assert "released: in analytic it rocks and stays upright" in page and "bust: in analytic it never lifts" in page
+
+
+@pytest.mark.slow
+def test_a_scene_that_stands_gets_no_word_of_restitution(tmp_path):
+    page = page_of(tmp_path, bust=BUST_ON_PULSE)
+    assert (tmp_path / SCENES).exists() and not (tmp_path / RESTITUTION).exists()
+    assert "Restitution of this block" not in page and "aryatid" not in page
+    titles = " ".join(re.findall('role="img" aria-label="([^"]*)"', page))
+    assert "base displacement" in titles and "tilt φ" not in titles
+    assert re.search(r">mass of the block m \[kg\]</th><td[^>]*>3172.05<", page)
+
+
+def test_a_record_takes_the_place_of_the_scenes_motions(tmp_path):
+    motion = synthetic_motion()
+    scenes = load_scenes(["caryatid-rigid", "free-rocking-rigid"], motion)
+    assert [scene.motion for scene in scenes.values()] == [motion, motion]
+    assert list(load_scenes(["free-rocking-rigid"] * 2)) == ["free-rocking-rigid", "free-rocking-rigid-2"]
+    assert load_scenes(["caryatid-rigid"])["caryatid-rigid"].digest() == load_scene("caryatid-rigid").digest()
+    with pytest.raises(SceneError):
+        load_scenes([str(tmp_path / "none.toml")])

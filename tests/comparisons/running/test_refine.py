@@ -1,5 +1,7 @@
 """The search on synthetic outcomes whose boundaries are known, and on published ones of the rocking block."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -16,70 +18,54 @@ def steps(*edges, labels=None):
     return lambda point: names[int(np.searchsorted(edges, point, side="right"))]
 
 
-def alone(search, outcome, seen=None):
-    def evaluate(batch):
-        if seen is not None:
-            seen.append([point for _, point in batch])
-        return [outcome(point) for _, point in batch]
+def along(*searches_outcomes, seen=None):
+    """The `Column` of each of (search, outcome of a point); the rounds' points go to `seen`."""
+    searches, outcomes = zip(*searches_outcomes, strict=True)
+    seen = [] if seen is None else seen
 
-    (result,) = drive([search], evaluate)
-    return result
+    def evaluate(batch):
+        seen.append([point for _, point in batch])
+        return [outcomes[index](point) for index, point in batch]
+
+    return drive(searches, evaluate)
+
+
+def positions(column):
+    return [one.position for one in column.transitions]
 
 
 # What a column of a pulse's map can look like: safe, overturns after one impact, safe gap, overturns without impact
-@pytest.mark.parametrize("edges", [(1.2509, 2.37418, 2.40806), (4.91994, 8.50817, 9.91798), (15.9047,), ()])
-def test_all_transitions_of_a_column_are_found(edges):
-    seen = []
-    labels = ["safe", "one", "safe", "none"][: len(edges) + 1]
-    column = alone(boundaries(0.5, 20.5, 41, 1e-5), steps(*edges, labels=labels), seen)
-    assert [t.position for t in column.transitions] == pytest.approx(edges, abs=1e-5)
-    assert all(t.high - t.low <= 1e-5 for t in column.transitions)
-    assert [t.before for t in column.transitions] == labels[:-1]
-    assert [t.after for t in column.transitions] == labels[1:]
-    points = [point for batch in seen for point in batch]
-    assert column.evaluations == len(points) == len(set(points))
-    assert len(seen) <= 2 + 16  # rounds: scan, near, bisection of 0.125 to 1e-5
+COLUMNS = [(1.2509, 2.37418, 2.40806), (4.91994, 8.50817, 9.91798), (15.9047,), ()]
 
 
-def test_a_gap_thinner_than_the_scan_is_found_between_two_ways_to_overturn():
-    edges = (1.2509, 7.30001, 7.30051)
-    labelled = alone(boundaries(0.5, 20.5, 41, 1e-5), steps(*edges, labels=["safe", "one", "safe", "none"]))
-    assert [t.position for t in labelled.transitions] == pytest.approx(edges, abs=1e-5)
-    # Plain outcomes cannot show it: why labels should say more.
-    plain = alone(boundaries(0.5, 20.5, 41, 1e-5), steps(*edges))
-    assert [t.position for t in plain.transitions] == pytest.approx(edges[:1], abs=1e-5)
+def test_all_transitions_of_columns_are_found_in_common_rounds():
+    seen, labels = [], ["safe", "one", "safe", "none"]
+    outcomes = [steps(*edges, labels=labels[: len(edges) + 1]) for edges in COLUMNS]
+    columns = along(*((boundaries(0.5, 20.5, 41, 1e-5), outcome) for outcome in outcomes), seen=seen)
+    for edges, column in zip(COLUMNS, columns, strict=True):
+        assert positions(column) == pytest.approx(edges, abs=1e-5)
+        assert all(one.high - one.low <= 1e-5 for one in column.transitions)
+        assert [one.before for one in column.transitions] == labels[: len(edges)]
+        assert [one.after for one in column.transitions] == labels[1 : len(edges) + 1]
+    assert len(seen) == 2 + 14  # rounds: scan, near, bisection of 0.125 to below 1e-5
+    for edges, column, close in zip(
+        COLUMNS, columns, (5, 8, 3, 0), strict=True
+    ):  # intervals with a change or beside it
+        assert column.evaluations == 41 + 3 * close + 14 * len(edges)
+    assert sum(map(len, seen)) == sum(column.evaluations for column in columns)
 
 
 def test_a_thin_gap_beside_a_change_is_found_by_the_closer_look():
     edges = (5.9, 6.05, 6.20)  # scan step 0.5; gap 0.15 wide, not hit by the scan's points, in neighbouring steps
-    near = alone(boundaries(0.5, 20.5, 41, 1e-4), steps(*edges))
-    assert [t.position for t in near.transitions] == pytest.approx(edges, abs=1e-4)
-    without = alone(boundaries(0.5, 20.5, 41, 1e-4, near=1), steps(*edges))
-    assert len(without.transitions) == 1
-
-
-def test_many_columns_go_through_in_common_rounds():
-    edges = {i: (1 + 0.3 * i, 3 + 0.4 * i) for i in range(10)}
-    rounds = []
-
-    def evaluate(batch):
-        rounds.append(len(batch))
-        return [steps(*edges[index])(point) for index, point in batch]
-
-    columns = drive([boundaries(0.0, 10.0, 21, 1e-3) for _ in edges], evaluate)
-    for index, column in enumerate(columns):
-        assert [t.position for t in column.transitions] == pytest.approx(edges[index], abs=1e-3)
-    assert len(rounds) == 2 + 7  # 0.125 halved to below 1e-3
-    assert sum(rounds) == sum(column.evaluations for column in columns)
-    # brute force to 1e-3 takes 10 001 points a column
-    assert sum(rounds) / len(columns) < 60
+    near, without = along(*((boundaries(0.5, 20.5, 41, 1e-4, near), steps(*edges)) for near in (4, 1)))
+    assert positions(near) == pytest.approx(edges, abs=1e-4) and len(without.transitions) == 1
 
 
 @given(st.lists(st.floats(0.01, 0.99), min_size=0, max_size=6, unique=True), st.integers(2, 60))
 @settings(max_examples=60, deadline=None)
 def test_every_bracket_holds_an_edge_and_wide_stretches_are_never_missed(edges, scan):
     edges = sorted(edges)
-    column = alone(boundaries(0.0, 1.0, scan, 1e-6), steps(*edges))
+    (column,) = along((boundaries(0.0, 1.0, scan, 1e-6), steps(*edges)))
     for transition in column.transitions:
         assert any(transition.low <= edge <= transition.high for edge in edges)
         assert transition.before != transition.after
@@ -88,29 +74,17 @@ def test_every_bracket_holds_an_edge_and_wide_stretches_are_never_missed(edges, 
         assert len(column.transitions) == len(edges)
 
 
-def test_what_cannot_be_searched_is_an_error():
-    for wrong in ((1, 0, 5, 0.1), (0, 1, 1, 0.1), (0, 1, 5, 0.0), (0, 1, 5, 0.1, 0)):
-        with pytest.raises(ValueError, match="boundaries needs low < high"):
-            boundaries(*wrong)
-    with pytest.raises(ValueError, match="0 outcomes were sent for 2 points"):
-        drive([boundaries(0.0, 1.0, 2, 0.1)], lambda batch: [])
-
-
 def test_the_rocking_block_s_boundaries_and_safe_gap():
     gravity, gamma, frequency = 9.81, 0.25, 2.14
     block = Block(mass=1.0, radius=0.75 * gravity / frequency**2, slenderness=gamma, restitution=0.9)
-    ratios = list(ONE_SINE)
 
-    def evaluate(batch):
-        labels = []
-        for index, amplitude in batch:
-            pulse = PulseMotion("one-sine", amplitude * gravity * gamma, ratios[index] * frequency)
-            end = simulate(Scene(block=block, motion=pulse, duration=12.0), history=False)
-            labels.append(("overturns", end.impact_count) if end.outcome == "overturns" else "safe")
-        return labels
+    def outcome(amplitude, ratio):
+        pulse = PulseMotion("one-sine", amplitude * gravity * gamma, ratio * frequency)
+        end = simulate(Scene(block=block, motion=pulse, duration=12.0), history=False)
+        return ("overturns", end.impact_count) if end.outcome == "overturns" else "safe"
 
     # 0.7 wide steps would miss the gap of 0.034 at ratio 2; the two ways to overturn give it away
-    columns = drive([boundaries(1.01, 18.01, 25, 1e-6) for _ in ratios], evaluate)
-    for ratio, column in zip(ratios, columns, strict=True):
-        assert [t.position for t in column.transitions] == pytest.approx(ONE_SINE[ratio], abs=1e-5)
+    columns = along(*((boundaries(1.01, 18.01, 25, 1e-6), partial(outcome, ratio=ratio)) for ratio in ONE_SINE))
+    for ratio, column in zip(ONE_SINE, columns, strict=True):
+        assert positions(column) == pytest.approx(ONE_SINE[ratio], abs=1e-5)
         assert column.evaluations < 120

@@ -25,7 +25,7 @@ def package(tmp_path, monkeypatch):
 
     def write(name, text):
         (folder / f"{name}.py").write_text(text)
-        os.utime(folder / f"{name}.py", ns=(time.time_ns(), time.time_ns()))
+        os.utime(folder / f"{name}.py", ns=(time.time_ns(), time.time_ns()))  # finer than the system's clock of files
 
     for name, text in files.items():
         write(name, text)
@@ -45,42 +45,38 @@ def test_imports_are_followed_within_the_package_inside_functions_too(package):
     assert list(source_digests(["some_package.alone"])) == ["some_package.alone"]  # not the package that holds it
 
 
+TYPED = "class A:\n    x: {}\n\n    def f(self, y{}){}:\n        {}return y\n"
+BARE = TYPED.format("int", "", "", "")
+
+
 @pytest.mark.parametrize(
-    "text, same",
+    "old, new, same",
     [
-        ("# why\nx   =  1\n", True),
-        ('"""What."""\nx = 1\n', True),
-        ("if TYPE_CHECKING:\n    from .alone import y\nx = 1\n", True),
-        ("if TYPE_CHECKING:\n    from .alone import y\nelse:\n    y = 2\nx = 1\n", False),
-        ("from math import pi\nx = 1\n", False),
-        ("x = 2\n", False),
-        ("x = 1.0\n", False),
-        ("x = 1\nx += 1\n", False),
-        ("x = '1'\n", False),
-        ("y = 1\n", False),
+        ("x = 1\n", "# why\nx   =  1\n", True),
+        ("x = 1\n", '"""What."""\nx = 1\n', True),
+        ("x = 1\n", "if TYPE_CHECKING:\n    from .alone import y\nx = 1\n", True),
+        ("x = 1\n", "if TYPE_CHECKING:\n    from .alone import y\nelse:\n    y = 2\nx = 1\n", False),
+        ("x = 1\n", "from math import pi\nx = 1\n", False),
+        ("x = 1\n", "x = 2\n", False),
+        ("x = 1\n", "x = 1.0\n", False),
+        ("x = 1\n", "x = 1\nx += 1\n", False),
+        ("x = 1\n", "x = '1'\n", False),
+        ("x = 1\n", "y = 1\n", False),
+        (BARE, TYPED.format("int", ": int", " -> int", '"""What."""\n        '), True),  # types of functions
+        (BARE, TYPED.format("float", "", "", ""), False),  # types of fields, which pydantic reads
     ],
 )
-def test_code_counts_and_words_do_not(package, text, same):
+def test_code_counts_and_words_do_not(package, old, new, same):
+    package("c", old)
     before = source_digests(["some_package.a"])
-    package("c", text)
+    package("c", new)
     after = source_digests(["some_package.a"])
     assert {name for name in before if before[name] != after[name]} == (set() if same else {"some_package.c"})
     assert before.keys() == after.keys()
 
 
-def test_types_of_functions_do_not_count_and_those_of_fields_do(package):
-    text = "class A:\n    x: {}\n\n    def f(self, y{}){}:\n        {}return y\n"
-    package("b", text.format("int", "", "", ""))
-    before = source_digests(["some_package.a"])
-    package("b", text.format("int", ": int", " -> int", '"""What."""\n        '))
-    assert source_digests(["some_package.a"]) == before
-    package("b", text.format("float", "", "", ""))
-    assert source_digests(["some_package.a"]) != before
-
-
 def test_the_reference_does_not_depend_on_engines_nor_studies():
-    names = list(source_digests(["analytic"]))
-    assert "analytic.scene" in names and all(name.startswith("analytic") for name in names)
+    assert {name.partition(".")[0] for name in source_digests(["analytic"])} == {"analytic"}
 
 
 def test_an_unknown_module_is_an_error():

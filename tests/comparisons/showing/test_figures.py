@@ -1,4 +1,4 @@
-"""Figures from rows: every row is drawn where it belongs, series are told apart, numbers stand in their cells."""
+"""Charts can be read back; figures draw every row where it belongs, tell series apart, and write numbers in cells."""
 
 import json
 import math
@@ -7,11 +7,97 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from contrast import contrast
+from page_numbers import number_in
 
-from comparisons.showing.charts import HAIR, INK, NEAR, STYLE, Axis, figure
+from comparisons.showing.charts import HAIR, INK, NEAR, SHAPES, STYLE, Axis, Chart, figure, key_of, log_axis, marker
 from comparisons.showing.figures import MOVED, beside, lines, ranks, regions, shades
 from comparisons.showing.rows import NAME, Column
 from engines import ENGINES
+
+LINEAR, LOG = Axis("x [m]", -2.0, 6.0), Axis("error [-]", 1e-6, 1e2, "log")
+
+
+def value(read, place):
+    """What the page's script makes of a place."""
+    share = (place - read["at"][0]) / (read["at"][1] - read["at"][0])
+    return (
+        read["low"] * (read["high"] / read["low"]) ** share
+        if read["log"]
+        else read["low"] + share * (read["high"] - read["low"])
+    )
+
+
+def element(chart):
+    return ElementTree.fromstring(chart.svg())
+
+
+def drawn_lines(root):
+    """The paths of the lines in a panel, those in the margin aside."""
+    (inside,) = root.findall("svg")
+    return [part.get("d") for part in inside.iter("path") if part.get("class") == "line"]
+
+
+def points(path):
+    return [tuple(map(float, pair.split())) for pair in re.split("[ML]", path)[1:]]
+
+
+def test_a_line_read_back_from_its_path_is_the_data():
+    xs, ys = np.linspace(-1.5, 5.5, 40), np.geomspace(1e-5, 10, 40)
+    chart = Chart(LINEAR, LOG, "A line.")
+    chart.line(xs, ys, "exudyn")
+    root = element(chart)
+    read = json.loads(root.get("data-read"))
+    found = np.array([(value(read["x"], x), value(read["y"], y)) for x, y in points(*drawn_lines(root))])
+    np.testing.assert_allclose(found[:, 0], xs, atol=8.0 / 300)  # a tenth of a unit of some 330
+    np.testing.assert_allclose(np.log10(found[:, 1]), np.log10(ys), atol=8.0 / 200)
+
+
+def test_a_line_is_parted_where_there_is_no_number_and_says_equal_points_once():
+    chart = Chart(LINEAR, LINEAR, "A gap.")
+    chart.line([0, 1, 1, 2, 3, 4], [0, 1, 1, np.nan, 1, 0])
+    chart.line([], [])
+    assert [re.sub("[^ML]", "", path) for path in drawn_lines(element(chart))] == ["MLML", ""]
+
+
+def test_ticks_lie_between_the_ends_and_say_their_values():
+    for axis in (LINEAR, LOG, Axis("t", 0.0, 32.2), log_axis("e", [3e-9, 0.0, 2e-4])):
+        marks = axis.marks()
+        assert len(marks) >= 3
+        for place, word in marks:
+            assert -1e-9 <= axis.share([place])[0] <= 1 + 1e-9
+            number = number_in(f"1·{word}") if axis.scale == "log" else number_in(word)
+            assert number == pytest.approx(place, rel=1e-9, abs=1e-12)
+    assert log_axis("e", [3e-9, 0.0, 2e-4]).low == 1e-9
+
+
+def test_every_solver_has_a_marker_of_its_own_and_its_name_on_what_it_drew():
+    assert {marker(name) for name in ENGINES} <= set(SHAPES) and len({marker(name) for name in ENGINES}) == len(ENGINES)
+    chart = Chart(LINEAR, LINEAR, "Two.")
+    for name in ("exudyn", "analytic"):
+        chart.line([0, 1], [0, 1], name)
+        chart.dots([0, 1], [0, 1], name, says=["first", "second < third"])
+    root = element(chart)
+    assert {part.get("data-who") for part in root.iter("g")} - {None} == {"exudyn", "analytic"}
+    told = [part.get("data-says") for part in root.iter("path") if part.get("data-says")]
+    assert told == 2 * ["first", "second < third"]
+    assert ENGINES["exudyn"].colour in chart.svg() and ENGINES["exudyn"].colour in key_of("exudyn")
+
+
+def test_scipy_and_time_stepping_are_told_apart_in_one_ink():
+    scipy, stepping = key_of("scipy, DOP853"), key_of("time-stepping")
+    assert all("--c:var(--soft)" in key for key in (scipy, stepping))
+    assert SHAPES[marker("scipy")] in scipy and SHAPES[marker("time-stepping")] in stepping
+    assert "--d:7 4" in scipy and "--d:2 3.5" in stepping and "--d:none" in key_of("analytic")
+
+
+def test_labels_are_pushed_apart_and_stay_inside():
+    chart = Chart(LINEAR, LINEAR, "Labels.", right=80)
+    for k in range(8):
+        chart.label(-1.9 + 0.01 * k, f"line {k}")
+    tops = sorted(float(text.get("y")) for text in element(chart).iter("text") if (text.text or "").startswith("line"))
+    assert len(tops) == 8 and min(np.diff(tops)) >= 13 and tops[-1] <= chart.bottom + 5
+
 
 X, Y = Column("slenderness γ [rad]", "x", digits=None), Column("error [-]", "y")
 FIRST, SECOND = list(ENGINES)[:2]
@@ -33,6 +119,11 @@ ROWS = [
 
 def panels(figure):
     return list(ElementTree.fromstring(f"<all>{figure.svg.decode()}</all>"))
+
+
+def place_of(mark):
+    """(x, y) of a mark."""
+    return tuple(map(float, re.findall(r"[\d.]+", mark.get("transform"))[:2]))
 
 
 def groups(panel):
@@ -58,18 +149,14 @@ def test_each_panel_holds_its_series_and_every_row_that_can_be_drawn():
     assert lines([ROWS[3]], X, Y, "Errors.") is None
 
 
-def test_a_mark_stands_where_its_values_are_and_tells_them():
+def test_marks_stand_on_their_line_and_tell_their_values():
     (panel,) = panels(lines(ROWS[:2], X, Y, "Errors.", log="y"))
-    read = json.loads(panel.get("data-read"))
-    for mark, one in zip((part for part in panel.iter("path") if part.get("data-says")), ROWS, strict=False):
-        x, y = map(float, re.findall(r"[\d.]+", mark.get("transform"))[:2])
-        share = [(x - read["x"]["at"][0]), (y - read["y"]["at"][0])]
-        share = [part / (read[key]["at"][1] - read[key]["at"][0]) for part, key in zip(share, "xy", strict=True)]
-        assert read["x"]["low"] + share[0] * (read["x"]["high"] - read["x"]["low"]) == pytest.approx(one["x"], abs=1e-3)
-        assert math.log10(read["y"]["low"] * (read["y"]["high"] / read["y"]["low"]) ** share[1]) == pytest.approx(
-            math.log10(one["y"]), abs=0.01
-        )
-        assert mark.get("data-says") == f"{FIRST}, fine: {Y.text(one)} at {one['x']:g}"
+    marks = [part for part in panel.iter("path") if part.get("data-says")]
+    assert [one.get("data-says") for one in marks] == [
+        f"{FIRST}, fine: 1.0·10⁻⁵ at 0.1",
+        f"{FIRST}, fine: 1.0·10⁻⁴ at 0.2",
+    ]
+    assert [place_of(one) for one in marks] == points(*drawn_lines(panel))
 
 
 def test_variants_of_an_engine_share_its_colour_and_differ_in_their_marks():
@@ -79,15 +166,9 @@ def test_variants_of_an_engine_share_its_colour_and_differ_in_their_marks():
     assert 'class="dot"' in fine and 'class="dot open"' in coarse
     alone = lines([row(FIRST, "fine", 0.1, None), ROWS[2]], X, Y, "Errors.", log="y")
     assert alone.keys == {f"{FIRST}, coarse": coarse}  # as where the other one is drawn
-    first = lines(ROWS[2:3], X, Y, "Errors.", log="y")
-    likewise = lines(ROWS[2:3], X, Y, "Errors.", log="y", like=ROWS)
-    assert 'class="dot"' in first.keys[f"{FIRST}, coarse"] and likewise.keys == alone.keys
-    many = [row(FIRST, f"variant {k}", 0.1, 10.0**-k) for k in range(4)]
-    marks = {
-        re.sub(r".*?<path class=\"(dot[^>]*)>.*", r"\1", str(key))
-        for key in lines(many, X, Y, "", log="y").keys.values()
-    }
-    assert len(marks) == 4
+    assert lines(ROWS[2:3], X, Y, "Errors.", log="y", like=ROWS).keys == alone.keys
+    many = lines([row(FIRST, f"variant {k}", 0.1, 10.0**-k) for k in range(4)], X, Y, "", log="y")
+    assert len({re.search('<path class="(dot[^>]*)>', str(key))[1] for key in many.keys.values()}) == 4
 
 
 def test_grey_series_stand_behind_and_are_in_no_legend():
@@ -104,9 +185,8 @@ def test_marks_that_would_cover_each_other_stand_side_by_side():
     same = [row(FIRST, f"variant {k}", 0.2, 1e-3) for k in range(4)]
     made = lines(same, X, Y, "Errors.", log="y")
     (panel,) = panels(made)
-    found = [part.get("transform") for part in panel.iter("path") if (part.get("class") or "").startswith("dot")]
-    places = sorted(float(re.search(r"translate\(([\d.]+)", one)[1]) for one in found)
-    assert len(places) == 4 and min(b - a for a, b in zip(places, places[1:], strict=False)) >= NEAR
+    places = sorted(place_of(part)[0] for part in panel.iter("path") if (part.get("class") or "").startswith("dot"))
+    assert len(places) == 4 and min(np.diff(places)) >= NEAR
     assert made.caption.endswith(MOVED) and not lines(same[:1], X, Y, "Errors.", log="y").caption.endswith(MOVED)
 
 
@@ -125,12 +205,11 @@ def test_the_model_is_a_line_without_marks():
     assert groups(panel) == {"analytic, damped": (1, 0)}
 
 
-def test_figures_beside_each_other_share_legend_and_caption():
+def test_figures_beside_each_other_share_legend_caption_and_words_for_those_who_cannot_see_them():
     one, two = lines(ROWS[:2], X, Y, "One."), lines(ROWS, X, Y, "Two.", panel="ground")
-    both = beside(one, None, two)
-    assert len(panels(both)) == 3 and both.caption == "One. Two." and both.wide
+    both = beside(one, None, two, one)
+    assert len(panels(both)) == 4 and both.caption == "One. Two." and both.alt == f"{one.alt} {two.alt} {one.alt}"
     assert both.solvers == two.solvers and beside(None) is None
-    assert beside(one, two, one).caption == "One. Two."
 
 
 def test_ranked_values_stand_below_each_other_with_their_intervals_and_no_further_than_the_axis():
@@ -143,14 +222,10 @@ def test_ranked_values_stand_below_each_other_with_their_intervals_and_no_furthe
     told = [part for part in panel.iter("path") if part.get("data-says")]
     assert [part.get("data-says") for part in told] == ["analytic, model: 0.50 (0.25 to 2.0)", f"{FIRST}, fine: 0"]
     (x0, x1), (y0, y1) = (json.loads(panel.get("data-read"))[key]["at"] for key in "xy")
-    places = [tuple(map(float, re.findall(r"[\d.]+", part.get("transform"))[:2])) for part in told]
-    assert places == [
-        (pytest.approx(x0 + math.log10(5) * (x1 - x0), abs=0.1), y1 + (y0 - y1) / 4),
-        (x0, y1 + (y0 - y1) * 0.75),
-    ]
+    middle, low = (pytest.approx(x0 + math.log10(times) * (x1 - x0), abs=0.1) for times in (5, 2.5))
+    assert list(map(place_of, told)) == [(middle, y1 + (y0 - y1) / 4), (x0, y1 + (y0 - y1) * 0.75)]
     reach = next(part.get("d") for part in panel.iter("path") if part.get("class") == "reach")
-    ends = list(map(float, re.findall(r"[\d.]+", reach)))[::2]
-    assert ends == [pytest.approx(x0 + math.log10(2.5) * (x1 - x0), abs=0.1), x1]
+    assert list(map(float, re.findall(r"[\d.]+", reach)))[::2] == [low, x1]
     assert ranks(rows[2:], NAME, share, "Shares.", Axis("share [-]", 0.1, 1.0)) is None
 
 
@@ -191,52 +266,32 @@ def test_cells_hold_their_numbers_shades_and_failures():
 
 
 def test_a_map_leaves_room_for_long_words_at_both_axes():
-    words = (
-        Column("measure", lambda one: f"measure of intensity {one['gamma']}"),
-        Column("state", lambda one: f"displacement above {one['ratio']} m"),
-    )
+    words = "measure of intensity {gamma}", "displacement above {ratio} m"
     rows = [one | {"gamma": k} for one in CELLS for k in range(5)]
-    panel, _ = panels(shades(rows, *words, Column("rms [-]", "rms"), "Map.", bounds=(1.0,)))
+    columns = [Column(head, form) for head, form in zip(("measure", "state"), words, strict=True)]
+    panel, _ = panels(shades(rows, *columns, Column("rms [-]", "rms"), "Map.", bounds=(1.0,)))
     (inside,) = panel.findall("svg")
     assert float(inside.get("x")) > 6 * len("displacement above 10.0 m")
     slanted = [text for text in panel.iter("text") if "rotate(-35)" in (text.get("transform") or "")]
     (below,) = [text for text in panel.iter("text") if text.text == "measure"]
-    end = (
-        float(inside.get("y"))
-        + float(inside.get("height"))
-        + 17
-        + 6 * len("measure of intensity 0") * math.sin(math.radians(35))
-    )
-    assert len(slanted) == 5 and float(below.get("y")) > end
-
-
-def luminance(colour):
-    parts = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
-    parts = [part / 12.92 if part <= 0.03928 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
-    return 0.2126 * parts[0] + 0.7152 * parts[1] + 0.0722 * parts[2]
-
-
-def contrast(one, other):
-    low, high = sorted((luminance(one), luminance(other)))
-    return (high + 0.05) / (low + 0.05)
-
-
-def mixed(colour, ink):
-    """What a browser makes of the share of ink in a colour."""
-    parts = [(int(colour[k : k + 2], 16) * (100 - INK) + int(ink[k : k + 2], 16) * INK) / 100 for k in (1, 3, 5)]
-    return "#" + "".join(f"{round(part):02x}" for part in parts)
+    bottom = float(inside.get("y")) + float(inside.get("height")) + 17
+    reach = 6 * len("measure of intensity 0") * math.sin(math.radians(35))
+    assert len(slanted) == 5 and float(below.get("y")) > bottom + reach
 
 
 @pytest.mark.parametrize("scheme", [0, 1], ids=["light", "dark"])
 def test_lines_and_shades_can_be_told_from_the_page(scheme):
+    def rgb(colour):
+        return np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)])
+
     style = STYLE.read_text(encoding="utf-8")
     known = [dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6})", part)) for part in style.split("@media")[:2]]
-    colours = known[0] | known[scheme]
+    colours = {name: rgb(colour) for name, colour in (known[0] | known[scheme]).items()}
     for engine in ENGINES.values():
-        assert contrast(mixed(engine.colour, colours["ink"]), colours["paper"]) >= 3, engine.name
+        mixed = (rgb(engine.colour) * (100 - INK) + colours["ink"] * INK) / 100
+        assert contrast(mixed, colours["paper"]) >= 3, engine.name
     assert contrast(colours["faint"], colours["paper"]) >= 3
-    for shade in range(6):
-        assert contrast(colours["ink"], colours[f"s{shade}"]) >= 4.5
+    assert min(contrast(colours["ink"], colours[f"s{shade}"]) for shade in range(6)) >= 4.5
 
 
 def test_a_map_of_many_cells_draws_a_rectangle_for_each_run_of_equal_ones():
@@ -245,16 +300,13 @@ def test_a_map_of_many_cells_draws_a_rectangle_for_each_run_of_equal_ones():
     made = figure(charts, "Who overturns.", keys, keys)
     (panel,) = panels(made)
     read = json.loads(panel.get("data-read"))
-    scale = {key: (read[key]["high"] - read[key]["low"]) / np.diff(read[key]["at"])[0] for key in "xy"}
-    drawn = {}
-    for group in panel.iter("g"):
-        for rect in group.iter("rect"):
-            x, y, width, height = (float(rect.get(key)) for key in ("x", "y", "width", "height"))
-            left, top = (read[k]["low"] + (at - read[k]["at"][0]) * scale[k] for k, at in (("x", x), ("y", y)))
-            sides = left, left + (width - HAIR) * scale["x"], top + (height - HAIR) * scale["y"], top
-            drawn.setdefault((group.get("data-who"), rect.get("class")), []).append(sides)
-    assert drawn["overturns", "falls"] == [
-        pytest.approx(sides, abs=0.02) for sides in ((0.5, 1.5, 15, 35), (1.5, 2.5, 5, 15), (1.5, 2.5, 25, 35))
-    ]
-    assert len(drawn) == 1 and made.solvers == ("stands", "overturns")
+    (drawn,) = [group for group in panel.iter("g") if group.get("data-who")]
+    sides = []
+    for rect in drawn.iter("rect"):
+        x, y, width, height = (float(rect.get(key)) for key in ("x", "y", "width", "height"))
+        ends = [value(read["x"], at) for at in (x, x + width - HAIR)]
+        sides.append([*ends, *(value(read["y"], at) for at in (y + height - HAIR, y))])
+        assert rect.get("class") == "falls"
+    np.testing.assert_allclose(sides, [(0.5, 1.5, 15, 35), (1.5, 2.5, 5, 15), (1.5, 2.5, 25, 35)], atol=0.02)
+    assert drawn.get("data-who") == "overturns" and made.solvers == ("stands", "overturns")
     assert "falls" in made.keys["overturns"] and panel.get("aria-label").startswith("stands, overturns")

@@ -1,12 +1,13 @@
 """Rows: chosen, grouped, and written as cells; a page says once what the report and the study's own page show."""
 
 import doctest
+import math
 
 import pytest
 from page_numbers import number_in
 
 from comparisons.showing import rows as module
-from comparisons.showing.parts import Figure, Head, Page, short
+from comparisons.showing.parts import Figure, Head, Page, number, percent, short
 from comparisons.showing.rows import NAME, Column, grouped, table, where
 
 ROWS = [
@@ -81,3 +82,26 @@ def test_a_page_opens_the_report_and_leaves_out_what_is_not_there():
     assert whole.shown == (figure, tables[0], Head("More"), "Words.", tables[1])
     assert whole.tables == tuple(tables) and whole.figures == (figure,) and whole.evidence == (("reason", "message"),)
     assert Page("Subject: found", ("Lead.",), more=more).opening() is None
+
+
+@pytest.mark.parametrize(
+    "given, shown",
+    [
+        (None, "–"),
+        (math.nan, "–"),
+        (0.0, "0"),
+        (0.21234, "0.212"),
+        (-1.5, "−1.50"),
+        (12345.6, "12346"),
+        (0.001, "0.00100"),
+        (0.000999, "9.99·10⁻⁴"),
+        (-1.25e-17, "−1.25·10⁻¹⁷"),
+        (123456.0, "1.23·10⁵"),
+    ],
+)
+def test_numbers_are_written_for_reading(given, shown):
+    assert number(given) == shown
+
+
+def test_fractions_in_per_cent():
+    assert percent(0.0213) == "2.1 %" and percent(None) == "–"

@@ -18,17 +18,10 @@ def told(engine, variant="fine", tier="tuned", error=1e-7, cause=None, ground="r
         "straddle": {"time": time, "landing": [2e-3, 1e-3, 0.0, 0.0, 0.0]},
         "energy": {"time": time, "energy": [1.0, 1.0, 0.9, 0.9, 0.9]},
     }
-    row = {"engine": engine, "variant": variant, "tier": tier, "best": tier == "tuned", "ground": ground}
-    row |= {"failure": None, "placed": False}
     return {
-        **row,
-        "error": error,
-        "cause": cause,
-        "steps": 2,
-        "lasting": 1e-3,
-        "energy_lost": 0.1,
-        "frames": frames,
-        **more,
+        **{"engine": engine, "variant": variant, "tier": tier, "best": tier == "tuned", "ground": ground},
+        **{"failure": None, "placed": False, "error": error, "cause": cause, "steps": 2, "lasting": 1e-3},
+        **{"energy_lost": 0.1, "frames": frames, **more},
     }
 
 
@@ -37,22 +30,21 @@ def result(*rows):
     return Result("autopsy", settings, list(rows), {})
 
 
-def test_the_scene_holds_one_impact_and_the_swing_after_it():
-    for ground in GROUNDS:
-        run = simulate(scene_on(ground))
-        assert run.impacts[0].time < SECONDS - 0.2 and run.end.time == pytest.approx(SECONDS)
+@pytest.mark.parametrize("ground", GROUNDS)
+def test_the_scene_holds_one_impact_and_the_swing_after_it(ground):
+    run = simulate(scene_on(ground))
+    assert run.impacts[0].time < SECONDS - 0.2 and run.end.time == pytest.approx(SECONDS)
 
 
 def test_rows_carry_the_diagnosis_or_the_failure():
     def run(batch):
-        assert {case.tag["ground"] for case in batch.cases} == set(GROUNDS)
-        first = {"error": 1e-7, "cause": None}
-        return [Row(case, {} if k else first, {"reason": "a crash"} if k else None, {"cpu_seconds": 0.1}, False)
+        crash, cost = {"reason": "a crash"}, {"cpu_seconds": 0.1}
+        return [Row(case, {} if k else {"error": 1e-7}, crash if k else None, cost, False)
                 for k, case in enumerate(batch.cases)]  # fmt: skip
 
-    rows = answered(plan(Ask(("pymunk",))), run)[-1].rows
-    assert [row["failure"] is None for row in rows] == [True] + [False] * (len(rows) - 1)
-    assert rows[0]["error"] == 1e-7 and {(row["part"], row["engine"]) for row in rows} == {("impact", "pymunk")}
+    first, *others = answered(plan(Ask(("pymunk",))), run)[-1].rows
+    assert (first["error"], first["failure"]) == (1e-7, None) and all(row["failure"] for row in others)
+    assert {(row["part"], row["ground"]) for row in (first, *others)} == {("impact", ground) for ground in GROUNDS}
 
 
 def test_the_page_counts_default_variants_and_names_the_causes_of_the_rest():

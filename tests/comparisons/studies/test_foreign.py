@@ -1,14 +1,18 @@
-"""A study of another package, found by its entry point: command, resumption, section; broken ones are named."""
+"""A study and an engine of other packages, found by their entry points: commands, resumption, sections, the report.
+
+Broken studies are named. Every study with such an engine, in this process: test_new_engine.py.
+"""
 
 import os
+import re
 import subprocess
 import sys
 
 import pytest
-from installed_package import install
+from installed_package import install, install_fake_engine
 
 from comparisons import studies
-from comparisons.running.provenance import PROJECT_FOLDER
+from comparisons.running.provenance import PROJECT_FOLDER, read_result
 
 SOURCE = '''
 """How high does a released block swing back after one impact?"""
@@ -47,9 +51,7 @@ def install_study(folder, source):
 def python(folder, *arguments):
     """(status, output, errors) of Python in `folder`, with what is installed there."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join((str(folder), str(PROJECT_FOLDER)))}
-    run = subprocess.run(
-        [sys.executable, *arguments], cwd=folder, env=environment, text=True, capture_output=True, timeout=300
-    )
+    run = subprocess.run([sys.executable, *arguments], cwd=folder, env=environment, text=True, capture_output=True)
     return run.returncode, run.stdout, run.stderr
 
 
@@ -68,8 +70,7 @@ def test_a_study_of_another_package_gets_command_resumption_and_section(tmp_path
     assert len(SOURCE.strip().splitlines()) <= 60
     install_study(tmp_path, SOURCE)
     status, out, err = study(tmp_path, "swings", "--quick", "--mass", "2", "--workers", "1")
-    assert status == 0, err
-    assert (tmp_path / "swings-study" / "swings.json").exists() and (tmp_path / "swings-study" / "swings.html").exists()
+    assert status == 0 and (tmp_path / "swings-study" / "swings.json").exists(), err
     assert "2 swings of 2 kg." in err and "2 runs done, 0 found" in err and "swings.html" in out
     status, _, err = study(tmp_path, "swings", "--mass", "2", "--workers", "1")
     assert status == 0 and "2 runs done, 2 found" in err
@@ -95,7 +96,27 @@ def test_a_broken_one_is_one_message_that_names_who_declares_it(tmp_path, source
 
 def test_names_of_this_project_are_its_own():
     assert studies.study_names()[: len(studies.BUILT_IN)] == studies.BUILT_IN
-    for name in studies.BUILT_IN:
-        assert studies.get_study(name).name == name
+    assert tuple(studies.get_study(name).name for name in studies.BUILT_IN) == studies.BUILT_IN
     with pytest.raises(KeyError, match="unknown study 'none': choose one of restitution, "):
         studies.get_study("none")
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1400)
+def test_a_study_and_the_report_take_an_engine_as_it_comes(tmp_path):
+    """Every section that shows runs names it."""
+    install_fake_engine(tmp_path)
+    status, _, err = study(tmp_path, *"random-scenes --quick --engine crude --output studies".split())
+    assert status == 0, err
+    report = "report --engine crude --studies studies --output report"
+    status, _, err = python(tmp_path, "-m", "comparisons", *report.split())
+    assert status == 0, err
+    rows = read_result(tmp_path / "report" / "scenes.json").rows
+    assert [row["outcome"] for row in rows if row["engine"] == "crude"] == ["overturns", "stands"]
+    pages = {file.stem: file.read_text() for file in (tmp_path / "report" / "pages").glob("*.html")}
+    assert "random-scenes" in pages and not [name for name, text in pages.items() if "cannot be shown" in text]
+    assert not [name for name, text in pages.items() if not re.search(r">[^<]*\bcrude\b", text)]
+    first = (tmp_path / "report" / "report.html").read_text()
+    sections = dict(re.findall(r'<section id="([^"]+)"(.*?)</section>', first, flags=re.DOTALL))
+    assert len(sections) > 4
+    assert [name for name, text in sections.items() if not re.search(r"\bcrude\b", text)] == ["equations"]  # no run

@@ -23,36 +23,35 @@ STUDY = get_study("matters")
 SCENES = {"isolated": ("caryatid-isolated", (0.15,))}
 USUAL = load_scene("caryatid-isolated").with_(motion=None, duration=None, block={"slenderness": 0.15})
 COUNT = 8
+# A made-up file of three channels, two horizontal: as the synthetic motion, twice (upward) and three times it.
+TRIPLE = csmip((0.3 * synthetic_motion().samples[::8]).tolist(), step=".040")
 
 pytestmark = pytest.mark.xdist_group("matters")  # its runs are made once
-
-
-def write_triple(path):
-    """A made-up file of three channels, two horizontal: as the synthetic motion, twice (upward) and three times it."""
-    path.write_text(csmip((0.3 * synthetic_motion().samples[::8]).tolist(), step=".040"))
 
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
     folder = tmp_path_factory.mktemp("matters")
-    write_triple(folder / "triple.V2")
+    (folder / "triple.V2").write_text(TRIPLE)
     (folder / "notes.txt").write_text("no record\n")
     return answered(STUDY.plan(Ask(()), SCENES, (COUNT, 0, 0), records=str(folder)), by_runs(folder))[-1]
 
 
-def fallen(scene):
-    return simulate(scene, history=False).outcome == "overturns"
+def fallen(*scenes):
+    """Whether each of the scenes overturns."""
+    return np.array([simulate(scene, history=False).outcome == "overturns" for scene in scenes])
 
 
 def scenes_of(found):
-    """The scenes as they are, one a seed."""
+    """The scenes as they are, one a seed; half of them overturn about the factor that is said."""
     half = found.settings["scenes"]["isolated"]["half"][0]
+    usual = [USUAL.with_(motion=synthetic_motion(seed=seed)) for seed in range(COUNT)]
+    low, high = (fallen(*(one.with_(motion=one.motion.scaled(by * half)) for one in usual)) for by in (0.9, 1.1))
+    assert low.mean() <= 0.5 <= high.mean()
     order = np.random.Generator(np.random.PCG64(7)).permutation(COUNT)
     factors = half * np.exp(SPREAD * norm.ppf((order + 0.5) / COUNT))
     assert np.log(factors / half).mean() == pytest.approx(0.0, abs=1e-12)
-    return [
-        USUAL.with_(motion=synthetic_motion(seed=seed).scaled(float(factor))) for seed, factor in enumerate(factors)
-    ]
+    return [one.with_(motion=one.motion.scaled(float(factor))) for one, factor in zip(usual, factors, strict=True)]
 
 
 def test_changes_are_of_the_size_their_names_say():
@@ -62,13 +61,13 @@ def test_changes_are_of_the_size_their_names_say():
     for name, changed in changes(scene, 3):
         by_name.setdefault(name, []).append(changed)
 
-    def ratios(name, value):
-        return [value(changed) / value(scene) for changed in by_name[name]]
-
-    assert ratios("slenderness ±1 %", lambda s: s.block.slenderness) == pytest.approx([0.99, 1.01])
-    assert ratios("restitution ±5 %", lambda s: RockingModel.of(s).restitution) == pytest.approx([0.95, 1.05])
-    assert ratios("scale of the motion ±1 %", lambda s: s.motion.peak) == pytest.approx([0.99, 1.01])
-    assert ratios("bearing stiffness kb ±10 %", lambda s: s.bearings.kb) == pytest.approx([0.9, 1.1])
+    for name, size, value in (
+        ("slenderness ±1 %", 0.01, lambda one: one.block.slenderness),
+        ("restitution ±5 %", 0.05, lambda one: RockingModel.of(one).restitution),
+        ("scale of the motion ±1 %", 0.01, lambda one: one.motion.peak),
+        ("bearing stiffness kb ±10 %", 0.1, lambda one: one.bearings.kb),
+    ):
+        assert [value(one) / value(scene) for one in by_name[name]] == pytest.approx([1 - size, 1 + size])
     (bilinear,), (bouc_wen,) = by_name["bilinear bearings"], by_name["Bouc-Wen bearings"]
     assert BearingLaw.of(bilinear.bearings).f0 == pytest.approx(law.f0) and bouc_wen.bearings.law == "bouc-wen"
     for share in (2 / 3, 4 / 3):
@@ -91,30 +90,20 @@ def test_changes_are_of_the_size_their_names_say():
 
 def test_changed_outcomes_are_those_of_single_runs(found):
     rows = {row["change"]: row for row in where(found.rows, part="change")}
-    pairs = [[fallen(one) for one in (scene, scene.with_(bearings={"law": "bouc-wen"}))] for scene in scenes_of(found)]
+    scenes = scenes_of(found)
+    before, after = fallen(*scenes), fallen(*(scene.with_(bearings={"law": "bouc-wen"}) for scene in scenes))
     row = rows["Bouc-Wen bearings"]
     assert (row["runs"], row["failed"], row["variant"]) == (COUNT, 0, "")
-    assert row["outcomes_changed"] == sum(before != after for before, after in pairs)
-    assert row["to_overturning"] == sum(after and not before for before, after in pairs)
+    assert (row["outcomes_changed"], row["to_overturning"]) == ((before != after).sum(), (after & ~before).sum())
     for change, row in rows.items():
         assert row["runs"] == (2 * COUNT if "±" in change or "baseline" in change else COUNT)
     # a tenth of a per mille of restitution moves less than five per cent of it
     assert rows["restitution ±0.01 %"]["tilt"] < rows["restitution ±5 %"]["tilt"]
 
 
-def test_half_of_the_motions_overturn_at_the_factor_that_is_said(found):
-    half = found.settings["scenes"]["isolated"]["half"][0]
-
-    def share(factor):
-        return np.mean([fallen(USUAL.with_(motion=synthetic_motion(seed=k).scaled(factor))) for k in range(COUNT)])
-
-    assert share(0.9 * half) <= 0.5 <= share(1.1 * half)
-
-
 def test_a_vertical_motion_is_as_strong_and_as_fast_as_asked_for():
     motion = synthetic_motion(seed=5).scaled(0.7)
-    usual = with_vertical(motion, 5, 0.5).vertical
-    fast = with_vertical(motion, 5, 0.5, faster=4).vertical
+    usual, fast = (with_vertical(motion, 5, 0.5, faster).vertical for faster in (1, 4))
     for up in (usual, fast):
         assert up.peak == pytest.approx(0.5 * motion.peak) and len(up.samples) == len(motion.samples)
     assert fast.peak_time == pytest.approx(usual.peak_time, abs=motion.dt)
@@ -136,15 +125,17 @@ def test_outcomes_changed_by_vertical_motions_and_what_the_contact_bears_are_tho
     ]
     (last,) = where(rows, faster=2, ratio=1.5)
     for row, runs in ((rows[0], level), (last, raised)):
-        assert row["runs"] == len(runs)
-        overturned = [[run.outcome == "overturns" for run in some] for some in (level, runs)]
-        assert row["outcomes_changed"] == sum(before != after for before, after in zip(*overturned, strict=True))
-        assert row["sliding"]["0.5"] == sum(run.friction_demand > 0.5 for run in runs)
-        assert row["lifts_off"] == sum(run.min_normal_ratio <= 0 for run in runs)
+        changed = sum(
+            before.outcome != after.outcome and "overturns" in (before.outcome, after.outcome)
+            for before, after in zip(level, runs, strict=True)
+        )
+        sliding, lifting = ([run.friction_demand > 0.5 for run in runs], [run.min_normal_ratio <= 0 for run in runs])
+        assert (row["runs"], row["outcomes_changed"]) == (len(runs), changed)
+        assert (row["sliding"]["0.5"], row["lifts_off"]) == (sum(sliding), sum(lifting))
 
 
 def test_a_recorded_triple_is_turned_raised_and_counted(found, tmp_path):
-    write_triple(tmp_path / "made-up.v2")
+    (tmp_path / "made-up.v2").write_text(TRIPLE)
     (triple,) = triples(str(tmp_path))
     assert triple.ratio == pytest.approx(2 / 3) and triple.faster == pytest.approx(1.0)
     assert triple.second.peak == pytest.approx(synthetic_motion().peak)  # the stronger horizontal one
@@ -153,35 +144,30 @@ def test_a_recorded_triple_is_turned_raised_and_counted(found, tmp_path):
     (row,) = where(found.rows, part="record")
     assert row["record"] == "triple.V2" and row["runs"] == 12 * len(RECORD_SPREAD) and found.settings["records"] == 1
 
-    def share(factor):
-        return np.mean([fallen(USUAL.with_(motion=triple.turned(k).scaled(factor))) for k in range(12)])
+    def under(motions, factor):
+        return fallen(*(USUAL.with_(motion=motion.scaled(float(factor))) for motion in motions))
 
-    factors = np.geomspace(0.1, 10, 40)
-    half = next(float(factor) for factor in factors if share(float(factor)) >= 0.5)
-    level, raised = {}, {}
-    for step in range(12):
-        motion = triple.turned(step)
-        for k, factor in enumerate(RECORD_SPREAD):
-            level[step, k] = fallen(USUAL.with_(motion=motion.scaled(float(half * factor))))
-            raised[step, k] = fallen(USUAL.with_(motion=paired(motion, triple.up).scaled(float(half * factor))))
-    assert row["outcomes_changed"] == sum(level[key] != raised[key] for key in level)
-    turned = sum(level[step, k] != level[(step + 2) % 12, k] for step, k in level)
-    assert row["outcomes_changed_by_turning"] == turned > 0
+    turns = [triple.turned(step) for step in range(12)]
+    raised = [paired(motion, triple.up) for motion in turns]
+    half = next(factor for factor in np.geomspace(0.1, 10, 40) if under(turns, factor).mean() >= 0.5)
+    level, up = (np.array([under(some, half * factor) for factor in RECORD_SPREAD]) for some in (turns, raised))
+    assert row["outcomes_changed"] == (level != up).sum()
+    assert row["outcomes_changed_by_turning"] == (level != np.roll(level, -2, axis=1)).sum() > 0
 
 
-def test_a_folder_without_triples_is_one_message(tmp_path):
-    assert triples(None) == []
-    with pytest.raises(SettingError, match="no file with two horizontal channels"):
-        triples(str(tmp_path))
-    with pytest.raises(SettingError, match="no folder"):
-        triples(str(tmp_path / "nowhere"))
+@pytest.mark.parametrize("folder, words", [("", "no file with two horizontal channels"), ("nowhere", "no folder")])
+def test_a_folder_without_triples_is_one_message(tmp_path, folder, words):
+    with pytest.raises(SettingError, match=words):
+        triples(str(tmp_path / folder))
 
 
 def made_up(change, changed, runs=100, engine="analytic", variant=""):
-    low, high = changed / runs / 2, min(2 * changed / runs + 0.02, 1.0)
-    counts = {"outcomes_changed": changed, "to_overturning": 0, "runs": runs, "failed": 0, "low": low, "high": high}
-    found = {"p_value": 1.0, "tilt": 0.1, "displacement": None, **counts}
-    return {"part": "change", "scene": "isolated", "engine": engine, "variant": variant, "change": change, **found}
+    share = changed / runs
+    return {
+        **{"part": "change", "scene": "isolated", "engine": engine, "variant": variant, "change": change},
+        **{"outcomes_changed": changed, "to_overturning": 0, "runs": runs, "failed": 0, "p_value": 1.0},
+        **{"low": share / 2, "high": min(2 * share + 0.02, 1.0), "tilt": 0.1, "displacement": None},
+    }
 
 
 @pytest.fixture
@@ -202,7 +188,7 @@ def page(found, tmp_path):
     return STUDY.page(stored(tmp_path, "matters", Found(settings, rows)))
 
 
-def test_changes_and_engines_are_ranked_and_the_title_sets_the_first_against_the_engines_at_their_best(page):
+def test_changes_and_engines_are_ranked_and_drawn_and_the_title_sets_the_first_against_the_engines_at_their_best(page):
     ranked, vertical, records = page.whole().tables
     assert [row[0] for row in ranked.rows] == [
         "direction turned by 30°", "pybullet, first-script", "vertical motion", "slenderness ±1 %", "size ±1 %",
@@ -215,8 +201,6 @@ def test_changes_and_engines_are_ranked_and_the_title_sets_the_first_against_the
     assert "2 of 4" in sentence and "4.0 %" in sentence  # lower ends above its upper one
     assert "6.0 %" in page.how[0]  # Wilson's limit of 0 of 60
 
-
-def test_the_figure_shows_changes_and_default_variants_that_ran(page):
     figure, over = page.whole().figures
     assert figure.solvers == ("pybullet",) and figure.svg.decode().count('class="dot"') == 5
     assert over.svg.decode().count("<rect") == len(FASTER) * len(RATIOS) + 6  # the scale's

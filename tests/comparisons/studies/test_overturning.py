@@ -6,9 +6,10 @@ from collections import Counter
 import numpy as np
 import pytest
 from answered import answered, by_model, stored
+from literature import ONE_SINE, under_a_pulse
 from page_numbers import number_in
 
-from analytic import Block, PulseMotion, Scene, simulate
+from analytic import PulseMotion, simulate
 from comparisons.running.refine import drive
 from comparisons.running.study import Ask
 from comparisons.showing.rows import where
@@ -16,35 +17,27 @@ from comparisons.studies.overturning import STUDY
 from comparisons.studies.overturning.edges import Edge, edges, least_normal, locate, pulse
 from comparisons.studies.overturning.study import QUICK
 
-# the block of the published boundaries: one sine, p = 2.14, slenderness .25, restitution .9
-GRAVITY, FREQUENCY, SLENDERNESS = 9.81, 2.14, 0.25
-RADIUS = 3 * GRAVITY / (4 * FREQUENCY**2)
-SCENE = Scene(block=Block(mass=1.0, radius=RADIUS, slenderness=SLENDERNESS, restitution=0.9))
-OVER_TANGENT = SLENDERNESS / np.tan(SLENDERNESS)
-PUBLISHED = {2.0: (1.25090, 2.37418, 2.40806), 4.0: (1.84430, 5.07937, 5.43676), 8.0: (15.90490,)}
+# the block of the published boundaries
+SCENE = under_a_pulse(1.0, 1.0).with_(motion=None, duration=None)
 EDGE = Edge("rigid ground", "one-sine", 4.0, 5.0, True, 0, 4.9, 6.0, 0.1)
 
 
 def test_edges_are_the_published_boundaries_and_the_safe_gap():
-    found = edges(SCENE, "rigid", "one-sine", tuple(PUBLISHED))
-    for frequency, amplitudes in PUBLISHED.items():
-        column = [edge for edge in found if edge.frequency == frequency]
+    found = edges(SCENE, "rigid", "one-sine", (2.0, 4.0, 8.0))
+    for frequency in (2.0, 4.0, 8.0):
+        column, amplitudes = [edge for edge in found if edge.frequency == frequency], ONE_SINE[frequency]
         # published over g gamma, here over g tan(gamma)
-        assert [edge.amplitude for edge in column] == pytest.approx([a * OVER_TANGENT for a in amplitudes], rel=2e-5)
+        mine = [edge.amplitude * np.tan(0.25) / 0.25 for edge in column]
+        assert mine == pytest.approx(amplitudes, rel=2e-5)
         assert [(edge.rises, edge.mode) for edge in column] == [(True, 1), (False, 1), (True, 0)][-len(amplitudes) :]
         for one, other in zip(column, column[1:], strict=False):
             assert one.high == other.low == pytest.approx(np.sqrt(one.amplitude * other.amplitude))
-
-
-def test_a_column_without_overturning_has_no_edges():
-    assert edges(SCENE, "rigid", "one-cosine", (8.0,)) == []
-
-
-def test_a_run_beside_a_boundary_is_decided():
-    for edge in edges(SCENE, "rigid", "one-sine", (4.0,)):
-        for side, falls in ((1 - 1e-4, not edge.rises), (1 + 1e-4, edge.rises)):
-            response = simulate(SCENE.with_(motion=pulse(SCENE, edge.shape, edge.frequency, edge.amplitude * side)))
-            assert response.decided and (response.outcome == "overturns") == falls
+    for edge in found:
+        beside = [pulse(SCENE, edge.shape, edge.frequency, edge.amplitude * side) for side in (1 - 1e-4, 1 + 1e-4)]
+        runs = [simulate(SCENE.with_(motion=motion)) for motion in beside]
+        assert [run.outcome == "overturns" for run in runs] == [not edge.rises, edge.rises]
+        assert all(run.decided for run in runs)
+    assert edges(SCENE, "rigid", "one-cosine", (8.0,)) == []  # where none overturns
     assert least_normal(SCENE, PulseMotion("one-sine", 0.1, 5.0)) == 1.0
 
 
@@ -55,22 +48,28 @@ def search(edge, outcome, ladder=((2e-4, 1.2e-2), (0.1,)), tolerance=2e-5):
 
 @pytest.mark.parametrize("shift", [0.0, 3e-5, -1e-4, 4e-3, -0.015, 0.08])
 def test_a_shifted_boundary_is_found_to_its_tolerance(shift):
-    found = search(EDGE, lambda amplitude: bool(amplitude > 5.0 * (1 + shift)))
-    assert found.half_width <= 1e-5
-    assert abs(found.shift - shift) <= found.half_width * (1 + 1e-9)
-    falling = dataclasses.replace(EDGE, rises=False)
-    mirrored = search(falling, lambda amplitude: bool(amplitude < 5.0 * (1 + shift)))
-    assert mirrored.shift == pytest.approx(shift, abs=1e-5)
+    for edge in (EDGE, dataclasses.replace(EDGE, rises=False)):
+        found = search(edge, lambda amplitude, rises=edge.rises: (amplitude > 5.0 * (1 + shift)) == rises)
+        assert found.half_width <= 1e-5 and abs(found.shift - shift) <= found.half_width * (1 + 1e-9)
 
 
 @pytest.mark.parametrize(
-    "answer, reason", [(True, "overturns on both sides"), (False, "stands on both sides"), (None, "no run was decided")]
+    "outcome, reason",
+    [
+        (lambda amplitude: True, "overturns on both sides"),
+        (lambda amplitude: False, "stands on both sides"),
+        (lambda amplitude: None, "no run was decided"),
+        (lambda amplitude: bool(amplitude < 5.0), "outcomes the other way round"),
+        # too wide a bracket to tell
+        (
+            lambda amplitude: None if abs(amplitude / 5.0 - 1) < 0.011 else amplitude > 5.0,
+            "undecided between -1.2 and +1.2 %",
+        ),
+    ],
 )
-def test_a_boundary_that_is_not_there_is_said_to_be_missing(answer, reason):
-    found = search(EDGE, lambda amplitude: answer)
+def test_a_boundary_that_is_not_there_is_said_to_be_missing(outcome, reason):
+    found = search(EDGE, outcome)
     assert found.shift is None and found.half_width is None and found.reason.startswith(reason)
-    wrong_way = search(EDGE, lambda amplitude: bool(amplitude < 5.0))
-    assert wrong_way.shift is None and wrong_way.reason.startswith("outcomes the other way round")
 
 
 def test_the_search_stays_on_its_side_of_the_middle_between_two_boundaries():
@@ -83,13 +82,7 @@ def test_the_search_stays_on_its_side_of_the_middle_between_two_boundaries():
 
 def test_an_undecided_run_widens_the_bracket_instead_of_taking_a_side():
     found = search(EDGE, lambda amplitude: None if abs(amplitude / 5.0 - 1) < 1e-4 else bool(amplitude > 5.0))
-    assert found.shift is not None and abs(found.shift) <= found.half_width
-    assert 1e-4 <= found.half_width <= 2e-4
-
-
-def test_a_bracket_too_wide_to_tell_is_no_boundary():
-    found = search(EDGE, lambda amplitude: None if abs(amplitude / 5.0 - 1) < 0.011 else bool(amplitude > 5.0))
-    assert found.shift is None and found.reason == "undecided between -1.2 and +1.2 %"
+    assert abs(found.shift) <= found.half_width and 1e-4 <= found.half_width <= 2e-4
 
 
 FAILURE = {"kind": "solver", "reason": "it failed", "message": "raw evidence"}
@@ -111,13 +104,7 @@ def study(tmp_path, work, shape="one-sine", levels=True):
     grid = dataclasses.replace(QUICK, grounds=("rigid ground",), shapes=(shape,))
     found = answered(STUDY.plan(Ask(("exudyn", "pybullet"), quick=True), grid), work, None if levels else 1)[-1]
     result = stored(tmp_path, "overturning", found)
-    page = STUDY.page(result).whole()
-    assert page.tables and all(len(row) == len(table.columns) for table in page.tables for row in table.rows)
-    return result, page
-
-
-def shifts_of(rows):
-    return [row["shift"] for row in rows]
+    return result, STUDY.page(result).whole()
 
 
 def wrong(result, region):
@@ -129,12 +116,11 @@ def wrong(result, region):
 @pytest.mark.parametrize("shift", [0.0, 0.02])
 def test_the_study_measures_the_shift_it_is_given_and_rates_it(tmp_path, shift):
     result, page = study(tmp_path, shifted(shift))
-    shifts = where(result.rows, part="shift")
-    assert len(shifts) == 12
+    shifts = [row["shift"] for row in where(result.rows, part="shift")]
     # a safe gap narrower than the shift is filled from both sides: its boundaries may not be found
-    found = [row for row in shifts if row["shift"] is not None]
-    assert len(found) == 12 if shift == 0 else len(found) >= 8
-    assert shifts_of(found) == pytest.approx([shift] * len(found), abs=2e-5)
+    found = [one for one in shifts if one is not None]
+    assert len(shifts) == 12 and len(found) >= (8 if shift else 12)
+    assert found == pytest.approx([shift] * len(found), abs=2e-5)
     assert (wrong(result, "outside") == 0) == (shift == 0)
     assert bool(where(result.rows, part="disagreement")) == (shift != 0)
     assert [row[1] for row in page.tables[0].rows] == ["trusted" if shift == 0 else "not to be trusted"] * 2
@@ -145,8 +131,7 @@ def test_the_study_measures_the_shift_it_is_given_and_rates_it(tmp_path, shift):
 
 def test_failed_runs_are_no_outcomes_and_their_evidence_is_kept(tmp_path):
     result, page = study(tmp_path, shifted(0.0, fails=lambda case: case.scene.motion.peak > 25))
-    failures = where(result.rows, part="failure", kind="solver")
-    undecided = where(result.rows, part="failure", kind="undecided")
+    failures, undecided = (where(result.rows, part="failure", kind=kind) for kind in ("solver", "undecided"))
     assert failures and all(row["message"] == "raw evidence" for row in failures)
     assert all(row["message"].startswith("tilt ") for row in undecided)
     assert any("raw evidence" in text for _, text in page.evidence)
@@ -164,9 +149,12 @@ def test_the_page_shows_every_boundary_and_every_level(tmp_path):
     (boundaries,) = (table for table in page.tables if table.columns[-1] == "pybullet, impact-aware [%]")
     shown = np.array([[number_in(row[column]) for column in (3, -2, -1)] for row in boundaries.rows])
     assert shown[:, 0] == pytest.approx([edge["amplitude"] for edge in edges], rel=1e-5)
-    for column, engine in enumerate(result.settings["engines"], start=1):
-        shifts = [row["shift"] for row in where(result.rows, part="shift", engine=engine)]
-        assert shown[:, column] / 100 == pytest.approx(shifts, rel=0.06)
+    shifts = [
+        100 * row["shift"]
+        for engine in result.settings["engines"]
+        for row in where(result.rows, part="shift", engine=engine)
+    ]
+    assert shown[:, 1:].T.ravel() == pytest.approx(shifts, rel=0.06)
     levels = {(row["engine"], row["variant"], row["level"]) for row in where(result.rows, part="refinement")}
     at_default = {(*pair, None) for pair in result.settings["default_variants"].items()}
     assert len(page.tables[-1].rows) == len(levels | at_default) > len(levels)
@@ -181,13 +169,12 @@ def slides(case):
 def test_boundaries_at_which_the_model_holds_the_corner_down_are_told_apart(tmp_path):
     result, page = study(tmp_path, shifted(-0.05, slides), "one-cosine", levels=False)
     pulled = [row["amplitude"] for row in where(result.rows, part="edge") if row["min_normal"] < 0]
-    held = where(result.rows, part="held")
-    assert len(pulled) == len(held) > 0
-    assert shifts_of(held) == pytest.approx([0.0] * len(held), abs=2e-5)
-    shifts = where(result.rows, part="shift")
-    moved = where(shifts, amplitude=set(pulled))
-    assert 0 < len(moved) < len(shifts)
-    assert shifts_of(moved) == pytest.approx([-0.05] * len(moved), abs=2e-5)
+    held, moved, every = (
+        [row["shift"] for row in where(result.rows, **of)]
+        for of in ({"part": "held"}, {"part": "shift", "amplitude": set(pulled)}, {"part": "shift"})
+    )
+    assert 0 < len(pulled) == len(held) < len(moved) < len(every)
+    assert held + moved == pytest.approx([0.0] * len(held) + [-0.05] * len(moved), abs=2e-5)
     assert wrong(result, "outside") == 0 < wrong(result, "held down")
     assert all(row["min_normal"] < 0 for row in where(result.rows, part="disagreement"))
     # they are not rated, and shown in a table of their own

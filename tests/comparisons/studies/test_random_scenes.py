@@ -1,6 +1,5 @@
 """The study of random scenes: what is drawn and run, and that tables, sentences and marks count the rows."""
 
-import math
 from collections import Counter
 
 import pytest
@@ -8,6 +7,7 @@ from page_numbers import number_in
 
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.study import Ask
+from comparisons.showing.rows import NAME
 from comparisons.studies import get_study
 from comparisons.studies.random_scenes.scenes import random_scene
 from comparisons.studies.random_scenes.study import plan
@@ -24,57 +24,43 @@ def result():
 
 def test_scenes_are_repeatable_and_within_the_range():
     assert random_scene(3, 7).digest() == random_scene(3, 7).digest() != random_scene(4, 7).digest()
-    for scene in (random_scene(1, index) for index in range(100)):
-        block = scene.block
-        values = {
-            "slenderness": block.slenderness,
-            "radius": block.radius,
-            "inertia": block.inertia / (block.mass * block.radius**2),
-            "base_mass": scene.base.mass / block.mass if scene.base else math.inf,
-        }
-        for name, value in values.items():
-            assert RANGE[name][0] * (1 - 1e-12) <= value <= RANGE[name][1] * (1 + 1e-12), (scene.name, name)
+    scenes = [random_scene(1, index) for index in range(100)]
+    drawn = {
+        "slenderness": [scene.block.slenderness for scene in scenes],
+        "radius": [scene.block.radius for scene in scenes],
+        "inertia": [scene.block.inertia / (scene.block.mass * scene.block.radius**2) for scene in scenes],
+        "base_mass": [scene.base.mass / scene.block.mass for scene in scenes if scene.base],
+    }
+    for name, values in drawn.items():
+        assert RANGE[name][0] * (1 - 1e-12) <= min(values) < max(values) <= RANGE[name][1] * (1 + 1e-12), name
 
 
 @pytest.mark.parametrize("quick, scenes, most", [(True, None, 20), (True, 40, 40), (False, 3, 3)])
 def test_the_number_of_scenes_is_what_the_user_asks_for(quick, scenes, most):
-    batch = next(plan(Ask((ENGINE,), quick), seed=5, scenes=scenes))
-    engine = ENGINES[ENGINE]
-    others = min(most, max(5, most // 5))
+    cases, engine = next(plan(Ask((ENGINE,), quick), seed=5, scenes=scenes)).cases, ENGINES[ENGINE]
+    assert all(case.scene.digest() == random_scene(5, case.tag["index"]).digest() for case in cases)
     for variant in engine.variants:
-        drawn = [case for case in batch.cases if case.variant == variant]
-        assert 0 < len(drawn) <= (most if variant == engine.default_variant else others)
-        assert all(case.scene.digest() == random_scene(5, case.tag["index"]).digest() for case in drawn)
+        limit = most if variant == engine.default_variant else min(most, max(5, most // 5))
+        assert 0 < [case.variant for case in cases].count(variant) <= limit
 
 
 def test_tables_and_marks_count_the_stored_rows(result):
-    study = get_study("random-scenes")
-    classes = {}
+    study, classes = get_study("random-scenes"), {}
     for row in result.rows:
-        classes.setdefault(f"{row['engine']}, {row['variant']}", Counter())[row["class"]] += 1
-    page = study.page(result)
-    for section in (page.whole(), page.opening()):
-        table = section.tables[0]
-        assert [row[0] for row in table.rows] == list(classes)
-        for name, _, right, differs, failed, left_out, share in table.rows:
-            count = classes[name]
-            assert [int(right), int(differs), int(failed), int(left_out)] == [
-                count[word] for word in ("right", "differs", "failed", "left out")
-            ]
-            judged = count.total() - count["left out"]
-            assert number_in(share) == pytest.approx(100 * count["right"] / judged, rel=0.06)
-    marks = study.judgement(result).marks
-    for (engine, variant), mark in marks.items():
-        count = classes[f"{engine}, {variant}"]
-        assert mark.words == f"{count['right']} of {count.total() - count['left out']}"
-        assert mark.note == f"{count['failed']} failed"
+        classes.setdefault(NAME.of(row), Counter())[row["class"]] += 1
+    table, marks = study.page(result).opening().tables[0], study.judgement(result).marks
+    assert study.page(result).whole().tables[0] == table and [row[0] for row in table.rows] == list(classes)
+    for name, _, *counts, share in table.rows:
+        right, differs, failed, left_out = [classes[name][word] for word in ("right", "differs", "failed", "left out")]
+        assert [int(count) for count in counts] == [right, differs, failed, left_out]
+        assert number_in(share) == pytest.approx(100 * right / (right + differs + failed), rel=0.06)
+        mark = marks[tuple(name.split(", "))]
+        assert (mark.words, mark.note) == (f"{right} of {right + differs + failed}", f"{failed} failed")
 
 
 def test_every_run_that_failed_is_evidence_and_every_tuned_one_that_differs_is_named(result):
     section = get_study("random-scenes").page(result).whole()
     assert len(section.evidence) == sum(row["class"] == "failed" for row in result.rows)
     differ = [row for row in result.rows if row["class"] == "differs" and row["tier"] != "defaults"]
-    named = section.tables[1].rows if len(section.tables) > 1 else []
-    assert [(row[0], int(row[1])) for row in named] == [
-        (f"{row['engine']}, {row['variant']}", row["index"]) for row in differ
-    ]
+    named = [(row[0], int(row[1])) for table in section.tables[1:2] for row in table.rows]
+    assert named == [(NAME.of(row), row["index"]) for row in differ]

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from analytic import simulate
+from analytic.rocking import restitution
 from analytic.time_stepping import simulate_time_stepping
 from comparisons.measuring import models
 from comparisons.running.cases import Case, solver
@@ -36,52 +37,37 @@ def near(by_name):
     return by_name["near-overturning"]
 
 
-def test_the_five_scenes_do_what_their_names_say(by_name):
-    outcomes = {name: trial.reference.outcome for name, trial in by_name.items()}
-    assert outcomes["isolated-standing"] == "stands"
-    assert {outcomes[name] for name in ("free-rigid", "free-sliding", "isolated-rocking")} == {"rocks"}
-
-
-def test_the_reference_has_no_error_against_itself(by_name):
-    for trial in by_name.values():
+def test_the_scenes_do_what_their_names_say_and_the_reference_has_no_error_against_itself(by_name):
+    for name, trial in by_name.items():
+        assert trial.reference.outcome == ("stands" if name == "isolated-standing" else "rocks")
         found = errors(trial, trial.reference.to_json())
         assert found.pop("lost") == 0
         assert set(found) == set(trial.measures) - {"boundary_shift"}
         assert max(found.values()) < 1e-12
 
 
-def later(impacts):
-    return [{**impact, "time": impact["time"] + 1e-4} for impact in impacts]
-
-
-def slower(impacts):
+@pytest.mark.parametrize("delay, loss", [(1e-4, 0.0), (0.0, 0.01)])
+def test_changed_impacts_are_seen_for_what_they_are(free, delay, loss):
     """Rates that fall by 1 % more from impact to impact than eq. (7) says: e is 1 % low, whatever the impact shows."""
-    return [{**impact, "rate_before": impact["rate_before"] * 0.99**k} for k, impact in enumerate(impacts)]
-
-
-@pytest.mark.parametrize(
-    "change, expected",
-    [
-        (later, {"impact_time": 1e-4, "restitution": 0.0, "lost": 0}),
-        (lambda impacts: impacts[:1] + impacts[2:], {"lost": 1}),
-        (slower, {"impact_time": 0.0, "restitution": 0.01, "lost": 0}),
-    ],
-)
-def test_changed_impacts_are_seen_for_what_they_are(free, change, expected):
     values = free.reference.to_json()
-    found = errors(free, {**values, "impacts": change(values["impacts"])})
-    found["restitution"] /= free.reference.impacts[0].rate_after / free.reference.impacts[0].rate_before
-    assert {key: found[key] for key in expected} == pytest.approx(expected, rel=1e-6, abs=1e-12)
+    impacts = [
+        impact | {"time": impact["time"] + delay, "rate_before": impact["rate_before"] * (1 - loss) ** k}
+        for k, impact in enumerate(values["impacts"])
+    ]
+    found = errors(free, values | {"impacts": impacts})
+    expected = [delay, loss * restitution(free.scene), 0]
+    assert [found[key] for key in ("impact_time", "restitution", "lost")] == pytest.approx(
+        expected, rel=1e-6, abs=1e-12
+    )
+    assert errors(free, values | {"impacts": impacts[:1] + impacts[2:]})["lost"] == 1
 
 
 def test_the_margin_is_conserved_in_flight_and_its_sign_decides(near):
     for factor, overturns in ((0.98, False), (1.02, True)):
-        scene = near.scene.with_(motion=near.scene.motion.scaled(factor))
-        early, late = (margin(scene, simulate(scene.with_(duration=time), history=False).end) for time in (1.2, 1.7))
+        runs = [at(factor)(near.scene.with_(duration=time)) for time in (1.2, 1.7, 20.0)]
+        early, late = (margin(near.scene, run.end) for run in runs[:2])
         assert early == pytest.approx(late, abs=1e-12)
-        assert (early > 0) == overturns
-        whole = simulate(scene.with_(duration=20.0), history=False)
-        assert (whole.outcome == "overturns") == overturns
+        assert (early > 0) == (runs[2].outcome == "overturns") == overturns
 
 
 def boundary_found(near, run):
@@ -93,14 +79,10 @@ def at(factor):
     return lambda scene: simulate(scene.with_(motion=scene.motion.scaled(factor)), history=False)
 
 
-@pytest.mark.parametrize("factor", [1 + 1e-8, 1.001, 0.97, 1.06])
-def test_a_shifted_boundary_is_found_where_it_is(near, factor):
-    found = boundary_found(near, at(factor))["boundary_shift"]
-    assert found == pytest.approx(abs(1 / factor - 1), rel=0.05, abs=1e-12)
-
-
-def test_a_solver_without_boundary_nearby_gets_none(near):
-    assert "boundary_shift" not in boundary_found(near, at(0.5))
+@pytest.mark.parametrize("factor, nearby", [(1 + 1e-8, True), (1.001, True), (0.97, True), (1.06, True), (0.5, False)])
+def test_a_shifted_boundary_is_found_where_it_is_unless_none_is_nearby(near, factor, nearby):
+    found = boundary_found(near, at(factor)).get("boundary_shift")
+    assert found == (pytest.approx(abs(1 / factor - 1), rel=0.05, abs=1e-12) if nearby else None)
 
 
 def test_time_stepping_shows_its_order_in_the_boundary(near):
@@ -115,10 +97,8 @@ def test_time_stepping_shows_its_order_in_the_boundary(near):
 
 def test_error_and_cpu_time_are_of_the_same_runs(free):
     case = Case(free.scene, "time-stepping", None, {"step": 1e-3, "history": False}, {"boundary": None})
-    alone = simulate_time_stepping(free.scene, step=1e-3, history=False)
-    values = measure(case, alone)
-    assert values["impacts"] == alone.to_json()["impacts"]
-    assert values["cost"]["cpu_seconds"] > 0
+    values = measure(case, alone := case.run())
+    assert values["impacts"] == alone.to_json()["impacts"] and values["cost"]["cpu_seconds"] > 0
     assert values["cost"]["repeats"] > 1  # a run this short is repeated
 
 
@@ -126,8 +106,7 @@ def test_solvers_take_turns_from_coarse_to_fine(free, near):
     pytest.importorskip("pybullet")
     made = entries([free, near], ("pybullet",), quick=True)
     first = [(one.engine, one.variant, one.model) for one in made if one.trial is free]
-    count = len(set(first))
-    assert len(set(first[:count])) == count and 10 < count < len(first)  # the first level of each before any second
+    assert 10 < len(set(first[: len(set(first))])) == len(set(first)) < len(first)  # the first levels before any second
     kernel = [one.level for one in made if one.trial is near and one.engine == "analytic" and one.model == NEEDED]
     assert kernel == sorted(kernel, reverse=True) and len(kernel) == 3
     cases = [one.case(0) for one in made]
@@ -135,17 +114,13 @@ def test_solvers_take_turns_from_coarse_to_fine(free, near):
     assert [bool(case.tag["boundary"]) for case in cases] == [one.trial is near for one in made]
 
 
-def test_a_heavy_base_errs_by_its_mass_ratio(free):
+def test_a_heavy_base_errs_by_its_mass_ratio_and_a_tuned_free_block_rocks_as_the_planar_one(free):
     found = errors(free, simulate(models.on_heavy_base(free.scene), history=False).to_json())
     assert 0.01 / models.HEAVY < found["restitution"] < 1 / models.HEAVY
-
-
-def test_a_tuned_free_block_rocks_as_the_planar_one(free):
     pytest.importorskip("pybullet")
     free_block = solver(get_engine("pybullet").variants["fixed-step"].free_block)
     found = errors(free, free_block(free.scene, step=1e-3, history=False).to_json())
-    assert found["lost"] == 0
-    assert found["restitution"] < 5e-3
+    assert found["lost"] == 0 and found["restitution"] < 5e-3
 
 
 def test_a_first_script_is_not_touched_by_other_clients(free):
@@ -161,32 +136,26 @@ def test_a_first_script_is_not_touched_by_other_clients(free):
 
 
 def test_refined_motion_is_the_same_motion(by_name):
-    scene = by_name["isolated-standing"].scene
-    fine = growth.sampled(scene, 800)
-    peaks = [simulate(one, history=False).peak_base_displacement for one in (scene, fine)]
-    assert peaks[1] == pytest.approx(peaks[0], rel=1e-10)
+    trial = by_name["isolated-standing"]
+    fine = simulate(growth.sampled(trial.scene, 800), history=False)
+    assert fine.peak_base_displacement == pytest.approx(trial.reference.peak_base_displacement, rel=1e-10)
 
 
 def test_a_run_grows_in_steps_and_not_in_memory(by_name):
-    found = []
-    for case in growth.growth_cases(by_name["isolated-standing"].scene, (), quick=True)[:4]:
-        found.append(growth.grown(case, case.run()) | {"duration": case.tag["value"]})
-    durations, steps, memory = ([row[key] for row in found] for key in ("duration", "steps", "traced_bytes"))
-    assert durations == [row["end"] for row in found] == [50, 100, 200, 400]
-    exponent, _ = growth.fit(durations, steps)
-    assert exponent == pytest.approx(1.0, abs=0.05)
+    cases = growth.growth_cases(by_name["isolated-standing"].scene, (), quick=True)[:4]
+    found = [growth.grown(case, case.run()) for case in cases]
+    ends, steps, memory = ([row[key] for row in found] for key in ("end", "steps", "traced_bytes"))
+    assert [case.tag["value"] for case in cases] == ends == [50, 100, 200, 400]
+    assert growth.fit(ends, steps)[0] == pytest.approx(1.0, abs=0.05)
     assert max(memory) < 1.01 * min(memory)
 
 
 def test_fit_of_a_power():
     x = np.array([1.0, 2.0, 4.0, 8.0])
-    exponent, spread = growth.fit(x, 5 * x**0.7)
-    assert math.isclose(exponent, 0.7, rel_tol=1e-12) and spread < 1e-12
-    _, spread = growth.fit(x, x * [1.0, 1.1, 1.0, 1.1])
-    logs = np.log(x) - np.log(x).mean()
-    left = np.log([1.0, 1.1, 1.0, 1.1])
-    left = left - left.mean() - logs * (logs @ left) / (logs @ logs)
-    assert spread == pytest.approx(math.sqrt(left @ left / 2 / (logs @ logs)))
+    assert growth.fit(x, 5 * x**0.7) == pytest.approx((0.7, 0.0), abs=1e-12)
+    # residuals of log 1.1 at every other point: their squares add up to 4/5 of its square
+    d = math.log(1.1) / math.log(2.0)
+    assert growth.fit(x, x * [1.0, 1.1, 1.0, 1.1]) == pytest.approx((1 + d / 5, d * math.sqrt(0.8 / 2 / 5)))
 
 
 def row(variant, cpu, error, **other):
@@ -239,15 +208,10 @@ def test_the_cheapest_setting_is_one_that_no_finer_one_contradicts(found, failed
 def test_solvers_come_cheapest_first_by_what_they_need():
     rows = [row("a", 3.0, 1e-2), row("a", 5.0, 1e-5), row("b", 4.0, 1e-4), row("c", 1e-3, 1e-9, model="more")]
     result = result_of(*rows)
-    assert [(name, one["cpu_seconds"]) for name, one in passing(levels_run(result)[:3], 1e-2).items()] == [
-        ("exudyn, a", 3.0),
-        ("exudyn, b", 4.0),
-    ]
-    costs = cells(result, "≤ 0.001")
-    assert [(line["solver"], line["≤ 0.001"].split(" ")[0]) for line in costs] == [
-        ("exudyn, a", "5000"),
-        ("exudyn, b", "4000"),
-    ]
+    found = passing(levels_run(result)[:3], 1e-2)
+    assert {name: one["cpu_seconds"] for name, one in found.items()} == {"exudyn, a": 3.0, "exudyn, b": 4.0}
+    costs = {line["solver"]: line["≤ 0.001"].split(" ")[0] for line in cells(result, "≤ 0.001")}
+    assert costs == {"exudyn, a": "5000", "exudyn, b": "4000"} and [*found] == [*costs] == ["exudyn, a", "exudyn, b"]
 
 
 def test_observed_order_of_a_second_order_method():
@@ -277,36 +241,23 @@ def test_growth_is_a_power_with_its_memory():
     assert (grown["allocated [MiB]"], grown["resident, increase [MiB]"]) == ("1.00, 1.00", "–, –")
 
 
-def run_small(folder, near):
-    def keep(entry):
-        return (entry.engine, entry.variant) in {
-            ("analytic", "kernel"),
-            ("time-stepping", ""),
-            ("pybullet", "fixed-step"),
-        }
-
-    (path,) = compute(STUDY, folder, quick=True, progress=False, repeats=2, scenes=[near], keep=keep, grow=False)
-    return read_result(path)
-
-
-ON_ONE_WORKER = pytest.mark.xdist_group("speed-error study")  # the small study is run once
-
-
-@pytest.fixture(scope="module")
+@pytest.fixture
 def studied(tmp_path_factory, near):
-    return [run_small(tmp_path_factory.mktemp("speed-error"), near) for _ in range(2)]
+    """The results of a small study, made twice."""
+
+    def keep(entry):
+        name = f"{entry.engine} {entry.variant}".strip()
+        return name in ("analytic kernel", "time-stepping", "pybullet fixed-step")
+
+    given = dict(quick=True, progress=False, repeats=2, scenes=[near], keep=keep, grow=False)
+    folders = (tmp_path_factory.mktemp("speed-error") for _ in range(2))
+    return [read_result(file) for folder in folders for file in compute(STUDY, folder, engines=("pybullet",), **given)]
 
 
-@ON_ONE_WORKER
-def test_repeating_the_study_gives_the_same_errors_bit_for_bit(studied):
-    first, second = studied
-    assert first.rows and all(row["repeatable"] and row["timings"] == 2 for row in first.rows)
-    assert [row["errors"] for row in first.rows] == [row["errors"] for row in second.rows]
-
-
-@ON_ONE_WORKER
-def test_the_page_comes_from_the_result_alone(studied):
-    result, _ = studied
+def test_a_study_repeats_bit_for_bit_and_the_page_comes_from_its_result_alone(studied):
+    result, again = studied
+    assert result.rows and all(row["repeatable"] and row["timings"] == 2 for row in result.rows)
+    assert [row["errors"] for row in result.rows] == [row["errors"] for row in again.rows]
     page = STUDY.page(result)
     opening, whole = page.opening(), page.whole()
     assert whole.parts[:2] == opening.parts and list(map(type, opening.parts)) == [Figure, Table]

@@ -1,7 +1,6 @@
 """The stability study: its cases are what they claim, its measures see errors, its results carry their evidence."""
 
 import dataclasses
-import math
 
 import numpy as np
 import pytest
@@ -56,11 +55,8 @@ def free():
     return simulate(CASES["zeno"].scene)
 
 
-def test_cases_are_different_scenes():
+def test_cases_are_different_scenes_and_every_measure_has_a_tolerance_with_its_reason():
     assert len({case.scene.digest() for case in CASES.values()}) == len(CASES)
-
-
-def test_every_measure_has_a_unit_and_a_tolerance_with_its_reason():
     assert set().union(*TOLERANCES.values()) == set(MEASURES)
     assert all(reason for limits in TOLERANCES.values() for _, reason in limits.values())
 
@@ -71,20 +67,15 @@ def test_the_outcome_changes_where_the_critical_pulses_say():
         response = simulate(Scene(block=BLOCK, motion=pulse, duration=12.0), history=False)
         return response.outcome, response.impact_count
 
-    low, high = 1.3, 1.5
-    while high - low > 1e-9:
-        middle = (low + high) / 2
-        low, high = (middle, high) if outcome(middle)[0] == "rocks" else (low, middle)
-    assert low == pytest.approx(OVERTURNS_FROM, rel=1e-8)
-    assert outcome(GAP)[0] == "rocks"
+    assert [outcome(OVERTURNS_FROM * factor)[0] for factor in (1 - 1e-8, 1 + 1e-8)] == ["rocks", "overturns"]
     assert [outcome(GAP * factor) for factor in (0.97, 1.03)] == [("overturns", 1), ("overturns", 0)]
+    assert outcome(GAP)[0] == "rocks"
 
 
 def test_proportions_are_those_of_the_titles():
     assert restitution(CASES["flat drop"].scene) == pytest.approx(0.0, abs=1e-12)
     assert restitution(CASES["stocky on a light base"].scene) < 0
-    far = simulate(CASES["beyond 1.33 m"].scene)
-    assert far.peak_base_displacement > 1.34
+    assert simulate(CASES["beyond 1.33 m"].scene).peak_base_displacement > 1.34
 
 
 @pytest.mark.parametrize("name", QUICK)
@@ -94,20 +85,17 @@ def test_the_kernel_is_right(name):
 
 
 def test_wrong_histories_and_lost_events_are_seen(free):
-    history = free.history
-    moved = dataclasses.replace(history, tilt=history.tilt + 0.05 * BLOCK.slenderness)
-    errors = errors_of(dataclasses.replace(free, history=moved))
-    assert errors["tilt"] == pytest.approx(0.05, rel=1e-6) and errors["tilt at rest"] == pytest.approx(0.05)
+    moved = dataclasses.replace(free.history, tilt=free.history.tilt + 0.05 * BLOCK.slenderness)
+    wrong = errors_of(dataclasses.replace(free, history=moved, rests=(free.rests[0] * 1.03,)))
+    assert [wrong[name] for name in ("tilt", "tilt at rest", "rest time")] == pytest.approx(
+        [0.05, 0.05, 0.03], rel=1e-4
+    )
 
-    lost = dataclasses.replace(free, energy=None, impacts=free.impacts[3:], rests=())
-    row = result_of("zeno", lost)
+    row = result_of("zeno", dataclasses.replace(free, energy=None, impacts=free.impacts[3:], rests=()))
     assert row["errors"]["impacts too few"][0] in (2, 3)  # one just below the limit may stand in for one lost
     assert row["errors"]["lost rests"][0] == 1 and "rest time" not in row["errors"]
     assert row["result"] == DIFFERS and {"impacts too few", "lost rests"} <= set(row["outside"])
     assert result_of("zeno", dataclasses.replace(free, energy=None))["result"] == RIGHT
-
-    late = dataclasses.replace(free, rests=(free.rests[0] * 1.03,))
-    assert errors_of(late)["rest time"] == pytest.approx(0.03, rel=1e-4)
 
 
 def test_energy_from_nowhere_is_seen(free):
@@ -147,15 +135,12 @@ def test_a_failed_run_keeps_its_evidence(free):
 
 
 def test_solvers_cover_every_variant_and_finer_settings_are_settings_they_have():
-    found = solvers(installed_engines())
-    assert len({(one.engine, one.variant) for one in found}) == len(found)
-    for name in installed_engines():
-        variants, own = get_engine(name).variants, [one for one in found if one.engine == name]
-        assert {one.variant for one in own} == set(variants)
-        for one in own:
-            defaults = dataclasses.asdict(variants[one.variant].settings)
-            assert all(set(finer) <= set(defaults) for finer in one.finer)
-            assert all(any(defaults[key] != value for key, value in finer.items()) for finer in one.finer)
+    found = [one for one in solvers(installed_engines()) if one.variant]
+    every = [(name, variant) for name in installed_engines() for variant in get_engine(name).variants]
+    assert [(one.engine, one.variant) for one in found] == every
+    for one in found:
+        defaults = dataclasses.asdict(get_engine(one.engine).variants[one.variant].settings)
+        assert all(set(finer) <= set(defaults) and finer.items() - defaults.items() for finer in one.finer)
 
 
 def test_ten_minutes_are_asked_of_the_default_variants_alone():
@@ -171,37 +156,30 @@ def test_the_study_tries_finer_settings_and_resumes_and_its_page_shows_what_they
     first, finer = where(result.rows, case="zeno", engine="time-stepping")
     assert (first["part"], first["level"], first["result"]) == ("default settings", 1e-3, DIFFERS)  # too coarse for it
     assert (finer["part"], finer["level"], finer["result"]) == ("finer settings", 1e-4, RIGHT)
-    name, value, tolerance = worst(first)
-    assert value > tolerance and (value, tolerance) == tuple(first["errors"][name])
-
+    _, value, tolerance = worst(first)
+    assert value > tolerance
     section = STUDY.page(result).whole()
     counts, wrong = section.tables[0], section.tables[1]
     assert {row[0] for row in counts.rows} == {"analytic", "time-stepping"}
     assert all(sum(map(int, row[1:4])) == len(options["names"]) for row in counts.rows)
-    for engine, *found in counts.rows:
-        own = where(result.rows, engine=engine, part="default settings")
-        assert int(found[0]) == len(where(own, result=RIGHT))
+    right = [len(where(result.rows, engine=row[0], part="default settings", result=RIGHT)) for row in counts.rows]
+    assert [int(row[1]) for row in counts.rows] == right
     assert ["zeno", "time-stepping", DIFFERS] in [row[:3] for row in wrong.rows]
     assert judgements(result)[0].marks["analytic", ""].words == "3 of 3"
 
     (again,) = compute(STUDY, tmp_path, engines=(), workers=1, progress=False, **options)
     assert (tmp_path / "runs.jsonl").read_text() == runs  # nothing ran twice
-    free_of_cost = [[{**row, "cpu_seconds": 0} for row in one.rows] for one in (read_result(again), result)]
-    assert free_of_cost[0] == free_of_cost[1]
+    ran, found = ([{**row, "cpu_seconds": 0} for row in one.rows] for one in (result, read_result(again)))
+    assert ran == found
 
 
 def test_committed_result_has_the_kernel_right_in_every_case():
-    path = RESULTS / "stability.json"
-    result = read_result(path)
-    assert not result.settings["quick"] and path.stat().st_size < 700_000
+    result = read_result(RESULTS / "stability.json")
+    assert not result.settings["quick"]
     kernel = where(result.rows, engine="analytic")
     assert {row["case"] for row in kernel} == set(result.settings["cases"]) == set(CASES)
     assert {row["result"] for row in kernel} == {RIGHT}
-    for row in result.rows:
-        if row["result"] == FAILED:
-            assert row["failure"]["reason"] and row["set"] is not None
-        else:
-            assert all(value is None or math.isfinite(value) for value, _ in row["errors"].values())
+    assert all(row["failure"]["reason"] and row["set"] is not None for row in where(result.rows, result=FAILED))
     missing = len(CASES) * len(result.settings["variants"]) - len(where(result.rows, part="default settings"))
     drawn = b"".join(figure.svg for figure in STUDY.page(result).whole().figures)
     assert drawn.count(b": not run;") == missing > 0  # what was not asked is no empty cell

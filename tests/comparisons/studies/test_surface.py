@@ -32,13 +32,11 @@ def test_counts_are_those_of_single_runs(found):
     for i, slenderness in enumerate(slendernesses):
         for j, intensity in enumerate(intensities):
             motions = [synthetic_motion(seed=seed).scaled(intensity * G / PEAK) for seed in range(count)]
-            fallen = sum(
-                simulate(scene.with_(block={"slenderness": slenderness}, motion=motion)).outcome == "overturns"
-                for motion in motions
-            )
+            runs = [simulate(scene.with_(block={"slenderness": slenderness}, motion=motion)) for motion in motions]
+            fallen = [run.outcome for run in runs].count("overturns")
             for engine in ("analytic", "twin"):
-                assert found.arrays[f"{engine}/overturned"][i, j] == fallen
-                assert found.arrays[f"{engine}/sound"][i, j] == count
+                counts = [found.arrays[f"{engine}/{name}"][i, j] for name in ("overturned", "sound")]
+                assert counts == [fallen, count]
     assert 0 < found.arrays["analytic/overturned"].sum() < found.arrays["analytic/sound"].sum()
     assert found.settings["runs"] == 2 * 2 * 3 * 2 and found.settings["failed"] == found.settings["undecided"] == 0
 

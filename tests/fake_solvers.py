@@ -1,15 +1,23 @@
-"""Cheap solvers for the tests of the sweep layer: some sound, some that crash, hang or raise."""
+"""For the tests of the sweep layer: cheap solvers, some sound, some that crash, hang or raise; and sweeps of them."""
 
-import dataclasses
 import math
 import os
 import time
+from pathlib import Path
 
 from analytic import Block, Failure, Response, Scene, Start, State
 from comparisons.running.cases import Case
+from comparisons.running.executors import Processes
+from comparisons.running.sweep import run_sweep
+
+# Of new processes that import this and the project.
+ENVIRONMENT = {
+    **os.environ,
+    "PYTHONPATH": os.pathsep.join(map(str, (Path(__file__).parent, Path(__file__).parents[1]))),
+}
 
 
-def response(scene, *, peak=0.0, outcome="stands", failure=None, settings=None):
+def response(scene, *, peak=0.0, outcome="stands", failure=None, settings=None, cpu_seconds=None):
     return Response(
         "fake",
         "",
@@ -26,7 +34,7 @@ def response(scene, *, peak=0.0, outcome="stands", failure=None, settings=None):
         0.0,
         1.0,
         State(scene.duration, 0.0, 0.0, 0.0, 0.0, 0.0),
-        time.process_time(),
+        time.process_time() if cpu_seconds is None else cpu_seconds,
         1,
         settings or {},
         {},
@@ -89,13 +97,16 @@ def fails(scene):
 
 def never_steps(scene):
     """Fails before its first step: it has no time to report."""
-    failed = response(scene, outcome="failed", failure=Failure("too many steps", "1e8 of 2 s"))
-    return dataclasses.replace(failed, cpu_seconds=math.nan)
+    return response(scene, outcome="failed", failure=Failure("too many steps", "1e8 of 2 s"), cpu_seconds=math.nan)
 
 
 def tilt(case, response):
     """Measure."""
     return {"outcome": response.outcome, "peak": response.peak_tilt, "cpu_seconds": response.cpu_seconds}
+
+
+def place(case, response):
+    return {"pid": os.getpid()}
 
 
 def broken(case, response):
@@ -116,3 +127,17 @@ def slow(log, count):
     """Cases of 0.05 s each that leave marks in `log`."""
     settings = {"log": str(log), "sleep": 0.05}
     return [Case(scene(1e-3 * i), "fake_solvers:counted", settings=settings) for i in range(count)]
+
+
+def sweep(which, store, executor=None, workers=None, measure=tilt, **options):
+    """Rows of cases, by an executor or by so many workers started for them."""
+    options |= {"store": store, "measure": measure, "progress": False}
+    if executor is not None:
+        return run_sweep(which, executor=executor, **options)
+    with Processes(workers) as pool:
+        return run_sweep(which, executor=pool, **options)
+
+
+def results(rows):
+    """Everything that must not depend on place, order, workers or interruption."""
+    return [(row.case.tag, row.values, row.failure) for row in rows]

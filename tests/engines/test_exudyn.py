@@ -1,0 +1,254 @@
+"""exudyn, beside what every engine must fulfil: its corners and joints, its two integrators, friction, how runs end."""
+
+import gc
+import math
+import os
+import signal
+import threading
+import time
+from dataclasses import replace
+
+import numpy as np
+import psutil
+import pytest
+from bearing_laws import NAMES, bearings_of
+from engine_cases import scene
+
+exu = pytest.importorskip("exudyn")
+
+from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start  # noqa: E402
+from analytic import simulate as exact  # noqa: E402
+from analytic.bearing import BearingLaw  # noqa: E402
+from analytic.caryatid import BEARINGS  # noqa: E402
+from analytic.rocking import restitution  # noqa: E402
+from engines import get_engine  # noqa: E402
+from engines.contract import Mismatch  # noqa: E402
+from engines.events import find_events  # noqa: E402
+from engines.exudyn import corners, phases, stepping  # noqa: E402
+from engines.exudyn.model import Bearing  # noqa: E402
+from engines.swings import find_swings  # noqa: E402
+
+simulate, VARIANTS = get_engine("exudyn").simulate, sorted(get_engine("exudyn").variants)
+RELEASED = scene(0.2, duration=1.0, start=Start(tilt=0.12))
+
+
+def trace_of(given):
+    """The trace of exudyn's run."""
+    response, trace = get_engine("exudyn").traced(given)
+    assert response.failure is None, response.failure
+    return trace
+
+
+def restitution_error(given, **settings):
+    """Largest error of restitution; exudyn and the model have the same impacts."""
+    response, reference = simulate(given, history=False, **settings), exact(given, history=False)
+    assert response.outcome == reference.outcome == "rocks", response.failure
+    assert len(response.impacts) == len(reference.impacts) > 0
+    return max(abs(impact.rate_after / impact.rate_before - restitution(given)) for impact in response.impacts)
+
+
+# Corners and joints.
+
+
+@pytest.mark.parametrize("share", [0.59, 0.73, 0.8])
+@pytest.mark.parametrize("base", [None, 3172.05])
+def test_no_impact_of_a_stocky_fast_block_is_lost(share, base):
+    """It hops for 15 ms after an impact, so that the lift carried back lies microseconds after the landing."""
+    given = scene(0.45, base, 0.9, start=Start(tilt=0.45 * share))
+    assert restitution_error(given) < 2e-4
+
+
+def test_error_of_compliant_corners_goes_as_one_over_stiffness():
+    given = scene(0.1, duration=0.8, start=Start(tilt=0.06))
+    assert 4 < restitution_error(given, stiffness=1e9) / restitution_error(given, stiffness=1e10) < 25
+
+
+@pytest.mark.parametrize("base", [None, 212.0])
+def test_switched_joints_give_the_restitution_to_the_square_of_the_step(base):
+    given = scene(0.2, base, 1.3, start=Start(tilt=0.12))
+    coarse, fine = (restitution_error(given, variant="switched-joints", step=step) for step in (4e-3, 1e-3))
+    assert fine < 1e-6 and coarse > 4 * fine
+
+
+@pytest.mark.parametrize("base", [None, 212.0])
+def test_a_block_left_alone_does_not_sink(base):
+    """It starts on the corners as they carry it."""
+    given = scene(0.2, base, 0.2)
+    _, contact_tilt = corners.assemble(given, corners.scaled(given, corners.CompliantCorners()))
+    sink, height = contact_tilt * given.block.half_width, trace_of(given).centre[:, 1]
+    assert height[0] == pytest.approx(-sink, rel=1e-9)
+    assert np.ptp(height) < 0.1 * sink  # what the tolerance of the steps leaves
+
+
+@pytest.mark.parametrize("law", NAMES)
+@pytest.mark.parametrize("way", [-3e-2, -1e-4, 2e-5, 1e-3, 0.2])
+def test_force_within_a_step_is_the_law_in_full(law, way):
+    """The expression that exudyn evaluates, over steps so long that a wrong exponent shows."""
+    rule = BearingLaw.of(bearings_of(law, count=4, damping=300.0))
+    bearing, Real = Bearing(rule, 0.01), exu.symbolic.Real
+    found = bearing.force([Real(way)], [Real(0.4)], [Real(value) for value in bearing.memory()])[0].Evaluate()
+    assert found == pytest.approx(rule.force(0.01 + way, rule.hysteretic(bearing.z, way), 0.4), rel=1e-10)
+
+
+@pytest.mark.parametrize("settle", [0.5, 1.0, 2.0])
+def test_e_does_not_hang_on_how_long_a_contact_is_left_to_settle(settle):
+    """In that time a damper takes from the base what the impact gave it: e of the fourth was read off by .023."""
+    given = Scene(
+        block=Block(mass=1441.73, radius=0.251352, slenderness=0.349489, corner_inertia=121.0244),
+        base=Base(mass=109.722),
+        bearings=Bearings(law="bouc-wen", count=4, ka=1806.4, kb=1011.87, alpha=480.623, damping=33319.5),
+        motion=PulseMotion("one-sine", 7.1271, 42.08717),
+        duration=2.0,
+    )
+    trace = trace_of(given)
+    trace = replace(trace, settle=settle * trace.settle)
+    impacts = find_events(given, trace, find_swings(trace))[0][:4]
+    assert 0.29 < min(abs(impact.rate_before) for impact in impacts)
+    assert max(abs(impact.rate_after / impact.rate_before - restitution(given)) for impact in impacts) < 1e-3
+
+
+def test_an_impact_at_the_end_of_a_run_is_read_when_corners_have_settled():
+    """They had not: e of the last of eight impacts was read as .9622 where it is .9788."""
+    block = Block(mass=0.0239329, radius=0.90504, slenderness=0.119293)
+    given = Scene(block=block, start=Start(tilt=-0.0511423), duration=5.2527)
+    response = simulate(given, history=False)
+    last = response.impacts[-1]
+    assert len(response.impacts) == 8 and not response.differences
+    assert last.rate_after / last.rate_before == pytest.approx(restitution(given), abs=1e-3)
+
+
+# Two integrators: explicit steps through impacts, implicit ones while contact stays as it is.
+
+
+@pytest.mark.parametrize("base", [None, 212.0])
+def test_the_implicit_steps_change_no_impact_and_save_most_steps(base, monkeypatch):
+    given = scene(0.2, base, 2.0, start=Start(tilt=0.12))
+    both = simulate(given)
+    monkeypatch.setattr(phases, "WORTHWHILE", math.inf)
+    explicit = simulate(given)
+    assert both.steps < 0.5 * explicit.steps and len(both.impacts) >= 2
+    for one, other in zip(both.impacts[:3], explicit.impacts[:3], strict=True):
+        assert one.time == pytest.approx(other.time, abs=1e-5)
+        assert one.rate_after / one.rate_before == pytest.approx(other.rate_after / other.rate_before, abs=3e-6)
+
+
+def test_the_error_of_time_falls_with_the_square_of_the_implicit_step():
+    """By the time of the first impact, on corners so stiff that the step alone counts."""
+    given = scene(0.2, duration=2.5, start=Start(tilt=0.18))
+    coarse, fine = (
+        abs(simulate(given, stiffness=1e13, pivoting_step=step).impacts[0].time - exact(given).impacts[0].time)
+        for step in (8e-3, 4e-3)
+    )
+    assert math.log2(coarse / fine) == pytest.approx(2.0, abs=0.3)
+
+
+def test_where_newton_finds_no_end_the_explicit_steps_go_on(monkeypatch):
+    usual = simulate(RELEASED).steps
+
+    def hopeless(*asked, **settings):
+        made = stepping.solver_settings(*asked, **settings)
+        made.timeIntegration.newton.relativeTolerance = 1e-300
+        return made
+
+    monkeypatch.setattr(phases, "solver_settings", hopeless)
+    monkeypatch.setattr(phases, "RESIDUAL", 1e-30)
+    monkeypatch.setattr(phases, "ROUNDING", 0.0)
+    response = simulate(RELEASED)
+    assert response.failure is None and response.steps > 2 * usual
+    assert response.impacts[0].time == pytest.approx(exact(RELEASED).impacts[0].time, abs=2e-5)
+
+
+def test_small_swings_on_the_stiff_corners_they_ask_for_are_stepped_implicitly():
+    """Newton's differences must stay within a corner's depth, here 5e-10 m, and its end above rounding errors."""
+    given = scene(0.2, duration=3.0, motion=PulseMotion("one-sine", 1.1 * 9.81 * math.tan(0.2), 20.0))
+    response, expected = simulate(given, stiffness=5e13), exact(given)
+    assert response.peak_tilt == pytest.approx(expected.peak_tilt, rel=0.02)
+    assert response.steps < 40_000
+
+
+# Coulomb's law.
+
+
+@pytest.mark.parametrize(
+    "friction, slenderness, push, duration",
+    [(0.2, 0.45, 0.3, 0.05), (0.1, 0.3, 0.25, 0.05), (0.3, 0.45, 0.4, 0.1), (0.31, 0.45, 0.3, 0.1)],
+)
+def test_a_block_that_slid_stays_where_it_came_to_rest(friction, slenderness, push, duration):
+    """It was drawn back to where it had stood; the slip of a push of acceleration a for T: v T/2 + v^2/(2 mu g)."""
+    motion = PulseMotion("rectangular", push * 9.81, 2 * math.pi / duration)
+    trace = trace_of(scene(slenderness, friction=friction, duration=1.0, motion=motion))
+    speed = max(push - friction, 0.0) * 9.81 * motion.end
+    slip = 0.5 * speed * motion.end + speed**2 / (2 * friction * 9.81)
+    assert -trace.centre[-1, 0] == pytest.approx(slip, rel=0.03, abs=1e-5)
+    assert abs(trace.centre[-1, 2]) < max(1e-4 * speed, 1e-6)
+
+
+# How runs end.
+
+
+def not_finite(self, displacement, velocity, offset, force=corners.Corner.force):
+    x, y, z = force(self, displacement, velocity, offset)
+    return [x, y * corners.Real(np.nan), z]
+
+
+def nothing(self, displacement, velocity, offset):
+    return [corners.Real(0.0)] * 3
+
+
+@pytest.mark.parametrize("force, words", [(not_finite, "finite"), (nothing, "sank")])
+def test_a_corner_that_does_not_carry_surfaces(monkeypatch, force, words):
+    monkeypatch.setattr(corners.Corner, "force", force)
+    response = simulate(RELEASED)
+    assert response.outcome == "failed" and words in response.failure.reason
+
+
+def test_newton_failure_surfaces_with_the_engines_message():
+    response = simulate(RELEASED, variant="native-contact", stiffness=1e9, sphere=1e-3)
+    assert response.outcome == "failed" and "Newton" in response.failure.message
+    assert np.isfinite(response.failure.last_state.tilt)
+
+
+def test_a_mismatch_with_the_engine_is_refused(monkeypatch):
+    held = stepping.read_back
+    monkeypatch.setattr(stepping, "read_back", lambda model: held(model) | {"block.mass": (6344.1, 3172.05)})
+    with pytest.raises(Mismatch, match="block.mass is 6344.1 in exudyn, 3172.05 in the scene"):
+        simulate(RELEASED)
+
+
+def test_run_of_too_many_steps_ends_with_its_evidence(monkeypatch):
+    monkeypatch.setattr(stepping, "STEPS_PER_PERIOD", 200)
+    response = simulate(RELEASED)
+    assert response.outcome == "failed" and "too many steps" in response.failure.reason
+    assert "of 1 s" in response.failure.message and response.steps <= 200 * 3
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_interrupt_ends_the_run_within_a_second_and_is_no_failure(variant):
+    simulate(RELEASED.with_(duration=0.01), variant=variant)  # compiled
+    sent, outside = [], signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it
+
+    def interrupt():
+        sent.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Timer(0.5, interrupt).start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            simulate(RELEASED.with_(duration=1e4), variant=variant)
+        assert time.monotonic() - sent[0] < 1.0
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, outside)
+
+
+@pytest.mark.parametrize("variant, settings", [("switched-joints", {"step": 1e-4}), ("compliant-corners", {})])
+def test_memory_does_not_grow_with_the_number_of_runs(variant, settings):
+    """exudyn keeps a system alive that has a user function: its steps (400 bytes each) and the ground's segments."""
+    motion = SampledMotion(1e-4, 0.5 * np.sin(8e-4 * np.arange(10_001)))  # as many segments as steps
+    given, used = scene(0.28, 212.0, 1.0, bearings=BEARINGS, motion=motion), []
+    for _ in range(8):
+        response = simulate(given, variant=variant, history=False, **settings)
+        gc.collect()
+        used.append(psutil.Process().memory_info().rss)
+    assert response.outcome == "stands" and response.steps >= 10_000
+    assert (used[-1] - used[2]) / 5 < 50 * response.steps  # bytes kept of each run
