@@ -99,8 +99,8 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
 def plan(ask: Ask, grid: Grid | None = None) -> Plan:
     """The plan of the study: an answer first at default settings alone, then growing; grid: in place of FULL or QUICK.
 
-    Rows by "part": "edge" (a boundary of the analytic model), "shift" (an engine's beside it, of its default variant and
-    of those of the tier "defaults"), "held" (the same with the corner held down, where the model's normal force is
+    Rows by "part": "edge" (a boundary of the analytic model), "shift" (an engine's beside it, of its default variant
+    and of those of the tier "defaults"), "held" (the same with the corner held down, where the model's normal force is
     negative), "refinement" (the same at refinement levels), "confusion" (counts of outcomes), "disagreement" (an
     outcome that differs outside the band) and "failure".
 
