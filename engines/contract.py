@@ -154,6 +154,8 @@ class Engine:
         table.
     origin : str
         What declared an engine from outside; "" for those of this project.
+    subject : bool
+        Whether it is one that the question is about: a study runs it on more than the others.
     """
 
     name: str
@@ -165,6 +167,7 @@ class Engine:
     dashes: str | tuple[float, tuple[float, ...]] = "-"
     tolerances: str | None = None
     origin: str = ""
+    subject: bool = False
 
     def load(self) -> ModuleType:
         """The adapter's module.

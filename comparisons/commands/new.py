@@ -163,7 +163,7 @@ def _asked_for(period: float, damping: float, definition: str) -> dict[str, tupl
 
 def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str, Any]) -> dict[str, Any] | None:
     """The table [motion]; a record is named as seen from the scene file. `said`: what it does not say itself."""
-    from analytic.records import read_record
+    from analytic.records import fema, read_record
 
     if record is not None and tilt is not None:
         raise SettingError("give --record or --tilt, not both")
@@ -175,7 +175,7 @@ def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str
     if record is None:
         return {"synthetic": "duzce-like"}
     read_record(record, **said)  # one that cannot be read is said by its own name
-    place = os.path.relpath(record, Path(file).resolve().parent)
+    place = record if fema.is_one(record) else os.path.relpath(record, Path(file).resolve().parent)
     return {"record": place, **said}
 
 

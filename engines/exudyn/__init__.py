@@ -11,4 +11,5 @@ ENGINE = Engine(
     colour="#E69F00",
     marker="s",
     dashes="--",
+    subject=True,
 )

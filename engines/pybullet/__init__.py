@@ -11,4 +11,5 @@ ENGINE = Engine(
     colour="#0072B2",
     marker="^",
     dashes=":",
+    subject=True,
 )
