@@ -154,8 +154,8 @@ def _tilts(runs: list[dict[str, Any]]) -> Figure | None:
         charts.append(chart)
     keys = {", ".join(pair): key_of(", ".join(pair), joined=False, **look) for pair, look in looks.items()}
     caption = (
-        "One mark for each component that is judged: on the line, engine and model agree; where one of the two stands at "
-        "“overturns”, the outcome is another one."
+        "One mark for each component that is judged: on the line, engine and model agree; where one of the two stands "
+        "at “overturns”, the outcome is another one."
     )
     return figure(charts, caption, keys, keys) if charts else None
 

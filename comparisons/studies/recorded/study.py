@@ -164,7 +164,9 @@ def _errors(scene: Scene, response: Response, model: Response, until: float) -> 
 
 
 def _peak(history, name, until):
-    return float(np.abs(getattr(history, name)[history.time <= until]).max(initial=0.0))
+    """The largest size of a quantity up to a time, at that time too: a growing tilt has its peak there."""
+    values = getattr(history, name)
+    return float(np.abs([*values[history.time <= until], np.interp(until, history.time, values)]).max())
 
 
 def _run_row(row: Row, known: Iterable[dict[str, Any]]) -> dict[str, Any]:
