@@ -136,7 +136,7 @@ def _tilts(runs: list[dict[str, Any]]) -> Figure | None:
     groups = grouped(where(runs, tier="tuned"), "engine", "variant")
     most = max(map(len, groups.values()), default=0)
     shown = {pair: members for pair, members in groups.items() if len(members) == most}
-    looks = {}
+    looks: dict[tuple[str, str], Any] = {}
     for engine, variant in shown:
         looks[engine, variant] = LOOKS[sum(engine == other for other, _ in looks) % len(LOOKS)]
     axis = (LEAST, MOST, "log", TICKS)

@@ -3,13 +3,15 @@
 from collections import Counter
 
 import pytest
-from answered import answered
+from answered import answered, by_model
+from record_files import pairs
 
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.study import Ask
 from comparisons.running.sweep import Row
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.vocabulary import OWN, SHARED, columns_of
+from engines import installed_engines
 
 # Of no stored result: "matters" with a folder of records; an impact of which nothing can be told.
 UNSEEN = {"matters": {"record", "outcomes_changed_by_turning"}, "autopsy": {"why_not"}}
@@ -26,9 +28,10 @@ def timed(batch):
 
 
 @pytest.fixture(scope="module")
-def columns():
-    """{study: columns of its rows}."""
-    found = {"kernel": {column for row in kernel_rows() for column in row}}
+def columns(tmp_path_factory):
+    """{study: columns of its rows}; those made up here have no stored result."""
+    made = {"kernel": kernel_rows(), "recorded": recorded_rows(pairs(tmp_path_factory.mktemp("records"), 2))}
+    found = {study: {column for row in rows for column in row} for study, rows in made.items()}
     for file in RESULTS.glob("*.json"):
         result = read_result(file)
         found.setdefault(result.kind, set()).update(column for row in result.rows for column in row)
@@ -37,6 +40,11 @@ def columns():
 
 def kernel_rows():
     return answered(get_study("kernel").plan(Ask(quick=True)), timed)[-1].rows
+
+
+def recorded_rows(folder):
+    ask = Ask(installed_engines()[:1], quick=True)
+    return answered(get_study("recorded").plan(ask, records=str(folder)), by_model(history=True))[-1].rows
 
 
 def test_every_column_is_explained(columns):
