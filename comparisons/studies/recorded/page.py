@@ -28,13 +28,17 @@ WORDS = {
 
 RECORD = Column("record", lambda row: f"{row['record'].removeprefix(PREFIX)}/{row['component']}")
 CONFIGURATION = Column("configuration", "configuration")
-SHARE = Column("share that differs", lambda row: _share(row), percent=True, within="interval")
 COUNTS = (
     Column("runs judged", "runs"),
     Column("that differ", "differing"),
     Column("of these failed", "failed"),
     Column("left out", "left_out"),
-    SHARE,
+    Column(
+        "share that differs",
+        lambda row: row["differing"] / row["runs"] if row["runs"] else None,
+        percent=True,
+        within="interval",
+    ),
     Column("equal", lambda row: row["equal"] or "–"),
 )
 
@@ -96,7 +100,10 @@ def page(result: Result) -> Page:
         ),
         how=_how(result),
         evidence=tuple(
-            (f"{NAME.of(row)}, {RECORD.of(row)}, {row['configuration']}: {row['failure']['reason']}", _message(row))
+            (
+                f"{NAME.of(row)}, {RECORD.of(row)}, {row['configuration']}: {row['failure']['reason']}",
+                row["failure"]["message"] or "",
+            )
             for row in where(runs, **{"class": "failed"})
         ),
     )
@@ -118,17 +125,9 @@ def _title(both: list[dict[str, Any]], equal: str) -> str:
     differing, runs = (sum(row[key] for row in tuned) for key in ("differing", "runs"))
     words = [row["equal"] for row in both]
     title = f"Recorded motions: another outcome than the model’s in {differing} of {runs} runs of tuned engines; "
-    title += f"{words.count('yes')} of {len(words)} settings are equal to it within {equal}"
+    title += f"{words.count('yes')} of {len(words)} settings are shown to be equal to it within {equal}"
     few = len(words) - words.count("yes") - words.count("no")
-    return title + (f", of {few} too few runs to say" if few else "")
-
-
-def _share(row):
-    return row["differing"] / row["runs"] if row["runs"] else None
-
-
-def _message(row):
-    return row["failure"]["message"] or ""
+    return title + (f", {few} have too few runs" if few else "")
 
 
 def _tilts(runs: list[dict[str, Any]]) -> Figure | None:
