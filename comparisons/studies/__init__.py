@@ -50,6 +50,7 @@ BUILT_IN = (
     "autopsy",
     "overturning",
     "fragility",
+    "recorded",
     "surface",
     "matters",
     "speed-error",
