@@ -140,9 +140,11 @@ def paragraph(setups: Sequence[Setup], judgements: Sequence[Judgement]) -> str:
         asked = [one for one in setups if one.asked and one.tier == tier]
         said = []
         for each in judgements:
-            marks = [one.marks[each.heading] for one in asked]
-            if each.says and any(mark is not UNTESTED for mark in marks):
-                said.append(each.says.format(" and ".join(mark.words for mark in marks)))
+            marks = {one.engine: one.marks[each.heading] for one in asked}
+            tested = {engine: mark.words for engine, mark in marks.items() if mark is not UNTESTED}
+            if each.says and tested:
+                whose = f" ({', '.join(tested)})" if len(tested) < len(marks) else ""
+                said.append(each.says.format(" and ".join(tested.values()) + whose))
         if said:
             sentences.append(f"{how}, {' and '.join(one.engine for one in asked)}: {'; '.join(said)}.")
     return " ".join(sentences)

@@ -181,7 +181,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
         for row in tallies(result)
         if row["runs"]
     }
-    says = "{} outcomes differ under synthetic motions"
+    says = "outcomes under synthetic motions differ in {}"
     return (Judgement("outcomes that differ under synthetic motions", marks, says=says),)
 
 

@@ -145,7 +145,11 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
         if row["beyond"]:
             share += f"; where N < 0 {row['beyond_found']} of {row['beyond']}, {percent(row['beyond_largest'])}"
         marks[row["engine"], row["variant"]] = Mark(words, row["rating"], share, row["largest"])
-    return (Judgement("overturning boundary under pulses: shift, worst", marks, says="boundary moved by {} at most"),)
+    return (
+        Judgement(
+            "overturning boundary under pulses: shift, worst", marks, says="overturning boundaries moved by at most {}"
+        ),
+    )
 
 
 def _place(row):

@@ -117,14 +117,14 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
         Judgement(
             "outcomes that differ under recorded motions",
             {name: _outcomes_mark(row) for name, row in rows.items()},
-            says="{} outcomes differ under recorded motions",
+            says="outcomes under recorded motions differ in {}",
         ),
         *(
             Judgement(
                 f"{words} under recorded motions: error, median",
                 {name: _peak_mark(row[f"{key}_error"]) for name, row in rows.items()},
                 rates=False,
-                says=f"{words} off by {{}}",
+                says=f"{words} off by {{}} in the median",
             )
             for key, words in PEAKS.items()
         ),

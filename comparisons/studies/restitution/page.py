@@ -124,17 +124,17 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
             "restitution, free rocking: error, rms",
             {(row["engine"], row["variant"]): _mark(row, "rms", "worst") for row in rows},
             RESTITUTION,
-            says="error of restitution {} in free rocking",
+            says="restitution is off by {} in free rocking",
         ),
         Judgement(
             "restitution on bearings: error, rms",
             {(row["engine"], row["variant"]): _mark(row, "rms_state", "worst_state") for row in borne},
-            says="{} on bearings",
+            says="by {} on bearings",
         ),
         Judgement(
             "base velocity jump on bearings: relative error, rms",
             {(row["engine"], row["variant"]): _mark(row, "jump_rms", "jump_worst") for row in borne},
-            says="of the base velocity jump {}",
+            says="the base velocity jump by {}",
         ),
     )
 
