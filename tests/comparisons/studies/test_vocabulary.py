@@ -14,11 +14,7 @@ from comparisons.studies.vocabulary import OWN, SHARED, columns_of
 from engines import installed_engines
 
 # Of no stored result: "matters" with a folder of records; an impact of which nothing can be told.
-UNSEEN = {
-    "restitution": {"factor", "of", "worst_state"},
-    "matters": {"record", "outcomes_changed_by_turning"},
-    "autopsy": {"why_not"},
-}
+UNSEEN = {"matters": {"record", "outcomes_changed_by_turning"}, "autopsy": {"why_not"}}
 
 
 def timed(batch):
