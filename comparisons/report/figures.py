@@ -67,18 +67,21 @@ def _pair(result, name, rows, column, label, scale):
     sizes = {who: np.maximum(np.abs(values), LEAST) for who, (_, values) in apart.items()}
     most = max(float(values.max()) for values in sizes.values())
     largest = "; ".join(f"{who} {number(float(values.max()), 2)}" for who, values in sizes.items())
+    # copies of a block that overturns part as it falls: nothing to mark
+    marked = bool(scene["horizon"]) and scene["horizon"] < 0.99 * end
     beside = Chart(
         Axis("time [s]", 0.0, end),
         Axis("|engine − model|", LEAST, 10.0 ** max(np.ceil(np.log10(most)), -7), "log"),
         f"{scene['name']}: how far the engines are from the analytic model in {label}; largest: {largest}.",
         title="difference from the analytic model",
         height=240,
+        head=16 * marked,
     )
     for who, values in sizes.items():
         beside.line(apart[who][0], values, who)
-    # copies of a block that overturns part as it falls: nothing to mark
-    if scene["horizon"] and scene["horizon"] < 0.99 * end:
-        beside.rule(scene["horizon"], "x", "sensitivity horizon")
+    if marked:
+        beside.rule(scene["horizon"])
+        beside.heading(scene["horizon"], "sensitivity horizon")
         beside.says += f" Dashed: the earliest sensitivity horizon of a solver, {number(scene['horizon'])} s."
     return [whole, beside]
 

@@ -17,6 +17,7 @@ from analytic.response import COMPARED, about_record
 from ..showing.motions import LIFTED, odds
 from ..showing.parts import number, signed
 from ..showing.rows import Column, across, table
+from ..showing.wording import listed
 from .sections import different
 
 if TYPE_CHECKING:
@@ -199,7 +200,7 @@ def _engines(rows):
     if not engines:
         return "None was run."
     agree = [row["engine"] for row in engines if row.get("comparable") == COMPARED and not row.get("differences")]
-    said = [f"{' and '.join(agree)} agree{'s' * (len(agree) == 1)} with the analytic model"] if agree else []
+    said = [f"{listed(agree)} agree{'s' * (len(agree) == 1)} with the analytic model"] if agree else []
     for row in engines:
         words = [f"failed: {row['failure']['reason']}"] if row["failure"] else different(row)
         words = words if row["engine"] in agree else words or ["was not compared"]

@@ -9,11 +9,13 @@ from analytic.response import COMPARED
 from engines import missing_words
 
 from ..showing.parts import number, percent
+from ..showing.wording import listed
 
 if TYPE_CHECKING:
     from ..running.provenance import Result
 
 WORDS = {"stands": "never lifts", "rocks": "rocks and stays upright", "overturns": "overturns"}
+MOST_NAMED = 3  # solvers of the commonest outcome; more are counted
 MOST_WARNINGS = 3  # of a scene, at the top of the page
 
 
@@ -45,14 +47,20 @@ def outcomes(rows: Sequence[Mapping[str, Any]]) -> str:
         words = f"is {row['verdict']}" if undecided else WORDS.get(row["outcome"], row["outcome"])
         by_outcome.setdefault(words, []).append(row["engine"])
     off = [row["engine"] for row in rows if row.get("differences") and row["comparable"] == COMPARED]
-    if len(by_outcome) == 1 and not off:
-        ((outcome, solvers),) = by_outcome.items()
-        many = {1: solvers[0], 2: "both solvers"}.get(len(solvers), f"all {len(solvers)} solvers")
-        return f"in {many} it {outcome}"
-    words = ", ".join(f"in {' and '.join(solvers)} it {outcome}" for outcome, solvers in by_outcome.items())
+    most = max(map(len, by_outcome.values()), default=0)
+
+    def who(solvers):
+        """All of them, or the many of the commonest outcome, as a number: the others are worth their names."""
+        if len(solvers) == len(rows):
+            return {1: solvers[0], 2: "both solvers"}.get(len(solvers), f"all {len(solvers)} solvers")
+        if len(solvers) == most > MOST_NAMED:
+            return f"{len(solvers)} of {len(rows)} solvers"
+        return listed(solvers)
+
+    words = ", ".join(f"in {who(solvers)} it {outcome}" for outcome, solvers in by_outcome.items())
     if len(by_outcome) > 1:
         words = f"the solvers disagree: {words}"
-    return f"{words}; {' and '.join(off)} differ{'s' * (len(off) == 1)} from the analytic model" if off else words
+    return f"{words}; {listed(off)} differ{'s' * (len(off) == 1)} from the analytic model" if off else words
 
 
 def _warnings(rows):

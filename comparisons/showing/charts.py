@@ -179,16 +179,14 @@ class Chart:
         places = " ".join(f"{x:.1f},{y:.1f}" for x, y in self.at(xs, ys))
         self.parts.insert(0, f'<polygon class="{kind}" points="{places}"/>')
 
-    def rule(self, value: float, along: str = "x", words: str = "") -> None:
-        """A dashed line across, where x or y has a value."""
+    def rule(self, value: float, along: str = "x") -> None:
+        """A dashed line across, where x or y has a value; `heading` and `label` name it outside the panel."""
         if along == "x":
             x = self.at([value], [self.y.low])[0][0]
             self.parts.append(f'<path class="rule" d="M{x:.1f} {self.top}V{self.bottom}"/>')
-            self.over.append(f'<text x="{x + 4:.1f}" y="{self.top + 12}" class="soft clear">{escape(words)}</text>')
         else:
             y = self.at([self.x.low], [value])[0][1]
             self.parts.append(f'<path class="rule" d="M{self.left} {y:.1f}H{self.right}"/>')
-            self.over.append(f'<text x="{self.left + 4}" y="{y - 4:.1f}" class="soft clear">{escape(words)}</text>')
 
     def heading(self, x: float, words: str, line: int = 0) -> None:
         """Words above the panel, where x has a value, so many lines up; they take room there (head)."""

@@ -80,7 +80,7 @@ def draw_channels(name: str, channels: Sequence[Channel]) -> Figure:
         left.plot(motion.peak_time, motion.acceleration(motion.peak_time), "o", color="#D55E00", markersize=5)
         left.margins(x=0)
         label = f"{readable(channel_words(channel), 40)}: " if channel_words(channel) else ""
-        left.set_title(f"{label}{motion.peak:.4g} m/s2 at {motion.peak_time:.5g} s", loc="left")
+        left.set_title(f"{label}{motion.peak:.4g} m/s² at {motion.peak_time:.5g} s", loc="left")
         left.set_ylabel("acceleration [m/s2]")
         right.semilogx(PERIODS, spectrum(motion), color="black", linewidth=1.2)
         right.axhline(motion.peak, color="0.6", linewidth=0.8, linestyle="--")

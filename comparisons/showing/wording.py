@@ -10,12 +10,16 @@ from .parts import Mark, percent
 # Root mean square error of restitution: measured restitution of stone scatters by some per cent.
 TRUSTED, USABLE = 1e-3, 1e-2
 
-
 RATINGS = {
     "good": "may be trusted",
     "fair": "is usable where a per cent does not matter",
     "bad": "is not to be trusted",
 }
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names in a sentence: "a", "a and b", "a, b and c"."""
+    return " and ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))
 
 
 def rating(rms: float | None, failed: int) -> str:

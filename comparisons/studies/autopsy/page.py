@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...showing.charts import Axis, Chart, figure
+from ...showing.figures import MOVED
 from ...showing.parts import Page
 from ...showing.rows import NAME, Column, table, where
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
 RIGID = "rigid ground"
 WINDOW = 20.0  # ms before and after the landing that are drawn
+INSTANT = 1.0  # ms: marks of a landing that takes less stand beside those of other engines
 MARKED = 40  # values of a line, at most, to mark each
 # frame: (its title, key of its values, unit of the page, label)
 FRAMES = {
@@ -105,10 +107,12 @@ def _frames(rows):
             chart.line(time, values, row["engine"], grey=grey)
             if len(values) <= MARKED:
                 says = [f"{NAME.of(row)}: {value:.3g}" for value in values]
-                chart.dots(time, values, row["engine"], grey=grey, filled=not grey, says=says)
+                at_once = not grey and np.ptp(time) < INSTANT
+                chart.dots(time, values, row["engine"], grey=grey, filled=not grey, says=says, apart=at_once)
         charts.append(chart)
     caption = (
         "The first impact on rigid ground. Coloured: default variants; grey: tier “defaults”. Only engines that tell "
         "where the block was have frames 2 and 3."
     )
+    caption += MOVED if any(chart.moved for chart in charts) else ""
     return figure(charts, caption, [row["engine"] for row in rows if row["best"]])

@@ -22,6 +22,7 @@ LEVEL = 0.05  # of the test between an engine and the model, and least p of a cu
 OVERTURNING = "overturning"
 UNITS = {"PGA": "g", "PGV": "m/s", "Sa": "g"}
 TONES = ("var(--faint)", "var(--soft)", "var(--accent)", "var(--ink)", "var(--ghost)")
+MARKS = ("o", "s", "^", "o", "D")  # of the limit states; that of overturning is small, to lie on others
 TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
 OUTCOMES = ("both_stand", "both_overturn", "only_a", "only_b")
 RATIOS = (0.5, 0.7, 1.0, 1.4, 2.0)  # of medians, as ticks
@@ -72,7 +73,7 @@ def page(result: Result) -> Page:
                 tones,
                 "Share of runs of the analytic model that exceed each limit state, with 95 % Wilson intervals, over "
                 "the measure of least dispersion for overturning. A lognormal curve is drawn where it fits, "
-                f"p ≥ {LEVEL:g}.",
+                f"p ≥ {LEVEL:g}. Overturning: the small marks.",
             ),
             table(
                 "Overturning in all scenes together: outcomes that differ from the analytic model's on the same runs",
@@ -214,14 +215,14 @@ def _shares(rows, tones, caption):
             right=116,
             height=300,
         )
-        for row in members:
-            tone = tones[row["state"]]
+        for row in sorted(members, key=lambda row: row["state"] == OVERTURNING):
+            tone, mark = tones[row["state"]], MARKS[list(tones).index(row["state"])]
             xs, ys, lows, highs = zip(
                 *([point[key] for key in ("intensity", "share", "low", "high")] for point in row["points"]), strict=True
             )
             chart.reach(xs, ys, lows, highs, tone=tone)
             says = [f"{row['state']}: {number(y)} at {number(x)}" for x, y in zip(xs, ys, strict=True)]
-            chart.dots(xs, ys, says=says, tone=tone)
+            chart.dots(xs, ys, says=says, tone=tone, mark=mark, small=row["state"] == OVERTURNING)
             if _fits(row):
                 fine = np.geomspace(min(xs), max(xs), 80)
                 chart.line(fine, norm.cdf(np.log(fine / row["median"]) / row["dispersion"]), tone=tone)

@@ -18,6 +18,7 @@ from comparisons.running.provenance import read_result, write_result
 from comparisons.showing import parts
 from comparisons.showing.parts import Table
 from comparisons.showing.rows import where
+from comparisons.showing.wording import listed
 from comparisons.studies import get_study
 from engines import installed_engines
 
@@ -119,9 +120,7 @@ def test_summary_follows_the_numbers(copied):
     free, isolated = ([row for row in rows if row["scene"] == name] for name in runs.CARYATID)
     names, off = [row["engine"] for row in free], [row["engine"] for row in free if row["differences"]]
     solvers = {1: "analytic", 2: "both solvers"}.get(len(names), f"all {len(names)} solvers")
-    words = (
-        f"in {' and '.join(names)} it overturns; {' and '.join(off)} differ" if off else f"in {solvers} it overturns"
-    )
+    words = f"in {solvers} it overturns" + f"; {listed(off)} differ" * bool(off)
     found = items()
     assert words in found
     assert "it never lifts" in found
