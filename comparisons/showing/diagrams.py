@@ -102,7 +102,7 @@ def rocking() -> Markup:
     drawing.line(corner, centre, "thin")
     drawing.line(corner, (corner[0], 175), "thin")
     drawing.arc(corner, 96, 0, PHI - GAMMA)
-    drawing.text((corner[0] + 9, 90), "γ − φ")
+    drawing.text((corner[0] + 21, 90), "γ − φ")
     drawing.text((corner[0] - 24, 40), "R")
     drawing.arrow(centre, (0, -ARROW), "mg", (-26, 4))
     drawing.arrow(centre, (-ARROW, 0), "m a_g", (-34, 8))

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ...running.provenance import Result
 
 LEVELS = (0.16, 0.5, 0.84)  # shares whose lines are drawn
+TICKS = (0.1, 0.2, 0.5, 1, 2, 3, 5)  # g
 SHOWN = 9  # rows of the table for each engine, at most
 GAMMA = Column("slenderness γ [rad]", "slenderness", digits=3)
 HALF = Column("half at [g]", "half", digits=3)
@@ -91,7 +92,7 @@ def _surface(result, engine, rows):
             float(intensities[0]),
             float(intensities[-1]),
             "log",
-            tuple((value, f"{value:g}") for value in (0.1, 0.2, 0.5, 1, 2, 3, 5)),
+            tuple((value, f"{value:g}") for value in TICKS if intensities[0] <= value <= intensities[-1]),
         ),
         f"{engine}: peak ground acceleration that overturns {', '.join(percent(level) for level in LEVELS)} of the "
         "motions over slenderness, with the line of uplift.",
