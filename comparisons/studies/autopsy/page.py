@@ -106,8 +106,11 @@ def _frames(rows):
             grey = not row["best"]
             chart.line(time, values, row["engine"], grey=grey)
             if len(values) <= MARKED:
-                says = [f"{NAME.of(row)}: {value:.3g}" for value in values]
                 at_once = not grey and np.ptp(time) < INSTANT
+                if at_once:  # one mark of several in one place
+                    kept = np.sort(np.unique(np.round(values / room), return_index=True)[1])
+                    time, values = time[kept], values[kept]
+                says = [f"{NAME.of(row)}: {value:.3g}" for value in values]
                 chart.dots(time, values, row["engine"], grey=grey, filled=not grey, says=says, apart=at_once)
         charts.append(chart)
     caption = (
