@@ -17,6 +17,7 @@ from ..showing.charts import STYLE, colour, key_of
 from ..showing.mathml import mathml
 from ..showing.parts import Section, number, signed
 from ..showing.templates import templates
+from ..showing.wording import indexed
 from . import equations
 from .studies import origin_of
 
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from ..running.study import Study
 
 HERE = Path(__file__).parent
-INDEX = re.compile(r"(?<![\w.])([^\W\d_])_([A-Za-zα-ω0]{1,3})(?![\w_])")  # of a quantity of one letter: m_b
 
 
 def write_study(
@@ -72,10 +72,6 @@ def environment() -> Environment:
     known = {re.sub(" [^ ]$", "", word): meaning for word, meaning in equations.GLOSSARY.items()}
     words = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sorted(known, key=len, reverse=True)))
 
-    def indexed(text):
-        """The text, a letter's index below the line: m_b."""
-        return Markup(INDEX.sub(r"\1<sub>\2</sub>", str(escape(text))))
-
     def glossed(text):
         """The text, its first use of each word of the glossary explained."""
         seen = set()
@@ -86,11 +82,11 @@ def environment() -> Environment:
             seen.add(found[0])
             return f'<abbr title="{escape(known[found[0]])}">{found[0]}</abbr>'
 
-        return Markup(words.sub(explained, str(indexed(text))))
+        return Markup(words.sub(explained, indexed(str(escape(text)))))
 
     found.filters |= {
         "math": lambda tex: Markup(mathml(tex, display=True)),
-        "indexed": indexed,
+        "indexed": lambda text: Markup(indexed(str(escape(text)))),
         "glossed": glossed,
         "number": number,
         "signed": signed,

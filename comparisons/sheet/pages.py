@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,7 @@ from markupsafe import Markup
 from analytic import SampledMotion
 
 from ..showing.templates import templates
+from ..showing.wording import indexed
 from .problems import COLUMNS, DAMPING, PERIOD, PROBLEMS, SCALES, UNITS, VERSION, record
 
 if TYPE_CHECKING:
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 
 TEMPLATES = templates(Path(__file__).parent / "templates")
 TITLE = "Rocking blocks: problems for a code to be held against"
+POWER = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e([-+]?)0*(\d+)(?!\w)")
 ANSWERS, RECORD_FILE = "answers.csv", "record.csv"
 
 
@@ -72,7 +75,14 @@ def _text(name: str, **values: Any) -> str:
 
 def _html(title: str, text: str) -> str:
     """A page in Markdown as HTML, readable without anything else."""
-    return TEMPLATES.get_template("page.html").render(title=title, body=Markup(MARKDOWN.render(text))) + "\n"
+    body = POWER.sub(_power, indexed(MARKDOWN.render(text)))
+    return TEMPLATES.get_template("page.html").render(title=title, body=Markup(body)) + "\n"
+
+
+def _power(found):
+    """1e-20 as one writes it, to all its digits."""
+    mantissa, sign, exponent = found.groups()
+    return f"{'' if mantissa == '1' else mantissa + '·'}10<sup>{'−' if sign == '-' else ''}{exponent}</sup>"
 
 
 def _equations(renderer, tokens, place, options, environment):

@@ -1,5 +1,6 @@
 """Words that several pages share."""
 
+import re
 from collections.abc import Iterable, Sequence
 
 from analytic.response import COMPARED, EDGE, UNCOMPARED, Difference
@@ -9,12 +10,18 @@ from .parts import Mark, percent
 
 # Root mean square error of restitution: measured restitution of stone scatters by some per cent.
 TRUSTED, USABLE = 1e-3, 1e-2
+INDEX = re.compile(r"(?<![\w.])([^\W\d_])_([A-Za-zα-ω0]{1,3})(?![\w_])")  # of a quantity of one letter: m_b
 
 RATINGS = {
     "good": "may be trusted",
     "fair": "is usable where a per cent does not matter",
     "bad": "is not to be trusted",
 }
+
+
+def indexed(html: str) -> str:
+    """HTML with the indices of quantities below the line."""
+    return INDEX.sub(r"\1<sub>\2</sub>", html)
 
 
 def listed(names: Sequence[str]) -> str:
