@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 from scipy.integrate import cumulative_simpson
-from scipy.optimize import brentq
 
 from analytic import Scene, load_scene, simulate
 from analytic.bearing import BearingLaw
 from analytic.design import design_bearings, properties
 from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
 
+from ...measuring.agreement import branch, history_point
 from .paper import (
     ALPHA,
     BASE_MASS,
@@ -46,24 +46,6 @@ POINTS = 120  # per branch
 RADII = np.geomspace(0.1, 10.0, 81)  # m
 SLENDERNESSES = np.linspace(0.1, 0.45, 71)  # rad
 AMPLITUDES = np.linspace(0.02, 0.40, 96)  # m
-
-
-def branch(law: BearingLaw, x: float, s: float, x_j: float, misprinted: bool = False) -> float:
-    """Force of one bearing [N] on the branch of direction s, eqs (9) to (12), with the paper's x_j.
-
-    The bracket is 1 + s x - s x_j + 2 x0. As printed, eq. (12) for unloading (s = -1) has the signs of loading:
-    1 + x - x_j + 2 x0.
-    """
-    sign = 1 if misprinted else s
-    bracket = 1 + sign * (x - x_j) + 2 * law.x0
-    return law.kb * x + law.dk * (bracket ** (1 - law.alpha) - law.d0) / (s * (1 - law.alpha)) + s * law.f0
-
-
-def history_point(law: BearingLaw, x: float, force: float, s: float) -> float:
-    """x_j [m] of the branch of direction s through the point (x [m], force [N]) of a reversal, found as a root."""
-    # at the root the bracket lies between 1 (on the other limit curve) and 1 + 2 x0 (on this one)
-    edges = sorted((x, x + 2 * s * law.x0))
-    return brentq(lambda x_j: branch(law, x, s, x_j) - force, *edges, xtol=1e-15, rtol=1e-15)
 
 
 def momentum_after(scene: Scene, jump_length: float, rate: float = -1.0) -> float:

@@ -18,7 +18,7 @@ from .cost import cost_rows
 from .formulas import formulas
 from .paper import X_MAX, motion_values
 from .runs import ISOLATED, caryatid, equivalent_oscillators, simulations, spectra
-from .variations import claims, contact, maps, uplift_slenderness
+from .variations import claims, maps, uplift_slenderness
 
 PART_PAPER, PART_MOTION, PART_HISTORIES = "paper", "motion", "histories"
 
@@ -87,8 +87,7 @@ def _analytic(motion, runs, quick):
     rows = equivalent_oscillators(motion, bearings, own["peak_base_displacement"])
     for words, part in (
         ("slenderness: which values fit the claims", lambda: claims(motion, quick)),
-        ("friction and normal force", lambda: contact(motion, quick)),
-        ("other slendernesses, intensities and motions", lambda: maps(motion, quick, say)),
+        ("other slendernesses, intensities and motions", lambda: maps(motion, quick)),
         ("algebraic against Bouc-Wen", lambda: (cost_rows(motion, quick), {})),
     ):
         say(words)
