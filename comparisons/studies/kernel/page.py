@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...showing.figures import lines
 from ...showing.parts import Page, number, short
-from ...showing.rows import NAME, Column, grouped, table, where
+from ...showing.rows import NAME, Column, cheapest, grouped, table, where
 from .throughput import WORK
 
 if TYPE_CHECKING:
@@ -63,9 +63,8 @@ def page(result: Result) -> Page:
         ),
         how=(
             "All integrate the same two equations, set up for speed: scipy without classes and with a first step of "
-            "the length of the hop. scipy, CVODE and CyRK restart at each impact; heyoka's impacts are a callback in "
-            "its own loop. Cheapest: the cheapest setting at which it and all finer ones keep the error and find every "
-            "impact.",
+            "the length of the hop. scipy restarts at each impact; heyoka's impacts are a callback in its own loop. "
+            "Cheapest: the cheapest setting at which it and all finer ones keep the error and find every impact.",
             f"{result.settings['rounds']} fresh processes one after the other; in each, every setting has its turn "
             "after a first run that compiles; runs of less than 4 ms are repeated for as long. Medians over processes.",
             "Scenes on bearings and under a record, the growth of cost, and engines are in the study speed-error.",
@@ -85,16 +84,8 @@ def sound(row: dict[str, Any]) -> bool:
 
 def passing(rows: list[dict[str, Any]], scene: str, level: float) -> dict[str, dict[str, Any]]:
     """{integrator: cheapest row at which it and all finer ones keep an error}, cheapest first."""
-    found: dict[str, dict[str, Any]] = {}
-    for (name,), mine in grouped(where(rows, problem=scene), NAME.text).items():
-        kept = []
-        for row in sorted(mine, key=lambda row: row["tolerance"]):
-            if not (sound(row) and row["error"] <= level):
-                break
-            kept.append(row)
-        if kept:
-            found[name] = min(kept, key=CPU.of)
-    return dict(sorted(found.items(), key=lambda item: CPU.of(item[1])))
+    of_scene = where(rows, problem=scene)
+    return cheapest(of_scene, NAME.text, lambda row: sound(row) and row["error"] <= level, CPU.of)
 
 
 def _costs(rows, scene):

@@ -39,13 +39,11 @@ TOLERANCES = {
     ("scipy", "LSODA"): ((1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12), (1e-9, 1e-11)),
     ("scipy", "Radau"): ((1e-6, 1e-8, 1e-9), (1e-6,)),
     ("heyoka", "Taylor"): ((1e-6, 1e-8, 1e-9, 1e-10, 1e-12, 1e-14, 2.3e-16), (1e-9, 1e-12, 2.3e-16)),
-    ("CVODE", "Adams"): ((1e-6, 1e-8, 1e-10, 1e-12, 1e-13), (1e-9, 1e-12)),
-    ("CyRK", "DOP853"): ((1e-6, 1e-8, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14), (1e-9, 1e-11, 1e-13)),
 }
 INTEGRATORS: dict[tuple[str, str], Callable[..., Any]] = {
     KERNEL: kernel_run,
     **{("scipy", method): functools.partial(scipy_run, method=method) for method in METHODS},
-    **{name: run for name, (_, _, run) in PEERS.items()},
+    **PEERS,
 }
 
 

@@ -29,7 +29,7 @@ REACHED = {
 def test_every_integrator_reaches_the_reference_with_all_impacts(problem, name):
     (engine, variant), (tolerance, most) = name, REACHED[name]
     if name in peers.PEERS:
-        pytest.importorskip(peers.PEERS[name][0], reason=f"{engine} comes with the extra `peers`")
+        pytest.importorskip(engine, reason=f"{engine} comes with the extra `peers`")
         assert name in peers.installed()
     tilt, impacts = run_of(variant, engine, problem, tolerance)()
     assert impacts == PROBLEMS[problem].impacts and PROBLEMS[problem].error(tilt) < most
