@@ -87,7 +87,7 @@ class Tolerance:
 
 
 # quantity: how it is measured, unit
-QUANTITIES = {
+QUANTITIES: dict[str, tuple[Callable[..., float], str]] = {
     "restitution, rms": (partial(agreement.impact_rms, "state"), "-"),
     "restitution from swings, |mean error|": (agreement.swing_restitution_bias, "-"),
     "base velocity jump, rms": (partial(agreement.impact_rms, "jump"), "relative"),

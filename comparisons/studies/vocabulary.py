@@ -178,15 +178,11 @@ OWN: dict[str, dict[str, Explained]] = {
         "quantities": Explained("in what the run differs from the model, by name"),
     },
     "kernel": {
-        "problem": Explained("of which run: a problem, or a work of the kernel"),
+        "problem": Explained("which of the two"),
         "tolerance": Explained("relative tolerance asked for"),
         "expected_impacts": Explained("impacts of the reference"),
         "impacts": Explained("impacts found"),
         "error": Explained("of the tilt at the horizon against the reference, over the slenderness"),
-        "overturned": Explained("share of runs that overturn"),
-        "elapsed_seconds": Explained("elapsed time of one run: median over the processes", "s"),
-        "elapsed_low": Explained("elapsed time of one run: least", "s"),
-        "elapsed_high": Explained("elapsed time of one run: most", "s"),
     },
     "autopsy": {
         "best": Explained("whether the variant is its engine's default"),

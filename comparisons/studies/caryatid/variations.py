@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import reduce
+from functools import partial, reduce
 from itertools import product
 from typing import Any
 
@@ -55,10 +55,8 @@ def claims(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], d
     }
     rows = []
     for claim, (holds, points, tolerance) in tests.items():
-        (column,) = drive(
-            [boundaries(LOW, HIGH, points, tolerance)],
-            lambda batch, holds=holds: list(map(bool, holds([point for _, point in batch]))),
-        )
+        search = boundaries(LOW, HIGH, points, tolerance)
+        (column,) = drive([search], partial(_outcomes, holds))
         intervals = _intervals(column.transitions, bool(holds([LOW])[0]))
         rows.append({"part": "claim", "claim": claim, "intervals": intervals, "evaluations": column.evaluations})
     together = reduce(_overlap, [row["intervals"] for row in rows])
@@ -69,6 +67,10 @@ def claims(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], d
     ]
     periods = np.array([vulnerable_period(motion, float(gamma), step) for gamma in grid])
     return rows, {"claims/slenderness": grid, "claims/vulnerable period": periods}
+
+
+def _outcomes(holds, batch):
+    return list(map(bool, holds([point for _, point in batch])))
 
 
 def uplift_slenderness(motion: Motion) -> float:
