@@ -140,8 +140,6 @@ OWN: dict[str, dict[str, Explained]] = {
         "ratio": Explained("peak vertical over peak horizontal acceleration"),
         "lifts_off": Explained("runs in which N reaches zero"),
         "sliding": Explained("{coefficient of friction: runs that need more}"),
-        "record": Explained("file of a recorded triple"),
-        "outcomes_changed_by_turning": Explained("runs with another outcome after a turn of the record"),
     },
     "speed-error": {
         "model": Explained("how the engine's model stands for the scene"),

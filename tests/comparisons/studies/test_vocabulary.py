@@ -11,8 +11,8 @@ from comparisons.running.sweep import Row
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.vocabulary import OWN, SHARED, columns_of
 
-# Of no stored result: "matters" with a folder of records; an impact of which nothing can be told.
-UNSEEN = {"matters": {"record", "outcomes_changed_by_turning"}, "autopsy": {"why_not"}}
+# Of no stored result: an impact of which nothing can be told.
+UNSEEN = {"autopsy": {"why_not"}}
 
 
 def timed(batch):
