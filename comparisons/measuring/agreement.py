@@ -64,11 +64,6 @@ def traced(engine: str, variant: str, scene: Scene, history: bool = True) -> tup
     return response, trace
 
 
-def run(engine: str, variant: str, scene: Scene, history: bool = True) -> Response:
-    """The engine's response; raises `Unmeasurable` where it failed."""
-    return traced(engine, variant, scene, history)[0]
-
-
 def free_rocking(scenes: str) -> dict[float, list[Scene]]:
     """{slenderness: scenes} of a family: free rocking from every start, up to past the third impact's swing."""
     base, slendernesses = FREE_ROCKING[scenes]
@@ -86,7 +81,7 @@ def _free_responses(engine, variant, scenes, runs):
     key = engine, variant, scenes
     if key not in runs:
         runs[key] = {
-            slenderness: [(scene, run(engine, variant, scene)) for scene in family]
+            slenderness: [(scene, traced(engine, variant, scene)[0]) for scene in family]
             for slenderness, family in free_rocking(scenes).items()
         }
     return runs[key]
@@ -147,7 +142,7 @@ def _agreement(engine, variant, scenes, runs):
     key = engine, variant, scenes
     if key not in runs:
         scene = named_scene(scenes)
-        runs[key] = compare(scene, run(engine, variant, scene), simulate(scene))
+        runs[key] = compare(scene, traced(engine, variant, scene)[0], simulate(scene))
     if not runs[key].same_outcome:
         raise Unmeasurable(f"{engine}, {variant}: another outcome than the model's in {scenes}")
     return runs[key]
@@ -165,12 +160,6 @@ def boundary_scene(slenderness: float, pulse: str, frequency: float, amplitude: 
     return scene.with_(motion=motion, duration=motion.end + 6.0)
 
 
-def _overturns(engine, variant, scene):
-    if engine == "analytic":
-        return simulate(scene, history=False).outcome == "overturns"
-    return run(engine, variant, scene, history=False).outcome == "overturns"
-
-
 def first_boundary(*pulse: Any) -> float:
     """Least amplitude over g tan(slenderness) at which the model overturns; found by scanning, then halving.
 
@@ -178,7 +167,7 @@ def first_boundary(*pulse: Any) -> float:
     """
 
     def falls(amplitude):
-        return _overturns("analytic", None, boundary_scene(*[*pulse, amplitude]))
+        return simulate(boundary_scene(*[*pulse, amplitude]), history=False).outcome == "overturns"
 
     amplitudes = np.arange(1.0, 12.0, 0.02)
     over = next(k for k, a in enumerate(amplitudes) if falls(float(a)))
@@ -197,7 +186,8 @@ def boundary_shift(engine: str, variant: str, scenes: str, runs: dict[Any, Any])
         exact = first_boundary(slenderness, *pulse)
 
         def falls(shift, exact=exact, pulse=pulse):
-            return _overturns(engine, variant, boundary_scene(*[slenderness, *pulse, exact * (1 + shift)]))
+            scene = boundary_scene(*[slenderness, *pulse, exact * (1 + shift)])
+            return traced(engine, variant, scene, history=False)[0].outcome == "overturns"
 
         low, high = -1e-4, 1e-4
         while falls(low):
@@ -263,7 +253,7 @@ def history_point(law: BearingLaw, x: float, force: float, s: float) -> float:
 def corner_lift(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """Largest lift of a corner of a block that should stand [m]."""
     scene = named_scene(scenes)
-    response = run(engine, variant, scene, history=False)
+    response = traced(engine, variant, scene, history=False)[0]
     if response.outcome != "stands":
         raise Unmeasurable(f"{engine}, {variant}: {response.outcome} in {scenes}")
     return 2 * scene.block.half_width * response.peak_tilt
@@ -272,7 +262,7 @@ def corner_lift(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) ->
 def base_drift(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """Largest difference of the base displacement from the model's [m] while the block stands."""
     scene = named_scene(scenes)
-    found, reference = run(engine, variant, scene).history, simulate(scene).history
+    found, reference = traced(engine, variant, scene)[0].history, simulate(scene).history
     return float(
         np.abs(np.interp(reference.time, found.time, found.base_displacement) - reference.base_displacement).max()
     )

@@ -68,8 +68,10 @@ def formulas() -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
         "printed": (unloading[0] - arrays["reversal/printed"][0]) / (2 * law.f0),
     }
     literal = np.abs(arrays["reversal/literal"] - unloading).max() / law.f0
-    rows = [*_values(scene), *_misprints(scene, jumps), *_equations(scene, law, jumps, float(literal))]
-    return rows, arrays
+    got = properties(scene.bearings, scene.total_mass, X_MAX)
+    designed = design_bearings(scene.total_mass, PERIOD, DAMPING, X_MAX, count=COUNT, definition="paper")
+    equations = _equations(scene, law, got, designed, jumps, float(literal))
+    return [*_values(scene, got, designed), *_misprints(scene, got, jumps), *equations], arrays
 
 
 def _loops(law):
@@ -124,16 +126,9 @@ def _amplitudes(scene):
     }
 
 
-def _designed(scene):
-    """The bearings that follow from Table 1(a)."""
-    targets = scene.total_mass, PERIOD, DAMPING, X_MAX
-    return design_bearings(*targets, count=COUNT, definition="paper")
-
-
-def _values(scene):
+def _values(scene, got, designed):
     """Every number of the paper that needs no motion."""
     radius = 3 * scene.gravity / (4 * OMEGA_R**2)  # (1) with J_O = 4/3 m R^2
-    got, designed = properties(scene.bearings, scene.total_mass, X_MAX), _designed(scene)
     secant = f"as secant period at x_max; with k_b alone it would be {got.period_kb:.3f} s"
     ours, usual = "damping ξ as W_D/(2π E_s) [%]", "damping ξ as W_D/(4π E_s) [%]"
     from_a, ten = "designed from Table 1(a)", "designed from Table 1(a) with k_a/k_b = 10"
@@ -196,8 +191,7 @@ def _rows(part, keys, *rows):
     return [{"part": part, **dict(zip(keys, row, strict=True))} for row in rows]
 
 
-def _misprints(scene, jumps):
-    got = properties(scene.bearings, scene.total_mass, X_MAX)
+def _misprints(scene, got, jumps):
     return _rows(
         "misprint",
         ("where", "printed", "corrected", "measure", "value_corrected", "value_printed"),
@@ -253,10 +247,10 @@ def _impact_by_balances(scene, rate):
     return np.linalg.solve(balances, [m * h * rate, (about + m * (h * h - b * b)) * rate])
 
 
-def _equations(scene, law, jumps, literal):
+def _equations(scene, law, got, designed, jumps, literal):
     """Eqs (1) to (14), Fig. 3 and Table 1, each by a number that it must give."""
     run = simulate(load_scene("caryatid-isolated").with_(block={"slenderness": 0.15}), history=False)  # it rocks
-    rate, got = -0.7, properties(scene.bearings, scene.total_mass, X_MAX)
+    rate = -0.7
     spin, base = _impact_by_balances(scene, rate)
     _, corrected = RockingModel.of(scene).impact(rate)
     off = base_jump_length_as_printed(scene) / base_jump_length(scene) - 1
@@ -316,5 +310,5 @@ def _equations(scene, law, jumps, literal):
             got.cycle_loss,
         ),
         ("Table 1(a)", "design targets", REPRODUCED, "T_bi as secant period at x_max [s]", got.period),
-        ("Table 1(b)", "bearings", REPRODUCED, "α designed from Table 1(a) [-]", _designed(scene).alpha),
+        ("Table 1(b)", "bearings", REPRODUCED, "α designed from Table 1(a) [-]", designed.alpha),
     )
