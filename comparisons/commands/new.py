@@ -161,12 +161,14 @@ def _asked_for(period: float, damping: float, definition: str) -> dict[str, tupl
 
 def _motion(file: str, record: str | None, tilt: float | None, said: Mapping[str, Any]) -> dict[str, Any] | None:
     """The table [motion]; a record is named as seen from the scene file. `said`: what it does not say itself."""
+    from analytic.records import fema
+
     if record is not None and tilt is not None:
         raise SettingError("give --record or --tilt, not both")
     ground_motion(record, **said)  # one that cannot be read is said by its own name
     if record is None:
         return {"synthetic": "duzce-like"} if tilt is None else None
-    place = os.path.relpath(record, Path(file).resolve().parent)
+    place = record if fema.is_one(record) else os.path.relpath(record, Path(file).resolve().parent)
     return {"record": place, **{name: value for name, value in said.items() if value is not None}}
 
 

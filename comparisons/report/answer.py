@@ -134,14 +134,19 @@ def recommendation(setups: Sequence[Setup], judgements: Sequence[Judgement], lim
 
 
 def paragraph(setups: Sequence[Setup], judgements: Sequence[Judgement]) -> str:
-    """The first table in words, at most `MOST_WORDS`: of each subject engine, tuned and by default, what differs."""
+    """The first table in words, at most `MOST_WORDS`: of the subject engines tuned, and with default settings."""
     sentences = []
-    for one in (one for one in setups if one.asked):
-        known = [each for each in judgements if each.says and one.marks[each.heading] is not UNTESTED]
-        if known:
-            said = "; ".join(each.says.format(one.marks[each.heading].words) for each in known)
-            how = "tuned" if one.tier == "tuned" else "with default settings"
-            sentences.append(f"{one.engine} {how}: {said}.")
+    for tier, how in (("tuned", "Tuned"), ("defaults", "With default settings")):
+        asked = [one for one in setups if one.asked and one.tier == tier]
+        said = []
+        for each in judgements:
+            marks = {one.engine: one.marks[each.heading] for one in asked}
+            tested = {engine: mark.words for engine, mark in marks.items() if mark is not UNTESTED}
+            if each.says and tested:
+                whose = f" ({', '.join(tested)})" if len(tested) < len(marks) else ""
+                said.append(each.says.format(" and ".join(tested.values()) + whose))
+        if said:
+            sentences.append(f"{how}, {' and '.join(one.engine for one in asked)}: {'; '.join(said)}.")
     return " ".join(sentences)
 
 

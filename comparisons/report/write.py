@@ -40,6 +40,7 @@ SHORT = {
     "random-scenes": "Random statues",
     "autopsy": "Why engines err",
     "overturning": "Many pulses",
+    "recorded": "Recorded motions",
     "fragility": "Many earthquakes",
     "matters": "What matters more",
     "speed-error": "Cost against error",

@@ -1,8 +1,11 @@
 """Words that several pages share."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from analytic.response import COMPARED, EDGE, UNCOMPARED, Difference
+
+from ..measuring.statistics import EQUAL
+from .parts import Mark, percent
 
 # Root mean square error of restitution: measured restitution of stone scatters by some per cent.
 TRUSTED, USABLE = 1e-3, 1e-2
@@ -25,6 +28,18 @@ def rating(rms: float | None, failed: int) -> str:
 def trust(rms: float | None, failed: int) -> str:
     """The `rating` in words."""
     return RATINGS[rating(rms, failed)]
+
+
+def equal_mark(differing: int, failed: int, runs: int, equal: str, interval: Sequence[float]) -> Mark:
+    """What a study says of outcomes that differ in some of these runs, failed ones among them.
+
+    equal, interval: of `comparisons.measuring.statistics.equality`. An engine that is neither shown to be equal nor
+    shown to differ by more than `EQUAL` is fair.
+    """
+    levels = {"yes": "good", "no": "bad" if interval[0] > EQUAL else "fair"}
+    words = f"{differing} of {runs} (at most {percent(interval[1])})"
+    note = {"yes": "equal", "no": "not shown to be equal"}.get(equal, equal)
+    return Mark(words, levels.get(equal, "none"), f"{note}; {failed} failed", differing / runs)
 
 
 def differing(comparable: str, differences: Iterable[Difference]) -> list[str]:

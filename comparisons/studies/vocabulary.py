@@ -20,6 +20,7 @@ class Explained(NamedTuple):
     unit: str = "-"
 
 
+MEDIAN = "of a summary: [median, largest, number] of its size"
 INTERVAL = "interval of {} (95 %, bootstrap over runs): [low, high]"
 
 SHARED = {
@@ -61,6 +62,9 @@ OWN: dict[str, dict[str, Explained]] = {
         "rms": Explained("error of restitution by swing energies: root mean square over impacts"),
         "worst": Explained("error of restitution by swing energies: largest absolute value"),
         "rms_state": Explained("error of restitution by the states at impacts: root mean square"),
+        "worst_state": Explained("error of restitution by the states at impacts: largest absolute value"),
+        "factor": Explained('of blocks on bearings: what they have in common, or "all"'),
+        "of": Explained("of blocks on bearings: the factor's value", "rad, 1 or s"),
         "jump_rms": Explained("error of the base's velocity jump against momentum, relative: root mean square"),
         "jump_worst": Explained("error of the base's velocity jump against momentum, relative: largest"),
         "jump_8": Explained("error of the base's velocity jump against eq. (8) corrected, relative: root mean square"),
@@ -127,6 +131,37 @@ OWN: dict[str, dict[str, Explained]] = {
         "detectable_shift": Explained("ratio of medians that the test would have found with 80 % probability"),
         "p_holm": Explained("p_value adjusted over limit states, by Holm"),
         "seed": Explained("of the synthetic motion"),
+    },
+    "recorded": {
+        "record": Explained("name of the record, of both its components"),
+        "component": Explained('of the record: "a" or "b"'),
+        "configuration": Explained('"free-standing" or "isolated"; of a summary also "both"'),
+        "intensity": Explained("peak ground velocity times omega_r over g tan(slenderness), as scaled"),
+        "scale": Explained("factor on the motion as it was recorded"),
+        "base_mass": Explained("of the base over the block's"),
+        "period": Explained("of block and base on the bearings, secant at x_max of the settings", "s"),
+        "damping": Explained("equivalent viscous damping of the bearings there, over the critical one"),
+        "law": Explained("of the bearings"),
+        "outcome": Explained("of the run"),
+        "tilt": Explained("peak tilt of the run over the slenderness"),
+        "displacement": Explained("peak base displacement of the run", "m"),
+        "comparable": Explained('"yes", or why no engine is compared in this scene'),
+        "horizon": Explained("time up to which peaks are compared in all engines", "s"),
+        "own_horizon": Explained("time up to which the engine's own errors let peaks be compared", "s"),
+        "class": Explained('"right" or "differs" (overturning), "failed" or "left out"'),
+        "model_outcome": Explained("of the analytic model"),
+        "model_tilt": Explained("peak tilt of the analytic model over the slenderness"),
+        "model_displacement": Explained("peak base displacement of the analytic model", "m"),
+        **{
+            f"{own}{peak}_error": Explained(f"relative error of the peak {words} up to {until}; {MEDIAN}")
+            for own, until in (("", "the common horizon"), ("own_", "the engine's own horizon"))
+            for peak, words in (("tilt", "tilt"), ("displacement", "base displacement"))
+        },
+        "differing": Explained("of the runs, those with another outcome than the model, or failed"),
+        "left_out": Explained("runs that are not judged"),
+        "interval": Explained("95 % Wilson interval of the differing share, by record: [low, high]"),
+        "design_effect": Explained("variance of that share by records over that of independent runs"),
+        "equal": Explained('whether the interval ends below 5 %: "yes", "no" or "too few to say"'),
     },
     "matters": {
         "change": Explained("how the scene was changed; null: an engine in place of the model"),

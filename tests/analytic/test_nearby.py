@@ -52,8 +52,10 @@ def test_the_changes_are_even_and_hold_the_scene_itself():
     what = scene(1.5 * UPLIFT)
     changes, found = nearby(what)
     assert changes == pytest.approx(np.linspace(-SHARE, SHARE, len(changes)), abs=1e-12)
-    assert changes[len(changes) // 2] == 0
-    assert found.peak_tilt[len(changes) // 2] == simulate(what, history=False).peak_tilt
+    assert (
+        changes[len(changes) // 2] == 0
+        and found.peak_tilt[len(changes) // 2] == simulate(what, history=False).peak_tilt
+    )
 
 
 def test_the_mirrored_motion_has_the_same_cliffs():

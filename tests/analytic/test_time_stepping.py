@@ -65,6 +65,17 @@ def test_isolated_rocking_tends_to_the_twin(law):
     assert order(steps, errors) > 0.6
 
 
+def test_a_free_base_takes_the_momentum_of_the_impacts():
+    """Of eq. (8): horizontal momentum m (x' + R cos(gamma - |tilt|) tilt') + m_b x' stays 0."""
+    block = Block(mass=3000.0, radius=1.0, slenderness=0.2)
+    scene = Scene(block=block, base=Base(mass=300.0), start=Start(tilt=0.1), duration=2.0)
+    run = simulate_time_stepping(scene, step=1e-4)
+    history = run.history
+    arm = block.mass * block.radius * np.cos(block.slenderness - np.abs(history.tilt))
+    momentum = 3300.0 * history.base_velocity + arm * history.tilt_rate
+    assert len(run.impacts) >= 2 and np.abs(momentum).max() < 1e-3 * np.abs(arm * history.tilt_rate).max()
+
+
 def test_problem_b_lifts_within_a_step():
     run = simulate_time_stepping(problem_b(), step=1e-3)
     assert 0 <= run.uplifts[0] - math.asin(1 / 1.2) / 5.2 < 1e-3

@@ -134,7 +134,7 @@ def test_event_that_scipy_cannot_find_is_a_failure_with_scipys_words(monkeypatch
     monkeypatch.setattr("analytic.twin.run.solve_ivp", third_call_raises)
     run = simulate_twin(scene, method="LSODA", rtol=1e-8)
     assert whole.outcome == "rocks" and run.outcome == "failed"
-    assert (run.failure.reason, run.failure.message) == ("scipy could not find an event", words)
+    assert (run.failure.reason, run.to_json()["failure"]["message"]) == ("scipy could not find an event", words)
     # it broke off where the third stretch began, and says so; what was found before is kept
     assert run.failure.last_state == run.end and 0 < run.end.time == calls[2][0] < 3.0
     assert run.impacts == tuple(impact for impact in whole.impacts if impact.time <= run.end.time)

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.stats import norm
 
+from ...measuring.statistics import EQUAL, TOO_FEW, equality
 from ...showing.charts import Axis, Chart, figure
 from ...showing.figures import ranks, shades
-from ...showing.parts import Head, Judgement, Mark, Page, number, percent, short
+from ...showing.parts import Head, Judgement, Page, number, percent, short
 from ...showing.rows import NAME, Column, grouped, table, where
+from ...showing.wording import equal_mark
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
 
 LEVEL = 0.05  # of the test between an engine and the model, and least p of a curve that is shown
-COARSE = 0.3  # difference of probabilities that must at least be found, if there is one
 OVERTURNING = "overturning"
 UNITS = {"PGA": "g", "PGV": "m/s", "Sa": "g"}
 TONES = ("var(--faint)", "var(--soft)", "var(--accent)", "var(--ink)", "var(--ghost)")
@@ -33,6 +34,7 @@ MEASURE = Column("intensity measure", lambda row: row["measure"].replace("_r", "
 WITH_UNIT = Column(MEASURE.head, lambda row: f"{MEASURE.of(row)} [{UNITS.get(row['measure'], '-')}]")
 DISPERSION = Column("dispersion [-]", "dispersion", within="dispersion_interval")
 MEDIAN_SHIFT = Column("median over the model's [-]", "median_shift", digits=3, within="median_interval")
+APART = Column("of another outcome [-]", lambda row: row["only_a"] + row["only_b"])
 COMPARED = Column("runs compared [-]", lambda row: sum(row[key] for key in OUTCOMES))
 EFFECT = (
     COMPARED,
@@ -53,15 +55,14 @@ def page(result: Result) -> Page:
     best = {row["scene"]: row["measure"] for row in where(fits, state=OVERTURNING, best=True)}
     chosen = [row for row in fits if row["measure"] == best.get(row["scene"], "PGA")]
     tones = dict(zip(dict.fromkeys(row["state"] for row in fits), TONES, strict=False))
-    (outcomes,) = judgements(result)
-    marks = outcomes.marks
-    few = [", ".join(pair) for pair, mark in marks.items() if mark.level == "none"]
+    found = tallies(result)
+    few = [NAME.of(row) for row in where(found, equal=TOO_FEW)]
     return Page(
-        _title(marks),
+        _title(found),
         (
             "Over a whole motion the rocking of a block cannot be predicted point by point; its odds can. Engines are "
-            "compared with the analytic model run by run. No significant difference is not equality: "
-            "detectable is what would have been found with 80 % probability.",
+            f"compared with the analytic model run by run. Equal means that at most {100 * EQUAL:g} % of outcomes "
+            "differ, by the upper limit of the 95 % interval; a failed run differs; lack of runs acquits nobody.",
             *([f"Too few runs to tell: {'; '.join(few)}."] if few else ()),
         ),
         first=(
@@ -73,6 +74,18 @@ def page(result: Result) -> Page:
                 f"p ≥ {LEVEL:g}.",
             ),
             table(
+                "Overturning in all scenes together: outcomes that differ from the analytic model's on the same runs",
+                found,
+                NAME,
+                Column("runs [-]", "runs"),
+                Column("that differ [-]", "differing"),
+                Column("of these failed [-]", "failed"),
+                Column("share that differs", "share", percent=True, within="interval"),
+                Column("equal", "equal"),
+            ),
+        ),
+        more=(
+            table(
                 "Overturning: engines against the analytic model on the same runs; 95 % intervals by paired bootstrap",
                 where(effects, state=OVERTURNING),
                 NAME,
@@ -80,8 +93,6 @@ def page(result: Result) -> Page:
                 *EFFECT,
                 Column("CPU time per run [s]", lambda row: costs[row["scene"], NAME.of(row)]),
             ),
-        ),
-        more=(
             Head("All limit states"),
             ranks(
                 effects,
@@ -145,36 +156,38 @@ def page(result: Result) -> Page:
     )
 
 
-def judgements(result: Result) -> tuple[Judgement, ...]:
-    """Whether the odds of a limit state differ from the model's, by (engine, variant)."""
-    marks = {}
+def tallies(result: Result) -> list[dict[str, Any]]:
+    """A row for each variant: its runs of all scenes, those that overturn or stand where the model does not or failed,
+    their share with its interval, and whether that is equal."""
+    rows = []
     for variant in result.settings["variants"]:
-        pair = variant["engine"], variant["variant"]
-        rows = where(result.rows, part="effect", engine=pair[0], variant=pair[1])
-        falls = where(rows, state=OVERTURNING)
-        if not falls:
-            marks[pair] = Mark("no run succeeded", "bad")
-            continue
-        found = [row["detectable_difference"] for row in falls]
-        few = None in found or max(found) > COARSE  # so few runs acquit nobody
-        bad, failed = any(row["p_holm"] <= LEVEL for row in rows), sum(row["left_out"] for row in falls)
-        words = f"{sum(row['only_a'] + row['only_b'] for row in falls)} of {sum(map(COMPARED.of, falls))} differ"
-        words += f", {failed} failed" if failed else ""
-        words += ", too few to tell" if few and not bad else ""
-        resolved = "no difference" if None in found else f"a difference of {percent(max(found))}"
-        note = f"{resolved} would have been found with 80 % probability"
-        marks[pair] = Mark(words, "bad" if bad else "none" if few else "good", note)
-    return (Judgement("outcomes under synthetic motions", marks, says="{} of synthetic motions"),)
+        pair = {key: variant[key] for key in ("engine", "variant")}
+        falls = where(result.rows, part="effect", state=OVERTURNING, **pair)
+        failed = sum(row["left_out"] for row in falls) or len(where(result.rows, part="failure", **pair)) * (not falls)
+        differing, runs = failed + sum(map(APART.of, falls)), failed + sum(map(COMPARED.of, falls))
+        equal, interval = equality([k < differing for k in range(runs)])
+        counts = {"runs": runs, "differing": differing, "failed": failed, "share": differing / runs}
+        rows.append({**pair, **counts, "equal": equal, "interval": interval})
+    return rows
 
 
-def _title(marks):
-    levels = [mark.level for mark in marks.values()]
-    apart = [", ".join(pair) for pair, mark in marks.items() if mark.level == "bad"]
-    title = (
-        f"Many earthquakes: no significant difference for {levels.count('good')} of {len(marks)} settings of engines"
-    )
-    title += f"; a difference or no run for {', '.join(apart)}" if apart else ""
-    return title + (f"; too few runs to tell for {levels.count('none')}" if "none" in levels else "")
+def judgements(result: Result) -> tuple[Judgement, ...]:
+    """Whether the outcomes are equal to the model's, by (engine, variant)."""
+    keys = ("differing", "failed", "runs", "equal", "interval")
+    marks = {
+        (row["engine"], row["variant"]): equal_mark(*(row[key] for key in keys))
+        for row in tallies(result)
+        if row["runs"]
+    }
+    says = "outcomes under synthetic motions differ in {}"
+    return (Judgement("outcomes that differ under synthetic motions", marks, says=says),)
+
+
+def _title(found):
+    words = [row["equal"] for row in found]
+    count = f"{words.count('yes')} of {len(found)} settings of engines"
+    title = f"Many earthquakes: outcomes equal to the model's, to {100 * EQUAL:g} %, in {count}"
+    return title + (f"; too few runs to tell for {words.count(TOO_FEW)}" if TOO_FEW in words else "")
 
 
 def _fits(row):

@@ -43,10 +43,11 @@ def page(result: Result) -> Page:
     edges, shifts, held = (where(result.rows, part=part) for part in ("edge", "shift", "held"))
     pressed = {_place(edge) for edge in edges if edge["min_normal"] >= 0}
     known = [row for row in shifts if _place(row) in pressed]
-    rated = [row for row in _rated(result) if s["default_variants"].get(row["engine"]) == row["variant"]]
+    rated = list(_rated(result))
+    own = s["default_variants"]
     band = percent(s["band"], 1)
     return Page(
-        _title(rated),
+        _title([row for row in rated if own[row["engine"]] == row["variant"]]),
         (
             "A pulse overturns a block above some amplitude. Higher up may lie a safe gap, where the first impact "
             "takes so much that it stands again. Engines are rated by where they put these boundaries, as long as the "
@@ -57,7 +58,7 @@ def page(result: Result) -> Page:
             _maps(result, shapes[:1]),
             table(
                 "Boundaries under all pulses on both grounds, block pressed on its base; outcomes further than "
-                f"{band} from them",
+                f"{band} from them; a boundary where its normal force N would be negative is shown, and does not count",
                 rated,
                 NAME,
                 Column("rating", lambda row: RATINGS[row["rating"]]),
@@ -65,13 +66,15 @@ def page(result: Result) -> Page:
                 Column("safe gaps found [-]", "gaps"),
                 MEDIAN,
                 LARGEST,
+                Column("where N < 0: found [-]", "{beyond_found} of {beyond}"),
+                Column("largest there [%]", lambda row: row["beyond_largest"] and 100 * row["beyond_largest"]),
                 Column("outcomes that differ [-]", "{wrong} of {outcomes}"),
             ),
         ),
         more=(
             _maps(result, shapes[1:]),
             Head("Every boundary"),
-            _over_frequency(known, s["engines"]),
+            _over_frequency([row for row in known if own[row["engine"]] == row["variant"]], s["engines"]),
             _boundaries(
                 "Boundaries, and the engines' shifts, known to ± "
                 f"{percent(s['tolerance'] / 2, 1)}: block pressed on its base",
@@ -80,7 +83,7 @@ def page(result: Result) -> Page:
             ),
             table(
                 "Boundaries not found, within 30 % or half-way to the next one",
-                [row for row in (*shifts, *_of_defaults(result)) if row["shift"] is None],
+                [row for row in shifts if row["shift"] is None],
                 NAME,
                 GROUND,
                 PULSE,
@@ -138,35 +141,43 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     for row in _rated(result):
         lost = row["of"] - row["found"]
         words = "none found" if row["largest"] is None else percent(row["largest"]) + (f", {lost} lost" if lost else "")
-        share = f"{row['found']} of {row['of']} boundaries found"
+        share = f"{row['found']} of {row['of']} boundaries found, median {percent(row['median'])}"
+        if row["beyond"]:
+            share += f"; where N < 0 {row['beyond_found']} of {row['beyond']}, {percent(row['beyond_largest'])}"
         marks[row["engine"], row["variant"]] = Mark(words, row["rating"], share, row["largest"])
-    return (Judgement("overturning boundary under pulses: shift, worst", marks, says="boundary moved by {} at most"),)
+    return (
+        Judgement(
+            "overturning boundary under pulses: shift, worst", marks, says="overturning boundaries moved by at most {}"
+        ),
+    )
 
 
 def _place(row):
     return tuple(row[key] for key in PLACE)
 
 
-def _of_defaults(result):
-    """Boundaries at the default settings of variants of that tier, all at one frequency."""
-    tried = {NAME.of(variant) for variant in where(result.settings["variants"], tier="defaults")}
-    return [row for row in where(result.rows, part="refinement") if NAME.of(row) in tried]
-
-
 def _rated(result):
-    """A summary and a rating of each variant that is run at its default, where the block stays pressed on its base."""
+    """A summary and a rating of each variant that is run at its default, where the block stays pressed on its base;
+    beyond: the boundaries where it does not."""
     pressed = {_place(edge) for edge in where(result.rows, part="edge") if edge["min_normal"] >= 0}
-    shifts = where(result.rows, part="shift")
-    known = {NAME.of(row) for row in shifts}
-    rows = shifts + [row for row in _of_defaults(result) if NAME.of(row) not in known]
-    for (name,), members in grouped([row for row in rows if _place(row) in pressed], NAME.of).items():
+    for (name,), every in grouped(where(result.rows, part="shift"), NAME.of).items():
+        members, others = ([row for row in every if (_place(row) in pressed) == inside] for inside in (True, False))
+        beyond = _summary(others) if others else {"of": 0, "found": 0, "largest": None}
         counts = [row for row in where(result.rows, part="confusion", region="outside") if NAME.of(row) == name]
         found, wrong = _summary(members), sum(row["only_a"] + row["only_b"] for row in counts)
         complete = found["found"] == found["of"]
         good = complete and found["largest"] <= LIMIT and not wrong
         rating = "good" if good else "fair" if complete and found["largest"] <= FAIR else "bad"
         outcomes = wrong + sum(row["both_stand"] + row["both_overturn"] for row in counts)
-        yield {**found, "rating": rating, "wrong": wrong, "outcomes": outcomes}
+        yield {
+            **found,
+            "rating": rating,
+            "wrong": wrong,
+            "outcomes": outcomes,
+            "beyond": beyond["of"],
+            "beyond_found": beyond["found"],
+            "beyond_largest": beyond["largest"],
+        }
 
 
 def _summary(rows):
@@ -221,7 +232,8 @@ def _map(result, ground, shape):
     _shade(chart, frequency, amplitude, result.arrays[f"{ground}/{shape}"] >= 0)
     here = where(result.rows, ground=ground, shape=shape)
     for engine in result.settings["engines"]:
-        rows = [row for row in where(here, part="shift", engine=engine) if row["shift"] is not None]
+        own = result.settings["default_variants"][engine]
+        rows = [row for row in where(here, part="shift", engine=engine, variant=own) if row["shift"] is not None]
         told = [
             f"{engine}: amplitude {number(row['amplitude'], 4)}, shifted by {percent(row['shift'])}" for row in rows
         ]

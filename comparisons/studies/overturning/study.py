@@ -99,9 +99,9 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
 def plan(ask: Ask, grid: Grid | None = None) -> Plan:
     """The plan of the study: an answer first at default settings alone, then growing; grid: in place of FULL or QUICK.
 
-    Rows by "part": "edge" (a boundary of the analytic model), "shift" (an engine's beside it, at default settings),
-    "held" (the same with the corner held down, where the model's normal force is negative), "refinement" (the same at
-    refinement levels and at the defaults of other variants), "confusion" (counts of outcomes), "disagreement" (an
+    Rows by "part": "edge" (a boundary of the analytic model), "shift" (an engine's beside it, of its default variant
+    and of those of the tier "defaults"), "held" (the same with the corner held down, where the model's normal force is
+    negative), "refinement" (the same at refinement levels), "confusion" (counts of outcomes), "disagreement" (an
     outcome that differs outside the band) and "failure".
 
     Arrays: frequency, amplitude; ``<ground>/<shape>``: int16, shape (amplitudes, frequencies), impacts before
@@ -132,10 +132,15 @@ def plan(ask: Ask, grid: Grid | None = None) -> Plan:
         if kind.takes_restitution
         for settings in (kind.finer[0] if kind.finer else {},)
     ]
+    first_scripts = [
+        Setting(name, variant, kind.default) for name, variant, kind in variants if kind.tier == "defaults"
+    ]
     runs = _Runs(grounds, default)
     for setting in default:
         yield from runs.scan(setting, grid)
     rows += yield from runs.search("shift", default, found, DISTANCES, TOLERANCE)
+    coarser = [one for one in first_scripts if one not in default]
+    rows += yield from runs.search("shift", coarser, found, LEVEL_DISTANCES, LEVEL_TOLERANCE)
     pulled = [edge for edge in found if edge.min_normal < 0]
     rows += yield from runs.search("held", held, pulled, DISTANCES, TOLERANCE)
     records = _compared(runs.outcomes, default, grounds, found)
@@ -153,14 +158,13 @@ def plan(ask: Ask, grid: Grid | None = None) -> Plan:
 
 def _described(engine: str, variant: str, kind: Variant) -> dict[str, Any]:
     """A variant, as the settings list it; levels: those that are tried of it."""
-    tried = () if kind.takes_restitution else (kind.default,) if kind.tier == "defaults" else kind.ladder
+    tried = () if kind.takes_restitution or kind.tier == "defaults" else kind.ladder
     return variant_settings(engine, variant, tried) | {"friction": kind.friction}
 
 
 def _refined(described, levels):
-    """The `Setting`s that are tried beside the default ones: variants at the tier "defaults", then all levels."""
-    order = {"defaults": 0, "model": 1}
-    for variant in sorted(described, key=lambda variant: order.get(variant["tier"], 2)):
+    """The `Setting`s that are tried beside the default ones: the model by another method, then all levels."""
+    for variant in sorted(described, key=lambda variant: variant["tier"] != "model"):
         for level in variant["levels"][levels] or variant["levels"]:
             yield Setting(variant["engine"], variant["variant"], level, {variant["parameter"]: level})
 

@@ -1,20 +1,24 @@
 """The runs of the restitution study: blocks released from rest, in every engine, variant and refinement level.
 
-Two parts: the grid (slenderness x base x level), and experiments that change one suspected cause of error at a time.
+Three parts: the grid (slenderness x base x level), blocks on bearings, let go or under a pulse (slenderness x base x
+isolation period, laws in turn), and experiments that change one suspected cause of error at a time.
 """
 
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
 from analytic import simulate
-from analytic.caryatid import BASE, MASS, RADIUS
-from analytic.scene import Base, Block, Scene, Start
+from analytic.caryatid import BASE, BEARINGS, MASS, RADIUS
+from analytic.motion import PulseMotion
+from analytic.scene import Base, Bearings, Block, Scene, Start
 from engines import get_engine
 from engines.contract import Variant
 
+from ...measuring.errors import strong_impacts
 from ...running.cases import Case
 
 CARYATID_BASE = BASE.mass / MASS  # its m_b/m
@@ -25,7 +29,8 @@ IMPACTS = 3  # used of each run; on rigid ground the slowest is about as fast as
 class Grid:
     """What the study covers: slendernesses [rad], m_b/m (None: rigid ground), starts (tilt over slenderness).
 
-    ladder: (slenderness, m_b/m) where the accuracy parameters run through their levels.
+    ladder: (slenderness, m_b/m) where the accuracy parameters run through their levels. bearings: slendernesses [rad],
+    m_b/m and isolation periods [s] of blocks on bearings.
     """
 
     slendernesses: tuple
@@ -33,6 +38,7 @@ class Grid:
     starts: tuple
     ladder: tuple
     phase_starts: int  # of the experiment on the phase of the steps
+    bearings: tuple
 
 
 STARTS = tuple(round(float(start), 4) for start in np.linspace(0.3, 0.8, 4))
@@ -42,8 +48,20 @@ FULL = Grid(
     STARTS,
     tuple((gamma, ratio) for gamma in (0.1, 0.2, 0.3, 0.45) for ratio in (None, 1.0, CARYATID_BASE)),
     48,
+    ((0.15, 0.25, 0.35), (0.1, 1.0, 10.0), (1.0, 2.0, 4.0)),
 )
-QUICK = Grid((0.1, 0.2, 0.3, 0.45), (None, 10.0, 1.0, CARYATID_BASE), STARTS, ((0.2, None), (0.2, CARYATID_BASE)), 16)
+QUICK = Grid(
+    (0.1, 0.2, 0.3, 0.45),
+    (None, 10.0, 1.0, CARYATID_BASE),
+    STARTS,
+    ((0.2, None), (0.2, CARYATID_BASE)),
+    16,
+    ((0.25,), (0.1, 1.0, 10.0), (2.0,)),
+)
+LAWS = ("algebraic", "bouc-wen", "linear")
+EXCITATIONS = ("let go", "pulse")
+LET_GO = 0.5  # tilt over slenderness
+PULSE = (0.5, 3.0)
 
 EXPERIMENT_SLENDERNESS = 0.2
 EXPERIMENT_RATIOS = (None, CARYATID_BASE)
@@ -63,10 +81,50 @@ def free_scene(slenderness: float, ratio: float | None, start: float, scale: flo
         start=Start(tilt=start * slenderness),
         duration=12.0 * math.sqrt(scale),
     )
-    times = [impact.time for impact in simulate(scene, history=False).impacts[: IMPACTS + 1]]
+    return _cut(scene, [impact.time for impact in simulate(scene, history=False).impacts], 0.2 * math.sqrt(scale))
+
+
+def _cut(scene, times, rest):
+    """The scene up to past the peak of the swing after the impact number `IMPACTS`, or `rest` [s] after the last."""
     if len(times) > IMPACTS:
-        return scene.with_(duration=times[-2] + 0.75 * (times[-1] - times[-2]))
-    return scene.with_(duration=times[-1] + 0.2 * math.sqrt(scale))
+        before, after = times[IMPACTS - 1 : IMPACTS + 1]
+        return scene.with_(duration=before + 0.75 * (after - before))
+    return scene.with_(duration=times[-1] + rest)
+
+
+def bearing_scene(slenderness: float, ratio: float, period: float, law: str, excitation: str) -> Scene:
+    """The Caryatid's block of a slenderness on bearings of a period [s], at the stiffness after yielding.
+
+    It is let go at `LET_GO`, the ground at rest or under a pulse, (amplitude over g tan(slenderness), frequency over
+    omega_r) in `PULSE`. It ends as `free_scene` does.
+    """
+    base = Base(mass=ratio * MASS)
+    kb = (MASS + base.mass) * (2 * math.pi / period) ** 2 / BEARINGS.count
+    softening = {} if law == "linear" else {"kb": kb, "alpha": BEARINGS.alpha}
+    ka = kb if law == "linear" else kb * BEARINGS.ka / BEARINGS.kb
+    scene = Scene(
+        block=Block(mass=MASS, radius=RADIUS, slenderness=slenderness),
+        base=base,
+        bearings=Bearings(law=law, count=BEARINGS.count, ka=ka, **softening),
+        start=Start(tilt=LET_GO * slenderness),
+        duration=12.0,
+    )
+    if excitation == "pulse":
+        amplitude, frequency = PULSE[0] * scene.gravity * math.tan(slenderness), PULSE[1] * scene.rocking_frequency
+        scene = scene.with_(motion=PulseMotion("one-sine", amplitude, frequency, 0.0))
+    return _cut(scene, [impact.time for impact in strong_impacts(simulate(scene, history=False))], 0.2)
+
+
+def bearing_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
+    """Blocks on bearings, at default settings; the laws take turns, so that each meets every value of the others."""
+    for places in product(*map(enumerate, grid.bearings)):
+        ranks, (slenderness, ratio, period) = zip(*places, strict=True)
+        law = LAWS[sum(ranks) % len(LAWS)]
+        for excitation in EXCITATIONS:
+            scene = bearing_scene(slenderness, ratio, period, law, excitation)
+            place = {"slenderness": slenderness, "ratio": ratio, "period": period, "law": law}
+            for engine, variant, _ in variants_of(engines):
+                yield Case(scene, engine, variant, {}, {"part": "bearings", **place, "excitation": excitation})
 
 
 def variants_of(engines: Sequence[str]) -> list[tuple[str, str, Variant]]:

@@ -20,10 +20,15 @@ ERROR = Column("error of restitution, rms [-]", "rms")
 DRAWN_ERROR = Column(ERROR.head, lambda row: row["rms"] and max(row["rms"], FLOOR))
 MEAN, WORST = Column("mean error [-]", "bias"), Column("worst impact [-]", "worst")
 JUMP = Column("base velocity jump, relative error, rms [-]", "jump_rms")
+STATE = Column("error of restitution by states, rms [-]", "rms_state")
+WORST_JUMP = Column("worst base velocity jump [-]", "jump_worst")
+LATE = Column("impact times, relative, rms [-]", "time_rms")
+LOST = Column("lost impacts [-]", "lost")
 CPU = Column("CPU time per simulated second [s/s]", "cpu_per_second")
 FAILED = Column("failed runs [-]", "{failed} of {runs}")
 GROUND = Column("ground", "ground")
 GAMMA = Column("slenderness γ [rad]", "slenderness", digits=None)
+BASE_RATIO, PERIOD = Column("base mass over block mass [-]", "ratio"), Column("isolation period [s]", "period")
 BASE = Column("base mass over block mass [-]", lambda row: "rigid" if row["ratio"] is None else short(row["ratio"]))
 
 
@@ -77,17 +82,18 @@ def page(result: Result) -> Page:
                 NAME,
                 GROUND,
                 FAILED,
-                Column("lost impacts [-]", "lost"),
+                LOST,
                 MEAN,
                 ERROR,
                 WORST,
                 Column("rms from tilt rates at the impact [-]", "rms_state"),
                 JUMP,
                 Column("against (8) as printed [-]", "jump_8_printed"),
-                Column("impact times, relative, rms [-]", "time_rms"),
+                LATE,
                 Column("order [-]", "order"),
                 CPU,
             ),
+            *_on_bearings(result),
             Head("Refinement levels"),
             *_refinement(levels),
             Head("Causes, one at a time"),
@@ -112,18 +118,23 @@ def _ground(row):
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
     """Error of restitution and of the base velocity jump, by (engine, variant)."""
-    rows = rated(result)
+    rows, borne = rated(result), where(result.rows, part="bearings", factor="all")
     return (
         Judgement(
             "restitution, free rocking: error, rms",
             {(row["engine"], row["variant"]): _mark(row, "rms", "worst") for row in rows},
             RESTITUTION,
-            says="error of restitution {} in free rocking",
+            says="restitution is off by {} in free rocking",
         ),
         Judgement(
-            "base velocity jump, free base: relative error, rms",
-            {(row["engine"], row["variant"]): _mark(row, "jump_rms", "jump_worst") for row in rows},
-            says="of the base velocity jump {}",
+            "restitution on bearings: error, rms",
+            {(row["engine"], row["variant"]): _mark(row, "rms_state", "worst_state") for row in borne},
+            says="by {} on bearings",
+        ),
+        Judgement(
+            "base velocity jump on bearings: relative error, rms",
+            {(row["engine"], row["variant"]): _mark(row, "jump_rms", "jump_worst") for row in borne},
+            says="the base velocity jump by {}",
         ),
     )
 
@@ -208,6 +219,38 @@ def _maps(cells):
             panel=NAME.of,
             failed=lambda row: FAILED.of(row).replace(" of ", "/") if row["failed"] else "",
         )
+
+
+def _on_bearings(result):
+    """Blocks on bearings: errors by the states before and after the impact."""
+    rows, defaults = where(result.rows, part="bearings"), result.settings["default_variants"]
+    if not rows:
+        return
+    columns = [FAILED, LOST, STATE, Column("worst impact [-]", "worst_state"), JUMP, WORST_JUMP, LATE, CPU]
+    axes = {"slenderness": GAMMA, "ratio": BASE_RATIO, "period": PERIOD}
+    yield Head("On bearings")
+    yield table("On bearings, at default settings, all scenes together", where(rows, factor="all"), NAME, *columns)
+    yield beside(
+        *(
+            lines(
+                [{**row, factor: row["of"]} for row in where(rows, factor=factor) if row["rms_state"]],
+                axis,
+                STATE,
+                f"On bearings: error of restitution over {axis.head.partition(' [')[0]}, the other values together.",
+                grey=lambda row: defaults[row["engine"]] != row["variant"],
+                log="y" if factor == "slenderness" else "xy",
+                rules=[("y", TRUSTED, "trusted")],
+            )
+            for factor, axis in axes.items()
+        )
+    )
+    yield table(
+        "On bearings, apart by law and by what moves the block",
+        where(rows, factor={"law", "excitation"}),
+        NAME,
+        Column("law or excitation", "of"),
+        *columns,
+    )
 
 
 def _refinement(levels):
@@ -367,13 +410,19 @@ def _equation_8(result, cells, ratings):
 def _how(settings):
     gammas, starts = settings["slendernesses"], settings["starts"]
     bases = ", ".join(number(ratio, 2) for ratio in settings["ratios"] if ratio is not None)
+    grid = "; ".join(f"{name} {', '.join(map(short, values))}" for name, values in settings["bearings"].items())
     return (
         f"Blocks of slenderness {min(gammas):g} to {max(gammas):g} rad, tilted to {min(starts):g} to {max(starts):g} "
         f"of it ({len(starts)} starts) and let go, on rigid ground and on bases of {bases} times their mass that slide "
         f"without friction; the first {settings['impacts']} impacts of every run. Restitution is the root of the ratio "
         "of a swing's energy after an impact to that before it, so that whatever takes energy counts; the base "
         "velocity jump is compared with momentum by the run's own rates.",
-        f"Trusted: error of both grounds at most {TRUSTED:g}, no failed run; usable: at most {USABLE:g}. Measured "
-        "restitution of stone scatters by some per cent. The corners are set plastic, non-slipping and planar, which "
-        "are Housner's assumptions: agreement is verification of the engine, not independent physics.",
+        f"On bearings: {grid}, each with each, the laws in turn; let go at half of the slenderness, the ground at rest "
+        "or under one sine of half the uplift acceleration and three times the rocking frequency. Under these forces a "
+        "swing keeps no energy: restitution is the ratio of the tilt rates after and before the impact, against eq. "
+        "(7), and the base velocity jump is compared with momentum, eq. (8). An impact that a run has not is lost.",
+        f"Trusted: error of both grounds at most {TRUSTED:g}, no failed run, no lost impact; usable: at "
+        f"most {USABLE:g}. Measured restitution of stone scatters by some per cent. The corners are set plastic, "
+        "non-slipping and planar, which are Housner's assumptions: agreement is verification of the engine, not "
+        "independent physics.",
     )

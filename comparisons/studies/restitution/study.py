@@ -15,7 +15,7 @@ from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as
 from analytic.twin.run import Event
 from engines import get_engine
 
-from ...measuring.errors import SLOWEST_IMPACT, impact_errors, rms, strong_impacts, worst
+from ...measuring.errors import SLOWEST_IMPACT, impact_errors, lost_impacts, rms, strong_impacts, worst
 from ...running.cases import variant_settings
 from ...running.study import Batch, Found
 from .cases import (
@@ -24,6 +24,7 @@ from .cases import (
     FULL,
     IMPACTS,
     QUICK,
+    bearing_cases,
     experiment_cases,
     experiments_of,
     free_scene,
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from .cases import Grid
 
 GROUNDS = ("rigid ground", "sliding base")
+FACTORS = ("slenderness", "ratio", "period", "law", "excitation")  # of blocks on bearings
 DIGITS = 4
 EXACT = ("level", "value", "ratio", "slenderness", "step", "tag", "last_state")  # not rounded
 
@@ -50,13 +52,15 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
     Error "late": time of an impact over the model's, less 1.
     """
     errors = impact_errors(case.scene, response, IMPACTS)
-    model = [impact.time for impact in strong_impacts(simulate(case.scene, history=False))[:IMPACTS]]
+    reference = simulate(case.scene, history=False)
+    model = [impact.time for impact in strong_impacts(reference)[:IMPACTS]]
     late = [time / expected - 1 for time, expected in zip(errors["time"], model, strict=False)]
     return {
         "outcome": response.outcome,
         "end": response.end.time,
         "steps": response.steps,
         "model": model,
+        "lost": lost_impacts(response, reference),
         "errors": {**errors, "late": late},
     }
 
@@ -64,7 +68,7 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
 def plan(ask: Ask, grid: Grid | None = None) -> Plan:
     """The plan of the study; grid: what to cover, in place of FULL or QUICK."""
     grid = grid or (QUICK if ask.quick else FULL)
-    cases = [*grid_cases(grid, ask.engines), *experiment_cases(grid, ask.engines)]
+    cases = [*grid_cases(grid, ask.engines), *bearing_cases(grid, ask.engines), *experiment_cases(grid, ask.engines)]
     runs = yield Batch(cases, measure, "restitution", time_limit=60.0)
     cells = _grouped(runs, "grid", "level", "ratio", "slenderness")
     experiments = _grouped(runs, "experiment", "experiment", "ratio", "value")
@@ -73,6 +77,7 @@ def plan(ask: Ask, grid: Grid | None = None) -> Plan:
     rows = [
         *(_row("cell", _named(key, "level", "ratio", "slenderness"), members) for key, members in cells.items()),
         *_summaries(cells, ask.engines, grid),
+        *_on_bearings(runs),
         *(
             _row("experiment", _named(key, "experiment", "ratio", "value"), members)
             for key, members in experiments.items()
@@ -115,6 +120,7 @@ def _settings(grid, engines):
         "default_variants": {engine: get_engine(engine).default_variant for engine in engines},
         "experiments": [_named(one[1:4], "setting") | {"experiment": one[0]} for one in experiments_of(engines)],
         "experiment_slenderness": EXPERIMENT_SLENDERNESS,
+        "bearings": dict(zip(("slendernesses", "ratios", "periods"), grid.bearings, strict=True)),
         "friction_needed": {
             ground: friction_needed(free_scene(EXPERIMENT_SLENDERNESS, ratio, 0.6))
             for ground, ratio in zip(GROUNDS, (None, CARYATID_BASE), strict=True)
@@ -202,6 +208,31 @@ def _summaries(cells, engines, grid):
             steps, sizes = np.log(np.transpose(errors)) if errors else ((), ())
             order = float(np.polyfit(steps, sizes, 1)[0]) if len(errors) > 1 else None
             yield {"part": "order", **key, "order": order}
+
+
+def _on_bearings(runs):
+    """Errors by states of blocks on bearings: of a variant all together, and apart for each value of each factor."""
+    for (engine, variant), members in _grouped(runs, "bearings").items():
+        parted = {("all", None): members}
+        for factor in FACTORS:
+            for run in members:
+                parted.setdefault((factor, run.case.tag[factor]), []).append(run)
+        for (factor, value), some in parted.items():
+            row = _row("bearings", {"engine": engine, "variant": variant, "factor": factor, "of": value}, some)
+            sound = _sound(some)
+            states = _errors(sound, "state")
+            yield {
+                **{key: row[key] for key in BEARING_COLUMNS},
+                "impacts": len(states),
+                "lost": sum(run.values["lost"] for run in sound),
+                "worst_state": float(worst(states)) if len(states) else None,
+            }
+
+
+BEARING_COLUMNS = (
+    "part", "engine", "variant", "factor", "of", "runs", "failed", "rms_state", "jump_rms", "jump_worst", "time_rms",
+    "cpu_per_second",
+)  # fmt: skip
 
 
 def _phases(groups):

@@ -2,12 +2,10 @@
 
 import dataclasses
 import math
-import re
 
 import numpy as np
 import pytest
 from answered import answered, by_model, stored
-from page_numbers import number_in
 
 from analytic import simulate
 from analytic.linear_oscillator import displacement_spectrum
@@ -102,19 +100,21 @@ def test_an_engine_that_is_the_model_does_not_differ_and_the_page_says_what_woul
         assert row["left_out"] == 2 and row["both_stand"] + row["both_overturn"] == RUNS[1] - 2
     assert np.isnan(equal.arrays["free-standing/exudyn, compliant-corners/tilt"]).nonzero()[0].tolist() == [3, 7]
     mark = STUDY.judgements(equal)[0].marks["exudyn", "compliant-corners"]
-    assert mark.level == "good" and number_in(mark.words) == 0 and "2 failed" in mark.words
-    assert number_in(re.search(r"[\d.]+ %", mark.note)[0]) == pytest.approx(
-        100 * rows[-1]["detectable_difference"], rel=0.05
-    )
-    # of the tier "defaults" so few runs are made that no difference acquits nobody
-    assert STUDY.judgements(equal)[0].marks["pybullet", "first-script"].level == "none"
+    assert mark.words.startswith(f"2 of {RUNS[1]} (at most 6.4 %)")  # Wilson; a failed run differs
+    assert (mark.level, mark.note) == ("fair", "not shown to be equal; 2 failed")
+    # two of ten fail in the tier "defaults": few as they are, they differ by more than 5 %
+    assert STUDY.judgements(equal)[0].marks["pybullet", "first-script"].level == "bad"
 
 
 def test_the_page_shows_every_row_and_the_messages_of_failed_runs(equal):
     whole = STUDY.page(equal).whole()
-    overturning, others, curves, _ = (len(table.rows) for table in whole.tables)
+    found, overturning, others, curves, _ = (len(table.rows) for table in whole.tables)
     effects, failed = (where(equal.rows, part=part) for part in ("effect", "failure"))
-    assert len(whole.figures) == 4 and overturning == len(where(effects, state="overturning"))
+    assert (
+        found == len(equal.settings["variants"])
+        and len(whole.figures) == 4
+        and overturning == len(where(effects, state="overturning"))
+    )
     assert overturning + others == len(effects) and curves == len(where(equal.rows, part="fit"))
     assert len(whole.evidence) == len(failed) >= 4 and "raw evidence" in whole.evidence[0][1]
 

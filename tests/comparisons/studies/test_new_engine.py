@@ -10,6 +10,7 @@ import sys
 import pytest
 from answered import answered, by_model, by_runs, stored
 from installed_package import FAKE_ENGINE, install_fake_engine
+from record_files import pairs
 
 import engines
 from analytic import synthetic_motion
@@ -32,7 +33,7 @@ DECIDING = DECIDING.replace("settings.step", "settings.span")
 COLOUR = "#d55e00"
 # study: what its plan is given so that it stays short
 SHORT = {
-    "restitution": {"grid": Grid((0.2,), (None, CARYATID_BASE), (0.6,), ((0.2, None),), 4)},
+    "restitution": {"grid": Grid((0.2,), (None, CARYATID_BASE), (0.6,), ((0.2, None),), 4, ((0.25,), (1.0,), (2.0,)))},
     "fragility": {"scenes": {"free-standing": ("caryatid-rigid", (0.2, 0.3))}, "runs": (40, 6, 2)},
     "matters": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (3, 1, 1)},
     "autopsy": {},
@@ -131,5 +132,14 @@ def test_the_growth_of_cost_and_the_report_run_it(crude):
 
 
 def test_every_study_of_this_project_is_covered():
-    # surface takes any solver a run at a time: test_surface; kernel takes none
-    assert set(BUILT_IN) == {*SHORT, "overturning", "caryatid", "tolerances", "surface", "kernel"}
+    # surface takes any solver a run at a time: test_surface; kernel takes none; recorded: below
+    assert set(BUILT_IN) == {*SHORT, "overturning", "caryatid", "tolerances", "surface", "kernel", "recorded"}
+
+
+@pytest.mark.parametrize("crude", [FAKE_ENGINE], indirect=True)
+def test_the_study_of_recorded_motions_runs_it_where_it_is_tuned(crude, monkeypatch, tmp_path):
+    kind = dataclasses.replace(crude, tier="tuned")
+    monkeypatch.setitem(engines.ENGINES["crude"].variants, "euler", kind)
+    study = get_study("recorded")
+    found = answered(study.plan(ASK, records=str(pairs(tmp_path, 2))), by_model(history=True))[-1]
+    assert rows_with(shown(study, found, tmp_path))

@@ -116,17 +116,17 @@ def wrong(result, region):
 @pytest.mark.parametrize("shift", [0.0, 0.02])
 def test_the_study_measures_the_shift_it_is_given_and_rates_it(tmp_path, shift):
     result, page = study(tmp_path, shifted(shift))
-    shifts = [row["shift"] for row in where(result.rows, part="shift")]
+    shifts = where(result.rows, part="shift")
     # a safe gap narrower than the shift is filled from both sides: its boundaries may not be found
-    found = [one for one in shifts if one is not None]
-    assert len(shifts) == 12 and len(found) >= (8 if shift else 12)
-    assert found == pytest.approx([shift] * len(found), abs=2e-5)
+    found = [row for row in shifts if row["shift"] is not None]
+    assert len(shifts) == 24 and len(found) >= (16 if shift else 24)  # two engines, tuned and as they come
+    for row in found:
+        assert row["shift"] == pytest.approx(shift, abs=1.01 * row["half_width"])
     assert (wrong(result, "outside") == 0) == (shift == 0)
     assert bool(where(result.rows, part="disagreement")) == (shift != 0)
-    assert [row[1] for row in page.tables[0].rows] == ["trusted" if shift == 0 else "not to be trusted"] * 2
-    # at default settings gaps are lost, too; the first script is asked at one frequency, where none is as narrow
+    assert [row[1] for row in page.tables[0].rows] == ["trusted" if shift == 0 else "not to be trusted"] * 4
     marks = STUDY.judgements(result)[0].marks
-    assert {mark.level for mark in marks.values()} == ({"good"} if shift == 0 else {"bad", "fair"})
+    assert {mark.level for mark in marks.values()} == ({"good"} if shift == 0 else {"bad"})
 
 
 def test_failed_runs_are_no_outcomes_and_their_evidence_is_kept(tmp_path):
@@ -146,14 +146,10 @@ def test_the_page_shows_every_boundary_and_every_level(tmp_path):
     edges = where(result.rows, part="edge")
     for figure in page.figures[:2]:  # maps, and shifts over frequency
         assert figure.svg.count(b'class="dot') == 2 * len(edges) == 12  # two engines
-    (boundaries,) = (table for table in page.tables if table.columns[-1] == "pybullet, impact-aware [%]")
-    shown = np.array([[number_in(row[column]) for column in (3, -2, -1)] for row in boundaries.rows])
+    (boundaries,) = (table for table in page.tables if "pybullet, impact-aware [%]" in table.columns)
+    shown = np.array([[number_in(row[column]) for column in (3, -4, -3, -2, -1)] for row in boundaries.rows])
     assert shown[:, 0] == pytest.approx([edge["amplitude"] for edge in edges], rel=1e-5)
-    shifts = [
-        100 * row["shift"]
-        for engine in result.settings["engines"]
-        for row in where(result.rows, part="shift", engine=engine)
-    ]
+    shifts = [100 * row["shift"] for row in where(result.rows, part="shift")]
     assert shown[:, 1:].T.ravel() == pytest.approx(shifts, rel=0.06)
     levels = {(row["engine"], row["variant"], row["level"]) for row in where(result.rows, part="refinement")}
     at_default = {(*pair, None) for pair in result.settings["default_variants"].items()}
@@ -174,12 +170,12 @@ def test_boundaries_at_which_the_model_holds_the_corner_down_are_told_apart(tmp_
         for of in ({"part": "held"}, {"part": "shift", "amplitude": set(pulled)}, {"part": "shift"})
     )
     assert 0 < len(pulled) == len(held) < len(moved) < len(every)
-    assert held + moved == pytest.approx([0.0] * len(held) + [-0.05] * len(moved), abs=2e-5)
+    assert held + moved == pytest.approx([0.0] * len(held) + [-0.05] * len(moved), abs=1e-4)
     assert wrong(result, "outside") == 0 < wrong(result, "held down")
     assert all(row["min_normal"] < 0 for row in where(result.rows, part="disagreement"))
     # they are not rated, and shown in a table of their own
-    assert [row[1] for row in page.tables[0].rows] == ["trusted"] * 2
-    assert [mark.level for mark in STUDY.judgements(result)[0].marks.values()] == ["good", "good"]
+    assert [row[1] for row in page.tables[0].rows] == ["trusted"] * 4
+    assert [mark.level for mark in STUDY.judgements(result)[0].marks.values()] == ["good"] * 4
     (table,) = (table for table in page.tables if "exudyn, switched-joints [%]" in table.columns)
     assert [number_in(row[3]) for row in table.rows] == pytest.approx(pulled, rel=1e-5)
     assert [abs(number_in(row[-1])) < 2e-3 for row in table.rows] == [True] * len(held)

@@ -48,14 +48,17 @@ def test_tables_and_marks_count_the_stored_rows(result):
     study, classes = get_study("random-scenes"), {}
     for row in result.rows:
         classes.setdefault(NAME.of(row), Counter())[row["class"]] += 1
-    table, marks = study.page(result).opening().tables[0], study.judgement(result).marks
+    table, marks = study.page(result).opening().tables[0], study.judgements(result)[0].marks
     assert study.page(result).whole().tables[0] == table and [row[0] for row in table.rows] == list(classes)
     for name, _, *counts, share in table.rows:
         right, differs, failed, left_out = [classes[name][word] for word in ("right", "differs", "failed", "left out")]
         assert [int(count) for count in counts] == [right, differs, failed, left_out]
         assert number_in(share) == pytest.approx(100 * right / (right + differs + failed), rel=0.06)
         mark = marks[tuple(name.split(", "))]
-        assert (mark.words, mark.note) == (f"{right} of {right + differs + failed}", f"{failed} failed")
+        assert (mark.words, mark.note) == (
+            f"{right} of {right + differs + failed}",
+            f"{differs} differ, {failed} failed",
+        )
 
 
 def test_every_run_that_failed_is_evidence_and_every_tuned_one_that_differs_is_named(result):

@@ -13,8 +13,18 @@ from comparisons.running.study import compute
 from comparisons.showing.parts import Figure, Table
 from comparisons.showing.rows import where
 from comparisons.studies.restitution import STUDY
-from comparisons.studies.restitution.cases import CARYATID_BASE, Grid, free_scene, grid_cases
+from comparisons.studies.restitution.cases import (
+    CARYATID_BASE,
+    FULL,
+    IMPACTS,
+    LAWS,
+    Grid,
+    bearing_cases,
+    free_scene,
+    grid_cases,
+)
 from comparisons.studies.restitution.study import damped_error, friction_needed
+from engines import get_engine
 
 pytestmark = pytest.mark.xdist_group("restitution study")  # the small study is run once
 
@@ -45,16 +55,31 @@ def test_friction_of_an_impact_is_the_ratio_of_its_impulses(ratio, moved):
 def test_cases_are_tagged_and_run_default_settings_unless_on_the_ladder():
     pytest.importorskip("pybullet")
     steps = {0.2: set(), 0.3: set()}
-    for case in grid_cases(Grid((0.2, 0.3), (None,), (0.5,), ((0.2, None),), 4), ("pybullet",)):
+    for case in grid_cases(Grid((0.2, 0.3), (None,), (0.5,), ((0.2, None),), 4, ()), ("pybullet",)):
         if case.variant == "impact-aware":
             steps[case.tag["slenderness"]].add(case.settings.get("largest_step"))
     assert steps == {0.2: {None, 4e-3, 2e-3, 5e-4}, 0.3: {None}}
 
 
+def test_blocks_on_bearings_rock_and_meet_every_law_with_every_value():
+    cases = [case for case in bearing_cases(FULL, ("exudyn",)) if case.variant == get_engine("exudyn").default_variant]
+    for factor in ("slenderness", "ratio", "period"):
+        pairs = {(case.tag[factor], case.tag["law"]) for case in cases}
+        assert len(pairs) == 3 * len(LAWS)
+    periods = {case.tag["period"] for case in cases}
+    assert min(periods) == 1.0 and max(periods) == 4.0
+    for case in cases:
+        response, bearings = simulate(case.scene, history=False), case.scene.bearings
+        carried = case.scene.block.mass + case.scene.base.mass
+        stiffness = bearings.count * (bearings.ka if bearings.law == "linear" else bearings.kb)
+        assert 2 * np.pi * np.sqrt(carried / stiffness) == pytest.approx(case.tag["period"])
+        assert response.outcome == "rocks" and 1 < len(response.impacts) <= IMPACTS and response.min_normal_ratio > 0
+
+
 @pytest.fixture(scope="module")
 def small(tmp_path_factory):
     pytest.importorskip("pybullet")
-    grid = Grid((0.2,), (None, CARYATID_BASE), (0.5, 0.7), ((0.2, None),), 8)
+    grid = Grid((0.2,), (None, CARYATID_BASE), (0.5, 0.7), ((0.2, None),), 8, ((0.25,), (0.1, 1.0), (2.0,)))
     (path,) = compute(
         STUDY, tmp_path_factory.mktemp("study"), engines=("pybullet",), workers=2, progress=False, grid=grid
     )
@@ -72,6 +97,9 @@ def test_a_small_study_finds_what_is_known(small):
     assert aware["rms"] < 1e-4 and aware["impacts"] == 6 and aware["failed"] == aware["lost"] == 0
     assert 0.8 < one("order", variant="fixed-step", ground="rigid ground")["order"] < 1.2
     assert one("phase", engine="pybullet", step=1e-3)["explained"] > 0.95
+    borne = one("bearings", variant="impact-aware", factor="all")
+    assert borne["rms_state"] < 1e-4 and borne["jump_rms"] < 1e-3 and borne["runs"] == 4 and borne["lost"] == 0
+    assert one("bearings", variant="impact-aware", factor="excitation", of="pulse")["runs"] == 2
     damped = one("flight damping", level=1e-3)
     assert damped["measured"] == pytest.approx(damped["predicted"], rel=0.15)
     large = one("experiment", experiment="size", value=4.0)
@@ -85,10 +113,11 @@ def test_the_page_comes_from_the_result_alone(small):
     assert whole.parts[:2] == opening.parts and list(map(type, opening.parts)) == [Figure, Table]
     aware, first = "pybullet, impact-aware", "pybullet, first-script"
     ratings = {row[0]: row[1] for row in opening.tables[0].rows}
-    assert (ratings[aware], ratings[first]) == ("trusted", "not to be trusted")
-    assert [row[3] for row in whole.tables[1].rows if row[0] == first] == ["step = 0.00417 s"]
-    # first; both maps; levels and cost; step phase; damping; eq. (8): this engine names no setting to change alone
-    assert len(whole.figures) == 7 and all(figure.alt and figure.caption for figure in whole.figures)
+    assert ratings[aware] == "trusted" and ratings[first] == "not to be trusted"
+    settings = {row[0]: row[3] for row in whole.tables[1].rows}
+    assert settings[first] == "step = 0.00417 s"
+    # first; both maps; on bearings; levels and cost; step phase; damping; eq. (8): no setting to change alone
+    assert len(whole.figures) == 8 and all(figure.alt and figure.caption for figure in whole.figures)
 
 
 def test_its_own_page_needs_no_other_file(small, tmp_path):

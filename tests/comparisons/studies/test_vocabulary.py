@@ -3,16 +3,18 @@
 from collections import Counter
 
 import pytest
-from answered import answered
+from answered import answered, by_model
+from record_files import pairs
 
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.study import Ask
 from comparisons.running.sweep import Row
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.vocabulary import OWN, SHARED, columns_of
+from engines import installed_engines
 
 # Of no stored result: an impact of which nothing can be told.
-UNSEEN = {"autopsy": {"why_not"}}
+UNSEEN = {"restitution": {"factor", "of", "worst_state"}, "autopsy": {"why_not"}}
 
 
 def timed(batch):
@@ -21,9 +23,13 @@ def timed(batch):
 
 
 @pytest.fixture(scope="module")
-def columns():
-    """{study: columns of its rows}."""
+def columns(tmp_path_factory):
+    """{study: columns of its rows}; those made up here have no stored result."""
     found = {"kernel": set().union(*answered(get_study("kernel").plan(Ask(quick=True)), timed)[-1].rows)}
+    folder = str(pairs(tmp_path_factory.mktemp("records"), 2))
+    ask = Ask(installed_engines()[:1], quick=True)
+    recorded = answered(get_study("recorded").plan(ask, records=folder), by_model(history=True))[-1].rows
+    found["recorded"] = set().union(*recorded)
     for result in map(read_result, RESULTS.glob("*.json")):
         found.setdefault(result.kind, set()).update(*result.rows)
     return found

