@@ -80,12 +80,10 @@ def test_frames_show_the_fall_the_step_that_is_struck_and_the_energy_that_is_los
     contact = contact_of(released(None), fixed_steps(released(None), 1e-4))
     told = json.loads(json.dumps(frames(contact), allow_nan=False))
     assert sorted(told) == ["energy", "penetration", "rebound", "straddle"]
-    near = told["straddle"]
-    assert near["time"][0] < -2e-4 and near["time"][-1] > 2e-4 and near["landing"][0] > 0 > min(near["time"])
-    assert told["penetration"]["landing"][contact.first] > 0 and contact.deepest < 2e-5
-    speed, energy = told["rebound"]["speed"], told["energy"]["energy"]
-    assert [speed[0], speed[-1]] == pytest.approx([-1.0, 0.0], abs=1e-3)
-    assert energy[-1] == pytest.approx(restitution(released(None)) ** 2, abs=2e-3)
+    near, speed = told["straddle"], told["rebound"]["speed"]
+    assert near["time"][0] < -2e-4 and near["time"][-1] > 2e-4 and near["landing"][0] > 0 and contact.deepest < 2e-5
+    ends = [speed[0], speed[-1], told["energy"]["energy"][-1]]
+    assert ends == pytest.approx([-1.0, 0.0, restitution(released(None)) ** 2], abs=2e-3)
 
 
 def test_without_its_place_only_the_whole_is_told():
