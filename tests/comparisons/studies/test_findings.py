@@ -12,7 +12,7 @@ from comparisons.running.sources import source_digests
 from comparisons.showing.parts import Head
 from comparisons.showing.rows import where
 from comparisons.studies import BUILT_IN, get_study
-from comparisons.studies.stability.page import judgement as hard_cases
+from comparisons.studies.stability.page import judgements as hard_cases
 
 
 def stored(name):
@@ -46,19 +46,21 @@ def test_a_page_writes_numbers_and_symbols_as_a_reader_does_and_its_finding_is_s
 
 def test_the_boundaries_judged_are_those_where_the_block_stays_pressed():
     result, study = stored("overturning"), get_study("overturning")
-    place, marks = itemgetter("ground", "shape", "frequency", "amplitude"), study.judgement(result).marks
+    place, marks = itemgetter("ground", "shape", "frequency", "amplitude"), study.judgements(result)[0].marks
     pressed = {place(row) for row in where(result.rows, part="edge") if row["min_normal"] >= 0}
-    for name, *_, largest, _ in study.page(result).opening().tables[0].rows:
-        mark, rows = marks[tuple(name.split(", "))], where(result.rows, part="shift", engine=name.split(",")[0])
+    for name, _, _, _, _, largest, *_ in study.page(result).opening().tables[0].rows:
+        pair = tuple(name.split(", "))
+        mark, rows = marks[pair], where(result.rows, part="shift", engine=pair[0], variant=pair[1])
         shifts = [row["shift"] for row in rows if place(row) in pressed]
         found = [abs(shift) for shift in shifts if shift is not None]
-        assert mark.note == f"{len(found)} of {len(shifts)} boundaries found" and 0 < len(shifts) < len(rows)
+        assert mark.note.startswith(f"{len(found)} of {len(shifts)} boundaries found") and 0 < len(shifts) < len(rows)
+        assert f"where N < 0 {len(rows) - len(shifts)} of" in mark.note
         assert [number_in(mark.words), number_in(largest)] == pytest.approx([100 * max(found)] * 2, rel=0.06)
 
 
 def test_hard_cases_are_counted_as_the_settings_come():
     result = stored("stability")
-    marks, cases = hard_cases(result).marks, len(result.settings["cases"])
+    marks, cases = hard_cases(result)[0].marks, len(result.settings["cases"])
     best = {(variant["engine"], variant["variant"]): variant["best"] for variant in result.settings["variants"]}
     assert marks.keys() == best.keys()
     for (engine, variant), mark in marks.items():
