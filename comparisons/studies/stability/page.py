@@ -206,7 +206,9 @@ def _title(cells, cases, engines):
     names = [NAME.of(engine) for engine in engines]
     none = [case for case in cases if not any(cells[case, name]["result"] == RIGHT for name in names)]
     listed = _readable(f" ({'; '.join(none[:3])}{' …' if len(none) > 3 else ''})") if none else ""
-    return f"Hard cases: no engine solves {len(none)} of {len(cases)}{listed}"
+    if len(names) > 2:
+        return f"Hard cases: no engine solves {len(none)} of {len(cases)}{listed}"
+    return f"Hard cases: {len(none)} of {len(cases)} are not right in {' and '.join(names)}{listed}"
 
 
 def _most(counts):
