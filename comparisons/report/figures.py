@@ -79,7 +79,7 @@ def _pair(result, name, rows, column, label, scale):
     # copies of a block that overturns part as it falls: nothing to mark
     if scene["horizon"] and scene["horizon"] < 0.99 * end:
         beside.rule(scene["horizon"], "x", "sensitivity horizon")
-        beside.says += f" Dashed: the earliest sensitivity horizon of a solver, {number(scene['horizon'])} s."
+        beside.says += f" Dashed: the sensitivity horizon of changes by 10⁻⁴, {number(scene['horizon'])} s."
     return [whole, beside]
 
 
