@@ -17,7 +17,10 @@ MEASURED = 3172.05, 1.0884, 9.81
 class CompliantCorners:
     """Settings of compliant-corners, for the Caryatid's weight and size. `stiffness` is the accuracy parameter.
 
-    The error of restitution goes as its inverse. stiffness [N/m] is that of a corner. Blocks of other mass, size and
+    The error of restitution goes as its inverse, at nearly the same cost: 2e9, 2e10 and 2e11 give 1.2e-2, 1.0e-3 and
+    2.6e-5 on the isolated Caryatid (slenderness .15), peak tilts off by 1.9e-2, 3.7e-3 and 1.3e-4 of the slenderness,
+    in .21, .23 and .24 s of CPU. No other setting trades error for time: steps of 1 to 4 ms and tolerances of 1e-9 to
+    1e-6 leave both as they are, and beyond come wrong impacts. stiffness [N/m] is that of a corner. Blocks of other mass, size and
     gravity get the dimensional equivalent: the same penetration over radius, the same speeds over sqrt(g R), the same
     steps over sqrt(R/g).
     """
