@@ -74,12 +74,12 @@ def trials() -> list[Trial]:
     stands = Scene(name="isolated, standing", block=caryatid_block(0.28), duration=LONGEST, **isolated)
     rocks = Scene(name="isolated, rocking", block=caryatid_block(0.15), duration=LONGEST, **isolated)
     rocks = rocks.with_(duration=math.floor(100 * sensitivity_horizon(rocks).horizon) / 100)
-    events = ("impact_time", "restitution")
+    events = ("restitution", "impact_time")
     return [
         Trial("free-rigid", rigid, (*events, "end_tilt")),
         Trial("free-sliding", sliding, (*events, "peak_displacement")),
         Trial("isolated-standing", stands, ("peak_displacement",)),
-        Trial("isolated-rocking", rocks, (*events, "peak_tilt", "peak_displacement")),
+        Trial("isolated-rocking", rocks, ("restitution", "peak_tilt", "impact_time", "peak_displacement")),
         near_overturning(),
     ]
 
@@ -97,7 +97,7 @@ def near_overturning() -> Trial:
     amplitude = brentq(at, BRACKET[0] * unit, BRACKET[1] * unit, xtol=1e-15, rtol=1e-15)
     change = 1e-4
     slope = (at(amplitude * (1 + change)) - at(amplitude * (1 - change))) / (2 * change)
-    measures = ("boundary_shift", "impact_time", "restitution", "peak_tilt")
+    measures = ("boundary_shift", "restitution", "peak_tilt", "impact_time")
     return Trial("near-overturning", at_amplitude(scene, amplitude), measures, Boundary(amplitude, slope))
 
 

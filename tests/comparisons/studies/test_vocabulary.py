@@ -11,8 +11,9 @@ from comparisons.running.sweep import Row
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.vocabulary import OWN, SHARED, columns_of
 
-# Of no stored result: "matters" with a folder of records; an impact of which nothing can be told.
-UNSEEN = {"matters": {"record", "outcomes_changed_by_turning"}, "autopsy": {"why_not"}}
+# Of no stored result: "matters" with a folder of records; an impact of which nothing can be told; a share that the
+# stored run did not measure.
+UNSEEN = {"matters": {"record", "outcomes_changed_by_turning"}, "autopsy": {"why_not"}, "speed-error": {"share"}}
 
 
 def timed(batch):
