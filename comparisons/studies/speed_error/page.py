@@ -11,8 +11,7 @@ import numpy as np
 from engines import ENGINES
 
 from ...showing.figures import beside, lines
-from ...showing import parts
-from ...showing.parts import Head, Judgement, Mark, Page, number, percent, short
+from ...showing.parts import COST, Head, Judgement, Mark, Page, number, percent, short
 from ...showing.rows import NAME as SOLVER
 from ...showing.rows import Column, grouped, table, where
 from .cases import NEEDED
@@ -26,7 +25,7 @@ PLAIN = "isolated-rocking"  # the scene in which the defaults are compared
 LEVELS = (1e-2, 1e-3, 1e-4, 1e-5)  # of an error; finer ones are the kernel study's
 ASKED = 1e-3
 USUAL = 1e-8  # tolerance of the kernel that engines at their defaults are held against; its own default costs some more
-DRAWN, ROUNDING = 1e-14, 1e-13  # errors below the first are drawn there, those below the second tell no order
+DRAWN, ROUNDING = 1e-9, 1e-13  # errors below the first are drawn there, those below the second tell no order
 NOISE = 95  # percentile of the settings' spread over the rounds, below which two costs are not told apart
 KERNEL = "analytic, kernel"
 # What is shown of a scene: the errors of one line that it has, of the first line of which it has any. All are numbers
@@ -66,13 +65,13 @@ def page(result: Result) -> Page:
             "setting differs between rounds.",
         ),
         first=(
-            _figure([row for key in first for row in errors[key]], CPU, COST, rows),
+            _figure([row for key in first for row in errors[key]], CPU, CAPTION, rows),
             *(_costs(result, errors[key]) for key in top),
             _defaults_table(result),
         ),
         more=(
             Head("The other scenes"),
-            _figure([row for key in errors if key not in first for row in errors[key]], CPU, COST, rows),
+            _figure([row for key in errors if key not in first for row in errors[key]], CPU, CAPTION, rows),
             *(_costs(result, some) for key, some in errors.items() if key not in top),
             _without_error(every),
             Head("Step and order"),
@@ -109,16 +108,15 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
         (row["engine"], row["variant"]): Mark(
             f"{RATIO.text(row)} ×",
             "none",
-            f"engine's own share {SHARE.text(row)}; error of restitution {number(row['errors'].get('restitution'), 2)}, "
-            f"of peak tilt over slenderness {number(row['errors'].get('peak_tilt'), 2)}"
-            + f"; {row['lost']} impacts lost"
-            * bool(row["lost"]),
+            f"engine's own share {SHARE.text(row)}; error of restitution {number(row['restitution'], 2)}, "
+            f"of peak tilt over slenderness {number(row['peak_tilt'], 2)}"
+            + (f"; {row['lost']} impacts lost" if row["lost"] else ""),
             RATIO.of(row),
         )
         for row in _defaults(result)
     }
     heading = "CPU time over the analytic model's, isolated rocking"
-    return (Judgement(heading, marks, parts.COST, rates=False, says="{} the model's CPU time"),) if marks else ()
+    return (Judgement(heading, marks, COST, rates=False, says="{} the model's CPU time"),) if marks else ()
 
 
 RATIO = Column("CPU time over the analytic model's [-]", "ratio")
@@ -132,7 +130,13 @@ def _defaults(result):
     shares = {SOLVER.of(row): row["share"] for row in where(result.rows, part="share", failure=None)}
     defaults = {SOLVER.of(variant): variant["default"] for variant in result.settings["variants"]}
     found = [
-        {**row, "ratio": CPU.of(row) / CPU.of(kernel[0]), "share": shares.get(row["name"])}
+        {
+            **row,
+            **dict.fromkeys(SHOWN[1]),
+            **row["errors"],
+            "ratio": CPU.of(row) / CPU.of(kernel[0]),
+            "share": shares.get(row["name"]),
+        }
         for row in rows
         if kernel and row["level"] == defaults.get(row["name"])
     ]
@@ -141,20 +145,20 @@ def _defaults(result):
 
 def _defaults_table(result):
     return table(
-        f"Isolated, rocking, default settings; the analytic model at a tolerance of {short(USUAL)}. Own share: CPU time inside the engine's compiled functions over that of "
-        "the run; what is left is Python, most of it the adapter's",
+        f"Isolated, rocking, default settings; the analytic model at a tolerance of {short(USUAL)}. Own share: CPU "
+        "time inside the engine's compiled functions over that of the run; the rest is Python, mostly the adapter's",
         _defaults(result),
         NAME,
         RATIO,
         SHARE,
-        *(Column(MEASURES[key], lambda row, key=key: row["errors"].get(key)) for key in SHOWN[1]),
+        *(Column(MEASURES[key], key) for key in SHOWN[1]),
         Column("impacts lost [-]", "lost"),
     )
 
 
-COST = (
+CAPTION = (
     "Left and low is better. Coloured: solvers of which a level and all finer ones keep 0.001; grey: the others, named "
-    "under the pointer. Levels that lost impacts have no error. Rounding is drawn at 10⁻¹⁴."
+    "under the pointer. Levels that lost impacts have no error. Errors below 10⁻⁹ are drawn there."
 )
 
 
@@ -421,7 +425,8 @@ def _how(result, every):
         f"{number(apart, 1)} in the errors shown. The model's own solvers apply eq. (7): their error of restitution "
         f"under a motion is rounding. The errors of {same} of {len(every)} settings are the same bit for "
         f"bit in every round{'; not those of ' + ', '.join(differing) if differing else ''}.",
-        "Errors of the peak displacement and of the overturning boundary are relative. The boundary is searched: six "
-        "runs, each at the amplitude where the one before would just overturn. Other integrators of a free block, to "
-        "finer errors, and batches of runs are in the study kernel.",
+        "On a free base the peak tilt is the start's: it has no error. Errors of the peak displacement and of the "
+        "overturning boundary are relative. The boundary is searched: six runs, each at the amplitude where the one "
+        "before would just overturn. Other integrators of a free block, to finer errors, and batches of runs are in "
+        "the study kernel.",
     )

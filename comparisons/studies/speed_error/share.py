@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cProfile
 import dataclasses
+import statistics
 import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
     from ...running.cases import Case
 
-RUNS = 3  # of each kind; what else the machine does only adds, so the least counts
+RUNS = 3  # of each kind: medians count
 
 
 def own_share(case: Case, response: Response) -> dict[str, Any]:
@@ -25,12 +26,13 @@ def own_share(case: Case, response: Response) -> dict[str, Any]:
 
     A run cut short is taken off: it has built the scene, which is no part of the CPU time of a run.
     """
-    package, cut = (
-        ENGINES[case.solver].package,
-        dataclasses.replace(case, scene=case.scene.with_(duration=WARM_SECONDS)),
-    )
-    whole, built = (min(seconds_inside(package, one.run) for _ in range(RUNS)) for one in (case, cut))
-    plain = min(response.cpu_seconds, *(case.run().cpu_seconds for _ in range(RUNS - 1)))
+    package = ENGINES[case.solver].package
+    cut = dataclasses.replace(case, scene=case.scene.with_(duration=WARM_SECONDS))
+    turns = [
+        (seconds_inside(package, case.run), seconds_inside(package, cut.run), case.run().cpu_seconds)
+        for _ in range(RUNS)
+    ]
+    whole, built, plain = map(statistics.median, zip(*turns, strict=True))
     return {"outcome": response.outcome, "cost": {"cpu_seconds": plain, "share": (whole - built) / plain}}
 
 

@@ -205,8 +205,6 @@ def _shares(measured):
         if entry.trial.name == SHARED and entry.engine in ENGINES and not entry.solver
         if entry.level == get_engine(entry.engine).variants[entry.variant].default
     ]
-    if not chosen:
-        return []
     done = yield Batch([entry.case(0) for entry in chosen], own_share, "engines' own shares", alone=True)
     return [
         {
