@@ -61,8 +61,8 @@ def page(result: Result) -> Page:
             "Every solver runs through levels of its accuracy parameter; error and CPU time come from the same runs. "
             "Cheapest is the cheapest level at which it and all finer ones keep the error: a lucky run does not count.",
             "In brackets: CPU time over the analytic model's; level of the accuracy parameter. Assisted: the adapter "
-            f"applies the impact. Costs within a factor of {number(_noise(every), 3)} are of one rank: so much the same "
-            "setting differs between rounds.",
+            f"applies the impact. Costs within a factor of {number(_noise(every), 3)} are of one rank: as much the "
+            "same setting differs between rounds.",
         ),
         first=(
             _figure([row for key in first for row in errors[key]], CPU, CAPTION, rows),
