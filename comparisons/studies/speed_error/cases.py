@@ -33,6 +33,7 @@ BRACKET = (1.35, 1.45)  # amplitude / g tan(slenderness) around its boundary
 
 TRANSPARENT = ("free-rigid", "near-overturning")  # scenes without base or record
 SAMPLED = ("isolated-standing", "isolated-rocking")
+PLAIN = "isolated-rocking"  # the scene in which engines are compared at their defaults
 
 NEEDED = "as needed"
 HEAVY_BASE, SPRINGS, FREE_3D = "rigid ground as a heavy base", "rigid ground as stiff springs", "free block in 3-D"
@@ -161,8 +162,9 @@ def refined(ladder: Sequence[float]) -> list[float]:
 
 
 def levels_of(kind: Variant, quick: bool) -> list[float]:
-    """Levels of a variant's accuracy parameter that are run."""
-    return list(dict.fromkeys((kind.ladder[0], kind.default))) if quick else refined(kind.ladder)
+    """Levels of a variant's accuracy parameter that are run: of default settings, whose error hardly moves, few."""
+    few = (kind.ladder[0], kind.default) if quick else kind.ladder
+    return list(dict.fromkeys(few)) if quick or kind.tier == "defaults" else refined(kind.ladder)
 
 
 def entries(scenes: Sequence[Trial], engines: Sequence[str], quick: bool) -> list[Entry]:

@@ -14,14 +14,13 @@ from ...showing.figures import beside, lines
 from ...showing.parts import COST, Head, Judgement, Mark, Page, number, percent, short
 from ...showing.rows import NAME as SOLVER
 from ...showing.rows import Column, grouped, table, where
-from .cases import NEEDED
+from .cases import NEEDED, PLAIN
 from .growth import fit
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
 
-FIRST = ("free-sliding", "isolated-rocking")  # scenes of the report's first page
-PLAIN = "isolated-rocking"  # the scene in which the defaults are compared
+FIRST = ("free-sliding", PLAIN)  # scenes of the report's first page
 LEVELS = (1e-2, 1e-3, 1e-4, 1e-5)  # of an error; finer ones are the kernel study's
 ASKED = 1e-3
 USUAL = 1e-8  # tolerance of the kernel that engines at their defaults are held against; its own default costs some more

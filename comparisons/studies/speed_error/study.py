@@ -29,7 +29,7 @@ from ...measuring.errors import (
 from ...running.cases import variant_settings
 from ...running.study import Batch, Found
 from .boundary import RUNS, Boundary, searched
-from .cases import Entry, Trial, entries, levels_of, trials
+from .cases import PLAIN, Entry, Trial, entries, levels_of, trials
 from .growth import TICK, grown, growth_cases
 from .share import own_share
 
@@ -41,7 +41,6 @@ if TYPE_CHECKING:
 
 REPEATS, QUICK_REPEATS = 5, 3
 SLOW = 0.5  # s of CPU: next to it what is loaded in a first run is nothing; such a measurement needs no warm-up
-SHARED = "isolated-rocking"  # the scene in which an engine's own share is measured
 MOST_REPEATS = 200
 TWIN_TOLERANCE = 1e-13  # of the independent solution each reference is held against
 EVIDENCE = 600  # characters of an engine's message that a row keeps
@@ -198,18 +197,18 @@ def _row(entry, timings):
 
 
 def _shares(measured):
-    """Rows of the engines' own shares: of each variant at its default in the scene `SHARED`."""
+    """Rows of the engines' own shares: of each variant at its default in the scene `PLAIN`."""
     chosen = [
         entry
         for entry in measured
-        if entry.trial.name == SHARED and entry.engine in ENGINES and not entry.solver
+        if entry.trial.name == PLAIN and entry.engine in ENGINES and not entry.solver
         if entry.level == get_engine(entry.engine).variants[entry.variant].default
     ]
     done = yield Batch([entry.case(0) for entry in chosen], own_share, "engines' own shares", alone=True)
     return [
         {
             "part": "share",
-            "scene": SHARED,
+            "scene": PLAIN,
             "engine": entry.engine,
             "variant": entry.variant,
             "level": entry.level,
