@@ -36,7 +36,8 @@ if TYPE_CHECKING:
 
     from .swings import Trace
 
-SMALLEST_STEP = 1e-6  # s, at `scale.UNIT_RADIUS`; at 1e-7 e is as good, at 1e-5 its error is 2 to 5 times as large
+# s, at `scale.UNIT_RADIUS`, of the default settings. On a light base the error of e is in proportion to it.
+SMALLEST_STEP = 1e-6
 LANDING = 1.0  # most speed of a corner that lands, over the slenderness, the width 2 b and sqrt(g/R)
 ENDS = ("done", "overturned", "not finite", "too many steps")  # all others are an engine's words, "what: why"
 
@@ -186,10 +187,13 @@ def sampled_loads(scene: Scene) -> Loads:
 class ImpactAware:
     """Steps by the rule of `engines.step_size`: small where a corner lands, at most `largest_step` [s] elsewhere.
 
-    `largest_step` is the accuracy parameter. It is given for the Caryatid's R; times go with sqrt(R/g).
+    `largest_step` is the accuracy parameter. What flight adds to the error goes as its square, what landings add as the
+    smallest step; so the smallest is `SMALLEST_STEP` where the largest is `balanced_step` [s], and goes as its square:
+    both parts fall together. Steps are given for the Caryatid's R; times go with sqrt(R/g).
     """
 
     largest_step: float = 2e-4
+    balanced_step: float = 2e-4
 
 
 @dataclass(frozen=True)
@@ -268,7 +272,8 @@ def step_limits(scene: Scene, settings: Settings) -> tuple[float, float]:
         step = longest_step(scene, settings.step * scale)
         return step, step
     largest = longest_step(scene, settings.largest_step * scale)
-    return largest, min(largest, SMALLEST_STEP * scale)
+    finer = (settings.largest_step / settings.balanced_step) ** 2
+    return largest, min(largest, SMALLEST_STEP * finer * scale)
 
 
 def contact_tilt(scene: Scene, largest: float, smallest: float, depth: float) -> float:

@@ -190,6 +190,7 @@ OWN: dict[str, dict[str, Explained]] = {
         "step": Explained("mean step size", "s"),
         "cpu_per_second": Explained("CPU time over simulated time"),
         "cpu_per_step": Explained("CPU time over steps", "s"),
+        "share": Explained("of the CPU time, inside the engine's compiled functions"),
         "boundary_shifts": Explained("of the boundary of overturning from the reference's, relative, run by run"),
         "settings": Explained("all settings of the run"),
         "against": Explained("what the cost grows with: duration [s], or samples of the motion [1/s]"),

@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
 VARIANTS = {
     "impact-aware": Variant(
-        ImpactAware(1e-3),
+        ImpactAware(1e-3, 1e-3),
         tier="tuned",
-        ladder=(4e-3, 2e-3, 1e-3, 5e-4),
+        ladder=(7e-3, 3e-3, 1e-3, 5e-4),
         computes="motion, contact, impact and rest",
         imposes="a plane, by joints; the steps, by gaps and closing speeds",
     ),
