@@ -37,14 +37,16 @@ if TYPE_CHECKING:
     from .swings import Trace
 
 SMALLEST_STEP = 1e-6  # s, at `scale.UNIT_RADIUS`; at 1e-7 e is as good, at 1e-5 its error is 2 to 5 times as large
-SMEARED = 3  # steps on each side of an impact over which a contact solver may spread it, as `leapfrog.trace_of` reads it
+SMEARED = (
+    3  # steps on each side of an impact over which a contact solver may spread it, as `leapfrog.trace_of` reads it
+)
 LANDING = 1.0  # most speed of a corner that lands, over the slenderness, the width 2 b and sqrt(g/R)
 # Numbers that were chosen in impact-aware steps, for `engines.contract.Variant.constants`.
 CONSTANTS = {
     "largest_step": "longest step in flight and at rest [s], the accuracy parameter",
     "engines.stepping:SMALLEST_STEP": "step while a corner lands [s]",
     "engines.step_size:SHARE": "step over the time to a landing",
-    "engines.step_size:GROWTH": "step over the one before, at most",
+    "engines.step_size:GROWTH": "share by which a step is longer than the one before, at most",
     "engines.step_size:HOLD": "steps for which it does not grow after a landing",
     "engines.step_size:NEAR": "gap from which a corner is on its way to a landing, over g h^2",
     "engines.step_size:SLOW": "closing speed from which it is, whatever the gap, over g h",

@@ -58,6 +58,7 @@ BUILT_IN = (
     "kernel",
     "caryatid",
     "tolerances",
+    "constants",
     "sheet",
 )
 

@@ -6,11 +6,8 @@ HERE = "engines.pybullet.scene"
 CONSTANTS = {
     **STEPS,
     f"{HERE}:FRICTION": "coefficient where the scene gives none",
-    f"{HERE}:BREAKING_THRESHOLD": "gap below which Bullet keeps contact points [m]",
     f"{HERE}:CORNER_RADIUS": "radius of the corners' spheres, over R",
     f"{HERE}:ROCKING_REST": "share of the impulses that the contact solver leaves undone on one corner",
     f"{HERE}:STANDING_REST": "the same on two corners",
-    f"{HERE}:LEAST_ITERATIONS": "iterations of the contact solver on one corner and on two, at least",
-    f"{HERE}:MOST_ITERATIONS": "the same, at most",
-    f"{HERE}:MOST_VELOCITY": "speed above which Bullet cuts a joint's [m/s, rad/s]",
+    f"{HERE}:MOST_ITERATIONS": "iterations of the contact solver, at most",
 }
