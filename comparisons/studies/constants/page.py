@@ -55,10 +55,10 @@ def page(result: Result) -> Page:
         ),
         how=(
             f"{result.settings['scenes']} runs for each value: blocks let go on rigid ground, on a base and on "
-            "bearings (restitution, e); random statues under pulses that leave them upright, and the Caryatid under "
-            "the synthetic motion (peak tilt); pulses 0.1 % below and above an amplitude that overturns. Errors are "
-            f"against the analytic model. Said is a factor beyond {SAID:g}, of CPU time beyond {SAID_CPU:g}; an error "
-            f"of a peak below {short(LEAST)} is taken as that.",
+            "bearings (restitution, e); random statues under pulses that leave them upright (peak tilt); pulses 0.1 % "
+            "below and above an amplitude that overturns, and the Caryatid under the synthetic motion (outcomes). "
+            f"Errors are against the analytic model. Said is a factor beyond {SAID:g}, of CPU time beyond {SAID_CPU:g}; "
+            f"an error of a peak below {short(LEAST)} is taken as that.",
         ),
         evidence=tuple(
             (

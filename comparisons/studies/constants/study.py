@@ -29,14 +29,14 @@ if TYPE_CHECKING:
 
 AS_IT_IS, CHANGES = "as it is", {"halved": 0.5, "doubled": 2.0}
 SILENT = {"history": False}
-IMPACTS, PEAKS, BOUNDARY = "impacts", "peaks", "boundary"  # parts of the sample
-SEED, SCENES = 0, 20  # of the random ones
+IMPACTS, PEAKS, OUTCOMES = "impacts", "peaks", "outcomes"  # what is judged of a scene
+SEED, SCENES = 0, 12  # of the random ones
 MOST_IMPACTS = 1000  # a run of so many costs as much as the rest of the sample
 STARTS = (0.15, 0.45)  # slendernesses of the blocks that are let go
 
 
 def sample(quick: bool) -> Iterator[tuple[str, Scene]]:
-    """(part, scene): blocks let go, whose impacts are judged; what moves upright statues; pulses at the boundary.
+    """(what is judged, scene): impacts of blocks let go; peaks of statues that stay upright; outcomes.
 
     Only statues under a motion have a peak tilt to be judged: one that is let go has it at the start.
     """
@@ -47,13 +47,13 @@ def sample(quick: bool) -> Iterator[tuple[str, Scene]]:
         yield IMPACTS, isolated.with_(duration=4.0)
         heavy = {"base": Base(mass=MASS), "block": caryatid_block(0.2), "start": Start(tilt=0.12), "duration": 4.0}
         yield IMPACTS, isolated.with_(**heavy)
-        yield PEAKS, load_scene("caryatid-rigid")  # a sampled motion
+        yield OUTCOMES, load_scene("caryatid-rigid")  # a sampled motion
     drawn = (random_scene(SEED, index) for index in itertools.count())
     upright = (scene for scene in drawn if scene.motion and _stays(simulate(scene, history=False)))
     for scene in itertools.islice(upright, 1 if quick else SCENES):
         yield PEAKS, scene
     for sign in "-+":
-        yield BOUNDARY, hard_cases()[f"critical pulse {sign}0.001"].scene
+        yield OUTCOMES, hard_cases()[f"critical pulse {sign}0.001"].scene
 
 
 def _stays(response: Response) -> bool:

@@ -131,5 +131,5 @@ def test_the_growth_of_cost_and_the_report_run_it(crude):
 
 
 def test_every_study_of_this_project_is_covered():
-    # surface takes any solver a run at a time: test_surface; kernel takes none
-    assert set(BUILT_IN) == {*SHORT, "overturning", "caryatid", "tolerances", "surface", "kernel"}
+    # surface takes any solver a run at a time: test_surface; kernel takes none; constants: test_constants
+    assert set(BUILT_IN) == {*SHORT, "overturning", "caryatid", "tolerances", "surface", "kernel", "constants"}
