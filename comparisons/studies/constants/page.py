@@ -57,7 +57,7 @@ def page(result: Result) -> Page:
             f"{result.settings['scenes']} runs for each value: blocks let go on rigid ground, on a base and on "
             "bearings (restitution, e); random statues under pulses that leave them upright (peak tilt); pulses 0.1 % "
             "below and above an amplitude that overturns, and the Caryatid under the synthetic motion (outcomes). "
-            f"Errors are against the analytic model. Said is a factor beyond {SAID:g}, of CPU time beyond {SAID_CPU:g}; "
+            f"Errors are against the model. Said is a factor beyond {SAID:g}, of CPU time beyond {SAID_CPU:g}; "
             f"an error of a peak below {short(LEAST)} is taken as that.",
         ),
         evidence=tuple(
