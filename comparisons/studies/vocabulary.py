@@ -328,6 +328,22 @@ OWN: dict[str, dict[str, Explained]] = {
         "holds": Explained("whether the error now is within the bound"),
         "source": Explained("where the error comes from"),
     },
+    "constants": {
+        "constant": Explained(
+            'a setting of the variant, or "module:NAME" of a number in its code; null: all as they are'
+        ),
+        "what": Explained("what the constant is"),
+        "change": Explained('of the constant: "as it is", "halved" or "doubled"'),
+        "value": Explained("of the constant as it is", "of the constant"),
+        "outcomes_changed": Explained("of the runs, those with another outcome than with the constant as it is"),
+        "moved": Explained("of the runs, those that differ in any number"),
+        "rms": Explained("error of restitution by the states at impacts: root mean square over the blocks let go"),
+        "peak_median": Explained("error of the peak tilt under a motion: median over runs", "slenderness"),
+        "peak_worst": Explained("error of the peak tilt under a motion: largest", "slenderness"),
+        "steps": Explained("of all runs together"),
+        "cpu_seconds": Explained("CPU time of all runs together", "s"),
+        "cpu_ratio": Explained("CPU time over that with the constant as it is"),
+    },
     "sheet": {
         "error": Explained("largest of the scene's answers, over the scale of each"),
         "missing": Explained("answers that the run does not give"),

@@ -13,14 +13,8 @@ from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.vocabulary import OWN, SHARED, columns_of
 from engines import installed_engines
 
-<<<<<<< HEAD
-# Of no stored result: an impact of which nothing can be told.
-UNSEEN = {"autopsy": {"why_not"}}
-=======
-# Of no stored result: "matters" with a folder of records; an impact of which nothing can be told; a share that the
-# stored run did not measure.
-UNSEEN = {"matters": {"record", "outcomes_changed_by_turning"}, "autopsy": {"why_not"}, "speed-error": {"share"}}
->>>>>>> speed
+# Of no stored result: an impact of which nothing can be told; a share that the stored run did not measure.
+UNSEEN = {"autopsy": {"why_not"}, "speed-error": {"share"}}
 
 
 def timed(batch):
