@@ -61,6 +61,9 @@ class Variant:
         Settings that may cure a run that is not right, tried in turn; without any, the levels beyond the default.
     varied : dict
         {setting: values} of what else, changed alone, tells what the variant's error depends on.
+    constants : dict
+        {name: what it is} of numbers that were chosen, each with its own effect on a run: a setting, or "module:NAME"
+        of a module-level number. What follows by a formula, or only ends a run that has failed, is none.
     friction : float or None
         Coefficient of the contact where a scene gives none, if it is so low that a block may slide.
     flight_damping : float or None
@@ -82,6 +85,7 @@ class Variant:
     takes_restitution: bool = False
     finer: tuple[dict[str, float], ...] = ()
     varied: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    constants: dict[str, str] = field(default_factory=dict)
     friction: float | None = None
     flight_damping: float | None = None
     free_block: str | None = None
@@ -95,8 +99,10 @@ class Variant:
             beyond = self.ladder[self.ladder.index(self.default) + 1 :]
             object.__setattr__(self, "finer", tuple({self.knob: value} for value in beyond))
         known = {setting.name for setting in dataclasses.fields(self.settings)}
-        if strange := sorted(set(self.varied).union(*self.finer) - known):
-            raise ValueError(f"{strange[0]!r} is varied or finer, and no setting: its settings are {', '.join(known)}")
+        own = [name for name in self.constants if ":" not in name]
+        if strange := sorted(set(self.varied).union(own, *self.finer) - known):
+            words = "varied, finer or a constant, and no setting"
+            raise ValueError(f"{strange[0]!r} is {words}: its settings are {', '.join(known)}")
 
     @property
     def knob(self) -> str:

@@ -1,6 +1,6 @@
 """Length of the next step of a simulation with contacts, from gaps and closing speeds alone.
 
-    h = clamp(min(1.5 h, share * gap/closing over contact points on their way to a landing), h_min, h_max)
+    h = clamp(min((1 + growth) h, share * gap/closing over contact points on their way to a landing), h_min, h_max)
 
 held for 4 steps where a contact point's speed jumped by more than 10 g h, or where one is landing just now. On its way
 is a point that closes and is higher than g h^2/4, or closes faster than 2 g h. The rule serves any scene in which
@@ -12,9 +12,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 
-# Insensitive: share .1 to .45, growth 1.2 to 2 and hold 1 to 10 leave the error of e between .9 and 1.5 times itself in
+# Insensitive: share .1 to .45, growth .2 to 1 and hold 1 to 10 leave the error of e between .9 and 1.5 times itself in
 # four engines. From a share of .7 on points land in steps that are too long.
-SHARE, GROWTH, HOLD = 0.3, 1.5, 4
+SHARE, GROWTH, HOLD = 0.3, 0.5, 4
 # A body that pivots at the rate w about a held point hops along the tangent, by w^2 R h^2/2, which is at most .1 g h^2
 # for a block that does not overturn, and falls back at g h or less: that is no landing. Insensitive: NEAR .02 to 1,
 # SLOW 1 to 4.
@@ -60,7 +60,7 @@ def gap_rule(largest: float, smallest: float, gravity: float) -> Rule:
             if not -jump < closing - was < jump:
                 held = HOLD
         before = points
-        longest = step if held else GROWTH * step
+        longest = step if held else (1 + GROWTH) * step
         if held:
             held -= 1
         step = wanted if wanted < longest else longest

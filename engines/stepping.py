@@ -36,8 +36,27 @@ if TYPE_CHECKING:
 
     from .swings import Trace
 
-SMALLEST_STEP = 1e-6  # s, at `scale.UNIT_RADIUS`; at 1e-7 e is as good, at 1e-5 its error is 2 to 5 times as large
+# s, at `scale.UNIT_RADIUS`, of the default settings. On a light base the error of e is in proportion to it.
+SMALLEST_STEP = 1e-6
+SMEARED = 3  # steps beside an impact over which a contact solver may spread it, as `leapfrog.trace_of` reads it
 LANDING = 1.0  # most speed of a corner that lands, over the slenderness, the width 2 b and sqrt(g/R)
+# Numbers that were chosen in impact-aware steps, for `engines.contract.Variant.constants`.
+CONSTANTS = {
+    "largest_step": "longest step in flight and at rest [s], the accuracy parameter",
+    "engines.stepping:SMALLEST_STEP": "step while a corner lands [s]",
+    "engines.step_size:SHARE": "step over the time to a landing",
+    "engines.step_size:GROWTH": "share by which a step is longer than the one before, at most",
+    "engines.step_size:HOLD": "steps for which it does not grow after a landing",
+    "engines.step_size:NEAR": "gap from which a corner is on its way to a landing, over g h^2",
+    "engines.step_size:SLOW": "closing speed from which it is, whatever the gap, over g h",
+    "engines.step_size:JUMP": "jump of its speed that is an impact, over g h",
+    "engines.step_size:LEAST_AHEAD": "time to a jump of the ground that is worth a step of its own, over the step",
+    "engines.step_size:ROUNDING": "of a step, by which the steps' sum may miss the duration",
+    "engines.stepping:LANDING": "most speed of a corner that lands, by which flat contact is told",
+    "engines.stepping:SMEARED": "steps beside an impact over which it may be spread, as a run is read",
+    "engines.vibration:VIBRATION": "step over the time in which the bearings' vibration advances by 1 rad",
+    "engines.vibration:STIFF": "the same, from which leapfrog's vibration is corrected",
+}
 ENDS = ("done", "overturned", "not finite", "too many steps")  # all others are an engine's words, "what: why"
 
 # tilt [rad], its rate; x, z of the block's centre [m] from the place of a block standing at the origin, x', z'; x, x'
@@ -186,10 +205,13 @@ def sampled_loads(scene: Scene) -> Loads:
 class ImpactAware:
     """Steps by the rule of `engines.step_size`: small where a corner lands, at most `largest_step` [s] elsewhere.
 
-    `largest_step` is the accuracy parameter. It is given for the Caryatid's R; times go with sqrt(R/g).
+    `largest_step` is the accuracy parameter. What flight adds to the error goes as its square, what landings add as the
+    smallest step; so the smallest is `SMALLEST_STEP` where the largest is `balanced_step` [s], and goes as its square:
+    both parts fall together. Steps are given for the Caryatid's R; times go with sqrt(R/g).
     """
 
     largest_step: float = 2e-4
+    balanced_step: float = 2e-4
 
 
 @dataclass(frozen=True)
@@ -251,7 +273,7 @@ def run_of(
     if isinstance(settings, FirstScript):
         trace = raw(rows)
     else:
-        trace = trace_of(rows, scene, contact_tilt(scene, largest, smallest, depth), smeared=3)
+        trace = trace_of(rows, scene, contact_tilt(scene, largest, smallest, depth), smeared=SMEARED)
     failure = failure_of(scene, rows, ended)
     if ended not in ENDS:
         reason, _, why = ended.partition(": ")
@@ -268,7 +290,8 @@ def step_limits(scene: Scene, settings: Settings) -> tuple[float, float]:
         step = longest_step(scene, settings.step * scale)
         return step, step
     largest = longest_step(scene, settings.largest_step * scale)
-    return largest, min(largest, SMALLEST_STEP * scale)
+    finer = (settings.largest_step / settings.balanced_step) ** 2
+    return largest, min(largest, SMALLEST_STEP * finer * scale)
 
 
 def contact_tilt(scene: Scene, largest: float, smallest: float, depth: float) -> float:

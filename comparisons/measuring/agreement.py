@@ -64,11 +64,6 @@ def traced(engine: str, variant: str, scene: Scene, history: bool = True) -> tup
     return response, trace
 
 
-def run(engine: str, variant: str, scene: Scene, history: bool = True) -> Response:
-    """The engine's response; raises `Unmeasurable` where it failed."""
-    return traced(engine, variant, scene, history)[0]
-
-
 def free_rocking(scenes: str) -> dict[float, list[Scene]]:
     """{slenderness: scenes} of a family: free rocking from every start, up to past the third impact's swing."""
     base, slendernesses = FREE_ROCKING[scenes]
@@ -86,23 +81,20 @@ def _free_responses(engine, variant, scenes, runs):
     key = engine, variant, scenes
     if key not in runs:
         runs[key] = {
-            slenderness: [(scene, run(engine, variant, scene)) for scene in family]
+            slenderness: [(scene, traced(engine, variant, scene)[0]) for scene in family]
             for slenderness, family in free_rocking(scenes).items()
         }
     return runs[key]
 
 
-def _worst_rms(groups):
-    return max(rms(np.concatenate(values)) for values in groups)
+def impact_rms(kind: str, engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
+    """Error of this kind of `impact_errors` of the first three impacts, rms over starts and impacts; worst slenderness.
 
-
-def restitution_rms(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
-    """Error of e_phi against eq. (7) from the states at the first three impacts, rms over starts; worst slenderness."""
-    return _worst_rms(
-        [
-            [impact_errors(scene, response, IMPACTS)["state"] for scene, response in pairs]
-            for pairs in _free_responses(engine, variant, scenes, runs).values()
-        ]
+    "state": of e_phi against eq. (7); "jump": of the base velocity jump against momentum, relative.
+    """
+    return max(
+        rms(np.concatenate([impact_errors(scene, response, IMPACTS)[kind] for scene, response in pairs]))
+        for pairs in _free_responses(engine, variant, scenes, runs).values()
     )
 
 
@@ -114,16 +106,6 @@ def swing_restitution_bias(engine: str, variant: str, scenes: str, runs: dict[An
         for scene, response in pairs
     ]
     return float(abs(np.nanmean(np.concatenate(errors))))
-
-
-def base_jump_rms(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
-    """Relative error of the base velocity jump against momentum, rms over starts and impacts; worst slenderness."""
-    return _worst_rms(
-        [
-            [impact_errors(scene, response, IMPACTS)["jump"] for scene, response in pairs]
-            for pairs in _free_responses(engine, variant, scenes, runs).values()
-        ]
-    )
 
 
 def impact_times(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
@@ -140,65 +122,35 @@ def impact_times(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -
 
 
 def named_scene(name: str) -> Scene:
-    """The scenes of the table that are one scene each."""
-    if name == ISOLATED:
-        return load_scene("caryatid-isolated")
-    if name == DRIVEN:
-        return Scene(
-            block=caryatid_block(0.15),
-            base=BASE,
-            bearings=BEARINGS,
-            motion=PulseMotion("one-sine", 3.0, 8.0),
-            duration=3.0,
-        )
-    if name == FALLING:
-        return Scene(block=caryatid_block(0.2), motion=PulseMotion("one-sine", 3.8 * 9.81 * 0.2, 5.2), duration=5.0)
-    shaking = 0.01 * np.arange(6001)
+    """The scenes of the table that are one scene each; `KeyError` of another."""
+    block, shaking = caryatid_block(0.2), 0.01 * np.arange(6001)
     level = np.sin(8 * shaking) + 0.5 * np.sin(26 * shaking)
-    if name == STANDING:
-        peak = 0.9 * 9.81 * math.tan(0.2)
-        return Scene(
-            block=caryatid_block(0.2), duration=60.0, motion=SampledMotion(0.01, level / np.abs(level).max() * peak)
-        )
-    if name == STANDING_ISOLATED:
-        return Scene(
-            block=caryatid_block(0.2),
-            base=BASE,
-            bearings=BEARINGS,
-            duration=60.0,
-            motion=SampledMotion(0.01, level / np.abs(level).max() * 0.5),
-        )
-    raise KeyError(f"no scene is called {name!r}")
+    level /= np.abs(level).max()
+    standing = Scene(block=block, duration=60.0, motion=SampledMotion(0.01, level * (0.9 * 9.81 * math.tan(0.2))))
+    below = SampledMotion(0.01, level * 0.5)
+    rocking = PulseMotion("one-sine", 3.0, 8.0)
+    return {
+        ISOLATED: load_scene("caryatid-isolated"),
+        DRIVEN: Scene(block=caryatid_block(0.15), base=BASE, bearings=BEARINGS, motion=rocking, duration=3.0),
+        FALLING: Scene(block=block, motion=PulseMotion("one-sine", 3.8 * 9.81 * 0.2, 5.2), duration=5.0),
+        STANDING: standing,
+        STANDING_ISOLATED: standing.with_(base=BASE, bearings=BEARINGS, motion=below),
+    }[name]
 
 
 def _agreement(engine, variant, scenes, runs):
     key = engine, variant, scenes
     if key not in runs:
         scene = named_scene(scenes)
-        runs[key] = compare(scene, run(engine, variant, scene), simulate(scene))
+        runs[key] = compare(scene, traced(engine, variant, scene)[0], simulate(scene))
     if not runs[key].same_outcome:
         raise Unmeasurable(f"{engine}, {variant}: another outcome than the model's in {scenes}")
     return runs[key]
 
 
-def peak_tilt(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
-    """|Error| of the peak tilt over slenderness."""
-    return abs(_agreement(engine, variant, scenes, runs).peak_tilt_error)
-
-
-def peak_displacement(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
-    """|Error| of the peak base displacement, relative."""
-    return abs(_agreement(engine, variant, scenes, runs).peak_displacement_error)
-
-
-def tilt_graph(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
-    """Distance of the tilt graphs over the whole scene: tilt over slenderness, time over 2 pi/omega_r."""
-    return _agreement(engine, variant, scenes, runs).graph_distance
-
-
-def overturning_time(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
-    """|Error| of the time of overturning [s]."""
-    return abs(_agreement(engine, variant, scenes, runs).overturning_time_error)
+def error_of(error: str, engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
+    """|Error| of a run, in the unit of this field of `errors.Agreement`, over the whole scene."""
+    return abs(getattr(_agreement(engine, variant, scenes, runs), error))
 
 
 def boundary_scene(slenderness: float, pulse: str, frequency: float, amplitude: float) -> Scene:
@@ -208,12 +160,6 @@ def boundary_scene(slenderness: float, pulse: str, frequency: float, amplitude: 
     return scene.with_(motion=motion, duration=motion.end + 6.0)
 
 
-def _overturns(engine, variant, scene):
-    if engine == "analytic":
-        return simulate(scene, history=False).outcome == "overturns"
-    return run(engine, variant, scene, history=False).outcome == "overturns"
-
-
 def first_boundary(*pulse: Any) -> float:
     """Least amplitude over g tan(slenderness) at which the model overturns; found by scanning, then halving.
 
@@ -221,7 +167,7 @@ def first_boundary(*pulse: Any) -> float:
     """
 
     def falls(amplitude):
-        return _overturns("analytic", None, boundary_scene(*[*pulse, amplitude]))
+        return simulate(boundary_scene(*[*pulse, amplitude]), history=False).outcome == "overturns"
 
     amplitudes = np.arange(1.0, 12.0, 0.02)
     over = next(k for k, a in enumerate(amplitudes) if falls(float(a)))
@@ -240,7 +186,8 @@ def boundary_shift(engine: str, variant: str, scenes: str, runs: dict[Any, Any])
         exact = first_boundary(slenderness, *pulse)
 
         def falls(shift, exact=exact, pulse=pulse):
-            return _overturns(engine, variant, boundary_scene(*[slenderness, *pulse, exact * (1 + shift)]))
+            scene = boundary_scene(*[slenderness, *pulse, exact * (1 + shift)])
+            return traced(engine, variant, scene, history=False)[0].outcome == "overturns"
 
         low, high = -1e-4, 1e-4
         while falls(low):
@@ -277,24 +224,36 @@ def paper_force(law: BearingLaw, x: np.ndarray) -> np.ndarray:
     With its own history, the reversal points, and (12) with the sign mended: a second implementation beside
     `analytic.bearing`, whose history is the last point. Travel since a reversal up to 1.3 m.
     """
-    a, double = 1 - law.alpha, 2 * law.x0
-    force, s, shift = np.zeros(len(x)), 0.0, 0.0
+    force, s, x_j = np.zeros(len(x)), 0.0, 0.0
     for i in range(1, len(x)):
         way = math.copysign(1.0, x[i] - x[i - 1]) if x[i] != x[i - 1] else s
-        if way != s:  # a reversal, or the first step: x_j from the point where it happens, eqs (10), (12)
-            z = force[i - 1] - law.kb * x[i - 1]
-            shift = x[i - 1] + way * (1 + double - (law.d0 + a * (way * z - law.f0) / law.dk) ** (1 / a))
-            s = way
+        if way != s:  # a reversal, or the first step
+            s, x_j = way, history_point(law, x[i - 1], force[i - 1], way)
         if s:
-            bracket = (1 + s * x[i] - s * shift + double) ** a - law.d0
-            force[i] = law.kb * x[i] + law.dk * bracket / (s * a) + s * law.f0  # (9), (11)
+            force[i] = branch(law, x[i], s, x_j)
     return law.count * force
+
+
+def branch(law: BearingLaw, x: float, s: float, x_j: float, misprinted: bool = False) -> float:
+    """Force of one bearing [N] on the branch of direction s, eqs (9) to (12), with the paper's x_j [m].
+
+    The bracket is 1 + s x - s x_j + 2 x0. As printed, eq. (12) for unloading (s = -1) has the signs of loading:
+    1 + x - x_j + 2 x0.
+    """
+    bracket = 1 + (1 if misprinted else s) * (x - x_j) + 2 * law.x0
+    return law.kb * x + law.dk * (bracket ** (1 - law.alpha) - law.d0) / (s * (1 - law.alpha)) + s * law.f0
+
+
+def history_point(law: BearingLaw, x: float, force: float, s: float) -> float:
+    """x_j [m] of the branch of direction s through the point (x [m], force [N]) of a reversal, eqs (10), (12)."""
+    a, z = 1 - law.alpha, force - law.kb * x
+    return x + s * (1 + 2 * law.x0 - (law.d0 + a * (s * z - law.f0) / law.dk) ** (1 / a))
 
 
 def corner_lift(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """Largest lift of a corner of a block that should stand [m]."""
     scene = named_scene(scenes)
-    response = run(engine, variant, scene, history=False)
+    response = traced(engine, variant, scene, history=False)[0]
     if response.outcome != "stands":
         raise Unmeasurable(f"{engine}, {variant}: {response.outcome} in {scenes}")
     return 2 * scene.block.half_width * response.peak_tilt
@@ -303,7 +262,7 @@ def corner_lift(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) ->
 def base_drift(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:
     """Largest difference of the base displacement from the model's [m] while the block stands."""
     scene = named_scene(scenes)
-    found, reference = run(engine, variant, scene).history, simulate(scene).history
+    found, reference = traced(engine, variant, scene)[0].history, simulate(scene).history
     return float(
         np.abs(np.interp(reference.time, found.time, found.base_displacement) - reference.base_displacement).max()
     )

@@ -94,14 +94,9 @@ class Contact:
     last: int
 
     @property
-    def step(self) -> float:
-        """Longest step while the landing corner is struck [s]."""
-        return float(np.diff(self.time)[self._struck].max())
-
-    @property
     def phase(self) -> float:
-        """Error of e by a strike that is one of these steps late."""
-        return self.late * self.step
+        """Error of e by a strike that is late by one step, the longest while the landing corner is struck."""
+        return self.late * float(np.diff(self.time)[self._struck].max())
 
     @property
     def steps(self) -> int:
@@ -109,21 +104,9 @@ class Contact:
         return int(np.ptp(self._struck)) + 1
 
     @property
-    def lasting(self) -> float:
-        """Time that the middle four fifths of the strike take [s]."""
-        begin, end = np.interp((0.1, 0.9), np.append(0.0, np.cumsum(self.strike)), self.time)
-        return float(end - begin)
-
-    @property
     def deepest(self) -> float:
         """How far a corner is below the ground at most [m]."""
         return float(max(-self.height.min(), 0.0))
-
-    @property
-    def demand(self) -> float:
-        """|friction| over the upward impulse of the contact as a whole."""
-        window = slice(self.first, self.last)
-        return float(abs(self.friction[window].sum()) / abs(self.impulse[window].sum()))
 
     @property
     def _struck(self):
@@ -154,14 +137,16 @@ def contact_of(scene: Scene, trace: Trace, which: int = 0) -> Contact:
     seen, side = trace.at(slice(begin, begin + last + BESIDE + 1)), swings.side[k]
     told = corner_motion(scene, seen, side) | corner_impulses(scene, seen, side)
     landing, rates = float(land[k]), (float(before[k]), float(after[k + 1]))
-    normals, ahead = pivot_forces(scene, seen, side, landing, rates), _ahead(seen.time, landing)
-    strike = told["impulse"][:, 0] - normals[1] * (np.diff(seen.time) - ahead)
+    normals, steps = pivot_forces(scene, seen, side, landing, rates), np.diff(seen.time)
+    ahead = np.clip(landing - seen.time[:-1], 0.0, steps)  # how much of each step lies before the landing
+    strike = told["impulse"][:, 0] - normals[1] * (steps - ahead)
     strike[:first], strike[last:] = 0.0, 0.0
     # The centre falls at b w before the impact and rises at e b w after it.
     if not strike.sum() > LEAST_STRIKE * scene.block.mass * scene.block.half_width * abs(sum(rates)):
         raise Unmeasurable(f"no corner is struck while the tilt is below {trace.contact_tilt:.3g}: elsewhere, or none")
     parts = _parts(scene, told, rates[0], normals[0] * ahead[first:last].sum(), slice(first, last))
-    parts["shape"] = _airborne(told["impulse"][:first]) * _moved(scene, strike.sum(), rates[0])
+    borne = told["impulse"][:first].sum(axis=0)  # in flight, by each corner
+    parts["shape"] = float(borne[0] / borne.sum()) * _moved(scene, strike.sum(), rates[0])
     if not placed:
         parts = {"contact": sum(parts[name] for name in PARTS)}
     return Contact(
@@ -196,52 +181,30 @@ def _gained_in_flight(scene: Scene, trace: Trace, first: int, last: int, rate: f
     return float(balance[-1] / max(_inertia(scene) * rate**2, 2 * kinetic.max()))
 
 
-def frames(contact: Contact) -> dict[str, dict[str, object]]:
-    """The contact in four frames, each a dict of numbers and lists; times from the landing [s], heights [m].
+def frames(contact: Contact) -> dict[str, dict[str, list[float]]]:
+    """The contact in four frames, each of times from the landing [s] and values.
 
-    straddle: times of the steps and both corners' heights, the step that is struck, error by one such step late;
-    energy: over the kinetic one before the impact, and e^2 of eq. (7), where it should end. Where the block is placed
-    also penetration: heights over the whole contact, the deepest; and rebound: the landing corner's speed away from the
-    ground, over that of its fall.
+    straddle: the landing corner's height [m] about the step that is struck; energy: over the kinetic one before the
+    impact. Where the block is placed also penetration: that height over the whole contact; and rebound: the landing
+    corner's speed away from the ground, over that of its fall.
     """
-    time, height = contact.time.tolist(), contact.height.T.tolist()
+    time, height = contact.time.tolist(), contact.height[:, 0].tolist()
     struck = int(contact.strike.argmax())
     near = slice(max(struck - BESIDE, 0), struck + BESIDE + 2)
-    told: dict[str, dict[str, object]] = {
-        "straddle": {
-            "time": time[near],
-            "landing": height[0][near],
-            "old": height[1][near],
-            "struck": time[struck : struck + 2],
-            "phase": contact.phase,
-        },
-        "energy": {
-            "time": time,
-            "energy": contact.energy.tolist(),
-            "exact": (contact.after / contact.before - contact.error) ** 2,
-        },
+    told = {
+        "straddle": {"time": time[near], "landing": height[near]},
+        "energy": {"time": time, "energy": contact.energy.tolist()},
     }
     if contact.placed:
-        fall = contact.sinking[contact.first, 0]
-        told["penetration"] = {"time": time, "landing": height[0], "old": height[1], "deepest": contact.deepest}
-        told["rebound"] = {"time": time, "speed": (-contact.sinking[:, 0] / fall).tolist()}
+        speed = -contact.sinking[:, 0] / contact.sinking[contact.first, 0]
+        told["penetration"] = {"time": time, "landing": height}
+        told["rebound"] = {"time": time, "speed": speed.tolist()}
     return told
 
 
 def _moved(scene: Scene, impulse: float, rate: float) -> float:
     """Change of e by an impulse at the old corner [N s], or by one a second [N]."""
     return float(2 * scene.block.half_width * impulse / (_inertia(scene) * abs(rate)))
-
-
-def _airborne(impulse: np.ndarray) -> float:
-    """Share of the landing corner in what bears the block in flight."""
-    landing, old = impulse.sum(axis=0)
-    return float(landing / (landing + old))
-
-
-def _ahead(time: np.ndarray, landing: float) -> np.ndarray:
-    """How much of each step lies before the landing [s]."""
-    return np.clip(landing - time[:-1], 0.0, np.diff(time))
 
 
 def _inertia(scene: Scene) -> float:

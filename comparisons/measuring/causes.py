@@ -84,8 +84,8 @@ def diagnosis(engine: str, variant: str, scene: Scene, which: int = 0, **setting
     -------
     dict
         engine, variant, tier, best (the default variant); where the impact can be told: placed, error, cause and words
-        (None below `LEAST`), parts, steps, lasting [s], energy_lost (over the kinetic one before), frames, and where
-        the block is placed deepest [m] and demand; else why_not.
+        (None below `LEAST`), parts, steps, energy_lost (over the kinetic one before), frames, and where
+        the block is placed deepest [m]; else why_not.
     """
     record = get_engine(engine)
     row: dict[str, object] = {"engine": engine, "variant": variant, "tier": record.variants[variant].tier}
@@ -105,8 +105,7 @@ def diagnosis(engine: str, variant: str, scene: Scene, which: int = 0, **setting
         "words": cause and CAUSES[cause],
         "parts": contact.parts,
         "steps": contact.steps,
-        "lasting": contact.lasting,
         "energy_lost": float(contact.energy[contact.first] - contact.energy[contact.last]),
         "frames": frames(contact),
     }
-    return row | ({"deepest": contact.deepest, "demand": contact.demand} if contact.placed else {})
+    return row | ({"deepest": contact.deepest} if contact.placed else {})

@@ -68,7 +68,7 @@ def unsure_outcome(scene: Scene, outcome: str, perturbation: float = LEAST) -> C
     return None
 
 
-def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION, spread: float = SPREAD) -> Horizon:
+def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION) -> Horizon:
     """Time until which the motion of a scene can be compared point by point.
 
     Parameters
@@ -76,20 +76,7 @@ def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION, spr
     scene : Scene
     perturbation : float
         Relative change of restitution, motion amplitude and start, above 0 and below 1.
-    spread : float
-        Share of the slenderness by which a copy's tilt must differ to count as parted.
-
-    Returns
-    -------
-    Horizon
-
-    Raises
-    ------
-    ValueError
-        perturbation or spread are out of range.
     """
-    if not 0 < perturbation < 1 or not spread > 0:
-        raise ValueError(f"perturbation = {perturbation!r} must lie in (0, 1), spread = {spread!r} above 0")
     period = 2 * np.pi / scene.rocking_frequency
     step = min(period / SAMPLES_PER_PERIOD, (scene.duration or period) / 2)
     base = simulate(scene, output_step=step).history
@@ -100,7 +87,7 @@ def sensitivity_horizon(scene: Scene, *, perturbation: float = PERTURBATION, spr
         # Where one has overturned and stopped, it keeps its last tilt.
         tilt = np.interp(base.time, other.time, other.tilt)
         apart = np.abs(tilt - base.tilt) / scene.block.slenderness
-        beyond = np.flatnonzero(apart > spread)
+        beyond = np.flatnonzero(apart > SPREAD)
         parted[name] = float(base.time[max(beyond[0] - 1, 0)]) if len(beyond) else None
         largest = np.maximum(largest, apart)
     times = [time for time in parted.values() if time is not None]
@@ -126,14 +113,7 @@ def perturbation_of(scene: Scene, response: Response, reference: Response) -> fl
     -------
     float
         At least `LEAST`, at most `MOST`.
-
-    Raises
-    ------
-    ValueError
-        A history is missing.
     """
-    if response.history is None or reference.history is None:
-        raise ValueError("perturbation_of needs histories: simulate with history=True")
     own, model = response.history, reference.history
     time = model.time[model.time <= own.time[-1]]
     apart = np.abs(np.interp(time, own.time, own.tilt) - model.tilt[: len(time)]) / scene.block.slenderness
@@ -156,6 +136,6 @@ def restitution_error(scene: Scene, response: Response, *, until: float = np.inf
     return float(np.sqrt(np.sum((rates * errors) ** 2) / np.sum(rates**2)))
 
 
-def solver_horizon(scene: Scene, response: Response, reference: Response, *, spread: float = SPREAD) -> Horizon:
+def solver_horizon(scene: Scene, response: Response, reference: Response) -> Horizon:
     """The `Horizon` of one solver: that of its own size of perturbation, `perturbation_of`."""
-    return sensitivity_horizon(scene, perturbation=perturbation_of(scene, response, reference), spread=spread)
+    return sensitivity_horizon(scene, perturbation=perturbation_of(scene, response, reference))

@@ -10,6 +10,7 @@ bound is to be tightened.
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from analytic.errors import SettingError
@@ -86,15 +87,15 @@ class Tolerance:
 
 
 # quantity: how it is measured, unit
-QUANTITIES = {
-    "restitution, rms": (agreement.restitution_rms, "-"),
+QUANTITIES: dict[str, tuple[Callable[..., float], str]] = {
+    "restitution, rms": (partial(agreement.impact_rms, "state"), "-"),
     "restitution from swings, |mean error|": (agreement.swing_restitution_bias, "-"),
-    "base velocity jump, rms": (agreement.base_jump_rms, "relative"),
+    "base velocity jump, rms": (partial(agreement.impact_rms, "jump"), "relative"),
     "impact times": (agreement.impact_times, "s"),
-    "peak tilt": (agreement.peak_tilt, "slenderness"),
-    "peak displacement": (agreement.peak_displacement, "relative"),
-    "tilt graph": (agreement.tilt_graph, "-"),
-    "overturning time": (agreement.overturning_time, "s"),
+    "peak tilt": (partial(agreement.error_of, "peak_tilt_error"), "slenderness"),
+    "peak displacement": (partial(agreement.error_of, "peak_displacement_error"), "relative"),
+    "tilt graph": (partial(agreement.error_of, "graph_distance"), "-"),
+    "overturning time": (partial(agreement.error_of, "overturning_time_error"), "s"),
     "overturning boundary": (agreement.boundary_shift, "relative"),
     "bearing force replayed": (agreement.bearing_replay, "f0"),
     "bearing impulse in the motion": (agreement.bearing_impulse, "relative"),

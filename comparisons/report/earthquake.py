@@ -39,7 +39,7 @@ def earthquake(result: Result) -> Section:
         f"{'One earthquake' if motion else 'One scene'}: {found}",
         (
             f"{under}Each solver runs until its outcome is decided. Tilt is compared up to the sensitivity horizon "
-            "only: beyond it a change as small as the solver's own errors makes another motion.",
+            "only, the same for all: beyond it a change by 10⁻⁴ makes another motion.",
         ),
         (_table(result), told) if warnings else (_table(result),),
         (figure(charts, CAPTION, [row["engine"] for row in result.rows]),) if charts else (),

@@ -69,7 +69,7 @@ GLOSSARY = {
     "isolation period": "2π times the root of mass over the bearings' stiffness",
     "lead-rubber bearing": "rubber with a lead core: stiff k_a at first and after each reversal, then k_b",
     "friction demand": "horizontal over normal force under the block: the friction needed not to slide",
-    "sensitivity horizon": "time beyond which changes as small as a solver's own errors make another motion",
+    "sensitivity horizon": "time beyond which a change by 10⁻⁴ makes another motion; a solver’s own: one by its errors",
     "analytic model": "the rocking equations solved directly from event to event; its compiled part is the kernel",
     "second implementation": "the same equations written again, independently and plainly, to check the first",
     "accuracy knob": "the one setting of a solver that trades time for error; its ladder: the values tried",

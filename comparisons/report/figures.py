@@ -82,7 +82,7 @@ def _pair(result, name, rows, column, label, scale):
     if marked:
         beside.rule(scene["horizon"])
         beside.heading(scene["horizon"], "sensitivity horizon")
-        beside.says += f" Dashed: the earliest sensitivity horizon of a solver, {number(scene['horizon'])} s."
+        beside.says += f" Dashed: the sensitivity horizon of changes by 10⁻⁴, {number(scene['horizon'])} s."
     return [whole, beside]
 
 

@@ -20,7 +20,7 @@ from analytic.rocking import restitution
 from engines import available_engines, get_engine
 
 from ..measuring.errors import compare, impact_errors, rms, worst
-from ..measuring.horizon import solver_horizon
+from ..measuring.horizon import sensitivity_horizon, solver_horizon
 from ..running.cases import Case
 from ..running.solving import spinner
 from ..running.study import Batch, Found, say
@@ -205,11 +205,10 @@ def scenes_found(folder: Path, rows: Sequence[Row], scenes: Mapping[str, Scene],
         reference = next(
             (response_of(row.values, folder) for row in ours if row.case.solver == "analytic" and not row.failed), None
         )
-        horizons = []
+        horizon = sensitivity_horizon(scene).horizon if reference and len(ours) > 1 else None
         for row in ours:
-            entry, drawn = _scene_entry(scene, row, reference, folder)
+            entry, drawn = _scene_entry(scene, row, reference, horizon, folder)
             entries.append({**entry, "scene": name})
-            horizons += [entry["agreement"]["until"]] if "agreement" in entry else []
             arrays.update({f"{name}/{row.case.solver}/{column}": values for column, values in drawn.items()})
         described[name] = {
             "name": scene.name,
@@ -223,8 +222,8 @@ def scenes_found(folder: Path, rows: Sequence[Row], scenes: Mapping[str, Scene],
             "half_height": scene.block.half_height,
             "rocking_frequency": scene.rocking_frequency,
             "restitution": restitution(scene),
-            "horizon": min(horizons, default=None),
-        }  # the earliest of a solver
+            "horizon": horizon,
+        }
     settings = {
         "motion": motion
         and {
@@ -252,8 +251,11 @@ def _drawn_motion(motion):
     return {"motion/time": motion.dt * shown, "motion/acceleration": motion.samples[shown]}
 
 
-def _scene_entry(scene, row, reference, folder):
-    """(what is told of one run, what is drawn of it); measured from all samples, drawn from `thinned` ones."""
+def _scene_entry(scene, row, reference, horizon, folder):
+    """(what is told of one run, what is drawn of it); measured from all samples, drawn from `thinned` ones.
+
+    An engine's run agrees up to the horizon common to all, and ("own_agreement") up to its own.
+    """
     values = {key: value for key, value in row.values.items() if key != "history"}
     entry = {**values, "engine": row.case.solver, "failure": row.failure, **row.cost}
     if row.failed:
@@ -268,10 +270,10 @@ def _scene_entry(scene, row, reference, folder):
     shown = thinned(history.tilt, history.base_displacement, history.bearing_force)
     drawn = {column: getattr(history, column)[shown] for column in History.COLUMNS}
     if reference is not None:
-        until = reference.end.time
         if row.case.solver != "analytic":
             own = solver_horizon(scene, response, reference)
-            until, entry["perturbation"] = own.horizon, own.perturbation
-        entry["agreement"] = asdict(compare(scene, response, reference, until=until))
+            entry["perturbation"] = own.perturbation
+            for key, until in (("agreement", horizon), ("own_agreement", own.horizon)):
+                entry[key] = asdict(compare(scene, response, reference, until=until))
         drawn.update(differences(history, reference.history))
     return entry, drawn

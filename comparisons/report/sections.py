@@ -82,11 +82,11 @@ def outcome_section(result: Result) -> Section:
             "overturn or keep it from it. One that ended earlier is “undecided”, with what it was so far. A "
             "warning names what lies outside what the model describes, or is odd about the record; the outcome "
             "beside it is then to be doubted. Every engine's run is compared with the analytic model's.",
-            "Impact times and tilt graphs are compared up to the end, or up to the solver's sensitivity horizon "
-            "where that comes first: beyond it a change of restitution, motion and start as small as the "
-            "solver's own errors makes another motion, so that a difference says no more about it. The distance "
-            "of two tilt graphs (Hausdorff) is how far a point of one can lie from the other, time in units of 2 "
-            "π/ω_r and tilt in units of γ.",
+            "Impact times and tilt graphs are compared up to the end, or up to a sensitivity horizon where that comes "
+            "first. The common one is that of a change of restitution, motion or start by 10⁻⁴, the same for all; a "
+            "solver's own is that of a change as large as its errors: beyond it a difference says no more about it. "
+            "The distance of two tilt graphs (Hausdorff) is how far a point of one can lie from the other, time in "
+            "units of 2 π/ω_r and tilt in units of γ.",
         ),
         tuple(
             table
@@ -192,20 +192,27 @@ def _warnings(name, found):
     return (Table(f"{name}: warnings", ("solver", "outside what is modelled, or differing"), rows),) if rows else ()
 
 
-def _apart(head: str, key: str, digits: int = 2, *, percent: bool = False) -> Column:
-    """How far a run is from the analytic model's."""
-    return Column(head, lambda row: row["agreement"][key], digits, percent)
+def _apart(head: str, key: str, digits: int = 2, *, percent: bool = False, until: str = "agreement") -> Column:
+    """How far a run is from the analytic model's, up to the common horizon or, "own_agreement", its own."""
+    return Column(head, lambda row: row[until][key], digits, percent)
+
+
+def _trajectory(which: str, until: str) -> tuple[Column, ...]:
+    return (
+        _apart(f"up to {which} sensitivity horizon [s]:", "until", 4, until=until),
+        _apart("impact times, rms [s]", "impact_time_error", until=until),
+        _apart("lost impacts [-]", "lost_impacts", until=until),
+        _apart("distance of the tilt graphs [-]", "graph_distance", until=until),
+    )
 
 
 AGREEMENT = (
     Column("same outcome", lambda row: "yes" if row["agreement"]["same_outcome"] else "no"),
     _apart("overturning time [s]", "overturning_time_error"),
     _apart("peak |φ|/γ [-]", "peak_tilt_error"),
+    *_trajectory("the common", "agreement"),
     Column("size of its errors: change of the model that does as much [-]", "perturbation"),
-    _apart("up to its own sensitivity horizon [s]:", "until", 4),
-    _apart("impact times, rms [s]", "impact_time_error"),
-    _apart("lost impacts [-]", "lost_impacts"),
-    _apart("distance of the tilt graphs [-]", "graph_distance"),
+    *_trajectory("its own", "own_agreement"),
 )
 
 

@@ -45,6 +45,18 @@ def grouped(rows: Iterable[Any], *keys: Key) -> dict[tuple[Any, ...], list[Any]]
     return groups
 
 
+def cheapest(
+    rows: Iterable[Row], name: Key, keeps: Callable[[Row], bool], cost: Callable[[Row], float]
+) -> dict[Any, Row]:
+    """{name: cheapest of its rows, which come from coarse to fine, that keeps with all finer ones}, cheapest first."""
+    found = {}
+    for (who,), some in grouped(rows, name).items():
+        bad = [k for k, row in enumerate(some) if not keeps(row)]
+        if good := some[bad[-1] + 1 :] if bad else some:
+            found[who] = min(good, key=cost)
+    return dict(sorted(found.items(), key=lambda item: cost(item[1])))
+
+
 def value_of(row: Row, key: Key) -> Any:
     """What a function makes of a row, or its value in the column of that name.
 

@@ -59,6 +59,7 @@ BUILT_IN = (
     "kernel",
     "caryatid",
     "tolerances",
+    "constants",
     "sheet",
 )
 

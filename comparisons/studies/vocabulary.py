@@ -175,8 +175,6 @@ OWN: dict[str, dict[str, Explained]] = {
         "ratio": Explained("peak vertical over peak horizontal acceleration"),
         "lifts_off": Explained("runs in which N reaches zero"),
         "sliding": Explained("{coefficient of friction: runs that need more}"),
-        "record": Explained("file of a recorded triple"),
-        "outcomes_changed_by_turning": Explained("runs with another outcome after a turn of the record"),
     },
     "speed-error": {
         "model": Explained("how the engine's model stands for the scene"),
@@ -192,6 +190,7 @@ OWN: dict[str, dict[str, Explained]] = {
         "step": Explained("mean step size", "s"),
         "cpu_per_second": Explained("CPU time over simulated time"),
         "cpu_per_step": Explained("CPU time over steps", "s"),
+        "share": Explained("of the CPU time, inside the engine's compiled functions"),
         "boundary_shifts": Explained("of the boundary of overturning from the reference's, relative, run by run"),
         "settings": Explained("all settings of the run"),
         "against": Explained("what the cost grows with: duration [s], or samples of the motion [1/s]"),
@@ -213,15 +212,11 @@ OWN: dict[str, dict[str, Explained]] = {
         "quantities": Explained("in what the run differs from the model, by name"),
     },
     "kernel": {
-        "problem": Explained("of which run: a problem, or a work of the kernel"),
+        "problem": Explained("which of the two"),
         "tolerance": Explained("relative tolerance asked for"),
         "expected_impacts": Explained("impacts of the reference"),
         "impacts": Explained("impacts found"),
         "error": Explained("of the tilt at the horizon against the reference, over the slenderness"),
-        "overturned": Explained("share of runs that overturn"),
-        "elapsed_seconds": Explained("elapsed time of one run: median over the processes", "s"),
-        "elapsed_low": Explained("elapsed time of one run: least", "s"),
-        "elapsed_high": Explained("elapsed time of one run: most", "s"),
     },
     "autopsy": {
         "best": Explained("whether the variant is its engine's default"),
@@ -332,6 +327,22 @@ OWN: dict[str, dict[str, Explained]] = {
         "found": Explained("error now", "see unit"),
         "holds": Explained("whether the error now is within the bound"),
         "source": Explained("where the error comes from"),
+    },
+    "constants": {
+        "constant": Explained(
+            'a setting of the variant, or "module:NAME" of a number in its code; null: all as they are'
+        ),
+        "what": Explained("what the constant is"),
+        "change": Explained('of the constant: "as it is", "halved" or "doubled"'),
+        "value": Explained("of the constant as it is", "of the constant"),
+        "outcomes_changed": Explained("of the runs, those with another outcome than with the constant as it is"),
+        "moved": Explained("of the runs, those that differ in any number"),
+        "rms": Explained("error of restitution by the states at impacts: root mean square over the blocks let go"),
+        "peak_median": Explained("error of the peak tilt under a motion: median over runs", "slenderness"),
+        "peak_worst": Explained("error of the peak tilt under a motion: largest", "slenderness"),
+        "steps": Explained("of all runs together"),
+        "cpu_seconds": Explained("CPU time of all runs together", "s"),
+        "cpu_ratio": Explained("CPU time over that with the constant as it is"),
     },
     "sheet": {
         "error": Explained("largest of the scene's answers, over the scale of each"),

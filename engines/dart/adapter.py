@@ -19,7 +19,7 @@ VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(),
         tier="tuned",
-        ladder=(1e-3, 5e-4, 2e-4, 1e-4),
+        ladder=(2e-3, 6e-4, 2e-4, 1e-4),
         computes="motion, contact, impact and rest",
         imposes="the steps, by gaps and closing speeds",
     ),

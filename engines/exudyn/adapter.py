@@ -15,6 +15,7 @@ from analytic.response import Failure, State
 from ..checks import replay_bearing
 from ..contract import Variant
 from . import corners, joints, native
+from .constants import CONSTANTS
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -44,6 +45,7 @@ VARIANTS = {
             "damping": (0.1, 0.5, 1.0),
             "friction": (0.05, 0.1, 0.15, 0.2, 0.3, 0.6, 5.0),
         },
+        constants=CONSTANTS,
         computes="motion, contact, impact and rest, by integration",
         imposes="contact law: ours (Hunt-Crossley, Coulomb; plastic as Housner assumes: agreement verifies law and "
         "integration); a plane; explicit or implicit steps",

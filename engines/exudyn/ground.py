@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from .model import Model
 
 
+SUMS = 1e-12  # round-off of a sum of steps, over the duration
+WHOLE = 1e-9  # of a step, that a segment of the motion may be longer than so many
+
+
 def ground_load(motion: Motion) -> Callable[[Any, Any], Any]:
     """Symbolic ground acceleration [m/s2] from time and the load vector, which holds the segment's parameters.
 
@@ -64,7 +68,7 @@ class Ground:
         vectors = {motion: segments(motion, model.scene.duration)[1] for _, motion in model.loads}
         self.loads = [(number, vectors[motion]) for number, motion in model.loads]
         self.mbs, self.longest = model.mbs, longest
-        self.slack = 1e-12 * max(1.0, model.scene.duration)  # round-off of a sum of steps
+        self.slack = SUMS * max(1.0, model.scene.duration)
         self.dt = model.scene.motion.dt if isinstance(model.scene.motion, SampledMotion) else None
         self.at, self.limited = 0, False
         self.iterations = None
@@ -93,7 +97,7 @@ class Ground:
         """(end [s], number) of equal steps, none longer than `step` [s], from t on that meet the ends of segments."""
         left, samples = self.end - t, len(self.ends) - 1 - self.at  # segments of equal length, and the last
         if self.dt and samples and abs(left - self.dt) < self.slack:
-            return self.ends[-2], samples * math.ceil(self.dt / step - 1e-9)
+            return self.ends[-2], samples * math.ceil(self.dt / step - WHOLE)
         return self.end, math.ceil(left / step)
 
     def prepare(self, mbs: exu.MainSystem, t: float) -> bool:

@@ -19,7 +19,7 @@ from analytic.motion import PulseMotion
 from analytic.rocking import RockingModel
 
 from ..vibration import longest_step
-from .ground import Ground
+from .ground import SUMS, Ground
 from .stepping import solve, solver_settings
 
 if TYPE_CHECKING:
@@ -44,12 +44,12 @@ WORTHWHILE = 0.1
 # Of the steps that leapfrog engines take where bearings vibrate: its phase is off by (h omega)^2/12 a radian.
 SMOOTH = 0.075
 FIRST = 2e-3  # of the longest explicit step: the first one of a piece
-# Damping of what steps do not resolve: the spectral radius of generalized-alpha. .6 to .98 give the same e to 2e-7.
-DAMPED = 0.9
+# What generalized-alpha takes of a vibration that steps do not resolve: 1 less its spectral radius. .02 to .4 give the
+# same e to 2e-7.
+DAMPED = 0.1
 # Newton's residual, over the block's weight; but no less than some rounding errors of a place, as stiff corners feel
 # them: below these exudyn finds no end.
 RESIDUAL, ROUNDING = 1e-7, 30 * 2.0**-52
-JUST = 1e-9  # s, before a jump: round-off of a sum of steps
 DIFFERENCE = 0.02  # of a corner's depth, by which exudyn moves a coordinate to derive the forces
 
 
@@ -99,7 +99,7 @@ class Phases:
         self.smooth = solver_settings(scene, automaticStepSize=False, adaptiveStep=False)
         integration = self.smooth.timeIntegration
         integration.solverType = exu.DynamicSolverType.GeneralizedAlpha
-        integration.generalizedAlpha.spectralRadius = DAMPED
+        integration.generalizedAlpha.spectralRadius = 1 - DAMPED
         integration.newton.useModifiedNewton = True
         weight = scene.block.mass * scene.gravity
         rounding = ROUNDING * scene.block.radius * weight / (2 * rule.sink)
@@ -129,7 +129,7 @@ class Phases:
             return False
         if not self.worthwhile or t - self.since < self.rule.settle or t < self.refused:
             return False
-        if any(-JUST < t - jump < self.rule.settle for jump in self.jumps):
+        if any(-self.ground.slack < t - jump < self.rule.settle for jump in self.jumps):
             return False
         if state == BOTH:
             return True
@@ -141,7 +141,7 @@ class Phases:
         """Step to the scene's end, to overturning or to where a run is given up; exudyn's failure, or None."""
         steps, duration = self.steps, self.model.scene.duration
         self.record(self.model.mbs, 0.0)
-        while steps.times[-1] < duration * (1 - 1e-12):
+        while steps.times[-1] < duration * (1 - SUMS):
             t, count = steps.times[-1], len(steps.times)
             q, v = steps.last()
             self.implicit = self.quiet(t, q, v)

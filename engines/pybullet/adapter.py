@@ -17,6 +17,7 @@ from ..contract import Run, Variant
 from ..leapfrog import raw_trace_of
 from ..stepping import Bodies, FirstScript, FixedStep, ImpactAware, Settings, run_of
 from . import first_script
+from .constants import CONSTANTS
 from .scene import MOST_FRICTION, MOST_VELOCITY, BulletBodies
 
 if TYPE_CHECKING:
@@ -25,9 +26,10 @@ if TYPE_CHECKING:
 
 VARIANTS = {
     "impact-aware": Variant(
-        ImpactAware(1e-3),
+        ImpactAware(1e-3, 1e-3),
         tier="tuned",
-        ladder=(4e-3, 2e-3, 1e-3, 5e-4),
+        ladder=(7e-3, 3e-3, 1e-3, 5e-4),
+        constants=CONSTANTS,
         computes="motion, contact, impact and rest",
         imposes="a plane, by joints; the steps, by gaps and closing speeds",
     ),

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from analytic import Scene
 
 THICKNESS = 1.0  # m, of the slab
-# Bullet's own default [m]. Process-global: without it a planar run earlier in the process would leave its own here.
+# Gap [m] below which Bullet keeps contact points: its own default. Process-global, leaks from client to client and is
+# not returned by the getter: set in every client.
 BREAKING_THRESHOLD = 0.02
 MOST_VELOCITY = 100.0  # m/s and rad/s: where Bullet cuts a joint's by default, in silence
 

@@ -15,6 +15,7 @@ import pybullet
 from ..placement import placement
 from ..readback import require
 from ..stepping import State
+from .first_script import BREAKING_THRESHOLD
 from .links import chain, without_losses
 
 if TYPE_CHECKING:
@@ -25,10 +26,6 @@ if TYPE_CHECKING:
 MOST_FRICTION = 10.0
 FRICTION = MOST_FRICTION
 
-# Gap [m] below which Bullet keeps contact points. Process-global, leaks from client to client and is not returned
-# by the getter: set in every client. Bullet's default is 0.02.
-BREAKING_THRESHOLD = 1e-3
-
 # Not set is contactERP, the share of a penetration that a step takes back: with these corners nothing penetrates.
 # Between 0 and .9 a step e is the same to 2e-9 at every accuracy; with a box's contact it matters.
 
@@ -38,11 +35,11 @@ BREAKING_THRESHOLD = 1e-3
 CORNER_RADIUS = 1e-6
 
 # What the sequential impulses of a step may leave undone, as a share, rocking on one corner and standing on two; see
-# `iterations`. The least are those of J_O = 4/3 m R^2 and slenderness .45, where e is the same with 1000. With too few
-# e is .99998 for .64 (J_O = 1.05 m R^2) and a standing block rocks (10: at 9e-5 of gamma under shaking of .9 of the
-# uplift threshold, gamma .1). The direct solver (Dantzig) stands too, but its friction is wrong on two corners: under a
-# horizontal load the block and its base part. The default solverResidualThreshold does not end the iterations early.
-ROCKING_REST, STANDING_REST, LEAST_ITERATIONS, MOST_ITERATIONS = 1e-6, 1e-4, (10, 20), 20_000
+# `iterations`. With too few e is .99998 for .64 (J_O = 1.05 m R^2) and a standing block rocks (10: at 9e-5 of gamma
+# under shaking of .9 of the uplift threshold, gamma .1). The direct solver (Dantzig) stands too, but its friction is
+# wrong on two corners: under a horizontal load the block and its base part. The default solverResidualThreshold does
+# not end the iterations early.
+ROCKING_REST, STANDING_REST, MOST_ITERATIONS = 1e-6, 1e-4, 20_000
 
 MOST_VELOCITY = 1e9  # m/s and rad/s, above which Bullet would cut a joint's; its default is 100
 
@@ -110,7 +107,7 @@ def iterations(scene: Scene, corners: int) -> int:
     rate = rates[rates < 1 - 1e-9].max()  # 1: the two corners' shares of the friction, which do not matter
     rest = (ROCKING_REST, STANDING_REST)[corners - 1]
     needed = math.log(rest * min(1.0, light / block.mass)) / math.log(rate) if rate > 0 else 1.0
-    return min(max(math.ceil(needed), LEAST_ITERATIONS[corners - 1]), MOST_ITERATIONS)
+    return min(max(math.ceil(needed), 1), MOST_ITERATIONS)
 
 
 def assemble(client: int, scene: Scene, step: float) -> Assembly:

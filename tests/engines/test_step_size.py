@@ -55,7 +55,7 @@ def test_the_nearest_landing_of_all_points_decides(fresh, turn):
 def test_steps_are_held_after_a_jump_of_a_speed_and_then_grow(fresh):
     first, after = fresh(((1.0, 0.3), APART)), ((1.0, -0.2), APART)
     assert [fresh(after) for _ in range(HOLD)] == [first] * HOLD
-    assert [fresh(after) for _ in range(3)] == pytest.approx([first * GROWTH ** (k + 1) for k in range(3)])
+    assert [fresh(after) for _ in range(3)] == pytest.approx([first * (1 + GROWTH) ** (k + 1) for k in range(3)])
 
 
 def test_steps_are_held_while_a_point_lands(fresh):

@@ -16,7 +16,6 @@ from analytic.bearing import BearingLaw, hysteretic_force
 from analytic.laws import NUMBERS
 from analytic.laws.algebraic import virtual_travel
 from analytic.solver import ground, options, parameters
-from analytic.twin import simulate_twin
 from analytic.types import Motion
 
 from .runs import ISOLATED, caryatid
@@ -26,9 +25,7 @@ ALGEBRAIC, BOUC_WEN = (NUMBERS[law] for law in LAWS)
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 DIVISIONS = (1, 2, 4, 8, 16)  # fixed steps per sample of the motion
 ERRORS = {"kernel": (1e-8, 1e-10, 1e-12), "fixed-step RK4": (1e-6, 3e-7, 1e-7, 3e-8)}
-TWIN_SECONDS = 1.5
 REPEATS = 6  # of which the least counts, in every round
-EVALUATIONS = 200_000
 
 
 def cost_rows(motion: Motion, quick: bool = False) -> list[dict[str, Any]]:
@@ -40,7 +37,6 @@ def cost_rows(motion: Motion, quick: bool = False) -> list[dict[str, Any]]:
     record = {law: caryatid(ISOLATED, motion).with_(bearings={"law": law}, duration=motion.end) for law in LAWS}
     shaking = PulseMotion("one-sine", 3.0, math.pi)
     pulse = {law: scene.with_(motion=shaking, duration=10.0) for law, scene in record.items()}
-    begin = {law: scene.with_(duration=TWIN_SECONDS) for law, scene in record.items()}
     return [
         _compared(
             "kernel",
@@ -50,30 +46,12 @@ def cost_rows(motion: Motion, quick: bool = False) -> list[dict[str, Any]]:
             rounds,
         ),
         _compared(
-            "kernel",
-            "record: steps end at samples, algebraic path unrolled",
-            record,
-            [partial(_kernel, tolerance=1e-8, repeats=3)],
-            rounds,
-        ),
-        _compared(
             "fixed-step RK4",
             "record: the same loop; x_j fixed at each reversal",
             record,
             [partial(_fixed_step, divisions=divisions) for divisions in DIVISIONS],
             rounds,
         ),
-        *(
-            _compared(
-                f"scipy {method}",
-                f"record, first {TWIN_SECONDS:g} s",
-                begin,
-                [partial(_twin, method=method)],
-                2 if quick else 5,
-            )
-            for method in ("RK45", "DOP853")
-        ),
-        _evaluation(BearingLaw.of(record["algebraic"].bearings), rounds),
     ]
 
 
@@ -90,12 +68,6 @@ def _least(runs):
     return spent.min(axis=0), values
 
 
-def _timed(function, *arguments):
-    begin = time.process_time()
-    value = function(*arguments)
-    return time.process_time() - begin, value
-
-
 def _kernel(scene, tolerance, repeats):
     """CPU of the compiled run alone, and its final displacement."""
     run = parameters(scene), ground(scene.motion), options(tolerance), np.zeros(layout.TOTALS)
@@ -103,11 +75,6 @@ def _kernel(scene, tolerance, repeats):
     for _ in range(repeats):
         state, *_ = kernel.run(*run)
     return (time.process_time() - begin) / repeats, float(state[2])
-
-
-def _twin(scene, method):
-    response = simulate_twin(scene, method=method, rtol=1e-6, history=False, energy=False)
-    return response.cpu_seconds, response.end.base_displacement
 
 
 @njit  # no cache: numba would not see that a law has changed
@@ -157,14 +124,15 @@ def _rk4(dt, samples, divisions, mass, law, count, kb, dk, alpha, d0, f0):
 def _fixed_step(scene, divisions):
     law, motion = BearingLaw.of(scene.bearings), scene.motion
     properties = law.law, law.count, law.kb, law.dk, law.alpha, law.d0, law.f0
-    return _timed(_rk4, motion.dt, motion.samples, divisions, scene.total_mass, *properties)
+    begin = time.process_time()
+    end = _rk4(motion.dt, motion.samples, divisions, scene.total_mass, *properties)
+    return time.process_time() - begin, end
 
 
 def _compared(integrator, what, scenes, runs, rounds):
     """CPU of both laws, a ratio per round; runs: by accuracy, coarse to fine, each gives (CPU, final displacement).
 
-    Several are compared at equal error, between the levels of each law on logarithmic scales. One alone sits at the
-    error floor that steps ending at the samples give.
+    Compared at equal error, between the levels of each law on logarithmic scales.
     """
     tight = {law: simulate(scene, tolerance=1e-16, history=False) for law, scene in scenes.items()}
     for scene in scenes.values():
@@ -176,57 +144,11 @@ def _compared(integrator, what, scenes, runs, rounds):
             abs(end - tight[law].end.base_displacement) / tight[law].peak_base_displacement
             for law, end in zip(LAWS, ends, strict=True)
         ]
-    if len(runs) == 1:
-        return _row(integrator, what, (cpu[:, 0, 0] / cpu[:, 1, 0]).tolist(), errors.tolist(), cpu, None)
     at = [
         [_cpu_at(target, own, spent) for own, spent in zip(errors, one, strict=True)]
         for one, target in product(cpu, ERRORS[integrator])
     ]
     ratios = [a / b for a, b in at if a is not None and b is not None]
-    return _row(integrator, what, ratios, errors.tolist(), cpu, ERRORS[integrator])
-
-
-def _cpu_at(error, errors, cpu):
-    """CPU at `error` by logarithmic interpolation; None outside the ladder's errors."""
-    errors = np.maximum(errors, 1e-17)
-    best = np.minimum.accumulate(errors)  # a lucky rung is not bought by the next
-    if not best[-1] <= error <= best[0]:
-        return None
-    return float(np.exp(np.interp(-np.log(error), -np.log(best), np.log(cpu))))
-
-
-@njit(cache=True)
-def _branch_forces(n, dk, alpha, d0, f0):
-    """As an integrator that fixes x_j at each reversal evaluates it: one power."""
-    z = 0.0
-    for k in range(n):
-        z += 1e-12 * (dk * ((1.05 + 1e-9 * k) ** (1 - alpha) - d0) / (1 - alpha) + f0)
-    return z
-
-
-@njit(cache=True)
-def _rates(n, dk, f0):
-    z = 0.1 * f0
-    for k in range(n):
-        v = 0.1 + 1e-9 * k
-        z += 1e-12 * (0.5 * dk * v * (1 - math.copysign(1.0, v) * z / f0))
-    return z
-
-
-def _evaluation(law, rounds):
-    """One evaluation of the force (algebraic, x_j fixed) over one of the rate z' (Bouc-Wen)."""
-    runs = [
-        partial(_timed, _branch_forces, EVALUATIONS, law.dk, law.alpha, law.d0, law.f0),
-        partial(_timed, _rates, EVALUATIONS, law.dk, law.f0),
-    ]
-    _least(runs)  # compiled
-    cpu = np.array([_least(runs)[0] for _ in range(rounds)])[:, :, None] / EVALUATIONS
-    what = "force with x_j fixed, against rate of z"
-    return _row("one evaluation, compiled", what, (cpu[:, 0, 0] / cpu[:, 1, 0]).tolist(), None, cpu, None)
-
-
-def _row(integrator, what, ratios, errors, cpu, targets):
-    """cpu: shape (rounds, laws, levels) [s]."""
     low, middle, high = np.percentile(ratios, (10, 50, 90)) if ratios else (None, None, None)
     return {
         "part": "cost",
@@ -236,7 +158,16 @@ def _row(integrator, what, ratios, errors, cpu, targets):
         "ratio_low": low,
         "ratio_high": high,
         "ratios": len(ratios),
-        "errors": errors,
-        "cpu_seconds": np.median(cpu, axis=0).tolist(),
-        "at_errors": targets,
+        "errors": errors.tolist(),
+        "cpu_seconds": np.median(cpu, axis=0).tolist(),  # shape (laws, levels)
+        "at_errors": ERRORS[integrator],
     }
+
+
+def _cpu_at(error, errors, cpu):
+    """CPU at `error` by logarithmic interpolation; None outside the ladder's errors."""
+    errors = np.maximum(errors, 1e-17)
+    best = np.minimum.accumulate(errors)  # a lucky rung is not bought by the next
+    if not best[-1] <= error <= best[0]:
+        return None
+    return float(np.exp(np.interp(-np.log(error), -np.log(best), np.log(cpu))))

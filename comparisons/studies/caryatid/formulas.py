@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 from scipy.integrate import cumulative_simpson
-from scipy.optimize import brentq
 
 from analytic import Scene, load_scene, simulate
 from analytic.bearing import BearingLaw
 from analytic.design import design_bearings, properties
 from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
 
+from ...measuring.agreement import branch, history_point
 from .paper import (
     ALPHA,
     BASE_MASS,
@@ -48,24 +48,6 @@ SLENDERNESSES = np.linspace(0.1, 0.45, 71)  # rad
 AMPLITUDES = np.linspace(0.02, 0.40, 96)  # m
 
 
-def branch(law: BearingLaw, x: float, s: float, x_j: float, misprinted: bool = False) -> float:
-    """Force of one bearing [N] on the branch of direction s, eqs (9) to (12), with the paper's x_j.
-
-    The bracket is 1 + s x - s x_j + 2 x0. As printed, eq. (12) for unloading (s = -1) has the signs of loading:
-    1 + x - x_j + 2 x0.
-    """
-    sign = 1 if misprinted else s
-    bracket = 1 + sign * (x - x_j) + 2 * law.x0
-    return law.kb * x + law.dk * (bracket ** (1 - law.alpha) - law.d0) / (s * (1 - law.alpha)) + s * law.f0
-
-
-def history_point(law: BearingLaw, x: float, force: float, s: float) -> float:
-    """x_j [m] of the branch of direction s through the point (x [m], force [N]) of a reversal, found as a root."""
-    # at the root the bracket lies between 1 (on the other limit curve) and 1 + 2 x0 (on this one)
-    edges = sorted((x, x + 2 * s * law.x0))
-    return brentq(lambda x_j: branch(law, x, s, x_j) - force, *edges, xtol=1e-15, rtol=1e-15)
-
-
 def momentum_after(scene: Scene, jump_length: float, rate: float = -1.0) -> float:
     """Horizontal momentum after an impact over that before it, for a base velocity jump -e_x phi'-; 1 if conserved.
 
@@ -86,8 +68,10 @@ def formulas() -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
         "printed": (unloading[0] - arrays["reversal/printed"][0]) / (2 * law.f0),
     }
     literal = np.abs(arrays["reversal/literal"] - unloading).max() / law.f0
-    rows = [*_values(scene), *_misprints(scene, jumps), *_equations(scene, law, jumps, float(literal))]
-    return rows, arrays
+    got = properties(scene.bearings, scene.total_mass, X_MAX)
+    designed = design_bearings(scene.total_mass, PERIOD, DAMPING, X_MAX, count=COUNT, definition="paper")
+    equations = _equations(scene, law, got, designed, jumps, float(literal))
+    return [*_values(scene, got, designed), *_misprints(scene, got, jumps), *equations], arrays
 
 
 def _loops(law):
@@ -142,16 +126,9 @@ def _amplitudes(scene):
     }
 
 
-def _designed(scene):
-    """The bearings that follow from Table 1(a)."""
-    targets = scene.total_mass, PERIOD, DAMPING, X_MAX
-    return design_bearings(*targets, count=COUNT, definition="paper")
-
-
-def _values(scene):
+def _values(scene, got, designed):
     """Every number of the paper that needs no motion."""
     radius = 3 * scene.gravity / (4 * OMEGA_R**2)  # (1) with J_O = 4/3 m R^2
-    got, designed = properties(scene.bearings, scene.total_mass, X_MAX), _designed(scene)
     secant = f"as secant period at x_max; with k_b alone it would be {got.period_kb:.3f} s"
     ours, usual = "damping ξ as W_D/(2π E_s) [%]", "damping ξ as W_D/(4π E_s) [%]"
     from_a, ten = "designed from Table 1(a)", "designed from Table 1(a) with k_a/k_b = 10"
@@ -214,8 +191,7 @@ def _rows(part, keys, *rows):
     return [{"part": part, **dict(zip(keys, row, strict=True))} for row in rows]
 
 
-def _misprints(scene, jumps):
-    got = properties(scene.bearings, scene.total_mass, X_MAX)
+def _misprints(scene, got, jumps):
     return _rows(
         "misprint",
         ("where", "printed", "corrected", "measure", "value_corrected", "value_printed"),
@@ -271,10 +247,10 @@ def _impact_by_balances(scene, rate):
     return np.linalg.solve(balances, [m * h * rate, (about + m * (h * h - b * b)) * rate])
 
 
-def _equations(scene, law, jumps, literal):
+def _equations(scene, law, got, designed, jumps, literal):
     """Eqs (1) to (14), Fig. 3 and Table 1, each by a number that it must give."""
     run = simulate(load_scene("caryatid-isolated").with_(block={"slenderness": 0.15}), history=False)  # it rocks
-    rate, got = -0.7, properties(scene.bearings, scene.total_mass, X_MAX)
+    rate = -0.7
     spin, base = _impact_by_balances(scene, rate)
     _, corrected = RockingModel.of(scene).impact(rate)
     off = base_jump_length_as_printed(scene) / base_jump_length(scene) - 1
@@ -334,5 +310,5 @@ def _equations(scene, law, jumps, literal):
             got.cycle_loss,
         ),
         ("Table 1(a)", "design targets", REPRODUCED, "T_bi as secant period at x_max [s]", got.period),
-        ("Table 1(b)", "bearings", REPRODUCED, "α designed from Table 1(a) [-]", _designed(scene).alpha),
+        ("Table 1(b)", "bearings", REPRODUCED, "α designed from Table 1(a) [-]", designed.alpha),
     )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -19,15 +18,13 @@ from ...showing.parts import Head, Page, Table, number, percent
 from ...showing.rows import Column, grouped, table, where
 from . import paper
 from .runs import FREE, ISOLATED
-from .variations import CATEGORIES, FRICTION_LIMITS, ONLY_FREE, ONLY_ISOLATED, WITHIN
+from .variations import CATEGORIES, WITHIN
 
 PRINTED, CORRECT, LIMIT = "var(--ghost)", "var(--accent)", "var(--soft)"  # colours of curves
 DAMPINGS = ("var(--ink)", "var(--accent)", "var(--good)", "var(--fair)", "var(--bad)")  # of Fig. 5(b), least first
 FLOOR = 1e-9  # differences below are drawn there
 KEPT = 5  # of so many samples of a smooth history one is drawn
 HARMS = dict(zip(CATEGORIES, ("", "right", "wrong", "falls"), strict=True))  # classes of who stays upright
-BOUNDS = {"share": (0.01, 0.25, 0.5, 0.75), "friction": (0.2, *FRICTION_LIMITS), "normal": (0.0, 0.25, 0.5, 0.75)}
-INTENSITY = "intensity: motion times [-]"
 GAMMA = "slenderness γ [rad]"
 
 NUMBER = Column("number of the paper", "{where}: {quantity}")
@@ -225,16 +222,8 @@ def _motion(result):
                 Column("holds for γ [rad]", lambda row: _spans(row["intervals"])),
             ),
             _vulnerable(result),
-            Head("Other slendernesses, intensities and motions"),
+            Head("Does isolation help other blocks, and under other motions?"),
             _benefit(result),
-            _table(
-                "The Caryatid at other intensities: times the motion at which its state changes",
-                where(result.rows, part="critical intensity"),
-                Column("scene and state", "{scene}, {what}"),
-                Column("first at [-]", "first", digits=4),
-                Column("all changes [-]", lambda row: row["changes"] or "none up to 4", digits=4),
-            ),
-            _seeds(result.arrays),
             _table(
                 "Share of the map over slenderness and intensity",
                 [shares[0], {"motion": f"mean of {len(others)} synthetic motions", **mean}, *others],
@@ -244,24 +233,8 @@ def _motion(result):
                     for key in SHARES
                 ),
             ),
-            Head("Does it slide, does it jump?"),
-            _table(
-                "Friction demand and least normal force of the Caryatid, and shares of the map",
-                where(result.rows, part="contact"),
-                Column("scene", "scene"),
-                Column("friction demand [-]", "friction_demand", digits=3),
-                Column("least N/(m g) [-]", "min_normal_ratio", digits=3),
-                Column("friction of an impact, at any speed [-]", "impact_friction", digits=3),
-                *(
-                    Column(f"map: friction above {limit:g}", f"friction above {limit:g}", digits=3, percent=True)
-                    for limit in FRICTION_LIMITS
-                ),
-                Column("map: N ≤ 0", "jumps", percent=True),
-            ),
-            _contact(result.arrays, "friction", "friction demand |H|/N [-]", "s0 s1 s2 s3 s5"),
-            _contact(result.arrays, "normal", "least N/(m g) [-]", "s5 s3 s2 s1 s0"),
             Head("Is the algebraic law cheaper than Bouc-Wen?"),
-            *_cost(where(result.rows, part="cost")),
+            *_cost([row for row in where(result.rows, part="cost") if row["at_errors"]]),
             Head("All runs"),
             _agreement(runs),
             _table("All runs", [row for same in grouped(runs, SCENE.of).values() for row in same], *RUN),
@@ -377,23 +350,11 @@ def _vulnerable(result):
     )
 
 
-def _map(arrays, part, panels, kinds, right=14):
-    """Maps over the slendernesses and intensities of a part; returns panels and legend."""
-    gamma, intensity = (arrays[f"{part}/{name}"].astype(float) for name in ("slenderness", "intensity"))
-    return regions(GAMMA, INTENSITY, gamma, intensity, panels, kinds, right=right)
-
-
-def _levels(quantity, classes):
-    """{words: class} of the levels between its bounds."""
-    bounds = BOUNDS[quantity]
-    between = [f"{low:g} to {high:g}" for low, high in pairwise(bounds)]
-    return dict(zip((f"below {bounds[0]:g}", *between, f"above {bounds[-1]:g}"), classes.split(), strict=True))
-
-
 def _benefit(result):
     """Who stays upright, over slenderness and intensity."""
-    (chart,), keys = _map(result.arrays, "benefit", {"": result.arrays["benefit/category"]}, HARMS, 76)
-    gamma, intensity = (result.arrays[f"benefit/{name}"] for name in ("slenderness", "intensity"))
+    gamma, intensity = (result.arrays[f"benefit/{name}"].astype(float) for name in ("slenderness", "intensity"))
+    panels = {"": result.arrays["benefit/category"]}
+    (chart,), keys = regions(GAMMA, "intensity: motion times [-]", gamma, intensity, panels, HARMS, right=76)
     beyond = ~(result.arrays["benefit/isolated displacement"] <= paper.X_MAX)
     lifts = result.arrays["benefit/isolated lifts"]
     for reached, name, tone in ((beyond, "0.30 m", "var(--bad)"), (lifts, "lifts", "var(--ink)")):
@@ -410,28 +371,6 @@ def _benefit(result):
     )
 
 
-def _seeds(arrays):
-    """Share of the synthetic motions in which isolation helps, and in which it harms."""
-    total = arrays["seeds/counts"].sum(axis=0).max()
-    panels = {
-        title: np.digitize(arrays["seeds/counts"][kind] / total, BOUNDS["share"])
-        for title, kind in (("only the isolated one stays", ONLY_ISOLATED), ("only the free-standing one", ONLY_FREE))
-    }
-    charts, keys = _map(arrays, "seeds", panels, _levels("share", "s0 s1 s2 s3 s5"))
-    return figure(charts, f"Share of {total} synthetic motions in which isolation decides.", keys, keys)
-
-
-def _contact(arrays, quantity, words, classes):
-    """What the contact has to bear, free-standing and isolated; no friction demand: no normal force."""
-    panels = {
-        name: np.digitize(arrays[f"contact/{name} {quantity}"].astype(float), BOUNDS[quantity])
-        for name in (FREE, ISOLATED)
-    }
-    charts, keys = _map(arrays, "contact", panels, _levels(quantity, classes))
-    caption = f"{words[0].upper()}{words[1:]}; runs that overturn count until the tilt first reaches γ."
-    return figure(charts, caption, keys, keys)
-
-
 def _cost(rows):
     won = [f"{row['integrator']} ({row['what']})" for row in rows if row["ratio_high"] and row["ratio_high"] < 1]
     found = f"Cheaper beyond the spread in {', '.join(won)}." if won else "Not confirmed here: in no setting it is."
@@ -440,17 +379,12 @@ def _cost(rows):
         "to a power. Not tested are the paper's own setting, sub-steps inside a time-step scheme, and other exponents."
     )
 
-    def errors(row):
-        if row["errors"] is None:
-            return "equal by construction"
-        return row["at_errors"] or [errors[-1] for errors in row["errors"]]
-
     yield _table(
         "CPU time of the algebraic bearing over that of a Bouc-Wen bearing of the same limit force and stiffnesses",
         rows,
         Column("integrator", "integrator"),
         Column("how", "what"),
-        Column("errors over the peak displacement [-]", errors, digits=1),
+        Column("errors over the peak displacement [-]", "at_errors", digits=1),
         Column("algebraic, finest [s]", lambda row: row["cpu_seconds"][0][-1]),
         Column("Bouc-Wen, finest [s]", lambda row: row["cpu_seconds"][1][-1]),
         Column("median ratio [-]", "ratio", digits=3),

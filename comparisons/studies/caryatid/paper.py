@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import partial
 from typing import Any
 
 from analytic import SampledMotion
-from analytic.linear_oscillator import displacement_spectrum
 from analytic.types import Motion
 
 from .runs import FREE, ISOLATED, caryatid
 
 REPRODUCED, CORRECTED, NOT_REPRODUCIBLE = "reproduced", "corrected", "not reproducible"
-GIVEN, DERIVED, ADDED, OTHER_MOTION = "input", "not printed, derived", "added here", "other motion"
+GIVEN, DERIVED, OTHER_MOTION = "input", "not printed, derived", "other motion"
 NOT_CHECKABLE = "not checkable"
 
 # Table 1(a): targets; Table 1(b): the bearings designed for them
@@ -73,23 +71,18 @@ def value(
 
 
 def judged(
-    where: str,
-    quantity: str,
-    printed: float | str,
-    study: float | str | None,
-    within: float = 0.0,
-    note: str = "",
-    engine: str | None = None,
-    own: bool = True,
+    where: str, quantity: str, printed: float, study: float, within: float, note: str = "", own: bool = True
 ) -> dict[str, Any]:
-    """A row as `value` makes it, reproduced if it is the same word or lies within half a printed digit, or what "about"
-    allows; study: None if it does not happen. own: whether the paper's motion is behind it; else it is not judged.
+    """A row as `value` makes it, reproduced if it lies within half a printed digit, or what "about" allows.
+
+    own: whether the paper's motion is behind it; else it is not judged.
     """
-    study = "does not happen" if study is None else study
-    words = isinstance(study, str) or isinstance(printed, str)
-    met = study == printed if words else abs(study - printed) <= within  # type: ignore[operator]  # both are numbers
-    status = OTHER_MOTION if not own else REPRODUCED if met else NOT_REPRODUCIBLE
-    return value(where, quantity, printed, study, status, note, engine)
+    met = abs(study - printed) <= within
+    return value(where, quantity, printed, study, _status(own, met), note)
+
+
+def _status(own, met):
+    return OTHER_MOTION if not own else REPRODUCED if met else NOT_REPRODUCIBLE
 
 
 def is_papers_motion(motion: Motion) -> bool:
@@ -108,8 +101,8 @@ def motion_values(rows: Sequence[Mapping[str, Any]], motion: SampledMotion, leas
             yield from _run_values(row, motion, own)
     status, note = (GIVEN, OWN_FILE) if own else (OTHER_MOTION, "")
     yield value("Fig. 4(a)", "ground motion", "Duzce 12 Nov 1999, East-West", motion.label, status, note)
-    yield from _spectrum_values(rows)
-    yield from _oscillator_values(rows, motion)
+    note = "the paper's damping ratios and values are not at hand"
+    yield value("Fig. 5(b)", "peak displacements of oscillators", "not at hand", "drawn", NOT_REPRODUCIBLE, note)
     for row in rows:
         if row["part"] == "vulnerable":
             note = f"largest T_r that overturns, in steps of {row['step']:g} s, γ = {row['slenderness']:g} rad"
@@ -122,11 +115,10 @@ def motion_values(rows: Sequence[Mapping[str, Any]], motion: SampledMotion, leas
 def _run_values(row, motion, own):
     """Figs 4(b) and 6 as one solver's run has them."""
     what, engine = f"{row['scene']} Caryatid", row["engine"]
-    meets = partial(judged, engine=engine, own=own)
 
-    def found(place, quantity, printed, study, status, note=""):
-        study = "does not happen" if study is None else study
-        status, note = (status, note) if own else (OTHER_MOTION, "")
+    def found(place, quantity, printed, study, status=None, note=""):
+        study, note = "does not happen" if study is None else study, note if own else ""
+        status = status if own and status else _status(own, study == printed)
         return value(place, quantity, printed, study, status, note, engine)
 
     if row["outcome"] == "failed":
@@ -134,49 +126,13 @@ def _run_values(row, motion, own):
         yield value("Figs 4(b), 6", what, "runs", "failed", NOT_REPRODUCIBLE, why, engine)
     elif row["scene"] == FREE:
         time, after = row["overturning_time"], "overturning after the peak of the motion [s]"
-        yield meets("Fig. 4(b)", what, "overturns", row["outcome"])
+        yield found("Fig. 4(b)", what, "overturns", row["outcome"])
         time = None if time is None else time - motion.peak_time
         yield found("Fig. 4(b)", after, OVERTURNING, time, NOT_CHECKABLE, OWN_FILE)
     else:
         peak = row["peak_base_displacement"]
         acceleration = row["peak_base_acceleration"] / caryatid(ISOLATED, motion).gravity
-        yield meets("Fig. 6", what, "stands", row["outcome"])
+        yield found("Fig. 6", what, "stands", row["outcome"])
         yield found("Fig. 6", "peak displacement of the base [m]", "not printed", peak, DERIVED)
         yield found("Fig. 6", "peak absolute acceleration [g]", "not printed", acceleration, DERIVED)
-        yield meets("Fig. 6", "peak displacement below x_max = 0.30 m", "yes", "yes" if peak < X_MAX else "no")
-
-
-def _by_engine(rows):
-    found: dict[str, list] = {}
-    for row in rows:
-        found.setdefault(row["engine"], []).append(row)
-    return found
-
-
-def _periods(periods):
-    return ", ".join(f"{period:.3g}" for period in periods)
-
-
-def _spectrum_values(rows):
-    """Fig. 5(a): whether each engine overturns where the analytic model does."""
-    by_engine = _by_engine(row for row in rows if row["part"] == "rocking spectrum")
-    expected = {row["period"]: row["outcome"] == "overturns" for row in by_engine.pop("analytic", ())}
-    for engine, points in by_engine.items():
-        wrong = [
-            row["period"] for row in points if (row["outcome"] == "overturns") != expected.get(row["period"], False)
-        ]
-        agrees = f"not at T_r = {_periods(wrong)} s" if wrong else "at all points"
-        note = f"T_r = {_periods(row['period'] for row in points)} s"
-        what = "overturning as in the analytic model"
-        yield value("Fig. 5(a)", what, "no engine used", agrees, ADDED, note, engine)
-
-
-def _oscillator_values(rows, motion):
-    """Fig. 5(b): no number of the paper is at hand; every solver against the exact solution."""
-    standing = (row for row in rows if row["part"] == "displacement spectrum" and row["outcome"] == "stands")
-    for engine, points in _by_engine(standing).items():
-        exact = [float(displacement_spectrum(motion, [row["period"]], [row["damping"]])[0, 0]) for row in points]
-        apart = [abs(row["peak_base_displacement"] / one - 1) for row, one in zip(points, exact, strict=True)]
-        what = "oscillators, worst relative difference from the exact one [-]"
-        note = "drawn; the paper's damping ratios and values are not at hand"
-        yield value("Fig. 5(b)", what, "not at hand", max(apart), NOT_REPRODUCIBLE, note, engine)
+        yield found("Fig. 6", "peak displacement below x_max = 0.30 m", "yes", "yes" if peak < X_MAX else "no")

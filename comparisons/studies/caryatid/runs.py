@@ -62,20 +62,17 @@ def oscillator(motion: Motion, period: float, damping: float) -> Scene:
     )
 
 
-def scalars(case: Case, response: Response) -> dict[str, Any]:
-    """Measure: what came out, without history and impacts."""
+def measure(case: Case, response: Response) -> dict[str, Any]:
+    """The scalars that came out, and of Figs 4(b) and 6 tilt and displacement at multiples of `HISTORY_STEP`."""
     values = response.to_json()
-    return {name: value for name, value in values.items() if name not in ("impacts", "uplifts", "rests", "energy")}
-
-
-def with_history(case: Case, response: Response) -> dict[str, Any]:
-    """Measure: the scalars, and tilt and base displacement at multiples of `HISTORY_STEP`."""
-    history = response.history
-    time = np.arange(0.0, history.time[-1], HISTORY_STEP)
-    kept = {
-        name: np.interp(time, history.time, getattr(history, name)).tolist() for name in ("tilt", "base_displacement")
-    }
-    return {**scalars(case, response), "history": {"time": time.tolist(), **kept}}
+    found = {name: value for name, value in values.items() if name not in ("impacts", "uplifts", "rests", "energy")}
+    if case.tag["part"] == "run" and (history := response.history):
+        time = np.arange(0.0, history.time[-1], HISTORY_STEP)
+        columns = {
+            name: np.interp(time, history.time, getattr(history, name)) for name in ("tilt", "base_displacement")
+        }
+        found["history"] = {name: column.tolist() for name, column in {"time": time, **columns}.items()}
+    return found
 
 
 def simulations(
@@ -88,17 +85,15 @@ def simulations(
         for name in SHIPPED
         for solver in solvers
     ]
-    points = list(_points(motion, solvers, quick))
     rows, histories = [], {}
-    for cases, measure, label in ((figures, with_history, "Figs 4(b), 6"), (points, scalars, "Figs 5(a), 5(b)")):
-        for row in (yield Batch(cases, measure, label, TIME_LIMIT)):
-            values, engine = dict(row.values), row.case.solver
-            if row.case.scene.base is None:  # the ground's own peak: a value of the motion
-                values.pop("peak_base_acceleration", None)
-            for column, numbers in values.pop("history", {}).items():
-                histories[f"{row.case.tag['scene']}/{engine}/{column}"] = np.array(numbers, dtype=np.float32)
-            default = {"engine": engine, "variant": row.case.variant}  # of a run that failed
-            rows.append({**default, **values, **row.case.tag, "failure": row.failure, **row.cost})
+    for row in (yield Batch([*figures, *_points(motion, solvers, quick)], measure, "Figs 4 to 6", TIME_LIMIT)):
+        values, engine = dict(row.values), row.case.solver
+        if row.case.scene.base is None:  # the ground's own peak: a value of the motion
+            values.pop("peak_base_acceleration", None)
+        for column, numbers in values.pop("history", {}).items():
+            histories[f"{row.case.tag['scene']}/{engine}/{column}"] = np.array(numbers, dtype=np.float32)
+        default = {"engine": engine, "variant": row.case.variant}  # of a run that failed
+        rows.append({**default, **values, **row.case.tag, "failure": row.failure, **row.cost})
     return rows, histories
 
 

@@ -18,7 +18,7 @@ from .cost import cost_rows
 from .formulas import formulas
 from .paper import X_MAX, motion_values
 from .runs import ISOLATED, caryatid, equivalent_oscillators, simulations, spectra
-from .variations import claims, contact, maps, uplift_slenderness
+from .variations import claims, maps, uplift_slenderness
 
 PART_PAPER, PART_MOTION, PART_HISTORIES = "paper", "motion", "histories"
 
@@ -85,15 +85,13 @@ def _analytic(motion, runs, quick):
     (own,) = (row for row in runs if row["scene"] == ISOLATED and row["engine"] == "analytic")
     bearings = properties(isolated.bearings, isolated.total_mass, X_MAX)
     rows = equivalent_oscillators(motion, bearings, own["peak_base_displacement"])
-    for words, part in (
-        ("slenderness: which values fit the claims", lambda: claims(motion, quick)),
-        ("friction and normal force", lambda: contact(motion, quick)),
-        ("other slendernesses, intensities and motions", lambda: maps(motion, quick, say)),
-        ("algebraic against Bouc-Wen", lambda: (cost_rows(motion, quick), {})),
-    ):
-        say(words)
-        found, more = part()
-        rows, arrays = rows + found, arrays | more
+    say("slenderness: which values fit the claims")
+    fitting, periods = claims(motion, quick)
+    say("other slendernesses, intensities and motions")
+    shares, benefit = maps(motion, quick)
+    say("algebraic against Bouc-Wen")
+    rows += [*fitting, *shares, *cost_rows(motion, quick)]
+    arrays |= periods | benefit
     singles = {name: one.astype(np.float32) for name, one in arrays.items() if one.dtype == np.float64}
     return rows, arrays | singles
 

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import reduce
+from functools import partial, reduce
 from itertools import product
 from typing import Any
 
 import numpy as np
 
-from analytic import Scene, rocking_spectrum, simulate, simulate_many, synthetic_motion
-from analytic.rocking import restitution
+from analytic import rocking_spectrum, simulate, simulate_many, synthetic_motion
 from analytic.types import Motion
 
 from ...running.refine import boundaries, drive
@@ -26,7 +24,6 @@ BOTH, ONLY_ISOLATED, ONLY_FREE, NEITHER = range(4)
 CATEGORIES = ("both stay upright", "only the isolated one does", "only the free-standing one does", "both overturn")
 WITHIN = "only the isolated one does, within 0.30 m"
 SEEDS = 12
-FRICTION_LIMITS = (0.3, 0.5, 0.7)  # [-], of stone on stone and steel, low to high
 
 
 def vulnerable_period(motion: Motion, slenderness: float, step: float = 0.02) -> float:
@@ -58,7 +55,8 @@ def claims(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], d
     }
     rows = []
     for claim, (holds, points, tolerance) in tests.items():
-        column = _along(LOW, HIGH, points, tolerance, holds)
+        search = boundaries(LOW, HIGH, points, tolerance)
+        (column,) = drive([search], partial(_outcomes, holds))
         intervals = _intervals(column.transitions, bool(holds([LOW])[0]))
         rows.append({"part": "claim", "claim": claim, "intervals": intervals, "evaluations": column.evaluations})
     together = reduce(_overlap, [row["intervals"] for row in rows])
@@ -71,11 +69,8 @@ def claims(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], d
     return rows, {"claims/slenderness": grid, "claims/vulnerable period": periods}
 
 
-def _along(low, high, points, tolerance, outcomes):
-    """The `Column` of outcomes, a function of many points, along one line."""
-    search = boundaries(low, high, points, tolerance)
-    (column,) = drive([search], lambda batch: list(map(bool, outcomes([point for _, point in batch]))))
-    return column
+def _outcomes(holds, batch):
+    return list(map(bool, holds([point for _, point in batch])))
 
 
 def uplift_slenderness(motion: Motion) -> float:
@@ -134,25 +129,16 @@ def benefit(
     )
 
 
-def maps(
-    motion: Motion, quick: bool = False, advance: Callable[[str], Any] = lambda text: None
-) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
-    """(rows, arrays): the map of `motion`, how many of the synthetic motions agree cell by cell, and critical
-    intensities of the Caryatid itself."""
+def maps(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
+    """(rows, arrays): shares of the map of `motion` and of synthetic motions' maps, and the map itself."""
     fine, coarse = grid(quick), grid(quick, fine=False)
     found = benefit(motion, *fine)
     rows = [_shares("this motion", *found)]
     names = ("slenderness", "intensity", "category", "isolated lifts", "isolated displacement")
     arrays = {f"benefit/{name}": values for name, values in zip(names, (*fine, *found), strict=True)}
-    counts = np.zeros((len(CATEGORIES), len(coarse[0]), len(coarse[1])), dtype=np.uint8)
-    seeds = range(3 if quick else SEEDS)
-    for seed in seeds:
-        advance(f"synthetic motion {seed + 1} of {len(seeds)}")
-        found = benefit(synthetic_motion(seed=seed), *coarse)
-        rows.append(_shares(f"synthetic, seed {seed}", *found))
-        counts += np.array([found[0] == kind for kind in range(len(CATEGORIES))])
-    arrays |= {"seeds/slenderness": coarse[0], "seeds/intensity": coarse[1], "seeds/counts": counts}
-    return rows + _critical(motion), arrays
+    for seed in range(3 if quick else SEEDS):
+        rows.append(_shares(f"synthetic, seed {seed}", *benefit(synthetic_motion(seed=seed), *coarse)))
+    return rows, arrays
 
 
 def _shares(name, category, lifted, displacement):
@@ -167,78 +153,3 @@ def _shares(name, category, lifted, displacement):
         "isolated lifts": float(lifted.mean()),
         "beyond x_max": float((displacement > X_MAX).mean()),
     }
-
-
-def _critical(motion):
-    """Intensities at which the Caryatid's state changes, free-standing and isolated: the first, and all."""
-    rows = []
-    for name, what, read in (
-        (FREE, "overturns", lambda found: found.overturns),
-        (ISOLATED, "overturns", lambda found: found.overturns),
-        (ISOLATED, "lifts", lambda found: found.lifted),
-        (ISOLATED, "exceeds x_max", lambda found: found.overturns | (found.peak_base_displacement > X_MAX)),
-    ):
-        scene = caryatid(name, motion)
-
-        def outcomes(points, scene=scene, read=read):
-            return read(simulate_many([scene.with_(motion=scene.motion.scaled(point)) for point in points]))
-
-        column = _along(0.25, 4.0, 151, 1e-4, outcomes)
-        changes = [round(transition.position, 4) for transition in column.transitions]
-        first = changes[0] if changes else None
-        rows.append({"part": "critical intensity", "scene": name, "what": what, "first": first, "changes": changes})
-    return rows
-
-
-def contact(motion: Motion, quick: bool = False) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
-    """(rows, arrays): friction demand and least normal force over slenderness and intensity.
-
-    Of runs that overturn only what comes before the tilt first reaches the slenderness counts: nobody needs a block
-    not to slide while it falls.
-    """
-    slendernesses, intensities = (axis[::2] for axis in grid(quick, fine=False))
-    scaled = [motion.scaled(float(factor)) for factor in intensities]
-    arrays, rows = {"contact/slenderness": slendernesses, "contact/intensity": intensities}, []
-    for name in (FREE, ISOLATED):
-        scene = caryatid(name, motion)
-        found = [
-            [_demand(scene.with_(block={"slenderness": float(gamma)}, motion=one)) for one in scaled]
-            for gamma in slendernesses
-        ]
-        friction, normal, upright = np.moveaxis(np.array(found, dtype=float), 2, 0)
-        arrays |= {
-            f"contact/{name} friction": friction.astype(np.float32),
-            f"contact/{name} normal": normal.astype(np.float32),
-            f"contact/{name} upright": upright.astype(bool),
-        }
-        at = _demand(scene)
-        rows.append(
-            {
-                "part": "contact",
-                "scene": name,
-                "friction_demand": at[0],
-                "min_normal_ratio": at[1],
-                **{f"friction above {limit:g}": float((friction > limit).mean()) for limit in FRICTION_LIMITS},
-                "worst_friction": float(friction.max()),
-                "least_normal": float(normal.min()),
-                "jumps": float((normal <= 0).mean()),
-                "impact_friction": impact_friction(scene),
-            }
-        )
-    return rows, arrays
-
-
-def _demand(scene):
-    """(friction demand, least N/(m g), stays upright) of a run, up to its last fall if it overturns."""
-    response = simulate(scene, history=False)
-    return response.friction_demand, response.min_normal_ratio, response.outcome != "overturns"
-
-
-def impact_friction(scene: Scene) -> float:
-    """Horizontal over vertical impulse at an impact [-], for any speed: the friction an impact itself asks for.
-
-    With w before and e w after, the centre of mass changes its velocity by (1 - mt) h (1 - e) w sideways, jump of the
-    base included, and by b (1 + e) w upward.
-    """
-    block, e = scene.block, max(restitution(scene), 0.0)
-    return (1 - scene.mass_share) * (1 - e) / (1 + e) / math.tan(block.slenderness)

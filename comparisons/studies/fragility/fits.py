@@ -99,7 +99,7 @@ def effects(
         if sound.any():
             row: dict[str, Any] = {"part": "effect", "engine": pair[0], "variant": pair[1], "state": name}
             row |= {"left_out": int((~sound).sum()), "measure": best.get(name)}
-            row |= compare(ours[sound] == 1, theirs[sound] == 1, ("analytic", ", ".join(pair)))
+            row |= compare(ours[sound] == 1, theirs[sound] == 1)
             intensity = measures[row["measure"]][chosen[sound]] if row["measure"] else None
             rows.append(row | _shift(intensity, ours[sound], theirs[sound], row["detectable_difference"]))
     adjusted = holm([row["p_value"] for row in rows]) if rows else []

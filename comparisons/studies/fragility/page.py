@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -113,7 +112,6 @@ def page(result: Result) -> Page:
                 STATE,
                 *EFFECT,
             ),
-            *_sliding(result, effects),
             Head("Intensity measures"),
             shades(
                 fits,
@@ -229,19 +227,6 @@ def _shares(rows, tones, caption):
             chart.label(ys[-1], STATE.of(row), tone=tone)
         charts.append(chart)
     return figure(charts, caption) if charts else None
-
-
-def _sliding(result, effects):
-    """A sentence for each variant that differs and whose friction lets blocks slide where they should lift."""
-    for variant in result.settings["variants"]:
-        rows = where(effects, engine=variant["engine"], variant=variant["variant"])
-        for scene in {row["scene"]: None for row in rows if row["p_holm"] <= LEVEL}:
-            steepest = math.tan(result.settings["scenes"][scene]["slendernesses"][1])
-            if variant["friction"] is not None and variant["friction"] < steepest:
-                yield (
-                    f"{NAME.of(variant)}, {scene}: its friction, {variant['friction']:g}, is below tan γ of the least "
-                    f"slender blocks, {number(steepest)}. These slide where they should lift."
-                )
 
 
 def _how(settings):

@@ -39,33 +39,11 @@ def kernel_run(problem: Problem, tolerance: float) -> Callable[[], tuple[float, 
     return run
 
 
-def restarted(problem: Problem, fly: Callable) -> Callable[[], tuple[float, int]]:
-    """A function that runs `problem` by one flight after the other; it returns (tilt at the horizon, impacts).
-
-    fly(t, stop, tilt, rate, side, pushed) -> (t, tilt, rate, hit): a flight from t to an impact (hit), at most to stop.
-    """
-    e, least, horizon = problem.restitution, problem.rest_rate, problem.horizon
-
-    def run():
-        t, tilt, rate, side = problem.begin, problem.tilt, 0.0, problem.side
-        impacts, found = 0, math.nan
-        for stop in problem.stops:
-            pushed = stop <= problem.pulse_end
-            while t < stop:
-                t, tilt, rate, hit = fly(t, stop, tilt, rate, side, pushed)
-                if hit:
-                    impacts, tilt, rate, side = impacts + 1, 0.0, e * rate, -side
-                    if abs(rate) < least:
-                        return found, impacts
-            if stop == horizon:
-                found = tilt
-        return found, impacts
-
-    return run
-
-
 def scipy_run(problem: Problem, rtol: float, method: str) -> Callable[[], tuple[float, int]]:
-    """As `restarted`, by a method of `solve_ivp`; absolute tolerances are `rtol` of gamma and of gamma omega_r."""
+    """A function that runs `problem` by `solve_ivp`, flight by flight; it returns (tilt at the horizon, impacts).
+
+    Absolute tolerances are `rtol` of gamma and of gamma omega_r.
+    """
     p2, gamma, a, frequency = problem.p2, problem.gamma, problem.a, problem.frequency
     omega = math.sqrt(p2)
     atol = rtol * np.array([gamma, gamma * omega])
@@ -98,4 +76,19 @@ def scipy_run(problem: Problem, rtol: float, method: str) -> Callable[[], tuple[
             raise RuntimeError(solution.message)
         return float(solution.t[-1]), *solution.y[:, -1].tolist(), solution.status == 1
 
-    return restarted(problem, fly)
+    def run():
+        t, tilt, rate, side = problem.begin, problem.tilt, 0.0, problem.side
+        impacts, found = 0, math.nan
+        for stop in problem.stops:
+            pushed = stop <= problem.pulse_end
+            while t < stop:
+                t, tilt, rate, hit = fly(t, stop, tilt, rate, side, pushed)
+                if hit:
+                    impacts, tilt, rate, side = impacts + 1, 0.0, problem.restitution * rate, -side
+                    if abs(rate) < problem.rest_rate:
+                        return found, impacts
+            if stop == problem.horizon:
+                found = tilt
+        return found, impacts
+
+    return run

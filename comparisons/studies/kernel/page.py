@@ -1,13 +1,13 @@
-"""What is shown of the kernel beside other integrators: cost at an error, error against cost, throughput."""
+"""What is shown of the kernel beside other integrators: cost at an error, error against cost."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ...showing.figures import lines
 from ...showing.parts import Page, number, short
-from ...showing.rows import NAME, Column, grouped, table, where
-from .throughput import WORK
+from ...showing.rows import NAME, Column, cheapest, grouped, table, where
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
@@ -51,23 +51,13 @@ def page(result: Result) -> Page:
                 Column("impacts", "{impacts} of {expected_impacts}"),
                 Column("same in every round", lambda row: "yes" if row.get("repeatable", True) else "no"),
             ),
-            table(
-                "The kernel at its work, at its default tolerance: time per run",
-                [row for row in where(result.rows, part="throughput") if not row["failure"]],
-                Column("work", lambda row: WORK[row["problem"]][1]),
-                Column("runs", "runs"),
-                Column("CPU [ms]", lambda row: None if row["overturned"] is None else 1e3 * row["cpu_seconds"], 3),
-                Column("elapsed [ms]", lambda row: 1e3 * row["elapsed_seconds"], 3, within=_elapsed),
-                Column("overturn", "overturned", percent=True),
-            ),
         ),
         how=(
             "All integrate the same two equations, set up for speed: scipy without classes and with a first step of "
-            "the length of the hop. scipy, CVODE and CyRK restart at each impact; heyoka's impacts are a callback in "
-            "its own loop. Cheapest: the cheapest setting at which it and all finer ones keep the error and find every "
-            "impact.",
+            "the length of the hop. scipy restarts at each impact; heyoka's impacts are a callback in its own loop. "
+            "Cheapest: the cheapest setting at which it and all finer ones keep the error and find every impact.",
             f"{result.settings['rounds']} fresh processes one after the other; in each, every setting has its turn "
-            "after a first run that compiles; runs of less than 4 ms are repeated for as long. Medians over processes.",
+            "after a first run that compiles; runs are repeated until they take 4 ms. Medians over processes.",
             "Scenes on bearings and under a record, the growth of cost, and engines are in the study speed-error.",
         ),
         evidence=tuple(
@@ -78,23 +68,15 @@ def page(result: Result) -> Page:
     )  # fmt: skip
 
 
-def sound(row: dict[str, Any]) -> bool:
+def sound(row: Mapping[str, Any]) -> bool:
     """Whether a run ended with every impact, at a tilt that is a number."""
     return not row["failure"] and row["impacts"] == row["expected_impacts"] and row["error"] is not None
 
 
-def passing(rows: list[dict[str, Any]], scene: str, level: float) -> dict[str, dict[str, Any]]:
+def passing(rows: list[dict[str, Any]], scene: str, level: float) -> dict[str, Any]:
     """{integrator: cheapest row at which it and all finer ones keep an error}, cheapest first."""
-    found: dict[str, dict[str, Any]] = {}
-    for (name,), mine in grouped(where(rows, problem=scene), NAME.text).items():
-        kept = []
-        for row in sorted(mine, key=lambda row: row["tolerance"]):
-            if not (sound(row) and row["error"] <= level):
-                break
-            kept.append(row)
-        if kept:
-            found[name] = min(kept, key=CPU.of)
-    return dict(sorted(found.items(), key=lambda item: CPU.of(item[1])))
+    of_scene = where(rows, problem=scene)
+    return cheapest(of_scene, NAME.text, lambda row: sound(row) and row["error"] <= level, CPU.of)
 
 
 def _costs(rows, scene):
@@ -127,7 +109,3 @@ def _found(rows, scene):
     first = f"{scene} to {number(TOLD, 1)} in {number(1e6 * CPU.of(kernel), 3)} µs"
     other = next(iter(found), None)
     return first + (f", {other} in {number(CPU.of(found[other]) / CPU.of(kernel), 3)} times as much" if other else "")
-
-
-def _elapsed(row):
-    return 1e3 * row["elapsed_low"], 1e3 * row["elapsed_high"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 import statistics
 import time
@@ -10,7 +11,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from analytic import Response
-from analytic.problems import problem_a
 from analytic.response import State
 
 from ...running.cases import Case
@@ -18,7 +18,6 @@ from ...running.study import Batch, Found
 from .integrators import METHODS, kernel_run, scipy_run
 from .peers import PEERS, installed
 from .problems import PROBLEMS
-from .throughput import WORK
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
 SOLVER = f"{__name__}:prepared"
 KERNEL = ("analytic", "kernel")
 ROUNDS, QUICK_ROUNDS = 5, 3
-TICK = 4e-3  # s: shorter runs are repeated until they took as long
+TICK = 4e-3  # s: shorter runs are made once, twice, four times ... until they took as long
 
 # (engine, variant): relative tolerances, of a full and of a quick run
 TOLERANCES = {
@@ -39,18 +38,16 @@ TOLERANCES = {
     ("scipy", "LSODA"): ((1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12), (1e-9, 1e-11)),
     ("scipy", "Radau"): ((1e-6, 1e-8, 1e-9), (1e-6,)),
     ("heyoka", "Taylor"): ((1e-6, 1e-8, 1e-9, 1e-10, 1e-12, 1e-14, 2.3e-16), (1e-9, 1e-12, 2.3e-16)),
-    ("CVODE", "Adams"): ((1e-6, 1e-8, 1e-10, 1e-12, 1e-13), (1e-9, 1e-12)),
-    ("CyRK", "DOP853"): ((1e-6, 1e-8, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14), (1e-9, 1e-11, 1e-13)),
 }
 INTEGRATORS: dict[tuple[str, str], Callable[..., Any]] = {
     KERNEL: kernel_run,
     **{("scipy", method): functools.partial(scipy_run, method=method) for method in METHODS},
-    **{name: run for name, (_, _, run) in PEERS.items()},
+    **PEERS,
 }
 
 
 def plan(ask: Ask) -> Plan:
-    """The plan of the study: in each round a fresh process, in which every integrator and every work has its turn."""
+    """The plan of the study: in each round a fresh process, in which every integrator has its turn."""
     rounds, peers = QUICK_ROUNDS if ask.quick else ROUNDS, installed()
     timed: list[list[Row]] = []
     for turn in range(rounds):
@@ -63,7 +60,7 @@ def plan(ask: Ask) -> Plan:
 
 def _cases(quick: bool, peers: dict[tuple[str, str], str], turn: int) -> list[Case]:
     """What is timed in one round; a peer's version is part of what a stored run is known by."""
-    cases = [
+    return [
         Case(
             problem.scene,
             SOLVER,
@@ -76,16 +73,11 @@ def _cases(quick: bool, peers: dict[tuple[str, str], str], turn: int) -> list[Ca
         for what, problem in PROBLEMS.items()
         for tolerance in ladders[quick]
     ]
-    return cases + [
-        Case(problem_a(), SOLVER, KERNEL[1], {"engine": KERNEL[0], "what": what}, {"round": turn}) for what in WORK
-    ]
 
 
 @functools.lru_cache(maxsize=256)
-def run_of(variant: str, engine: str, what: str, tolerance: float = math.nan) -> Callable[[], tuple[Any, int]]:
-    """A function without arguments: a problem by an integrator, or a work of the kernel."""
-    if what in WORK:
-        return WORK[what][0]
+def run_of(variant: str, engine: str, what: str, tolerance: float) -> Callable[[], tuple[float, int]]:
+    """A function without arguments: a problem by an integrator."""
     return INTEGRATORS[engine, variant](PROBLEMS[what], tolerance)
 
 
@@ -97,23 +89,16 @@ def prepared(scene: Scene, *, variant: str, **settings: Any) -> Response:
 
 
 def measured(case: Case, _response: Response) -> dict[str, Any]:
-    """Measure: what the runs found, and the mean CPU and elapsed time of these very runs, of about `TICK` in all."""
-    what, run = case.settings["what"], run_of(case.variant, **case.settings)
-    (answer, count), cost = _timed(run, 1)
-    if cost["elapsed_seconds"] < TICK:
-        (answer, count), cost = _timed(run, math.ceil(TICK / cost["elapsed_seconds"]))
-    if what in WORK:
-        return {"overturned": answer, "runs": count, "cost": {name: value / count for name, value in cost.items()}}
-    return {"error": PROBLEMS[what].error(answer), "impacts": count, "cost": cost}
-
-
-def _timed(run, repeats):
-    """(what the last run returns, mean cost of one)."""
-    cpu, elapsed = time.process_time(), time.perf_counter()
-    for _ in range(repeats):
-        found = run()
-    cpu, elapsed = time.process_time() - cpu, time.perf_counter() - elapsed
-    return found, {"cpu_seconds": cpu / repeats, "elapsed_seconds": elapsed / repeats}
+    """Measure: what the runs found, and the mean CPU time of the last so many of them: of `TICK` or more in all."""
+    run = run_of(case.variant, **case.settings)
+    for repeats in (2**doubled for doubled in itertools.count()):
+        begin = time.process_time()
+        for _ in range(repeats):
+            tilt, impacts = run()
+        if (spent := time.process_time() - begin) >= TICK:
+            break
+    error = PROBLEMS[case.settings["what"]].error(tilt)
+    return {"error": error, "impacts": impacts, "cost": {"cpu_seconds": spent / repeats}}
 
 
 def _row(*timings: Row) -> dict[str, Any]:
@@ -121,20 +106,18 @@ def _row(*timings: Row) -> dict[str, Any]:
     first = timings[0]
     settings, what = first.case.settings, first.case.settings["what"]
     row = {
-        "part": "throughput" if what in WORK else "work-precision",
+        "part": "work-precision",
         "engine": settings["engine"],
         "variant": first.case.variant,
         "problem": what,
-        "tolerance": settings.get("tolerance"),
-        "expected_impacts": PROBLEMS[what].impacts if what in PROBLEMS else None,
+        "tolerance": settings["tolerance"],
+        "expected_impacts": PROBLEMS[what].impacts,
         "failure": next((timing.failure for timing in timings if timing.failed), None),
         "timings": len(timings),
         "repeatable": all(timing.values == first.values for timing in timings),
     }
     if row["failure"]:
         return row
-    for kind in ("cpu", "elapsed"):
-        seconds = [timing.cost[f"{kind}_seconds"] for timing in timings]
-        figures = statistics.median(seconds), min(seconds), max(seconds)
-        row |= zip((f"{kind}_seconds", f"{kind}_low", f"{kind}_high"), figures, strict=True)
-    return row | first.values
+    seconds = [timing.cost["cpu_seconds"] for timing in timings]
+    times = {"cpu_seconds": statistics.median(seconds), "cpu_low": min(seconds), "cpu_high": max(seconds)}
+    return row | times | first.values

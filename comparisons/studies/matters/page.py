@@ -97,18 +97,6 @@ def page(result: Result) -> Page:
                 Column("N reaches zero", lambda row: row["lifts_off"] / row["runs"], percent=True),
                 RUNS,
             ),
-            table(
-                "Recorded triples, in all directions; runs of one record are no sample, so there are no intervals",
-                where(result.rows, part="record"),
-                Column("record, scene", "{record}, {scene}"),
-                Column(RATIO.head, "ratio"),
-                FASTER,
-                Column("changed by the vertical motion", SHARE.value, percent=True),
-                Column(
-                    "changed by turning 30°", lambda row: row["outcomes_changed_by_turning"] / row["runs"], percent=True
-                ),
-                RUNS,
-            ),
         ),
         how=_how(result.settings),
     )
@@ -163,6 +151,5 @@ def _how(settings):
         f"{best} motions in their default variant, {others} in others, whose peak is at least {settings['lifting']:g} "
         "g tan γ" + (f"; where none changes, {' and '.join(unseen)} are not excluded." if unseen else "."),
         "The vertical motion is that of another seed. Bearings are taken as stiff vertically; real ones sway at 10 to "
-        "20 Hz, so that twice the usual vertical motion is run too. Recorded triples: in all directions, about the "
-        "factor that overturns half; the frequency is the mean of the spectrum.",
+        "20 Hz, so that twice the usual vertical motion is run too.",
     )

@@ -6,13 +6,12 @@ outcome depends on how near the boundary the motions are, and this is said with 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import typer
 from scipy.stats import norm
 
-from analytic import load_scene, synthetic_motion
+from analytic import load_scene, simulate_many, synthetic_motion
 from analytic.rocking import RockingModel
 from engines import get_engine
 
@@ -20,7 +19,6 @@ from ...measuring.statistics import confusion, mcnemar, wilson
 from ...running.cases import Case
 from ...running.study import Batch, Found, say
 from .changes import changes, with_vertical
-from .records import overturned, record_cases, record_rows, triples
 
 if TYPE_CHECKING:
     from analytic import Response
@@ -38,8 +36,6 @@ TIME_LIMIT = 60.0  # s, of an engine's run
 RATIOS = (0.3, 0.5, 0.7, 0.9, 1.1, 1.3, 1.5)  # V/H: peak vertical over peak horizontal acceleration
 FASTER = (1, 2, 4)  # how many times as fast as the horizontal motion: vertical ones hold higher frequencies
 FRICTIONS = (0.3, 0.5, 0.7)  # coefficients that the demand is compared with
-RECORDS = "Folder of recorded triples, searched for files with two horizontal channels and a vertical one."
-Folder = Annotated[str | None, typer.Option("--records", metavar="FOLDER", help=RECORDS)]
 
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
@@ -53,13 +49,7 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
     }
 
 
-def plan(
-    ask: Ask,
-    scenes: dict[str, Any] | None = None,
-    motions: tuple[int, int, int] | None = None,
-    *,
-    records: Folder = None,
-) -> Plan:
+def plan(ask: Ask, scenes: dict[str, Any] | None = None, motions: tuple[int, int, int] | None = None) -> Plan:
     """The plan of the study; an answer with one scene more each time.
 
     Rows by "part", outcomes over all motions and slendernesses, `low` and `high` the 95 % interval of their share:
@@ -69,20 +59,16 @@ def plan(
       relative change of the peaks of blocks that stay upright in both.
     - "vertical": one for each V/H (`ratio`) and speed (`faster`), and one of V/H 0, without vertical motion. lifts_off:
       runs in which N reaches zero, where the model ends; sliding: {friction: runs that need more}.
-    - "record": see `record_rows`; none without a folder.
 
     Parameters
     ----------
     ask : Ask
     scenes, motions : dict and (int, int, int), optional
         In place of `SCENES`, and of the numbers of motions, `FULL` or `QUICK`.
-    records : str, optional
-        Folder of recorded triples. Of what they hold, the answer keeps counts and ratios.
     """
     scenes = scenes or SCENES
     counts = motions or (QUICK if ask.quick else FULL)
-    count, recorded = counts[0], triples(records)
-    rows, described = [], {}
+    count, rows, described = counts[0], [], {}
     for name, (shipped, slendernesses) in scenes.items():
         usual = load_scene(shipped).with_(motion=None, duration=None)
         steep = [usual.with_(block={"slenderness": slenderness}) for slenderness in slendernesses]
@@ -92,9 +78,6 @@ def plan(
         run = yield Batch(_by_engines(bases, ask.engines, counts), measure, f"{name}: engines", TIME_LIMIT)
         raised = yield Batch(_raised(bases, max(count // 3, 1)), measure, f"{name}: vertical motions")
         found = [*_change_rows(changed, run), *_vertical_rows(_as_it_is(changed), raised)]
-        if recorded:
-            held = yield Batch(list(record_cases(usual, slendernesses, recorded)), measure, f"{name}: records")
-            found += record_rows(recorded, held)
         rows += [{"scene": name, **row} for row in found]
         described[name] = {
             "scene": shipped,
@@ -109,7 +92,6 @@ def plan(
             "motions_of_engines": counts[1],
             "motions_of_other_variants": counts[2],
             "lifting": LIFTING,
-            "records": len(recorded),
             "spread": SPREAD,
             "default_variants": {engine: get_engine(engine).default_variant for engine in ask.engines},
         }
@@ -121,7 +103,9 @@ def plan(
 def _half(name, scene, count):
     """The factor at which half of the motions overturn a block."""
     say(f"{name}: slenderness {scene.block.slenderness:g}, the factor that overturns half")
-    fallen = overturned(scene, (synthetic_motion(seed=seed) for seed in range(count)), TRIED)
+    scenes = [scene.with_(motion=synthetic_motion(seed=seed)) for seed in range(count) for _ in TRIED]
+    runs = simulate_many(scenes, scales=np.tile(TRIED, count))
+    fallen = runs.overturns.reshape(count, -1).mean(axis=0)
     above = int(np.argmax(fallen >= 0.5))
     if above == 0:
         raise ValueError(f"{name}: no factor from {TRIED[0]:g} to {TRIED[-1]:g} overturns half of {count} motions")

@@ -16,7 +16,7 @@ import typer
 from analytic.response import Impact
 from analytic.rocking import restitution
 from analytic.twin import simulate_twin
-from engines import get_engine
+from engines import ENGINES, get_engine
 
 from ...measuring.errors import (
     lost_impacts,
@@ -29,8 +29,9 @@ from ...measuring.errors import (
 from ...running.cases import variant_settings
 from ...running.study import Batch, Found
 from .boundary import RUNS, Boundary, searched
-from .cases import Entry, Trial, entries, levels_of, trials
+from .cases import PLAIN, Entry, Trial, entries, levels_of, trials
 from .growth import TICK, grown, growth_cases
+from .share import own_share
 
 if TYPE_CHECKING:
     from analytic import Response
@@ -39,9 +40,7 @@ if TYPE_CHECKING:
     from ...running.study import Ask, Plan
 
 REPEATS, QUICK_REPEATS = 5, 3
-# s of CPU: next to it what is loaded in a first run is nothing; such a measurement needs no warm-up and `FEW` rounds
-SLOW = 0.5
-FEW = 3
+SLOW = 0.5  # s of CPU: next to it what is loaded in a first run is nothing; such a measurement needs no warm-up
 MOST_REPEATS = 200
 TWIN_TOLERANCE = 1e-13  # of the independent solution each reference is held against
 EVIDENCE = 600  # characters of an engine's message that a row keeps
@@ -135,14 +134,14 @@ def plan(
     scenes = scenes or trials()
     measured = [(entry, []) for entry in entries(scenes, ask.engines, ask.quick) if keep(entry)]
     for turn in range(rounds):
-        part = [(entry, rows) for entry, rows in measured if turn < FEW or rows[0].cost.get("cpu_seconds", 0.0) <= SLOW]
-        cases = [entry.case(turn) for entry, _ in part]
+        cases = [entry.case(turn) for entry, _ in measured]
         done = yield Batch(cases, measure, f"round {turn + 1} of {rounds}", alone=True)
-        for (_, rows), row in zip(part, done, strict=True):
+        for (_, rows), row in zip(measured, done, strict=True):
             rows.append(row)
     rows = [_row(entry, timings) for entry, timings in measured]
+    rows += yield from _shares([entry for entry, _ in measured])
     if grow:
-        rows += yield from _growth(scenes, ask, min(FEW, rounds))
+        rows += yield from _growth(scenes, ask, rounds)
     settings = {
         "quick": ask.quick,
         "rounds": rounds,
@@ -195,6 +194,29 @@ def _row(entry, timings):
         "boundary_shifts": values["boundary_shifts"],
         "settings": values["settings"],
     }
+
+
+def _shares(measured):
+    """Rows of the engines' own shares: of each variant at its default in the scene `PLAIN`."""
+    chosen = [
+        entry
+        for entry in measured
+        if entry.trial.name == PLAIN and entry.engine in ENGINES and not entry.solver
+        if entry.level == get_engine(entry.engine).variants[entry.variant].default
+    ]
+    done = yield Batch([entry.case(0) for entry in chosen], own_share, "engines' own shares", alone=True)
+    return [
+        {
+            "part": "share",
+            "scene": PLAIN,
+            "engine": entry.engine,
+            "variant": entry.variant,
+            "level": entry.level,
+            "failure": _evidence(row.failure),
+            "share": None if row.failure else row.cost["share"],
+        }
+        for entry, row in zip(chosen, done, strict=True)
+    ]
 
 
 def _evidence(failure):

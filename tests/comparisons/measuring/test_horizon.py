@@ -74,14 +74,6 @@ def test_an_independent_copy_parts_where_it_is_said_and_the_horizon_is_that_of_t
     assert set(horizon.copies) == {"restitution up", "restitution down", "motion up", "motion down"}
 
 
-def test_what_a_horizon_cannot_be_measured_from_is_refused(shaken):
-    scene, reference = shaken
-    with pytest.raises(ValueError, match="perturbation = 0"):
-        sensitivity_horizon(scene, perturbation=0)
-    with pytest.raises(ValueError, match="history=True"):
-        perturbation_of(scene, dataclasses.replace(reference, history=None), reference)
-
-
 def solver(scene, size):
     """A solver whose restitution is off by `size`: the model's response of another scene."""
     return simulate(scene.with_(block={"restitution": restitution(scene) * (1 + size)}), output_step=2e-3)

@@ -7,7 +7,7 @@ import pytest
 
 from analytic import PulseMotion, SampledMotion, load_scene, simulate, synthetic_motion
 from analytic.linear_oscillator import displacement_spectrum
-from analytic.rocking import RockingModel, restitution
+from analytic.rocking import restitution
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.refine import Transition
 from comparisons.running.study import compute
@@ -36,8 +36,6 @@ from comparisons.studies.caryatid.variations import (
     _overlap,
     benefit,
     claims,
-    contact,
-    impact_friction,
     uplift_slenderness,
 )
 
@@ -87,13 +85,7 @@ def test_misprints_are_seen_in_numbers(rows):
 
 @pytest.mark.parametrize(
     "printed, found, own, status",
-    [
-        (0.212, 0.2124, True, REPRODUCED),
-        (0.212, 0.2126, True, NOT_REPRODUCIBLE),
-        (0.212, None, True, NOT_REPRODUCIBLE),
-        ("stands", "rocks", True, NOT_REPRODUCIBLE),
-        (0.212, 0.212, False, OTHER_MOTION),
-    ],
+    [(0.212, 0.2124, True, REPRODUCED), (0.212, 0.2126, True, NOT_REPRODUCIBLE), (0.212, 0.212, False, OTHER_MOTION)],
 )
 def test_a_number_outside_the_printed_digits_is_not_reproduced(printed, found, own, status):
     assert judged("", "", printed, found, 0.0005, own=own)["status"] == status
@@ -145,28 +137,6 @@ def test_benefit_map_against_single_runs(short):
     assert len(np.unique(category)) >= 3
 
 
-@pytest.mark.parametrize("gamma", [0.1, 0.28, 0.45])
-@pytest.mark.parametrize("name", [FREE, ISOLATED])
-def test_friction_of_an_impact_is_the_change_of_momentum_sideways_over_that_upward(name, gamma):
-    scene = caryatid(name, None).with_(block={"slenderness": gamma})
-    after, jump = RockingModel.of(scene).impact(-1.0)
-    sideways = jump + scene.block.half_height * (after + 1.0)
-    assert impact_friction(scene) == pytest.approx(
-        abs(sideways) / (scene.block.half_width * (1 + abs(after))), rel=1e-12
-    )
-
-
-def test_contact_of_a_block_that_stays_down_is_its_acceleration(short):
-    (free, isolated), arrays = contact(short, quick=True)
-    falling, response = (simulate(caryatid(name, short)) for name in (FREE, ISOLATED))
-    assert response.outcome == "stands" and isolated["min_normal_ratio"] == 1
-    assert isolated["friction_demand"] == pytest.approx(response.peak_base_acceleration / 9.81, rel=1e-9)
-    # what comes in the last fall does not count
-    before = simulate(caryatid(FREE, short).with_(duration=falling.unstable_time), history=False)
-    assert free["friction_demand"] == pytest.approx(before.friction_demand, rel=1e-3)
-    assert not arrays[f"contact/{FREE} upright"].all() and arrays[f"contact/{ISOLATED} upright"].any()
-
-
 @pytest.mark.parametrize("law", ["algebraic", "bouc-wen"])
 def test_fixed_step_of_the_cost_claim_solves_the_same_problem(law):
     scene = caryatid(ISOLATED, synthetic_motion()).with_(bearings={"law": law}, duration=synthetic_motion().end)
@@ -183,7 +153,7 @@ def test_cost_at_an_error_lies_between_the_rungs():
 def test_end_to_end(short, tmp_path):
     files = compute(STUDY, tmp_path, quick=True, progress=False, motion=short)
     of_paper, under, histories = map(read_result, files)
-    for result, figures in ((of_paper, 2), (under, 7), (histories, 1)):
+    for result, figures in ((of_paper, 2), (under, 4), (histories, 1)):
         shown = STUDY.page(result).whole()
         assert len(shown.figures) == figures and all(figure.alt and figure.caption for figure in shown.figures)
     assert all(file.with_suffix(".npz").stat().st_size < 500_000 for file in files)

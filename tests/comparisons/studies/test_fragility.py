@@ -119,16 +119,6 @@ def test_the_page_shows_every_row_and_the_messages_of_failed_runs(equal):
     assert len(whole.evidence) == len(failed) >= 4 and "raw evidence" in whole.evidence[0][1]
 
 
-def test_low_friction_is_named_where_an_engine_differs(weaker):
-    def named(friction):
-        variants = [{**one, "friction": friction} for one in weaker.settings["variants"]]
-        page = STUDY.page(dataclasses.replace(weaker, settings={**weaker.settings, "variants": variants}))
-        return [part.split(",")[0] for part in page.more if isinstance(part, str)]
-
-    assert set(named(0.25)) == {"exudyn", "pybullet"}  # below tan 0.32
-    assert named(0.4) == named(None) == []
-
-
 def test_counts_and_points_are_those_of_single_simulations(weaker):
     drawn = cloud(*FREE["free-standing"], RUNS[0])
     fallen = np.array([simulate(scene, history=False).outcome == "overturns" for scene in drawn.scenes])

@@ -132,8 +132,9 @@ def test_the_growth_of_cost_and_the_report_run_it(crude):
 
 
 def test_every_study_of_this_project_is_covered():
-    # surface takes any solver a run at a time: test_surface; kernel takes none; recorded: below
-    assert set(BUILT_IN) == {*SHORT, "overturning", "caryatid", "tolerances", "surface", "kernel", "recorded"}
+    # surface takes any solver a run at a time: test_surface; kernel takes none; recorded: below; and test_constants
+    own_tests = {"overturning", "caryatid", "tolerances", "surface", "kernel", "recorded", "constants"}
+    assert set(BUILT_IN) == SHORT.keys() | own_tests
 
 
 @pytest.mark.parametrize("crude", [FAKE_ENGINE], indirect=True)

@@ -13,11 +13,12 @@ from comparisons.measuring import models
 from comparisons.running.cases import Case, solver
 from comparisons.running.provenance import Result, read_result
 from comparisons.running.study import compute
-from comparisons.showing.parts import Figure, Table
+from comparisons.showing.parts import COST, Figure, Table
 from comparisons.studies.speed_error import STUDY, growth
 from comparisons.studies.speed_error.boundary import margin, searched
 from comparisons.studies.speed_error.cases import NEEDED, entries, trials
 from comparisons.studies.speed_error.page import LEVELS, levels_run, passing
+from comparisons.studies.speed_error.share import own_share, seconds_inside
 from comparisons.studies.speed_error.study import errors, measure
 from engines import get_engine
 
@@ -158,18 +159,37 @@ def test_fit_of_a_power():
     assert growth.fit(x, x * [1.0, 1.1, 1.0, 1.1]) == pytest.approx((1 + d / 5, d * math.sqrt(0.8 / 2 / 5)))
 
 
+def test_the_share_is_of_compiled_functions_without_what_they_call_back(free):
+    """Sorting counts where it compares by itself, not where it calls back."""
+    import _bisect  # a module's function, as those of engines are
+
+    def search():
+        for _ in range(20):
+            _bisect.bisect_left(range(2**62), 1, key=lambda value: sum(range(2000)))
+
+    def plainly():
+        for _ in range(20000):
+            _bisect.bisect_left(range(2**62), 1)
+
+    spent = [(seconds_inside("_bisect", run), seconds_inside("no_such", run)) for run in (search, plainly)]
+    assert all(none == 0 for _, none in spent) and 10 * spent[0][0] < spent[1][0]
+    pytest.importorskip("pybullet")
+    case = Case(free.scene, "pybullet", "fixed-step", {"step": 1e-3, "history": False})
+    assert 0.2 < own_share(case, case.run())["cost"]["share"] < 1
+
+
 def row(variant, cpu, error, **other):
     """A row of an engine's level; finer ones come later."""
     return {
         "part": "work-precision", "scene": "s", "engine": "exudyn", "variant": variant, "model": NEEDED, "law": None,
-        "parameter": "step", "level": 1e-3, "failure": None, "errors": {"impact_time": error}, "lost": 0,
+        "parameter": "step", "level": 1e-3, "failure": None, "errors": {"restitution": error}, "lost": 0,
         "cpu_seconds": cpu, "cpu_low": cpu, "cpu_high": 1.2 * cpu, "cpu_per_second": cpu, "step": 1e-3,
         "repeatable": True,
     } | other  # fmt: skip
 
 
 def result_of(*rows):
-    scene = {"title": "a scene", "measures": ["impact_time"], "reference_difference": {"impact_time": 2e-12}}
+    scene = {"title": "a scene", "measures": ["restitution"], "reference_difference": {"restitution": 2e-12}}
     settings = {"rounds": 1, "scenes": {"s": {**scene, "bouc_wen": {"peak_displacement": 0.01, "peak_tilt": None}}}}
     return Result(STUDY.name, {**settings, "variants": []}, list(rows), {})
 
@@ -228,6 +248,39 @@ def test_more_than_needed_stands_beside_what_is_needed():
     assert more["error of the model needed"] == "1.0·10⁻⁴"
     (law,) = cells(result_of(*rows), "peak displacement changed by")
     assert (law["CPU time ratio, median [-]"], law["peak displacement changed by"]) == ("1.50", "1.0 %")
+
+
+@pytest.mark.parametrize("cpu, named", [(2.3, "exudyn, a and exudyn, b, of one rank, at 2.0 to 2.3 times"),
+                                        (2.5, "exudyn, a, at 2.0 times")])  # fmt: skip
+def test_solvers_nearer_than_the_rounds_differ_are_of_one_rank(cpu, named):
+    kernel = row("kernel", 1.0, 1e-9, engine="analytic")
+    assert named in STUDY.page(result_of(kernel, row("b", cpu, 1e-4), row("a", 2.0, 1e-4))).title
+
+
+def test_the_first_table_gets_costs_at_the_defaults_with_their_errors_and_shares():
+    both = {"restitution": 1e-4, "peak_tilt": 2e-3}
+    rows = [
+        row("kernel", 1.0, 0.0, engine="analytic", level=1e-8),
+        row("a", 70.0, 0.0, errors=both, level=1e-2),
+        row("a", 76.0, 0.0, errors=both, level=1e-3),
+        {"part": "share", "engine": "exudyn", "variant": "a", "share": 0.4, "failure": None},
+    ]
+    result = result_of(*(one | {"scene": "isolated-rocking"} for one in rows))
+    result.settings["scenes"] = {"isolated-rocking": result.settings["scenes"]["s"] | {"measures": [*both]}}
+    assert STUDY.judgements(result) == ()  # of no known default
+    result.settings["variants"] = [{"engine": "exudyn", "variant": "a", "default": 1e-3, "applies_impact": False}]
+    result.settings["scenes"]["isolated-rocking"]["reference_difference"] = both
+    (judgement,) = STUDY.judgements(result)
+    mark = judgement.marks["exudyn", "a"]
+    assert (judgement.key, judgement.rates, mark.words, mark.value) == (COST, False, "76 ×", 76)
+    assert mark.note == "engine's own share 40 %; error of restitution 1.0·10⁻⁴, of peak tilt over slenderness 0.0020"
+    (shown,) = cells(result, "engine's own share")
+    assert (shown["engine's own share"], shown["impacts lost [-]"]) == ("40 %", "0")
+    captions = [part.caption for part in STUDY.page(result).opening().tables]
+    assert [caption.split(" to keep the ")[-1] for caption in captions[:2]] == [
+        "error of restitution, rms [-]",
+        "error of peak tilt over slenderness [-]",
+    ]
 
 
 def test_growth_is_a_power_with_its_memory():

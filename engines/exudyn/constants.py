@@ -1,0 +1,33 @@
+"""The numbers that were chosen in compliant-corners: what each is, for `engines.contract.Variant.constants`."""
+
+HERE = "engines.exudyn"
+CONSTANTS = {
+    "stiffness": "stiffness of a corner [N/m], the accuracy parameter",
+    "rebound": "speed at which a corner is thrown back at most [m/s]",
+    "friction": "coefficient where the scene gives none",
+    "sticking": "tangential over normal stiffness",
+    "damping": "tangential, over the critical one",
+    "slip": "sliding speed at which viscous friction equals the normal force [m/s]",
+    "tolerance": "local error of an explicit step",
+    "longest_step": "longest explicit step [s]",
+    "pivoting_step": "implicit step, while the block pivots or stands [s]",
+    f"{HERE}.corners:RELAX": "time for the corners to relax after an impact, over sqrt(m/k)",
+    f"{HERE}.corners:MOST_RELAX": "the same, over sqrt(R/g), at most",
+    f"{HERE}.corners:SLOP": "change of the anchor that is not told, over the sticking spring's stretch",
+    f"{HERE}.corners:LEAST_STEP": "explicit step at which exudyn gives up [s]",
+    f"{HERE}.phases:ENTER": "steps before the impact from which implicit ones begin",
+    f"{HERE}.phases:LEAVE": "steps before the impact at which they end",
+    f"{HERE}.phases:CARRIES": "share of the weight on a corner from which it counts, to begin implicit steps",
+    f"{HERE}.phases:HOLDS": "the same, to go on with them",
+    f"{HERE}.phases:PUSHED": "rate toward the impact that a base may give, over that of the block's own fall",
+    f"{HERE}.phases:WORTHWHILE": "implicit step from which it pays, over pivoting_step",
+    f"{HERE}.phases:SMOOTH": "implicit step where bearings vibrate, over that of leapfrog engines",
+    f"{HERE}.phases:FIRST": "first explicit step of a piece, over the longest",
+    f"{HERE}.phases:DAMPED": "numerical damping of implicit steps, 1 less the spectral radius",
+    f"{HERE}.phases:RESIDUAL": "residual of Newton's method, over the block's weight",
+    f"{HERE}.phases:ROUNDING": "the same, in rounding errors of a place as corners feel them, at least",
+    f"{HERE}.phases:DIFFERENCE": "change of a coordinate to derive the forces, over a corner's depth",
+    f"{HERE}.ground:SUMS": "round-off of a sum of steps, over the duration",
+    f"{HERE}.ground:WHOLE": "of a step, that a segment of the motion may be longer than so many",
+    "engines.vibration:VIBRATION": "step over the time in which the bearings' vibration advances by 1 rad",
+}
