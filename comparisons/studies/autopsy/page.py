@@ -106,7 +106,7 @@ def _frames(rows):
             grey = not row["best"]
             chart.line(time, values, row["engine"], grey=grey)
             if len(values) <= MARKED:
-                at_once = not grey and np.ptp(time) < INSTANT
+                at_once = not grey and float(np.ptp(time)) < INSTANT
                 if at_once:  # one mark of several in one place
                     kept = np.sort(np.unique(np.round(values / room), return_index=True)[1])
                     time, values = time[kept], values[kept]
