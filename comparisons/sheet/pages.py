@@ -76,6 +76,7 @@ def _text(name: str, **values: Any) -> str:
 def _html(title: str, text: str) -> str:
     """A page in Markdown as HTML, readable without anything else."""
     body = POWER.sub(_power, indexed(MARKDOWN.render(text)))
+    body = body.replace("<table>", '<div class="scroll" tabindex="0"><table>').replace("</table>", "</table></div>")
     return TEMPLATES.get_template("page.html").render(title=title, body=Markup(body)) + "\n"
 
 

@@ -15,6 +15,7 @@ from engines import installed_engines
 
 pytestmark = [pytest.mark.xdist_group("report"), pytest.mark.skipif(chromium() is None, reason=NEEDED)]
 PHONE, DESKTOP = {"width": 390, "height": 844}, {"width": 1280, "height": 800}
+FIRST, PAPER = 900, 696  # pixels: of the first screen; between the margins of A4
 LEAST_LETTER = 11  # pixels
 CONTRAST = 4.5
 # Of every text in a picture: its colour, what is painted behind it, how high a letter is.
@@ -146,6 +147,22 @@ def test_every_page_opens_without_errors_and_without_a_wide_scroll(folder, brows
         page, wrong = opened(browser, file, PHONE)
         assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"], file.name
         assert not wrong, file.name
+        page.context.close()
+
+
+def test_the_first_table_is_on_the_first_screen(folder, browser):
+    page, _ = opened(browser, folder / "report.html")
+    assert page.evaluate("document.querySelector('table.answers').getBoundingClientRect().bottom") < FIRST
+
+
+def test_nothing_is_wider_than_the_paper(folder, browser):
+    for file in folder.rglob("*.html"):
+        page, _ = opened(browser, file, {"width": PAPER, "height": 1000})
+        page.emulate_media(media="print")
+        wide = (
+            f"[...document.querySelectorAll('table, .chart')].map(one => one.getBoundingClientRect().right - {PAPER})"
+        )
+        assert max(page.evaluate(wide), default=0) < 1, file.name
         page.context.close()
 
 

@@ -161,6 +161,8 @@ def test_pages_say_nothing_of_our_code(sheet):
         )
         for one in problem.quantities:
             assert f"| {one.name} |" in text and f">{one.name}<" in (sheet / f"{problem.name}.html").read_text()
+        page = (sheet / f"{problem.name}.html").read_text()
+        assert not re.search(r"\de[-+]?\d|\b[^\W\d_]_[^\W_]\b", page)  # indices and powers as one writes them
     samples = np.loadtxt(sheet / "inputs" / "record.csv", delimiter=",", skiprows=1)[:, 1]
     assert samples.tolist() == BY_NAME["record"].scene.motion.samples.tolist()
 
