@@ -124,7 +124,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
                 f"{words} under recorded motions: error, median",
                 {name: _peak_mark(row[f"{key}_error"]) for name, row in rows.items()},
                 rates=False,
-                says=f"{words} off by {{}} in the median",
+                says="peak tilts are off by {} in the median" if key == "tilt" else "",
             )
             for key, words in PEAKS.items()
         ),

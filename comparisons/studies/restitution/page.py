@@ -124,7 +124,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
             "restitution, free rocking: error, rms",
             {(row["engine"], row["variant"]): _mark(row, "rms", "worst") for row in rows},
             RESTITUTION,
-            says="restitution is off by {} in free rocking",
+            says="restitution is off by {} free",
         ),
         Judgement(
             "restitution on bearings: error, rms",
@@ -134,7 +134,6 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
         Judgement(
             "base velocity jump on bearings: relative error, rms",
             {(row["engine"], row["variant"]): _mark(row, "jump_rms", "jump_worst") for row in borne},
-            says="the base velocity jump by {}",
         ),
     )
 
