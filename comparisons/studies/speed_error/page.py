@@ -107,8 +107,8 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
         (row["engine"], row["variant"]): Mark(
             f"{RATIO.text(row)} ×",
             "none",
-            f"engine's own share {SHARE.text(row)}; error of restitution {number(row['restitution'], 2)}, "
-            f"of peak tilt over slenderness {number(row['peak_tilt'], 2)}"
+            f"error of restitution {number(row['restitution'], 2)}"
+            + (f"; {SHARE.head} {SHARE.text(row)}" if row["share"] is not None else "")
             + (f"; {row['lost']} impacts lost" if row["lost"] else ""),
             RATIO.of(row),
         )

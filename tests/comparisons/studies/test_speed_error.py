@@ -273,7 +273,7 @@ def test_the_first_table_gets_costs_at_the_defaults_with_their_errors_and_shares
     (judgement,) = STUDY.judgements(result)
     mark = judgement.marks["exudyn", "a"]
     assert (judgement.key, judgement.rates, mark.words, mark.value) == (COST, False, "76 ×", 76)
-    assert mark.note == "engine's own share 40 %; error of restitution 1.0·10⁻⁴, of peak tilt over slenderness 0.0020"
+    assert mark.note == "error of restitution 1.0·10⁻⁴; engine's own share 40 %"
     (shown,) = cells(result, "engine's own share")
     assert (shown["engine's own share"], shown["impacts lost [-]"]) == ("40 %", "0")
     captions = [part.caption for part in STUDY.page(result).opening().tables]
