@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 # Factor from which an error is said to move, and one of CPU time, which other work on the machine changes, too.
 SAID, SAID_CPU = 1.1, 1.2
 LEAST = 1e-5  # of the slenderness: errors of a peak tilt below it are taken as it
-MUCH = 2.0  # factor of an error that the title counts
+MUCH = 2.0  # factor of an error that the title names
 NOTHING, NOT_A_BIT, CPU = "nothing", "nothing, bit for bit", "CPU"
 ERRORS = {"rms": ("e", 0.0), "peak_median": ("peak, median", LEAST), "peak_worst": ("peak, worst", LEAST)}
 VALUE = Column("value", "value", digits=None)
@@ -25,11 +25,11 @@ def page(result: Result) -> Page:
     first = {NAME.of(row): row for row in where(result.rows, change=AS_IT_IS)}
     changed = grouped(where(result.rows, change=set(CHANGES)), "engine", "variant", "constant")
     shown = [_merged(rows, first[NAME.of(rows[0])]) for rows in changed.values()]
-    much = [row for row in shown if row["much"]]
+    much = [row["constant"].rpartition(":")[2].replace("_", " ") for row in shown if row["much"]]
     still = [row for row in shown if row["words"] == [NOT_A_BIT] * 2]
     return Page(
-        f"The engines’ constants: of {len(shown)}, halved and doubled, {len(much)} move an outcome, or an error by "
-        f"more than a factor of {MUCH:g}",
+        f"The engines’ constants, halved and doubled: {' and '.join(much) or 'none'} alone moves an outcome, or an "
+        "error more than twofold",
         (
             "Numbers that were chosen in the engines’ tuned variants, by experience and not by a formula, each halved "
             "and doubled, all else as it is. None was set to a scene; what moves much is said here, and not tuned.",
