@@ -5,7 +5,7 @@ from .study import plan
 
 STUDY = Study(
     "kernel",
-    "The analytic model's kernel against other integrators: error and CPU time of the same runs, and throughput.",
+    "The analytic model's kernel against other integrators: error and CPU time of the same runs.",
     plan,
     f"{__name__}.page",
     all_engines=False,
