@@ -32,7 +32,7 @@ def page(result: Result) -> Page:
         "error more than twofold",
         (
             "Numbers that were chosen in the engines’ tuned variants, by experience and not by a formula, each halved "
-            "and doubled, all else as it is. None was set to a scene; what moves much is said here, and not tuned.",
+            "and doubled, all else as it is. No number was set to a scene; what moves much is said, and not tuned.",
             f"{len(still)} change nothing in any run, not a bit: round-off, or a limit that none of these scenes asks "
             "for.",
         ),

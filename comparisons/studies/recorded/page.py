@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from analytic.records.fema import PREFIX
 
+from ...measuring.statistics import TOO_FEW
 from ...showing.charts import Axis, Chart, figure, key_of
 from ...showing.figures import LOOKS
 from ...showing.parts import Figure, Judgement, Mark, Page, number, percent, short
@@ -61,7 +62,7 @@ def page(result: Result) -> Page:
             _tilts(runs),
             table(
                 "Free-standing and isolated together: runs with another outcome than the analytic model, "
-                "with 95 % Wilson intervals by record",
+                f"with 95 % Wilson intervals by record; equal: at most {equal} differ",
                 both,
                 NAME,
                 Column("tier", "tier"),
@@ -82,10 +83,10 @@ def page(result: Result) -> Page:
                 summaries,
                 NAME,
                 CONFIGURATION,
-                Column("peak tilt, common [-]", "tilt_error"),
-                Column("peak base displacement, common [-]", "displacement_error"),
-                Column("peak tilt, own [-]", "own_tilt_error"),
-                Column("peak base displacement, own [-]", "own_displacement_error"),
+                Column("peak tilt, common", "tilt_error", percent=True),
+                Column("peak base displacement, common", "displacement_error", percent=True),
+                Column("peak tilt, own", "own_tilt_error", percent=True),
+                Column("peak base displacement, own", "own_displacement_error", percent=True),
             ),
             table(
                 "Runs that differ or fail; tilt over slenderness",
@@ -145,13 +146,11 @@ def _peak_mark(errors):
 
 
 def _title(both: list[dict[str, Any]], equal: str) -> str:
-    tuned = where(both, tier="tuned")
-    differing, runs = (sum(row[key] for row in tuned) for key in ("differing", "runs"))
     words = [row["equal"] for row in both]
-    title = f"Recorded motions: another outcome than the model’s in {differing} of {runs} runs of tuned engines; "
-    title += f"{words.count('yes')} of {len(words)} settings are shown to be equal to it within {equal}"
-    few = len(words) - words.count("yes") - words.count("no")
-    return title + (f", {few} have too few runs" if few else "")
+    title = f"Recorded motions: {words.count('yes')} of {len(words)} settings of engines overturn what the model "
+    title += f"overturns, within {equal}"
+    few = words.count(TOO_FEW)
+    return title + (f"; {few} have too few runs to say" if few else "")
 
 
 def _tilts(runs: list[dict[str, Any]]) -> Figure | None:
