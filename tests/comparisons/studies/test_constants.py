@@ -11,7 +11,7 @@ from comparisons.studies import get_study
 from comparisons.studies.constants.page import NOT_A_BIT
 from comparisons.studies.constants.study import changed, measure
 from comparisons.studies.restitution.cases import free_scene, variants_of
-from engines import ENGINES, installed_engines
+from engines import installed_engines
 
 DECLARED = [one for one in variants_of(installed_engines()) if one[2].constants]
 HARD, STUDY = "engines.step_size:HOLD", get_study("constants")
@@ -19,7 +19,7 @@ HARD, STUDY = "engines.step_size:HOLD", get_study("constants")
 
 @pytest.fixture(scope="module")
 def found():
-    (found,) = answered(STUDY.plan(Ask(tuple(ENGINES), quick=True)), by_model())
+    (found,) = answered(STUDY.plan(Ask(installed_engines(), quick=True)), by_model())
     return found
 
 
@@ -74,7 +74,7 @@ def test_the_row_of_a_run_that_failed_has_its_reason(tmp_path):
     def failure(case):
         return {"kind": "solver", "reason": "it fell apart"} if case.tag["change"] == "halved" else None
 
-    (found,) = answered(STUDY.plan(Ask(tuple(ENGINES), quick=True)), by_model(failure=failure))
+    (found,) = answered(STUDY.plan(Ask(installed_engines(), quick=True)), by_model(failure=failure))
     page = STUDY.page(stored(tmp_path, "constants", found))
     runs = found.rows[0]["runs"]
     assert page.whole().tables[0].rows[0][-2:] == [f"{runs} runs fail", NOT_A_BIT]
