@@ -14,14 +14,8 @@ from ..types import Motion
 from . import fema
 
 VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "dwn", "ver", "v", "z", "u")  # how files call it
-PAIRS = (
-    ("e", "n"),
-    ("ew", "ns"),
-    ("e-w", "n-s"),
-    ("x", "y"),
-    ("1", "2"),
-    ("a", "b"),
-)  # and the two horizontal components
+# and the two horizontal components
+PAIRS = (("e", "n"), ("ew", "ns"), ("e-w", "n-s"), ("x", "y"), ("1", "2"), ("a", "b"))
 # The component in a file's name: a word of its own, after the letters of an instrument (HNE), a number after such
 # letters (H1, HN2; of itself it counts files), or an azimuth.
 _WORD = re.compile(

@@ -27,7 +27,7 @@ class Setup:
     the one rating that all pages use.
 
     best: it is the engine's default. subject: `engines.contract.Engine.subject`. applies_impact: the adapter does, by
-    the model's equations. cost: CPU time over the analytic model's.
+    the model's equations. cost: CPU time over the analytic model's, infinite where it was not measured.
     """
 
     engine: str
@@ -38,16 +38,12 @@ class Setup:
     applies_impact: bool
     marks: Mapping[str, Mark]
     rating: Mark
-    cost: float | None
+    cost: float
 
     @property
     def asked(self) -> bool:
         """Whether it is a column of the first table: a subject engine as a user takes it, tuned or by default."""
         return self.subject and not self.applies_impact and (self.best or self.tier == "defaults")
-
-    @property
-    def name(self) -> str:
-        return f"{self.engine}, {self.variant}"
 
     @property
     def command(self) -> str:
@@ -71,17 +67,16 @@ def setups_of(variants: Iterable[Mapping[str, Any]], judgements: Sequence[Judgem
             continue
         how = {key: one[key] for key in ("engine", "variant", "tier", "best", "applies_impact")}
         subject = one["engine"] in ENGINES and ENGINES[one["engine"]].subject
-        cost = next((marks[each.heading].value for each in judgements if each.key == COST), None)
+        costs = [marks[each.heading].value for each in judgements if each.key == COST]
         rated = _rating([marks[each.heading] for each in judgements if each.rates])
-        found.append(Setup(**how, subject=subject, marks=marks, rating=rated, cost=cost))
+        found.append(Setup(**how, subject=subject, marks=marks, rating=rated, cost=next(filter(None, costs), math.inf)))
     return sorted(found, key=_place)
 
 
 def _place(one):
-    cost = math.inf if one.cost is None else one.cost
     if one.asked:
-        return (0, one.tier == "defaults", list(ENGINES).index(one.engine), cost)
-    return (1, False, list(LEVELS).index(one.rating.level), cost)
+        return (0, one.tier == "defaults", list(ENGINES).index(one.engine), one.cost)
+    return (1, False, list(LEVELS).index(one.rating.level), one.cost)
 
 
 def _mark(judgement, one):
@@ -113,9 +108,7 @@ def own_restitution(block: Result) -> Judgement:
 def best_of(setups: Sequence[Setup]) -> Setup | None:
     """The cheapest that may be trusted and whose engine computes the impact itself; None where there is none."""
     good = [one for one in setups if one.rating.level in ("good", "part") and not one.applies_impact]
-    return min(
-        good, key=lambda one: (one.rating.level != "good", math.inf if one.cost is None else one.cost), default=None
-    )
+    return min(good, key=lambda one: (one.rating.level != "good", one.cost), default=None)
 
 
 def recommendation(setups: Sequence[Setup], judgements: Sequence[Judgement], limits: str) -> list[str]:
@@ -127,14 +120,15 @@ def recommendation(setups: Sequence[Setup], judgements: Sequence[Judgement], lim
         return words
     errors = [best.marks[one.heading].words for one in judgements if one.key == RESTITUTION]
     said = [f"restitution within {error}" for error in errors[:1]]
-    said += [] if best.cost is None else [f"{number(best.cost, 2)} times the analytic model's CPU time"]
+    said += [f"{number(best.cost, 2)} times the analytic model's CPU time"] if math.isfinite(best.cost) else []
     words.append(f"Where it must be a multibody engine: {best.engine} set as “{best.variant}”: {', at '.join(said)}.")
     words.append(f"Tested with one block, for {limits}; planar, no sliding, no jump.")
     return words
 
 
 def paragraph(setups: Sequence[Setup], judgements: Sequence[Judgement]) -> str:
-    """The first table in words, at most `MOST_WORDS`: of the subject engines tuned, and with default settings."""
+    """The first table in words, at most `MOST_WORDS`: of the subject engines tuned, and with default settings of what
+    rates them."""
     sentences = []
     for tier, how in (("tuned", "Tuned"), ("defaults", "With default settings")):
         asked = [one for one in setups if one.asked and one.tier == tier]
@@ -142,7 +136,7 @@ def paragraph(setups: Sequence[Setup], judgements: Sequence[Judgement]) -> str:
         for each in judgements:
             marks = {one.engine: one.marks[each.heading] for one in asked}
             tested = {engine: mark.words for engine, mark in marks.items() if mark is not UNTESTED}
-            if each.says and tested:
+            if each.says and tested and (tier == "tuned" or each.rates):
                 whose = f" ({', '.join(tested)})" if len(tested) < len(marks) else ""
                 said.append(each.says.format(" and ".join(tested.values()) + whose))
         if said:

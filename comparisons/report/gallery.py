@@ -5,55 +5,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from textwrap import wrap
-from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
-from ..running.provenance import PROJECT_FOLDER, RESULTS, read_result
+from ..running.provenance import PROJECT_FOLDER
 from ..showing.charts import alone
-from ..studies import get_study
 from .answer import paragraph, setups_of
-from .studies import stored_studies, variants_of
-
-if TYPE_CHECKING:
-    from ..showing.parts import Section
+from .studies import Stored, stored_studies, variants_of
 
 GALLERY, README = Path(__file__).with_name("gallery"), PROJECT_FOLDER / "README.md"
 BEGIN, END = "<!-- findings of the stored studies -->", "<!-- end of findings -->"
 PANELS = {"restitution": 0, "overturning": -1, "matters": 0, "speed-error": -1}  # study: which panel of its finding
 
 
-def stored(studies: Path = RESULTS) -> dict[str, Section]:
-    """{study: its finding}, of those in `PANELS` whose result lies in `studies`.
-
-    Raises
-    ------
-    ResultError
-        A result file is damaged.
-    """
-    pages = {
-        name: get_study(name).page(read_result(file)).opening()
-        for name in PANELS
-        if (file := studies / f"{name}.json").exists()
-    }
-    return {name: opening for name, opening in pages.items() if opening is not None}
-
-
-def gallery(found: Mapping[str, Section]) -> dict[str, str]:
-    """{name of a file: SVG} of findings as `stored` has them."""
+def gallery(stored: Iterable[Stored]) -> dict[str, str]:
+    """{name of a file: SVG} of the findings of the studies in `PANELS`."""
     made = {}
-    for name in PANELS.keys() & found.keys():
-        (picture,) = found[name].figures
-        panels = ElementTree.fromstring(f"<panels>{picture.svg.decode()}</panels>")
-        made[f"{name}.svg"] = alone(ElementTree.tostring(panels[PANELS[name]], encoding="unicode"))
+    for one in stored:
+        if one.name in PANELS and one.finding is not None:
+            (picture,) = one.finding.figures
+            panels = ElementTree.fromstring(f"<panels>{picture.svg.decode()}</panels>")
+            made[f"{one.name}.svg"] = alone(ElementTree.tostring(panels[PANELS[one.name]], encoding="unicode"))
     return made
 
 
-def headlines(studies: Path = RESULTS) -> str:
-    """The report's first table and its paragraph as Markdown, from the results in `studies`."""
-    stored = stored_studies(studies)
+def headlines(stored: Sequence[Stored]) -> str:
+    """The report's first table and its paragraph as Markdown."""
     judgements = [each for one in stored for each in one.judgements]
     asked = [one for one in setups_of(variants_of(stored), judgements) if one.asked]
     rows = [["", *(f"{one.engine}, {one.tier}" for one in asked)], ["---"] + ["---:"] * len(asked)]
@@ -71,8 +50,8 @@ def with_findings(readme: str, words: str) -> str:
 
 
 if __name__ == "__main__":
-    found = stored()
-    README.write_text(with_findings(README.read_text(encoding="utf-8"), headlines()), encoding="utf-8")
+    found = stored_studies()
+    README.write_text(with_findings(README.read_text(encoding="utf-8"), headlines(found)), encoding="utf-8")
     GALLERY.mkdir(exist_ok=True)
     for name, svg in gallery(found).items():
         (GALLERY / name).write_text(svg, encoding="utf-8")

@@ -28,8 +28,8 @@ def page(result: Result) -> Page:
     much = [row["constant"].rpartition(":")[2].replace("_", " ") for row in shown if row["much"]]
     still = [row for row in shown if row["words"] == [NOT_A_BIT] * 2]
     return Page(
-        f"The engines’ constants, halved and doubled: {' and '.join(much) or 'none'} alone moves an outcome, or an "
-        "error more than twofold",
+        f"The engines’ constants, halved and doubled: {' and '.join(much) or 'none'} alone "
+        f"{'move' if len(much) > 1 else 'moves'} an outcome, or an error more than twofold",
         (
             "Numbers that were chosen in the engines’ tuned variants, by experience and not by a formula, each halved "
             "and doubled, all else as it is. No number was set to a scene; what moves much is said, and not tuned.",

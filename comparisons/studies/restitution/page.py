@@ -179,7 +179,7 @@ def _rated(variant, rows, orders):
 
 
 def _title(ranked):
-    good = [row for row in ranked if row["rms"] and row["rms"] <= TRUSTED and not row["failed"]]
+    good = [row for row in ranked if rating(row["rms"], row["failed"] + row["lost"]) == "good"]
     missed = max((row["rms"] for row in ranked if row not in good and row["rms"]), default=None)
     return f"One impact: {len(good)} of {len(ranked)} settings of engines keep restitution within {TRUSTED:g}" + (
         f"; the others miss it by up to {number(missed, 2)}" if missed else ""

@@ -13,7 +13,7 @@ from engines import ENGINES
 from ...showing.figures import beside, lines
 from ...showing.parts import COST, Head, Judgement, Mark, Page, number, percent, short
 from ...showing.rows import NAME as SOLVER
-from ...showing.rows import Column, grouped, table, where
+from ...showing.rows import Column, Row, cheapest, grouped, table, where
 from .cases import NEEDED, PLAIN
 from .growth import fit
 
@@ -185,15 +185,10 @@ def _measures(scene):
     return next(found for line in SHOWN if (found := [measure for measure in line if measure in scene["measures"]]))
 
 
-def passing(rows: Iterable[dict[str, Any]], level: float) -> dict[str, dict[str, Any]]:
+def passing(rows: Iterable[dict[str, Any]], level: float) -> dict[str, Row]:
     """{name: the cheapest of its rows at which it and all finer ones keep an error}, cheapest first; of one scene and
     one measure."""
-    found = {}
-    for (name,), some in grouped(rows, "name").items():
-        bad = [k for k, row in enumerate(some) if row["error"] is None or row["error"] > level]
-        if good := some[bad[-1] + 1 :] if bad else some:  # they come from coarse to fine
-            found[name] = min(good, key=CPU.of)
-    return dict(sorted(found.items(), key=lambda item: CPU.of(item[1])))
+    return cheapest(rows, "name", lambda row: row["error"] is not None and row["error"] <= level, CPU.of)
 
 
 def _assisted(result):
