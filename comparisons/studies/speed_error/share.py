@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import cProfile
-import dataclasses
 import statistics
 import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from engines import ENGINES
+from engines import get_engine
+from engines.settings import choose
 
 from .growth import WARM_SECONDS
 
 if TYPE_CHECKING:
-    from analytic import Response
+    from analytic import Response, Scene
+    from engines.contract import Run
 
     from ...running.cases import Case
 
@@ -24,16 +25,22 @@ RUNS = 3  # of each kind: medians count
 def own_share(case: Case, response: Response) -> dict[str, Any]:
     """Measure: the share, over the CPU time of a run without a profiler; the run before has loaded code and caches.
 
-    A run cut short is taken off: it has built the scene, which is no part of the CPU time of a run.
+    All are bare runs, which build the scene once: `simulate` repeats a run whose end cuts an impact short. A run cut
+    short is subtracted: it has built the scene, which is no part of the CPU time of a run.
     """
-    package = ENGINES[case.solver].package
-    cut = dataclasses.replace(case, scene=case.scene.with_(duration=WARM_SECONDS))
+    engine = get_engine(case.solver)
+    variant, settings = choose(engine, case.variant, {k: v for k, v in case.settings.items() if k != "history"})
+
+    def run(scene: Scene) -> Callable[[], Run]:
+        return lambda: engine.run(scene, variant, settings)
+
+    whole, cut = run(case.scene), run(case.scene.with_(duration=WARM_SECONDS))
     turns = [
-        (seconds_inside(package, case.run), seconds_inside(package, cut.run), case.run().cpu_seconds)
+        (seconds_inside(engine.package, whole), seconds_inside(engine.package, cut), whole().cpu_seconds)
         for _ in range(RUNS)
     ]
-    whole, built, plain = map(statistics.median, zip(*turns, strict=True))
-    return {"outcome": response.outcome, "cost": {"cpu_seconds": plain, "share": (whole - built) / plain}}
+    total, built, plain = map(statistics.median, zip(*turns, strict=True))
+    return {"outcome": response.outcome, "cost": {"cpu_seconds": plain, "share": (total - built) / plain}}
 
 
 def seconds_inside(package: str, run: Callable[[], Any]) -> float:

@@ -176,6 +176,7 @@ def test_the_share_is_of_compiled_functions_without_what_they_call_back():
 
 
 @pytest.mark.slow  # beside other work the profiled run and the plain one do not get the same machine
+@pytest.mark.slow  # beside other work the profiled run and the plain one do not get the same machine
 def test_the_share_of_an_engine_is_a_part_of_its_run(free):
     pytest.importorskip("pybullet")
     case = Case(free.scene, "pybullet", "fixed-step", {"step": 1e-3, "history": False})
