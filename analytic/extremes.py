@@ -33,7 +33,7 @@ class Extremes:
         if self.rows is not None:
             self.rows.append(row)
 
-    def leave_out_the_fall(self) -> None:
+    def exclude_overturning(self) -> None:
         """The block has overturned."""
         self.x, self.acceleration, self.friction, self.normal = self.held
 

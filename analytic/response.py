@@ -183,7 +183,7 @@ class Response:
             raise ValueError("a failed response carries a failure, and no other does")
 
     @property
-    def verdict(self) -> str:
+    def outcome_text(self) -> str:
         """The outcome in words for people: the outcome, or "undecided (rocks so far)"."""
         return self.outcome if self.decided or self.outcome == "failed" else f"undecided ({self.outcome} so far)"
 

@@ -153,7 +153,7 @@ def simulate(
     history : bool
         Keep the history at multiples of `output_step` (and at the end).
     tolerance : float
-        The accuracy knob: the last Taylor term of a step, relative to the motion within the step. The error at the
+        The accuracy parameter: the last Taylor term of a step, relative to the motion within the step. The error at the
         end is larger by the sensitivity of the motion (a few hundred times near overturning).
     rest_rate : float
         Impacts slower than this fraction of omega_r are summed to their limit and end in rest.

@@ -17,11 +17,11 @@ import numpy as np
 from numba import njit
 
 from .bearing import hysteretic_force
-from .ending import is_decided, until_decided
 from .errors import SettingError
 from .motion import vertical_acceleration
 from .response import History, Impact, Response, State
 from .rocking import RockingModel
+from .termination import is_decided, until_decided
 
 if TYPE_CHECKING:
     from .scene import Scene

@@ -25,8 +25,8 @@ from analytic.errors import EngineBroken, EngineNotInstalled
 if TYPE_CHECKING:
     from analytic.response import Caution, Failure
 
-    from .bounds import Bound
     from .swings import Trace
+    from .tolerance_rows import ToleranceRow
 
 # How far the engine is on its own: "defaults", what a first script gets from the API; "tuned", only the engine moves a
 # body or sets a velocity; "assisted", the adapter sets a velocity, a position or a constraint by the model's event.
@@ -50,7 +50,7 @@ class Variant:
         the scene's coefficient.
     tier : str
         One of `TIERS`.
-    ladder : tuple of float
+    levels : tuple of float
         Refinement levels: values of the accuracy parameter from coarse to fine, the default among them.
     computes, imposes : str
         What the engine computes, and what the adapter imposes on it beside the bearings' force, the ground's
@@ -79,7 +79,7 @@ class Variant:
 
     settings: Any
     tier: str
-    ladder: tuple[float, ...]
+    levels: tuple[float, ...]
     computes: str
     imposes: str
     takes_restitution: bool = False
@@ -93,11 +93,13 @@ class Variant:
     def __post_init__(self) -> None:
         if self.tier not in TIERS:
             raise ValueError(f"tier = {self.tier!r}: choose one of {', '.join(TIERS)}")
-        if self.default not in self.ladder:
-            raise ValueError(f"ladder = {self.ladder!r}: it lacks the default, {self.knob} = {self.default!r}")
+        if self.default not in self.levels:
+            raise ValueError(
+                f"levels = {self.levels!r}: it lacks the default, {self.accuracy_parameter} = {self.default!r}"
+            )
         if not self.finer:
-            beyond = self.ladder[self.ladder.index(self.default) + 1 :]
-            object.__setattr__(self, "finer", tuple({self.knob: value} for value in beyond))
+            beyond = self.levels[self.levels.index(self.default) + 1 :]
+            object.__setattr__(self, "finer", tuple({self.accuracy_parameter: value} for value in beyond))
         known = {setting.name for setting in dataclasses.fields(self.settings)}
         own = [name for name in self.constants if ":" not in name]
         if strange := sorted(set(self.varied).union(own, *self.finer) - known):
@@ -105,14 +107,14 @@ class Variant:
             raise ValueError(f"{strange[0]!r} is {words}: its settings are {', '.join(known)}")
 
     @property
-    def knob(self) -> str:
+    def accuracy_parameter(self) -> str:
         """Name of the accuracy parameter."""
         return dataclasses.fields(self.settings)[0].name
 
     @property
     def default(self) -> float:
         """Value of the accuracy parameter."""
-        return getattr(self.settings, self.knob)
+        return getattr(self.settings, self.accuracy_parameter)
 
     @property
     def step(self) -> str | None:
@@ -156,7 +158,7 @@ class Engine:
     adapter : str
         Name of the module with ``VARIANTS``, ``versions`` and ``run``.
     tolerances : str or None
-        Name of a module whose ``TOLERANCES``, {variant: tuple of `engines.bounds.Bound`}, are its rows of the tolerance
+        Name of a module whose ``TOLERANCES``, {variant: tuple of `ToleranceRow`}, are its rows of the tolerance
         table.
     subject : bool
         One of those that the question of the studies is about; the others stand beside them.
@@ -209,7 +211,7 @@ class Engine:
             raise EngineBroken(self.origin, f"{self.adapter} has no function {' and no '.join(missing)}")
         return module
 
-    def bounds(self) -> dict[str, tuple[Bound, ...]]:
+    def tolerance_rows(self) -> dict[str, tuple[ToleranceRow, ...]]:
         """Its rows of the tolerance table, by variant; the package need not be installed, but one from outside that is
         broken has none."""
         if not self.tolerances or (self.origin and not self.installed):

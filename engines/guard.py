@@ -37,7 +37,7 @@ def check_time_limit(time_limit: float) -> None:
         raise ValueError(f"time_limit = {time_limit!r}: give a time above 0 and up to {LONGEST:g} [s]")
 
 
-def alone(
+def run_apart(
     function: Callable[..., Any],
     *arguments: Any,
     time_limit: float,

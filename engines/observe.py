@@ -15,16 +15,16 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from analytic.decision import model_warnings
-from analytic.ending import is_decided
 from analytic.limits import limit_warnings
 from analytic.motion import SampledMotion
 from analytic.response import Caution, Failure, History, Response, about_record
+from analytic.termination import is_decided
 
 from .checks import check_energy, check_place
-from .endings import ended_early, finite_part, last_state, unstable_time, upright_part, upto_overturning
 from .events import check_impacts, contact_measures, find_events
 from .momentum import check_impulse
 from .swings import Trace, find_swings
+from .truncation import ended_early, finite_part, last_state, unstable_time, upright_part, upto_overturning
 
 if TYPE_CHECKING:
     from analytic import Scene

@@ -44,7 +44,7 @@ def choose(engine: Engine, variant: str | None, changes: Mapping[str, Any]) -> t
     return name, replace(settings, **{key: float(value) for key, value in changes.items()})
 
 
-def leave_restitution(engine: Engine, scene: Scene) -> None:
+def refuse_restitution(engine: Engine, scene: Scene) -> None:
     """Raise `SceneError` where a scene gives the restitution, which a contact engine decides itself."""
     if scene.block.restitution is not None:
         able = [name for name, variant in engine.variants.items() if variant.takes_restitution]

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 import analytic
-from analytic import ending
+from analytic import termination
 from analytic.response import Caution, Failure
 from analytic.solver import compile_kernels
 
 from .comparison import compare as compared
 from .contract import Engine
-from .settings import choose, leave_restitution
+from .settings import choose, refuse_restitution
 from .swings import find_swings
 
 if TYPE_CHECKING:
@@ -77,12 +77,12 @@ class Simulator(Engine):
         """(response, the steps it was read from or None) of `simulate`, not compared.
 
         A scene without a duration is first run to where the analytic model's run ends, as engines end alike; an engine
-        whose own end state is not decided there goes on for longer (`analytic.ending.until_decided`).
+        whose own end state is not decided there goes on for longer (`analytic.termination.until_decided`).
         """
         compile_kernels()
         name, chosen = choose(self, variant, settings)
         if not self.variants[name].takes_restitution:
-            leave_restitution(self, scene)
+            refuse_restitution(self, scene)
         if scene.friction is not None and hasattr(chosen, "friction"):
             chosen = replace(chosen, friction=scene.friction)
         if scene.duration is not None:
@@ -95,7 +95,9 @@ class Simulator(Engine):
             return response
 
         end = analytic.simulate(scene, history=False).end.time
-        response = ending.until_decided(attempt, scene, at_least=end, finished=lambda _, response: response.decided)
+        response = termination.until_decided(
+            attempt, scene, at_least=end, finished=lambda _, response: response.decided
+        )
         return response, traces[0]
 
     def _once(self, scene: Scene, name: str, chosen: Any, history: bool) -> tuple[Response, Trace | None]:
@@ -135,7 +137,7 @@ class Simulator(Engine):
 
 def _beyond(scene: Scene, on: Run) -> tuple[Trace | None, tuple[Caution, ...]]:
     """(its sound trace, what is to be said) of a run that went on beyond the scene's end."""
-    from .endings import finite_part  # as above
+    from .truncation import finite_part  # as above
 
     trace, failure = finite_part(on.trace, on.failure) if on.trace else (None, on.failure)
     if trace is not None and failure is None:

@@ -5,7 +5,7 @@ import dataclasses
 from analytic import simulate
 from comparisons.running.executors import Done, Executor, lines_of
 from comparisons.running.provenance import read_result, write_result
-from comparisons.running.study import Batch, Found
+from comparisons.running.study import Batch, Computed
 from comparisons.running.sweep import Row, run_sweep
 
 
@@ -44,7 +44,7 @@ def by_model(scene=lambda case: case.scene, failure=lambda case: None, history=F
 
 
 def answered(plan, run, most=None):
-    """The answers (list of `Found`), at most so many, of a plan whose batches get ``run(batch)``, a list of rows."""
+    """The answers (list of `Computed`), at most so many, of a plan whose batches get ``run(batch)``, a list of rows."""
     answers, rows = [], None
     while len(answers) != most:
         try:
@@ -52,7 +52,7 @@ def answered(plan, run, most=None):
         except StopIteration as stop:
             return [*answers, *([stop.value] if stop.value not in answers else [])]
         rows = None
-        if isinstance(step, Found):
+        if isinstance(step, Computed):
             answers.append(step)
         else:
             assert isinstance(step, Batch)
@@ -61,7 +61,7 @@ def answered(plan, run, most=None):
 
 
 def stored(folder, name, found, **settings):
-    """The `Result` of a study's `Found`, with these `settings` besides, as it comes back from a file in `folder`."""
+    """The `Result` of a study's `Computed`, with these `settings` besides, as it comes back from a file in `folder`."""
     settings = {"changed_while_running": [], **found.settings, **settings}
     return read_result(
         write_result(folder / f"{name}.json", name, settings, found.rows, found.arrays, modules=["analytic"])

@@ -36,7 +36,7 @@ VARIANTS = {
     "euler": Variant(
         Euler(),
         tier="assisted",
-        ladder=(2e-3, 5e-4),
+        levels=(2e-3, 5e-4),
         takes_restitution=True,
         computes="motion and uplift",
         imposes="the impact it is given",

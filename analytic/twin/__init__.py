@@ -15,9 +15,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from ..ending import is_decided, until_decided
 from ..errors import SettingError
 from ..response import Response
+from ..termination import is_decided, until_decided
 from .run import Run
 
 if TYPE_CHECKING:

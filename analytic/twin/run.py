@@ -298,7 +298,7 @@ class Run(Equations):
         outcome = "failed" if failure else "overturns" if self.overturning is not None else outcome
         extremes = self.extremes
         if outcome == "overturns":
-            extremes.leave_out_the_fall()
+            extremes.exclude_overturning()
         return Response(
             engine="twin",
             variant=self.settings["method"],

@@ -166,7 +166,7 @@ def _analytic(family: Mapping[float, Scene]) -> Level:
 def _searched(scene, family, names, error, criterion, **options):
     """(key of the level chosen or None, CPU seconds of the whole scene, all variants); options: of the sweeps."""
     kinds = _kinds(names, scene)
-    levels = [(name, variant, value) for name, variant, kind in kinds for value in kind.ladder]
+    levels = [(name, variant, value) for name, variant, kind in kinds for value in kind.levels]
     with TemporaryFolder("choose-") as folder, Processes(None, ("analytic", *names)) as executor:
         search = Search(scene, family, error, criterion, Path(folder), executor=executor, **options)
         search.run(levels, [1.0], "the scene")
@@ -190,7 +190,7 @@ def _variant(name, variant, kind, search):
     """The `VariantLevels` of a variant from what was run."""
     levels: list[Level] = []
     finer = True
-    for value in reversed(kind.ladder):
+    for value in reversed(kind.levels):
         rows = search.rows[name, variant, value]
         found, why = problem(rows, search.error, search.criterion)
         if why is None and not finer:
@@ -204,7 +204,7 @@ def _variant(name, variant, kind, search):
             Level(
                 engine=name,
                 variant=variant,
-                parameter=kind.knob,
+                parameter=kind.accuracy_parameter,
                 value=value,
                 default=value == kind.default,
                 runs=len(rows),
@@ -246,6 +246,5 @@ def _snippet(one, source):
     call = f'get_engine("{one.engine}").simulate(load_scene("{source}"), variant="{one.variant}"{value})'
     if one.engine == ANALYTIC:
         head, call = "from analytic import load_scene, simulate\n\n", f'simulate(load_scene("{source}"))'
-    return (
-        f"{head}response = {call}\nprint(response.verdict, response.peak_tilt_ratio, response.peak_base_displacement)\n"
-    )
+    shown = "response.outcome_text, response.peak_tilt_ratio, response.peak_base_displacement"
+    return f"{head}response = {call}\nprint({shown})\n"

@@ -68,7 +68,9 @@ class Search:
         cases = []
         for (engine, variant, value), scene in runs:
             kind = get_engine(engine).variants[variant]
-            cases.append(Case(scene, engine, variant, {} if value == kind.default else {kind.knob: value}))
+            cases.append(
+                Case(scene, engine, variant, {} if value == kind.default else {kind.accuracy_parameter: value})
+            )
         store = self.folder / f"{criterion}.jsonl"
         return run_sweep(cases, store=store, measure=Measure(criterion), label=label, **self.options)
 
@@ -89,8 +91,8 @@ class Search:
         return None, None
 
     def _suffix(self, level):
-        ladder = get_engine(level[0]).variants[level[1]].ladder
-        return [(*level[:2], value) for value in ladder[ladder.index(level[2]) :]]
+        levels = get_engine(level[0]).variants[level[1]].levels
+        return [(*level[:2], value) for value in levels[levels.index(level[2]) :]]
 
     def _pass(self, levels):
         return all(problem(self.rows[one], self.error, self.criterion)[1] is None for one in levels)

@@ -81,7 +81,7 @@ def _space(scene, engines):
     scene = scene.with_(duration=simulate(scene, history=False).end.time)
     for engine, variant, kind in [(one, *each) for one in able for each in one.variants.items()]:
         if kind.free_block and kind.step:
-            step = kind.default if kind.knob == kind.step else min(kind.ladder)
+            step = kind.default if kind.accuracy_parameter == kind.step else min(kind.levels)
             free, planar = (
                 Case(scene, kind.free_block, settings={"step": step, "history": False}).run(),
                 Case(scene, engine.name, variant, {kind.step: step, "history": False}).run(),

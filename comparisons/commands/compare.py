@@ -17,10 +17,10 @@ from ..running.solving import (
     check_solver,
     check_time_limit,
     near_motion,
+    print_failures,
     say,
     simulate,
     spinner,
-    tell_failures,
 )
 
 
@@ -64,7 +64,7 @@ def command(
 
         return draw_histories(what, drawn, horizon)
 
-    tell_failures(responses)
+    print_failures(responses)
     form = _form(what, responses, horizons, horizon)
     give({json_file: form}, lambda: show(comparison(what, responses, horizons), responses), plot, draw)
     if responses[0].failure:
@@ -100,10 +100,10 @@ def _responses(scene, asked, time_limit):
 
 def _sensitivity(scene, responses, time_limit):
     """`_horizons` in a process of its own; none where that does not end, which is said."""
-    from engines.guard import alone
+    from engines.guard import run_apart
 
     words = spinner(f"{scene.name}: sensitivity horizons")
-    horizons, failure = alone(_horizons, scene, responses, time_limit=time_limit, meanwhile=words)
+    horizons, failure = run_apart(_horizons, scene, responses, time_limit=time_limit, meanwhile=words)
     if not failure:
         return horizons
     say(f"no sensitivity horizons: {failure.reason}. {readable(failure.message.partition(chr(10))[0])}")

@@ -14,7 +14,7 @@ from analytic.errors import SceneError, SettingError
 from ..cli.give import give
 from ..running.files import check_writable
 from ..running.motion_options import BothSigns, Directions, Records, motions_of
-from ..running.options import DEFINITION, OPTIONS, RATIO, told_by_options
+from ..running.options import DEFINITION, OPTIONS, RATIO, named_by_options
 from ..running.record_options import Units
 from ..running.solving import bar, compile_kernels, scene_of
 
@@ -89,7 +89,7 @@ def _by_targets(targets, made, json_file):
 
     check_writable([json_file])
     mass, xmax = targets["mass"], targets["xmax"]
-    with told_by_options(OPTIONS):
+    with named_by_options(OPTIONS):
         bearings = design_bearings(mass, targets["period"], targets["damping"], xmax, **made)
     back = properties(bearings, mass, xmax)
     constants, given = Constants(**bearings.model_dump()), Properties(**dataclasses.asdict(back))
@@ -120,7 +120,7 @@ def _for_scene(place, stroke, tilt, made, many, write, plot, json_file):
     groups = motions_of(scene, **many)
     motions = [motion for group in groups.values() for motion in group]
     compile_kernels(any(motion.vertical for motion in motions))
-    with bar(f"{scene.name}: bearings") as progress, told_by_options(OPTIONS | {"tilt": "--tilt"}):
+    with bar(f"{scene.name}: bearings") as progress, named_by_options(OPTIONS | {"tilt": "--tilt"}):
         scan = scan_bearings(scene, motions, stroke, tilt=tilt, **made, progress=progress)
     points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None where none hold
     chosen = {name: _chosen(scene, scan, point, motions) for name, point in points.items() if point is not None}

@@ -11,7 +11,7 @@ import typer
 from analytic.errors import SettingError
 
 from ..cli.give import give
-from ..running.options import DEFINITION, OPTIONS, RATIO, told_by_options
+from ..running.options import DEFINITION, OPTIONS, RATIO, named_by_options
 from ..running.record_options import Channel, Column, Step, Units
 from ..running.solving import ground_motion, say, scene_of
 
@@ -62,7 +62,7 @@ def command(
     from analytic.scene import Base
 
     from ..running.files import check_writable, write_text
-    from ..running.plausible import ask_back, doubts
+    from ..running.plausible import confirm, doubts
 
     check_writable([file, json_file])
     if Path(file).exists():
@@ -71,7 +71,7 @@ def command(
     width = _asked(width, "width", "Width along the motion [m]")
     if mass is None and density is None and material is None:
         material, mass = _weight()
-    with told_by_options(OPTIONS):
+    with named_by_options(OPTIONS):
         block = block_from(height, width, depth=depth, density=_density(density, material), mass=mass)
         base = None if base_mass is None else Base(mass=base_mass)
         targets = {"period": period, "damping": damping, "stiffness_ratio": ratio, "definition": definition}
@@ -87,7 +87,7 @@ def command(
         scene = scene_of(text, file)
         if not anyway:
             given = {"weighed": mass is not None, "designed": period is not None}
-            ask_back(doubts(scene, height, width, depth, **given))
+            confirm(doubts(scene, height, width, depth, **given))
         write_text(file, text)
         _tell(file, scene, json_file, {} if period is None else _asked_for(period, damping, definition))
 

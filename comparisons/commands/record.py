@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from ..cli.give import give
-from ..running.options import RECORD_OPTIONS, told_by_options
+from ..running.options import RECORD_OPTIONS, named_by_options
 from ..running.record_options import Channel, Column, Step, Units
 
 
@@ -44,7 +44,7 @@ def command(
 
     check_writable([json_file, to], picture=plot, inputs=[file])
     name = file if fema.is_one(file) else Path(file).name
-    with told_by_options(RECORD_OPTIONS):
+    with named_by_options(RECORD_OPTIONS):
         channels = read_channels(file, units, dt=dt, column=column, channel=channel)
     if to and len(channels) > 1:
         choice = ", ".join(channel_words(one) for one in channels)

@@ -10,7 +10,7 @@ import typer
 from analytic.errors import SettingError
 
 from ..running.motion_options import BothSigns, Directions, Records, other_motions
-from ..running.options import RECORD_OPTIONS, told_by_options
+from ..running.options import RECORD_OPTIONS, named_by_options
 from ..running.record_options import Channel, Column, Step, Units
 from ..running.solving import ANALYTIC, bar, check_solver, ground_motion, say, stdout_to_stderr
 
@@ -86,7 +86,7 @@ def command(
 
 def _motion(scene, record, said):
     """The motion of the record, or the shipped one; None where scenes bring theirs."""
-    with told_by_options(RECORD_OPTIONS):
+    with named_by_options(RECORD_OPTIONS):
         motion = ground_motion(record, **said)  # says what belongs to a record, too
     if scene and record is None:
         return None

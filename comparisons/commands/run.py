@@ -16,9 +16,9 @@ from ..running.solving import (
     check_time_limit,
     near_motion,
     parse_settings,
+    print_failures,
     say,
     simulate,
-    tell_failures,
 )
 
 
@@ -85,7 +85,7 @@ def command(
         return draw_histories(what, [response])
 
     form = Run(**response.to_json(), motions=[MotionRun(**row) for row in rows])
-    tell_failures([response])
+    print_failures([response])
     give({json_file: form, csv: history.getvalue()}, tell, plot, draw)
     if response.failure:
         raise typer.Exit(1)

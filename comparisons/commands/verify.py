@@ -50,12 +50,12 @@ def command(
 
 def _verified(name, table, time_limit):
     """The rows of an engine, measured in a process of their own; where it dies, each row says so."""
-    from engines.guard import alone
+    from engines.guard import run_apart
 
     from ..measuring.tolerances import measure_all
 
     compile_kernels(vertical=True)
-    found, failure = alone(
+    found, failure = run_apart(
         measure_all, table, time_limit=time_limit, meanwhile=spinner(f"{name}: {len(table)} tolerances")
     )
     if failure is None:

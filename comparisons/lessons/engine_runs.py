@@ -25,13 +25,13 @@ ROUNDS = 3  # the least CPU time of so many
 
 @dataclass(frozen=True)
 class EngineRun:
-    """One run: who, by name and variant, with which knob; error: of the tilt rate after the first impact, nan without
-    one; cpu [s]."""
+    """One run: who, by name and variant, at which value of its accuracy parameter; error: of the tilt rate after the
+    first impact, nan without one; cpu [s]."""
 
     solver: str
     name: str
     tier: str
-    knob: str
+    parameter: str
     value: float
     error: float
     cpu: float
@@ -49,13 +49,15 @@ def error_of(response: Response) -> float:
     return abs(hits[0].rate_after / exact_rate() - 1) if hits else math.nan
 
 
-def timed(solver: str, knob: str, values: Iterable[float], simulated: Callable[..., Response]) -> tuple[EngineRun, ...]:
+def timed(
+    solver: str, parameter: str, values: Iterable[float], simulated: Callable[..., Response]
+) -> tuple[EngineRun, ...]:
     """Runs of one of our own solvers, a setting each."""
     found = []
     for value in values:
-        runs = [simulated(SCENE, history=False, **{knob: value}) for _ in range(ROUNDS)]
+        runs = [simulated(SCENE, history=False, **{parameter: value}) for _ in range(ROUNDS)]
         cpu = min(run.cpu_seconds for run in runs)
-        found.append(EngineRun(solver, solver, "", knob, value, error_of(runs[0]), cpu))
+        found.append(EngineRun(solver, solver, "", parameter, value, error_of(runs[0]), cpu))
     return tuple(found)
 
 
@@ -67,15 +69,25 @@ def own_runs() -> tuple[EngineRun, ...]:
 
 @functools.cache
 def engine_runs() -> tuple[EngineRun, ...]:
-    """Of every installed engine: each variant through the ladder of its accuracy knob."""
+    """Of every installed engine: each variant through the levels of its accuracy parameter."""
     found = []
     for name in installed_engines():
         engine = get_engine(name)
         for variant, kind in engine.variants.items():
-            for value in kind.ladder:
-                response = engine.simulate(SCENE, variant=variant, history=False, compare=False, **{kind.knob: value})
+            for value in kind.levels:
+                response = engine.simulate(
+                    SCENE, variant=variant, history=False, compare=False, **{kind.accuracy_parameter: value}
+                )
                 error = math.nan if response.outcome == "failed" else error_of(response)
                 found.append(
-                    EngineRun(name, f"{name}, {variant}", kind.tier, kind.knob, value, error, response.cpu_seconds)
+                    EngineRun(
+                        name,
+                        f"{name}, {variant}",
+                        kind.tier,
+                        kind.accuracy_parameter,
+                        value,
+                        error,
+                        response.cpu_seconds,
+                    )
                 )
     return tuple(found)

@@ -15,7 +15,7 @@ from typing import Any
 
 from analytic.errors import SettingError
 from engines import ENGINES, get_engine
-from engines.bounds import ROUNDING
+from engines.tolerance_rows import ROUNDING
 
 from . import agreement
 
@@ -107,7 +107,7 @@ QUANTITIES: dict[str, tuple[Callable[..., float], str]] = {
 def _table():
     table = []
     for engine in ENGINES.values():
-        for variant, bounds in engine.bounds().items():
+        for variant, bounds in engine.tolerance_rows().items():
             for bound in bounds:
                 if bound.quantity not in QUANTITIES:
                     raise SettingError(
@@ -156,9 +156,9 @@ def rows(engine: str, variant: str | None = None) -> tuple[Tolerance, ...]:
     variant = variant or known.default_variant
     if variant not in known.variants:
         raise SettingError(f"{engine} has no variant {variant!r}; choose among {', '.join(known.variants)}")
-    if not known.bounds():
+    if not known.tolerance_rows():
         first = next(iter(ENGINES.values()))
-        usual = rows_of(first.name, next(iter(first.bounds())))
+        usual = rows_of(first.name, next(iter(first.tolerance_rows())))
         free: dict[str, Any] = dict(engine=engine, variant=variant, bound=None, measured=None, source="")
         return tuple(replace(row, **free) for row in usual)
     return rows_of(engine, variant)

@@ -62,7 +62,7 @@ def _table(result):
         result.rows,
         Column("solver", "engine"),
         Column("scene", lambda row: result.settings["scenes"][row["scene"]]["name"]),
-        Column("outcome", "verdict"),
+        Column("outcome", "outcome_text"),
         Column("overturns at [s]", lambda row: row.get("overturning_time"), 5),
         Column("peak |φ|/γ [-]", lambda row: row.get("peak_tilt_ratio"), 3),
         Column("peak x [m]", lambda row: row.get("peak_base_displacement"), 4),

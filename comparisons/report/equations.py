@@ -72,7 +72,7 @@ GLOSSARY = {
     "sensitivity horizon": "time beyond which a change by 10⁻⁴ makes another motion; a solver’s own: one by its errors",
     "analytic model": "the rocking equations solved directly from event to event; its compiled part is the kernel",
     "second implementation": "the same equations written again, independently and plainly, to check the first",
-    "accuracy knob": "the one setting of a solver that trades time for error; its ladder: the values tried",
+    "accuracy parameter": "the one setting of a solver that trades time for error; its levels: the values tried",
     "defaults, tuned, assisted": "an engine as a first script gets it; well set, but on its own; with a velocity, "
     "position or constraint set by the adapter at the model's event",
     "root mean square (rms)": "root of the mean of squares of all errors",

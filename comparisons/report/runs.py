@@ -23,14 +23,14 @@ from ..measuring.errors import compare, impact_errors, rms, worst
 from ..measuring.horizon import sensitivity_horizon, solver_horizon
 from ..running.cases import Case
 from ..running.solving import spinner
-from ..running.study import Batch, Found, say
+from ..running.study import Batch, Computed, say
 from .histories import ToFile, differences, response_of, thinned
 from .statue import statue_of
 
 if TYPE_CHECKING:
     from analytic.types import Motion
 
-    from ..running.study import Ask, Plan
+    from ..running.study import Plan, Request
     from ..running.sweep import Row
 
 SCENES, RESTITUTION = "scenes.json", "restitution.json"  # result files
@@ -59,7 +59,7 @@ def load_scenes(places: Sequence[str], motion: Motion | None = None) -> dict[str
 
 
 def plan(
-    ask: Ask,
+    request: Request,
     scenes: Mapping[str, Scene],
     histories: str | PathLike[str],
     variants: Mapping[str, str | None],
@@ -77,30 +77,30 @@ def plan(
             scene,
             solver,
             variants.get(solver),
-            settings={"compare": True} if solver in ask.engines else {},
+            settings={"compare": True} if solver in request.engines else {},
             tag={"scene": name},
         )
-        for solver in ("analytic", *ask.engines)
+        for solver in ("analytic", *request.engines)
         for name, scene in scenes.items()
     ]
     longest = max((scene.motion.end for scene in scenes.values() if scene.motion), default=0.0)
     samples = max((len(getattr(scene.motion, "samples", ())) for scene in scenes.values()), default=0)
     limit = TIME_LIMIT + LIMIT_PER_SECOND * longest + LIMIT_PER_SAMPLE * samples
-    say(f"{', '.join(scenes)} in {', '.join(('the analytic model', *ask.engines))}")
+    say(f"{', '.join(scenes)} in {', '.join(('the analytic model', *request.engines))}")
     rows = yield Batch(cases, ToFile(str(Path(histories).resolve())), "scenes", limit)
-    more: dict[str, Any] = {"variants": described_variants(ask.engines), "own": own}
+    more: dict[str, Any] = {"variants": described_variants(request.engines), "own": own}
     if own:
         more["statues"] = {}
         for name, scene in scenes.items():
             with spinner(f"{scene.name}: the analytic model") as tell:
                 more["statues"][name] = statue_of(scene, motions.get(name, {}), partial(_tell, tell, scene.name))
-    found = scenes_found(Path(histories), rows, scenes, **more)
+    found = scenes_computed(Path(histories), rows, scenes, **more)
     rocking = [row.case.scene for row in rows if row.case.solver == "analytic" and row.values["outcome"] != "stands"]
     if not (own and rocking):
         return found
     yield found
-    rows = yield Batch(restitution_cases(ask.engines, rocking), impacts_only, "restitution", limit)
-    return restitution_found(rows)
+    rows = yield Batch(restitution_cases(request.engines, rocking), impacts_only, "restitution", limit)
+    return restitution_computed(rows)
 
 
 def _tell(tell, name, quantity):
@@ -135,13 +135,13 @@ def impacts_only(case: Case, response: Response) -> dict[str, Any]:
     return response.to_json()
 
 
-def restitution_found(rows: Sequence[Row]) -> Found:
+def restitution_computed(rows: Sequence[Row]) -> Computed:
     """The answer of the block let go: a row for each solver and variant, over all grounds and starts."""
     groups: dict[tuple[str, str | None], list[Row]] = {}
     for row in rows:
         groups.setdefault((row.case.solver, row.case.variant), []).append(row)
     settings = {"starts": STARTS, "seconds": rows[0].case.scene.duration, "bases": list(_bases(rows))}
-    return Found(settings, [_restitution_row(*key, of) for key, of in groups.items()], name=Path(RESTITUTION).stem)
+    return Computed(settings, [_restitution_row(*key, of) for key, of in groups.items()], name=Path(RESTITUTION).stem)
 
 
 def _bases(rows):
@@ -191,7 +191,7 @@ def described_variants(engines: Sequence[str]) -> dict[str, dict[str, dict[str, 
     }
 
 
-def scenes_found(folder: Path, rows: Sequence[Row], scenes: Mapping[str, Scene], **more: Any) -> Found:
+def scenes_computed(folder: Path, rows: Sequence[Row], scenes: Mapping[str, Scene], **more: Any) -> Computed:
     """The answer of the scenes' runs; memory holds two histories at a time, one the analytic model's.
 
     The motion described is the first scene's that has one; more: further settings.
@@ -237,7 +237,7 @@ def scenes_found(folder: Path, rows: Sequence[Row], scenes: Mapping[str, Scene],
         "missing": available_engines()[1],
         **more,
     }
-    return Found(settings, entries, arrays, name=Path(SCENES).stem)
+    return Computed(settings, entries, arrays, name=Path(SCENES).stem)
 
 
 def _drawn_motion(motion):
@@ -259,11 +259,11 @@ def _scene_entry(scene, row, reference, horizon, folder):
     values = {key: value for key, value in row.values.items() if key != "history"}
     entry = {**values, "engine": row.case.solver, "failure": row.failure, **row.cost}
     if row.failed:
-        return {**entry, "verdict": "failed"}, {}
+        return {**entry, "outcome_text": "failed"}, {}
     response = response_of(row.values, folder)
     history = response.history
     entry.update(
-        verdict=response.verdict,
+        outcome_text=response.outcome_text,
         cpu_per_second=row.cost["cpu_seconds"] / response.end.time,
         bearing_work=float(trapezoid(history.bearing_force, history.base_displacement)),
     )

@@ -134,7 +134,7 @@ def _got(head: str, key: str, digits: int = 2) -> Column:
 
 
 OUTCOMES = (
-    Column("outcome", "verdict"),
+    Column("outcome", "outcome_text"),
     _got("overturns at [s]", "overturning_time", 5),
     _got("peak |φ|/γ [-]", "peak_tilt_ratio", 4),
     _got("impacts [-]", "impact_count"),

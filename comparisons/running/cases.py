@@ -143,8 +143,8 @@ def variant_settings(engine: str, variant: str, levels: Iterable[float] | None =
         "engine": engine,
         "variant": variant,
         "tier": kind.tier,
-        "parameter": kind.knob,
+        "parameter": kind.accuracy_parameter,
         "default": kind.default,
-        "levels": sorted(kind.ladder) if levels is None else levels,
+        "levels": sorted(kind.levels) if levels is None else levels,
         "applies_impact": kind.takes_restitution,
     }

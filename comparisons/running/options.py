@@ -23,7 +23,7 @@ OPTIONS = {
 
 
 @contextlib.contextmanager
-def told_by_options(options: Mapping[str, str]) -> Iterator[None]:
+def named_by_options(options: Mapping[str, str]) -> Iterator[None]:
     """Errors raised inside name options; options : {parameter of a function, or key of a scene: option}."""
     try:
         yield

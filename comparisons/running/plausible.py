@@ -84,7 +84,7 @@ def _meant(height: float, width: float) -> str:
     return f"; did you mean {' or '.join(guesses)}?" if guesses else ""
 
 
-def ask_back(found: Sequence[str]) -> None:
+def confirm(found: Sequence[str]) -> None:
     """Return where nothing was found, or where somebody at a terminal wants the file all the same.
 
     Raises

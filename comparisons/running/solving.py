@@ -122,12 +122,12 @@ def simulate(
         The engine cannot be imported here; says how to install it.
     """
     from analytic.response import about_record
-    from engines.guard import OUT_OF_TIME, alone
+    from engines.guard import OUT_OF_TIME, run_apart
 
     settings = settings or {}
     check_solver(solver)
     compile_kernels(scene.motion is not None and scene.motion.vertical is not None)
-    response, failure = alone(
+    response, failure = run_apart(
         _simulate,
         scene,
         solver,
@@ -247,7 +247,7 @@ def _check_size(name, value):
         raise SettingError(f"{name} = {value!r}: not a finite number; give one")
 
 
-def tell_failures(responses: Iterable[Response]) -> None:
+def print_failures(responses: Iterable[Response]) -> None:
     """Name the failed ones of the responses on standard error, with what a terminal can hold of the evidence."""
     for response in responses:
         if response.failure:

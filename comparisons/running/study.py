@@ -2,14 +2,14 @@
 
     STUDY = Study("outcomes", "Who overturns?", plan, "outcomes.page")
 
-    def plan(ask):
-        rows = yield Batch([Case(scene, solver) for solver in ("analytic", *ask.engines)], outcome, "outcomes")
-        return Found({"quick": ask.quick}, [row.values for row in rows])
+    def plan(request):
+        rows = yield Batch([Case(scene, solver) for solver in ("analytic", *request.engines)], outcome, "outcomes")
+        return Computed({"quick": request.quick}, [row.values for row in rows])
 
 `plan` is a generator: it yields a `Batch` of cases and is sent their rows, as often as it needs (a search asks again
-where the answers point, a timing turn by turn). A `Found` that it yields is written at once: whole as far as it goes;
-the last one is returned. What runs, stores, resumes and writes is `compute`, the same for every study. How to write a
-study, from the first file to its page: `comparisons.studies`.
+where the answers point, a timing turn by turn). A `Computed` that it yields is written at once: whole as far as it
+goes; the last one is returned. What runs, stores, resumes and writes is `compute`, the same for every study. How to
+write a study, from the first file to its page: `comparisons.studies`.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ SHOWN = 30  # runs from which on a batch shows its progress; a bisection has man
 
 
 @dataclass(frozen=True)
-class Ask:
+class Request:
     """What a plan is asked. engines: names of those to compare; quick: a first look, in minutes."""
 
     engines: tuple[str, ...] = ()
@@ -69,7 +69,7 @@ class Batch:
 
 
 @dataclass(frozen=True)
-class Found:
+class Computed:
     """An answer: what was asked (settings), rows and arrays.
 
     solvers: on whose code it depends beside the batches'. name: of its file, where a study has several.
@@ -83,7 +83,7 @@ class Found:
     name: str = ""
 
 
-Plan = Generator[Batch | Found, list[Row], Found]
+Plan = Generator[Batch | Computed, list[Row], Computed]
 
 
 @dataclass(frozen=True)
@@ -91,8 +91,8 @@ class Study:
     """A study, as commands, report and `compute` know it.
 
     name: on the command line, of its files, and the kind of its result. question: one line, the command's help.
-    plan: ``(ask, **options)`` -> generator, see above; its keyword-only parameters, annotated as Typer wants them, are
-    options of the command. shown_by: the module that shows it, imported only there: its ``page(result)`` gives the
+    plan: ``(request, **options)`` -> generator, see above; its keyword-only parameters, annotated as Typer wants them,
+    are options of the command. shown_by: the module that shows it, imported only there: its ``page(result)`` gives the
     `comparisons.showing.parts.Page`, and its ``judgements(result)``, if it has them, rows of the report's first table.
     problems: result -> sentences that end the command with status 1. all_engines: whether all that are installed
     take part where none is asked for.
@@ -174,7 +174,7 @@ def compute(
             code = digests_of_all({*PROJECT, *(name.partition(".")[0] for name in modules)})
         solvers = ("analytic", *asked)
         pool = Processes(workers, solvers) if scheduler is None else Cluster(scheduler, solvers)
-        plan = study.plan(Ask(asked, quick), **options)
+        plan = study.plan(Request(asked, quick), **options)
         return _carry_out(study, plan, folder, solvers, code, store, stack.enter_context(pool), progress)
 
 
@@ -188,7 +188,7 @@ def _carry_out(study, plan, folder, always, code, store, pool, progress):
             step = plan.send(answer)
         except StopIteration as stop:
             step, ended = stop.value, True
-        if isinstance(step, Found):
+        if isinstance(step, Computed):
             answer = None
             solvers.update(dict.fromkeys(step.solvers))
             modules = [study.plan.__module__, *dict.fromkeys(module_of(name) for name in solvers)]

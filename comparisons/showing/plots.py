@@ -61,7 +61,7 @@ def draw_histories(scene: Scene, responses: Sequence[Response], horizon: float |
         history, line = response.history, style(response.engine)
         if len(responses) == 1:
             line["linewidth"] = 1.2  # nothing to lie underneath
-        label = f"{response.engine}, {response.variant}: {response.verdict}"
+        label = f"{response.engine}, {response.variant}: {response.outcome_text}"
         axes["tilt"].plot(history.time, history.tilt / scene.block.slenderness, label=label, **line)
         if "displacement" in axes:
             axes["displacement"].plot(history.time, history.base_displacement, label=label, **line)

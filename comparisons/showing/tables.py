@@ -35,7 +35,7 @@ def summary(scene: Scene, response: Response) -> Table:
     """The main figures of one response, as a table."""
     title = f"{_name(scene)}: {response.engine}" + (f", {response.variant}" if response.variant else "")
     rows = {
-        "outcome": response.verdict,
+        "outcome": response.outcome_text,
         "overturning time [s]": digits(response.overturning_time, ".6g"),
         "peak tilt [rad]": digits(response.peak_tilt),
         "peak tilt / slenderness": digits(response.peak_tilt_ratio),
@@ -81,7 +81,7 @@ def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[st
         rows.append(
             [
                 f"{response.engine}\n{response.variant}".rstrip(),
-                response.verdict.replace(" ", "\n", 1),  # narrow: undecided, and so far what
+                response.outcome_text.replace(" ", "\n", 1),  # narrow: undecided, and so far what
                 digits(response.overturning_time, ".4f"),
                 digits(response.peak_tilt_ratio, ".4f"),
                 tilt,
@@ -136,7 +136,7 @@ def engine_text(engine: Engine) -> str:
         lines += [
             f"  --variant {name} ({default}{variant.tier}): {about}",
             f"      settings: {', '.join(values)}",
-            f"      levels, coarse to fine: {', '.join(f'{value:.4g}' for value in variant.ladder)}",
+            f"      levels, coarse to fine: {', '.join(f'{value:.4g}' for value in variant.levels)}",
             f"      the engine computes: {variant.computes}",
             f"      the adapter imposes: {variant.imposes}",
         ]

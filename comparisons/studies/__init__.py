@@ -2,8 +2,8 @@
 
 A study is two files in a folder of its name, as `restitution`; another file only for another noun (its cases).
 
-``study.py`` computes and imports nothing that shows: a ``plan(ask)`` that yields a `Batch` of cases with their
-``measure`` and returns `Found`, plain rows and settings (`comparisons.running.study`). All rows of all studies say
+``study.py`` computes and imports nothing that shows: a ``plan(request)`` that yields a `Batch` of cases with their
+``measure`` and returns `Computed`, plain rows and settings (`comparisons.running.study`). All rows of all studies say
 ``engine``, ``variant`` and ``part`` (what the row is), ``level`` for a value of the accuracy parameter, ``lost`` for
 impacts that a run has not; settings list ``variants``, each with engine, variant, tier, parameter, default and levels.
 `comparisons.studies.vocabulary` explains every column.

@@ -19,14 +19,14 @@ VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(),
         tier="tuned",
-        ladder=(2e-3, 6e-4, 2e-4, 1e-4),
+        levels=(2e-3, 6e-4, 2e-4, 1e-4),
         computes="motion, contact, impact and rest",
         imposes="the steps, by gaps and closing speeds",
     ),
     "first-script": Variant(
         FirstScript(1e-3),  # DART's own default
         tier="defaults",
-        ladder=(5e-3, 1e-3, 2e-4),
+        levels=(5e-3, 1e-3, 2e-4),
         computes="motion, contact, impact and rest",
         imposes="nothing",
     ),

@@ -20,7 +20,7 @@ VARIANTS = {
     "first-script": Variant(
         FirstScript(1e-3),  # Drake's own default
         tier="defaults",
-        ladder=(5e-3, 2e-3, 1e-3),
+        levels=(5e-3, 2e-3, 1e-3),
         computes="motion, contact, impact and rest",
         imposes="nothing",
     )

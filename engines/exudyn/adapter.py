@@ -33,7 +33,7 @@ VARIANTS = {
     "compliant-corners": Variant(
         corners.CompliantCorners(),
         tier="tuned",
-        ladder=(1e9, 1e10, 2e11, 1e12),
+        levels=(1e9, 1e10, 2e11, 1e12),
         finer=(
             {"stiffness": 1e12, "pivoting_step": 2e-4},
             {"stiffness": 1e12, "pivoting_step": 2e-4, "tolerance": 1e-9},
@@ -53,7 +53,7 @@ VARIANTS = {
     "switched-joints": Variant(
         joints.SwitchedJoints(),
         tier="assisted",
-        ladder=(1.6e-2, 4e-3, 1e-3),
+        levels=(1.6e-2, 4e-3, 1e-3),
         finer=({"step": 1e-4},),
         takes_restitution=True,
         computes="motion between events",
@@ -62,7 +62,7 @@ VARIANTS = {
     "native-contact": Variant(
         native.NativeContact(),
         tier="defaults",
-        ladder=(1e-3, 3e-4, 1e-4),
+        levels=(1e-3, 3e-4, 1e-4),
         finer=({"step": 5e-5},),
         computes="motion, contact, impact and rest",
         imposes="a plane",

@@ -33,7 +33,7 @@ INITIAL = exu.ConfigurationType.Initial
 
 @dataclass(frozen=True)
 class SwitchedJoints:
-    """Settings of switched-joints. `step` is the accuracy knob: the error goes as its square."""
+    """Settings of switched-joints. `step` is the accuracy parameter: the error goes as its square."""
 
     step: float = 1e-3  # s
 

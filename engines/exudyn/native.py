@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NativeContact:
-    """Settings of native-contact. `step` is the accuracy knob; the contact keeps an error that it does not remove.
+    """Settings of native-contact. `step` is the accuracy parameter; the contact keeps an error that it does not remove.
 
     The contact's damper pulls at a lifting corner and its friction is a regularised slip law: restitution is off by
     1 to 10 %, whatever the step.

@@ -1,53 +1,55 @@
 """What the variants of exudyn are held to; the scenes are those of the tolerance table."""
 
-from ..bounds import HELD, READING, ROUNDING, Bound
+from ..tolerance_rows import HELD, READING, ROUNDING, ToleranceRow
 
 STIFFNESS = "contact stiffness; goes as its inverse"
 SQUARE = "step squared; the impact is the model's own"
 
 TOLERANCES = {
     "compliant-corners": (
-        Bound("restitution, rms", "rigid ground", 8.8e-6, 4.41e-6, STIFFNESS),
-        Bound("restitution, rms", "sliding base", 1.9e-5, 9.76e-6, STIFFNESS),
-        Bound("base velocity jump, rms", "sliding base", 1.37e-5, 6.89e-6, STIFFNESS),
-        Bound("impact times", "rigid ground", 1.8e-4, 1.0e-4, STIFFNESS),
-        Bound("impact times", "sliding base", 3.8e-5, 2.44e-5, STIFFNESS),
-        Bound("peak tilt", "rocking on bearings, one-sine", 6.4e-4, 3.23e-4, STIFFNESS),
-        Bound("tilt graph", "rocking on bearings, one-sine", 1.6e-3, 8.14e-4, STIFFNESS),
-        Bound("peak displacement", "rocking on bearings, one-sine", 3.8e-5, 2.72e-5, STIFFNESS),
-        Bound("peak displacement", "isolated Caryatid, synthetic motion", 1.4e-5, 1.09e-5, STIFFNESS),
-        Bound("overturning time", "one-sine of 3.8 g slenderness, rigid ground", 8.2e-5, 4.12e-5, STIFFNESS),
-        Bound("overturning boundary", "one-sine at 2 and 5 times omega_r, rigid ground", 1.75e-4, 1.11e-4, STIFFNESS),
-        Bound(
+        ToleranceRow("restitution, rms", "rigid ground", 8.8e-6, 4.41e-6, STIFFNESS),
+        ToleranceRow("restitution, rms", "sliding base", 1.9e-5, 9.76e-6, STIFFNESS),
+        ToleranceRow("base velocity jump, rms", "sliding base", 1.37e-5, 6.89e-6, STIFFNESS),
+        ToleranceRow("impact times", "rigid ground", 1.8e-4, 1.0e-4, STIFFNESS),
+        ToleranceRow("impact times", "sliding base", 3.8e-5, 2.44e-5, STIFFNESS),
+        ToleranceRow("peak tilt", "rocking on bearings, one-sine", 6.4e-4, 3.23e-4, STIFFNESS),
+        ToleranceRow("tilt graph", "rocking on bearings, one-sine", 1.6e-3, 8.14e-4, STIFFNESS),
+        ToleranceRow("peak displacement", "rocking on bearings, one-sine", 3.8e-5, 2.72e-5, STIFFNESS),
+        ToleranceRow("peak displacement", "isolated Caryatid, synthetic motion", 1.4e-5, 1.09e-5, STIFFNESS),
+        ToleranceRow("overturning time", "one-sine of 3.8 g slenderness, rigid ground", 8.2e-5, 4.12e-5, STIFFNESS),
+        ToleranceRow(
+            "overturning boundary", "one-sine at 2 and 5 times omega_r, rigid ground", 1.75e-4, 1.11e-4, STIFFNESS
+        ),
+        ToleranceRow(
             "overturning boundary",
             "one-sine at 7, one-cosine at 2 times omega_r, rigid ground",
             2.2e-3,
             1.18e-3,
             STIFFNESS,
         ),
-        Bound("bearing force replayed", "rocking on bearings, one-sine", 1e-9, 2.2e-13, ROUNDING),
-        Bound("bearing force replayed", "isolated Caryatid, synthetic motion", 1e-9, 4.4e-13, ROUNDING),
-        Bound("bearing impulse in the motion", "rocking on bearings, one-sine", 7.5e-6, 3.77e-6, READING),
-        Bound("bearing impulse in the motion", "isolated Caryatid, synthetic motion", 8e-6, 4.11e-6, READING),
-        Bound("corner lift at rest", "60 s of shaking below uplift, rigid ground", 2.8e-7, 1.40e-7, HELD),
-        Bound("base drift at rest", "60 s of shaking below uplift, on bearings", 1.5e-6, 9.98e-7, HELD),
+        ToleranceRow("bearing force replayed", "rocking on bearings, one-sine", 1e-9, 2.2e-13, ROUNDING),
+        ToleranceRow("bearing force replayed", "isolated Caryatid, synthetic motion", 1e-9, 4.4e-13, ROUNDING),
+        ToleranceRow("bearing impulse in the motion", "rocking on bearings, one-sine", 7.5e-6, 3.77e-6, READING),
+        ToleranceRow("bearing impulse in the motion", "isolated Caryatid, synthetic motion", 8e-6, 4.11e-6, READING),
+        ToleranceRow("corner lift at rest", "60 s of shaking below uplift, rigid ground", 2.8e-7, 1.40e-7, HELD),
+        ToleranceRow("base drift at rest", "60 s of shaking below uplift, on bearings", 1.5e-6, 9.98e-7, HELD),
     ),
     "switched-joints": (
-        Bound("restitution, rms", "rigid ground, slenderness 0.2", 8e-10, 4.03e-10, SQUARE),
-        Bound("restitution, rms", "sliding base, slenderness 0.2", 4.6e-9, 2.35e-9, SQUARE),
-        Bound("base velocity jump, rms", "sliding base, slenderness 0.2", 4.3e-9, 2.19e-9, SQUARE),
-        Bound("bearing force replayed", "rocking on bearings, one-sine", 1e-9, 9.4e-14, ROUNDING),
-        Bound("bearing impulse in the motion", "rocking on bearings, one-sine", 1.2e-5, 6.37e-6, READING),
+        ToleranceRow("restitution, rms", "rigid ground, slenderness 0.2", 8e-10, 4.03e-10, SQUARE),
+        ToleranceRow("restitution, rms", "sliding base, slenderness 0.2", 4.6e-9, 2.35e-9, SQUARE),
+        ToleranceRow("base velocity jump, rms", "sliding base, slenderness 0.2", 4.3e-9, 2.19e-9, SQUARE),
+        ToleranceRow("bearing force replayed", "rocking on bearings, one-sine", 1e-9, 9.4e-14, ROUNDING),
+        ToleranceRow("bearing impulse in the motion", "rocking on bearings, one-sine", 1.2e-5, 6.37e-6, READING),
     ),
     "native-contact": (
-        Bound(
+        ToleranceRow(
             "restitution from swings, |mean error|",
             "rigid ground, slenderness 0.2",
             0.04,
             0.0275,
             "the damper pulls at the lifting corner, friction creeps",
         ),
-        Bound(
+        ToleranceRow(
             "restitution from swings, |mean error|",
             "sliding base, slenderness 0.2",
             0.07,

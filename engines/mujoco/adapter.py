@@ -30,14 +30,14 @@ VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(),
         tier="tuned",
-        ladder=(2e-3, 6e-4, 2e-4, 1e-4),
+        levels=(2e-3, 6e-4, 2e-4, 1e-4),
         computes="motion, contact, impact and rest",
         imposes="a plane, by joints; the steps, by gaps and closing speeds",
     ),
     "fixed-step": Variant(
         FixedStep(1e-4),
         tier="tuned",
-        ladder=(4e-3, 1e-3, 1e-4),
+        levels=(4e-3, 1e-3, 1e-4),
         finer=({"step": 2e-5},),
         computes="motion, contact, impact and rest",
         imposes="a plane, by joints",
@@ -45,7 +45,7 @@ VARIANTS = {
     "first-script": Variant(
         FirstScript(2e-3),  # MuJoCo's own default
         tier="defaults",
-        ladder=(1 / 120, 2e-3, 5e-4),
+        levels=(1 / 120, 2e-3, 5e-4),
         finer=({"step": 2e-4},),
         computes="motion, contact, impact and rest",
         imposes="a plane, by joints",

@@ -28,7 +28,7 @@ VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(1e-3, 1e-3),
         tier="tuned",
-        ladder=(7e-3, 3e-3, 1e-3, 5e-4),
+        levels=(7e-3, 3e-3, 1e-3, 5e-4),
         constants=CONSTANTS,
         computes="motion, contact, impact and rest",
         imposes="a plane, by joints; the steps, by gaps and closing speeds",
@@ -36,7 +36,7 @@ VARIANTS = {
     "fixed-step": Variant(
         FixedStep(1e-4),
         tier="tuned",
-        ladder=(4e-3, 1e-3, 2.5e-4, 1e-4),
+        levels=(4e-3, 1e-3, 2.5e-4, 1e-4),
         finer=({"step": 2e-5},),
         free_block="engines.pybullet.free_block:simulate",
         computes="motion, contact, impact and rest",
@@ -45,7 +45,7 @@ VARIANTS = {
     "first-script": Variant(  # damping that no one asked for: e off by .01 to .5 at every step
         FirstScript(1 / 240),  # Bullet's own default
         tier="defaults",
-        ladder=(1 / 60, 1 / 240, 1 / 1000),
+        levels=(1 / 60, 1 / 240, 1 / 1000),
         finer=({"step": 2e-4},),
         friction=0.5 * 0.5,  # the default on either body, which Bullet multiplies
         flight_damping=0.04,  # the default of a multibody

@@ -9,7 +9,7 @@ from typing import Any
 import pybullet
 
 from analytic import Response, Scene
-from analytic.ending import until_decided
+from analytic.termination import until_decided
 
 from ..leapfrog import trace_of
 from ..observe import failed_response, observe

@@ -22,14 +22,14 @@ VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(),
         tier="tuned",
-        ladder=(2e-3, 6e-4, 2e-4, 1e-4),
+        levels=(2e-3, 6e-4, 2e-4, 1e-4),
         computes="motion, contact, impact and rest",
         imposes="the steps, by gaps and closing speeds",
     ),
     "first-script": Variant(
         FirstScript(1 / 240),  # four a frame: pymunk leaves the step to its user
         tier="defaults",
-        ladder=(1 / 60, 1 / 240, 1e-3),
+        levels=(1 / 60, 1 / 240, 1e-3),
         computes="motion, contact, impact and rest",
         imposes="nothing",
     ),

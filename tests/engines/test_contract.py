@@ -35,8 +35,10 @@ def test_record_holds_what_the_contract_names(engine, variant):
         assert is_dataclass(one.settings) and one.settings.__dataclass_params__.frozen
         assert fields(one.settings) and all(0 < value < math.inf for value in asdict(one.settings).values())
         assert one.tier in TIERS and one.computes and one.imposes
-        down = sorted(one.ladder, reverse=True)  # from coarse to fine; of a stiffness the finer is the larger
-        assert list(one.ladder) == (down[::-1] if one.knob == "stiffness" else down) and len(one.ladder) > 1
+        down = sorted(one.levels, reverse=True)  # from coarse to fine; of a stiffness the finer is the larger
+        assert (
+            list(one.levels) == (down[::-1] if one.accuracy_parameter == "stiffness" else down) and len(one.levels) > 1
+        )
     # A package that is one compiled module stands in no list before Python 3.12; it has the distribution's name.
     (distribution, *_) = metadata.packages_distributions().get(record.package, [record.package])
     assert record.versions()[record.package] == metadata.version(distribution)
@@ -158,7 +160,7 @@ def test_ground_motion_that_is_not_finite_fails_with_the_last_finite_state(
 @default_variant
 def test_hang_ends_at_the_time_limit(engine, variant):
     endless = scene(0.2, duration=3e3, start=Start(tilt=0.12))
-    _, failure = guard.alone(simulate, engine, variant, endless, time_limit=4.0)
+    _, failure = guard.run_apart(simulate, engine, variant, endless, time_limit=4.0)
     assert failure.reason == guard.OUT_OF_TIME
 
 
@@ -175,7 +177,9 @@ def test_runs_repeat_bit_for_bit_also_in_other_processes(engine, variant):
     given = scene(0.15, 212.0, 1.0, bearings=BEARINGS, motion=PULSE)
     first, second = (in_every_variant(engine, given) for _ in range(2))
     with ThreadPoolExecutor(2) as two:  # two at once
-        elsewhere = list(two.map(lambda _: guard.alone(in_every_variant, engine, given, time_limit=120.0), range(2)))
+        elsewhere = list(
+            two.map(lambda _: guard.run_apart(in_every_variant, engine, given, time_limit=120.0), range(2))
+        )
     for repeated in (second, *(runs for runs, _ in elsewhere)):
         for here, there in zip(first, repeated, strict=True):
             assert (here.variant, here.end, here.impacts) == (there.variant, there.end, there.impacts)

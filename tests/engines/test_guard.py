@@ -8,7 +8,7 @@ import time
 import pytest
 
 from analytic import Block, Scene, SettingError, Start, simulate
-from engines.guard import OUT_OF_TIME, alone, check_time_limit
+from engines.guard import OUT_OF_TIME, check_time_limit, run_apart
 
 SCENE = Scene(block=Block(mass=1000.0, radius=1.0, slenderness=0.2), start=Start(tilt=0.1), duration=1.0, name="nod")
 
@@ -65,22 +65,22 @@ def wrong_setting():
 )
 def test_a_run_that_ends_badly_is_a_failure_with_evidence(run, arguments, limit, evidence):
     began = time.monotonic()
-    value, failure = alone(run, *arguments, time_limit=limit)
+    value, failure = run_apart(run, *arguments, time_limit=limit)
     assert time.monotonic() - began < limit + 5
     assert value is None and evidence in failure.message
     assert (failure.reason == OUT_OF_TIME) == (run is hang)
 
 
 def test_a_good_run_comes_back_as_it_is():
-    here, (response, failure) = simulate(SCENE), alone(simulate, SCENE, time_limit=60.0)
+    here, (response, failure) = simulate(SCENE), run_apart(simulate, SCENE, time_limit=60.0)
     assert failure is None and response.impacts == here.impacts
     assert (response.history.tilt == here.history.tilt).all()
 
 
 def test_ctrl_c_is_the_parents_to_handle_and_a_wrong_setting_the_callers_mistake():
-    assert alone(ignores_ctrl_c, time_limit=60.0) == ("went on", None)
+    assert run_apart(ignores_ctrl_c, time_limit=60.0) == ("went on", None)
     with pytest.raises(SettingError, match="step"):
-        alone(wrong_setting, time_limit=30.0)
+        run_apart(wrong_setting, time_limit=30.0)
 
 
 @pytest.mark.parametrize("limit", [0.0, -1.0, float("nan"), 2e6])

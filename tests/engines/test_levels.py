@@ -30,8 +30,8 @@ def worst(given, response):
 def test_a_level_is_right_or_told(engine, variant, ground):
     record, given = get_engine(engine), released(*SCENES[ground])
     kind = record.variants[variant]
-    for value in kind.ladder:
-        response, _ = record.traced(given, variant=variant, **{kind.knob: value})
+    for value in kind.levels:
+        response, _ = record.traced(given, variant=variant, **{kind.accuracy_parameter: value})
         told = response.failure or compare(given, response).differences
         # what flight takes between two impacts is no part of their restitution: first scripts' damping
         limit = RESTITUTION if kind.flight_damping is None else 0.02

@@ -107,11 +107,11 @@ BAD_ENTRIES = {
         "that name is taken",
         "analytic of crude-engine 0.1",
     ),
-    "a ladder without the default": (
+    "a levels without the default": (
         "crude",
         "crude_engine:ENGINE",
         changed("(2e-3, 5e-4)", "(2e-3,)"),
-        "it cannot be imported (ValueError: ladder = (0.002,): it lacks",
+        "it cannot be imported (ValueError: levels = (0.002,): it lacks",
         "crude",
     ),
 }

@@ -158,7 +158,7 @@ def test_fixed_steps_are_of_first_order(name, slenderness, starts, seconds, fine
 def test_the_error_of_restitution_falls_along_the_ladder(engine, base, fine):
     """From the energies of swings, which count what flight loses."""
     scenes, errors = [scene(0.2, base, 3.5, start=Start(tilt=share * 0.2)) for share in (0.3, 0.55, 0.8)], []
-    for step in engine.variants["impact-aware"].ladder:
+    for step in engine.variants["impact-aware"].levels:
         off = [impact_errors(given, engine.simulate(given, largest_step=step), 2)["swing"] for given in scenes]
         errors.append(rms(np.concatenate(off)))
     assert errors == sorted(errors, reverse=True)

@@ -39,7 +39,7 @@ def bound(engine, quantity, scenes):
     """Of the engine's first variant; its own of this file, where it has one."""
     if quantity in OWN.get(engine.name, {}):
         return OWN[engine.name][quantity]
-    rows = engine.bounds()[engine.default_variant]
+    rows = engine.tolerance_rows()[engine.default_variant]
     return next(row.bound for row in rows if (row.quantity, row.scenes) == (quantity, scenes))
 
 

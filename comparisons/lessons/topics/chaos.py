@@ -81,7 +81,7 @@ def growth() -> float:
     return float(-np.polyfit(ends[inside], logs[inside], 1)[0])
 
 
-def hair_for_twenty_seconds() -> float:
+def perturbation_for_twenty_seconds() -> float:
     """Horizon [s] that double precision, 1e-16, allows by that growth."""
     return float(np.log(APART / 1e-16) / growth())
 
@@ -141,7 +141,7 @@ LESSON = Lesson(
         ),
         Exercise(
             "How far can double precision, $10^{-16}$, take you by that rate?",
-            hair_for_twenty_seconds,
+            perturbation_for_twenty_seconds,
             "s",
             "$\\ln(0.1/10^{-16})$ over the rate. No solver gets further in this number format.",
             2,

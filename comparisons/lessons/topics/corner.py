@@ -90,12 +90,12 @@ def _frame(axis, middle, tilt, words, old_corner):
 
 
 def engines_table() -> Table:
-    """Error of the rate after the first impact in every installed engine, variant and setting of its ladder."""
+    """Error of the rate after the first impact in every installed engine, variant and setting of its levels."""
     rows = [
         [
             run.name,
             run.tier,
-            f"{run.knob} = {run.value:g}",
+            f"{run.parameter} = {run.value:g}",
             "no impact" if math.isnan(run.error) else number(100 * run.error, 2),
         ]
         for run in engine_runs()

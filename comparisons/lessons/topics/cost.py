@@ -27,17 +27,17 @@ def model_runs() -> tuple[EngineRun, ...]:
     return timed(MODEL, "tolerance", TOLERANCES, simulate)
 
 
-def ladders(runs: tuple[EngineRun, ...]) -> dict[str, list[EngineRun]]:
+def levels_by_variant(runs: tuple[EngineRun, ...]) -> dict[str, list[EngineRun]]:
     """{solver: its runs}, coarse to fine as they come."""
-    return {name: list(ladder) for name, ladder in groupby(runs, attrgetter("name"))}
+    return {name: list(levels) for name, levels in groupby(runs, attrgetter("name"))}
 
 
 def trusted(runs: tuple[EngineRun, ...], target: float) -> dict[str, EngineRun]:
     """The cheapest run of each solver whose error, and that of every finer setting, is below the target."""
 
     passing = {
-        name: list(takewhile(lambda run: run.error < target, reversed(ladder)))
-        for name, ladder in ladders(runs).items()
+        name: list(takewhile(lambda run: run.error < target, reversed(levels)))
+        for name, levels in levels_by_variant(runs).items()
     }
     return {name: min(those, key=lambda run: run.cpu) for name, those in passing.items() if those}
 
@@ -49,10 +49,10 @@ def everything() -> tuple[EngineRun, ...]:
 def view(step: float) -> View:
     """Error against CPU time; step [ms] of the fixed-step integrator."""
     figure, axis = canvas()
-    for name, ladder in ladders(everything()).items():
-        solver, first = ladder[0].solver, ladder[0].tier == "defaults"
+    for name, levels in levels_by_variant(everything()).items():
+        solver, first = levels[0].solver, levels[0].tier == "defaults"
         colour = {OWN: THIRD, MODEL: INK}.get(solver) or style(solver)["color"]
-        known = [run for run in ladder if not math.isnan(run.error)]
+        known = [run for run in levels if not math.isnan(run.error)]
         axis.loglog(
             [max(100 * run.error, 100 * FLOOR) for run in known],
             [max(1e3 * run.cpu, 1e-3) for run in known],
@@ -78,7 +78,7 @@ def view(step: float) -> View:
         {
             "error at this step": (100 * here.error, "%"),
             "CPU time": (1e3 * here.cpu, "ms"),
-            "cheapest below 1 %": (f"{cheapest.name}, {cheapest.knob} {cheapest.value:g}", ""),
+            "cheapest below 1 %": (f"{cheapest.name}, {cheapest.parameter} {cheapest.value:g}", ""),
         },
         f"Fixed steps of {step:g} ms err by {100 * here.error:.3f} %.",
     )
@@ -88,7 +88,7 @@ def table() -> Table:
     """The cheapest trusted setting of each solver below 1 %."""
     best = trusted(everything(), TARGET)
     rows = [
-        [run.name, f"{run.knob} = {run.value:g}", number(100 * run.error, 2), number(1e3 * run.cpu, 2)]
+        [run.name, f"{run.parameter} = {run.value:g}", number(100 * run.error, 2), number(1e3 * run.cpu, 2)]
         for run in sorted(best.values(), key=lambda run: run.cpu)
     ]
     return Table(
@@ -119,7 +119,7 @@ def code() -> object:
 
     best = trusted((*model_runs(), *own_runs(), *engine_runs()), TARGET)
     found = len(best)
-    return {name: (f"{run.knob} = {run.value:g}", f"{1e3 * run.cpu:.3g} ms") for name, run in best.items()}
+    return {name: (f"{run.parameter} = {run.value:g}", f"{1e3 * run.cpu:.3g} ms") for name, run in best.items()}
 
 
 LESSON = Lesson(

@@ -10,12 +10,12 @@ from engines import get_engine
 
 from ...measuring.causes import CAUSES, LEAST, diagnosis
 from ...running.cases import Case
-from ...running.study import Batch, Found
+from ...running.study import Batch, Computed
 
 if TYPE_CHECKING:
     from analytic import Response
 
-    from ...running.study import Ask, Plan
+    from ...running.study import Plan, Request
 
 SLENDERNESS, START = 0.2, 0.6  # rad, tilt over slenderness
 SECONDS = 1.6  # past the swing after the first impact
@@ -38,19 +38,19 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
     return diagnosis(case.solver, case.variant, case.scene)
 
 
-def plan(ask: Ask) -> Plan:
+def plan(request: Request) -> Plan:
     """The plan of the study. Rows: `diagnosis`, or the failure, with the ground.
 
     Parameters
     ----------
-    ask : Ask
+    request : Request
         quick: rigid ground only.
     """
     cases = [
         Case(scene_on(ground), engine, variant, tag={"ground": ground})
-        for engine in ask.engines
+        for engine in request.engines
         for variant in get_engine(engine).variants
-        for ground in (list(GROUNDS)[:1] if ask.quick else GROUNDS)
+        for ground in (list(GROUNDS)[:1] if request.quick else GROUNDS)
     ]
     runs = yield Batch(cases, measure, "one impact", time_limit=60.0)
     rows = [
@@ -64,5 +64,5 @@ def plan(ask: Ask) -> Plan:
         }
         for run in runs
     ]
-    settings = {"quick": ask.quick, "slenderness": SLENDERNESS, "start": START, "least": LEAST, "causes": CAUSES}
-    return Found(settings, rows)
+    settings = {"quick": request.quick, "slenderness": SLENDERNESS, "start": START, "least": LEAST, "causes": CAUSES}
+    return Computed(settings, rows)

@@ -165,7 +165,7 @@ def _compared(integrator, what, scenes, runs, rounds):
 
 
 def _cpu_at(error, errors, cpu):
-    """CPU at `error` by logarithmic interpolation; None outside the ladder's errors."""
+    """CPU at `error` by logarithmic interpolation; None outside the errors of the levels."""
     errors = np.maximum(errors, 1e-17)
     best = np.minimum.accumulate(errors)  # a lucky rung is not bought by the next
     if not best[-1] <= error <= best[0]:

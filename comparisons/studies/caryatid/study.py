@@ -13,7 +13,7 @@ from engines import available_engines
 
 from ...running.record_options import Channel, Column, Step, Units
 from ...running.solving import ground_motion
-from ...running.study import Ask, Found, Plan, say
+from ...running.study import Computed, Plan, Request, say
 from .cost import cost_rows
 from .formulas import formulas
 from .paper import X_MAX, motion_values
@@ -29,7 +29,7 @@ Record = Annotated[
 
 
 def plan(
-    ask: Ask,
+    request: Request,
     motion: SampledMotion | None = None,
     *,
     record: Record = None,
@@ -42,7 +42,7 @@ def plan(
 
     Parameters
     ----------
-    ask : Ask
+    request : Request
     motion : SampledMotion or None
         None: the one in the file `record`.
     record : str or None
@@ -53,18 +53,18 @@ def plan(
     motion = motion or ground_motion(record, units=units, dt=dt, column=column, channel=channel)
     say(f"ground motion: {motion.label}")
     say("bearing law, Table 1, misprints")
-    yield Found({"part": PART_PAPER}, *formulas(), name="caryatid-paper")
-    rows, histories = yield from simulations(motion, ask.engines, ask.quick)
+    yield Computed({"part": PART_PAPER}, *formulas(), name="caryatid-paper")
+    rows, histories = yield from simulations(motion, request.engines, request.quick)
     runs = [row for row in rows if row["part"] == "run"]
-    answers, arrays = _analytic(motion, runs, ask.quick)
+    answers, arrays = _analytic(motion, runs, request.quick)
     rows, least = rows + answers, uplift_slenderness(motion)
     stem = f"caryatid-under-{_slug(motion)}"
     settings = {
         "motion": {"label": motion.label, "peak_time": motion.peak_time, "dt": motion.dt, "end": motion.end},
-        "quick": ask.quick,
+        "quick": request.quick,
         "slenderness": caryatid(ISOLATED, motion).block.slenderness,
     }
-    yield Found(
+    yield Computed(
         {"part": PART_MOTION, **settings, "missing": available_engines()[1], "uplift_slenderness": least},
         [*rows, *motion_values(rows, motion, least)],
         arrays,
@@ -74,7 +74,7 @@ def plan(
         "motion/time": np.arange(len(motion.samples)) * np.float32(motion.dt),
         "motion/acceleration": motion.samples.astype(np.float32),
     }
-    return Found({"part": PART_HISTORIES, **settings, "x_max": X_MAX}, runs, histories, name=f"{stem}-histories")
+    return Computed({"part": PART_HISTORIES, **settings, "x_max": X_MAX}, runs, histories, name=f"{stem}-histories")
 
 
 def _analytic(motion, runs, quick):

@@ -15,7 +15,7 @@ from engines.statue_range import RANGE
 
 from ...measuring.errors import impact_errors, rms
 from ...running.cases import Case
-from ...running.study import Batch, Found
+from ...running.study import Batch, Computed
 from ..random_scenes.scenes import random_scene
 from ..restitution.cases import free_scene, variants_of
 from ..stability.cases import hard_cases
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from analytic import Response, Scene
     from engines.contract import Variant
 
-    from ...running.study import Ask, Plan
+    from ...running.study import Plan, Request
     from ...running.sweep import Row
 
 AS_IT_IS, CHANGES = "as it is", {"halved": 0.5, "doubled": 2.0}
@@ -80,10 +80,10 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
     }
 
 
-def plan(ask: Ask) -> Plan:
+def plan(request: Request) -> Plan:
     """The plan of the study: a row of each variant as it is, then one for each change of a constant."""
-    scenes, cases = list(sample(ask.quick)), []
-    for engine, name, variant in variants_of(ask.engines):
+    scenes, cases = list(sample(request.quick)), []
+    for engine, name, variant in variants_of(request.engines):
         changes: list[tuple[dict[str, Any], dict[str, Any]]] = []
         for (constant, what), change in itertools.product(variant.constants.items(), CHANGES):
             value, given = changed(variant, constant, CHANGES[change])
@@ -99,7 +99,7 @@ def plan(ask: Ask) -> Plan:
         group = runs[begin : begin + len(scenes)]
         before = group if group[0].case.tag["change"] == AS_IT_IS else before
         rows.append(_row(group, before, [one.peak_tilt_ratio for one in model]))
-    return Found({"quick": ask.quick, "scenes": len(scenes)}, rows, solvers=ask.engines)
+    return Computed({"quick": request.quick, "scenes": len(scenes)}, rows, solvers=request.engines)
 
 
 def _row(runs: Sequence[Row], before: Sequence[Row], peaks: Sequence[float]) -> dict[str, Any]:

@@ -11,14 +11,14 @@ from analytic.rocking import RockingModel
 from engines import get_engine
 
 from ...running.cases import Case
-from ...running.study import Batch, Found
+from ...running.study import Batch, Computed
 from .cloud import DAMPING, DRAWN, PEAKS, PERIOD, RADII, SCENES, STRETCH, X_MAX, Cloud, cloud
 from .fits import effects, fits
 
 if TYPE_CHECKING:
     from analytic import Response, Scene
 
-    from ...running.study import Ask, Plan
+    from ...running.study import Plan, Request
     from ...running.sweep import Row
 
 CHANGE = 1e-4  # relative change of the restitution: the model's own sensitivity
@@ -55,7 +55,7 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
     }
 
 
-def plan(ask: Ask, scenes: dict[str, Any] | None = None, runs: tuple[int, int, int] | None = None) -> Plan:
+def plan(request: Request, scenes: dict[str, Any] | None = None, runs: tuple[int, int, int] | None = None) -> Plan:
     """The plan of the study; an answer with one scene more each time.
 
     Rows by "part": "fit" and "effect" (see `comparisons.studies.fragility.fits`), "cost" (CPU seconds per run), "check"
@@ -66,12 +66,12 @@ def plan(ask: Ask, scenes: dict[str, Any] | None = None, runs: tuple[int, int, i
 
     Parameters
     ----------
-    ask : Ask
+    request : Request
     scenes, runs : dict and (int, int, int), optional
         In place of `SCENES`, and of `FULL` or `QUICK`.
     """
-    scenes = scenes or (dict(list(SCENES.items())[:1]) if ask.quick else SCENES)
-    counts, variants = runs or (QUICK if ask.quick else FULL), variants_of(ask.engines)
+    scenes = scenes or (dict(list(SCENES.items())[:1]) if request.quick else SCENES)
+    counts, variants = runs or (QUICK if request.quick else FULL), variants_of(request.engines)
     rows, arrays = [], {}
     for name, (shipped, slendernesses) in scenes.items():
         drawn = cloud(shipped, slendernesses, counts[0])
@@ -94,7 +94,9 @@ def plan(ask: Ask, scenes: dict[str, Any] | None = None, runs: tuple[int, int, i
             made |= _kept(label, theirs)
         rows += [{"scene": name, **row} for row in found]
         arrays |= {f"{name}/{key}": array.astype(np.float32) for key, array in made.items()} | {f"{name}/near": near}
-        answer = Found(_settings(ask, scenes, counts, variants), list(rows), dict(arrays), seed=[0, counts[0] - 1])
+        answer = Computed(
+            _settings(request, scenes, counts, variants), list(rows), dict(arrays), seed=[0, counts[0] - 1]
+        )
         yield answer
     return answer
 
@@ -147,10 +149,10 @@ def _runs(pair, results):
     ]
 
 
-def _settings(ask, scenes, counts, variants):
+def _settings(request, scenes, counts, variants):
     kinds = [(engine, variant, get_engine(engine).variants[variant]) for engine, variant in variants]
     return {
-        "quick": ask.quick,
+        "quick": request.quick,
         "scenes": {name: {"scene": shipped, "slendernesses": list(s)} for name, (shipped, s) in scenes.items()},
         "runs": counts[0],
         "runs_of_engines": counts[1],

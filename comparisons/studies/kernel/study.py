@@ -14,7 +14,7 @@ from analytic import Response
 from analytic.response import State
 
 from ...running.cases import Case
-from ...running.study import Batch, Found
+from ...running.study import Batch, Computed
 from .integrators import METHODS, kernel_run, scipy_run
 from .peers import PEERS, installed
 from .problems import PROBLEMS
@@ -22,7 +22,7 @@ from .problems import PROBLEMS
 if TYPE_CHECKING:
     from analytic import Scene
 
-    from ...running.study import Ask, Plan
+    from ...running.study import Plan, Request
     from ...running.sweep import Row
 
 SOLVER = f"{__name__}:prepared"
@@ -46,16 +46,16 @@ INTEGRATORS: dict[tuple[str, str], Callable[..., Any]] = {
 }
 
 
-def plan(ask: Ask) -> Plan:
+def plan(request: Request) -> Plan:
     """The plan of the study: in each round a fresh process, in which every integrator has its turn."""
-    rounds, peers = QUICK_ROUNDS if ask.quick else ROUNDS, installed()
+    rounds, peers = QUICK_ROUNDS if request.quick else ROUNDS, installed()
     timed: list[list[Row]] = []
     for turn in range(rounds):
-        batch = Batch(_cases(ask.quick, peers, turn), measured, f"round {turn + 1} of {rounds}", alone=True)
+        batch = Batch(_cases(request.quick, peers, turn), measured, f"round {turn + 1} of {rounds}", alone=True)
         timed.append((yield batch))
     rows = [_row(*timings) for timings in zip(*timed, strict=True)]
     versions = {engine: version for (engine, _), version in peers.items()}
-    return Found({"quick": ask.quick, "rounds": rounds, "peers": versions}, rows)
+    return Computed({"quick": request.quick, "rounds": rounds, "peers": versions}, rows)
 
 
 def _cases(quick: bool, peers: dict[tuple[str, str], str], turn: int) -> list[Case]:

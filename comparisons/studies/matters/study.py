@@ -17,13 +17,13 @@ from engines import get_engine
 
 from ...measuring.statistics import confusion, mcnemar, wilson
 from ...running.cases import Case
-from ...running.study import Batch, Found, say
+from ...running.study import Batch, Computed, say
 from .changes import changes, with_vertical
 
 if TYPE_CHECKING:
     from analytic import Response
 
-    from ...running.study import Ask, Plan
+    from ...running.study import Plan, Request
 
 SPREAD = 0.4  # standard deviation of the logarithm of the motions' factors
 TRIED = np.geomspace(0.1, 4.0, 40)  # factors among which the one is found that overturns half
@@ -49,7 +49,7 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
     }
 
 
-def plan(ask: Ask, scenes: dict[str, Any] | None = None, motions: tuple[int, int, int] | None = None) -> Plan:
+def plan(request: Request, scenes: dict[str, Any] | None = None, motions: tuple[int, int, int] | None = None) -> Plan:
     """The plan of the study; an answer with one scene more each time.
 
     Rows by "part", outcomes over all motions and slendernesses, `low` and `high` the 95 % interval of their share:
@@ -62,12 +62,12 @@ def plan(ask: Ask, scenes: dict[str, Any] | None = None, motions: tuple[int, int
 
     Parameters
     ----------
-    ask : Ask
+    request : Request
     scenes, motions : dict and (int, int, int), optional
         In place of `SCENES`, and of the numbers of motions, `FULL` or `QUICK`.
     """
     scenes = scenes or SCENES
-    counts = motions or (QUICK if ask.quick else FULL)
+    counts = motions or (QUICK if request.quick else FULL)
     count, rows, described = counts[0], [], {}
     for name, (shipped, slendernesses) in scenes.items():
         usual = load_scene(shipped).with_(motion=None, duration=None)
@@ -75,7 +75,7 @@ def plan(ask: Ask, scenes: dict[str, Any] | None = None, motions: tuple[int, int
         halves = [_half(name, scene, min(count, 50)) for scene in steep]
         bases = [_ensemble(scene, half, count) for scene, half in zip(steep, halves, strict=True)]
         changed = yield Batch(_changed(bases), measure, f"{name}: changes")
-        run = yield Batch(_by_engines(bases, ask.engines, counts), measure, f"{name}: engines", TIME_LIMIT)
+        run = yield Batch(_by_engines(bases, request.engines, counts), measure, f"{name}: engines", TIME_LIMIT)
         raised = yield Batch(_raised(bases, max(count // 3, 1)), measure, f"{name}: vertical motions")
         found = [*_change_rows(changed, run), *_vertical_rows(_as_it_is(changed), raised)]
         rows += [{"scene": name, **row} for row in found]
@@ -86,16 +86,16 @@ def plan(ask: Ask, scenes: dict[str, Any] | None = None, motions: tuple[int, int
             "slenderness_of_engines": slendernesses[len(slendernesses) // 2],
         }
         settings = {
-            "quick": ask.quick,
+            "quick": request.quick,
             "scenes": dict(described),
             "motions": count,
             "motions_of_engines": counts[1],
             "motions_of_other_variants": counts[2],
             "lifting": LIFTING,
             "spread": SPREAD,
-            "default_variants": {engine: get_engine(engine).default_variant for engine in ask.engines},
+            "default_variants": {engine: get_engine(engine).default_variant for engine in request.engines},
         }
-        answer = Found(settings, list(rows), seed=[0, count - 1])
+        answer = Computed(settings, list(rows), seed=[0, count - 1])
         yield answer
     return answer
 

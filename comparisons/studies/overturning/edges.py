@@ -118,17 +118,17 @@ def least_normal(scene: Scene, motion: Motion) -> float:
 
 
 def locate(
-    edge: Edge, ladder: Sequence[Sequence[float]], tolerance: float
+    edge: Edge, distances: Sequence[Sequence[float]], tolerance: float
 ) -> Generator[list[float], list[Any], Located]:
-    """Search for a solver's boundary beside an analytic one, outward in the steps of `ladder`, then by bisection.
+    """Search for a solver's boundary beside an analytic one, outward in the steps of `distances`, then by bisection.
 
-    Of several boundaries the nearest is taken. Where two boundaries lie closer than the ladder reaches, it is
+    Of several boundaries the nearest is taken. Where two boundaries lie closer than the distances reach, it is
     shortened to their middle.
 
     Parameters
     ----------
     edge : Edge
-    ladder : sequence of tuples of float
+    distances : sequence of tuples of float
         Relative distances above 0; a further tuple is tried only where those before show no boundary.
     tolerance : float
         Largest width of the bracket, relative.
@@ -141,8 +141,8 @@ def locate(
     """
     known, bracket = {}, None
     below, above = ROOM * (edge.low / edge.amplitude - 1), ROOM * (edge.high / edge.amplitude - 1)
-    for distances in ladder:
-        offsets = {max(-d, below) for d in distances} | {min(d, above) for d in distances}
+    for steps in distances:
+        offsets = {max(-d, below) for d in steps} | {min(d, above) for d in steps}
         points = sorted(offsets - set(known))
         if not points:
             continue

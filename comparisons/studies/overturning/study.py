@@ -16,14 +16,14 @@ from engines import get_engine
 from ...measuring.statistics import cohen_kappa, confusion
 from ...running.cases import Case, variant_settings
 from ...running.refine import together
-from ...running.study import Batch, Found, say
+from ...running.study import Batch, Computed, say
 from .edges import HIGHEST, LOWEST, edges, least_normal, locate, pulse
 
 if TYPE_CHECKING:
     from analytic import Response, Scene
     from engines.contract import Variant
 
-    from ...running.study import Ask, Plan
+    from ...running.study import Plan, Request
 
 # The isolated Caryatid itself overturns at base displacements far beyond its bearings' 0.30 m only; a more slender
 # block on the same bearings does at amplitudes of a strong earthquake.
@@ -96,7 +96,7 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
     return {"outcome": response.outcome, "decided": response.decided, "end_tilt": response.end.tilt}
 
 
-def plan(ask: Ask, grid: Grid | None = None) -> Plan:
+def plan(request: Request, grid: Grid | None = None) -> Plan:
     """The plan of the study: an answer first at default settings alone, then growing; grid: in place of FULL or QUICK.
 
     Rows by "part": "edge" (a boundary of the analytic model), "shift" (an engine's beside it, of its default variant
@@ -109,7 +109,7 @@ def plan(ask: Ask, grid: Grid | None = None) -> Plan:
     (indices into the settings), frequency, amplitude, analytic outcome, engine's outcome (1 overturns, 0 not, -1
     failed or undecided), whether of the scan.
     """
-    grid = grid or (QUICK if ask.quick else FULL)
+    grid = grid or (QUICK if request.quick else FULL)
     grounds = {
         name: load_scene(shipped).with_(block=block, motion=None, duration=None)
         for name, (shipped, block) in GROUNDS.items()
@@ -120,14 +120,16 @@ def plan(ask: Ask, grid: Grid | None = None) -> Plan:
         say(f"analytic boundaries: {ground}, {shape}")
         found += edges(grounds[ground], ground, shape, grid.frequencies)
     rows = [{"part": "edge", **vars(edge)} for edge in found]
-    variants = [(name, variant, kind) for name in ask.engines for variant, kind in get_engine(name).variants.items()]
+    variants = [
+        (name, variant, kind) for name in request.engines for variant, kind in get_engine(name).variants.items()
+    ]
     default = [
         Setting(name, variant, kind.default)
         for name, variant, kind in variants
         if variant == get_engine(name).default_variant
     ]
     held = [
-        Setting(name, variant, settings.get(kind.knob, kind.default), settings)
+        Setting(name, variant, settings.get(kind.accuracy_parameter, kind.default), settings)
         for name, variant, kind in variants
         if kind.takes_restitution
         for settings in (kind.finer[0] if kind.finer else {},)
@@ -144,21 +146,21 @@ def plan(ask: Ask, grid: Grid | None = None) -> Plan:
     pulled = [edge for edge in found if edge.min_normal < 0]
     rows += yield from runs.search("held", held, pulled, DISTANCES, TOLERANCE)
     records = _compared(runs.outcomes, default, grounds, found)
-    arrays["points"] = _indexed(records, grid, ask.engines)
+    arrays["points"] = _indexed(records, grid, request.engines)
     rows += [*_confusions(records, default, grounds), *_disagreements(records)]
     described = [*itertools.starmap(_described, variants), STEPPING]
-    settings = _settings(ask, grid, grounds, described)
-    yield Found(settings, rows + runs.failures, arrays)
+    settings = _settings(request, grid, grounds, described)
+    yield Computed(settings, rows + runs.failures, arrays)
     chosen = [edge for edge in found if edge.shape == SHAPES[0] and edge.frequency == LEVEL_FREQUENCY]
     for setting in _refined(described, grid.levels):
         rows += yield from runs.search("refinement", [setting], chosen, LEVEL_DISTANCES, LEVEL_TOLERANCE)
-        yield Found(settings, rows + runs.failures, arrays)
-    return Found(settings, rows + runs.failures, arrays)
+        yield Computed(settings, rows + runs.failures, arrays)
+    return Computed(settings, rows + runs.failures, arrays)
 
 
 def _described(engine: str, variant: str, kind: Variant) -> dict[str, Any]:
     """A variant, as the settings list it; levels: those that are tried of it."""
-    tried = () if kind.takes_restitution or kind.tier == "defaults" else kind.ladder
+    tried = () if kind.takes_restitution or kind.tier == "defaults" else kind.levels
     return variant_settings(engine, variant, tried) | {"friction": kind.friction}
 
 
@@ -169,10 +171,10 @@ def _refined(described, levels):
             yield Setting(variant["engine"], variant["variant"], level, {variant["parameter"]: level})
 
 
-def _settings(ask, grid, grounds, described):
+def _settings(request, grid, grounds, described):
     """What the study was asked, for its result file."""
     return {
-        "quick": ask.quick,
+        "quick": request.quick,
         "grounds": {
             name: {
                 "scene": GROUNDS[name][0],
@@ -192,9 +194,9 @@ def _settings(ask, grid, grounds, described):
         "band": BAND,
         "tolerance": TOLERANCE,
         "level_tolerance": LEVEL_TOLERANCE,
-        "engines": ask.engines,
+        "engines": request.engines,
         "variants": described,
-        "default_variants": {engine: get_engine(engine).default_variant for engine in ask.engines},
+        "default_variants": {engine: get_engine(engine).default_variant for engine in request.engines},
     }
 
 

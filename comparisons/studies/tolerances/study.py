@@ -7,24 +7,24 @@ from typing import TYPE_CHECKING
 from engines import ENGINES, get_engine
 
 from ...measuring.tolerances import TABLE, measure_all
-from ...running.study import Found, say
+from ...running.study import Computed, say
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
-    from ...running.study import Ask, Plan
+    from ...running.study import Plan, Request
 
 
-def plan(ask: Ask) -> Plan:
+def plan(request: Request) -> Plan:
     """The plan of the study: rows of `TABLE`, where it is quick of default variants only."""
     rows = []
-    for engine in ask.engines:
+    for engine in request.engines:
         say(f"tolerances: {engine}")
         default = get_engine(engine).default_variant
-        own = [row for row in TABLE if row.engine == engine and (row.variant == default or not ask.quick)]
+        own = [row for row in TABLE if row.engine == engine and (row.variant == default or not request.quick)]
         rows += [{"part": "tolerance", **row} for row in measure_all(own)]
-    bounds = tuple(f"{ENGINES[name].tolerances}:TOLERANCES" for name in ask.engines if ENGINES[name].tolerances)
+    bounds = tuple(f"{ENGINES[name].tolerances}:TOLERANCES" for name in request.engines if ENGINES[name].tolerances)
     yield from ()
-    return Found({"engines": ask.engines, "quick": ask.quick}, rows, solvers=bounds)
+    return Computed({"engines": request.engines, "quick": request.quick}, rows, solvers=bounds)
 
 
 def problems(result: Result) -> list[str]:

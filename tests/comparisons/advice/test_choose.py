@@ -103,13 +103,13 @@ def test_what_keeps_a_setting_from_passing(rows, asked, error, why):
 
 
 class Made(Search):
-    """In place of runs: errors by level (of the scene, of the neighbours), costs falling along the ladder."""
+    """In place of runs: errors by level (of the scene, of the neighbours), costs falling along the levels."""
 
     def __init__(self, errors, whole=None):
         super().__init__(RIGID, criteria.neighbours(RIGID, "tilt"), 1e-3, "tilt", None)
-        self.ladder = get_engine(ENGINE).variants[VARIANT].ladder
-        self.errors, self.failure, self.asked = dict(zip(self.ladder, errors, strict=True)), whole, set()
-        self.run([(ENGINE, VARIANT, value) for value in self.ladder], [1.0], "")
+        self.levels = get_engine(ENGINE).variants[VARIANT].levels
+        self.errors, self.failure, self.asked = dict(zip(self.levels, errors, strict=True)), whole, set()
+        self.run([(ENGINE, VARIANT, value) for value in self.levels], [1.0], "")
 
     def _sweep(self, runs, criterion, label):
         if criterion == "outcome":
@@ -138,8 +138,8 @@ FALLS = {"reason": "it fell"}
 def test_the_cheapest_is_chosen_whose_finer_ones_pass_everywhere(errors, whole, chosen, asked):
     made = Made(errors, whole)
     level, spent = made.cheapest(list(made.rows))
-    assert (level, spent) == ((None, None) if chosen is None else ((ENGINE, VARIANT, made.ladder[chosen]), 1.0))
-    assert made.asked == {made.ladder[place] for place in asked}  # neighbours are run of hopeful levels only
+    assert (level, spent) == ((None, None) if chosen is None else ((ENGINE, VARIANT, made.levels[chosen]), 1.0))
+    assert made.asked == {made.levels[place] for place in asked}  # neighbours are run of hopeful levels only
 
 
 @pytest.mark.slow

@@ -206,7 +206,7 @@ def test_a_mistake_is_one_message_that_names_it(rocking, place, command, words):
 def test_absurd_settings_are_refused(rocking, solver, value):
     name = "tolerance"
     if solver != "analytic":
-        name = get_engine(solver).variants[get_engine(solver).default_variant].knob
+        name = get_engine(solver).variants[get_engine(solver).default_variant].accuracy_parameter
     status, out, err = rocking(*RIGID.split(), "--engine", solver, "--set", f"{name}={value}")
     assert (status, out) == (2, "") and told(status, err) and name in err
 

@@ -8,11 +8,11 @@ import pytest
 from comparisons.commands import study as command
 from comparisons.running import check as module
 from comparisons.running.check import Check
-from comparisons.running.study import Found, Study
+from comparisons.running.study import Computed, Study
 
 
 def _plan(ask):
-    return Found({"quick": ask.quick}, [{"value": 1.5}], name="")
+    return Computed({"quick": ask.quick}, [{"value": 1.5}], name="")
     yield  # a plan is a generator
 
 

@@ -88,7 +88,7 @@ def test_the_first_step_that_is_off_by_more():
 def test_two_horizons_give_the_same_growth():
     slope = math.log(1e6) / (chaos.horizon(-9.0) - chaos.horizon(-3.0))
     assert chaos.growth() == pytest.approx(slope, rel=0.6)
-    assert chaos.hair_for_twenty_seconds() == pytest.approx(math.log(1e15) / chaos.growth(), rel=1e-9)
+    assert chaos.perturbation_for_twenty_seconds() == pytest.approx(math.log(1e15) / chaos.growth(), rel=1e-9)
 
 
 def test_the_crowd_one_by_one():

@@ -238,7 +238,7 @@ def test_a_study_is_shown_by_its_own_page_and_says_when_it_is_old(folder, copied
 def test_undecided_outcomes_warnings_and_failures_stand_beside_the_outcomes_and_at_the_top(copied):
     def cut(content):
         undecided = {"outcome": "rocks", "overturning_time": None, "decided": False, "differences": []}
-        undecided |= {"verdict": "undecided (rocks so far)"}
+        undecided |= {"outcome_text": "undecided (rocks so far)"}
         for row in content["rows"]:
             if row["scene"] == "caryatid-rigid":
                 row.update(undecided, warnings=[{"kind": "record", "text": "the record peaks at 5 g"}])

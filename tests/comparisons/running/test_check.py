@@ -14,13 +14,13 @@ from comparisons.running import run_sample
 from comparisons.running.check import check, check_all
 from comparisons.running.provenance import ResultError, age, last_check, read_result, write_result
 from comparisons.running.run_sample import case_of, sample_of
-from comparisons.running.study import Batch, Found, Study, compute
+from comparisons.running.study import Batch, Computed, Study, compute
 from comparisons.running.sweep import Case, Row
 
 
 def _plan(ask):
     rows = yield Batch(cases("fails", 1) + cases("raises", 8) + cases(count=3), fake_solvers.tilt, "tilts")
-    return Found({}, [row.values for row in rows])
+    return Computed({}, [row.values for row in rows])
 
 
 STUDY = Study("tilts", "How far?", _plan, all_engines=False)

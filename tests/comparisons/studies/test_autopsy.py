@@ -6,7 +6,7 @@ from answered import answered
 from analytic import simulate
 from comparisons.measuring.causes import CAUSES
 from comparisons.running.provenance import Result
-from comparisons.running.study import Ask
+from comparisons.running.study import Request
 from comparisons.running.sweep import Row
 from comparisons.studies.autopsy import STUDY
 from comparisons.studies.autopsy.study import GROUNDS, SECONDS, plan, scene_on
@@ -42,7 +42,7 @@ def test_rows_carry_the_diagnosis_or_the_failure():
         return [Row(case, {} if k else {"error": 1e-7}, crash if k else None, cost, False)
                 for k, case in enumerate(batch.cases)]  # fmt: skip
 
-    first, *others = answered(plan(Ask(("pymunk",))), run)[-1].rows
+    first, *others = answered(plan(Request(("pymunk",))), run)[-1].rows
     assert (first["error"], first["failure"]) == (1e-7, None) and all(row["failure"] for row in others)
     assert {(row["part"], row["ground"]) for row in (first, *others)} == {("impact", ground) for ground in GROUNDS}
 

@@ -5,7 +5,7 @@ from answered import answered, by_model, stored
 
 from comparisons.running.cases import Case
 from comparisons.running.run_sample import case_of
-from comparisons.running.study import Ask
+from comparisons.running.study import Request
 from comparisons.showing.rows import where
 from comparisons.studies import get_study
 from comparisons.studies.constants.page import NOT_A_BIT
@@ -19,7 +19,7 @@ HARD, STUDY = "engines.step_size:HOLD", get_study("constants")
 
 @pytest.fixture(scope="module")
 def found():
-    (found,) = answered(STUDY.plan(Ask(installed_engines(), quick=True)), by_model())
+    (found,) = answered(STUDY.plan(Request(installed_engines(), quick=True)), by_model())
     return found
 
 
@@ -74,7 +74,7 @@ def test_the_row_of_a_run_that_failed_has_its_reason(tmp_path):
     def failure(case):
         return {"kind": "solver", "reason": "it fell apart"} if case.tag["change"] == "halved" else None
 
-    (found,) = answered(STUDY.plan(Ask(installed_engines(), quick=True)), by_model(failure=failure))
+    (found,) = answered(STUDY.plan(Request(installed_engines(), quick=True)), by_model(failure=failure))
     page = STUDY.page(stored(tmp_path, "constants", found))
     runs = found.rows[0]["runs"]
     assert page.whole().tables[0].rows[0][-2:] == [f"{runs} runs fail", NOT_A_BIT]

@@ -18,7 +18,7 @@ SOURCE = '''
 """How high does a released block swing back after one impact?"""
 from analytic import Block, Scene, Start
 from comparisons.running.cases import Case
-from comparisons.running.study import Batch, Found, Study
+from comparisons.running.study import Batch, Computed, Study
 from comparisons.showing.parts import Page
 from comparisons.showing.rows import Column, table
 
@@ -32,7 +32,7 @@ def plan(ask, *, mass: float = 1.0):
     cases = [Case(Scene(block=Block(mass=mass, radius=1.0, slenderness=0.3), start=Start(tilt=tilt), duration=1.0),
                   "analytic", tag={"start": tilt}) for tilt in starts]
     rows = yield Batch(cases, measure, "swings")
-    return Found({"mass": mass, "quick": ask.quick}, [row.values for row in rows])
+    return Computed({"mass": mass, "quick": ask.quick}, [row.values for row in rows])
 
 
 def page(result):

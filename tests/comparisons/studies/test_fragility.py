@@ -9,7 +9,7 @@ from answered import answered, by_model, stored
 
 from analytic import simulate
 from analytic.linear_oscillator import displacement_spectrum
-from comparisons.running.study import Ask
+from comparisons.running.study import Request
 from comparisons.showing.rows import where
 from comparisons.studies.fragility import STUDY, fits
 from comparisons.studies.fragility.cloud import PERIOD, SCENES, cloud
@@ -17,7 +17,7 @@ from comparisons.studies.fragility.study import NEAR, plan
 
 FREE = {"free-standing": SCENES["free-standing"]}
 RUNS = (300, 110, 10)
-ENGINES = Ask(("exudyn", "pybullet"))
+ENGINES = Request(("exudyn", "pybullet"))
 
 pytestmark = pytest.mark.xdist_group("fragility")  # its runs are made once
 

@@ -6,7 +6,7 @@ import pytest
 from answered import answered, by_runs, stored
 
 from analytic.twin import METHODS as OFFERED
-from comparisons.running.study import Ask
+from comparisons.running.study import Request
 from comparisons.showing.rows import where
 from comparisons.studies import get_study
 from comparisons.studies.kernel import page, peers, study
@@ -51,7 +51,7 @@ def few(monkeypatch):
 
 def found(folder):
     """The study's `Result`, by runs in this process."""
-    return stored(folder, "kernel", answered(study.plan(Ask(quick=True)), by_runs(folder))[-1])
+    return stored(folder, "kernel", answered(study.plan(Request(quick=True)), by_runs(folder))[-1])
 
 
 def test_error_and_time_are_of_the_same_runs(few, monkeypatch):

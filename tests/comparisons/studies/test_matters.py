@@ -8,7 +8,7 @@ from scipy.stats import norm
 from analytic import load_scene, simulate, synthetic_motion
 from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel
-from comparisons.running.study import Ask, Found
+from comparisons.running.study import Computed, Request
 from comparisons.showing.rows import where
 from comparisons.studies import get_study
 from comparisons.studies.matters.changes import changes, with_vertical
@@ -25,7 +25,7 @@ pytestmark = pytest.mark.xdist_group("matters")  # its runs are made once
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
     folder = tmp_path_factory.mktemp("matters")
-    return answered(STUDY.plan(Ask(()), SCENES, (COUNT, 0, 0)), by_runs(folder))[-1]
+    return answered(STUDY.plan(Request(()), SCENES, (COUNT, 0, 0)), by_runs(folder))[-1]
 
 
 def fallen(*scenes):
@@ -145,7 +145,7 @@ def page(found, tmp_path):
     ]
     settings = {**found.settings, "default_variants": {"pybullet": "impact-aware", "exudyn": "native-contact"}}
     settings |= {"motions_of_engines": 60, "motions_of_other_variants": 10}
-    return STUDY.page(stored(tmp_path, "matters", Found(settings, rows)))
+    return STUDY.page(stored(tmp_path, "matters", Computed(settings, rows)))
 
 
 def test_changes_and_engines_are_ranked_and_drawn_and_the_title_sets_the_first_against_the_engines_at_their_best(page):

@@ -1,6 +1,7 @@
 """An engine from outside is in every study, with no line here that knows it: its cases, its words, its pictures.
 
-Two fakes: one whose adapter applies the impact, and one that says it decides it, with a knob no engine here has.
+Two fakes: one whose adapter applies the impact, and one that says it decides it, with an accuracy parameter
+that no engine here has.
 """
 
 import dataclasses
@@ -16,7 +17,7 @@ import engines
 from analytic import synthetic_motion
 from comparisons.report.runs import restitution_cases
 from comparisons.running.provenance import RESULTS, read_result
-from comparisons.running.study import Ask
+from comparisons.running.study import Request
 from comparisons.showing.rows import where
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.caryatid.runs import simulations
@@ -27,7 +28,7 @@ from comparisons.studies.speed_error.cases import near_overturning, trials
 from engines.plugins import find_engines
 from engines.simulating import Simulator
 
-ASK = Ask(("crude",), quick=True)
+ASK = Request(("crude",), quick=True)
 DECIDING = FAKE_ENGINE.replace("takes_restitution=True,", "").replace("step: float", "span: float")
 DECIDING = DECIDING.replace("settings.step", "settings.span")
 COLOUR = "#d55e00"

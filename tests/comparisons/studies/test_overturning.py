@@ -11,7 +11,7 @@ from page_numbers import number_in
 
 from analytic import PulseMotion, simulate
 from comparisons.running.refine import drive
-from comparisons.running.study import Ask
+from comparisons.running.study import Request
 from comparisons.showing.rows import where
 from comparisons.studies.overturning import STUDY
 from comparisons.studies.overturning.edges import Edge, edges, least_normal, locate, pulse
@@ -41,8 +41,8 @@ def test_edges_are_the_published_boundaries_and_the_safe_gap():
     assert least_normal(SCENE, PulseMotion("one-sine", 0.1, 5.0)) == 1.0
 
 
-def search(edge, outcome, ladder=((2e-4, 1.2e-2), (0.1,)), tolerance=2e-5):
-    (found,) = drive([locate(edge, ladder, tolerance)], lambda batch: [outcome(a) for _, a in batch])
+def search(edge, outcome, distances=((2e-4, 1.2e-2), (0.1,)), tolerance=2e-5):
+    (found,) = drive([locate(edge, distances, tolerance)], lambda batch: [outcome(a) for _, a in batch])
     return found
 
 
@@ -102,7 +102,7 @@ def study(tmp_path, work, shape="one-sine", levels=True):
     levels: whether it goes on after the default settings.
     """
     grid = dataclasses.replace(QUICK, grounds=("rigid ground",), shapes=(shape,))
-    found = answered(STUDY.plan(Ask(("exudyn", "pybullet"), quick=True), grid), work, None if levels else 1)[-1]
+    found = answered(STUDY.plan(Request(("exudyn", "pybullet"), quick=True), grid), work, None if levels else 1)[-1]
     result = stored(tmp_path, "overturning", found)
     return result, STUDY.page(result).whole()
 

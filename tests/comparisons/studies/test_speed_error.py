@@ -220,7 +220,7 @@ def test_a_level_that_failed_or_lost_impacts_has_no_error():
         ([1e-1, 1e-2, 1e-4, 1e-5], (), 2),
         ([1e-5, 1e-2, 1e-4, 1e-5], (), 2),  # the first passes by luck: a finer one does not
         ([1e-1, 1e-5, 1e-2], (), None),  # the finest does not pass: nothing may be recommended
-        ([1e-1, 1e-5, 1e-5, 1e-5], (2,), 3),  # one that failed parts the ladder
+        ([1e-1, 1e-5, 1e-5, 1e-5], (2,), 3),  # one that failed separates the levels
     ],
 )
 def test_the_cheapest_setting_is_one_that_no_finer_one_contradicts(found, failed, chosen):

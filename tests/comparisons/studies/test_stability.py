@@ -10,7 +10,7 @@ from analytic.response import Failure
 from analytic.rocking import restitution
 from analytic.solver import TOLERANCE
 from comparisons.running.provenance import RESULTS, read_result
-from comparisons.running.study import Ask, compute
+from comparisons.running.study import Request, compute
 from comparisons.running.sweep import Row
 from comparisons.showing.rows import where
 from comparisons.studies.stability import STUDY
@@ -145,7 +145,7 @@ def test_solvers_cover_every_variant_and_finer_settings_are_settings_they_have()
 
 def test_ten_minutes_are_asked_of_the_default_variants_alone():
     names, other = ("zeno", "10 minutes, rigid ground"), dataclasses.replace(TIME_STEPPING, engine="b", best=False)
-    asked = [(case.tag["case"], case.solver) for case in next(plan(Ask(), names, (TIME_STEPPING, other))).cases]
+    asked = [(case.tag["case"], case.solver) for case in next(plan(Request(), names, (TIME_STEPPING, other))).cases]
     assert asked == [(names[0], "time-stepping"), (names[0], "b"), (names[1], "time-stepping")]
 
 

@@ -7,7 +7,7 @@ from page_numbers import number_in
 
 from analytic import load_scene, simulate, synthetic_motion
 from analytic.synthetic import PEAK, G
-from comparisons.running.study import Ask
+from comparisons.running.study import Request
 from comparisons.studies import get_study
 from comparisons.studies.surface.study import crossing
 
@@ -23,7 +23,7 @@ def found(tmp_path_factory):
     folder = tmp_path_factory.mktemp("surface")
 
     # the second implementation in the place of an engine: a run at a time
-    return answered(STUDY.plan(Ask(("twin",)), GRID), by_runs(folder))[-1]
+    return answered(STUDY.plan(Request(("twin",)), GRID), by_runs(folder))[-1]
 
 
 def test_counts_are_those_of_single_runs(found):

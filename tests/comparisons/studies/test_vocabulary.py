@@ -7,7 +7,7 @@ from answered import answered, by_model
 from record_files import pairs
 
 from comparisons.running.provenance import RESULTS, read_result
-from comparisons.running.study import Ask
+from comparisons.running.study import Request
 from comparisons.running.sweep import Row
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.vocabulary import OWN, SHARED, columns_of
@@ -25,9 +25,9 @@ def timed(batch):
 @pytest.fixture(scope="module")
 def columns(tmp_path_factory):
     """{study: columns of its rows}; those made up here have no stored result."""
-    found = {"kernel": set().union(*answered(get_study("kernel").plan(Ask(quick=True)), timed)[-1].rows)}
+    found = {"kernel": set().union(*answered(get_study("kernel").plan(Request(quick=True)), timed)[-1].rows)}
     folder = str(pairs(tmp_path_factory.mktemp("records"), 2))
-    ask = Ask(installed_engines()[:1], quick=True)
+    ask = Request(installed_engines()[:1], quick=True)
     recorded = answered(get_study("recorded").plan(ask, records=folder), by_model(history=True))[-1].rows
     found["recorded"] = set().union(*recorded)
     for result in map(read_result, RESULTS.glob("*.json")):

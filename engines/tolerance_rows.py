@@ -11,7 +11,7 @@ ROUNDING = "history committed once per accepted step; round-off"
 
 
 @dataclass(frozen=True)
-class Bound:
+class ToleranceRow:
     """`quantity` over `scenes` is at most `bound`; `measured` is the worst found when that was set, `source` says what
     the error comes from.
 
