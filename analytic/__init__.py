@@ -3,6 +3,7 @@
 from ._cache import kernel_cache
 from .errors import EngineNotInstalled, SceneError, SettingError
 from .motion import PulseMotion, SampledMotion
+from .records import read_record
 from .response import Caution, Difference, Energy, Failure, History, Impact, Response, State
 from .synthetic import synthetic_motion
 
@@ -35,6 +36,7 @@ __all__ = [
     "State",
     "load_scene",
     "overturning_map",
+    "read_record",
     "rocking_spectrum",
     "shipped_scenes",
     "simulate",

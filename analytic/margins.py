@@ -6,7 +6,7 @@ goes beyond the x_max of its bearings, or where the block overturns.
 An outcome need not change only once: resonances leave narrow bands of another outcome far from the first boundary, and
 safe gaps beyond it. So each quantity is scanned, one at a time, at even relative changes, and every boundary between
 two changes is bisected. A band narrower than the scan's `step` may be missed; one of twice the step never is. Where
-narrow bands of outcomes alternate, the boundary is frayed (as a fractal is): the safe gap about the scene is then
+narrow bands of outcomes alternate, the boundary is interleaved (as a fractal is): the safe gap about the scene is then
 scanned again in steps `FINER` times smaller, and the margin says so, as still narrower bands may lie in it.
 """
 
@@ -110,7 +110,7 @@ class Margin:
         return [(group[0].low, group[-1].high, outcome) for outcome, group in grouped]
 
     @property
-    def frayed(self) -> bool:
+    def interleaved(self) -> bool:
         """Whether the outcome changes and changes back within two steps: it may change nearer than `nearest` says.
 
         To rock on the way from standing to overturning is no such change, however short the way.
@@ -278,7 +278,7 @@ def margins(
         if progress:
             progress(name)
         margin = Margin(name, float(value), quantity.unit, _bands(scene, name, changes, tilt, workers), step)
-        if margin.frayed:
+        if margin.interleaved:
             margin = replace(margin, bands=_bands(scene, name, _finer(margin, changes), tilt, workers))
         found.append(margin)
     return sorted(found, key=lambda margin: math.inf if margin.nearest is None else abs(margin.nearest))

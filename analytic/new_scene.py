@@ -124,7 +124,7 @@ def scene_text(
     lines = [*(f"# {line}" for line in about), f"name = {_toml(name)}"]
     if friction is not None:
         lines.append(
-            f"friction = {_toml(friction)}  # between the block and what it stands on; the demand is held against it"
+            f"friction = {_toml(friction)}  # between the block and what it stands on; the demand is compared with it"
         )
     lines += ["", "[block]"]
     lines += _rows({"mass": (block.mass, "kg"), "radius": (block.radius, "m; base corner to centre of mass")})

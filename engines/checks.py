@@ -152,8 +152,7 @@ def check_energy(scene: Scene, trace: Trace) -> Failure | None:
     if gain <= GAIN_LIMIT:
         return None
     return Failure(
-        "the run gained energy from nowhere",
-        f"{gain:.3g} of its energy scale, at most {GAIN_LIMIT} can be error of the steps",
+        "the run gained energy", f"{gain:.3g} of its energy scale, at most {GAIN_LIMIT} can be error of the steps"
     )
 
 

@@ -103,7 +103,7 @@ class Variant:
         known = {setting.name for setting in dataclasses.fields(self.settings)}
         own = [name for name in self.constants if ":" not in name]
         if strange := sorted(set(self.varied).union(own, *self.finer) - known):
-            words = "varied, finer or a constant, and no setting"
+            words = "no setting (named in varied, finer or constants)"
             raise ValueError(f"{strange[0]!r} is {words}: its settings are {', '.join(known)}")
 
     @property

@@ -156,20 +156,20 @@ def _straddling(scene: Scene, model: ArrayModel, trace: Trace, least: float) -> 
 
 
 def check_impacts(scene: Scene, trace: Trace, impacts: Sequence[Impact], missed: Sequence[float]) -> Failure | None:
-    """A `Failure` where an impact gave energy or was not resolved, else None; `missed` as of `find_events`."""
+    """A `Failure` where an impact added energy or was not resolved, else None; `missed` as of `find_events`."""
     least = _least_speed(ArrayModel.of(scene), trace, max((abs(each.rate_before) for each in impacts), default=0.0))
     for impact in impacts:
         before, after = abs(impact.rate_before), abs(impact.rate_after)
         if before >= least and not after <= MOST_RESTITUTION * before:  # not: NaN
             return Failure(
-                "an impact gave energy",
+                "an impact added energy",
                 f"at {impact.time:.9g} s the tilt rate goes from {impact.rate_before:.6g} to "
                 f"{impact.rate_after:.6g} rad/s; error of the steps: at most {MOST_RESTITUTION} times",
             )
     if missed:
         return Failure(
             "an impact could not be resolved",
-            f"at {missed[0]:.9g} s the tilt changes side, and no tilt rate before and after can be told"
+            f"at {missed[0]:.9g} s the tilt changes side, and its rates before and after cannot be determined"
             f"{f'; {len(missed)} such times' if len(missed) > 1 else ''}",
         )
     stepped = straddled(scene, trace)

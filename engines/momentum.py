@@ -97,7 +97,7 @@ def check_impulse(scene: Scene, trace: Trace) -> Failure | None:
     if error <= IMPULSE_LIMIT:
         return None
     return Failure(
-        "the motion is not that of the bearings' force",  # a NaN, too
+        "the motion does not match the bearing force",  # a NaN, too
         f"momentum and impulse of the law differ by {error:.3g} of the impulse; at most {IMPULSE_LIMIT} can "
         "be error of the steps",
     )

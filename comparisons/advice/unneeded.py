@@ -48,7 +48,7 @@ def _rocking(runs, engine):
     if lifted:
         return True, f"the block lifts in {lifted} of {len(runs)} scenes looked at", None
     why = "the block never lifts, nor in any neighbour: block and base are one mass on the bearings"
-    return False, f"{why}; an engine's contact is modelled for nothing", engine
+    return False, f"{why}; an engine's contact model is not needed", engine
 
 
 def _base(scene, own):

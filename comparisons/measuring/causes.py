@@ -16,15 +16,15 @@ if TYPE_CHECKING:
 
 LEAST = 1e-3  # of e, or of the rate before: a smaller error has no cause worth a name
 CAUSES = {
-    "damping": "the block loses speed in flight: something is damped that nobody asked to be",
+    "damping": "the block loses speed in flight: something is damped that was not asked for",
     "shape": "a corner in the air bears weight: the contact is not where the block's corner is",
     "gap": "the corner is struck more than a step before or after it is level with the pivot: a slop, margin or radius",
-    "iterations": "the impulse is spread over steps, pulls or slips as no contact does: the solver stops too early",
+    "iterations": "the impulse is spread over steps, pulls or slips: the solver stops before it converges",
     "adhesion": "the corner that should lift is pulled at, over many steps: the contact's damper acts outward, too",
     "compliance": "the impulse takes many steps to grow and to fade, while the block turns on: the contact is soft",
-    "rebound": "the struck corner leaves the ground at once: a restitution, or a penetration taken back with a speed",
+    "rebound": "the struck corner leaves the ground at once: a restitution, or a penetration corrected by a velocity",
     "friction": "a corner slides, friction and normal impulse being in one ratio: the friction is too small",
-    "unseen": "the contact itself, and more than a step explains; the engine does not tell where the block was",
+    "unseen": "the contact itself, and more than a step explains; the engine does not report where the block was",
     "step": "no part is larger than what the block gains in one step: the step straddles the impact",
 }
 # Steps in which a strike is seen. Solvers of velocities strike at once, which is seen in two, as velocities are those

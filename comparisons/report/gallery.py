@@ -17,7 +17,7 @@ from .studies import Stored, stored_studies, variants_of
 
 GALLERY, README = Path(__file__).with_name("gallery"), PROJECT_FOLDER / "README.md"
 BEGIN, END = "<!-- findings of the stored studies -->", "<!-- end of findings -->"
-PANELS = {"restitution": 0, "overturning": -1, "matters": 0, "speed-error": -1}  # study: which panel of its finding
+PANELS = {"restitution": 0, "overturning": -1, "sensitivity": 0, "speed-error": -1}  # study: which panel of its finding
 
 
 def gallery(stored: Iterable[Stored]) -> dict[str, str]:

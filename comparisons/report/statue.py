@@ -72,7 +72,7 @@ def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: A
                 "nearest": margin.nearest,
                 "then": None if margin.nearest is None else margin.beyond(margin.nearest),
                 "bands": margin.outcomes,
-                "frayed": margin.frayed,
+                "interleaved": margin.interleaved,
                 "states": {state: [margin.reached(state), margin.change(state)] for state in limit_states(scene)},
             }
             for margin in margins(scene, progress=progress)
@@ -182,7 +182,7 @@ def _nearest(found):
         said = [("Nearest change", f"No change of one quantity by up to {span} changes the outcome.")]
     else:
         text = f"{first['quantity']} {signed(first['nearest'])}: the block then {WORDS[first['then']]}."
-        if first["frayed"]:
+        if first["interleaved"]:
             text += " Outcomes alternate there: do not rest a decision on this distance."
         said = [("Nearest change", text)]
     for state, label in STATES.items():

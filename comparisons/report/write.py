@@ -42,7 +42,7 @@ SHORT = {
     "overturning": "Many pulses",
     "recorded": "Recorded motions",
     "fragility": "Many earthquakes",
-    "matters": "What matters more",
+    "sensitivity": "What matters more",
     "speed-error": "Cost against error",
     "stability": "Hard cases",
 }

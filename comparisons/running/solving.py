@@ -164,7 +164,11 @@ def near_motion(scene: Scene) -> tuple[Caution, ...]:
         try:
             return cliffs(scene, *nearby(scene))
         except SceneError as error:
-            return (Caution("motion", f"What {SHARE:.0%} of the motion change was not looked for: {error.remedy}."),)
+            return (
+                Caution(
+                    "motion", f"How the outcome depends on {SHARE:.0%} of the motion was not tested: {error.remedy}."
+                ),
+            )
 
 
 def check_solver(name: str) -> None:

@@ -28,7 +28,7 @@ class Band(Part):
 class Margin(Part):
     """Of one quantity, `value` as the scene has it. changes: for each limit state of the scene the nearest change at
     which it becomes reached, or is no longer; down, up: nearest change with another outcome; leaves_model: nearest
-    change at which the model no longer holds; null where there is none in the range scanned. frayed: the outcome
+    change at which the model no longer holds; null where there is none in the range scanned. interleaved: the outcome
     changes and changes back within two steps of the scan: it may change nearer, in a narrower band."""
 
     quantity: str
@@ -40,7 +40,7 @@ class Margin(Part):
     up: float | None
     nearest: float | None
     leaves_model: float | None
-    frayed: bool
+    interleaved: bool
 
     @classmethod
     def of(cls, margin: margins.Margin, states: Sequence[str]) -> Self:
@@ -73,7 +73,7 @@ class Margins(Form):
     """How far a scene is from other limit states. tilt: the limit, a share of the slenderness; span: largest relative
     change scanned, up and, above -1, down."""
 
-    schema_: str = Field(default="rocking margin 2", serialization_alias="schema")
+    schema_: str = Field(default="rocking margin 3", serialization_alias="schema")
     scene: str
     outcome: str
     tilt: float

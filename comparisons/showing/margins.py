@@ -53,11 +53,11 @@ def print_margins(scene: Scene, margins: Sequence[Margin], contact: Contact, spa
             f"Nearest change of the outcome: {nearest.quantity} {_percent(nearest.nearest)}, the block then "
             f"{nearest.beyond(nearest.nearest)}."
         )
-    if frayed := [margin for margin in margins if margin.frayed]:
+    if bands := [margin for margin in margins if margin.interleaved]:
         parts.append(
-            f"The outcomes are interleaved in {', '.join(margin.quantity for margin in frayed)}: bands narrower than "
-            f"{200 * frayed[0].step:.2g} % alternate there. Still narrower ones may lie nearer than the change that is "
-            "given: do not rest a decision on this margin."
+            f"The outcomes are interleaved in {', '.join(margin.quantity for margin in bands)}: bands narrower than "
+            f"{200 * bands[0].step:.2g} % alternate there. Narrower ones may lie nearer than the change "
+            "given: do not base a decision on this margin."
         )
     parts.append(f"{_normal_words(contact)} {_friction_words(contact)}")
     if scene.bearings is not None:

@@ -52,7 +52,7 @@ BUILT_IN = (
     "recorded",
     "fragility",
     "surface",
-    "matters",
+    "sensitivity",
     "random-scenes",
     "stability",
     "speed-error",

@@ -56,7 +56,7 @@ SHARED = {
 OWN: dict[str, dict[str, Explained]] = {
     "restitution": {
         "ratio": Explained("base mass over block mass; null: rigid ground"),
-        "scope": Explained('of a summary: "all" cells at the default level, or the "ladder" of levels'),
+        "scope": Explained('of a summary: "all" cells at the default level, or the "levels" of levels'),
         "impacts": Explained("strong impacts with a known error"),
         "bias": Explained("error of restitution by swing energies, e less eq. (7): mean over impacts"),
         "rms": Explained("error of restitution by swing energies: root mean square over impacts"),
@@ -163,7 +163,7 @@ OWN: dict[str, dict[str, Explained]] = {
         "design_effect": Explained("variance of that share by records over that of independent runs"),
         "equal": Explained('whether the interval ends below 5 %: "yes", "no" or "too few to say"'),
     },
-    "matters": {
+    "sensitivity": {
         "change": Explained("how the scene was changed; null: an engine in place of the model"),
         "outcomes_changed": Explained("runs with another outcome than before the change"),
         "to_overturning": Explained("of these, runs that overturn only after it"),

@@ -3,7 +3,7 @@
 HERE = "engines.exudyn"
 CONSTANTS = {
     "stiffness": "stiffness of a corner [N/m], the accuracy parameter",
-    "rebound": "speed at which a corner is thrown back at most [m/s]",
+    "rebound": "largest speed at which a corner rebounds [m/s]",
     "friction": "coefficient where the scene gives none",
     "sticking": "tangential over normal stiffness",
     "damping": "tangential, over the critical one",
@@ -13,7 +13,7 @@ CONSTANTS = {
     "pivoting_step": "implicit step, while the block pivots or stands [s]",
     f"{HERE}.corners:RELAX": "time for the corners to relax after an impact, over sqrt(m/k)",
     f"{HERE}.corners:MOST_RELAX": "the same, over sqrt(R/g), at most",
-    f"{HERE}.corners:SLOP": "change of the anchor that is not told, over the sticking spring's stretch",
+    f"{HERE}.corners:SLOP": "change of the anchor that is ignored, over the sticking spring's stretch",
     f"{HERE}.corners:LEAST_STEP": "explicit step at which exudyn gives up [s]",
     f"{HERE}.phases:ENTER": "steps before the impact from which implicit ones begin",
     f"{HERE}.phases:LEAVE": "steps before the impact at which they end",

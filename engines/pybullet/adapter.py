@@ -88,5 +88,5 @@ def run(scene: Scene, variant: str, settings: Settings) -> Run:
     limit = first_script.MOST_VELOCITY if plain else MOST_VELOCITY
     if fastest > 0.1 * limit:
         words = f"{fastest:.3g} m/s or rad/s; its limit: {limit:g}"
-        return replace(ran, failure=Failure("Bullet cuts velocities", words))
+        return replace(ran, failure=Failure("Bullet limits velocities", words))
     return ran

@@ -79,7 +79,7 @@ def test_a_wide_span_finds_the_uplift_at_several_times_the_motion():
     assert margin.change("lifts") == margin.up == pytest.approx(lift, abs=step / 2**BISECTIONS)
     assert margin.leaves_model == pytest.approx(scene.friction * G / a - 1, abs=step / 2**BISECTIONS)
     assert margin.leaves_model < lift < margin.change("tilt") < margin.change("overturns") < lift + step
-    assert [outcome for _, _, outcome in margin.outcomes] == ["stands", "rocks", "overturns"] and not margin.frayed
+    assert [outcome for _, _, outcome in margin.outcomes] == ["stands", "rocks", "overturns"] and not margin.interleaved
     # 44 steps down would leave less than half a step
     assert (margin.bands[0].low, margin.bands[-1].high) == (pytest.approx(-43 * step, abs=1e-9), 9.0)
 
@@ -158,8 +158,8 @@ def test_a_narrow_band_frays_the_boundary():
     scene = Scene(block=BLOCK, motion=PulseMotion("one-sine", 1.1 * GAP * THRESHOLD, 7.8))
     fine = by_name(scene, span=0.16)["motion"]
     coarse = by_name(scene, span=0.16, step=0.04)["motion"]
-    assert [outcome for _, _, outcome in fine.outcomes] == ["overturns", "rocks", "overturns"] and not fine.frayed
-    assert coarse.frayed and coarse.nearest == pytest.approx(fine.nearest, abs=3e-6)
+    assert [outcome for _, _, outcome in fine.outcomes] == ["overturns", "rocks", "overturns"] and not fine.interleaved
+    assert coarse.interleaved and coarse.nearest == pytest.approx(fine.nearest, abs=3e-6)
     assert coarse.nearest == coarse.down and coarse.up is None
 
 
@@ -174,7 +174,7 @@ def banded(*bands):
 
 
 @pytest.mark.parametrize(
-    "second, third, fourth, frayed",
+    "second, third, fourth, interleaved",
     [
         (ROCKS, STANDS, ROCKS, True),
         (OVERTURNS, ROCKS, OVERTURNS, True),
@@ -184,9 +184,9 @@ def banded(*bands):
         (ROCKS, TILTS, ROCKS, False),  # one outcome
     ],
 )
-def test_outcomes_that_alternate_fray_a_boundary(second, third, fourth, frayed):
+def test_outcomes_that_alternate_fray_a_boundary(second, third, fourth, interleaved):
     margin = banded((-0.2, second), (0.05, third), (0.0504, fourth))
-    assert margin.frayed == frayed
+    assert margin.interleaved == interleaved
     assert len(margin.outcomes) == (1 if third is TILTS else 3)
 
 
@@ -219,7 +219,7 @@ def scanned(scene, name, count, span=0.2):
 def assert_scan_agrees(margin, changes, outcomes):
     """The nearest change within 1 %, and no stretch of runs above .1 % that the bands tell otherwise.
 
-    At a frayed boundary both find bands between the other's runs: there no change of the scan is nearer by 1 %.
+    At a interleaved boundary both find bands between the other's runs: there no change of the scan is nearer by 1 %.
     """
     bands, spacing = margin.bands, changes[1] - changes[0]
     assert bands[0].low - changes[0] < STEP and changes[-1] - bands[-1].high < STEP  # whole steps that are scenes
@@ -232,7 +232,7 @@ def assert_scan_agrees(margin, changes, outcomes):
     others = np.abs(changes[inside & (outcomes != margin.outcome)])
     if len(others):
         farther = abs(margin.nearest) - others.min()
-        assert (farther if margin.frayed else abs(farther)) <= max(0.01 * others.min(), spacing)
+        assert (farther if margin.interleaved else abs(farther)) <= max(0.01 * others.min(), spacing)
 
 
 LONG = (pytest.mark.slow, pytest.mark.timeout(1400))

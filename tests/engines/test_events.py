@@ -44,7 +44,7 @@ def test_a_carry_takes_substeps_as_the_bearing_needs_them():
     assert found == pytest.approx(wanted, rel=1e-5)
 
 
-@pytest.mark.parametrize("share, reason", [(1.05, "an impact gave energy"), (0.95, None)])
+@pytest.mark.parametrize("share, reason", [(1.05, "an impact added energy"), (0.95, None)])
 def test_an_impact_that_gives_energy_fails_with_its_rates(share, reason):
     """All rates of the swing after the seventh impact are multiplied."""
     scene, trace, reference, _ = observed("rigid ground", 1e-3)

@@ -41,7 +41,7 @@ def page(result: Result) -> Page:
         for row in where(result.rows, part="cell")
         if row["level"] == variants[NAME.of(row)]["default"]
     ]
-    levels = [{**variants[NAME.of(row)], **row} for row in where(result.rows, part="summary", scope="ladder")]
+    levels = [{**variants[NAME.of(row)], **row} for row in where(result.rows, part="summary", scope="levels")]
     orders = {(NAME.of(row), row["ground"]): row["order"] for row in where(result.rows, part="order")}
     ratings = {NAME.of(row): row for row in rated(result)}
     ranked = sorted((row for row in ratings.values() if not row["applies_impact"]), key=lambda row: row["rms"] or 1e9)

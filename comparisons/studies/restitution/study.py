@@ -206,7 +206,7 @@ def _summaries(cells, engines, grid):
                 runs = [run for (one, *place), runs in own.items() for run in runs
                         if one == level and tuple(place) in grid.refined]  # fmt: skip
                 if runs:
-                    points.append(_row("summary", {"scope": "ladder", **key, "level": level}, runs))
+                    points.append(_row("summary", {"scope": "levels", **key, "level": level}, runs))
             yield from points
             errors = [(row["level"], row["rms"]) for row in points if row["rms"]]
             steps, sizes = np.log(np.transpose(errors)) if errors else ((), ())

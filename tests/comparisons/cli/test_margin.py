@@ -33,7 +33,7 @@ def test_margin_names_the_nearest_change_of_the_outcome_and_draws_it(rocking, tm
     assert "Nearest change of the outcome: slenderness -7.14 %, the block then overturns." in words
     assert "released: rocks now: lifts, tilt > 0.5 γ" in words
     assert (tmp_path / "margin.png").read_bytes().startswith(b"\x89PNG")
-    assert (content["schema"], content["outcome"], content["tilt"]) == ("rocking margin 2", "rocks", 0.5)
+    assert (content["schema"], content["outcome"], content["tilt"]) == ("rocking margin 3", "rocks", 0.5)
     nearest = content["margins"][0]
     assert nearest["quantity"] == "slenderness"
     assert nearest["nearest"] == pytest.approx(0.26 / 0.28 - 1, abs=1e-7)
@@ -88,11 +88,11 @@ def test_every_limit_state_has_its_column_and_the_widest_numbers_fit(capsys, mon
 
 def test_interleaved_outcomes_are_said(capsys):
     scene = Scene(block=BLOCK, motion=PulseMotion("one-sine", 1.1 * GAP * THRESHOLD, 7.8))
-    for step, frayed in ((0.04, True), (0.01, False)):
+    for step, interleaved in ((0.04, True), (0.01, False)):
         found = [margin for margin in margins(scene, span=0.16, step=step) if margin.quantity == "motion"]
         print_margins(scene, found, contact_margins(scene), 16.0, 0.5)
         words = " ".join(capsys.readouterr().out.split())
-        assert ("The outcomes are interleaved in motion: bands narrower than 8 % alternate" in words) == frayed
+        assert ("The outcomes are interleaved in motion: bands narrower than 8 % alternate" in words) == interleaved
 
 
 def test_the_picture_marks_limit_states_where_they_are_reached():

@@ -27,7 +27,7 @@ def copy_of(results):
 def studies(tmp_path_factory):
     """Stored results of three studies: one that judges engines, one ranked, one a matrix."""
     folder = tmp_path_factory.mktemp("studies")
-    for name in ("restitution", "matters", "stability"):
+    for name in ("restitution", "sensitivity", "stability"):
         for file in RESULTS.glob(f"{name}.*"):
             shutil.copy(file, folder)
     return folder

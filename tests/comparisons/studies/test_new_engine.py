@@ -36,7 +36,7 @@ COLOUR = "#d55e00"
 SHORT = {
     "restitution": {"grid": Grid((0.2,), (None, CARYATID_BASE), (0.6,), ((0.2, None),), 4, ((0.25,), (1.0,), (2.0,)))},
     "fragility": {"scenes": {"free-standing": ("caryatid-rigid", (0.2, 0.3))}, "runs": (40, 6, 2)},
-    "matters": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (3, 1, 1)},
+    "sensitivity": {"scenes": {"free-standing": ("caryatid-rigid", (0.2,))}, "motions": (3, 1, 1)},
     "autopsy": {},
     "sheet": {},
     "random-scenes": {"seed": 1},
@@ -83,7 +83,7 @@ def rows_with(section):
 def test_a_study_runs_and_shows_it(crude, tmp_path, name):
     study = get_study(name)
     more = {"scenes": [near_overturning()]} if name == "speed-error" else {}
-    as_model = name in ("fragility", "matters", "sheet")
+    as_model = name in ("fragility", "sensitivity", "sheet")
     run = by_model(history=name == "sheet") if as_model else by_runs(tmp_path)
     found = answered(study.plan(ASK, **SHORT[name], **more), run)[-1]
     section = shown(study, found, tmp_path)

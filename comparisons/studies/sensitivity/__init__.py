@@ -4,7 +4,7 @@ from ...running.study import Study
 from .study import plan
 
 STUDY = Study(
-    "matters",
+    "sensitivity",
     "What changes the outcome more often than the choice of the engine: vertical motion, a per cent of slenderness?",
     plan,
     f"{__name__}.page",

@@ -1,4 +1,4 @@
-"""What matters: each change is of the size its name says; counted are other outcomes under the same motion."""
+"""What changes the outcome: each change is of the size its name says; counted are other outcomes of one motion."""
 
 import numpy as np
 import pytest
@@ -11,20 +11,20 @@ from analytic.rocking import RockingModel
 from comparisons.running.study import Computed, Request
 from comparisons.showing.rows import where
 from comparisons.studies import get_study
-from comparisons.studies.matters.changes import changes, with_vertical
-from comparisons.studies.matters.study import FASTER, RATIOS, SPREAD
+from comparisons.studies.sensitivity.changes import changes, with_vertical
+from comparisons.studies.sensitivity.study import FASTER, RATIOS, SPREAD
 
-STUDY = get_study("matters")
+STUDY = get_study("sensitivity")
 SCENES = {"isolated": ("caryatid-isolated", (0.15,))}
 USUAL = load_scene("caryatid-isolated").with_(motion=None, duration=None, block={"slenderness": 0.15})
 COUNT = 8
 
-pytestmark = pytest.mark.xdist_group("matters")  # its runs are made once
+pytestmark = pytest.mark.xdist_group("sensitivity")  # its runs are made once
 
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("matters")
+    folder = tmp_path_factory.mktemp("sensitivity")
     return answered(STUDY.plan(Request(()), SCENES, (COUNT, 0, 0)), by_runs(folder))[-1]
 
 
@@ -145,7 +145,7 @@ def page(found, tmp_path):
     ]
     settings = {**found.settings, "default_variants": {"pybullet": "impact-aware", "exudyn": "native-contact"}}
     settings |= {"motions_of_engines": 60, "motions_of_other_variants": 10}
-    return STUDY.page(stored(tmp_path, "matters", Computed(settings, rows)))
+    return STUDY.page(stored(tmp_path, "sensitivity", Computed(settings, rows)))
 
 
 def test_changes_and_engines_are_ranked_and_drawn_and_the_title_sets_the_first_against_the_engines_at_their_best(page):

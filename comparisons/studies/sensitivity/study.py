@@ -1,4 +1,4 @@
-"""The study of what matters: motions near the boundary of overturning, and each of them changed in every way.
+"""The study of what changes the outcome: motions near the boundary of overturning, each changed in every way.
 
 The factors of the motions lie about the one at which half of them overturn the block: how often a change changes the
 outcome depends on how near the boundary the motions are, and this is said with the answer.
