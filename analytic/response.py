@@ -1,4 +1,25 @@
-"""What comes out of a simulation, the same for every solver."""
+"""What comes out of a simulation, the same for every solver.
+
+An outcome is “stands” (never lifted), “rocks” (lifted, stayed upright), “overturns” or “failed”, which comes with its
+evidence. A run goes on until the outcome is *decided*: until what energy is left can no longer overturn the block, or
+it is certain to fall (``analytic/decision.py`` derives the rule), and the peaks are final. One that a ``duration`` cuts
+earlier is **undecided**: tables say “undecided (rocks so far)”, JSON says ``"decided": false``. With a longer duration
+nothing changes; a base that swings on below a block that will not lift again is followed for a hundred periods.
+
+Where the block overturns, the peaks of the base and the forces at the contact are those up to the last passage of
+|tilt| = slenderness: what follows is the fall, in which a real block slides.
+
+An engine's run is compared with the analytic model of the same scene. ``differences`` name the quantity, its value here
+and in the model, and the limit: the outcome; a peak tilt or base displacement off by more than 2 %; the restitution of
+an impact off by more than 0.01; impacts that are missing or too many. ``comparable`` is "yes", or says why not: the
+normal force reaches 0, no contact gives the friction demanded, the model reaches no end; or "on an edge", where a
+change of the scene by 1e-4 makes such a difference in the model itself. From Python: ``simulate(scene, compare=False)``
+leaves it out.
+
+``warnings`` (kind, quantity, value, limit, text) say that a result lies outside what the model describes (the block
+would jump, or slide at the scene's ``friction``; the base goes beyond ``x_max``), or that the record is odd. The
+outcome beside a warning is no answer to build on.
+"""
 
 import dataclasses
 import math

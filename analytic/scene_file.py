@@ -1,4 +1,55 @@
-"""Scene files (TOML) to scenes; the mistakes in them become one `SceneError`."""
+"""Scene files (TOML) to scenes; the mistakes in them become one `SceneError`.
+
+SI units. Only ``[block]`` is needed; a part that is left out is not modelled::
+
+    # friction = 0.7          # optional: coefficient between the block and what it stands on; before the first table
+
+    [block]
+    mass = 3172.05            # kg
+    radius = 1.0884           # m, base corner to centre of mass
+    slenderness = 0.28        # rad, angle of that line to the vertical
+    # corner_inertia          # kg m2, default 4/3 m R^2
+    # restitution             # default: eq. (7) of the paper, from momentum
+
+    [base]                    # without it the block stands on rigid ground
+    mass = 212.0              # kg
+
+    [bearings]                # without them the base slides freely; values per bearing
+    law = "algebraic"         # or "bouc-wen", "bilinear", "linear"
+    count = 4
+    ka = 6.22e4               # N/m, initial stiffness
+    kb = 6.22e3               # N/m, after yielding
+    alpha = 44.69             # of algebraic and bouc-wen
+    # yield_force = 700.0     # N, of bilinear: where ka ends and kb begins; in place of alpha
+    # damping                 # N s/m, viscous
+    # x_max = 0.30            # m, what they are built for: a peak displacement beyond it is warned of
+
+    [motion]                  # without it free motion; exactly one of record, pulse, synthetic
+    synthetic = "duzce-like"  # with optional seed
+    # record = "file"         # relative to the scene file; units = "m/s2", "cm/s2" or "g" where the file states none,
+                              # dt [s] where it states no step, column = 3 or channel = 3 or "Up" where it has several
+    # pulse = "one-sine"      # "one-cosine", "half-sine", "rectangular", "ricker"; amplitude [m/s2], frequency [rad/s]
+    # scale = 1.0             # of all components
+    # vertical = "file"       # beside a record, upward; or of the same file, without it, vertical_column = 4 or
+                              # vertical_channel = 3 or "Up"
+    # vertical_ratio = 0.6    # of a pulse or a synthetic motion: vertical over horizontal; with vertical_phase [rad]
+                              # (sines and cosines) or vertical_seed (default seed + 1)
+
+    [start]                   # optional: tilt [rad], tilt_rate [rad/s], base_displacement [m], base_velocity [m/s]
+
+    [run]                     # optional: without it a run ends when its outcome is decided
+    duration = 20.0           # s
+
+Under a vertical motion a_v gravity is g + a_v(t) for the block. The base rides on bearings that are taken as rigid
+vertically, which every such outcome says: real ones sway at some 10 to 20 Hz. Components of another step or length are
+brought together, and ``warnings`` say how. Where the normal force reaches zero the outcome is outside the model.
+
+An engine uses ``friction`` in place of its own setting; the analytic model, which does not slide, warns where its
+demand is above it.
+
+``rocking run`` tries start, motion and restitution changed by a millionth in the analytic model, too, and warns where
+the outcome is another one then: on such an edge trust no solver.
+"""
 
 import tomllib
 from collections.abc import Mapping

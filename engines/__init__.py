@@ -2,6 +2,11 @@
 
 An engine is a package with an `engines.contract.Engine` called ``ENGINE``: the folders here are this project's own,
 others are declared by their packages (`engines.plugins`).
+
+Tiers. ``defaults``: what a first script gets from the API. ``tuned``: only the engine moves a body or sets a velocity;
+the adapter chooses what a skilled user could choose in any scene. ``assisted``: the adapter sets a velocity, a position
+or a constraint by the model's event. No tuned variant has a parameter from the formula of the restitution: with another
+formula every trace stays the same, bit for bit (``tests/engines/test_tiers.py``).
 """
 
 from __future__ import annotations

@@ -4,6 +4,7 @@ import re
 import shlex
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 # Seconds that `rocking ...` of these words may take; what is not here is quick.
 LONG = {"report": 600, "choose": 600, "lessons export": 1200}
-NOT_RUN = ("venv", "pip", "pytest", "open")  # made, installed or tested elsewhere, or opens a browser
+NOT_RUN = ("venv", "pip", "pytest", "pdoc", "open")  # made, installed or tested elsewhere, or opens a browser
 
 
 def blocks(language):
@@ -84,11 +85,14 @@ def test_its_python_runs(source):
     assert first == pytest.approx(second, rel=1e-3)  # the two solvers' displacement
 
 
-def test_its_scene_file_reads(tmp_path):
-    from analytic import load_scene
+@pytest.mark.parametrize("place", ["README", "analytic.scene_file"])
+def test_its_scene_file_reads(tmp_path, place):
+    """The short one, and the one with every key in the reference."""
+    from analytic import load_scene, scene_file
 
-    (source,) = (block for block in blocks("toml") if "[block]" in block)
-    (tmp_path / "scene.toml").write_text(source)
+    (short,) = (block for block in blocks("toml") if "[block]" in block)
+    (whole,) = re.findall(r"::\n\n((?:    .*\n|\n)+)", scene_file.__doc__)
+    (tmp_path / "scene.toml").write_text(short if place == "README" else textwrap.dedent(whole))
     scene = load_scene(tmp_path / "scene.toml")
     assert scene.base is not None and scene.bearings is not None and scene.motion is not None
 

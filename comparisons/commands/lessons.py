@@ -28,11 +28,19 @@ def _listed(context: typer.Context) -> None:
 
 
 @app.command(name="open")
-def open_(name: Annotated[str, typer.Argument(help="Lesson: see rocking lessons.")]) -> None:
+def open_(
+    name: Annotated[str, typer.Argument(help="Lesson: see rocking lessons.")],
+    to: Annotated[
+        str | None, typer.Option(metavar="FOLDER", help="Keep the notebook, and your work in it, here.")
+    ] = None,
+) -> None:
     """Open a lesson as a notebook in the browser, a copy whose code one can change. Ctrl-C ends it."""
     from ..lessons.notebook import open_notebook
+    from ..running.files import check_folder
 
-    raise typer.Exit(open_notebook(name))
+    if to is not None:
+        check_folder(to)
+    raise typer.Exit(open_notebook(name, to))
 
 
 @app.command()

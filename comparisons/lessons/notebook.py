@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import inspect
 import re
@@ -15,6 +16,7 @@ from typing import Any
 from analytic.errors import SettingError
 
 from ..running.files import TemporaryFolder
+from ..running.solving import say
 from ..showing.parts import number
 from ..showing.templates import templates
 from .drawing import svg
@@ -42,8 +44,15 @@ def notebook_of(lesson: Lesson) -> str:
     return templates(PAGES).get_template("notebook.py.jinja").render(lesson=lesson, code=code_of(lesson))
 
 
-def open_notebook(name: str) -> int:
+def open_notebook(name: str, to: str | None = None) -> int:
     """Open the notebook of a lesson in the browser, by marimo; returns its status when it ends.
+
+    Parameters
+    ----------
+    name : str
+        Of the lesson.
+    to : str or None
+        Folder where the notebook is kept, and opened again as it was left; None: it is gone when marimo ends.
 
     Raises
     ------
@@ -56,10 +65,13 @@ def open_notebook(name: str) -> int:
             "notebooks need the package marimo: pip install marimo, or this project with .[lessons]; rocking lessons "
             "export writes pages without it"
         )
-    with TemporaryFolder("rocking-lesson-") as folder:
+    with TemporaryFolder("rocking-lesson-") if to is None else contextlib.nullcontext(to) as folder:
         file = Path(folder) / f"{name}.py"
-        file.write_text(text, encoding="utf-8")
-        file.with_name("pyproject.toml").write_text(SETTINGS, encoding="utf-8")
+        file.parent.mkdir(parents=True, exist_ok=True)
+        for path, content in {file: text, file.with_name("pyproject.toml"): SETTINGS}.items():
+            if not path.exists():  # a student's work is never overwritten
+                path.write_text(content, encoding="utf-8")
+        say(f"the notebook is {file}" + ("; it is removed at the end: keep it with --to FOLDER" if to is None else ""))
         return subprocess.call([sys.executable, "-m", "marimo", "edit", str(file)])
 
 

@@ -44,7 +44,7 @@ def outcomes(rows: Sequence[Mapping[str, Any]]) -> str:
     by_outcome = {}
     for row in rows:
         undecided = not row.get("decided", True) and row["outcome"] != "failed"
-        words = f"is {row['verdict']}" if undecided else WORDS.get(row["outcome"], row["outcome"])
+        words = f"is {row['outcome_text']}" if undecided else WORDS.get(row["outcome"], row["outcome"])
         by_outcome.setdefault(words, []).append(row["engine"])
     off = [row["engine"] for row in rows if row.get("differences") and row["comparable"] == COMPARED]
     most = max(map(len, by_outcome.values()), default=0)

@@ -45,9 +45,11 @@ def page(result: Result) -> Page:
     known = [row for row in shifts if _place(row) in pressed]
     rated = list(_rated(result))
     own = s["default_variants"]
+    tuned = {(one["engine"], one["variant"]) for one in s["variants"] if one["tier"] == "tuned"}
+    best = [row for row in rated if own[row["engine"]] == row["variant"]]
     band = percent(s["band"], 1)
     return Page(
-        _title([row for row in rated if own[row["engine"]] == row["variant"]]),
+        _title([row for row in best if (row["engine"], row["variant"]) in tuned] or best),
         (
             "A pulse overturns a block above some amplitude. Higher up may lie a safe gap, where the first impact "
             "takes so much that it stands again. Engines are rated by where they put these boundaries, as long as the "
@@ -197,11 +199,9 @@ def _summary(rows):
 
 def _title(rated):
     largest = max((row["largest"] for row in rated if row["largest"] is not None), default=None)
-    count = sum(row["of"] for row in rated)
-    lost = count - sum(row["found"] for row in rated)
-    return f"Many pulses: at their best engines move the overturning boundary by {percent(largest)} at most" + (
-        f", and miss {lost} of {count}" if lost else ""
-    )
+    lost = [f"{row['engine']} finds {row['found']} of {row['of']}" for row in rated if row["found"] < row["of"]]
+    words = f"Many pulses: at their best engines move the overturning boundary by {percent(largest)} at most"
+    return "; ".join([words, *lost])
 
 
 def _maps(result, shapes):

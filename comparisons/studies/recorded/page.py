@@ -125,7 +125,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
                 f"{words} under recorded motions: error, median",
                 {name: _peak_mark(row[f"{key}_error"]) for name, row in rows.items()},
                 rates=False,
-                says="peak tilts are off by {} in the median" if key == "tilt" else "",
+                says="median peak tilts are off by {}" if key == "tilt" else "",
             )
             for key, words in PEAKS.items()
         ),

@@ -7,7 +7,7 @@ import textwrap
 import pytest
 
 from comparisons.lessons import engine_runs
-from comparisons.lessons.notebook import code_of, notebook_of
+from comparisons.lessons.notebook import code_of, notebook_of, open_notebook
 from comparisons.lessons.topics import NAMES, corner, cost, lesson
 from engines import installed_engines
 
@@ -58,3 +58,18 @@ def test_the_few_lines_stand_in_the_notebook_and_are_few(name):
     code = code_of(lesson(name))
     assert "found = " in code and "return" not in code and len(code.splitlines()) <= 12
     assert textwrap.indent(code, "    ") in notebook_of(lesson(name))
+
+
+def test_a_students_work_is_kept_where_it_was_asked_for(tmp_path, monkeypatch, capsys):
+    opened = []
+    monkeypatch.setattr("subprocess.call", lambda words: opened.append(words[-1]) or 0)
+    folder = tmp_path / "mine"
+    assert open_notebook("tipping", str(folder)) == 0
+    file = folder / "tipping.py"
+    assert opened == [str(file)] and file.read_text() == notebook_of(lesson("tipping"))
+    assert str(file) in capsys.readouterr().err
+    file.write_text("changed")
+    open_notebook("tipping", str(folder))
+    assert file.read_text() == "changed"
+    open_notebook("tipping")
+    assert "--to FOLDER" in capsys.readouterr().err
