@@ -164,7 +164,7 @@ class Lagging(BearingLaw):
 def test_a_bearing_force_that_lags_one_step_fails(monkeypatch, engine):
     one = row("bearing force replayed", engine, "impact-aware", "isolated Caryatid, synthetic motion")
     monkeypatch.setattr("engines.stepping.BearingLaw", Lagging)
-    with pytest.raises(agreement.Unmeasurable, match="not that of the bearings' force"):  # the run itself says so
+    with pytest.raises(agreement.Unmeasurable, match="does not match the bearing force"):  # the run itself says so
         one.found()
 
 
