@@ -90,7 +90,7 @@ def _frame(axis, middle, tilt, words, old_corner):
 
 
 def engines_table() -> Table:
-    """Error of the rate after the first impact in every installed engine, variant and setting of its levels."""
+    """Error of the rate after the first impact in every installed engine, variant and level."""
     rows = [
         [
             run.name,

@@ -46,10 +46,9 @@ def page(result: Result) -> Page:
     rated = list(_rated(result))
     own = s["default_variants"]
     tuned = {(one["engine"], one["variant"]) for one in s["variants"] if one["tier"] == "tuned"}
-    best = [row for row in rated if own[row["engine"]] == row["variant"]]
     band = percent(s["band"], 1)
     return Page(
-        _title([row for row in best if (row["engine"], row["variant"]) in tuned] or best),
+        _title([row for row in rated if own[row["engine"]] == row["variant"]], tuned),
         (
             "A pulse overturns a block above some amplitude. Higher up may lie a safe gap, where the first impact "
             "takes so much that it stands again. Engines are rated by where they put these boundaries, as long as the "
@@ -197,10 +196,13 @@ def _summary(rows):
     }
 
 
-def _title(rated):
+def _title(best, tuned):
+    """Of the tuned ones among the variants that are run at their engine's best; of all of these, if none is tuned."""
+    rated = [row for row in best if (row["engine"], row["variant"]) in tuned]
+    how, rated = ("tuned", rated) if rated else ("at their best", best)
     largest = max((row["largest"] for row in rated if row["largest"] is not None), default=None)
     lost = [f"{row['engine']} finds {row['found']} of {row['of']}" for row in rated if row["found"] < row["of"]]
-    words = f"Many pulses: at their best engines move the overturning boundary by {percent(largest)} at most"
+    words = f"Many pulses: {how}, engines move the overturning boundary by {percent(largest)} at most"
     return "; ".join([words, *lost])
 
 
