@@ -1,4 +1,44 @@
-"""The rigid-body rocking model on lead-rubber bearings: the reference of this study."""
+"""The rigid-body rocking model on lead-rubber bearings: the reference of this study.
+
+A `Scene` says what is modelled, `simulate` returns a `Response`. All quantities are in SI units and radians.
+
+Examples
+--------
+One scene, from a file or by its name, and what came out:
+
+>>> from analytic import load_scene, simulate
+>>> statue = load_scene("caryatid-rigid")
+>>> response = simulate(statue)
+>>> response.outcome, len(response.impacts), round(response.peak_tilt_ratio, 3)
+('overturns', 1, 5.61)
+
+A scene in Python, and the same with other values (`Scene.with_` changes a copy):
+
+>>> from analytic import Block, PulseMotion, Scene
+>>> block = Block(mass=3172.05, radius=1.0884, slenderness=0.28)  # kg, m, rad
+>>> scene = Scene(block=block, motion=PulseMotion("one-sine", amplitude=4.0, frequency=8.0))  # m/s2, rad/s
+>>> simulate(scene).outcome, simulate(scene.with_(block={"slenderness": 0.2})).outcome
+('rocks', 'overturns')
+
+Many runs, on all cores; here the same scene at five scales of its motion:
+
+>>> from analytic import simulate_many
+>>> simulate_many([scene] * 5, scales=[0.5, 0.8, 1.0, 1.2, 1.5]).overturns
+array([False, False, False,  True,  True])
+
+An own record (`analytic.records` has the formats), and a motion in place of it where there is none:
+
+>>> from analytic import synthetic_motion
+>>> motion = synthetic_motion()  # or read_record("RSN1605_DUZCE_DZC270.AT2").motion
+>>> round(motion.peak / 9.81, 3)  # g
+0.515
+
+The history as arrays, for numpy or matplotlib; `comparisons.showing.plots.draw_histories` draws it:
+
+>>> history = response.history
+>>> history.time.shape == history.tilt.shape == history.ground_acceleration.shape
+True
+"""
 
 from ._cache import kernel_cache
 from .errors import EngineNotInstalled, SceneError, SettingError

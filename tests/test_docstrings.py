@@ -9,8 +9,12 @@ import pytest
 @pytest.mark.parametrize(
     "module",
     [
+        "analytic",
+        "analytic.batch",
         "analytic.new_scene",
         "analytic.records",
+        "engines",
+        "comparisons.showing.plots",
         "comparisons.sheet.pages",
         "comparisons.sheet.score",
         pytest.param("comparisons.advice.choose", marks=pytest.mark.slow),

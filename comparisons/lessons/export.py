@@ -56,7 +56,9 @@ def _environment() -> Environment:
     environment = templates(PAGES)
     environment.filters["prose"] = lambda text: Markup(prose(text))
     environment.filters["math"] = lambda tex: Markup(mathml(tex, display=True))
-    environment.globals["style"] = Markup((PAGES / "pages.css").read_text(encoding="utf-8"))
+    environment.globals["style"] = Markup(
+        "".join(file.read_text(encoding="utf-8") for file in (PAGES / "pages.css", diagrams.STYLE))
+    )
     return environment
 
 
@@ -71,6 +73,8 @@ def _lesson_page(environment: Environment, one: Lesson, chosen: Sequence[Lesson]
         code=code_of(one),
         exercises=exercises,
         table=one.table() if one.table else None,
+        drawing=getattr(diagrams, one.drawing)() if one.drawing else "",
+        example=_view_parts(one.example(), f"{one.name}-example") if one.example else None,
         texts=json.dumps([[control.text(value) for value in control.values] for control in one.controls]),
         views=views,
         script=Markup((PAGES / "lesson.js").read_text(encoding="utf-8")),

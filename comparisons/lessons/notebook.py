@@ -17,10 +17,11 @@ from analytic.errors import SettingError
 
 from ..running.files import TemporaryFolder
 from ..running.solving import say
+from ..showing import diagrams
 from ..showing.parts import number
 from ..showing.templates import templates
 from .drawing import svg
-from .lesson import Exercise, Lesson
+from .lesson import Exercise, Lesson, View
 from .topics import lesson
 
 PAGES = Path(__file__).parent / "pages"
@@ -88,13 +89,21 @@ def answer(exercise: Exercise) -> str:
     return written(exercise.compute(), exercise.unit, exercise.digits)
 
 
-def opening(lesson: Lesson) -> str:
-    """Title, question and equations as Markdown."""
-    parts = [f"# {lesson.number}. {lesson.title}", lesson.question]
+def opening(lesson: Lesson, mo: Any) -> Any:
+    """Title, question, drawing, equations, symbols, and what to guess."""
+    head = [mo.md(f"# {lesson.number}. {lesson.title}\n\n{lesson.question}")]
+    if lesson.drawing:
+        rules, drawing = diagrams.STYLE.read_text(encoding="utf-8"), getattr(diagrams, lesson.drawing)()
+        head.append(
+            mo.Html(f'<style>{rules}</style><div class="drawing" style="{COLOURS}; max-width: 34rem">{drawing}</div>')
+        )
+    parts = []
     for equation in lesson.equations:
         place = "".join(rf" \qquad ({part})" for part in equation.number.split(", ") if part)
         parts += [f"$${equation.tex}{place}$$", equation.says]
-    return "\n\n".join([*parts, f"**Look.** {lesson.look}"])
+    symbols = "\n".join(f"- ${symbol}$: {meaning}" for symbol, meaning in lesson.glossary())
+    words = [*parts, f"**Symbols**\n\n{symbols}", f"**Guess first.** {lesson.guess}", f"**Then look.** {lesson.look}"]
+    return mo.vstack([*head, mo.md("\n\n".join(words))])
 
 
 def controls(lesson: Lesson, mo: Any) -> Any:
@@ -111,7 +120,11 @@ def controls(lesson: Lesson, mo: Any) -> Any:
 
 def place(lesson: Lesson, values: Sequence[float | str], mo: Any) -> Any:
     """What the lesson shows at these values of its controls: picture and numbers."""
-    view = lesson.view(*values)
+    return shown(lesson.view(*values), mo)
+
+
+def shown(view: View, mo: Any) -> Any:
+    """Picture and numbers of a view."""
     numbers = [mo.stat(written(value, unit), label=label) for label, (value, unit) in view.numbers.items()]
     picture = (
         f'<div style="{COLOURS}; max-width: 38rem" role="img" aria-label="{view.says}">{svg(view.figure, "n")}</div>'
@@ -123,7 +136,9 @@ def closing(lesson: Lesson, mo: Any) -> Any:
     """What goes wrong, and the exercises with their answers folded away."""
     wrong = "\n".join(f"- {text}" for text in lesson.wrong)
     folded = {exercise.question: mo.md(f"**{answer(exercise)}** – {exercise.because}") for exercise in lesson.exercises}
-    parts = [mo.md(f"## What goes wrong\n\n{wrong}\n\n## Exercises"), mo.accordion(folded)]
+    example = lesson.example() if lesson.example else None
+    parts = [mo.md(f"**Example.** {example.says}"), shown(example, mo)] if example else []
+    parts += [mo.md(f"## What goes wrong\n\n{wrong}\n\n## Exercises"), mo.accordion(folded)]
     if lesson.table:
         table = lesson.table()
         parts.append(

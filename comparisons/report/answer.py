@@ -155,8 +155,8 @@ def not_to_do(setups: Sequence[Setup], judgements: Sequence[Judgement]) -> list[
         count = f"{len(bad)} of {len(defaults)}"
         lines.append(f"Do not use default settings: {count} are not to be trusted (restitution off by {off}).")
     lines.append(
-        "Check how near the outcome is to changing (rocking margin SCENE): if your data are less certain than that, it "
-        "decides nothing."
+        "Check how close the outcome is to changing (rocking margin SCENE). If your data are less certain than that, "
+        "do not rely on it."
     )
     lines.append(
         "Do not compare tilt point by point beyond the sensitivity horizon, nor trust a setting until refinement no "

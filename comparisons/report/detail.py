@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup, escape
 
 from ..running.provenance import age, read_result
+from ..showing import diagrams
 from ..showing.charts import STYLE, colour, key_of
 from ..showing.mathml import mathml
 from ..showing.parts import Section, number, signed
@@ -99,7 +100,9 @@ def environment() -> Environment:
 def assets() -> dict[str, Markup]:
     """Style and scripts, to stand on the page itself."""
     return {
-        "style": Markup(STYLE.read_text(encoding="utf-8") + (HERE / "style.css").read_text(encoding="utf-8")),
+        "style": Markup(
+            "".join(file.read_text(encoding="utf-8") for file in (STYLE, diagrams.STYLE, HERE / "style.css"))
+        ),
         "script": Markup((HERE / "page.js").read_text(encoding="utf-8")),
         "animation": Markup((HERE / "animation.js").read_text(encoding="utf-8")),
     }

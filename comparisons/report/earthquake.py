@@ -38,8 +38,8 @@ def earthquake(result: Result) -> Section:
     return Section(
         f"{'One earthquake' if motion else 'One scene'}: {found}",
         (
-            f"{under}Each solver runs until its outcome is decided. Tilt is compared up to the sensitivity horizon "
-            "only, the same for all: beyond it a change by 10⁻⁴ makes another motion.",
+            f"{under}Each solver runs until its outcome is decided. Tilt is compared up to the sensitivity horizon, "
+            "the same for all: after it a change of the scene by 10⁻⁴ visibly changes the motion.",
         ),
         (_table(result), told) if warnings else (_table(result),),
         (figure(charts, CAPTION, [row["engine"] for row in result.rows]),) if charts else (),

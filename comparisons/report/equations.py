@@ -25,7 +25,11 @@ class Equation:
 
 
 EQUATIONS = (
-    Equation("1", r"\omega_r^2 = \frac{m g R}{J_O}", "The rocking frequency: how fast the block falls, its only time."),
+    Equation(
+        "1",
+        r"\omega_r^2 = \frac{m g R}{J_O}",
+        "The rocking frequency: how fast the tilted block falls. It is the block's only time scale.",
+    ),
     Equation("2", r"(m + m_b)(a_g + \ddot{x}) + n_d f = 0", "Full contact: block and base are one mass on bearings."),
     Equation(
         "3, 5",
@@ -45,7 +49,7 @@ EQUATIONS = (
         "8",
         r"e_x = \frac{2 R^3 \sin^2 \gamma \cos \gamma \, m \tilde{m}}{R^2 \cos^2 \gamma \, m \tilde{m} - J_O}",
         "Jump of the base velocity, ẋ⁺ = ẋ⁻ − e_x φ̇⁻. The paper prints one factor R cos γ too many, a length squared; "
-        "for a block of a metre that hides.",
+        "for a block of about a metre this hardly shows.",
     ),
     Equation(
         "9, 11",
@@ -69,12 +73,14 @@ GLOSSARY = {
     "isolation period": "2π times the root of mass over the bearings' stiffness",
     "lead-rubber bearing": "rubber with a lead core: stiff k_a at first and after each reversal, then k_b",
     "friction demand": "horizontal over normal force under the block: the friction needed not to slide",
-    "sensitivity horizon": "time beyond which a change by 10⁻⁴ makes another motion; a solver’s own: one by its errors",
+    "sensitivity horizon": "time after which a change of the scene by 10⁻⁴ visibly changes the motion; a solver’s "
+    "own: a change as large as its errors",
     "analytic model": "the rocking equations solved directly from event to event; its compiled part is the kernel",
-    "second implementation": "the same equations written again, independently and plainly, to check the first",
+    "second implementation": "a second implementation of the same equations, independent and simple, to check the "
+    "first",
     "accuracy parameter": "the one setting of a solver that trades time for error; its levels: the values tried",
-    "defaults, tuned, assisted": "an engine as a first script gets it; well set, but on its own; with a velocity, "
-    "position or constraint set by the adapter at the model's event",
+    "defaults, tuned, assisted": "settings of a first script; settings of a skilled user, with all motion computed "
+    "by the engine; a velocity, position or constraint set by the adapter at the model's event",
     "root mean square (rms)": "root of the mean of squares of all errors",
     "kappa": "Cohen's measure of agreement of two yes-or-no judges: 1 always, 0 as by chance",
     "McNemar's test": "whether two solvers that judge the same motions differ by more than chance; for many tests "

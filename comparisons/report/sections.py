@@ -80,8 +80,8 @@ def outcome_section(result: Result) -> Section:
             "block that overturns.",
             "A run goes on until its outcome is decided: until nothing that may still come can make the block "
             "overturn or keep it from it. One that ended earlier is “undecided”, with what it was so far. A "
-            "warning names what lies outside what the model describes, or is odd about the record; the outcome "
-            "beside it is then to be doubted. Every engine's run is compared with the analytic model's.",
+            "warning names what lies outside what the model describes, or is odd about the record; do not rely on "
+            "the outcome beside it. Every engine's run is compared with the analytic model's.",
             "Impact times and tilt graphs are compared up to the end, or up to a sensitivity horizon where that comes "
             "first. The common one is that of a change of restitution, motion or start by 10⁻⁴, the same for all; a "
             "solver's own is that of a change as large as its errors: beyond it a difference says no more about it. "

@@ -174,7 +174,7 @@ def _contents(scenes: Result, stored: list[Stored]) -> list[Part]:
         "The scene and its equations: a block that tips about its corners, and a base that gives",
         (
             "The block is rigid, planar and does not slide; each impact is over at once. Its base slides on bearings "
-            "whose force hangs on where they last turned back. The numbers are those of the paper’s equations.",
+            "whose force depends on their last reversal. The numbers are those of the paper’s equations.",
         ),
     )
     parts = [Part("equations", "Scene and equations", setting)]

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from html import escape
+from pathlib import Path
 
 from markupsafe import Markup
 
+STYLE = Path(__file__).with_suffix(".css")  # rules of the drawings, in the colours of the page that shows them
 GAMMA, PHI, R = 0.36, 0.17, 118.0  # rad, rad, pixels: stockier than a statue, to be read
 ARROW = 46.0  # length of a force
+SLAB = 62.0  # top of the base over the floor
 
 
 class Drawing:
@@ -82,6 +85,66 @@ class Drawing:
         )
 
 
+def labelled() -> Markup:
+    """The block upright with its sizes, and tilted: what each symbol stands for."""
+    return _labelled(False)
+
+
+def labelled_on_bearings() -> Markup:
+    """The same on a base with its bearings."""
+    return _labelled(True)
+
+
+def _labelled(on_bearings: bool) -> Markup:
+    where = "on a base with bearings, displaced by x" if on_bearings else "on the ground"
+    drawing = Drawing(
+        520,
+        370 if on_bearings else 310,
+        330 if on_bearings else 270,
+        f"A block of width 2b and height 2h {where}, upright and tilted by φ about its corner O: its centre of mass is "
+        "R from O, at the angle γ to its side",
+    )
+    b, h, floor = R * math.sin(GAMMA), R * math.cos(GAMMA), SLAB if on_bearings else 0.0
+    drawing.line((10, 0), (510, 0))
+    if on_bearings:
+        _base(drawing, (70, 224), 0.0)
+        _base(drawing, (330, 484), 4.0)
+        drawing.text((196, 45), "m_b")
+        drawing.arrow((484, 48), (22, 0), "x", (-8, 8))
+        drawing.text((376, 14), "n_d , f")
+    corner = (130.0 + b, floor)
+    centre = _block(drawing, corner, 0.0)
+    drawing.line(corner, centre, "thin")
+    drawing.arc(corner, 74, 0, -GAMMA)
+    drawing.text((corner[0] - 18, floor + 80), "γ")
+    drawing.text((corner[0] - 38, floor + 50), "R")
+    drawing.text((centre[0] - 22, centre[1] + 4), "m")
+    drawing.text((corner[0] + 5, floor + 5), "O")
+    drawing.line((centre[0], floor - 9), (corner[0], floor - 9), "size")
+    drawing.text((centre[0] + b / 2 - 4, floor - 25), "b")
+    drawing.line((corner[0] + 24, floor), (corner[0] + 24, floor + h), "size")
+    drawing.text((corner[0] + 30, floor + h / 2), "h")
+    drawing.line(centre, (corner[0] + 28, centre[1]), "thin")
+    corner = (420.0, floor)
+    centre = _block(drawing, corner, PHI)
+    drawing.line(corner, (corner[0], floor + 2 * h), "thin")
+    drawing.arc(corner, 180, 0, PHI)
+    drawing.text((corner[0] + 10, floor + 190), "φ")
+    drawing.text((corner[0] + 5, floor + 5), "O")
+    drawing.text((corner[0] + 20, floor + 5), ", J_O")
+    drawing.arrow((10, 22), (42, 0), "a_g", (-22, 8))
+    return drawing.svg()
+
+
+def _base(drawing: Drawing, ends: tuple[float, float], shift: float) -> None:
+    """A slab between `ends` on two bearings, sheared by `shift` per layer."""
+    for left in (ends[0] + 8 - 4 * shift, ends[1] - 50 - 4 * shift):
+        for layer in range(4):
+            x, y = left + shift * layer, 9.0 * layer
+            drawing.polygon([(x, y), (x + 30, y), (x + 30, y + 9), (x, y + 9)], "steel" if layer % 2 else "stone")
+    drawing.polygon([(ends[0], 36), (ends[1], 36), (ends[1], SLAB), (ends[0], SLAB)], "steel")
+
+
 def _block(drawing: Drawing, corner: tuple[float, float], tilt: float) -> tuple[float, float]:
     """The block, turned clockwise by `tilt` about its right corner; returns its centre."""
     b, h = R * math.sin(GAMMA), R * math.cos(GAMMA)
@@ -138,22 +201,14 @@ def impact() -> Markup:
 def isolated() -> Markup:
     """The block on its base: what passes between them, and the bearings' force."""
     drawing = Drawing(400, 370, 330, "The block on a base that moves by x; the bearings push back")
-    slab = 62.0
-    for left in (112, 262):
-        for layer in range(4):
-            kind = "steel" if layer % 2 else "stone"
-            x = left + 4.0 * layer
-            drawing.polygon(
-                [(x, 9.0 * layer), (x + 30, 9.0 * layer), (x + 30, 9.0 * layer + 9), (x, 9.0 * layer + 9)], kind
-            )
+    _base(drawing, (104, 312), 4.0)
     drawing.line((30, 0), (370, 0))
-    drawing.polygon([(104, 36), (312, 36), (312, slab), (104, slab)], "steel")
-    corner = (232.0, slab)
+    corner = (232.0, SLAB)
     centre = _block(drawing, corner, PHI)
     drawing.line(corner, centre, "thin")
     drawing.arrow(centre, (0, -ARROW), "mg", (-26, 4))
     drawing.arrow((104, 48), (-54, 0), "n_d f", (-12, 12))
     drawing.arrow((312, 48), (40, 0), "x", (5, -5))
     drawing.text((286, 45), "m_b")
-    drawing.text((corner[0] + 6, slab + 6), "O")
+    drawing.text((corner[0] + 6, SLAB + 6), "O")
     return drawing.svg()

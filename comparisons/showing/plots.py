@@ -45,6 +45,14 @@ def draw_histories(scene: Scene, responses: Sequence[Response], horizon: float |
 
     Each response needs its history. horizon [s], if any, is where point-wise comparison ends.
     Returns a matplotlib Figure.
+
+    Examples
+    --------
+    >>> from analytic import load_scene, simulate
+    >>> scene = load_scene("caryatid-rigid")
+    >>> figure = draw_histories(scene, [simulate(scene)])  # figure.savefig("caryatid.svg") writes it
+    >>> len(figure.axes)  # ground motion and tilt
+    2
     """
     rows = ["ground"] * (scene.motion is not None) + ["tilt"] + ["displacement"] * (scene.base is not None)
     loop = scene.bearings is not None

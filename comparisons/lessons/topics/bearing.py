@@ -91,80 +91,106 @@ def code() -> float:
 
 
 LESSON = Lesson(
-    3,
-    "bearing",
-    "A lead-rubber bearing",
-    "Four bearings of rubber with a core of lead carry the statue’s base. How soft are they, how much energy do they "
-    "take, "
-    "and what does “30 % damping” mean?",
-    (
-        "read stiffness and energy off a hysteresis loop",
+    number=3,
+    name="bearing",
+    title="A lead-rubber bearing",
+    question="Four rubber bearings with a lead core carry the statue’s base. How stiff are they, how much energy do "
+    "they dissipate, and what does “30 % damping” mean?",
+    aims=(
+        "read stiffness and energy from a hysteresis loop",
         "tell the two definitions of equivalent damping apart",
         "check a printed formula by a property it must have",
     ),
-    "work of a force, harmonic oscillator",
-    12,
-    (
+    needs="work of a force, harmonic oscillator",
+    minutes=12,
+    drawing="labelled_on_bearings",
+    symbols=(
+        "b",
+        "h",
+        r"\gamma",
+        "R",
+        "m",
+        "J_O",
+        r"\phi",
+        "m_b",
+        "n_d",
+        "x",
+        "f",
+        "k_a",
+        "k_b",
+        "f_0",
+        r"\alpha",
+        "x_0",
+        "x_j",
+        "D_0",
+        "X",
+        "W_D",
+        "k_{sec}",
+        "E_s",
+        r"\xi",
+    ),  # fmt: skip
+    equations=(
         Equation(
             r"f = k_b x + (k_a - k_b) \frac{(1 + x - x_j + 2 x_0)^{1-\alpha} - D_0}{1 - \alpha} + f_0",
             "9, 11",
-            "Loading: stiff at first (the lead is elastic), then soft (the rubber alone). $x_j$ remembers the last "
-            "reversal.",
+            "Loading: stiff at first (the lead is elastic), then soft (the rubber alone).",
         ),
         Equation(
             r"W_D = 4 f_0 X - \frac{2 (k_a - k_b)}{(\alpha - 1)(\alpha - 2)}",
             "",
-            "Energy of a cycle of amplitude X, where the loop reaches its limit curves.",
+            "For a cycle large enough to reach the limit curves of the loop.",
         ),
         Equation(
             r"\xi = \frac{W_D}{4 \pi E_s}, \quad E_s = \frac{1}{2} k_{sec} X^2",
             "",
-            "The usual equivalent damping; Table 1(a) divides by half as much.",
+            "The usual definition. Table 1(a) divides by half as much.",
         ),
     ),
-    (Control("amplitude", (0.02, 0.04, 0.06, 0.08, *(round(0.1 + 0.025 * k, 3) for k in range(13))), 0.3, "m"),),
-    view,
-    "Move the amplitude. The shaded area is the energy of one cycle.",
-    (
-        "*Stiffness and damping belong to an amplitude.* The same bearing is stiff and damps much at 0.05 m, soft and "
-        "damps "
-        "little at 0.40 m: a spring and a dashpot cannot stand for both.",
-        "*Two definitions, a factor of two.* The 30 % of Table 1(a) are $W_D/(2 \\pi E_s)$. Whoever designs for 30 % "
-        "in "
-        "the usual sense builds other bearings.",
-        "*Eq. (12) is misprinted.* With its bracket as printed the force jumps at every reversal. A property that "
-        "must hold "
-        "(force is continuous) finds it; a plot of one loop might not.",
-        "*The 1 in the bracket is a metre.* The law is not free of units: put in millimetres, it is another law.",
+    controls=(
+        Control("amplitude", (0.02, 0.04, 0.06, 0.08, *(round(0.1 + 0.025 * k, 3) for k in range(13))), 0.3, "m"),
     ),
-    (
+    view=view,
+    guess="The amplitude grows from 0.1 m to 0.3 m. Does the bearing become softer or stiffer? Does its damping ratio "
+    "rise or fall?",
+    look="Change the amplitude. The shaded area is the energy of one cycle.",
+    wrong=(
+        "*Stiffness and damping depend on the amplitude.* The same bearing is stiff and strongly damped at 0.05 m, "
+        "soft and weakly damped at 0.40 m: no spring and dashpot stands for both.",
+        "*Two definitions differ by a factor of two.* The 30 % of Table 1(a) are $W_D/(2 \\pi E_s)$. A design for 30 % "
+        "in the usual sense needs other bearings.",
+        "*Eq. (12) is misprinted.* With its bracket as printed the force jumps at every reversal. A property that must "
+        "hold (the force is continuous) shows it; a plot of one loop might not.",
+        "*The 1 in the bracket is one metre.* The law depends on the unit of length: in millimetres it is another law.",
+    ),
+    exercises=(
         Exercise(
-            "How much energy does one bearing take in a cycle of 0.30 m? Add up trapezia under the loop.",
+            "How much energy does one bearing dissipate in a cycle of 0.30 m? Integrate the loop by the trapezoidal "
+            "rule.",
             code,
             "J",
-            "The closed form beside (9) gives the same.",
+            "The closed form for $W_D$ gives the same.",
             4,
         ),
         Exercise(
-            "Which period has the statue on its base ($3384$ kg) at 0.30 m?",
+            "What is the period of the statue on its base ($3384$ kg) at 0.30 m?",
             secant_period,
             "s",
-            "$2 \\pi \\sqrt{M X/F(X)}$ with the force of all four.",
+            "$2 \\pi \\sqrt{M X/F(X)}$ with the force of all four bearings.",
         ),
         Exercise(
-            "How much is “30 %” in the usual definition?",
+            "How much is the “30 %” of Table 1(a) in the usual definition?",
             usual_damping,
             "%",
             "Half of it: $4 \\pi E_s$ in place of $2 \\pi E_s$.",
         ),
         Exercise(
-            "At a reversal from 0.20 m: by how much would the force jump, if the hysteretic part changed its sign "
+            "At a reversal from 0.20 m, by how much would the force jump if the hysteretic part changed its sign "
             "there?",
             misprinted_jump,
             "N",
             "$2 f_0$, once the loop is on its limit curve: this is what the misprint of (12) does.",
         ),
     ),
-    code,
-    "motion=synthetic&base=true",
+    code=code,
+    playground="motion=synthetic&base=true",
 )

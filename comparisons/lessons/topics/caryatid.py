@@ -86,48 +86,49 @@ def code() -> object:
 
 
 LESSON = Lesson(
-    4,
-    "caryatid",
-    "The isolated Caryatid",
-    "Bearings keep the ground’s accelerations away from the statue, and let it sway. Do they always help?",
-    (
+    number=4,
+    name="caryatid",
+    title="The isolated Caryatid",
+    question="Bearings keep the ground’s acceleration away from the statue, and let it sway. Do they always help?",
+    aims=(
         "explain isolation as a change of period",
-        "say how far a verdict is from its opposite",
+        "say how far a result is from the opposite result",
         "name a motion for which isolation does harm",
     ),
-    "lessons 1 and 3; response spectrum",
-    12,
-    (
+    needs="lessons 1 and 3; response spectrum",
+    minutes=12,
+    symbols=("m", "m_b", "a_g", "x", "n_d", "f", "g", r"\gamma"),
+    equations=(
         Equation(
             r"(m + m_b)(a_g + \ddot{x}) + n_d f = 0",
             "2",
-            "Full contact: the bearings alone decide what acceleration reaches the block.",
+            "Full contact: only the force of the bearings accelerates block and base.",
         ),
         Equation(
             r"|a_g + \ddot{x}| = \frac{n_d |f|}{m + m_b} > g \tan \gamma",
             "",
-            "It lifts where the bearings push harder than this.",
+            "The block lifts where the bearings push harder than this.",
         ),
     ),
-    (
+    controls=(
         Control("slenderness γ", (0.16, 0.20, 0.24, 0.26, 0.28, 0.30), 0.28, "rad"),
         Control("bearings", tuple(BEARING_CHOICE), "as designed"),
         Control("motion", tuple(MOTIONS), "near-fault"),
     ),
-    view,
-    "Move the slenderness, change the bearings, and then the motion.",
-    (
-        "*The verdict hangs on a number that the paper does not print.* 0.28 rad reproduces its three claims; a few "
-        "hundredths "
-        "less, and the isolated statue lifts.",
-        "*Isolation can do harm.* A long pulse that a free-standing statue does not even feel brings the base into "
-        "resonance: "
-        "choose the long pulse, with and without bearings.",
-        "*“Stands” is not “safe”.* Ask how much slenderness, motion or stiffness may change until the block lifts: "
-        "`rocking margin caryatid-isolated` does.",
-        "*One record is one record.* The same scale of another motion may give another verdict.",
+    view=view,
+    guess="Without bearings the statue rocks in the near-fault motion, with them it stands. Is there a motion that "
+    "does not even lift the statue without bearings, and overturns it with them?",
+    look="Change the slenderness, then the bearings, then the motion.",
+    wrong=(
+        "*The result depends on a number that the paper does not print.* 0.28 rad reproduces its three claims; a few "
+        "hundredths less, and the isolated statue lifts.",
+        "*Isolation can do harm.* A long pulse that does not lift a free-standing statue brings the base into "
+        "resonance: choose the long pulse, with and without bearings.",
+        "*“Stands” is not “safe”.* Ask how much slenderness, motion or stiffness may change before the block lifts: "
+        "`rocking margin caryatid-isolated` tells.",
+        "*One record is one record.* Another motion of the same intensity may give another outcome.",
     ),
-    (
+    exercises=(
         Exercise(
             "Below which slenderness does the isolated statue lift under the near-fault motion?",
             least_slenderness,
@@ -135,10 +136,11 @@ LESSON = Lesson(
             "Where the peak acceleration below the block equals $g \\tan \\gamma$.",
         ),
         Exercise(
-            "By how many per cent does the peak acceleration below the isolated Caryatid stay under what lifts it?",
+            "By how many per cent is the peak acceleration below the isolated Caryatid less than the one that lifts "
+            "it?",
             reserve,
             "%",
-            "One less the peak acceleration over $g \\tan 0.28$.",
+            "One minus the peak acceleration over $g \\tan 0.28$.",
             2,
         ),
         Exercise(
@@ -148,6 +150,6 @@ LESSON = Lesson(
             "Less than the $0.288\\,g$ that would lift it without bearings.",
         ),
     ),
-    code,
-    "motion=synthetic&base=true",
+    code=code,
+    playground="motion=synthetic&base=true",
 )

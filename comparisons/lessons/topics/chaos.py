@@ -99,48 +99,49 @@ def code() -> float:
 
 
 LESSON = Lesson(
-    6,
-    "chaos",
-    "Two blocks a hair apart",
-    "Two blocks differ in the twelfth digit of their restitution. For how long do they move alike?",
-    (
+    number=6,
+    name="chaos",
+    title="Two almost equal blocks",
+    question="Two blocks differ in the twelfth digit of their restitution. For how long do they move alike?",
+    aims=(
         "tell a wrong result from a sensitive one",
-        "estimate a sensitivity horizon, and know that it is a property of the scene",
-        "compare crowds where single runs mean nothing",
+        "estimate a sensitivity horizon, and know that it belongs to the scene",
+        "compare many runs where single runs mean nothing",
     ),
-    "lesson 2; logarithms",
-    10,
-    (
+    needs="lesson 2; logarithms",
+    minutes=10,
+    symbols=(r"\phi", r"\Delta \phi", r"\lambda", "t"),
+    equations=(
         Equation(
             r"|\Delta \phi(t)| \approx |\Delta \phi(0)| \exp(\lambda t)",
             "",
-            "On average: between impacts neighbours part as unstable pendulums do, and each impact turns a distance "
-            "in time "
-            "into one in rate.",
+            "On average: between impacts neighbours separate as inverted pendulums do, and each impact turns a "
+            "difference in time into one in rate.",
         ),
     ),
-    (Control("difference in restitution, power of ten", EXPONENTS, -6.0, "", 0),),
-    view,
-    "Move the difference between the two. Every factor of a thousand buys a few seconds, no more.",
-    (
+    controls=(Control("difference in restitution, power of ten", EXPONENTS, -6.0, "", 0),),
+    view=view,
+    guess="With a difference of $10^{-6}$ the blocks separate after some seconds. By which factor does that time grow "
+    "with a difference of $10^{-9}$: 1000, 3, or less than 3?",
+    look="Change the difference. Every factor of a thousand adds a few seconds, no more.",
+    wrong=(
         "*A hundred times smaller error does not give a hundred times longer agreement.* It adds a constant: some "
         "seconds.",
-        "*Two good solvers disagree after the horizon, and both are right.* Compare them point by point before it, "
-        "and as "
-        "crowds after it.",
-        "*A single verdict under a long record is one draw.* Give the share of a crowd, with its interval.",
-        "*Do not mistake an error for chaos.* Chaos needs time: who is off at the second impact is wrong.",
+        "*After the horizon two good solvers disagree, and both are right.* Compare them point by point before it, and "
+        "by the statistics of many runs after it.",
+        "*A single outcome under a long record is one sample.* Report the share of many, with its interval.",
+        "*Do not mistake an error for chaos.* Chaos needs time: a solver that is off at the second impact is wrong.",
     ),
-    (
+    exercises=(
         Exercise(
-            "At which rate does a small distance grow? Fit the horizon against the logarithm of the difference.",
+            "At which rate does a small difference grow? Fit the horizon against the logarithm of the difference.",
             growth,
             "per second",
             "A straight line through the horizons of all powers of ten.",
             2,
         ),
         Exercise(
-            "How far can double precision, $10^{-16}$, take you by that rate?",
+            "How long a horizon does double precision, $10^{-16}$, allow at that rate?",
             perturbation_for_twenty_seconds,
             "s",
             "$\\ln(0.1/10^{-16})$ over the rate. No solver gets further in this number format.",
@@ -150,10 +151,10 @@ LESSON = Lesson(
             "Restitution is known to 1 %. What share of 200 such blocks overturns?",
             code,
             "%",
-            "This number is stable, though no single verdict is.",
+            "This number is stable, though no single outcome is.",
             2,
         ),
     ),
-    code,
-    "motion=synthetic&slenderness=0.2",
+    code=code,
+    playground="motion=synthetic&slenderness=0.2",
 )

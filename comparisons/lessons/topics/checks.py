@@ -135,18 +135,19 @@ def code() -> float:
 
 
 LESSON = Lesson(
-    8,
-    "checks",
-    "How to check a simulation",
-    "The curve looks right. How would you notice if it were not?",
-    (
+    number=8,
+    name="checks",
+    title="How to check a simulation",
+    question="The curve looks right. How would you notice if it were not?",
+    aims=(
         "name five checks, and what each of them can see",
         "measure an order of convergence",
         "find a misprint by a law it breaks",
     ),
-    "lessons 2 and 5",
-    10,
-    (
+    needs="lessons 2 and 5",
+    minutes=10,
+    symbols=(r"\gamma", r"\phi_0", r"\phi_1", r"e_{\phi}", "e_x", "R", "m", r"\tilde{m}", "J_O"),
+    equations=(
         Equation(
             r"\cos(\gamma - |\phi_1|) - \cos \gamma = e_{\phi}^2 \left( \cos(\gamma - |\phi_0|) - \cos \gamma \right)",
             "",
@@ -155,49 +156,49 @@ LESSON = Lesson(
         Equation(
             r"e_x = \frac{2 R^3 \sin^2 \gamma \cos \gamma \, m \tilde{m}}{R^2 \cos^2 \gamma \, m \tilde{m} - J_O}",
             "8",
-            "As it should read, a length; the paper prints $R^4$ and $\\cos^2$ above, a length squared.",
+            "Corrected, a length; the paper prints $R^4$ and $\\cos^2$ in the numerator, a length squared.",
         ),
     ),
-    (Control("solver", SOLVERS, "fixed steps"), Control("accuracy", LEVELS, 2.0, "", 0)),
-    view,
-    "Choose a solver, then make it finer. Bars are relative defects, on a logarithmic axis.",
-    (
-        "*Each check is blind to something.* Energy does not see a shifted time; the mirror sees only what treats the "
-        "two "
-        "sides unlike; a second program shares the errors of the equations it was given.",
+    controls=(Control("solver", SOLVERS, "fixed steps"), Control("accuracy", LEVELS, 2.0, "", 0)),
+    view=view,
+    guess="Five checks of one run: closed form, finer setting, energy, mirror image, second program. Which of them "
+    "would miss that the time step is too large?",
+    look="Choose a solver, then refine it. Bars are relative errors, on a logarithmic axis.",
+    wrong=(
+        "*Each check is blind to something.* Energy does not see a shifted time; the mirror image sees only what "
+        "treats the two sides differently; a second program shares the errors of the equations it was given.",
         "*A finer setting checks the solver, not the model.* It converges just as well to wrong equations.",
-        "*Trajectories hide small misprints.* (8) as printed changes the base’s jump by a few per cent; no plot shows "
-        "that, "
-        "momentum does at once.",
-        "*A check that cannot fail checks nothing.* Break the model on purpose, and see which check turns red.",
+        "*Trajectories hide small misprints.* (8) as printed changes the base’s jump by a few per cent. No plot shows "
+        "that; momentum shows it at once.",
+        "*A check that cannot fail checks nothing.* Break the model on purpose, and see which check fails.",
     ),
-    (
+    exercises=(
         Exercise(
-            "How much momentum does (8) as printed make out of nothing, per cent of that before the impact?",
+            "How much momentum does (8) as printed create, in per cent of that before the impact?",
             code,
             "%",
             "$m h \\dot{\\phi} + (m + m_b) \\dot{x}$ before and after.",
         ),
         Exercise(
-            "And by how many per cent is its length too long?",
+            "By how many per cent is its length too long?",
             misprint_factor,
             "%",
-            "The factor too many is $R \\cos \\gamma$ in metres.",
+            "The extra factor is $R \\cos \\gamma$ in metres.",
         ),
         Exercise(
-            "Of which order are the fixed steps, measured against the closed form?",
+            "What is the order of the fixed steps, measured against the closed form?",
             observed_order,
             "",
             "Halve the step six times, take the worst of neighbouring steps, fit a line.",
             2,
         ),
         Exercise(
-            "By how much does the event-driven run to the left differ from the mirror of that to the right?",
+            "By how much does the event-driven run to the left differ from the mirror image of that to the right?",
             mirror_defect,
             "rad",
-            "Every operation is the same but for signs, which floating point keeps.",
+            "Every operation is the same but for signs, which floating-point arithmetic keeps.",
         ),
     ),
-    code,
-    "motion=release&tilt=0.6&base=true",
+    code=code,
+    playground="motion=release&tilt=0.6&base=true",
 )

@@ -12,8 +12,11 @@ from analytic import simulate
 from analytic.caryatid import RADIUS
 from analytic.time_stepping import simulate_time_stepping
 
+from ...measuring.agreement import RIGID
+from ...running.provenance import RESULTS, read_result
 from ...showing.parts import Table, number
-from ..drawing import MODEL, OTHER, SOFT, STONE, canvas, legend
+from ...showing.plots import marker
+from ..drawing import MODEL, OTHER, SOFT, STONE, THIRD, canvas, legend
 from ..engine_runs import SCENE, SLENDERNESS, engine_runs, error_of
 from ..lesson import Control, Equation, Exercise, Lesson, View
 
@@ -107,6 +110,50 @@ def engines_table() -> Table:
     )
 
 
+# Engine and variant, in the study of restitution on rigid ground: the one falls with the step, the other two do not.
+REFINED = (
+    ("pybullet", "impact-aware", "PyBullet, tuned"),
+    ("pybullet", "first-script", "PyBullet, defaults"),
+    ("exudyn", "native-contact", "exudyn, defaults"),
+)
+
+
+def bad_example() -> View:
+    """Error of restitution over the step, from the stored study: two engines whose refinement does not help."""
+    rows = read_result(RESULTS / "restitution.json").rows
+    figure, axis = canvas()
+    numbers: dict[str, tuple[float | str, str]] = {}
+    for (engine, variant, name), colour in zip(REFINED, (MODEL, OTHER, THIRD), strict=True):
+        levels = sorted(
+            (row["level"], row["rms"])
+            for row in rows
+            if (row.get("scope"), row.get("ground")) == ("levels", RIGID)
+            and (row["engine"], row["variant"]) == (engine, variant)
+        )
+        steps, found = zip(*levels, strict=True)
+        axis.loglog(
+            [1e3 * step for step in steps],
+            [100 * error for error in found],
+            marker=marker(engine),
+            color=colour,
+            linestyle="-" if name.endswith("tuned") else ":",
+            label=name,
+        )
+        numbers[f"{name}: error at {1e3 * steps[0]:g} ms over that at {1e3 * steps[-1]:.3g} ms"] = (
+            found[0] / found[-1],
+            "",
+        )
+    axis.set(xlabel="step [ms]", ylabel="error of restitution, rms [%]")
+    legend(axis, loc="center right")
+    return View(
+        figure,
+        numbers,
+        "A bad example: the error of restitution of PyBullet and exudyn at their default settings hardly falls while "
+        "the step becomes ten times finer, as their contact is not the rigid one. Tuned, PyBullet’s falls with the "
+        "step.",
+    )
+
+
 def step_for_one_per_cent() -> float:
     """Largest step of `SCAN` [ms] at which, and below which, the error of the rate stays under 1 %."""
     over = np.flatnonzero(~(scanned() < 0.01))
@@ -135,18 +182,19 @@ def code() -> float:
 
 
 LESSON = Lesson(
-    5,
-    "corner",
-    "What an engine does at a corner",
-    "An engine for games and robots moves in steps. What happens when the corner strikes between two of them?",
-    (
-        "explain why an impact inside a step is an error of the step",
-        "measure an order of convergence, and see phase as scatter around it",
-        "read what an engine decides, and what its user decides for it",
+    number=5,
+    name="corner",
+    title="What an engine does at a corner",
+    question="An engine for games and robots moves in steps. What happens if the corner strikes between two of them?",
+    aims=(
+        "explain why an impact inside a step causes an error",
+        "measure an order of convergence, and see the scatter around it",
+        "find out whether a smaller step helps at all",
     ),
-    "lesson 2; explicit Euler steps",
-    12,
-    (
+    needs="lesson 2; explicit Euler steps",
+    minutes=12,
+    symbols=(r"\phi", r"\dot{\phi}^{\pm}", r"e_{\phi}", r"\Delta t", "k"),
+    equations=(
         Equation(
             r"\dot{\phi}_{k+1} = \dot{\phi}_k + \Delta t \, \ddot{\phi}_k, \quad \phi_{k+1} = \phi_k + \Delta t \, "
             r"\dot{\phi}_{k+1}",
@@ -156,27 +204,25 @@ LESSON = Lesson(
         Equation(
             r"\dot{\phi}^+ = e_{\phi} \dot{\phi}^-",
             "7",
-            "Applied at the end of the step that straddles the impact, while the steps before it have run half a step "
-            "ahead: "
-            "early or late by up to half a step, and at a rate that is not the one of the impact.",
+            "Applied at the end of the step that contains the impact, while semi-implicit steps run half a step "
+            "ahead: up to half a step early or late, and at another rate than that of the impact.",
         ),
     ),
-    (Control("step", STEPS, 10.0, "ms", 1),),
-    view,
-    "Move the step. Above, the foot of the block at four steps (angles twelve times too large); below, your step among "
-    "all others.",
-    (
-        "*The error has a phase.* Two steps that differ by a tenth of a millisecond may be off by ten times: where "
-        "the impact "
-        "falls within its step is chance. One lucky step proves nothing; halve it, and halve it again.",
-        "*Softness is another error.* An engine without an impact law lets the corner sink in; the playground shows "
-        "how much "
-        "energy that costs at which static sink.",
-        "*A small step is no cure for a wrong law.* The table above has engines whose error does not fall with the "
-        "step: "
-        "they solve another contact.",
+    controls=(Control("step", STEPS, 10.0, "ms", 1),),
+    view=view,
+    guess="Halve the step from 10 ms to 5 ms. Does the error halve? And for every engine?",
+    look="Change the step. Above: the foot of the block at four steps (angles twelve times too large). Below: your "
+    "step among all others.",
+    wrong=(
+        "*The error depends on chance.* Two steps that differ by a tenth of a millisecond may have errors that differ "
+        "tenfold, depending on where in its step the impact falls. One lucky step proves nothing: halve it, and halve "
+        "it again.",
+        "*A soft contact is another error.* An engine without an impact law lets the corner sink in. The playground "
+        "shows how much energy that costs.",
+        "*A small step does not cure a wrong law.* In the second picture some errors do not fall with the step: those "
+        "engines solve another contact.",
     ),
-    (
+    exercises=(
         Exercise(
             "With steps of 4 to 5 ms, by how much is the first impact early or late at worst?",
             code,
@@ -187,20 +233,20 @@ LESSON = Lesson(
             "Below which step does the error of the rate stay under 1 %?",
             step_for_one_per_cent,
             "ms",
-            "From small steps up, the first that is off by more ends the search: larger steps that happen to be right "
-            "do not "
+            "Go up from small steps and stop at the first larger error: larger steps that happen to be right do not "
             "count.",
             2,
         ),
         Exercise(
-            "Of which order is the error in the step?",
+            "What is the order of the error in the step?",
             order,
             "",
-            "The slope of the envelope in a doubly logarithmic picture.",
+            "The slope of the envelope in a doubly logarithmic plot.",
             2,
         ),
     ),
-    code,
-    "motion=pulse&amplitude=0.4&period=0.8&engine=straddling&step=20",
-    engines_table,
+    code=code,
+    playground="motion=pulse&amplitude=0.4&period=0.8&engine=straddling&step=20",
+    table=engines_table,
+    example=bad_example,
 )

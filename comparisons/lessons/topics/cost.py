@@ -123,60 +123,64 @@ def code() -> object:
 
 
 LESSON = Lesson(
-    7,
-    "cost",
-    "Speed against error",
-    "How accurate must it be, and what does that cost? Find the setting at which an engine errs below 1 %, then the "
-    "cheapest solver.",
-    (
+    number=7,
+    name="cost",
+    title="Speed against error",
+    question="How accurate must it be, and what does that cost? Find the setting at which an engine’s error is below "
+    "1 %, then the cheapest solver.",
+    aims=(
         "draw and read a work-precision diagram",
-        "choose a setting by a rule that luck cannot meet",
+        "choose a setting by a rule that excludes luck",
         "compare solvers at equal error, not at equal step",
     ),
-    "lesson 5",
-    10,
-    (
+    needs="lesson 5",
+    minutes=10,
+    symbols=(r"\Delta t", "p"),
+    equations=(
         Equation(
             r"\text{cost} \propto \frac{1}{\Delta t}, \quad \text{error} \propto \Delta t^p",
             "",
-            "Equal steps: a tenth of the error costs ten times the time where p is 1, as with impacts at the steps’ "
-            "ends.",
+            "Equal steps: where $p$ is 1, as with impacts at the ends of steps, a tenth of the error costs ten times "
+            "the time.",
         ),
     ),
-    (Control("step of the fixed-step integrator", tuple(1e3 * step for step in OWN_STEPS), 1.0, "ms", 1),),
-    view,
-    "Better is to the right and down. Move the step along its line. Dotted lines: default settings.",
-    (
-        "*Equal step is no fair race.* One engine needs ten times the steps of another for the same error.",
+    controls=(Control("step of the fixed-step integrator", tuple(1e3 * step for step in OWN_STEPS), 1.0, "ms", 1),),
+    view=view,
+    guess="Which is the cheapest solver below 1 %: one with fixed steps of 1 ms, or one that finds each impact? How "
+    "many times cheaper?",
+    look="Right and down is better. Change the step and follow its line. Dotted lines: default settings.",
+    wrong=(
+        "*Equal steps are no fair race.* One engine needs ten times the steps of another for the same error.",
         "*A lucky point is no setting.* Take the coarsest setting below the target whose *finer ones are below it "
         "too*.",
-        "*Some lines never get there.* Their error is that of another contact law: no step buys it off.",
-        "*Times are this machine’s.* Ratios travel better; measure again on yours (`rocking study speed-error`).",
+        "*Some lines never get there.* Their error is that of another contact law, which no step removes.",
+        "*Times belong to this machine.* Ratios carry over better; measure again on yours (`rocking study "
+        "speed-error`).",
     ),
-    (
+    exercises=(
         Exercise(
-            "Which is the largest of the fixed steps that errs below 1 %, with all finer ones?",
+            "What is the largest of the fixed steps with an error below 1 % that all finer steps meet too?",
             coarsest_step,
             "ms",
-            "From the finest upwards, stop at the first above 1 %.",
+            "Start from the finest and stop at the first above 1 %.",
             2,
         ),
         Exercise(
-            "How many runs of the event-driven model does one run of the fixed steps at 1 % cost?",
+            "How many runs of the event-driven model does one run with fixed steps at 1 % cost?",
             event_driven_share,
             "runs",
-            "The ratio of the two CPU times, the least of several runs each.",
+            "The ratio of the two CPU times, each the least of several runs.",
             2,
         ),
         Exercise(
-            "How many of the solvers here, variants counted apart, reach 1 % and keep it?",
+            "How many of the solvers here, variants counted separately, reach 1 % and stay below it?",
             passing_solvers,
             "",
             "Count the rows of the table.",
             0,
         ),
     ),
-    code,
-    "motion=release&tilt=0.6&engine=straddling&step=5",
-    table,
+    code=code,
+    playground="motion=release&tilt=0.6&engine=straddling&step=5",
+    table=table,
 )

@@ -50,7 +50,7 @@ def view(slenderness: float) -> View:
             "energy lost in one impact": (100 * (1 - e * e), "%"),
         },
         f"Let go from 0.8 of its slenderness {slenderness:.2f}, the block loses {100 * (1 - e * e):.0f} % of its "
-        f"energy "
+        "energy "
         "at each impact.",
     )
 
@@ -84,70 +84,70 @@ def code() -> float:
 
 
 LESSON = Lesson(
-    2,
-    "impacts",
-    "Why impacts lose speed",
-    "A rocking block hits the ground with its other corner. Nothing is said of stone or mortar, and yet it is known "
-    "how "
-    "much speed is left. From where?",
-    (
-        "derive the restitution from momentum about the new corner",
+    number=2,
+    name="impacts",
+    title="Why impacts lose speed",
+    question="A rocking block strikes the ground with its other corner. We know nothing of its stone or mortar, and "
+    "can still compute how much speed is left. How?",
+    aims=(
+        "derive the restitution from the angular momentum about the new corner",
         "say what it depends on, and what it does not",
         "check an impact of a simulation by hand",
     ),
-    "angular momentum, moment of inertia",
-    12,
-    (
+    needs="angular momentum, moment of inertia",
+    minutes=12,
+    drawing="labelled",
+    symbols=("b", "h", r"\gamma", "R", "m", "J_O", r"\phi", r"\dot{\phi}^{\pm}", r"e_{\phi}", r"\tilde{m}"),
+    equations=(
         Equation(
             r"e_{\phi} = \frac{\dot{\phi}^+}{\dot{\phi}^-} = 1 - \frac{2 m b^2}{J_O - m \tilde{m} h^2}",
             "7",
-            "Momentum about the new corner is kept while the impulse acts there; on rigid ground the mass share is 0.",
+            "Angular momentum about the new corner is conserved, as the impulse acts there.",
         ),
         Equation(
-            r"e_{\phi} = 1 - \frac{3}{2} \sin^2 \gamma",
-            "7",
-            "For a rectangle on rigid ground: the shape alone decides.",
+            r"e_{\phi} = 1 - \frac{3}{2} \sin^2 \gamma", "7", "A rectangle on rigid ground: only its shape counts."
         ),
     ),
-    (Control("slenderness γ", tuple(round(0.04 * k, 2) for k in range(2, 16)), 0.28, "rad"),),
-    view,
-    "Move the slenderness. Dots are impacts; below, the restitution of every block.",
-    (
-        "*Restitution is no material constant here.* A table that lists 0.6 for stone on stone speaks of balls. Two "
-        "corners "
-        "of one rigid body have no freedom left for it.",
-        "*Mass and size drop out.* If your simulation’s restitution changes with the mass, something else decides: a "
-        "soft "
-        "contact, a step, a solver that stopped early.",
-        "*Stocky blocks do not rock on.* Where (7) is not above zero, the block lands flat; code that goes on with a "
-        "negative e swings the block through the floor.",
-        "*An impact is not free of the base.* On a light base less rate is left, and the base is pushed: eq. (8).",
+    controls=(Control("slenderness γ", tuple(round(0.04 * k, 2) for k in range(2, 16)), 0.28, "rad"),),
+    view=view,
+    guess="Which block loses more speed at an impact, a slender one or a stocky one? How much of its energy does the "
+    "Caryatid ($\\gamma = 0.28$) lose at each impact: 1 %, 10 % or 20 %?",
+    look="Change the slenderness. Dots are impacts; the lower picture shows the restitution of every block.",
+    wrong=(
+        "*Restitution is no material constant here.* A table that gives 0.6 for stone on stone is about bouncing "
+        "balls. A rigid block that neither bounces nor slips leaves nothing to choose.",
+        "*Mass and size cancel.* If the restitution in your simulation changes with the mass, something else decides: "
+        "a soft contact, the step, or a solver that stopped too early.",
+        "*Stocky blocks do not rock on.* Where (7) is not positive the block lands flat. Code that continues with a "
+        "negative restitution swings the block through the floor.",
+        "*The base takes part.* On a light base less of the tilt rate is left, and the base is pushed: eq. (8).",
     ),
-    (
+    exercises=(
         Exercise(
-            "What is e of the Caryatid ($\\gamma = 0.28$) on rigid ground? Let it go, and divide the rates of one "
-            "impact.",
+            "What is the restitution of the Caryatid ($\\gamma = 0.28$) on rigid ground? Release it, and divide the "
+            "tilt rates after and before an impact.",
             code,
             "",
             "$1 - 1.5 \\sin^2 0.28$.",
         ),
         Exercise(
-            "Let go from $0.8\\,\\gamma$: after how many impacts are its swings below $0.1\\,\\gamma$?",
+            "Release it at $0.8\\,\\gamma$: after how many impacts do its peaks stay below $0.1\\,\\gamma$?",
             swings_to_a_tenth,
             "impacts",
-            "Each impact leaves $e^2$ of the energy, $\\cos(\\gamma - |\\phi|) - \\cos \\gamma$ at a peak.",
+            "Each impact leaves $e_{\\phi}^2$ of the energy, which is $\\cos(\\gamma - |\\phi|) - \\cos \\gamma$ at a "
+            "peak.",
             0,
         ),
         Exercise(
-            "From which slenderness on does a rectangle land flat?", no_rocking_on, "rad", "$\\sin^2 \\gamma = 2/3$."
+            "From which slenderness does a rectangle land flat?", no_rocking_on, "rad", "$\\sin^2 \\gamma = 2/3$."
         ),
         Exercise(
             "The Caryatid strikes its base of 212 kg at 1 rad/s. By how much does the base’s velocity jump?",
             momentum_on_the_base,
             "m/s",
-            "Horizontal momentum: $\\tilde{m} h (1 - e_{\\phi}) \\dot{\\phi}^-$, eq. (8) as it should read.",
+            "Horizontal momentum: $\\tilde{m} h (1 - e_{\\phi}) \\dot{\\phi}^-$, eq. (8) corrected.",
         ),
     ),
-    code,
-    "motion=release&tilt=0.8",
+    code=code,
+    playground="motion=release&tilt=0.8",
 )

@@ -103,50 +103,50 @@ def code() -> object:
 
 
 LESSON = Lesson(
-    1,
-    "tipping",
-    "When does a block tip?",
-    "A block stands on the ground, the ground accelerates. When does the block lift, and when does it fall? Are the "
-    "two "
-    "the same question?",
-    (
+    number=1,
+    name="tipping",
+    title="When does a block tip?",
+    question="A block stands on the ground, and the ground accelerates. When does the block lift, and when does it "
+    "overturn? Are these one question?",
+    aims=(
         "tell uplift from overturning",
         "compute the acceleration that lifts a block from its width and height",
         "read an overturning map, with its island of safety",
     ),
-    "moment of a force, Newton’s second law",
-    12,
-    (
+    needs="moment of a force, Newton’s second law",
+    minutes=12,
+    drawing="labelled",
+    symbols=("b", "h", r"\gamma", "R", "m", "J_O", r"\phi", "s", "g", "a_g"),
+    equations=(
         Equation(
             r"|a_g| > g \tan \gamma = g \frac{b}{h}",
             "",
-            "Uplift: the moment of inertia forces about a corner exceeds that of the weight. Size does not matter.",
+            "Uplift: the moment of the inertia force about a corner exceeds that of the weight. Size does not matter.",
         ),
         Equation(
             r"J_O \ddot{\phi} + m g R \sin(s \gamma - \phi) + m R \cos(s \gamma - \phi) \, a_g = 0",
             "4",
-            "Rocking about a corner; $s$ is the sign of the tilt. Size matters: $J_O$ grows as $R^2$, moments as $R$.",
+            "Rocking about a corner. Size matters: $J_O$ grows with $R^2$, the moments only with $R$.",
         ),
     ),
-    (
+    controls=(
         Control(
             "amplitude", (0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, *(round(0.1 * k, 1) for k in range(6, 16))), 0.4, "g"
         ),
     ),
-    view,
-    "Move the amplitude of a sine of 0.8 s. The ring shows where you are among all sines.",
-    (
-        "*Lifting is not falling.* Between the two lies the whole blue region: a block that rocks comes back, and "
-        "loses "
-        "speed at every impact.",
-        "*More is not always worse.* Along a vertical line of the map the block may fall, survive, and fall again: a "
-        "search "
-        "by halving, which takes a single edge for granted, returns one of the edges and says nothing of the others.",
-        "*A static check misses the size.* Two blocks of one shape lift at the same acceleration; the larger one "
-        "survives "
-        "what the smaller does not.",
+    view=view,
+    guess="This block lifts at 0.288 g. Does a sine of 0.8 s overturn it at 0.3 g, at 0.4 g or only at 0.5 g? And once "
+    "it overturns, does it overturn at every larger amplitude?",
+    look="Change the amplitude of a sine of 0.8 s. The ring marks it in the map of all sines.",
+    wrong=(
+        "*Uplift is not overturning.* Between the two lies the whole blue region: the block rocks, loses speed at "
+        "every impact and comes back.",
+        "*A stronger pulse is not always worse.* Along a vertical line of the map the block may overturn, survive, and "
+        "overturn again. Bisection assumes a single boundary: it finds one of them and says nothing of the others.",
+        "*A static check ignores size.* Two blocks of one shape lift at the same acceleration, but the larger one "
+        "survives what overturns the smaller.",
     ),
-    (
+    exercises=(
         Exercise(
             "A block is 2 m high and 0.6 m wide. Which ground acceleration lifts it?",
             lifting_acceleration,
@@ -157,16 +157,16 @@ LESSON = Lesson(
             "Which sine of 0.8 s is the weakest that overturns the Caryatid ($\\gamma = 0.28$, $R = 1.09$ m)?",
             first_fall,
             "g",
-            "Halve the amplitude between one that falls and one that does not; it lies well above the $0.288\\,g$ "
-            "that lift.",
+            "Bisect between an amplitude that overturns it and one that does not. The result is well above the "
+            "$0.288\\,g$ that lift it.",
         ),
         Exercise(
-            "How many times larger must the same shape be to survive 0.5 g of 0.8 s?",
+            "How many times larger must a block of the same shape be to survive 0.5 g of 0.8 s?",
             size_that_survives,
             "times",
-            "The same halving, over R. The acceleration that lifts it has not changed.",
+            "The same bisection, over R. The acceleration that lifts it has not changed.",
         ),
     ),
-    code,
-    "motion=pulse&period=0.8&amplitude=0.4",
+    code=code,
+    playground="motion=pulse&period=0.8&amplitude=0.4",
 )

@@ -50,8 +50,8 @@ def page(result: Result) -> Page:
         f"causes elsewhere: {causes}",
         (
             "Newton’s laws give the impulses that an engine must have used between two steps, whatever its solver "
-            "calls them. They split the error of restitution into parts that add up to it. The parts name the cause; "
-            "no setting is looked at.",
+            "calls them. They split the error of restitution into parts that add up to it. The parts tell the cause, "
+            "without any knowledge of the settings.",
         ),
         first=(
             _frames([row for row in where(told, ground=RIGID) if row["best"] or row["tier"] == "defaults"]),
@@ -69,7 +69,7 @@ def page(result: Result) -> Page:
         how=(
             f"A block of slenderness {settings['slenderness']:g} rad is let go from {settings['start']:g} of it, on "
             "rigid ground and on the Caryatid’s base sliding freely. Its first impact is taken apart in every engine "
-            f"and variant with default settings. A cause is named from an error of {settings['least']:g} on.",
+            f"and variant with default settings. A cause is named for errors from {settings['least']:g} on.",
         ),
         evidence=tuple(
             (f"{NAME.of(row)}, {row['ground']}", row.get("why_not") or row["failure"]["reason"])

@@ -343,7 +343,7 @@ def _vulnerable(result):
         Column(GAMMA, "at", digits=3),
         Column("longest that overturns [s]", "period", digits=3),
         "Longest rocking period of a block that overturns: the paper's are vulnerable below about 4 s. By the "
-        f"acceleration of the base alone, atan(max|a|/g), a block stays down on the bearings from a slenderness of "
+        "acceleration of the base alone, atan(max|a|/g), a block stays down on the bearings from a slenderness of "
         f"{result.settings['uplift_slenderness']:.4f} rad on.",
         by=lambda row: "",
         rules=[("x", result.settings["slenderness"], "used here"), *(("y", at, f"{at:g} s") for at in about)],

@@ -33,8 +33,8 @@ def page(result: Result) -> Page:
         (
             "Numbers that were chosen in the engines’ tuned variants, by experience and not by a formula, each halved "
             "and doubled, all else as it is. No number was set to a scene; what moves much is said, and not tuned.",
-            f"{len(still)} change nothing in any run, not a bit: round-off, or a limit that none of these scenes asks "
-            "for.",
+            f"{len(still)} change no run at all, bit for bit: they concern round-off, or a limit that none of these "
+            "scenes reaches.",
         ),
         more=(
             *(
@@ -57,7 +57,7 @@ def page(result: Result) -> Page:
             f"{result.settings['scenes']} runs for each value: blocks let go on rigid ground, on a base and on "
             "bearings (restitution, e); random statues under pulses that leave them upright (peak tilt); pulses 0.1 % "
             "below and above an amplitude that overturns, and the Caryatid under the synthetic motion (outcomes). "
-            f"Errors are against the model. Said is a factor beyond {SAID:g}, of CPU time beyond {SAID_CPU:g}; "
+            f"Errors are against the model. Reported is a factor beyond {SAID:g}, of CPU time beyond {SAID_CPU:g}; "
             f"an error of a peak below {short(LEAST)} is taken as that.",
         ),
         evidence=tuple(

@@ -61,9 +61,10 @@ def page(result: Result) -> Page:
     return Page(
         _title(found),
         (
-            "Over a whole motion the rocking of a block cannot be predicted point by point; its odds can. Engines are "
-            f"compared with the analytic model run by run. Equal means that at most {100 * EQUAL:g} % of outcomes "
-            "differ, by the upper limit of the 95 % interval; a failed run differs; lack of runs acquits nobody.",
+            "Over a whole motion the rocking of a block cannot be predicted point by point, but probabilities can. "
+            f"Engines are compared with the analytic model run by run. Equal means that at most {100 * EQUAL:g} % of "
+            "outcomes differ, by the upper limit of the 95 % interval; a failed run counts as differing; too few "
+            "runs prove nothing.",
             *([f"Too few runs to tell: {'; '.join(few)}."] if few else ()),
         ),
         first=(
@@ -239,7 +240,7 @@ def _how(settings):
         f"{settings['runs']} runs of the analytic model for each scene ({scenes}), independent of each other: each has "
         f"a synthetic near-fault motion of its own, its time stretched by {stretch[0]:g} to {stretch[1]:g}, its peak "
         f"{peak[0]:g} to {peak[1]:g} g, and a block of its own, radius {radius[0]:g} to {radius[1]:g} m, all evenly "
-        "over the logarithm. Motions are stretched because all synthetic ones have nearly one spectrum.",
+        "over the logarithm. Motions are stretched because all synthetic motions have nearly the same spectrum.",
         f"Sa: spectral acceleration at the isolation period, {settings['period']:.2f} s (secant at "
         f"{settings['x_max']:g} m), at {percent(settings['damping'])} damping; spectral velocity and displacement have "
         "the same dispersion. g tan γ: uplift acceleration; ωᵣ: rocking frequency. The curve P = Φ(ln(x/median)"
@@ -247,6 +248,6 @@ def _how(settings):
         f"Engines run the first {settings['runs_of_engines']} scenes whose PGA is {settings['near'][0]:g} to "
         f"{settings['near'][1]:g} times g tan γ, default settings the first {settings['runs_of_defaults']}. Exact "
         f"McNemar test, adjusted after Holm for the limit states, at a level of {LEVEL:g}. “analytic, perturbed”: the "
-        f"model with its restitution changed by 1 part in {1 / settings['change']:.0f}; an engine that differs by no "
-        "more is not to blame.",
+        f"model with its restitution changed by 1 part in {1 / settings['change']:.0f}; an engine that differs no "
+        "more than that cannot be told from the model.",
     )

@@ -50,10 +50,10 @@ def page(result: Result) -> Page:
     return Page(
         _title([row for row in rated if own[row["engine"]] == row["variant"]], tuned),
         (
-            "A pulse overturns a block above some amplitude. Higher up may lie a safe gap, where the first impact "
-            "takes so much that it stands again. Engines are rated by where they put these boundaries, as long as the "
-            "analytic model keeps the block pressed on its base. An outcome nearer to a boundary than the engine's "
-            "shift is not certain.",
+            "A pulse overturns a block above some amplitude. At larger amplitudes there may be a safe gap, in which "
+            "the first impact dissipates so much energy that the block does not overturn. Engines are rated by where "
+            "they put these boundaries, as long as the analytic model keeps the block pressed on its base. An "
+            "outcome nearer to a boundary than the engine's shift is not certain.",
         ),
         first=(
             _maps(result, shapes[:1]),
@@ -327,8 +327,8 @@ def _held_down(edges, shifts, held):
     if pulled:
         yield (
             "Here the normal force of the analytic model becomes negative. A block in contact slides or leaves its "
-            "base, as it does in the engines, so these boundaries tell nothing of the engines. Variants whose adapter "
-            "holds the corner down, as the model does, tell whether contact moves them or the integration."
+            "base, as it does in the engines, so these boundaries say nothing about the engines. Variants whose "
+            "adapter holds the corner down, as the model does, show whether contact or integration moves them."
         )
     yield _boundaries("Boundaries at which the analytic model holds the corner down", pulled, [*shifts, *held])
 
@@ -391,7 +391,7 @@ def _refinement(result):
         name for name, variant in variants.items() if variant["levels"] and (name,) not in grouped(tried, NAME.of)
     ]
     if missing and not result.settings["quick"]:
-        yield f"The study was stopped before its end; no level was tried of: {'; '.join(missing)}."
+        yield f"The study was stopped before its end; no other level was run for: {'; '.join(missing)}."
 
 
 def _how(result):
@@ -408,6 +408,6 @@ def _how(result):
         f"for its own to ± {percent(s['tolerance'] / 2, 1)} at default settings. Where the normal force of the "
         "analytic model becomes negative, that model is the one not to be trusted, and the boundary is not rated.",
         f"Trusted: all boundaries found, shifted by at most {percent(LIMIT, 1)}, no outcome that differs beyond the "
-        f"band; usable: all found, at most {percent(FAIR, 1)}. Tier assisted: the adapter applies the impact, so that "
-        "the boundaries tell of the integration alone, and no other level is tried.",
+        f"band; usable: all found, at most {percent(FAIR, 1)}. Tier assisted: the adapter applies the impact, so "
+        "that the boundaries test the integration alone; no other level is tried.",
     )

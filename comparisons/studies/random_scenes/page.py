@@ -63,8 +63,8 @@ def page(result: Result) -> Page:
             f"{settings['scenes']} scenes drawn at random (seed {result.provenance['seed']}, of the commit): "
             f"{limits}; let go or under a pulse, until the outcome is decided. {settings['below_range']} "
             "whose peak tilt stays below the range are not run.",
-            "Left out: the normal force falls to 0, no contact gives the friction demanded, or the scene is on an "
-            "edge, where a change by 10⁻⁴ makes such a difference in the analytic model.",
+            "Left out: the normal force falls to 0, the friction demand is more than any contact provides, or the "
+            "scene is on an edge, where a change by 10⁻⁴ makes as large a difference in the analytic model.",
         ),
         evidence=tuple(
             (f"{NAME.text(row)}, scene {row['index']}: {row['failure']['reason']}", row["failure"]["message"])

@@ -56,7 +56,8 @@ def page(result: Result) -> Page:
         _title(both, equal),
         (
             "The end point is overturning. Equal means that the upper limit of the interval is below "
-            f"{equal}; a run that fails differs; so few runs that none differing would not do are too few to say.",
+            f"{equal}; a failed run counts as differing. Where so few runs could not show that even if none "
+            "differed, they are too few to say.",
         ),
         first=(
             _tilts(runs),
@@ -213,7 +214,7 @@ def _how(result: Result) -> tuple[str, ...]:
         "peak ground velocity times ωᵣ over g tan γ, evenly over the logarithm, as the mass of the base over the "
         f"block’s; period [s] and damping of the bearings at {settings['x_max']:g} m, by one of the laws "
         f"{', '.join(settings['laws'])}. The ranges were chosen once, by the outcomes of the model alone: {mix}.",
-        f"Tuned settings of the engines in question run all of them, their defaults and the tuned settings of other "
+        "Tuned settings of the engines in question run all of them, their defaults and the tuned settings of other "
         f"engines {settings['records_of_others']} records, both components. Left out, of all engines alike: {reasons}; "
         "on an edge: a change of the scene by 10⁻⁴ is another outcome in the model. Components and configurations of a "
         "record are not independent: the interval is Wilson’s with the number of runs over the design effect, the "

@@ -48,9 +48,10 @@ def page(result: Result) -> Page:
     return Page(
         _title(ranked),
         (
-            "A block let go loses speed at every impact; eq. (7) says how much, from momentum alone. The engines are "
-            "not given that number: it follows from their contact, and goes wrong where a step straddles the impact, "
-            "where the corner sinks in or bounces, or where built-in damping takes energy in flight.",
+            "A released block loses speed at every impact. Eq. (7) gives the loss from angular momentum alone. The "
+            "engines are not given that number: it follows from their contact. It is wrong where the impact falls "
+            "within a step, where the corner sinks in or bounces, or where built-in damping dissipates energy in "
+            "flight.",
         ),
         first=(
             _over_slenderness(cells, result.settings["default_variants"]),
@@ -417,9 +418,10 @@ def _how(settings):
         "of a swing's energy after an impact to that before it, so that whatever takes energy counts; the base "
         "velocity jump is compared with momentum by the run's own rates.",
         f"On bearings: {grid}, each with each, the laws in turn; let go at half of the slenderness, the ground at rest "
-        "or under one sine of half the uplift acceleration and three times the rocking frequency. Under these forces a "
-        "swing keeps no energy: restitution is the ratio of the tilt rates after and before the impact, against eq. "
-        "(7), and the base velocity jump is compared with momentum, eq. (8). An impact that a run has not is lost.",
+        "or under one sine of half the uplift acceleration and three times the rocking frequency. Under these forces "
+        "the energy of a swing is not conserved: restitution is the ratio of the tilt rates after and before the "
+        "impact, against eq. (7), and the base velocity jump is compared with momentum, eq. (8). An impact that a "
+        "run does not have counts as lost.",
         f"Trusted: error of both grounds at most {TRUSTED:g}, no failed run, no lost impact; usable: at "
         f"most {USABLE:g}. Measured restitution of stone scatters by some per cent. The corners are set plastic, "
         "non-slipping and planar, which are Housner's assumptions: agreement is verification of the engine, not "

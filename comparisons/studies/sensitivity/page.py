@@ -55,9 +55,9 @@ def page(result: Result) -> Page:
     return Page(
         _title(shown),
         (
-            "Near the boundary of overturning a small change decides. Each motion and block is changed in one way at a "
-            "time; engines run them unchanged. Counted are outcomes that differ from the analytic model's of the "
-            "unchanged scene.",
+            "Near the overturning boundary small changes decide the outcome. Each motion and block is changed in one "
+            "way at a time; engines run them unchanged. Counted are outcomes that differ from the analytic model's "
+            "of the unchanged scene.",
             *(_against_engines(scene, where(shown, scene=scene)) for scene in ranked),
         ),
         first=(

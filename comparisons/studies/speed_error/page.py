@@ -419,8 +419,8 @@ def _how(result, every):
         f"{number(apart, 1)} in the errors shown. The model's own solvers apply eq. (7): their error of restitution "
         f"under a motion is rounding. The errors of {same} of {len(every)} settings are the same bit for "
         f"bit in every round{'; not those of ' + ', '.join(differing) if differing else ''}.",
-        "On a free base the peak tilt is the start's: it has no error. Errors of the peak displacement and of the "
-        "overturning boundary are relative. The boundary is searched: six runs, each at the amplitude where the one "
-        "before would just overturn. Other integrators of a free block, to finer errors, and batches of runs are in "
-        "the study kernel.",
+        "On a free base the largest tilt is that of the start and has no error. Errors of the peak displacement and "
+        "of the overturning boundary are relative. The boundary is searched: six runs, each at the amplitude where "
+        "the one before would just overturn. Other integrators of a free block, to finer errors, and batches of runs "
+        "are in the study kernel.",
     )

@@ -53,10 +53,10 @@ def page(result: Result) -> Page:
     return Page(
         _title(cells, cases, where(variants, kind="stepping", best=True)),
         (
-            "Scenes that have broken real integrators: pulses at the boundary, grazing impacts, a base of a "
+            "Scenes at which real integrators have failed: pulses at the boundary, grazing impacts, a base of a "
             "ten-thousandth of the block, ten minutes of shaking. A result is right if every measure is within its "
-            "tolerance. It differs if the run ends but is not right. It failed if the solver gives up, takes too long "
-            "or moves the block as no block moves.",
+            "tolerance. It differs if the run ends but is not right. It failed if the solver gives up, exceeds its "
+            "time limit or moves the block in a physically impossible way.",
             _most(where(counts, kind="stepping")),
         ),
         first=(
