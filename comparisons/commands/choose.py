@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from ..cli.give import give
+from ..cli.output import write_output
 from ..running.solving import check_time_limit
 
 
@@ -67,6 +67,6 @@ def command(
             progress=True,
             source=scene,
         )
-    give({json_file: choice}, lambda: print_choice(choice, every_level), plot, lambda: draw_choice(choice))
+    write_output({json_file: choice}, lambda: print_choice(choice, every_level), plot, lambda: draw_choice(choice))
     if choice.chosen is None:
         raise typer.Exit(1)

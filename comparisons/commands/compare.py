@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..cli.give import give
+from ..cli.output import write_output
 from ..running.readable import readable
 from ..running.solving import (
     ANALYTIC,
@@ -66,7 +66,7 @@ def command(
 
     print_failures(responses)
     form = _form(what, responses, horizons, horizon)
-    give({json_file: form}, lambda: show(comparison(what, responses, horizons), responses), plot, draw)
+    write_output({json_file: form}, lambda: show(comparison(what, responses, horizons), responses), plot, draw)
     if responses[0].failure:
         raise typer.Exit(1)
 

@@ -11,7 +11,7 @@ import typer
 
 from analytic.errors import SceneError, SettingError
 
-from ..cli.give import give
+from ..cli.output import write_output
 from ..running.files import check_writable
 from ..running.motion_options import BothSigns, Directions, Records, motions_of
 from ..running.options import DEFINITION, OPTIONS, RATIO, named_by_options
@@ -85,7 +85,7 @@ def _by_targets(targets, made, json_file):
     from analytic.design import design_bearings, properties
 
     from ..schemas.advice import Constants, Design, Properties
-    from ..showing.terminal import tell
+    from ..showing.terminal import echo
 
     check_writable([json_file])
     mass, xmax = targets["mass"], targets["xmax"]
@@ -103,7 +103,7 @@ def _by_targets(targets, made, json_file):
         f"{back.damping_equivalent:.2%} as W_D/(4 pi E_s); "
         f"loss {back.cycle_loss:.5g} J a cycle and bearing",
     )
-    give({json_file: Design(bearings=constants, properties=given)}, lambda: tell(*lines))
+    write_output({json_file: Design(bearings=constants, properties=given)}, lambda: echo(*lines))
 
 
 def _for_scene(place, stroke, tilt, made, many, write, plot, json_file):
@@ -129,7 +129,7 @@ def _for_scene(place, stroke, tilt, made, many, write, plot, json_file):
     results = {json_file: _form(scene, stroke, tilt, motions, scan, chosen)}
     if write:
         results[place] = _written(place, chosen[write]["bearings"])
-    give(
+    write_output(
         results,
         lambda: print_bearings(scene, scan, stroke, tilt, len(motions), chosen),
         plot,
@@ -177,9 +177,9 @@ def _written(place, bearings):
 
 def _form(scene, stroke, tilt, motions, scan, chosen):
     """What the JSON file holds."""
-    from ..schemas.advice import Constants, Suited, SuitedBearings
+    from ..schemas.advice import BearingProposal, BearingSearch, Constants
 
-    return SuitedBearings(
+    return BearingSearch(
         scene=scene.name,
         stroke=stroke,
         tilt=tilt,
@@ -188,7 +188,7 @@ def _form(scene, stroke, tilt, motions, scan, chosen):
         dampings=scan.dampings.tolist(),
         holds=(scan.demand <= 1).tolist(),
         chosen={
-            name: Suited(**{**one, "bearings": Constants(**one["bearings"].model_dump())})
+            name: BearingProposal(**{**one, "bearings": Constants(**one["bearings"].model_dump())})
             for name, one in chosen.items()
         },
     )

@@ -16,7 +16,7 @@ def command(name: Annotated[str | None, typer.Argument(help="Tell all of this en
 
     from ..running.solving import named_engines, stdout_to_stderr
     from ..showing.tables import engine_text, engines_table
-    from ..showing.terminal import tell
+    from ..showing.terminal import echo
 
     with stdout_to_stderr():  # engines greet on standard output
         names, missing = ((), {}) if name else available_engines()
@@ -24,6 +24,6 @@ def command(name: Annotated[str | None, typer.Argument(help="Tell all of this en
         for engine in shown:
             engine.load()
     if name:
-        return tell(engine_text(shown[0]))
+        return echo(engine_text(shown[0]))
     broken = [f"{name}: cannot be used. {error}" for name, error in BROKEN.items()]
-    tell(engines_table(shown), *missing_words(missing), *broken)
+    echo(engines_table(shown), *missing_words(missing), *broken)

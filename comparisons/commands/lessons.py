@@ -19,12 +19,12 @@ def _listed(context: typer.Context) -> None:
     if context.invoked_subcommand is not None:
         return
     from ..lessons.topics import lessons
-    from ..showing.terminal import grid, tell
+    from ..showing.terminal import echo, grid
 
     heads = ["name", "lesson", "minutes", "needs"]
     rows = [[one.name, f"{one.number}. {one.title}", str(one.minutes), one.needs] for one in lessons()]
-    tell(grid(heads, rows, left=heads, wraps=heads))
-    tell("rocking lessons open NAME: as a notebook;  rocking lessons export: pages to open by double click")
+    echo(grid(heads, rows, left=heads, wraps=heads))
+    echo("rocking lessons open NAME: as a notebook;  rocking lessons export: pages to open by double click")
 
 
 @app.command(name="open")

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from ..cli.give import give
+from ..cli.output import write_output
 from ..running.motion_options import BothSigns, Directions, Records, other_motions
 from ..running.record_options import Units
 from ..running.solving import compile_kernels, spinner
@@ -67,7 +67,7 @@ def command(
         print_motions(what, [{**row, "changes": named(row["changes"], tilt)} for row in rows])
 
     form = _form(what, nearest, contact, rows, span, tilt)
-    give({json_file: form}, show, plot, lambda: draw_margins(what, nearest, tilt))
+    write_output({json_file: form}, show, plot, lambda: draw_margins(what, nearest, tilt))
 
 
 def _form(scene, nearest, contact, rows, span, tilt):

@@ -10,7 +10,7 @@ import typer
 
 from analytic.errors import SettingError
 
-from ..cli.give import give
+from ..cli.output import write_output
 from ..running.options import DEFINITION, OPTIONS, RATIO, named_by_options
 from ..running.record_options import Channel, Column, Step, Units
 from ..running.solving import ground_motion, say, scene_of
@@ -178,7 +178,7 @@ def _tell(file: str, scene: Any, json_file: str | None, asked: Mapping[str, tupl
 
     from ..schemas.inputs import Derived, New
     from ..showing.tables import named_values
-    from ..showing.terminal import tell
+    from ..showing.terminal import echo
 
     found, shown = [], {}
     for name, value, unit in derived(scene):
@@ -186,4 +186,4 @@ def _tell(file: str, scene: Any, json_file: str | None, asked: Mapping[str, tupl
         found.append(Derived(name=name, value=value, unit=unit, asked=target))
         shown[f"{name}, {words}" if words else name] = f"{value:.5g} {unit}".removesuffix(" -")
     form = New(file=file, scene=scene.name, derived=found)
-    give({json_file: form}, lambda: tell(named_values(shown, f"{file}: {scene.name}")))
+    write_output({json_file: form}, lambda: echo(named_values(shown, f"{file}: {scene.name}")))

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from ..cli.give import give
+from ..cli.output import write_output
 from ..running.options import RECORD_OPTIONS, named_by_options
 from ..running.record_options import Channel, Column, Step, Units
 
@@ -50,7 +50,7 @@ def command(
         choice = ", ".join(channel_words(one) for one in channels)
         raise SettingError(f"--to {to}: takes one channel; add --channel, one of {choice}")
     found = Record(file=name, format=channels[0].format, channels=[described(one) for one in channels])
-    give(
+    write_output(
         {json_file: found, to: two_columns(channels[0].motion) if to else ""},
         lambda: print_channels(name, channels),
         plot,

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from ..cli.give import give
+from ..cli.output import write_output
 from ..running.motion_options import BothSigns, Directions, Records, other_motions, rows_of
 from ..running.record_options import Units
 from ..running.solving import (
@@ -86,6 +86,6 @@ def command(
 
     form = Run(**response.to_json(), motions=[MotionRun(**row) for row in rows])
     print_failures([response])
-    give({json_file: form, csv: history.getvalue()}, tell, plot, draw)
+    write_output({json_file: form, csv: history.getvalue()}, tell, plot, draw)
     if response.failure:
         raise typer.Exit(1)

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from ..cli.give import give
+from ..cli.output import write_output
 
 
 def command(
@@ -28,17 +28,17 @@ def command(
     given = read_answers(file)
     with spinner("the sheet's scenes") as tell:
         found = score(given, tell)
-    give({json_file: found}, lambda: _show(found))
+    write_output({json_file: found}, lambda: _show(found))
     if not found.passed:
         raise typer.Exit(1)
 
 
 def _show(found):
-    from ..showing.terminal import grid, tell
+    from ..showing.terminal import echo, grid
 
     if first := found.first_wrong:
         when = "" if first.time is None else f" (at {first.time:.4g} s)"
-        tell(f"First wrong answer: {first.scene}, {first.quantity}{when}: off by {first.error:.1e} of its scale.")
+        echo(f"First wrong answer: {first.scene}, {first.quantity}{when}: off by {first.error:.1e} of its scale.")
     heads = ["scene", "error", "worst answer", "rank", "what probably went wrong"]
     rows = [
         [
@@ -50,10 +50,10 @@ def _show(found):
         ]
         for one in found.scenes
     ]
-    tell(grid(heads, rows, left=["worst answer", heads[-1]], wraps=heads))
+    echo(grid(heads, rows, left=["worst answer", heads[-1]], wraps=heads))
     causes = dict.fromkeys(f"{one.cause}: {one.advice}." for one in found.scenes if one.cause)
     missing = [f"{one.scene}: not answered: {', '.join(one.missing)}." for one in found.scenes if one.missing]
     unanswered = [f"Scenes not answered: {', '.join(found.unanswered)}."] if found.unanswered else []
     right = sum(one.right for one in found.scenes)
     passed = f"{right} of {len(found.scenes)} scenes answered within 1e-3 of the scales."
-    tell(*causes, *missing, *unanswered, f"Rank: beside {found.stored}.", passed)
+    echo(*causes, *missing, *unanswered, f"Rank: beside {found.stored}.", passed)

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from ..cli.give import give
+from ..cli.output import write_output
 
 
 def command(
@@ -36,4 +36,4 @@ def command(
         ]
         problems.append(Problem(scene=problem.name, title=problem.title, quantities=asked))
     form = Sheet(sheet=VERSION, files=[str(path) for path in paths], problems=problems)
-    give({json_file: form}, lambda: print(*paths, sep="\n"))
+    write_output({json_file: form}, lambda: print(*paths, sep="\n"))

@@ -6,7 +6,7 @@ import typer
 
 from analytic.errors import SettingError
 
-from ..cli.give import give
+from ..cli.output import write_output
 from ..running.solving import TIME_LIMIT, check_time_limit, compile_kernels, named_engines, say, spinner
 
 
@@ -43,7 +43,7 @@ def command(
         results += _verified(name, rows(name, variant), time_limit)
     versions = {name: get_engine(name).versions() for name in dict.fromkeys(row["engine"] for row in results)}
     form = Verification(versions=versions, rows=[Tolerance(**row) for row in results])
-    give({json_file: form}, lambda: _show(results))
+    write_output({json_file: form}, lambda: _show(results))
     if not results or not all(row["holds"] for row in results):
         raise typer.Exit(1)
 
@@ -65,13 +65,13 @@ def _verified(name, table, time_limit):
 
 
 def _show(results):
-    from ..showing.terminal import tell
+    from ..showing.terminal import echo
 
     for solver in dict.fromkeys((row["engine"], row["variant"]) for row in results):
-        tell(_table(solver, [row for row in results if (row["engine"], row["variant"]) == solver]))
+        echo(_table(solver, [row for row in results if (row["engine"], row["variant"]) == solver]))
     failures = [f"{row['engine']}, {row['quantity']}: {row['failure']}" for row in results if row["failure"]]
     held = sum(row["holds"] for row in results)
-    tell(*failures, f"{held} of {len(results)} tolerances hold.")
+    echo(*failures, f"{held} of {len(results)} tolerances hold.")
 
 
 def _table(solver, rows):

@@ -117,7 +117,7 @@ class Design(Form):
     properties: Properties
 
 
-class Suited(Part):
+class BearingProposal(Part):
     """Bearings that hold under all motions: period [s] and equivalent damping at the stroke, and what the worst motion
     does."""
 
@@ -131,7 +131,7 @@ class Suited(Part):
     worst: str = Field(description="motion of the largest displacement")
 
 
-class SuitedBearings(Form):
+class BearingSearch(Form):
     """Which bearings keep a scene's block from lifting (or its tilt within a limit) and its base within a stroke.
 
     holds: a row for each damping, a column for each period [s]. chosen: "least-stroke" and "softest", none where
@@ -145,4 +145,4 @@ class SuitedBearings(Form):
     periods: list[float]
     dampings: list[float]
     holds: list[list[bool]]
-    chosen: dict[str, Suited]
+    chosen: dict[str, BearingProposal]

@@ -11,7 +11,7 @@ from matplotlib.patches import Patch
 
 from ..running.readable import readable
 from .plots import TITLE_CHARACTERS
-from .terminal import grid, tell
+from .terminal import echo, grid
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -24,9 +24,9 @@ def print_bearings(
     scene: Scene, scan: BearingScan, stroke: float, tilt: float, motions: int, chosen: Mapping[str, Mapping[str, Any]]
 ) -> None:
     """Print the bearings named, a column each, or how near the best ones come where none hold."""
-    tell(f"{readable(scene.name, TITLE_CHARACTERS)}: {_wanted(stroke, tilt)}; motions: {motions}", wrap=True)
+    echo(f"{readable(scene.name, TITLE_CHARACTERS)}: {_wanted(stroke, tilt)}; motions: {motions}", wrap=True)
     if not chosen:
-        return tell(nothing_holds(scan, stroke), wrap=True)
+        return echo(nothing_holds(scan, stroke), wrap=True)
     if len({(one["period"], one["damping"]) for one in chosen.values()}) == 1:
         chosen = {" and ".join(chosen): next(iter(chosen.values()))}
     rows = {
@@ -40,7 +40,7 @@ def print_bearings(
         "peak tilt / slenderness": "{tilt:.3g}",
     }
     cells = [[label, *(form.format(**one) for one in chosen.values())] for label, form in rows.items()]
-    tell(
+    echo(
         grid(["bearings", *chosen], cells, wraps=["bearings", *chosen]),
         f"Of bearings with {scan.periods[0]:g} to {scan.periods[-1]:g} s and {scan.dampings[0]:.0%} to "
         f"{scan.dampings[-1]:.0%}, {np.mean(scan.demand <= 1):.0%} hold.",

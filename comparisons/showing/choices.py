@@ -12,7 +12,7 @@ from engines import missing_words
 
 from ..running.readable import readable
 from .plots import TITLE_CHARACTERS, marker, style
-from .terminal import digits, grid, tell
+from .terminal import digits, echo, grid
 
 if TYPE_CHECKING:
     from ..advice.answer import Choice, Level
@@ -28,15 +28,15 @@ ZERO = 1e-12  # an error of 0 is drawn here
 
 def print_choice(choice: Choice, every_level: bool = False) -> None:
     """Print a choice: the answer and how it is used, a line per variant (or all its levels), what else was found."""
-    tell(readable(answer(choice)))
+    echo(readable(answer(choice)))
     if choice.command:
-        tell(f"\n  {choice.command}\n", textwrap.indent(choice.snippet or "", "  ").rstrip())
+        echo(f"\n  {choice.command}\n", textwrap.indent(choice.snippet or "", "  ").rstrip())
     if choice.variants:
-        tell(_table(choice, every_level))
+        echo(_table(choice, every_level))
     lines = [*_remarks(choice), *map(_about_part, choice.parts)]
     lines += [f"Not tried: {words}." for words in missing_words(choice.missing)]
     lines += ["All levels: --all."] if choice.variants and not every_level else []
-    tell(*map(readable, lines))
+    echo(*map(readable, lines))
 
 
 def answer(choice: Choice) -> str:

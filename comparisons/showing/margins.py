@@ -12,7 +12,7 @@ from analytic.margins import limit_states
 
 from ..running.readable import readable
 from .plots import TITLE_CHARACTERS
-from .terminal import grid, tell
+from .terminal import echo, grid
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from analytic import Scene
     from analytic.margins import Contact, Margin
 
-# Okabe and Ito; hatches, and the lines' places, tell them apart in print.
+# Okabe and Ito; hatches, and the lines’ places, tell them apart in print.
 COLOURS = {"stands": ("#009E73", ""), "rocks": ("#F0E442", ".."), "overturns": ("#D55E00", "//"), "failed": ("0.4", "")}
 
 # Lines along a strip: colour, and where they begin.
@@ -62,7 +62,7 @@ def print_margins(scene: Scene, margins: Sequence[Margin], contact: Contact, spa
     parts.append(f"{_normal_words(contact)} {_friction_words(contact)}")
     if scene.bearings is not None:
         parts.append("Assumed: the bearings are stiff vertically (real ones sway at 10 to 20 Hz).")
-    tell(*parts, wrap=True)
+    echo(*parts, wrap=True)
 
 
 def _names(tilt):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..measuring.statistics import wilson
 from ..running.readable import readable
-from .terminal import grid, tell
+from .terminal import echo, grid
 
 if TYPE_CHECKING:
     from analytic import Scene
@@ -34,7 +34,7 @@ def print_motions(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> None:
         cells += ["" if row["changes"][name] is None else f"{100 * row['changes'][name]:+.3g} %" for name in more]
         table.append(cells + ([f"{row['stroke']:.3g}"] if row.get("stroke") is not None else []))
     words = f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}."
-    tell(grid(heads, table, wraps=["motion"]), words, wrap=True)
+    echo(grid(heads, table, wraps=["motion"]), words, wrap=True)
 
 
 def odds(rows: Iterable[Mapping[str, Any]], outcomes: Sequence[str], word: str) -> str:

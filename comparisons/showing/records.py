@@ -15,7 +15,7 @@ from analytic.records import G
 from ..running.readable import readable
 from ..schemas import inputs
 from .plots import TITLE_CHARACTERS
-from .terminal import grid, tell
+from .terminal import echo, grid
 
 if TYPE_CHECKING:
     from analytic.motion import SampledMotion
@@ -62,7 +62,7 @@ def print_channels(name: str, channels: Sequence[Channel]) -> None:
     title = Text(f"{readable(name, TITLE_CHARACTERS)}: {channels[0].format}")
     notes = dict.fromkeys(f"{channel.note[0].upper()}{channel.note[1:]}." for channel in channels if channel.note)
     warnings = dict.fromkeys(warning for channel in channels for warning in channel.motion.warnings)
-    tell(grid(heads, rows, left=["units"], title=title), *notes, *(f"Warning: {readable(one)}." for one in warnings))
+    echo(grid(heads, rows, left=["units"], title=title), *notes, *(f"Warning: {readable(one)}." for one in warnings))
 
 
 def spectrum(motion: SampledMotion) -> np.ndarray:

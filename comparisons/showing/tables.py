@@ -14,7 +14,7 @@ from rich.text import Text
 from engines.statue_range import in_words
 
 from ..running.readable import readable
-from .terminal import digits, grid, tell
+from .terminal import digits, echo, grid
 from .wording import differing
 
 if TYPE_CHECKING:
@@ -100,8 +100,8 @@ def show(table: Table, responses: Sequence[Response]) -> None:
     Where the result depends on little of the motion, that stands last, in bold.
     """
     motion = [warning for response in responses for warning in response.warnings if warning.kind == MOTION]
-    tell(table, *(readable(words) for response in responses for words in remarks(response)))
-    tell(*(Text(readable(str(warning)), "bold") for warning in motion))
+    echo(table, *(readable(words) for response in responses for words in remarks(response)))
+    echo(*(Text(readable(str(warning)), "bold") for warning in motion))
 
 
 def remarks(response: Response) -> list[str]:

@@ -34,7 +34,7 @@ def grid(
     return table
 
 
-def tell(*parts: Table | Text | str, wrap: bool = False) -> None:
+def echo(*parts: Table | Text | str, wrap: bool = False) -> None:
     """Print tables, and sentences as they are; wrap: their lines broken to the width of the terminal."""
     console = Console(highlight=False)
     for part in parts:

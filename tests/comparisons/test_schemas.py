@@ -4,7 +4,7 @@ import json
 
 from comparisons.advice import Choice
 from comparisons.running.provenance import PROJECT_FOLDER
-from comparisons.schemas.advice import Design, Margins, SuitedBearings
+from comparisons.schemas.advice import BearingSearch, Design, Margins
 from comparisons.schemas.inputs import New, Record
 from comparisons.schemas.results import Report, Sheet, Verification
 from comparisons.schemas.runs import Comparison, Run
@@ -24,7 +24,7 @@ FORMS = (
     Score,
     Sheet,
     StudyResult,
-    SuitedBearings,
+    BearingSearch,
     Verification,
 )
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ..schemas.form import Form
 
 
-def give(
+def write_output(
     results: Mapping[str | None, Form | str],
     show: Callable[[], object],
     plot: str | None = None,
