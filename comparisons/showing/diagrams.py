@@ -131,7 +131,7 @@ def _labelled(on_bearings: bool) -> Markup:
     drawing.arc(corner, 180, 0, PHI)
     drawing.text((corner[0] + 10, floor + 190), "φ")
     drawing.text((corner[0] + 5, floor + 5), "O")
-    drawing.text((corner[0] + 20, floor + 5), ", J_O")
+    drawing.text((corner[0] + 26, floor + 22), "J_O")
     drawing.arrow((10, 22), (42, 0), "a_g", (-22, 8))
     return drawing.svg()
 

@@ -148,7 +148,7 @@ def bad_example() -> View:
     return View(
         figure,
         numbers,
-        "A bad example: the error of restitution of PyBullet and exudyn at their default settings hardly falls while "
+        "The error of restitution of PyBullet and exudyn with default settings hardly falls while "
         "the step becomes ten times finer, as their contact is not the rigid one. Tuned, PyBullet’s falls with the "
         "step.",
     )
