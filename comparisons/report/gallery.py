@@ -10,7 +10,7 @@ from pathlib import Path
 from textwrap import wrap
 from xml.etree import ElementTree
 
-from ..running.provenance import PROJECT_FOLDER
+from ..running.provenance import PROJECT_FOLDER, RESULTS, read_result
 from ..showing.charts import alone
 from .answer import paragraph, setups_of
 from .studies import Stored, stored_studies, variants_of
@@ -50,6 +50,8 @@ def with_findings(readme: str, words: str) -> str:
 
 
 if __name__ == "__main__":
+    for file in RESULTS.glob("*.json"):
+        read_result(file)  # one that cannot be read must not leave the README without its rows
     found = stored_studies()
     README.write_text(with_findings(README.read_text(encoding="utf-8"), headlines(found)), encoding="utf-8")
     GALLERY.mkdir(exist_ok=True)

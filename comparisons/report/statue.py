@@ -78,7 +78,7 @@ def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: A
             for margin in margins(scene, progress=progress)
         ]
     except SceneError as error:  # too long to be run so often
-        found["cautions"].append(f"How near another outcome is was not looked for: {error.remedy}.")
+        found["cautions"].append(f"The distance to another outcome was not searched: {error.remedy}.")
     if scene.motion is not None and any(scene.start.model_dump().values()):  # else it is the mirrored run
         found["reversed"] = _figures(scene.with_(motion=reversed_sign(scene.motion)))
     found["motions"] = [_under(scene, record, group) for record, group in motions.items()]

@@ -77,11 +77,11 @@ def _stored(file):
     old, origin = age(result), origin_of(result)
     try:
         study = get_study(result.kind)
-        page = study.page(result)  # drawn once
-        judgements = study.judgements(result)
     except (KeyError, StudyBroken) as error:
         words = f"{file.name} cannot be shown: {error.args[0]}."
         return Stored(file.stem, Section(f"Study {result.kind}", (words,), age=old), origin=origin)
+    page = study.page(result)  # drawn once
+    judgements = study.judgements(result)
     finding = page.opening()
     finding = finding and replace(finding, age=old)
     return Stored(file.stem, replace(page.whole(), age=old), finding, judgements, origin, _variants(result.settings))

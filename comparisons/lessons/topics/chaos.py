@@ -1,4 +1,4 @@
-"""Lesson 6: two blocks a hair apart."""
+"""Lesson 6: two almost equal blocks."""
 
 from __future__ import annotations
 
