@@ -41,7 +41,7 @@ class Setup:
     cost: float
 
     @property
-    def asked(self) -> bool:
+    def in_first_table(self) -> bool:
         """Whether it is a column of the first table: a subject engine as a user takes it, tuned or by default."""
         return self.subject and not self.applies_impact and (self.best or self.tier == "defaults")
 
@@ -74,7 +74,7 @@ def setups_of(variants: Iterable[Mapping[str, Any]], judgements: Sequence[Judgem
 
 
 def _place(one):
-    if one.asked:
+    if one.in_first_table:
         return (0, one.tier == "defaults", list(ENGINES).index(one.engine), one.cost)
     return (1, False, list(LEVELS).index(one.rating.level), one.cost)
 
@@ -119,9 +119,9 @@ def recommendation(setups: Sequence[Setup], judgements: Sequence[Judgement], lim
         words.append("No engine that was run here may be trusted in all that was tested.")
         return words
     errors = [best.marks[one.heading].words for one in judgements if one.key == RESTITUTION]
-    said = [f"restitution within {error}" for error in errors[:1]]
-    said += [f"{number(best.cost, 2)} times the analytic model's CPU time"] if math.isfinite(best.cost) else []
-    words.append(f"Where it must be a multibody engine: {best.engine} set as “{best.variant}”: {', at '.join(said)}.")
+    known = [f"restitution within {error}" for error in errors[:1]]
+    known += [f"{number(best.cost, 2)} times the analytic model's CPU time"] if math.isfinite(best.cost) else []
+    words.append(f"Where it must be a multibody engine: {best.engine} set as “{best.variant}”: {', at '.join(known)}.")
     words.append(f"Tested with one block, for {limits}; planar, no sliding, no jump.")
     return words
 
@@ -131,16 +131,16 @@ def paragraph(setups: Sequence[Setup], judgements: Sequence[Judgement]) -> str:
     rates them."""
     sentences = []
     for tier, how in (("tuned", "Tuned"), ("defaults", "With default settings")):
-        asked = [one for one in setups if one.asked and one.tier == tier]
-        said = []
+        columns = [one for one in setups if one.in_first_table and one.tier == tier]
+        words = []
         for each in judgements:
-            marks = {one.engine: one.marks[each.heading] for one in asked}
+            marks = {one.engine: one.marks[each.heading] for one in columns}
             tested = {engine: mark.words for engine, mark in marks.items() if mark is not UNTESTED}
             if each.says and tested and (tier == "tuned" or each.rates):
                 whose = f" ({', '.join(tested)})" if len(tested) < len(marks) else ""
-                said.append(each.says.format(" and ".join(tested.values()) + whose))
-        if said:
-            sentences.append(f"{how}, {' and '.join(one.engine for one in asked)}: {'; '.join(said)}.")
+                words.append(each.says.format(" and ".join(tested.values()) + whose))
+        if words:
+            sentences.append(f"{how}, {' and '.join(one.engine for one in columns)}: {'; '.join(words)}.")
     return " ".join(sentences)
 
 

@@ -34,12 +34,12 @@ def gallery(stored: Iterable[Stored]) -> dict[str, str]:
 def headlines(stored: Sequence[Stored]) -> str:
     """The report's first table and its paragraph as Markdown."""
     judgements = [each for one in stored for each in one.judgements]
-    asked = [one for one in setups_of(variants_of(stored), judgements) if one.asked]
-    rows = [["", *(f"{one.engine}, {one.tier}" for one in asked)], ["---"] + ["---:"] * len(asked)]
-    rows += [["rating", *(one.rating.words for one in asked)]]
-    rows += [[each.heading, *(one.marks[each.heading].words for one in asked)] for each in judgements]
+    columns = [one for one in setups_of(variants_of(stored), judgements) if one.in_first_table]
+    rows = [["", *(f"{one.engine}, {one.tier}" for one in columns)], ["---"] + ["---:"] * len(columns)]
+    rows += [["rating", *(one.rating.words for one in columns)]]
+    rows += [[each.heading, *(one.marks[each.heading].words for one in columns)] for each in judgements]
     lines = [f"| {' | '.join(row)} |" for row in rows]
-    return "\n".join((*lines, "", *wrap(paragraph(asked, judgements), 120)))
+    return "\n".join((*lines, "", *wrap(paragraph(columns, judgements), 120)))
 
 
 def with_findings(readme: str, words: str) -> str:

@@ -40,7 +40,7 @@ STATES = {"tilt": f"Tilt above {TILT:g} γ", "stroke": "Base beyond x_max"}  # b
 class Card:
     """title: name and outcome. loud: sentences as important as that. scene: as the result's settings have it.
 
-    margin: of the quantity whose outcome changes nearest, None where none does. said: (heading, sentence) pairs.
+    margin: of the quantity whose outcome changes nearest, None where none does. sentences: (heading, sentence) pairs.
     tables: page parts.
     """
 
@@ -48,7 +48,7 @@ class Card:
     loud: list
     scene: Mapping[str, Any]
     margin: Mapping[str, Any] | None
-    said: list
+    sentences: list
     tables: list
 
 
@@ -146,31 +146,31 @@ def card_of(result: Result, name: str) -> Card:
     own = found["own"]
     undecided = "" if own["decided"] else " (not decided when the run ended)"
     title = f"{scene['name']}: the block {WORDS[own['outcome']]}{undecided}"
-    said = [*_said(found), *(("Warning", text) for text in own["warnings"])]
-    said.append(("Engines", _engines([row for row in result.rows if row["scene"] == name])))
+    sentences = [*_sentences(found), *(("Warning", text) for text in own["warnings"])]
+    sentences.append(("Engines", _engines([row for row in result.rows if row["scene"] == name])))
     tables = [_main(found)]
     if found["near"]:
         tables.append(_near_table(found["near"], scene))
     if found["motions"]:
         tables.append(_motion_table(found["motions"], scene))
     nearest = next((margin for margin in found["margins"][:1] if margin["nearest"] is not None), None)
-    return Card(title, found["cautions"], scene, nearest, said, tables)
+    return Card(title, found["cautions"], scene, nearest, sentences, tables)
 
 
-def _said(found):
+def _sentences(found):
     """(heading, sentence) of what the model says beyond the scene's own run."""
-    said = []
+    sentences = []
     if "free" in found:
-        said.append(("Without isolation", f"Free-standing, the block {WORDS[found['free']['outcome']]}."))
-    said += _nearest(found["margins"])
+        sentences.append(("Without isolation", f"Free-standing, the block {WORDS[found['free']['outcome']]}."))
+    sentences += _nearest(found["margins"])
     if "reversed" in found:
-        said.append(("Motion reversed", f"the block {WORDS[found['reversed']['outcome']]}"))
+        sentences.append(("Motion reversed", f"the block {WORDS[found['reversed']['outcome']]}"))
     elif found["near"]:
-        said.append(("Motion reversed", "The same, mirrored: block and start are symmetric."))
+        sentences.append(("Motion reversed", "The same, mirrored: block and start are symmetric."))
     if rows := found["motions"]:
         words = f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}."
-        said.append(("Records", words))
-    return said
+        sentences.append(("Records", words))
+    return sentences
 
 
 def _nearest(found):
@@ -179,19 +179,19 @@ def _nearest(found):
         return []
     first, span = found[0], f"{100 * SPAN:g} %"
     if first["nearest"] is None:
-        said = [("Nearest change", f"No change of one quantity by up to {span} changes the outcome.")]
+        sentences = [("Nearest change", f"No change of one quantity by up to {span} changes the outcome.")]
     else:
         text = f"{first['quantity']} {signed(first['nearest'])}: the block then {WORDS[first['then']]}."
         if first["interleaved"]:
             text += " Outcomes alternate there: do not rest a decision on this distance."
-        said = [("Nearest change", text)]
+        sentences = [("Nearest change", text)]
     for state, label in STATES.items():
         known = [(one["quantity"], *one["states"][state]) for one in found if state in one["states"]]
         changing = [one for one in known if one[2] is not None]
         if changing:
             quantity, reached, change = min(changing, key=lambda one: abs(one[2]))
-            said.append((label, f"{'No longer from' if reached else 'From'} {quantity} {signed(change)} on."))
-    return said
+            sentences.append((label, f"{'No longer from' if reached else 'From'} {quantity} {signed(change)} on."))
+    return sentences
 
 
 def _engines(rows):
@@ -200,12 +200,12 @@ def _engines(rows):
     if not engines:
         return "None was run."
     agree = [row["engine"] for row in engines if row.get("comparable") == COMPARED and not row.get("differences")]
-    said = [f"{listed(agree)} agree{'s' * (len(agree) == 1)} with the analytic model"] if agree else []
+    sentences = [f"{listed(agree)} agree{'s' * (len(agree) == 1)} with the analytic model"] if agree else []
     for row in engines:
         words = [f"failed: {row['failure']['reason']}"] if row["failure"] else different(row)
         words = words if row["engine"] in agree else words or ["was not compared"]
-        said += [f"{row['engine']} {sentence}" for sentence in words]
-    return "; ".join(said) + "."
+        sentences += [f"{row['engine']} {sentence}" for sentence in words]
+    return "; ".join(sentences) + "."
 
 
 def _main(found):

@@ -51,11 +51,11 @@ def page(result: Result) -> Page:
     rows = [row for row in where(shown, model=NEEDED) if row["law"] != "bouc-wen"]
     errors = grouped(rows, "scene", "measure")
     first = [key for key in errors if key[0] in FIRST] or list(errors)[-1:]
-    asked = next((key for key in first if key[0] == PLAIN), first[-1])
-    top = [key for key in first if key[0] == asked[0]]
+    shown_scene = next((key for key in first if key[0] == PLAIN), first[-1])
+    top = [key for key in first if key[0] == shown_scene[0]]
     growth = where(result.rows, part="growth", failure=None)
     return Page(
-        _title(result, errors[asked], _noise(every)),
+        _title(result, errors[shown_scene], _noise(every)),
         (
             "Every solver runs through levels of its accuracy parameter; error and CPU time come from the same runs. "
             "Cheapest is the cheapest level at which it and all finer ones keep the error: a lucky run does not count.",

@@ -29,7 +29,7 @@ def test_what_was_not_tested_is_said_and_counts_for_less_than_trust():
     assert found[FINE].rating.level == "good"
     assert found[GIVEN].marks["boundary"].words == "not tested" and found[GIVEN].rating.level == "part"
     assert list(found) == [FINE, COARSE, GIVEN, OTHER]  # the subject's tuned and default settings, then the others
-    assert [one.asked for one in found.values()] == [True, True, False, False]
+    assert [one.in_first_table for one in found.values()] == [True, True, False, False]
     assert not decided(Judgement("a", {}))  # nothing judges any of them
 
 
