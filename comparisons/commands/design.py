@@ -24,7 +24,7 @@ WRITTEN = ("ka", "kb", "alpha")  # numbers that a file holds to six digits
 
 def command(
     scene: Annotated[
-        str | None, typer.Argument(help="Scene file: the bearings it needs are looked for. Else give four targets.")
+        str | None, typer.Argument(help="Scene file: finds the bearings that it needs. Without one, give four targets.")
     ] = None,
     stroke: Annotated[float | None, typer.Option(help="Scene: largest displacement of the base [m].")] = None,
     tilt: Annotated[
@@ -40,12 +40,10 @@ def command(
     both_signs: BothSigns = False,
     directions: Directions = None,
     units: Units = None,
-    period: Annotated[float | None, typer.Option(help="Target: secant period at x_max [s].")] = None,
-    damping: Annotated[
-        float | None, typer.Option(help="Target: share of critical damping at x_max, e.g. 0.30.")
-    ] = None,
+    period: Annotated[float | None, typer.Option(help="Target: secant period at --xmax [s].")] = None,
+    damping: Annotated[float | None, typer.Option(help="Target: damping ratio at --xmax, e.g. 0.30.")] = None,
     xmax: Annotated[float | None, typer.Option(help="Target: design displacement [m].")] = None,
-    mass: Annotated[float | None, typer.Option(help="Target: block and base together [kg].")] = None,
+    mass: Annotated[float | None, typer.Option(help="Target: mass of block and base together [kg].")] = None,
     count: Annotated[int, typer.Option(help="Number of bearings.")] = 4,
     ratio: Annotated[float, typer.Option(help=RATIO)] = 10.0,
     definition: Annotated[str, typer.Option(help=DEFINITION)] = "equivalent",

@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 
-def command(name: Annotated[str | None, typer.Argument(help="Tell all of this engine.")] = None) -> None:
+def command(name: Annotated[str | None, typer.Argument(help="Engine to describe in full.")] = None) -> None:
     """List the engines and their variants: tier, what the engine computes, and what our adapter imposes on it.
 
     With a name: its versions, settings and refinement levels, too.

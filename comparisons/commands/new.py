@@ -19,25 +19,29 @@ from ..running.solving import ground_motion, say, scene_of
 def command(
     ctx: typer.Context,
     file: Annotated[str, typer.Argument(help="Scene file to write (.toml); must not exist.")],
-    height: Annotated[float | None, typer.Option(help="Of the block [m].")] = None,
-    width: Annotated[float | None, typer.Option(help="Of the block along the motion [m].")] = None,
-    depth: Annotated[float | None, typer.Option(help="Of the block across it [m]; the width, if not given.")] = None,
-    mass: Annotated[float | None, typer.Option(help="Of the block [kg]; or give density or material.")] = None,
-    density: Annotated[float | None, typer.Option(help="Of the block [kg/m3].")] = None,
-    material: Annotated[str | None, typer.Option(help="marble, granite, limestone, bronze, ...: its density.")] = None,
-    name: Annotated[str | None, typer.Option(help="Of the scene; that of the file, if not given.")] = None,
-    base_mass: Annotated[float | None, typer.Option(help="Isolated: mass of the base under the block [kg].")] = None,
+    height: Annotated[float | None, typer.Option(help="Block height [m].")] = None,
+    width: Annotated[float | None, typer.Option(help="Block width, along the motion [m].")] = None,
+    depth: Annotated[float | None, typer.Option(help="Block depth, across the motion [m]. Default: the width.")] = None,
+    mass: Annotated[float | None, typer.Option(help="Block mass [kg]; or give --density or --material.")] = None,
+    density: Annotated[float | None, typer.Option(help="Block density [kg/m3].")] = None,
+    material: Annotated[
+        str | None, typer.Option(help="Block material, for its density: marble, granite, limestone, bronze, ...")
+    ] = None,
+    name: Annotated[str | None, typer.Option(help="Name of the scene. Default: that of the file.")] = None,
+    base_mass: Annotated[
+        float | None, typer.Option(help="Mass of the base under the block [kg]; without it the ground is rigid.")
+    ] = None,
     count: Annotated[int, typer.Option(help="Number of bearings.")] = 4,
     period: Annotated[float | None, typer.Option(help="Bearings by design: secant period at --xmax [s].")] = None,
-    damping: Annotated[float, typer.Option(help="By design: share of critical damping at --xmax.")] = 0.15,
+    damping: Annotated[float, typer.Option(help="Bearings by design: damping ratio at --xmax.")] = 0.15,
     definition: Annotated[str, typer.Option(help=DEFINITION)] = "equivalent",
     ratio: Annotated[float, typer.Option(help=RATIO)] = 10.0,
     xmax: Annotated[
-        float | None, typer.Option(help="Displacement the bearings are built for [m]; one beyond it is warned of.")
+        float | None, typer.Option(help="Displacement the bearings are built for [m]; runs beyond it are warned of.")
     ] = None,
     ka: Annotated[float | None, typer.Option(help="Bearings by constants: stiffness before yielding [N/m].")] = None,
-    kb: Annotated[float | None, typer.Option(help="By constants: stiffness after yielding [N/m].")] = None,
-    alpha: Annotated[float | None, typer.Option(help="By constants: exponent of eq. (13).")] = None,
+    kb: Annotated[float | None, typer.Option(help="Bearings by constants: stiffness after yielding [N/m].")] = None,
+    alpha: Annotated[float | None, typer.Option(help="Bearings by constants: exponent of eq. (13).")] = None,
     record: Annotated[
         str | None, typer.Option(metavar="FILE", help="Ground motion; without it the synthetic one.")
     ] = None,
@@ -47,14 +51,16 @@ def command(
     channel: Channel = None,
     tilt: Annotated[float | None, typer.Option(help="Released from this tilt [rad], without a motion.")] = None,
     friction: Annotated[float | None, typer.Option(help="Coefficient between the block and what it stands on.")] = None,
-    anyway: Annotated[bool, typer.Option("--anyway", help="Write also what cannot well be a statue.")] = False,
+    anyway: Annotated[
+        bool, typer.Option("--anyway", help="Write the file even if its numbers are implausible.")
+    ] = False,
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write what follows from the scene; - prints it.")
     ] = None,
 ) -> None:
     """Write a commented scene file, and print what follows from it.
 
-    In a terminal it asks for what is missing, and back on what cannot well be.
+    In a terminal it asks for missing values and queries implausible ones.
 
     Example: rocking new bust.toml --height 1.9 --width 0.55 --material marble --base-mass 400 --period 2.5 --xmax 0.2
     """

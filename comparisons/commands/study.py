@@ -29,9 +29,7 @@ Output = Annotated[
 ]
 Engines = Annotated[
     list[str] | None,
-    typer.Option(
-        "--engine", help="Engine to compare, more than one by repetition; without it all that the study wants."
-    ),
+    typer.Option("--engine", help="Engine to compare; may be repeated. Default: all that the study needs."),
 ]
 Workers = Annotated[int | None, typer.Option(min=1, help="Worker processes; one per core without it.")]
 Scheduler = Annotated[
@@ -49,7 +47,7 @@ Check = Annotated[
     typer.Option(
         metavar="N",
         min=1,
-        help="Compute nothing new: do N of the runs stored with the result again, drawn at random, and say how many "
+        help="Compute nothing new: repeat N of the runs stored with the result, drawn at random, and say how many "
         "hold; of this project's results, or with --output of those in DIR. Status 1: not all hold.",
     ),
 ]
