@@ -9,6 +9,7 @@ import typer
 from analytic import simulate
 from analytic.response import COMPARED, UNCOMPARED
 from engines import get_engine
+from engines.comparison import compare
 from engines.statue_range import RANGE, in_words
 
 from ...running.cases import Case
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from analytic import Response
 
     from ...running.study import Plan, Request
+    from ...running.sweep import Row
 
 SCENES, QUICK_SCENES = 500, 20  # of the engines' default variants
 FEWER = 5  # other variants run one scene in so many, and at least so many
@@ -51,12 +53,18 @@ def plan(request: Request, *, seed: Seed = None, scenes: Number = None) -> Plan:
             "variant": row.case.variant,
             "tier": get_engine(row.case.solver).variants[row.case.variant or ""].tier,
             **row.case.tag,
-            **({"class": "failed", "failure": row.failure} if row.failed else row.values),
+            **(_failed(row) if row.failed else row.values),
         }
         for row in rows
     ]
     settings = {"scenes": most, "below_range": reached.count(False), "range": in_words(), "quick": request.quick}
     return Computed(settings, found, seed=seed)
+
+
+def _failed(row: Row) -> dict[str, Any]:
+    """What is kept of a run that failed: left out where no run of its scene is compared, of all engines alike."""
+    why = compare(row.case.scene, simulate(row.case.scene, history=False)).comparable  # with itself: whether it holds
+    return {"class": "failed" if why == COMPARED else "left out", "comparable": why, "failure": row.failure}
 
 
 def compared(case: Case, response: Response) -> dict[str, Any]:

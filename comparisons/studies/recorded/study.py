@@ -175,7 +175,8 @@ def _run_row(row: Row, known: Iterable[dict[str, Any]]) -> dict[str, Any]:
     (model,) = (one for one in known if tag.items() <= one.items())
     variant = get_engine(row.case.solver).variants[row.case.variant]
     same = not row.failed and (row.values["outcome"] == "overturns") == (model["outcome"] == "overturns")
-    word = "failed" if row.failed else "left out" if model["comparable"] != COMPARED else "right" if same else "differs"
+    judged = model["comparable"] == COMPARED
+    word = ("failed" if row.failed else "right" if same else "differs") if judged else "left out"
     return {
         "part": "run",
         "engine": row.case.solver,

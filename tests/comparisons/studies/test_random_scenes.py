@@ -1,12 +1,16 @@
 """The study of random scenes: what is drawn and run, and that tables, sentences and marks count the rows."""
 
+import dataclasses
 from collections import Counter
 
 import pytest
 from page_numbers import number_in
 
+from analytic import Block, PulseMotion, Scene
+from analytic.response import COMPARED
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.study import Request
+from comparisons.running.sweep import Row
 from comparisons.showing.rows import NAME
 from comparisons.studies import get_study
 from comparisons.studies.random_scenes.scenes import random_scene
@@ -42,6 +46,18 @@ def test_the_number_of_scenes_is_what_the_user_asks_for(quick, scenes, most):
     for variant in engine.variants:
         limit = most if variant == engine.default_variant else min(most, max(5, most // 5))
         assert 0 < [case.variant for case in cases].count(variant) <= limit
+
+
+@pytest.mark.parametrize("amplitude, word", [(2.0, "failed"), (6.0, "left out")])  # [g]; at 6 g the model's N < 0
+def test_a_run_that_failed_is_left_out_where_no_run_is_compared(amplitude, word):
+    block = Block(mass=1000.0, radius=1.0, slenderness=0.2)
+    scene = Scene(block=block, motion=PulseMotion("one-sine", amplitude * 9.81, 20.0))
+    asked = plan(Request((ENGINE,), True), seed=5, scenes=1)
+    case = dataclasses.replace(next(asked).cases[0], scene=scene)
+    with pytest.raises(StopIteration) as stop:
+        asked.send([Row(case, {}, {"kind": "solver", "reason": "made up", "message": ""}, {}, False)])
+    (row,) = stop.value.value.rows
+    assert row["class"] == word and (row["comparable"] == COMPARED) == (word == "failed")
 
 
 def test_tables_and_marks_count_the_stored_rows(result):
