@@ -144,7 +144,8 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
         words = "none found" if row["largest"] is None else percent(row["largest"]) + (f", {lost} lost" if lost else "")
         share = f"{row['found']} of {row['of']} boundaries found, median {percent(row['median'])}"
         if row["beyond"]:
-            share += f"; where N < 0 {row['beyond_found']} of {row['beyond']}, {percent(row['beyond_largest'])}"
+            share += f"; with N < 0: {row['beyond_found']} of {row['beyond']}"
+            share += f", {percent(row['beyond_largest'])}" if row["beyond_found"] else ""
         marks[row["engine"], row["variant"]] = Mark(words, row["rating"], share, row["largest"])
     return (
         Judgement(

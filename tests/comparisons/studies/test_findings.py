@@ -55,7 +55,7 @@ def test_the_boundaries_judged_are_those_where_the_block_stays_pressed():
         found = [abs(shift) for shift in shifts if shift is not None]
         assert mark.note.startswith(f"{len(found)} of {len(shifts)} boundaries found") and 0 < len(shifts) < len(rows)
         beyond = [row["shift"] for row in rows if place(row) not in pressed]
-        assert f"where N < 0 {len(beyond) - beyond.count(None)} of {len(beyond)}" in mark.note
+        assert f"with N < 0: {len(beyond) - beyond.count(None)} of {len(beyond)}" in mark.note
         assert [number_in(mark.words), number_in(largest)] == pytest.approx([100 * max(found)] * 2, rel=0.06)
 
 
