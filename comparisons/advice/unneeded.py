@@ -58,7 +58,7 @@ def _base(scene, own):
         more, words = on_heavy_base(scene), "a heavy base"
     else:
         more, words = on_stiff_springs(scene), "a support of 50 Hz"
-    return False, f"the ground is rigid; in its place {words}", cpu_seconds(more) / own
+    return False, f"the ground is rigid (tried: {words})", cpu_seconds(more) / own
 
 
 def _vertical(scene, reference, own, error):
@@ -88,5 +88,5 @@ def _space(scene, engines):
             )
             if not free.failure and not planar.failure:
                 dearer = free.cpu_seconds / free.end.time / (planar.cpu_seconds / planar.end.time)
-                return False, f"{why}; in {engine.name}", dearer
+                return False, f"{why} (tried: {engine.name})", dearer
     return False, why, None

@@ -99,7 +99,7 @@ def _remarks(choice):
 
 def _about_part(part):
     need = "is needed" if part.needed else "need not be modelled"
-    takes = "it takes" if part.needed else "all the same it costs"
+    takes = "it takes" if part.needed else "modelled, it costs"
     cost = f"; {takes} {part.cost:.2g} times the CPU time" if part.cost else ""
     return f"{part.part.capitalize()} {need}: {part.why}{cost}."
 
