@@ -13,8 +13,8 @@ from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.vocabulary import OWN, SHARED, columns_of
 from engines import installed_engines
 
-# Of no stored result: an impact of which nothing can be told; a share that the stored run did not measure.
-UNSEEN = {"autopsy": {"why_not"}, "speed-error": {"share"}}
+# Of no stored result: an impact about which nothing can be determined.
+UNSEEN = {"autopsy": {"why_not"}}
 
 
 def timed(batch):
