@@ -26,7 +26,7 @@ MATERIALS = {
     "wood": 600.0,
 }
 
-# Rows of `derived` that are held against what was asked for, and against each other.
+# Rows of `derived` that are compared with what was asked for, and against each other.
 PERIOD, DAMPING = "secant period at x_max", "equivalent damping at x_max"
 UPLIFT, YIELD = "uplift acceleration g tan(slenderness)", "acceleration at which the bearings yield"
 

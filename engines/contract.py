@@ -67,7 +67,7 @@ class Variant:
     friction : float or None
         Coefficient of the contact where a scene gives none, if it is so low that a block may slide.
     flight_damping : float or None
-        d [1/s] of a damping in flight that nobody asked for: force d m v (1 + |v|), moment d I w (1 + |w|), SI units.
+        d [1/s] of a built-in damping in flight: force d m v (1 + |v|), moment d I w (1 + |w|), SI units.
     free_block : str or None
         ``module:function``, called as a solver with ``step`` [s]: the same with a free block of six degrees of freedom.
 

@@ -248,7 +248,7 @@ def _paces(model: ArrayModel) -> tuple[float, float]:
 def _impulse(trace: Trace, lasting: np.ndarray, viscous: float) -> Callable[[np.ndarray], np.ndarray]:
     """Impulse of the bearings' force since the start [N s], as function of time [s].
 
-    What dampers take of a base that stops within a step is told by how far it came.
+    What dampers take from a base that stops within a step follows from how far it came.
     """
     steps = 0.5 * np.diff(trace.time) * (lasting[1:] + lasting[:-1])
     since = viscous * trace.base_displacement + np.concatenate(([0.0], np.cumsum(steps)))

@@ -9,7 +9,7 @@ from ..schemas.form import Form, Part
 
 class Level(Part):
     """One value of a variant's accuracy parameter. error: the worst over the scene and its neighbours, of outcomes the
-    share that differs; None where it cannot be told. untried: it passes the scene, but was not run on the neighbours,
+    share that differs; None if unknown. untried: it passes the scene, but was not run on the neighbours,
     as a cheaper one passes there. why: in words, why it does not pass. cpu_per_second: CPU seconds for a simulated
     second."""
 

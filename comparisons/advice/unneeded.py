@@ -1,4 +1,4 @@
-"""What need not be modelled in a scene, and what modelling it all the same costs."""
+"""What need not be modelled in a scene, and what modelling it would cost."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ def command(
     """Which setting of which engine is good enough for a scene, at what cost, and what need not be modelled.
 
     The engines' settings are run on the scene and on neighbours of it, with start and motion scaled by up to 5 %, and
-    held against the analytic model; tilt and displacement up to the sensitivity horizon only. Status 1: none passes.
+    compared with the analytic model; tilt and displacement up to the sensitivity horizon only. Status 1: none passes.
     Example: rocking choose caryatid-isolated --for displacement --error 1e-3
     """
     from analytic.scene_file import load_scene

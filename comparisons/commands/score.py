@@ -1,4 +1,4 @@
-"""``rocking score``: answers to the problem sheet, held against the exact ones."""
+"""``rocking score``: answers to the problem sheet, compared with the exact ones."""
 
 from typing import Annotated
 

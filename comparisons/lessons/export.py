@@ -27,7 +27,7 @@ def export_pages(
 ) -> list[Path]:
     """Write playground, lessons, derivation and teacher's page into `folder`, which exists; returns their paths.
 
-    progress : is told how many lessons are done, of how many.
+    progress : is called with how many lessons are done, of how many.
     """
     environment, chosen = _environment(), lessons()
     drawings = {name: Markup(getattr(diagrams, name)()) for name in ("rocking", "impact", "isolated")}

@@ -25,7 +25,7 @@ from .lesson import Exercise, Lesson, View
 from .topics import lesson
 
 PAGES = Path(__file__).parent / "pages"
-# Cells run when the notebook opens, which marimo does not do unasked.
+# Cells run when the notebook opens; by default marimo does not run them.
 SETTINGS = "[tool.marimo.runtime]\nauto_instantiate = true\n"
 # Stand-ins of `drawing` in a notebook, light or dark.
 COLOURS = (

@@ -83,7 +83,7 @@ def diagnosis(engine: str, variant: str, scene: Scene, which: int = 0, **setting
     Returns
     -------
     dict
-        engine, variant, tier, best (the default variant); where the impact can be told: placed, error, cause and words
+        engine, variant, tier, best (the default variant); if it can be analysed: placed, error, cause and words
         (None below `LEAST`), parts, steps, energy_lost (over the kinetic one before), frames, and where
         the block is placed deepest [m]; else why_not.
     """

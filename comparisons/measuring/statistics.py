@@ -95,7 +95,7 @@ def equality(differs: npt.ArrayLike, groups: Sequence[Any] | None = None) -> tup
     """Whether two solvers are equal, a word, and the 95 % interval of the share of runs in which they are not.
 
     "yes": its upper limit is below `EQUAL`. "too few to say": so few runs that it would not be with none differing, and
-    the lower limit is not above `EQUAL`. "no": otherwise; lack of power acquits nobody.
+    the lower limit is not above `EQUAL`. "no": otherwise; lack of power proves nothing.
 
     Parameters
     ----------

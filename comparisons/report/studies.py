@@ -36,7 +36,7 @@ def stored_studies(
 ) -> list[Stored]:
     """All result files ``<study>.json`` in `folder`, in the studies' order; one that cannot be shown says why.
 
-    progress : is told how many of them are done, of how many.
+    progress : is called with how many of them are done, of how many.
     """
     order = {name: place for place, name in enumerate(study_names())}
     files = sorted(folder.glob("*.json"), key=lambda file: (order.get(file.stem, len(order)), file.stem))

@@ -66,7 +66,7 @@ def write_page(
 ) -> Path:
     """Write ``report.html`` into `folder`, and beside it ``pages/``, from result files there and of the studies.
 
-    progress : is told how much of it is done, of how much. Returns the path of the page.
+    progress : is called with how much of it is done, of how much. Returns the path of the page.
 
     Raises
     ------

@@ -28,7 +28,7 @@ class Tolerance(Part):
 
 
 class Verification(Form):
-    """Engines held against the tolerance table. versions: {engine: its own}."""
+    """Engines compared with the tolerance table. versions: {engine: its own}."""
 
     schema_: str = Field(default="rocking verify 2", serialization_alias="schema")
     versions: dict[str, Any]

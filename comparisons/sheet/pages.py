@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .problems import Problem
 
 TEMPLATES = templates(Path(__file__).parent / "templates")
-TITLE = "Rocking blocks: problems for a code to be held against"
+TITLE = "Rocking blocks: reference problems for other codes"
 POWER = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e([-+]?)0*(\d+)(?!\w)")
 ANSWERS, RECORD_FILE = "answers.csv", "record.csv"
 

@@ -226,7 +226,7 @@ OWN: dict[str, dict[str, Explained]] = {
         "energy_lost": Explained("in the impact, over the kinetic energy before"),
         "frames": Explained("what is drawn of the impact: times and values by frame"),
         "deepest": Explained("how deep the landing corner sinks in, at most", "m"),
-        "why_not": Explained("why the impact cannot be told"),
+        "why_not": Explained("why the impact cannot be analysed"),
     },
     "stability": {
         "case": Explained("name of the hard case"),

@@ -82,7 +82,7 @@ class DrakeBodies:
         return tilt, twist.rotational()[1], x, z - self.half_height, vx, vz, base, v
 
     def weigh(self, added: float) -> None:
-        """Never asked of a first script."""
+        """Not needed with default settings."""
 
 
 def _solid(mass: float, inertia: float) -> SpatialInertia:

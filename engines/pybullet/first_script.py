@@ -71,4 +71,4 @@ class FreeBox:
         return 2 * math.atan2(turn[1], turn[3]), rate, x, z - self.high, vx, vz, base, v
 
     def weigh(self, added: float) -> None:
-        """Never asked of a first script."""
+        """Not needed with default settings."""

@@ -1,4 +1,4 @@
-"""The sheet study: the problem sheet's scenes in every engine and variant, its answers held against the exact ones."""
+"""The sheet study: the problem sheet's scenes in every engine and variant, compared with the exact answers."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 FIRST = ("free-sliding", PLAIN)  # scenes of the report's first page
 LEVELS = (1e-2, 1e-3, 1e-4, 1e-5)  # of an error; finer ones are the kernel study's
 ASKED = 1e-3
-USUAL = 1e-8  # tolerance of the kernel that engines at their defaults are held against; its own default costs some more
+USUAL = 1e-8  # tolerance of the kernel that engines' default settings are compared with; its own default costs more
 DRAWN, ROUNDING = 1e-9, 1e-13  # errors below the first are drawn there, those below the second tell no order
 NOISE = 95  # percentile of the settings' spread over the rounds, below which two costs are not told apart
 KERNEL = "analytic, kernel"

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 REPEATS, QUICK_REPEATS = 5, 3
 SLOW = 0.5  # s of CPU: next to it what is loaded in a first run is nothing; such a measurement needs no warm-up
 MOST_REPEATS = 200
-TWIN_TOLERANCE = 1e-13  # of the independent solution each reference is held against
+TWIN_TOLERANCE = 1e-13  # of the independent solution each reference is compared with
 EVIDENCE = 600  # characters of an engine's message that a row keeps
 # A boundary search that still moves this far has found none. Where steps are fixed, the boundary depends on where in a
 # step the impact falls, which differs from run to run: the root mean square of the last positions stands for it.
