@@ -116,7 +116,7 @@ LESSON = Lesson(
         Control("motion", tuple(MOTIONS), "near-fault"),
     ),
     view=view,
-    guess="Without bearings the statue rocks in the near-fault motion, with them it stands. Is there a motion that "
+    guess="Without bearings the statue overturns in the near-fault motion; with them it stands. Is there a motion that "
     "does not even lift the statue without bearings, and overturns it with them?",
     look="Change the slenderness, then the bearings, then the motion.",
     wrong=(
