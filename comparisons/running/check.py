@@ -1,4 +1,4 @@
-"""Stored runs of a result done again with the code of today: how many still give what they gave?"""
+"""Stored runs of a result repeated with the code of today: how many still give the same?"""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pathlib import Path
 from pkgutil import resolve_name
 from typing import Any
 
-from analytic.errors import SceneError
+from analytic.errors import EngineNotInstalled, SceneError
 
 from .cases import solver
 from .executors import Processes
@@ -29,7 +29,10 @@ SHOWN = 3  # differences named of a run
 
 @dataclass(frozen=True)
 class Check:
-    """Of a result file: runs done again, of so many stored and so many in all; what differs, a sentence a run."""
+    """Of a result file: runs repeated, of so many stored and so many in all; what differs, a sentence a run.
+
+    missing: engines of stored runs that are not installed here; none of their runs is drawn.
+    """
 
     file: str
     seed: int
@@ -37,6 +40,7 @@ class Check:
     stored: int
     total: int
     differences: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
 
     @property
     def held(self) -> int:
@@ -44,9 +48,10 @@ class Check:
 
     def words(self) -> str:
         """The outcome in a sentence."""
+        without = f"; not installed: {', '.join(self.missing)}" if self.missing else ""
         if not self.runs:
-            return f"{self.file}: nothing to check, none of its {self.total} runs can be stored"
-        drawn = f"drawn with seed {self.seed} from {self.stored} stored of {self.total}"
+            return f"{self.file}: nothing to check, none of its {self.total} runs can be stored{without}"
+        drawn = f"drawn with seed {self.seed} from {self.stored} stored of {self.total}{without}"
         return f"{self.file}: {self.held} of {self.runs} runs hold ({drawn})"
 
 
@@ -57,7 +62,6 @@ def check_all(name: str, folder: str | PathLike[str], number: int, seed: int, **
     ------
     ResultError
         As `check`; or there is no such result, or none of them keeps a run.
-    EngineNotInstalled
     """
     own = Path(folder) / f"{name}.json"
     files = [own] if own.exists() else sorted(Path(folder).glob(f"{name}-*.json"))  # a study may have several
@@ -77,20 +81,31 @@ def check(path: Path, number: int, seed: int, *, workers: int | None = None, pro
     ------
     ResultError
         The result cannot be read, is older than this check, or the outcome cannot be recorded there.
-    EngineNotInstalled
-        A run needs an engine that cannot be imported here.
     """
     result = read_result(path)
     if result.run_count is None:
         raise ResultError(f"{path.name}: was written before runs were stored; run rocking study {result.kind}")
-    drawn = random.Random(seed).sample(result.runs, min(number, len(result.runs)))
+    missing = [name for name in dict.fromkeys(run["engine"] for run in result.runs) if not _installed(name)]
+    able = [run for run in result.runs if run["engine"] not in missing]
+    drawn = random.Random(seed).sample(able, min(number, len(able)))
     again = _again(drawn, workers, progress) if drawn else []
     found = filter(None, (_differ(run, now) for run, now in zip(drawn, again, strict=True)))
-    done = Check(path.name, seed, len(drawn), len(result.runs), result.run_count, tuple(found))
+    done = Check(path.name, seed, len(drawn), len(able), result.run_count, tuple(found), tuple(missing))
     if drawn:
         today = {"date": datetime.now(UTC).date().isoformat(), **checkout()}
         record_check(path, {**today, "seed": seed, "runs": done.runs, "held": done.held})
     return done
+
+
+def _installed(name):
+    """Whether a solver can be used here; one that is unknown is not missing but wrong, which its run will say."""
+    try:
+        solver(name)
+    except EngineNotInstalled:
+        return False
+    except (KeyError, ImportError, AttributeError):
+        pass
+    return True
 
 
 def _again(runs, workers, progress):

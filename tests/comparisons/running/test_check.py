@@ -7,6 +7,7 @@ import pytest
 from fake_solvers import cases, scene
 
 from analytic import PulseMotion, SampledMotion, synthetic_motion
+from analytic.errors import EngineNotInstalled
 from analytic.pairing import paired
 from comparisons.report.studies import origin_of
 from comparisons.running import check as module
@@ -157,3 +158,19 @@ def test_few_long_motions_and_few_runs_are_stored():
 )
 def test_differences_are_found_in_their_place(stored, now, places):
     assert [where for where, _, _ in module._differences("x", stored, now)] == places
+
+
+def test_runs_of_an_engine_that_is_not_installed_are_left_out_and_named(result, monkeypatch):
+    changed(result, lambda run: run.update(engine="mujoco") if run["tag"] == {"i": 0} else None)
+    runs = read_result(result).runs
+    absent = sum(run["engine"] == "mujoco" for run in runs)
+
+    def solver(name, known=module.solver):
+        if name == "mujoco":
+            raise EngineNotInstalled("mujoco is not installed")
+        return known(name)
+
+    monkeypatch.setattr(module, "solver", solver)
+    found = check(result, 30, 1, workers=1, progress=False)
+    assert absent and (found.runs, found.held, found.missing) == (len(runs) - absent, len(runs) - absent, ("mujoco",))
+    assert "not installed: mujoco" in found.words()
