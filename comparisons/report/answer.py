@@ -129,8 +129,8 @@ def recommendation(setups: Sequence[Setup], judgements: Sequence[Judgement], lim
 def paragraph(setups: Sequence[Setup], judgements: Sequence[Judgement]) -> str:
     """The first table in words, at most `MOST_WORDS`: of the subject engines tuned, and with default settings of what
     rates them."""
-    sentences = []
-    for tier, how in (("tuned", "Tuned"), ("defaults", "With default settings")):
+    sentences: list[str] = []
+    for tier, how in (("tuned", "Tuned"), ("defaults", "By default")):
         columns = [one for one in setups if one.in_first_table and one.tier == tier]
         words = []
         for each in judgements:
@@ -140,7 +140,9 @@ def paragraph(setups: Sequence[Setup], judgements: Sequence[Judgement]) -> str:
                 whose = f" ({', '.join(tested)})" if len(tested) < len(marks) else ""
                 words.append(each.says.format(" and ".join(tested.values()) + whose))
         if words:
-            sentences.append(f"{how}, {' and '.join(one.engine for one in columns)}: {'; '.join(words)}.")
+            whose = " and ".join(one.engine for one in columns)
+            named = how if any(whose in sentence for sentence in sentences) else f"{how}, {whose}"
+            sentences.append(f"{named}: {'; '.join(words)}.")
     return " ".join(sentences)
 
 

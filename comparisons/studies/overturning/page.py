@@ -149,7 +149,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
         marks[row["engine"], row["variant"]] = Mark(words, row["rating"], share, row["largest"])
     return (
         Judgement(
-            "overturning boundary under pulses: shift, worst", marks, says="overturning boundaries moved by at most {}"
+            "overturning boundary under pulses: shift, worst", marks, says="overturning boundaries move by at most {}"
         ),
     )
 

@@ -119,7 +119,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
         Judgement(
             "outcomes that differ under recorded motions",
             {name: _outcomes_mark(row) for name, row in rows.items()},
-            says="outcomes under recorded motions differ in {}",
+            says="outcomes under records differ in {}",
         ),
         *(
             Judgement(

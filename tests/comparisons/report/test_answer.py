@@ -63,5 +63,5 @@ def test_the_recommended_engine_computes_its_impacts_itself_and_the_cheapest_win
 def test_the_paragraph_says_the_first_table_in_few_words():
     judgements = restitution(), Judgement("boundary", {FINE: Mark("0.1 %", "good")}, says="boundary off by {}")
     words = paragraph(list(decided(*judgements).values()), judgements)
-    assert words == "Tuned, exudyn: error 1e-05; boundary off by 0.1 %. With default settings, exudyn: error 0.2."
+    assert words == "Tuned, exudyn: error 1e-05; boundary off by 0.1 %. By default: error 0.2."
     assert len(words.split()) <= MOST_WORDS

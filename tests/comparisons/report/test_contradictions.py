@@ -83,10 +83,10 @@ def test_what_a_study_says_on_the_first_screen_stands_in_its_own_tables(name, k)
         assert rows and set(first) <= set(NUMBER.findall(" ".join(itertools.chain.from_iterable(rows))))
 
 
-def test_the_cheapest_engine_of_the_cost_study_is_one_that_the_first_screen_trusts(decision):
+def test_the_cheapest_engine_of_the_cost_study_is_one_that_the_first_screen_lets_one_use(decision):
     title = shown("speed-error")[0].title
     named = [one for (engine, variant), one in decision.items() if f"{engine}, {variant}" in title]
-    assert named and all(one.rating.level in ("good", "part") for one in named)
+    assert named and all(one.rating.level in ("good", "part", "fair") for one in named)  # with care: hard cases
 
 
 def test_the_readme_shows_and_says_what_the_stored_results_do(studies):
