@@ -3,6 +3,7 @@ the file is refused in one message. And the kept files that once broke something
 """
 
 import os
+import re
 import time
 import tomllib
 from collections import Counter
@@ -18,6 +19,7 @@ from strict_words import REFUSED
 from analytic import SceneError, load_scene
 from analytic.errors import FILE_LENGTH, KEY_LENGTH, TEXT_LENGTH, VALUE_LENGTH
 from analytic.records import read_record
+from analytic.records.numbers import NUMBER
 
 CORPUS = Path(__file__).parent / "fixtures"
 LONGEST_MESSAGE = FILE_LENGTH + KEY_LENGTH + VALUE_LENGTH + 2 * TEXT_LENGTH + 200  # characters
@@ -109,6 +111,12 @@ def test_undamaged_scenes_are_judged_the_same(tmp_path, name, text):
     assert judged("scene", tmp_path / "file", text.encode(), {}) == "same"
 
 
+# CPython 3.11.2, Debian 12's, takes an optional possessive group for matched where it only begins: there a damaged
+# number such as 0.49d ends in a ValueError in place of the message that it is none.
+WRONG_MATCH = bool(re.fullmatch(NUMBER, "1d"))
+
+
+@pytest.mark.xfail(WRONG_MATCH, reason="re of this Python matches wrongly", raises=ValueError, strict=True)
 def test_damaged_files(tmp_path):
     counts, wrong = count_judgements(tmp_path, 1800, seed=0)
     assert not wrong
