@@ -73,7 +73,7 @@ def _lesson_page(environment: Environment, one: Lesson, chosen: Sequence[Lesson]
         code=code_of(one),
         exercises=exercises,
         table=one.table() if one.table else None,
-        drawing=getattr(diagrams, one.drawing)() if one.drawing else "",
+        drawing=one.drawing() if one.drawing else "",
         example=_view_parts(one.example(), f"{one.name}-example") if one.example else None,
         texts=json.dumps([[control.text(value) for value in control.values] for control in one.controls]),
         views=views,

@@ -11,6 +11,7 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from markupsafe import Markup
     from matplotlib.figure import Figure
 
     from ..showing.parts import Table
@@ -124,8 +125,8 @@ class Lesson:
     minutes : in a lecture. aims : what one can do afterwards. needs : what one should know before. symbols : keys of
     `SYMBOLS`. guess : a question to answer before the controls are moved, which the picture then answers. code : the
     few lines that compute a number of it, `found`; their text is a cell of the notebook. playground : where the
-    playground's sliders stand, as its address after #. drawing : function of `showing.diagrams` at the head of the
-    lesson. table : rows below the picture. example : a second picture, without controls, and its caption `says`.
+    playground's sliders stand, as its address after #. drawing : at the head of the lesson. table : rows below the
+    picture. example : a second picture, without controls, and its caption `says`.
     """
 
     number: int
@@ -145,7 +146,7 @@ class Lesson:
     exercises: tuple[Exercise, ...]
     code: Callable[[], object]
     playground: str
-    drawing: str = ""
+    drawing: Callable[[], Markup] | None = None
     table: Callable[[], Table] | None = None
     example: Callable[[], View] | None = None
 

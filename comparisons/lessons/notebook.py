@@ -93,7 +93,7 @@ def opening(lesson: Lesson, mo: Any) -> Any:
     """Title, question, drawing, equations, symbols, and what to guess."""
     head = [mo.md(f"# {lesson.number}. {lesson.title}\n\n{lesson.question}")]
     if lesson.drawing:
-        rules, drawing = diagrams.STYLE.read_text(encoding="utf-8"), getattr(diagrams, lesson.drawing)()
+        rules, drawing = diagrams.STYLE.read_text(encoding="utf-8"), lesson.drawing()
         head.append(
             mo.Html(f'<style>{rules}</style><div class="drawing" style="{COLOURS}; max-width: 34rem">{drawing}</div>')
         )

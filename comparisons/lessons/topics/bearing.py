@@ -8,6 +8,7 @@ from analytic.bearing import BearingLaw
 from analytic.caryatid import BASE, BEARINGS, MASS
 from analytic.design import BearingProperties, properties
 
+from ...showing.diagrams import labelled_on_bearings
 from ..drawing import MODEL, OTHER, THIRD, canvas, legend
 from ..lesson import Control, Equation, Exercise, Lesson, View
 
@@ -103,7 +104,7 @@ LESSON = Lesson(
     ),
     needs="work of a force, harmonic oscillator",
     minutes=12,
-    drawing="labelled_on_bearings",
+    drawing=labelled_on_bearings,
     symbols=(
         "b",
         "h",

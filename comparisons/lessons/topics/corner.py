@@ -11,6 +11,7 @@ from matplotlib.patches import Rectangle
 from analytic import simulate
 from analytic.caryatid import RADIUS
 from analytic.time_stepping import simulate_time_stepping
+from engines import ENGINES
 
 from ...measuring.agreement import RIGID
 from ...running.provenance import RESULTS, read_result
@@ -115,13 +116,13 @@ WHICH = ("engine", "variant")
 
 
 def bad_example() -> View:
-    """Error of restitution over the step, of the stored study's first engines: refinement of defaults does not help."""
+    """Error of restitution over the step, of the engines under study: refinement of their defaults does not help."""
     study = read_result(RESULTS / "restitution.json")
     best = study.settings["default_variants"]
     chosen = [
         variant
         for variant in study.settings["variants"]
-        if variant["engine"] in list(best)[:2]  # those under study stand first
+        if ENGINES[variant["engine"]].subject
         and variant["parameter"].endswith("step")
         and (variant["tier"] == "defaults" or best[variant["engine"]] == variant["variant"])
     ]

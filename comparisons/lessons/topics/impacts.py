@@ -8,6 +8,7 @@ from analytic import Block, Scene, Start, simulate
 from analytic.caryatid import BASE, MASS, RADIUS, caryatid_block
 from analytic.rocking import RockingModel, restitution
 
+from ...showing.diagrams import labelled
 from ..computing import edge, history_until
 from ..drawing import MODEL, OTHER, SOFT, canvas, legend
 from ..lesson import Control, Equation, Exercise, Lesson, View
@@ -96,7 +97,7 @@ LESSON = Lesson(
     ),
     needs="angular momentum, moment of inertia",
     minutes=12,
-    drawing="labelled",
+    drawing=labelled,
     symbols=("b", "h", r"\gamma", "R", "m", "J_O", r"\phi", r"\dot{\phi}^{\pm}", r"e_{\phi}", r"\tilde{m}"),
     equations=(
         Equation(

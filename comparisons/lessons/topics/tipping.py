@@ -12,6 +12,7 @@ from analytic import Block, PulseMotion, Scene, overturning_map, simulate
 from analytic.caryatid import MASS, RADIUS, caryatid_block
 from analytic.rocking import RockingModel
 
+from ...showing.diagrams import labelled
 from ..computing import G, edge, history_until, overturns
 from ..drawing import INK, OUTCOMES, PANEL, canvas, tilt_axis
 from ..lesson import Control, Equation, Exercise, Lesson, View
@@ -115,7 +116,7 @@ LESSON = Lesson(
     ),
     needs="moment of a force, Newton’s second law",
     minutes=12,
-    drawing="labelled",
+    drawing=labelled,
     symbols=("b", "h", r"\gamma", "R", "m", "J_O", r"\phi", "s", "g", "a_g"),
     equations=(
         Equation(
