@@ -13,29 +13,31 @@ ROUNDING = 1e-12  # of a passage of the slenderness that was found as a root
 class Extremes:
     """Largest tilt [rad], base displacement [m], absolute acceleration [m/s2] and friction demand, least N/(m g).
 
-    All but the tilt leave out the last fall: `held` is what they were when |tilt| was last up to the slenderness.
+    All but the tilt leave out the last fall: `held` is what they were when |tilt| was last up to the slenderness, and
+    that time [s].
     """
 
     def __init__(self, tilt: float, x: float, history: bool) -> None:
         self.tilt, self.x, self.acceleration, self.friction, self.normal = abs(tilt), abs(x), 0.0, 0.0, 1.0
-        self.held = self.x, self.acceleration, self.friction, self.normal
+        self.held = self.x, self.acceleration, self.friction, self.normal, 0.0
         self.rows: list[Sequence[float]] | None = [] if history else None
 
     def step(self, row: Sequence[float], absolute: float, horizontal: float, normal: float, slenderness: float) -> None:
         """One state: a row of the history, the base's acceleration [m/s2], forces at the contact over m g."""
-        _, tilt, _, x, *_ = row
+        t, tilt, _, x, *_ = row
         self.tilt, self.x = max(self.tilt, abs(tilt)), max(self.x, abs(x))
         self.acceleration = max(self.acceleration, abs(absolute))
         self.friction = max(self.friction, abs(horizontal) / normal if normal > 0 else math.inf)
         self.normal = min(self.normal, normal)
         if abs(tilt) <= slenderness * (1 + ROUNDING):
-            self.held = self.x, self.acceleration, self.friction, self.normal
+            self.held = self.x, self.acceleration, self.friction, self.normal, t
         if self.rows is not None:
             self.rows.append(row)
 
-    def exclude_overturning(self) -> None:
-        """The block has overturned."""
-        self.x, self.acceleration, self.friction, self.normal = self.held
+    def exclude_overturning(self) -> float:
+        """The block has overturned; returns when its last fall began [s]."""
+        self.x, self.acceleration, self.friction, self.normal, began = self.held
+        return began
 
     def history(self) -> History | None:
         """The `History`, or None."""

@@ -100,7 +100,7 @@ def _march(par, ground, vertical, options, P, work, impacts, uplifts, rests, his
     fresh, refused = False, False  # onset just found: phi'' = 0 exactly; onset refused: only touched the threshold
     branch = 0.0, par.x, 1.0  # of the bearings: direction of travel, x_c and D_c of the last reversal
     peak_tilt, peak_x, will_overturn = abs(par.tilt), abs(par.x), False
-    held = 0.0, 1.0, 0.0, peak_x  # friction demand, N/(m g), peaks of the base: up to |tilt| = gamma
+    held = 0.0, 1.0, 0.0, peak_x, 0.0  # friction demand, N/(m g), peaks of the base, time: up to |tilt| = gamma
     segment, begin, written, idle, steps = 0, 0.0, 0, 0, 0
     rest_rate = max(options.rest_rate, ELASTIC_REST_RATE) if par.e > NEARLY_ELASTIC else options.rest_rate
     rest_rate *= math.sqrt(par.p2)
@@ -199,7 +199,7 @@ def _march(par, ground, vertical, options, P, work, impacts, uplifts, rests, his
                 if totals[L.UNSTABLE_TIME] < 0:
                     totals[L.UNSTABLE_TIME] = t + h
             if abs(tilt) <= par.gamma:  # what comes later is the last fall, or it comes back
-                held = totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], peak_x
+                held = totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], peak_x, t + h
             if h > 0:
                 fresh, refused = False, False
             tau = length if found == L.NONE and h == length - tau else tau + h
@@ -229,7 +229,7 @@ def _march(par, ground, vertical, options, P, work, impacts, uplifts, rests, his
         if mode != L.OVERTURNED and status == L.COMPLETE:
             begin, t = finish, finish
     if mode == L.OVERTURNED:
-        totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], peak_x = held
+        totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], peak_x, totals[L.FALL_TIME] = held
     totals[L.STATUS], totals[L.MODE], totals[L.TIME], totals[L.STEPS] = status, mode, t, steps
     totals[L.PEAK_TILT], totals[L.PEAK_X], totals[L.WILL_OVERTURN] = peak_tilt, peak_x, will_overturn
     _conclude(par, ground, s, tilt, rate, base, totals)

@@ -28,8 +28,9 @@ COMPLETE, DECIDED, STUCK, NOT_FINITE, SPENT = range(5)
     WILL_OVERTURN,
     LIFTED,
     CERTAIN,
-) = range(20)
-TOTALS = 20
+    FALL_TIME,
+) = range(21)
+TOTALS = 21
 # Rows of the workspace: Taylor coefficients of tilt, rate, sin and cos, base displacement and velocity, bearing memory,
 # bearing force, absolute base acceleration, ground acceleration, gravity (used under vertical motion); then scratch.
 (PHI, W, S, C, X, V, Q, F, ABSOLUTE, GROUND, GRAVITY, EVENT, PRODUCT_A, PRODUCT_B) = range(14)

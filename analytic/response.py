@@ -10,11 +10,13 @@ Where the block overturns, the peaks of the base and the forces at the contact a
 |tilt| = slenderness: what follows is the fall, in which a real block slides.
 
 An engine's run is compared with the analytic model of the same scene. ``differences`` name the quantity, its value here
-and in the model, and the limit: the outcome; a peak tilt or base displacement off by more than 2 %; the restitution of
-an impact off by more than 0.01; impacts that are missing or too many. ``comparable`` is "yes", or says why not: the
-normal force reaches 0, no contact gives the friction demanded, the model reaches no end; or "on an edge", where a
-change of the scene by 1e-4 makes such a difference in the model itself. From Python: ``simulate(scene, compare=False)``
-leaves it out.
+and in the model, and the limit: the outcome; a peak tilt or base displacement off by more than 2 %; where the block
+overturns the time of its last passage of the slenderness off by more than 2 % of a rocking period, that of overturning,
+and the number of impacts before; the restitution of an impact off by more than 0.01, or its loss 1 - e^2 by 10 %;
+impacts that are missing or too many. ``comparable`` is "yes", or says why not: the normal force reaches 0, no contact
+gives the friction demanded, the model reaches no end; or "on an edge", where a change of the scene by 1e-4 makes such a
+difference in the model itself: then what lies between such changes is none. From Python: ``simulate(scene,
+compare=False)`` leaves it out.
 
 ``warnings`` (kind, quantity, value, limit, text) say that a result lies outside what the model describes (the block
 would jump, or slide at the scene's ``friction``; the base goes beyond ``x_max``), or that the record is odd. The
@@ -32,17 +34,22 @@ import numpy as np
 
 OUTCOMES = ("stands", "rocks", "overturns", "failed")
 # Quantities of a `Difference`, in words. Restitution: of the matched impact that is furthest off; missing and extra
-# impacts: numbers of impacts that count, here and in the model, and have a match.
+# impacts: numbers of impacts that count, here and in the model, and have a match. Loss: 1 - e^2. Times: of a block that
+# overturns; a fall begins at the last passage of the slenderness.
 DIFFERENCES = {
     "outcome": "the block {here}, in the analytic model it {model}",
     "peak_tilt": "peak tilt {here:.4g} rad, in the analytic model {model:.4g}",
     "peak_base_displacement": "peak base displacement {here:.4g} m, in the analytic model {model:.4g}",
+    "fall_time": "falls from {here:.4g} s on, in the analytic model from {model:.4g} s",
+    "overturning_time": "has overturned at {here:.4g} s, in the analytic model at {model:.4g} s",
+    "impacts_before_fall": "falls after {here:.0f} impacts, in the analytic model after {model:.0f}",
     "restitution": "restitution {here:.4g} at an impact, in the analytic model {model:.4g}",
+    "impact_loss": "an impact takes {here:.3g} of the energy of rotation, in the analytic model {model:.3g}",
     "missing_impacts": "{here:.0f} of {model:.0f} impacts of the analytic model are found",
     "extra_impacts": "{here:.0f} impacts, {model:.0f} of them in the analytic model",
 }
 # Whether a run can be compared: "yes", "no" (it was not asked for, or has failed), "on an edge" (a change of 1e-4 of
-# the scene makes such a difference in the model), else the reason why not.
+# the scene makes such a difference in the model: what lies between such changes is no difference), else why not.
 COMPARED, UNCOMPARED, EDGE = "yes", "no", "on an edge"
 
 
@@ -141,17 +148,26 @@ def about_record(motion: Any) -> tuple[Caution, ...]:
 class Difference:
     """What an engine's run has other than the analytic model: both values, and the difference that is tolerated.
 
-    quantity: one of `DIFFERENCES`; here, model: an outcome, or a number. limit: of peaks relative to the model's, of
-    the restitution [-] or of a number of impacts absolute; None for an outcome.
+    quantity: one of `DIFFERENCES`; here, model: an outcome, or a number. limit: of peaks and losses relative to the
+    model's, of the restitution [-], a time [s] or a number of impacts absolute; None for an outcome. near: between
+    which the number lies in the model where the scene is changed by up to 1e-4; None where that was not asked.
     """
 
     quantity: str
     here: str | float
     model: str | float
     limit: float | None
+    near: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        if self.near is not None:
+            object.__setattr__(self, "near", tuple(self.near))  # a list, from JSON
 
     def __str__(self) -> str:
-        return DIFFERENCES[self.quantity].format(here=self.here, model=self.model)
+        words = DIFFERENCES[self.quantity].format(here=self.here, model=self.model)
+        if self.near is None or f"{self.near[0]:.3g}" == f"{self.near[1]:.3g}":
+            return words
+        return f"{words} ({self.near[0]:.3g} to {self.near[1]:.3g} within 1e-4 of the scene)"
 
 
 @dataclass(frozen=True)
@@ -190,6 +206,7 @@ class Response:
     versions: dict
     scene: str = ""  # name
     decided: bool = True  # False: it ended before the outcome was certain; see analytic/decision.py
+    fall_time: float | None = None  # s, last passage of |tilt| = slenderness of a block that overturns; 0 without one
     warnings: tuple[Caution, ...] = ()  # where the result lies outside what is modelled, or is odd
     differences: tuple[Difference, ...] = ()  # of an engine's run from the analytic model
     comparable: str = UNCOMPARED  # whether it was compared with the model; see `COMPARED`

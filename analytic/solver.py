@@ -200,7 +200,8 @@ def simulate(
     if totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCKING:  # cut while it falls
         later = par._replace(duration=par.duration + longest_duration(scene))
         kernel.run(later, shaking, options(tolerance, rest_rate=rest_rate), totals)
-        response = replace(response, outcome="overturns", overturning_time=float(totals[layout.TIME]))
+        over, fall = float(totals[layout.TIME]), float(totals[layout.FALL_TIME])
+        response = replace(response, outcome="overturns", overturning_time=over, fall_time=fall)
     return response
 
 
@@ -274,6 +275,7 @@ def _response(
         outcome=outcome,
         overturning_time=end.time if overturned else None,
         unstable_time=unstable if unstable >= 0 else None,
+        fall_time=float(totals[layout.FALL_TIME]) if overturned else None,
         peak_tilt=float(totals[layout.PEAK_TILT]),
         peak_tilt_ratio=float(totals[layout.PEAK_TILT]) / gamma,
         peak_base_displacement=float(totals[layout.PEAK_X]),

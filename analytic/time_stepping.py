@@ -76,7 +76,7 @@ def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -
 
 def _response(scene, step, marched, seconds):
     """The `Response` of what `_march` returns, without history."""
-    taken, over, impacts, uplifts, rests, unstable, extremes, end = marched
+    taken, over, impacts, uplifts, rests, (unstable, fall), extremes, end = marched
     peak_tilt, peak_x, peak_acceleration, friction, normal = extremes
     rocked = scene.start.tilt != 0 or scene.start.tilt_rate != 0 or len(uplifts) > 0
     return Response(
@@ -85,6 +85,7 @@ def _response(scene, step, marched, seconds):
         outcome="overturns" if over else "rocks" if rocked else "stands",
         overturning_time=taken * step if over else None,
         unstable_time=None if unstable < 0 else unstable,
+        fall_time=fall if over else None,
         peak_tilt=peak_tilt,
         peak_tilt_ratio=peak_tilt / scene.block.slenderness,
         peak_base_displacement=peak_x,
@@ -120,7 +121,7 @@ def _rocking(side, tilt, rate, a, g, force, block):
 def _march(h, ground, gravity, y, block, impact, bearing, rows):
     """All steps, under a_g and g + a_v [m/s2] at each. impact: restitution and the length of eq. (8) [m].
 
-    Returns (steps taken, overturned?, impacts, uplifts, rests, unstable time or -1, extremes, end).
+    Returns (steps taken, overturned?, impacts, uplifts, rests, (unstable time or -1, fall time), extremes, end).
     """
     m, M, _, _, gamma, standard, on_base = block
     law, count, kb, dk, alpha, d0, f0, damping = bearing
@@ -130,7 +131,7 @@ def _march(h, ground, gravity, y, block, impact, bearing, rows):
     impacts, uplifts, rests = [(0.0, 0.0, 0.0, 0.0)], [0.0], [0.0]
     impacts.pop(), uplifts.pop(), rests.pop()
     unstable, peak_tilt, peak_x, peak_a, friction, normal = -1.0, abs(tilt), abs(x), 0.0, 0.0, 1.0
-    force, taken, over, held = 0.0, 0, False, (peak_x, peak_a, friction, normal)
+    force, taken, over, held = 0.0, 0, False, (peak_x, peak_a, friction, normal, 0.0)
     for k in range(len(ground)):
         taken, t, a, g = k, k * h, ground[k], gravity[k]
         force = count * (kb * x + z + damping * v)
@@ -153,7 +154,7 @@ def _march(h, ground, gravity, y, block, impact, bearing, rows):
         friction = max(friction, abs(horizontal) / vertical if vertical > 0 else math.inf)
         normal = min(normal, vertical / (m * standard))
         if abs(tilt) <= gamma:  # what comes later is the last fall, or it comes back
-            held = peak_x, peak_a, friction, normal
+            held = peak_x, peak_a, friction, normal, t
         if k == len(ground) - 1:
             break
         rate += h * spin
@@ -173,6 +174,6 @@ def _march(h, ground, gravity, y, block, impact, bearing, rows):
                 tilt, rate, side = 0.0, 0.0, 0.0
                 rests.append(t + h)
     if over:
-        peak_x, peak_a, friction, normal = held
+        peak_x, peak_a, friction, normal, _ = held
     extremes, end = (peak_tilt, peak_x, peak_a, friction, normal), (tilt, rate, x, v, force)
-    return taken, over, impacts, uplifts, rests, unstable, extremes, end
+    return taken, over, impacts, uplifts, rests, (unstable, held[4]), extremes, end

@@ -3,135 +3,223 @@
 A `Difference` is one beyond its limit:
 
 - outcome: another one, where both are decided.
-- peak tilt, peak base displacement: by more than `PEAK` of the model's. A tilt below `LEAST_TILT` of the slenderness is
-  compared as one of that size, a displacement below `LEAST_DISPLACEMENT` of R gamma likewise. Of a block that
-  overturns, in either, peaks are not compared.
-- restitution: an impact's rate after over rate before differs from that of the model's impact that matches it.
-- missing or extra impacts: without a match. Two match that lie on one side, nearer to each other than to the next ones
-  on that side; up to where a match is `OUT_OF_PHASE`. Impacts count from `COUNTED` of the largest rate of their run
-  on, and from swings on of a tenth of `LEAST_TILT`: smaller ones an engine does not tell from the compliance of its
-  contact.
+- peak tilt, of a block that stays upright, and peak base displacement: by more than `PEAK` of the model's. A tilt below
+  `LEAST_TILT` of the slenderness is compared as one of that size, a displacement below `LEAST_DISPLACEMENT` of R gamma
+  likewise. Of a block that overturns the displacement is that up to its last passage of the slenderness.
+- of a block that overturns the time of that passage, by more than `FALL` of a rocking period 2 pi/omega_r, and the
+  number of impacts that count before it; one whose rate is within `PEAK` of counting may count or not. And the time of
+  overturning, by `FALL` of a period and what the model takes from where its contact no longer holds (N <= 0, or more
+  friction than there is): from there on an engine's block slides or flies, by up to a sixth of that time.
+- restitution: an impact's rate after over rate before differs by more than `RESTITUTION` from that of the model's
+  impact that matches it; or, where none does, what is lost, 1 - e^2, by more than `LOSS` of the model's, which tells
+  more of slender blocks. A loss below `LEAST_LOSS` is compared as one of that size.
+- missing or extra impacts: without a match (`engines.matching`), up to where a match is `OUT_OF_PHASE`.
 
 A run cannot be compared where the model does not hold (N <= 0, a friction demand that no contact gives), or reaches no
-end. Where it differs the model is run again with start, motion, slenderness and restitution changed by `CHANGE`: what
-such a copy does, too, is no fault of the engine, and the run is "on an edge".
+end. The model is run again with start, motion, slenderness and restitution changed by `copies.CHANGE`. Where such a
+copy differs from the model in the outcome, a peak or a time, the scene is "on an edge", for every engine alike: an
+outcome that a copy has is no difference there, nor a number between those of the copies with the run's outcome, widened
+by the limit. Impacts are compared up to the first one that the copies do not share.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
 from analytic import simulate
 from analytic.errors import SceneError
-from analytic.response import COMPARED, EDGE, Difference
-from analytic.rocking import RockingModel, restitution
+from analytic.response import COMPARED, EDGE, UNCOMPARED, Difference
+
+from .copies import near_copies
+from .events import at_contact
+from .matching import COUNTED, LEAST_TILT, counts, impacts_of, matched, parting
+from .swings import Trace
 
 if TYPE_CHECKING:
     from analytic import Response, Scene
 
-PEAK, RESTITUTION = 0.02, 0.01
-LEAST_TILT, LEAST_DISPLACEMENT = 0.01, 1e-5
-COUNTED = 0.1
+PEAK, RESTITUTION, LOSS, FALL = 0.02, 0.01, 0.1, 0.02
+LEAST_DISPLACEMENT = 1e-5
+LEAST_LOSS = 0.02  # the least of a statue: slenderness .1, inertia about a corner 2 m R^2, rigid ground; eq. (7)
 FRICTION = 5.0  # what a scene without a coefficient has in every tuned variant: no sliding
-CHANGE = 1e-4
 OUT_OF_PHASE = 0.1  # of a swing: from an impact on that comes so much earlier or later, none is missed
 LAST = 0.01  # of a rocking period before the end, in which an impact may come in one run and not in the other
+FALLS = "overturns"
+END = {"outcome", "fall_time", "overturning_time", "impacts_before_fall"}  # quantities that say how the block ends
+FALL_POINTS, MOST_POINTS = 200, 100_000  # at which a last fall is looked at, and of a run up to it at most
 
 
-def compare(scene: Scene, response: Response) -> Response:
+@dataclass(frozen=True)
+class Reference:
+    """What runs of a scene are compared with, the same for all solvers.
+
+    model: the analytic model's run. copies: those of the near copies, none where nothing can be compared. comparable:
+    as `Response.comparable` says it. near: in what a copy differs from the model, names of `response.DIFFERENCES`.
+    until: time [s] of the first impact that the copies do not share; inf where they share all.
+    """
+
+    model: Response | None = None
+    copies: tuple[Response, ...] = ()
+    comparable: str = UNCOMPARED
+    near: frozenset[str] = frozenset()
+    until: float = math.inf
+
+    @classmethod
+    def of(cls, scene: Scene) -> Self:
+        """That of a scene; it costs some ten runs of the model."""
+        try:
+            model = simulate(scene, history=False)
+        except SceneError as error:
+            return cls(comparable=f"the analytic model reaches no end: {error}")
+        if why := _outside(scene, model):
+            return cls(model, comparable=why)
+        copies = tuple(simulate(copy, history=False) for copy in near_copies(scene))
+        near = frozenset(one.quantity for copy in copies for one in _numbers(scene, (model,), copy))
+        until = min((parting(scene, model, copy) for copy in copies), default=math.inf)
+        return cls(model, copies, EDGE if near else COMPARED, near, until)
+
+    @property
+    def end_comparable(self) -> str:
+        """`comparable` of how the block ends: "on an edge" only where a copy ends otherwise."""
+        return COMPARED if self.comparable == EDGE and not self.near & END else self.comparable
+
+
+def compare(scene: Scene, response: Response, reference: Reference | None = None) -> Response:
     """An engine's response with its `differences` from the analytic model, and whether it is `comparable`.
 
-    It costs .2 to 2 ms, some 10 ms where something differs; what has failed is not compared.
+    reference : of the scene, where it is known. What has failed is not compared.
     """
     if response.failure:
         return response
-    try:
-        model = simulate(scene, history=False)
-    except SceneError as error:
-        return replace(response, comparable=f"the analytic model reaches no end: {error}")
-    if why := _outside(scene, model):
-        return replace(response, comparable=why)
-    found = differences(scene, model, response)
-    if not found:
-        return replace(response, comparable=COMPARED)
-    own = _off_edges(scene, model, response, found)
-    return replace(response, differences=tuple(own or found), comparable=COMPARED if own else EDGE)
+    reference = reference or Reference.of(scene)
+    return replace(response, differences=differences(scene, reference, response), comparable=reference.comparable)
 
 
-def differences(scene: Scene, model: Response, run: Response, until: float = math.inf) -> list[Difference]:
-    """What a run has other than the model; impacts are compared up to the time `until` [s]."""
-    found = []
-    if _outcome(scene, run) != _outcome(scene, model) and run.decided and model.decided:
+def differences(scene: Scene, reference: Reference, run: Response) -> tuple[Difference, ...]:
+    """What a run has other than its reference; nothing where it cannot be compared."""
+    if reference.model is None or reference.comparable not in (COMPARED, EDGE):
+        return ()
+    known = (reference.model, *reference.copies)
+    return (*_numbers(scene, known, run), *_impact_differences(scene, reference.model, run, reference.until))
+
+
+def _numbers(scene: Scene, known: Sequence[Response], run: Response) -> list[Difference]:
+    """Differences of outcome, peaks and times from all of some runs, the first being the model's."""
+    model, found = known[0], []
+    decided = [one for one in known if one.decided]
+    if run.decided and model.decided and _outcome(scene, run) not in {_outcome(scene, one) for one in decided}:
         found.append(Difference("outcome", run.outcome, model.outcome, None))
-    if "overturns" not in (run.outcome, model.outcome):
-        length = scene.block.radius * scene.block.slenderness
-        for name, least in (
-            ("peak_tilt", LEAST_TILT * scene.block.slenderness),
-            ("peak_base_displacement", LEAST_DISPLACEMENT * length),
-        ):
-            here, there = getattr(run, name), getattr(model, name)
-            if not abs(here - there) <= PEAK * max(there, least):  # not: NaN
-                found.append(Difference(name, here, there, PEAK))
-    return found + _impact_differences(scene, model, run, until)
+    alike = [one for one in known if (one.outcome == FALLS) == (run.outcome == FALLS)]
+    if not alike:
+        return found
+    falls = run.outcome == FALLS
+    for name in ("peak_base_displacement", "fall_time") if falls else ("peak_tilt", "peak_base_displacement"):
+        values = [getattr(one, name) for one in alike]
+        low, high, here = min(values), max(values), getattr(run, name)
+        if not low - _room(scene, name, low) <= here <= high + _room(scene, name, high):  # not: NaN
+            limit = PEAK if name.startswith("peak") else _room(scene, name, values[0])
+            found.append(Difference(name, here, values[0], limit, _span(known, low, high)))
+    if falls:
+        found += [*_before_fall(scene, known, alike, run), *_overturning(scene, known, alike, run, found)]
+    return found
 
 
-def _impact_differences(scene, model, run, until):
-    ours, theirs = _impacts(run), _impacts(model)
+def _span(known: Sequence[Response], low: float, high: float) -> tuple[float, float] | None:
+    """Between which a number lies in the model near the scene; None where that was not asked."""
+    return (low, high) if len(known) > 1 else None
+
+
+def _room(scene: Scene, name: str, value: float) -> float:
+    """By how much a number may differ from that of the model, in its unit."""
+    gamma = scene.block.slenderness
+    if name == "peak_tilt":
+        return PEAK * max(value, LEAST_TILT * gamma)
+    if name == "peak_base_displacement":
+        return PEAK * max(value, LEAST_DISPLACEMENT * scene.block.radius * gamma)
+    return FALL * 2 * math.pi / scene.rocking_frequency
+
+
+def _overturning(
+    scene: Scene, known: Sequence[Response], alike: Sequence[Response], run: Response, found: Sequence[Difference]
+) -> list[Difference]:
+    """The difference in the time of overturning, of runs whose falls begin alike."""
+    if any(one.quantity == "fall_time" for one in found):
+        return []
+    here, times, room = run.overturning_time, [one.overturning_time for one in alike], _room(scene, "fall_time", 0.0)
+    low, high = min(times), max(times)
+    if not low - room <= here <= high + room and known[0].outcome == FALLS:
+        room += times[0] - _released(scene, known[0])
+        if not low - room <= here <= high + room:
+            return [Difference("overturning_time", here, times[0], room, _span(known, low, high))]
+    return []
+
+
+def _released(scene: Scene, model: Response) -> float:
+    """Time [s] from which the model's contact does not hold in its last fall, at most that of overturning."""
+    over = model.overturning_time
+    step = max((over - model.fall_time) / FALL_POINTS, over / MOST_POINTS)
+    history = simulate(scene.with_(duration=over), output_step=step).history
+    trace = Trace(*(getattr(history, name) for name in Trace.COLUMNS), contact_tilt=LEAST_TILT)  # type: ignore[misc]  # the columns come before it
+    demand, normal, _ = at_contact(scene, trace)
+    holds = (normal > 0) & (demand <= (scene.friction or FRICTION))
+    return float(trace.time[(trace.time >= model.fall_time) & ~holds].min(initial=over))
+
+
+def _before_fall(scene: Scene, known: Sequence[Response], alike: Sequence[Response], run: Response) -> list[Difference]:
+    """The difference in the number of impacts before the last passage of the slenderness."""
+
+    def numbers(response: Response) -> list[int]:
+        """At least, as it is, at most."""
+        impacts = impacts_of(response)
+        shares = COUNTED * (1 + PEAK), COUNTED, COUNTED * (1 - PEAK)
+        before = ~(impacts[:, 0] > response.fall_time)
+        return [int((counts(scene, impacts, share) & before).sum()) for share in shares]
+
+    least, own, most = numbers(run)
+    theirs = [numbers(one) for one in alike]
+    low, high = min(one[0] for one in theirs), max(one[2] for one in theirs)
+    if most >= low and least <= high:
+        return []
+    return [Difference("impacts_before_fall", own, theirs[0][1], 0.0, _span(known, low, high))]
+
+
+def _impact_differences(scene: Scene, model: Response, run: Response, until: float) -> list[Difference]:
+    """Differences of matched impacts, and impacts without a match, up to the time `until` [s]."""
+    ours, theirs = impacts_of(run), impacts_of(model)
     until = min(until, model.end.time, run.end.time) - LAST * 2 * math.pi / scene.rocking_frequency
-    wanted, partner = _matched(scene, theirs, ours, until)
-    pairs, found = partner >= 0, []
+    wanted, partner = matched(scene, theirs, ours, until)
+    pairs = partner >= 0
     met, own = wanted[pairs], ours[partner[pairs]]
-    here, there = own[:, 2] / own[:, 1], met[:, 2] / met[:, 1]
-    if len(here):
-        worst = int(np.argmax(np.abs(here - there)))
-        if not abs(here[worst] - there[worst]) <= RESTITUTION:
-            found.append(Difference("restitution", float(here[worst]), float(there[worst]), RESTITUTION))
+    found = _restitution_differences(own[:, 2] / own[:, 1], met[:, 2] / met[:, 1])
     late = np.abs(own[:, 0] - met[:, 0]) > OUT_OF_PHASE * np.diff(met[:, 0], prepend=0.0)
     until = met[late, 0].min(initial=until)
     for name, one, other in (("missing_impacts", theirs, ours), ("extra_impacts", ours, theirs)):
-        _, partner = _matched(scene, one, other, until)
+        _, partner = matched(scene, one, other, until)
         if (partner < 0).any():
-            counted, matched = len(partner), int((partner >= 0).sum())
-            here, there = (matched, counted) if name == "missing_impacts" else (counted, matched)
+            counted, met_again = len(partner), int((partner >= 0).sum())
+            here, there = (met_again, counted) if name == "missing_impacts" else (counted, met_again)
             found.append(Difference(name, here, there, 0.0))
     return found
 
 
-def _impacts(response: Response) -> np.ndarray:
-    """Rows of time, rate before and rate after."""
-    rows = [(impact.time, impact.rate_before, impact.rate_after) for impact in response.impacts]
-    return np.array(rows, dtype=float).reshape(-1, 3)
-
-
-def _matched(scene: Scene, impacts: np.ndarray, others: np.ndarray, until: float) -> tuple[np.ndarray, np.ndarray]:
-    """(those of `impacts` that count up to `until`, the index in `others` of each one's match, -1 without)."""
-    partner = np.full(len(impacts), -1)
-    for side in (-1.0, 1.0):
-        mine, theirs = (np.flatnonzero(np.sign(rows[:, 1]) == side) for rows in (impacts, others))
-        if not (len(mine) and len(theirs)):
-            continue
-        time, other = impacts[mine, 0], others[theirs, 0]
-        nearest = np.searchsorted((other[1:] + other[:-1]) / 2, time)  # of the others to each of mine
-        back = np.searchsorted((time[1:] + time[:-1]) / 2, other)
-        mutual = back[nearest] == np.arange(len(mine))
-        partner[mine[mutual]] = theirs[nearest[mutual]]
-    counted = _counts(scene, impacts) & ~(impacts[:, 0] > until)
-    return impacts[counted], partner[counted]
-
-
-def _counts(scene: Scene, impacts: np.ndarray) -> np.ndarray:
-    """Whether each impact counts. A NaN does: it must be found."""
-    model = RockingModel.of(scene)
-    before, after = np.abs(impacts[:, 1:]).T
-    pull = abs(model.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0])
-    least = math.sqrt(2 * pull * 0.1 * LEAST_TILT * model.gamma)  # rate at the impact of a swing that small
-    small = (before < max(least, COUNTED * np.nanmax(before, initial=0.0))) | (np.fmax(before, after) < least)
-    return ~small
+def _restitution_differences(here: np.ndarray, there: np.ndarray) -> list[Difference]:
+    """The restitution e of the matched impact furthest beyond its limit; where all keep it, the loss 1 - e^2."""
+    if not len(here):
+        return []
+    lost, meant = 1 - here**2, 1 - there**2
+    for name, own, model, limit, room in (
+        ("restitution", here, there, RESTITUTION, np.full(len(there), RESTITUTION)),
+        ("impact_loss", lost, meant, LOSS, LOSS * np.maximum(meant, LEAST_LOSS)),
+    ):
+        worst = int(np.argmax(np.abs(own - model) / room))
+        if not abs(own[worst] - model[worst]) <= room[worst]:
+            return [Difference(name, float(own[worst]), float(model[worst]), limit)]
+    return []
 
 
 def _outcome(scene: Scene, response: Response) -> str:
@@ -150,54 +238,3 @@ def _outside(scene: Scene, model: Response) -> str | None:
     if not model.friction_demand <= limit:
         return f"the friction demand is {model.friction_demand:.3g} in the analytic model, above {limit:g}"
     return None
-
-
-def _off_edges(scene: Scene, model: Response, run: Response, found: list[Difference]) -> list[Difference]:
-    """Those of the differences that no copy of the scene has."""
-    edges, until = set(), math.inf
-    for copy in near_copies(scene):
-        other = simulate(copy, history=False)
-        apart = {difference.quantity for difference in differences(scene, model, other)}
-        edges |= apart & {"outcome", "peak_base_displacement"}
-        if apart & {"outcome", "peak_tilt"}:
-            edges.add("peak_tilt")
-        until = min(until, _parting(scene, model, other))
-    early = {difference.quantity for difference in _impact_differences(scene, model, run, until)}
-    impacts = {"restitution", "missing_impacts", "extra_impacts"}
-    return [one for one in found if one.quantity in early or one.quantity not in impacts | edges]
-
-
-def _parting(scene: Scene, model: Response, other: Response) -> float:
-    """Time [s] of the first impact that counts of either run without a match in the other; inf where all match."""
-    times = [
-        rows[partner < 0, 0].min(initial=math.inf)
-        for rows, partner in (
-            _matched(scene, _impacts(model), _impacts(other), math.inf),
-            _matched(scene, _impacts(other), _impacts(model), math.inf),
-        )
-    ]
-    return float(min(times))
-
-
-def near_copies(scene: Scene) -> Iterator[Scene]:
-    """The scene with its slenderness, restitution, motion or start changed by `CHANGE`, up and down."""
-    for factor in (1 + CHANGE, 1 - CHANGE):
-        yield scene.with_(block={"slenderness": scene.block.slenderness * factor})
-    yield from changed_copies(scene, CHANGE).values()
-
-
-def changed_copies(scene: Scene, change: float) -> dict[str, Scene]:
-    """Scenes next to `scene`, by name: restitution, motion and start changed by +-change, relative."""
-    copies = {}
-    e = max(restitution(scene), 0.0) if scene.block.restitution is None else scene.block.restitution
-    start = scene.start
-    for sign, word in ((1, "up"), (-1, "down")):
-        factor = 1 + sign * change
-        if 0 < e * factor <= 1:
-            copies[f"restitution {word}"] = scene.with_(block={"restitution": e * factor})
-        if scene.motion is not None:
-            copies[f"motion {word}"] = scene.with_(motion=scene.motion.scaled(factor))
-        changed = {name: getattr(start, name) * factor for name in type(start).model_fields}
-        if changed != start.model_dump():
-            copies[f"start {word}"] = scene.with_(start=changed)
-    return copies

@@ -220,14 +220,14 @@ def contact_measures(scene: Scene, trace: Trace) -> tuple[float, float, float]:
     """(max |H|/N, min N/(m g), max |absolute base acceleration| [m/s2]) over the steps of a trace."""
     demands, normals, peaks = [], [], []
     for piece in trace.pieces():
-        demand, normal, absolute = _at_contact(scene, piece)
+        demand, normal, absolute = at_contact(scene, piece)
         demands.append(demand.max())
         normals.append(normal.min())
         peaks.append(np.abs(absolute).max())
     return float(np.max(demands)), float(np.min(normals)), float(np.max(peaks))
 
 
-def _at_contact(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def at_contact(scene: Scene, trace: Trace) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(|H|/N, N/(m g), absolute base acceleration [m/s2]) at the steps."""
     model = ArrayModel.of(scene)
     level = _contact_acceleration(model, scene, trace)

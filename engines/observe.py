@@ -112,6 +112,7 @@ def _measured(
     seen = dict(
         overturning_time=overturning_time,
         unstable_time=unstable_time(scene, trace),
+        fall_time=None if overturning_time is None else float(upright.time[-1]),
         peak_tilt=peak,
         peak_tilt_ratio=peak / scene.block.slenderness,
         peak_base_displacement=_peak(upright.time, upright.base_displacement, upright.base_velocity),

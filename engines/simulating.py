@@ -16,6 +16,7 @@ from analytic.solver import compile_kernels
 from .comparison import compare as compared
 from .contract import Engine
 from .settings import choose, refuse_restitution
+from .statue_range import outside
 from .swings import find_swings
 
 if TYPE_CHECKING:
@@ -69,6 +70,7 @@ class Simulator(Engine):
             exudyn alone: it holds other values than the scene asks for; nothing was run.
         """
         response, _ = self.traced(scene, variant=variant, history=history, **settings)
+        response = replace(response, warnings=(*response.warnings, *outside(scene, response)))
         return compared(scene, response) if compare else response
 
     def traced(

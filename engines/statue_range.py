@@ -1,7 +1,17 @@
 """The range of a statue: scenes for which the tuned variants are tested, and outside which nothing is promised."""
 
-import math
+from __future__ import annotations
 
+import math
+from typing import TYPE_CHECKING
+
+from analytic.bearing import BearingLaw
+from analytic.response import Caution
+
+if TYPE_CHECKING:
+    from analytic import Response, Scene
+
+ROUNDING = 1e-9  # a value that was computed may lie so much beyond a limit
 # {quantity: (lowest value, highest value, in words)}
 RANGE = {
     "slenderness": (0.1, 0.5, "slenderness {low:g} to {high:g} rad"),
@@ -16,4 +26,44 @@ RANGE = {
 
 def in_words() -> str:
     """The limits, in one line."""
-    return ", ".join(words.format(low=low, high=high) for low, high, words in RANGE.values())
+    return ", ".join(map(_words, RANGE))
+
+
+def outside(scene: Scene, response: Response) -> tuple[Caution, ...]:
+    """A warning for each quantity of a scene, or of a run's peak tilt, that lies outside the range."""
+    found = []
+    for name, value in _values(scene, response).items():
+        low, high, _ = RANGE[name]
+        if not low * (1 - ROUNDING) <= value <= high * (1 + ROUNDING):
+            words = (
+                f"{name.replace('_', ' ')} {value:.3g} is outside the range in which engines are tested "
+                f"({_words(name)}): nothing is promised there"
+            )
+            found.append(Caution("engine", words, name, value, low if value < low else high))
+    return tuple(found)
+
+
+def _words(name: str) -> str:
+    """The limits of a quantity."""
+    low, high, words = RANGE[name]
+    return words.format(low=low, high=high)
+
+
+def _values(scene: Scene, response: Response) -> dict[str, float]:
+    """{quantity of `RANGE`: its value}, of those that the scene has; a block that stands has no tilt.
+
+    Period and viscous damping are those of block and base on the stiffness after yielding.
+    """
+    block, base = scene.block, scene.base
+    inertia = block.inertia / (block.mass * block.radius**2)
+    found = {"slenderness": block.slenderness, "inertia": inertia, "radius": block.radius}
+    if base is not None:
+        found["base_mass"] = base.mass / block.mass
+    if scene.bearings is not None:
+        law = BearingLaw.of(scene.bearings)
+        omega = math.sqrt(law.count * law.kb / scene.total_mass)
+        found["period"] = 2 * math.pi / omega if omega else math.inf
+        found["damping"] = law.count * law.damping / (2 * omega * scene.total_mass) if omega else 0.0
+    if response.peak_tilt_ratio > 0:
+        found["tilt"] = response.peak_tilt_ratio
+    return found

@@ -297,14 +297,14 @@ class Run(Equations):
         outcome = "rocks" if self.rocked else "stands"
         outcome = "failed" if failure else "overturns" if self.overturning is not None else outcome
         extremes = self.extremes
-        if outcome == "overturns":
-            extremes.exclude_overturning()
+        fall_time = extremes.exclude_overturning() if outcome == "overturns" else None
         return Response(
             engine="twin",
             variant=self.settings["method"],
             outcome=outcome,
             overturning_time=self.overturning,
             unstable_time=self.unstable,
+            fall_time=fall_time,
             peak_tilt=extremes.tilt,
             peak_tilt_ratio=extremes.tilt / self.model.gamma,
             peak_base_displacement=extremes.x,

@@ -15,7 +15,7 @@ import numpy as np
 from analytic import simulate
 from analytic.response import Caution
 from analytic.rocking import RockingModel
-from engines.comparison import changed_copies
+from engines.copies import changed_copies
 
 from .errors import state_restitution
 

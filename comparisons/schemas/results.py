@@ -88,7 +88,7 @@ class Reported(Part):
 class Report(Form):
     """A page written, and the rows behind its first table. results: the result files it is made from."""
 
-    schema_: str = Field(default="rocking report 3", serialization_alias="schema")
+    schema_: str = Field(default="rocking report 4", serialization_alias="schema")
     page: str
     results: list[str]
     missing: dict[str, str]

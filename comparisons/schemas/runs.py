@@ -70,15 +70,25 @@ class Warned(Part):
 
 
 class Difference(Part):
-    """What an engine's run has other than the analytic model, and the difference tolerated: of peaks relative, of the
-    restitution and of numbers of impacts absolute."""
+    """What an engine's run has other than the analytic model, and the difference tolerated: of peaks and losses
+    relative, of the restitution, of times [s] and of numbers of impacts absolute."""
 
     quantity: Literal[
-        "outcome", "peak_tilt", "peak_base_displacement", "restitution", "missing_impacts", "extra_impacts"
+        "outcome",
+        "peak_tilt",
+        "peak_base_displacement",
+        "fall_time",
+        "overturning_time",
+        "impacts_before_fall",
+        "restitution",
+        "impact_loss",
+        "missing_impacts",
+        "extra_impacts",
     ]
     here: str | float | None
     model: str | float | None
     limit: float | None
+    near: tuple[float, float] | None = Field(description="ends of it in the model within 1e-4 of the scene")
 
 
 COMPARABLE = 'compared with the analytic model: "yes", "no" (not asked for), "on an edge", else the reason why not'
@@ -92,6 +102,7 @@ class _Values(Form):
     decided: bool = Field(description="False: it ended before the outcome was certain.")
     overturning_time: float | None = Field(description="s, |tilt| = pi/2")
     unstable_time: float | None = Field(description="s, first |tilt| = slenderness; no proof of overturning")
+    fall_time: float | None = Field(description="s, last passage of |tilt| = slenderness of a block that overturns")
     peak_tilt: float | None = Field(description="rad")
     peak_tilt_ratio: float | None = Field(description="peak tilt over slenderness")
     peak_base_displacement: float | None = Field(description="m")
@@ -117,7 +128,7 @@ class _Values(Form):
 class Run(_Values):
     """A scene in one solver."""
 
-    schema_: str = Field(default="rocking run 2", serialization_alias="schema")
+    schema_: str = Field(default="rocking run 3", serialization_alias="schema")
     motions: list[MotionRun] = Field(default=[], description="where --records, --both-signs or --directions are given")
 
 
@@ -131,7 +142,7 @@ class Sensitivity(Part):
 class Comparison(Form):
     """A scene in all solvers. sensitivity_horizon: time [s] up to which point-wise agreement is asked for."""
 
-    schema_: str = Field(default="rocking compare 2", serialization_alias="schema")
+    schema_: str = Field(default="rocking compare 3", serialization_alias="schema")
     scene: str
     sensitivity_horizon: float | None
     sensitivity: dict[str, Sensitivity]

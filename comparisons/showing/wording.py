@@ -12,6 +12,7 @@ from .parts import Mark, percent
 TRUSTED, USABLE = 1e-3, 1e-2
 INDEX = re.compile(r"(?<![\w.])([^\W\d_])_([A-Za-zα-ω0]{1,3})(?![\w_])")  # of a quantity of one letter: m_b
 
+ON_EDGE = "agrees with the analytic model within what a change of the scene by 1e-4 does in the model"
 RATINGS = {
     "good": "may be trusted",
     "fair": "is usable where a per cent does not matter",
@@ -50,7 +51,7 @@ def equal_mark(differing: int, failed: int, runs: int, equal: str, interval: Seq
     levels = {"yes": "good", "no": "bad" if interval[0] > EQUAL else "fair"}
     words = f"{differing} of {runs} (at most {percent(interval[1])})"
     note = {"yes": "equal", "no": "not shown to be equal"}.get(equal, equal)
-    return Mark(words, levels.get(equal, "none"), f"{note}; {failed} failed", differing / runs)
+    return Mark(words, levels.get(equal, "part"), f"{note}; {failed} failed", differing / runs)
 
 
 def differing(comparable: str, differences: Iterable[Difference]) -> list[str]:
@@ -59,5 +60,5 @@ def differing(comparable: str, differences: Iterable[Difference]) -> list[str]:
     if comparable == COMPARED:
         return [f"differs from the analytic model: {found}"] if found else []
     if comparable == EDGE:
-        return [f"is {EDGE}, where a change of the scene by 1e-4 makes such a difference: {found}"]
+        return [f"differs from the analytic model: {found}" if found else ON_EDGE]
     return [] if comparable == UNCOMPARED else [f"cannot be compared with the analytic model: {comparable}"]

@@ -75,15 +75,16 @@ def test_peaks_of_the_base_end_at_the_last_passage_of_the_slenderness(scale):
     assert response.outcome == "overturns"
     before = np.abs(response.history.base_displacement[: last + 1]).max()
     assert response.peak_base_displacement == pytest.approx(before, rel=1e-3)
+    assert response.fall_time == pytest.approx(response.history.time[last], abs=1.01e-4)
     many = simulate_many([scene], contact=True)
     assert many.peak_base_displacement[0] == pytest.approx(response.peak_base_displacement, rel=1e-9)
     assert many.friction_demand[0] == pytest.approx(response.friction_demand, rel=1e-9)
     assert simulate_many([scene]).peak_base_displacement[0] == pytest.approx(before, rel=1e-3)
     second, coarse = simulate_twin(scene, rtol=1e-11), simulate_time_stepping(scene, step=1e-4)
     for one, names, accuracy in (
-        (second, ("peak_base_displacement", "unstable_time", "overturning_time"), 1e-7),
+        (second, ("peak_base_displacement", "unstable_time", "fall_time", "overturning_time"), 1e-7),
         (second, ("peak_base_acceleration", "friction_demand", "min_normal_ratio"), 1e-2),  # at its steps
-        (coarse, ("peak_base_displacement", "peak_base_acceleration"), 1e-3),
+        (coarse, ("peak_base_displacement", "peak_base_acceleration", "fall_time"), 1e-3),
     ):
         assert [getattr(one, name) for name in names] == pytest.approx(
             [getattr(response, name) for name in names], rel=accuracy
@@ -103,3 +104,19 @@ def test_a_limit_that_only_the_fall_goes_beyond_is_not_warned_of():
     for limit, told in ((0.5 * (whole + peak), False), (0.99 * peak, True)):
         warnings = simulate(scene.with_(bearings={"x_max": limit})).warnings
         assert any(one.kind == "limit" for one in warnings) == told
+
+
+def test_a_block_that_comes_back_from_beyond_the_unstable_point_falls_at_its_last_passage():
+    """One sine throws it beyond the slenderness on one side, brings it back, and it falls on the other."""
+    scene = Scene(block=caryatid_block(0.2), motion=PulseMotion("one-sine", 4.7, 5.82))
+    response = simulate(scene, output_step=1e-4)
+    beyond = np.abs(response.history.tilt) > 0.2
+    first, last = np.flatnonzero(beyond)[0], np.flatnonzero(~beyond)[-1] + 1
+    times = response.history.time[[first, last]]
+    assert [response.unstable_time, response.fall_time] == pytest.approx(times, abs=1.01e-4)
+    assert response.outcome == "overturns" and len(response.impacts) == 1 and times[1] > 2 * times[0]
+    for other in (simulate_twin(scene.with_(duration=4.0), rtol=1e-11), simulate_time_stepping(scene, step=1e-5)):
+        assert [other.unstable_time, other.fall_time] == pytest.approx(times, abs=3e-4)
+    cut = simulate(scene.with_(duration=2.0), history=False)  # ended while it falls
+    assert cut.outcome == "overturns" and cut.fall_time == pytest.approx(response.fall_time, rel=1e-9)
+    assert simulate(scene.with_(motion=scene.motion.scaled(0.5))).fall_time is None

@@ -87,6 +87,7 @@ def test_mirror(name):
         "min_normal_ratio",
         "peak_base_acceleration",
         "unstable_time",
+        "fall_time",
     ):
         assert getattr(here, field) == getattr(there, field), field
 

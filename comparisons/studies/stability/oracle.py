@@ -13,7 +13,7 @@ from analytic import simulate
 from analytic.closed_form import free_rocking_tilt, rest_time
 from analytic.rocking import restitution
 from analytic.twin import simulate_twin
-from engines.comparison import changed_copies
+from engines.copies import changed_copies
 
 from ...measuring.errors import energy_errors
 from ...measuring.horizon import PERTURBATION, sensitivity_horizon

@@ -1,0 +1,46 @@
+"""Scenes next to a scene: what a run does there shows how much of its result hangs on the last digits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from analytic.errors import SceneError
+from analytic.rocking import restitution
+
+if TYPE_CHECKING:
+    from analytic import Scene
+
+CHANGE = 1e-4  # relative; a good engine's own errors are 1e-5 to 1e-4
+
+
+def near_copies(scene: Scene) -> Iterator[Scene]:
+    """The scene with its slenderness, restitution, motion or start changed by `CHANGE`, up and down."""
+    for factor in (1 + CHANGE, 1 - CHANGE):
+        yield from _changed(scene, block={"slenderness": scene.block.slenderness * factor})
+    yield from changed_copies(scene, CHANGE).values()
+
+
+def changed_copies(scene: Scene, change: float) -> dict[str, Scene]:
+    """Scenes next to `scene`, by name: restitution, motion and start changed by +-change, relative."""
+    copies = {}
+    e = max(restitution(scene), 0.0) if scene.block.restitution is None else scene.block.restitution
+    start = scene.start
+    for sign, word in ((1, "up"), (-1, "down")):
+        factor = 1 + sign * change
+        if 0 < e * factor <= 1:
+            copies[f"restitution {word}"] = scene.with_(block={"restitution": e * factor})
+        if scene.motion is not None:
+            copies[f"motion {word}"] = scene.with_(motion=scene.motion.scaled(factor))
+        changed = {name: getattr(start, name) * factor for name in type(start).model_fields}
+        if changed != start.model_dump():
+            copies |= {f"start {word}": copy for copy in _changed(scene, start=changed)}
+    return copies
+
+
+def _changed(scene: Scene, **change: dict[str, float]) -> Iterator[Scene]:
+    """The scene changed; none where that is no scene, at the end of a range."""
+    try:
+        yield scene.with_(**change)
+    except SceneError:
+        return

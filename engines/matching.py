@@ -1,0 +1,60 @@
+"""Impacts of two runs of one scene, matched: which count, which belong together, which have no match.
+
+Two impacts match that lie on one side, nearer to each other than to the next ones on that side. Impacts count from
+`COUNTED` of the largest rate of their run on, and from swings on of a tenth of `LEAST_TILT`: smaller ones an engine
+does not tell from the compliance of its contact.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from analytic.rocking import RockingModel
+
+if TYPE_CHECKING:
+    from analytic import Response, Scene
+
+COUNTED = 0.1
+LEAST_TILT = 0.01  # of the slenderness: a smaller tilt is compared as one of that size
+
+
+def impacts_of(response: Response) -> np.ndarray:
+    """Rows of time [s], rate before and rate after [rad/s], shape (impacts, 3)."""
+    rows = [(impact.time, impact.rate_before, impact.rate_after) for impact in response.impacts]
+    return np.array(rows, dtype=float).reshape(-1, 3)
+
+
+def matched(scene: Scene, impacts: np.ndarray, others: np.ndarray, until: float) -> tuple[np.ndarray, np.ndarray]:
+    """(those of `impacts` that count up to `until`, the index in `others` of each one's match, -1 without)."""
+    partner = np.full(len(impacts), -1)
+    for side in (-1.0, 1.0):
+        mine, theirs = (np.flatnonzero(np.sign(rows[:, 1]) == side) for rows in (impacts, others))
+        if not (len(mine) and len(theirs)):
+            continue
+        time, other = impacts[mine, 0], others[theirs, 0]
+        nearest = np.searchsorted((other[1:] + other[:-1]) / 2, time)  # of the others to each of mine
+        back = np.searchsorted((time[1:] + time[:-1]) / 2, other)
+        mutual = back[nearest] == np.arange(len(mine))
+        partner[mine[mutual]] = theirs[nearest[mutual]]
+    counted = counts(scene, impacts) & ~(impacts[:, 0] > until)
+    return impacts[counted], partner[counted]
+
+
+def counts(scene: Scene, impacts: np.ndarray, share: float = COUNTED) -> np.ndarray:
+    """Whether each impact counts, from `share` of the largest rate on. A NaN does: it must be found."""
+    model = RockingModel.of(scene)
+    before, after = np.abs(impacts[:, 1:]).T
+    pull = abs(model.accelerations(1.0, 0.0, 0.0, 0.0, 0.0)[0])
+    least = math.sqrt(2 * pull * 0.1 * LEAST_TILT * model.gamma)  # rate at the impact of a swing that small
+    small = (before < max(least, share * np.nanmax(before, initial=0.0))) | (np.fmax(before, after) < least)
+    return ~small
+
+
+def parting(scene: Scene, one: Response, other: Response) -> float:
+    """Time [s] of the first impact that counts of either run without a match in the other; inf where all match."""
+    pairs = (one, other), (other, one)
+    rows = (matched(scene, impacts_of(here), impacts_of(there), math.inf) for here, there in pairs)
+    return float(min(impacts[partner < 0, 0].min(initial=math.inf) for impacts, partner in rows))
