@@ -61,34 +61,13 @@ def confusion(a: npt.ArrayLike, b: npt.ArrayLike) -> Confusion:
 def wilson(count: float, size: float, level: float = 0.95) -> tuple[float, float]:
     """Wilson score interval (low, high) of a probability seen `count` times in `size` (Wilson 1927).
 
-    Neither need be whole: of runs that depend on each other, `size` is their effective number.
+    Neither need be whole: of runs that depend on each other, `size` is the number of independent ones.
     """
     z = norm.ppf(0.5 + level / 2)
     share, spread = count / size, z**2 / size
     half = math.sqrt(spread * (share * (1 - share) + spread / 4))
     ends = [(share + spread / 2 + side * half) / (1 + spread) for side in (-1, 1)]
     return 0.0 if count == 0 else float(max(ends[0], 0.0)), 1.0 if count == size else float(min(ends[1], 1.0))
-
-
-def design_effect(seen: npt.ArrayLike, groups: Sequence[Any]) -> float:
-    """Variance of the share of `seen`, by groups that are independent, over that of independent runs; at least 1.
-
-    The variance by groups is the usual robust one, with the factor G/(G - 1); below 1 it would be luck to rely on
-    (Korn and Graubard 1998, Survey Methodology 24, 193-201). 1 where all or none are seen: then nothing varies.
-
-    Parameters
-    ----------
-    seen : bool array, shape (n,)
-    groups : sequence, length n
-        Of each run: runs of one group may depend on each other.
-    """
-    seen, (names, places) = np.asarray(seen, dtype=float), np.unique(groups, return_inverse=True)
-    share = seen.mean()
-    if share in (0.0, 1.0) or len(names) < 2:
-        return 1.0
-    totals = np.bincount(places, weights=seen - share)
-    robust = len(names) / (len(names) - 1) * (totals**2).sum() / len(seen) ** 2
-    return max(float(robust / (share * (1 - share) / len(seen))), 1.0)
 
 
 def equality(differs: npt.ArrayLike, groups: Sequence[Any] | None = None) -> tuple[str, tuple[float, float]]:
@@ -102,12 +81,13 @@ def equality(differs: npt.ArrayLike, groups: Sequence[Any] | None = None) -> tup
     differs : bool array, shape (n,), n >= 1
         Run by run; a failed one differs.
     groups : sequence of length n, optional
-        As `design_effect`; None: all runs are independent.
+        Of each run: runs of one group, as of one record, may all depend on each other, and so count as one run. None:
+        all runs are independent.
     """
     differs = np.asarray(differs, dtype=bool)
-    effect = 1.0 if groups is None else design_effect(differs, groups)
-    low, high = wilson(differs.sum() / effect, len(differs) / effect)
-    if wilson(0, len(differs))[1] >= EQUAL and low <= EQUAL:
+    size = len(differs) if groups is None else len(set(groups))
+    low, high = wilson(float(differs.mean()) * size, size)
+    if wilson(0, size)[1] >= EQUAL and low <= EQUAL:
         return TOO_FEW, (low, high)
     return "yes" if high < EQUAL else "no", (low, high)
 

@@ -12,7 +12,7 @@ from analytic.errors import SceneError
 from analytic.margins import SPAN, TILT, limit_states, margins
 from analytic.nearby import SHARE, cliffs, nearby
 from analytic.records.folder import reversed_sign
-from analytic.response import COMPARED, about_record
+from analytic.response import COMPARED, EDGE, about_record
 
 from ..showing.motions import LIFTED, odds
 from ..showing.parts import number, signed
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from ..running.provenance import Result
 
+AGREE = (COMPARED, EDGE)  # where a run without differences agrees with the model
 WORST = ("stands", "rocks", "failed", "overturns")  # of a record's motions, from the best to the worst
 WORDS = {
     "stands": "does not lift",
@@ -199,12 +200,12 @@ def _engines(rows):
     engines = [row for row in rows if row["engine"] != "analytic"]
     if not engines:
         return "None was run."
-    agree = [row["engine"] for row in engines if row.get("comparable") == COMPARED and not row.get("differences")]
+    agree = [row["engine"] for row in engines if row.get("comparable") in AGREE and not row.get("differences")]
     sentences = [f"{listed(agree)} agree{'s' * (len(agree) == 1)} with the analytic model"] if agree else []
     for row in engines:
-        words = [f"failed: {row['failure']['reason']}"] if row["failure"] else different(row)
-        words = words if row["engine"] in agree else words or ["was not compared"]
-        sentences += [f"{row['engine']} {sentence}" for sentence in words]
+        if row["engine"] not in agree:
+            words = [f"failed: {row['failure']['reason']}"] if row["failure"] else different(row)
+            sentences += [f"{row['engine']} {sentence}" for sentence in words or ["was not compared"]]
     return "; ".join(sentences) + "."
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from analytic.response import COMPARED
 from engines import missing_words
 
 from ..showing.parts import number, percent
@@ -46,7 +45,7 @@ def outcomes(rows: Sequence[Mapping[str, Any]]) -> str:
         undecided = not row.get("decided", True) and row["outcome"] != "failed"
         words = f"is {row['outcome_text']}" if undecided else WORDS.get(row["outcome"], row["outcome"])
         by_outcome.setdefault(words, []).append(row["engine"])
-    off = [row["engine"] for row in rows if row.get("differences") and row["comparable"] == COMPARED]
+    off = [row["engine"] for row in rows if row.get("differences")]
     most = max(map(len, by_outcome.values()), default=0)
 
     def who(solvers):

@@ -42,7 +42,8 @@ class Figure:
 
 @dataclass(frozen=True)
 class Mark:
-    """What a study says of one solver: in words, and as "good", "fair", "bad" or "none", which says nothing of trust.
+    """What a study says of one solver: in words, and as "good", "fair" or "bad"; "part" where so little was tested that
+    it cannot be said; or "none", which says nothing of trust.
 
     note: the number of runs or scenes behind it, and what else the words leave out. value: the number itself.
     """
@@ -61,15 +62,18 @@ class Judgement:
     """A row of the report's first table. heading: with unit. marks: {(engine, variant): `Mark`}; variant "" is the
     default one.
 
-    key: by which others find it. rates: whether its levels count in the one rating of a variant. says: how a mark's
-    words stand in a sentence, with {} in their place; "": in none.
+    key: by which others find it. says: how a mark's words stand in a sentence, with {} in their place; "": in none.
     """
 
     heading: str
     marks: dict
     key: str = ""
-    rates: bool = True
     says: str = ""
+
+    @property
+    def rates(self) -> bool:
+        """Whether it counts in the one rating of a variant: it says something of trust, of one solver at least."""
+        return any(mark.level != "none" for mark in self.marks.values())
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,6 @@ class Explained(NamedTuple):
     unit: str = "-"
 
 
-MEDIAN = "of a summary: [median, largest, number] of its size"
 INTERVAL = "interval of {} (95 %, bootstrap over runs): [low, high]"
 
 SHARED = {
@@ -95,6 +94,10 @@ OWN: dict[str, dict[str, Explained]] = {
         "high": Explained("amplitude half way to the boundary above"),
         "min_normal": Explained("least N/(m g) of the analytic model; below 0 it holds the corner down"),
         "room": Explained("relative distance to the nearer of low and high"),
+        "radius": Explained("of a drawn block, base corner to centre of mass", "m"),
+        "base_mass": Explained("of a drawn block: of its base over its own; null: rigid ground"),
+        "law": Explained("of a drawn block's bearings; null: none"),
+        "period": Explained("of a drawn block on its bearings, at their stiffness after yielding", "s"),
         "shift": Explained("of the engine's boundary from the model's, relative"),
         "half_width": Explained("of the bracket in which that boundary lies, relative"),
         "runs": Explained("runs that the search took"),
@@ -127,12 +130,15 @@ OWN: dict[str, dict[str, Explained]] = {
         "dispersion_shift": Explained("dispersion of the engine over that of the model"),
         "detectable_shift": Explained("ratio of medians that the test would have found with 80 % probability"),
         "p_holm": Explained("p_value adjusted over limit states, by Holm"),
+        "class": Explained('"right" or "differs" (how the block ends, and when), "failed" or "left out"'),
+        "comparable": Explained('"yes", or why no engine is compared in this scene'),
+        "quantities": Explained("in what the run differs from the model, by name"),
         "seed": Explained("of the synthetic motion"),
     },
     "recorded": {
         "record": Explained("name of the record, of both its components"),
         "component": Explained('of the record: "a" or "b"'),
-        "configuration": Explained('"free-standing" or "isolated"; of a summary also "both"'),
+        "configuration": Explained('"free-standing" or "isolated"'),
         "intensity": Explained("peak ground velocity times omega_r over g tan(slenderness), as scaled"),
         "scale": Explained("factor on the motion as it was recorded"),
         "base_mass": Explained("of the base over the block's"),
@@ -145,20 +151,17 @@ OWN: dict[str, dict[str, Explained]] = {
         "comparable": Explained('"yes", or why no engine is compared in this scene'),
         "horizon": Explained("time up to which peaks are compared in all engines", "s"),
         "own_horizon": Explained("time up to which the engine's own errors let peaks be compared", "s"),
-        "class": Explained('"right" or "differs" (overturning), "failed" or "left out"'),
+        "class": Explained('"right" or "differs" (how the block ends, and when), "failed" or "left out"'),
+        "differences": Explained("in what the run differs from the model, in words"),
+        "quantities": Explained("in what the run differs from the model, by name"),
         "model_outcome": Explained("of the analytic model"),
         "model_tilt": Explained("peak tilt of the analytic model over the slenderness"),
         "model_displacement": Explained("peak base displacement of the analytic model", "m"),
         **{
-            f"{own}{peak}_error": Explained(f"relative error of the peak {words} up to {until}; {MEDIAN}")
+            f"{own}{peak}_error": Explained(f"relative error of the peak {words} up to {until}")
             for own, until in (("", "the common horizon"), ("own_", "the engine's own horizon"))
             for peak, words in (("tilt", "tilt"), ("displacement", "base displacement"))
         },
-        "differing": Explained("of the runs, those with another outcome than the model, or failed"),
-        "left_out": Explained("runs that are not judged"),
-        "interval": Explained("95 % Wilson interval of the differing share, by record: [low, high]"),
-        "design_effect": Explained("variance of that share by records over that of independent runs"),
-        "equal": Explained('whether the interval ends below 5 %: "yes", "no" or "too few to say"'),
     },
     "sensitivity": {
         "change": Explained("how the scene was changed; null: an engine in place of the model"),

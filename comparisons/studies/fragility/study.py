@@ -9,7 +9,9 @@ import numpy as np
 
 from analytic.rocking import RockingModel
 from engines import get_engine
+from engines.comparison import END, Reference, compare
 
+from ...measuring.classes import class_of
 from ...running.cases import Case
 from ...running.study import Batch, Computed
 from .cloud import DAMPING, DRAWN, PEAKS, PERIOD, RADII, SCENES, STRETCH, X_MAX, Cloud, cloud
@@ -25,8 +27,9 @@ CHANGE = 1e-4  # relative change of the restitution: the model's own sensitivity
 MODEL, PERTURBED = ("analytic", ""), ("analytic", "perturbed")
 NEAR = (1.3, 6.0)  # PGA/(g tan γ) of the runs that engines get: there outcomes are mixed
 TIME_LIMIT = 60.0  # s, of an engine's run; a stiff corner that hardly lifts may take more, and fails
-# runs: of the analytic model, of default variants, of the tier "defaults" (gross errors show in few)
-FULL, QUICK = (2000, 60, 20), (200, 6, 2)
+# runs: of the analytic model, of default variants (of 73 motions and more, none differing shows equality), of the tier
+# "defaults" (gross errors show in few)
+FULL, QUICK = (2000, 80, 20), (200, 6, 2)
 TILTS = (0.1, 0.5, 1.0)  # limit states of |tilt|/slenderness
 KEPT = ("overturns", "tilt", "displacement")
 
@@ -55,14 +58,20 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
     }
 
 
+def beside_model(case: Case, response: Response) -> dict[str, Any]:
+    """What is kept of an engine's run: in what it differs from the model, too."""
+    differences = compare(case.scene, response).differences
+    return {**measure(case, response), "quantities": [one.quantity for one in differences]}
+
+
 def plan(request: Request, scenes: dict[str, Any] | None = None, runs: tuple[int, int, int] | None = None) -> Plan:
     """The plan of the study; an answer with one scene more each time.
 
-    Rows by "part": "fit" and "effect" (see `comparisons.studies.fragility.fits`), "cost" (CPU seconds per run), "check"
-    and "failure". The model with its restitution changed by `CHANGE` is the variant "perturbed" of "analytic". Arrays,
-    float32: ``<scene>/<drawn>``, of all runs, with PGV and Sa; ``<scene>/<engine>, <variant>/tilt`` and
-    ``/displacement`` of the first in ``<scene>/near`` (``<scene>/analytic/``: of all): NaN where a run failed, the tilt
-    infinite where it overturned.
+    Rows by "part": "fit" and "effect" (see `comparisons.studies.fragility.fits`), "run" (an engine's, its class by how
+    the block ends), "cost" (CPU seconds per run), "check" and "failure". The model with its restitution changed by
+    `CHANGE` is the variant "perturbed" of "analytic". Arrays, float32: ``<scene>/<drawn>``, of all runs, with PGV and
+    Sa; ``<scene>/<engine>, <variant>/tilt`` and ``/displacement`` of the first in ``<scene>/near``
+    (``<scene>/analytic/``: of all): NaN where a run failed, the tilt infinite where it overturned.
 
     Parameters
     ----------
@@ -81,16 +90,18 @@ def plan(request: Request, scenes: dict[str, Any] | None = None, runs: tuple[int
         curves = fits(drawn.measures, states, model)
         undecided = sum(not row.values["decided"] for row in whole if not row.failed)
         failed = sum(row.failed for row in whole)
+        ends = {int(seed): Reference.of(drawn.scenes[seed]).end_comparable for seed in near}
         check = {"runs": len(whole), "undecided": undecided, "failed": failed}
         found = [*curves, {"part": "check", "engine": "analytic", "variant": "", **check}, *_runs(MODEL, whole)]
         made = {**drawn.drawn, **{key: drawn.measures[key] for key in ("PGV", "Sa")}, **_kept("analytic", model)}
         for pair, cases in _compared(drawn, near, counts[2], variants):
             label = ", ".join(filter(None, pair))
-            run = yield Batch(cases, measure, f"{name}: {label}", TIME_LIMIT)
+            run = yield Batch(cases, measure if pair == PERTURBED else beside_model, f"{name}: {label}", TIME_LIMIT)
             few, theirs = near[: len(cases)], values_of(run)
             ours = {key: array[few] for key, array in model.items()}
             found += effects(drawn.measures, few, states, (ours, theirs), curves, pair)
             found += _runs(pair, run)
+            found += [_run_row(pair, row, ends) for row in run if pair != PERTURBED]
             made |= _kept(label, theirs)
         rows += [{"scene": name, **row} for row in found]
         arrays |= {f"{name}/{key}": array.astype(np.float32) for key, array in made.items()} | {f"{name}/near": near}
@@ -136,6 +147,14 @@ def _more_elastic(scene):
 
 def _kept(label, values):
     return {f"{label}/{key}": values[key] for key in KEPT[1:]}
+
+
+def _run_row(pair, row, ends):
+    """The row of an engine's run; ends: whether runs of a seed's scene can be judged by how the block ends."""
+    seed = row.case.tag["seed"]
+    quantities = row.values.get("quantities")
+    known = {"comparable": ends[seed], "class": class_of(ends[seed], quantities, END), "quantities": quantities}
+    return {"part": "run", "engine": pair[0], "variant": pair[1], "seed": seed, **known}
 
 
 def _runs(pair, results):

@@ -13,6 +13,8 @@ from ...showing.charts import Axis, Chart, figure, key_of
 from ...showing.figures import MOVED, lines
 from ...showing.parts import Head, Judgement, Mark, Page, number, percent
 from ...showing.rows import NAME, Column, grouped, setting_of, table, where
+from .drawn import FREQUENCY as FREQUENCIES
+from .drawn import JUMPS, ROOM
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
@@ -40,7 +42,7 @@ LARGEST = Column("largest shift [%]", lambda row: row["largest"] and 100 * row["
 def page(result: Result) -> Page:
     """The `Page` of a `Result` of the overturning study."""
     s, shapes = result.settings, result.settings["shapes"]
-    edges, shifts, held = (where(result.rows, part=part) for part in ("edge", "shift", "held"))
+    edges, shifts, held, drawn = (where(result.rows, part=part) for part in ("edge", "shift", "held", "drawn edge"))
     pressed = {_place(edge) for edge in edges if edge["min_normal"] >= 0}
     known = [row for row in shifts if _place(row) in pressed]
     rated = list(_rated(result))
@@ -54,12 +56,14 @@ def page(result: Result) -> Page:
             "the first impact dissipates so much energy that the block does not overturn. Engines are rated by where "
             "they put these boundaries, as long as the analytic model keeps the block pressed on its base. An "
             "outcome nearer to a boundary than the engine's shift is not certain.",
+            *_under_jumps(result),
         ),
         first=(
             _maps(result, shapes[:1]),
             table(
-                "Boundaries under all pulses on both grounds, block pressed on its base; outcomes further than "
-                f"{band} from them; a boundary where its normal force N would be negative is shown, and does not count",
+                f"Boundaries under all pulses on both grounds, and of {len(drawn)} blocks drawn in the promised range, "
+                f"block pressed on its base; outcomes further than {band} from those on both grounds; a boundary where "
+                "the normal force N would be negative is shown, and does not count",
                 rated,
                 NAME,
                 Column("rating", lambda row: RATINGS[row["rating"]]),
@@ -82,9 +86,10 @@ def page(result: Result) -> Page:
                 [edge for edge in edges if _place(edge) in pressed],
                 known,
             ),
+            _drawn(drawn, where(result.rows, part="drawn shift")),
             table(
                 "Boundaries not found, within 30 % or half-way to the next one",
-                [row for row in shifts if row["shift"] is None],
+                where(result.rows, part={"shift", "drawn shift"}, shift=None),
                 NAME,
                 GROUND,
                 PULSE,
@@ -140,13 +145,14 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     """Largest shift of a boundary, by (engine, variant)."""
     marks = {}
     for row in _rated(result):
-        lost = row["of"] - row["found"]
-        words = "none found" if row["largest"] is None else percent(row["largest"]) + (f", {lost} lost" if lost else "")
-        share = f"{row['found']} of {row['of']} boundaries found, median {percent(row['median'])}"
+        every = row["of"] + row["beyond"]
+        words = f"{percent(row['largest'])} at {row['found']} of {every} boundaries"
+        note = f"median {percent(row['median'])}; {row['of'] - row['found']} not found"
         if row["beyond"]:
-            share += f"; with N < 0: {row['beyond_found']} of {row['beyond']}"
-            share += f", {percent(row['beyond_largest'])}" if row["beyond_found"] else ""
-        marks[row["engine"], row["variant"]] = Mark(words, row["rating"], share, row["largest"])
+            note += f"; {row['beyond']} with N < 0 do not count, found {row['beyond_found']}"
+            note += f", {percent(row['beyond_largest'])}" if row["beyond_found"] else ""
+        words = "none found" if row["largest"] is None else words
+        marks[row["engine"], row["variant"]] = Mark(words, row["rating"], note, row["largest"])
     return (
         Judgement(
             "overturning boundary under pulses: shift, worst", marks, says="overturning boundaries move by at most {}"
@@ -161,8 +167,8 @@ def _place(row):
 def _rated(result):
     """A summary and a rating of each variant that is run at its default, where the block stays pressed on its base;
     beyond: the boundaries where it does not."""
-    pressed = {_place(edge) for edge in where(result.rows, part="edge") if edge["min_normal"] >= 0}
-    for (name,), every in grouped(where(result.rows, part="shift"), NAME.of).items():
+    pressed = {_place(edge) for edge in where(result.rows, part={"edge", "drawn edge"}) if edge["min_normal"] >= 0}
+    for (name,), every in grouped(where(result.rows, part={"shift", "drawn shift"}), NAME.of).items():
         members, others = ([row for row in every if (_place(row) in pressed) == inside] for inside in (True, False))
         beyond = _summary(others) if others else {"of": 0, "found": 0, "largest": None}
         counts = [row for row in where(result.rows, part="confusion", region="outside") if NAME.of(row) == name]
@@ -289,8 +295,8 @@ def _over_frequency(shifts, engines):
     )
 
 
-def _boundaries(caption, edges, shifts):
-    """A table of boundaries with the shifts of each setting in a column of its own."""
+def _boundaries(caption, edges, shifts, *columns):
+    """A table of boundaries, with more columns, and the shifts of each setting in a column of its own."""
     found = {(NAME.of(row), *_place(row)): row["shift"] for row in shifts}
 
     def shift(name, edge):
@@ -301,6 +307,7 @@ def _boundaries(caption, edges, shifts):
         caption,
         edges,
         GROUND,
+        *columns,
         PULSE,
         FREQUENCY,
         AMPLITUDE,
@@ -332,6 +339,37 @@ def _held_down(edges, shifts, held):
             "adapter holds the corner down, as the model does, show whether contact or integration moves them."
         )
     yield _boundaries("Boundaries at which the analytic model holds the corner down", pulled, [*shifts, *held])
+
+
+def _drawn(edges, shifts):
+    """The drawn blocks, with the shifts of each setting in a column of its own."""
+    return _boundaries(
+        "Blocks drawn at random in the promised range, each under one pulse: shift of its lowest boundary",
+        edges,
+        shifts,
+        Column("slenderness γ [rad]", "slenderness", 3),
+        Column("R [m]", "radius", 3),
+        Column("base mass over block mass [-]", lambda row: "rigid" if row["base_mass"] is None else row["base_mass"]),
+        Column("bearings", lambda row: row["law"] or "–"),
+        Column("period [s]", "period", 3),
+    )
+
+
+def _under_jumps(result):
+    """A sentence on the tuned engines whose largest shift is under a pulse that begins with a jump; none without."""
+    own = result.settings["default_variants"]
+    rows = where(result.rows, part={"shift", "drawn shift"})
+    pressed = {_place(edge) for edge in where(result.rows, part={"edge", "drawn edge"}) if edge["min_normal"] >= 0}
+    found = []
+    for engine in result.settings["engines"]:
+        mine = [
+            row for row in where(rows, engine=engine, variant=own[engine]) if row["shift"] and _place(row) in pressed
+        ]
+        worst = max(mine, key=lambda row: abs(row["shift"]), default=None)
+        if worst and worst["shape"] in JUMPS:
+            found.append(f"{engine}: {percent(worst['shift'])} under a {worst['shape']} pulse")
+    if found:
+        yield f"Largest where the ground’s acceleration begins with a jump: {'; '.join(found)}."
 
 
 def _confusions(result, band):
@@ -407,7 +445,10 @@ def _how(result):
         f"{min(s['frequencies']):g} to {max(s['frequencies']):g} times the rocking frequency, amplitudes of "
         f"{s['amplitudes'][0]:g} to {s['amplitudes'][1]:g} g tan γ, on two grounds ({grounds}). Each engine bisects "
         f"for its own to ± {percent(s['tolerance'] / 2, 1)} at default settings. Where the normal force of the "
-        "analytic model becomes negative, that model is the one not to be trusted, and the boundary is not rated.",
+        "analytic model becomes negative, that model is the one not to be trusted, and the boundary is not rated. The "
+        "drawn blocks are those of the random scenes, at rest; shapes of pulses take turns, frequencies are drawn from "
+        f"{FREQUENCIES[0]:g} to {FREQUENCIES[1]:g} times the rocking frequency; of each the lowest boundary that no "
+        f"other one is nearer to than {percent(ROOM, 1)}.",
         f"Trusted: all boundaries found, shifted by at most {percent(LIMIT, 1)}, no outcome that differs beyond the "
         f"band; usable: all found, at most {percent(FAIR, 1)}. Tier assisted: the adapter applies the impact, so "
         "that the boundaries test the integration alone; no other level is tried.",

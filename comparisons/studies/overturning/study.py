@@ -17,6 +17,7 @@ from ...measuring.statistics import cohen_kappa, confusion
 from ...running.cases import Case, variant_settings
 from ...running.refine import together
 from ...running.study import Batch, Computed, say
+from .drawn import drawn_columns, drawn_edges
 from .edges import HIGHEST, LOWEST, edges, least_normal, locate, pulse
 
 if TYPE_CHECKING:
@@ -51,7 +52,8 @@ STEPPING = {
 class Grid:
     """What the study covers. frequencies over omega_r; scan: amplitudes over g tan(slenderness) of the coarse scan.
 
-    size: amplitudes and frequencies of the analytic maps. levels: which of a variant's refinement levels.
+    size: amplitudes and frequencies of the analytic maps. levels: which of a variant's refinement levels. drawn: how
+    many blocks of the promised range.
     """
 
     grounds: tuple[str, ...]
@@ -60,11 +62,12 @@ class Grid:
     scan: tuple[float, ...]
     size: tuple[int, int]
     levels: slice
+    drawn: int
 
 
 SCAN = tuple(np.geomspace(1.05, 19.5, 11).tolist())
-FULL = Grid(tuple(GROUNDS), SHAPES, (2.0, 4.0, 6.0, 8.0), SCAN, (240, 141), slice(None))
-QUICK = Grid(tuple(GROUNDS), SHAPES[:1], (2.0, 4.0), SCAN[::4], (60, 36), slice(1, 2))
+FULL = Grid(tuple(GROUNDS), SHAPES, (2.0, 4.0, 6.0, 8.0), SCAN, (240, 141), slice(None), 20)
+QUICK = Grid(tuple(GROUNDS), SHAPES[:1], (2.0, 4.0), SCAN[::4], (60, 36), slice(1, 2), 2)
 
 
 @dataclass(frozen=True)
@@ -100,9 +103,10 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     """The plan of the study: an answer first at default settings alone, then growing; grid: in place of FULL or QUICK.
 
     Rows by "part": "edge" (a boundary of the analytic model), "shift" (an engine's beside it, of its default variant
-    and of those of the tier "defaults"), "held" (the same with the corner held down, where the model's normal force is
-    negative), "refinement" (the same at refinement levels), "confusion" (counts of outcomes), "disagreement" (an
-    outcome that differs outside the band) and "failure".
+    and of those of the tier "defaults"), "drawn edge" and "drawn shift" (the same of blocks drawn at random), "held"
+    (the same with the corner held down, where the model's normal force is negative), "refinement" (the same at
+    refinement levels), "confusion" (counts of outcomes), "disagreement" (an outcome that differs outside the band) and
+    "failure".
 
     Arrays: frequency, amplitude; ``<ground>/<shape>``: int16, shape (amplitudes, frequencies), impacts before
     overturning in the analytic model, -1 where it does not overturn. ``points``: shape (n, 8): ground, shape, engine
@@ -143,6 +147,12 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     rows += yield from runs.search("shift", default, found, DISTANCES, TOLERANCE)
     coarser = [one for one in first_scripts if one not in default]
     rows += yield from runs.search("shift", coarser, found, LEVEL_DISTANCES, LEVEL_TOLERANCE)
+    say(f"analytic boundaries: {grid.drawn} drawn blocks")
+    drawn = drawn_edges(grid.drawn)
+    rows += [{"part": "drawn edge", **vars(edge), **drawn_columns(scene)} for scene, edge in drawn]
+    others = _Runs({edge.ground: scene for scene, edge in drawn})
+    for settings_of, *how in ((default, DISTANCES, TOLERANCE), (coarser, LEVEL_DISTANCES, LEVEL_TOLERANCE)):
+        rows += yield from others.search("drawn shift", settings_of, [edge for _, edge in drawn], *how)
     pulled = [edge for edge in found if edge.min_normal < 0]
     rows += yield from runs.search("held", held, pulled, DISTANCES, TOLERANCE)
     records = _compared(runs.outcomes, default, grounds, found)
@@ -150,6 +160,7 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     rows += [*_confusions(records, default, grounds), *_disagreements(records)]
     described = [*itertools.starmap(_described, variants), STEPPING]
     settings = _settings(request, grid, grounds, described)
+    rows += others.failures
     yield Computed(settings, rows + runs.failures, arrays)
     chosen = [edge for edge in found if edge.shape == SHAPES[0] and edge.frequency == LEVEL_FREQUENCY]
     for setting in _refined(described, grid.levels):
@@ -217,7 +228,7 @@ class _Runs:
     outcomes: {(engine, ground, shape, frequency, amplitude): (overturns, or None where undecided; whether of the scan)}
     """
 
-    def __init__(self, grounds: Mapping[str, Scene], default: Sequence[Setting]) -> None:
+    def __init__(self, grounds: Mapping[str, Scene], default: Sequence[Setting] = ()) -> None:
         self.outcomes: dict[tuple[Any, ...], tuple[bool | None, bool]] = {}
         self.failures: list[dict[str, Any]] = []
         self._grounds, self._default = grounds, default

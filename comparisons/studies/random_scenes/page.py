@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from analytic.response import EDGE
+
+from ...measuring.classes import CLASSES
 from ...measuring.statistics import wilson
 from ...showing.charts import Axis
 from ...showing.figures import ranks
@@ -13,7 +16,6 @@ from ...showing.rows import NAME, Column, grouped, table, where
 if TYPE_CHECKING:
     from ...running.provenance import Result
 
-CLASSES = ("right", "differs", "failed", "left out")
 TRUSTED = 0.95  # share of right runs, of those not left out
 LEAST = 1e-3  # that the figure's axis begins at
 TICKS = ((1e-3, "≤ 0.1 %"), (1e-2, "1 %"), (0.1, "10 %"), (1.0, "100 %"))
@@ -41,13 +43,14 @@ def page(result: Result) -> Page:
                 Axis("runs that differ or fail", LEAST, 1.0, "log", TICKS),
             ),
             table(
-                "Random scenes in the range of a statue: right within 2 % of both peaks, 0.01 of the restitution, "
-                "outcome and number of impacts",
+                "Random scenes in the range of a statue: right in the outcome, the time of a fall, the number of "
+                "impacts, and within 2 % of both peaks, 0.01 of the restitution and 10 % of an impact's loss",
                 counts,
                 NAME,
                 Column("tier", "tier"),
                 *(Column(name, name) for name in CLASSES),
                 Column("right, of those not left out", "share", percent=True, within="share_within"),
+                Column("on an edge, and beyond it", "{beyond} of {edge}"),
             ),
         ),
         more=(
@@ -63,8 +66,9 @@ def page(result: Result) -> Page:
             f"{settings['scenes']} scenes drawn at random (seed {result.provenance['seed']}, of the commit): "
             f"{limits}; let go or under a pulse, until the outcome is decided. {settings['below_range']} "
             "whose peak tilt stays below the range are not run.",
-            "Left out: the normal force falls to 0, the friction demand is more than any contact provides, or the "
-            "scene is on an edge, where a change by 10⁻⁴ makes as large a difference in the analytic model.",
+            "Left out, of all engines alike: the normal force falls to 0, the friction demand is more than any contact "
+            "provides, or the scene is on an edge, where a change by 10⁻⁴ makes such a difference in the analytic "
+            "model. Beyond it: runs of those scenes that fail, or lie outside what such changes do in the model.",
         ),
         evidence=tuple(
             (f"{NAME.text(row)}, scene {row['index']}: {row['failure']['reason']}", row["failure"]["message"])
@@ -80,6 +84,8 @@ def tallies(result: Result) -> list[dict[str, Any]]:
     for (engine, variant), rows in grouped(result.rows, "engine", "variant").items():
         counts = {name: len(where(rows, **{"class": name})) for name in CLASSES}
         judged = len(rows) - counts["left out"]
+        edge = where(rows, comparable=EDGE)
+        beyond = [row for row in edge if row.get("failure") or row.get("differences")]
         wrong = judged - counts["right"]
         found.append(
             {
@@ -88,6 +94,8 @@ def tallies(result: Result) -> list[dict[str, Any]]:
                 "tier": rows[0]["tier"],
                 **counts,
                 "judged": judged,
+                "edge": len(edge),
+                "beyond": len(beyond),
                 "share": counts["right"] / judged if judged else None,
                 "share_within": wilson(counts["right"], judged) if judged else None,
                 "wrong": wrong / judged if judged else None,

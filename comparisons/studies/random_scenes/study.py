@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from analytic import simulate
-from analytic.response import COMPARED, UNCOMPARED
 from engines import get_engine
-from engines.comparison import compare
+from engines.comparison import Reference
 from engines.statue_range import RANGE, in_words
 
+from ...measuring.classes import class_of
 from ...running.cases import Case
 from ...running.provenance import commit_seed
 from ...running.study import Batch, Computed
@@ -62,17 +62,20 @@ def plan(request: Request, *, seed: Seed = None, scenes: Number = None) -> Plan:
 
 
 def _failed(row: Row) -> dict[str, Any]:
-    """What is kept of a run that failed: left out where no run of its scene is compared, of all engines alike."""
-    why = compare(row.case.scene, simulate(row.case.scene, history=False)).comparable  # with itself: whether it holds
-    return {"class": "failed" if why == COMPARED else "left out", "comparable": why, "failure": row.failure}
+    """What is kept of a run that failed: left out where no run of its scene is judged, of all engines alike."""
+    why = Reference.of(row.case.scene).comparable
+    return {"class": class_of(why, None), "comparable": why, "failure": row.failure}
 
 
 def compared(case: Case, response: Response) -> dict[str, Any]:
-    """Measure: the class of a run, and in what it differs, or why it is left out."""
-    word = "left out" if response.comparable not in (COMPARED, UNCOMPARED) else "right"
+    """Measure: the class of a run, and in what it differs, or why it is left out.
+
+    A scene on an edge is left out of all engines alike; in what a run of it differs all the same is kept.
+    """
+    quantities = [one.quantity for one in response.differences]
     return {
-        "class": "differs" if response.differences and word == "right" else word,
+        "class": class_of(response.comparable, quantities),
         "comparable": response.comparable,
         "differences": [str(one) for one in response.differences],
-        "quantities": [one.quantity for one in response.differences],
+        "quantities": quantities,
     }

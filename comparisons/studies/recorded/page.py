@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from analytic.records.fema import PREFIX
 
-from ...measuring.statistics import TOO_FEW
+from ...measuring.statistics import TOO_FEW, equality
 from ...showing.charts import Axis, Chart, figure, key_of
 from ...showing.figures import LOOKS
 from ...showing.parts import Figure, Judgement, Mark, Page, number, percent, short
 from ...showing.rows import NAME, Column, grouped, table, where
 from ...showing.wording import equal_mark
+from .study import ERRORS
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
 
 BOTH = "both"  # of the column "configuration": free-standing and isolated together
+COUNTED = {"differing": ("differs", "failed"), "failed": ("failed",)}  # {column: classes}
 LEAST, FALLEN, MOST = 0.01, 4.0, 6.0  # tilt over slenderness: the axes begin, "overturns" stands, and they end
 TICKS = ((0.01, "≤ 0.01"), (0.1, "0.1"), (1.0, "1"), (FALLEN, "overturns"))
 PEAKS = {"tilt": "peak tilt", "displacement": "peak base displacement"}
@@ -49,21 +54,23 @@ def page(result: Result) -> Page:
     """The `Page` of a `Result` of recorded motions."""
     if absent := where(result.rows, part="absent"):
         return Page("Recorded motions: not computed, no records are installed", (f"{absent[0]['reason']}.",))
-    summaries, runs = where(result.rows, part="summary"), where(result.rows, part="run")
+    runs = where(result.rows, part="run")
+    summaries = [row for members in grouped(runs, "engine", "variant").values() for row in summary(members)]
     both = where(summaries, configuration=BOTH)
     equal = f"{100 * result.settings['equal']:g} %"
     return Page(
         _title(both, equal),
         (
-            "The end point is overturning. Equal means that the upper limit of the interval is below "
-            f"{equal}; a failed run counts as differing. Where so few runs could not show that even if none "
-            "differed, they are too few to say.",
+            "What counts is how the block ends: whether it stands, rocks or overturns, and in which swing it falls. "
+            f"Equal means that the upper limit of the interval is below {equal}; a failed run counts as differing. "
+            "Runs under one record may all tell the same: the interval takes a record as one run. Where so few "
+            "records could not show equality even if no run differed, they are too few to say.",
         ),
         first=(
             _tilts(runs),
             table(
-                "Free-standing and isolated together: runs with another outcome than the analytic model, "
-                f"with 95 % Wilson intervals by record; equal: at most {equal} differ",
+                "Free-standing and isolated together: runs with another outcome than the analytic model or a fall at "
+                f"another time, with 95 % Wilson intervals by record; equal: at most {equal} differ",
                 both,
                 NAME,
                 Column("tier", "tier"),
@@ -99,6 +106,7 @@ def page(result: Result) -> Page:
                 Column("engine", "outcome"),
                 Column("peak tilt, model [-]", "model_tilt"),
                 Column("peak tilt, engine [-]", lambda row: row.get("tilt")),
+                Column("in what", lambda row: "; ".join(row.get("differences", ())) or None),
             ),
         ),
         how=_how(result),
@@ -114,7 +122,8 @@ def page(result: Result) -> Page:
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
     """Whether the outcomes are equal to the model's, and the errors of the peaks, by (engine, variant)."""
-    rows = {(row["engine"], row["variant"]): row for row in where(result.rows, part="summary", configuration=BOTH)}
+    runs = grouped(where(result.rows, part="run"), "engine", "variant")
+    rows = {pair: where(summary(members), configuration=BOTH)[0] for pair, members in runs.items()}
     return (
         Judgement(
             "outcomes that differ under recorded motions",
@@ -125,7 +134,6 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
             Judgement(
                 f"{words} under recorded motions: error, median",
                 {name: _peak_mark(row[f"{key}_error"]) for name, row in rows.items()},
-                rates=False,
                 says="median peak tilts are off by {}" if key == "tilt" else "",
             )
             for key, words in PEAKS.items()
@@ -133,9 +141,35 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     )
 
 
+def summary(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    """Rows of a variant from its runs, one for each configuration and one for both together.
+
+    runs: those judged; differing: of these, with another outcome, a fall at another time, or failed. interval: of their
+    share, the components and configurations of a record taken as one group; equal: by
+    `comparisons.measuring.statistics.equality`. Each of `ERRORS`: [median, largest, number] of its absolute values.
+    """
+    for configuration in (*dict.fromkeys(row["configuration"] for row in rows), BOTH) if rows else ():
+        mine = [row for row in rows if configuration in (row["configuration"], BOTH)]
+        judged = [row for row in mine if row["class"] != "left out"]
+        found = {key: rows[0][key] for key in ("engine", "variant", "tier")}
+        found |= {"configuration": configuration, "runs": len(judged)}
+        found |= {"left_out": len(mine) - len(judged), **dict.fromkeys(("interval", "equal"))}
+        found |= {word: sum(row["class"] in words for row in judged) for word, words in COUNTED.items()}
+        if judged:
+            differs, groups = [row["class"] != "right" for row in judged], [row["record"] for row in judged]
+            word, interval = equality(differs, groups)
+            found |= {"interval": interval, "equal": word}
+        yield found | {name: _spread([row.get(name) for row in judged]) for name in ERRORS}
+
+
+def _spread(errors: Sequence[float | None]) -> list[float | int] | None:
+    known = np.abs([error for error in errors if error is not None])
+    return [float(np.median(known)), float(known.max()), len(known)] if len(known) else None
+
+
 def _outcomes_mark(row):
     if not row["runs"]:
-        return Mark("no run judged", "none")
+        return Mark("no run judged", "part")
     return equal_mark(row["differing"], row["failed"], row["runs"], row["equal"], row["interval"])
 
 
@@ -148,8 +182,8 @@ def _peak_mark(errors):
 
 def _title(both: list[dict[str, Any]], equal: str) -> str:
     words = [row["equal"] for row in both]
-    title = f"Recorded motions: {words.count('yes')} of {len(words)} settings of engines overturn what the model "
-    title += f"overturns, within {equal}"
+    title = f"Recorded motions: {words.count('yes')} of {len(words)} settings of engines end as the model does, "
+    title += f"within {equal}"
     few = words.count(TOO_FEW)
     return title + (f"; {few} have too few runs to say" if few else "")
 
@@ -216,9 +250,9 @@ def _how(result: Result) -> tuple[str, ...]:
         f"{', '.join(settings['laws'])}. The ranges were chosen once, by the outcomes of the model alone: {mix}.",
         "Tuned settings of the engines in question run all of them, their defaults and the tuned settings of other "
         f"engines {settings['records_of_others']} records, both components. Left out, of all engines alike: {reasons}; "
-        "on an edge: a change of the scene by 10⁻⁴ is another outcome in the model. Components and configurations of a "
-        "record are not independent: the interval is Wilson’s with the number of runs over the design effect, the "
-        "variance by records over the binomial one, at least 1 (Korn and Graubard 1998).",
+        "on an edge: with a change of the scene by 10⁻⁴ the block ends otherwise in the model. Components and "
+        "configurations of a record are not independent: the interval is Wilson’s of the share of runs, with the "
+        "number of records in place of that of runs.",
         "The common horizon is where a change of the model by 10⁻⁴ has moved its tilt by a hundredth of the "
         "slenderness, the engine’s own where a change as large as its errors has. A peak too small to count is not "
         "compared.",

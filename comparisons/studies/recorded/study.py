@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -12,12 +12,14 @@ from analytic import simulate
 from analytic.errors import SceneError
 from analytic.records.fema import PREFIX
 from analytic.records.folder import folder_motions
-from analytic.response import COMPARED, EDGE, OUTCOMES
+from analytic.response import OUTCOMES
 from engines import get_engine
-from engines.comparison import LEAST_DISPLACEMENT, LEAST_TILT, compare, near_copies
+from engines.comparison import END, LEAST_DISPLACEMENT, Reference, compare
+from engines.matching import LEAST_TILT
 
+from ...measuring.classes import class_of
 from ...measuring.horizon import PERTURBATION, SAMPLES_PER_PERIOD, sensitivity_horizon, solver_horizon
-from ...measuring.statistics import EQUAL, design_effect, equality
+from ...measuring.statistics import EQUAL
 from ...running.cases import Case, variant_settings
 from ...running.sources import version_of
 from ...running.study import Batch, Computed
@@ -34,8 +36,6 @@ if TYPE_CHECKING:
 FULL, QUICK = (None, 20), (2, 1)
 TIME_LIMIT = 900.0  # s, of a run: motions of 90 s with a fixed step, on a machine that does other things besides
 NAMES = ("record", "component", "configuration")
-BOTH = "both"  # configurations together
-COUNTED = {"differing": ("differs", "failed"), "failed": ("failed",)}  # {column: classes}
 ERRORS = ("tilt_error", "displacement_error", "own_tilt_error", "own_displacement_error")
 
 Folder = Annotated[
@@ -47,9 +47,8 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
     """The plan of the study; an answer with one variant more each time.
 
     Rows by "part": "scene", what was drawn for a component in a configuration, and the model's answer; "run", one for
-    each run of an engine, beside that answer; "summary", one for each variant and configuration, and for both together,
-    see `summary`; "absent", alone, where there are no records. Of a record the answer keeps its name, the scale,
-    outcomes and peaks.
+    each run of an engine, beside that answer; "absent", alone, where there are no records. Of a record the answer keeps
+    its name, the scale, outcomes, peaks and times of falls.
 
     Parameters
     ----------
@@ -97,7 +96,7 @@ def plan(request: Request, *, records: Folder = None) -> Plan:
         ]
         run = yield Batch(cases, of_engine, f"{engine}, {variant}", TIME_LIMIT)
         mine = [_run_row(row, known) for row in run]
-        rows = [*rows, *summary(mine), *mine]
+        rows = [*rows, *mine]
         settings = {**settings, "variants": [*settings["variants"], variant_settings(engine, variant)]}
         answer = Computed(settings, rows, seed=SEED)
         yield answer
@@ -126,24 +125,24 @@ def _model_cases(found: dict[str, list[SampledMotion]]) -> list[Case]:
 
 def of_model(case: Case, response: Response) -> dict[str, Any]:
     """Measure of the model's run; comparable: "yes", or why no run is compared, of all engines alike."""
-    scene, fallen = case.scene, response.outcome == "overturns"
-    comparable = compare(scene, response).comparable  # with itself: whether the model holds
-    if comparable == COMPARED:
-        copies = (simulate(copy, history=False).outcome == "overturns" for copy in near_copies(scene))
-        comparable = EDGE if any(other != fallen for other in copies) else COMPARED
+    scene, comparable = case.scene, Reference.of(case.scene).end_comparable
+    fallen = response.outcome == "overturns"
     horizon = min(sensitivity_horizon(scene).horizon, response.unstable_time if fallen else np.inf)
     return {**_kept(response), "comparable": comparable, "horizon": float(horizon)}
 
 
 def of_engine(case: Case, response: Response) -> dict[str, Any]:
-    """Measure of an engine's run: relative errors of its peaks up to the common horizon, and up to its own."""
+    """Measure of an engine's run: in what it differs from the model, and relative errors of its peaks up to the common
+    horizon, and up to its own."""
     step = 2 * np.pi / case.scene.rocking_frequency / SAMPLES_PER_PERIOD
     model = simulate(case.scene, output_step=step)
     own = solver_horizon(case.scene, response, model).horizon
     if model.outcome == "overturns":
         own = min(own, model.unstable_time)
     errors = [*_errors(case.scene, response, model, case.tag["horizon"]), *_errors(case.scene, response, model, own)]
-    return {**_kept(response), "own_horizon": own, **dict(zip(ERRORS, errors, strict=True))}
+    differences = compare(case.scene, response).differences
+    told = {"differences": [str(one) for one in differences], "quantities": [one.quantity for one in differences]}
+    return {**_kept(response), **told, "own_horizon": own, **dict(zip(ERRORS, errors, strict=True))}
 
 
 def _kept(response):
@@ -174,47 +173,18 @@ def _run_row(row: Row, known: Iterable[dict[str, Any]]) -> dict[str, Any]:
     tag = {key: row.case.tag[key] for key in NAMES}
     (model,) = (one for one in known if tag.items() <= one.items())
     variant = get_engine(row.case.solver).variants[row.case.variant]
-    same = not row.failed and (row.values["outcome"] == "overturns") == (model["outcome"] == "overturns")
-    judged = model["comparable"] == COMPARED
-    word = ("failed" if row.failed else "right" if same else "differs") if judged else "left out"
     return {
         "part": "run",
         "engine": row.case.solver,
         "variant": row.case.variant,
         "tier": variant.tier,
         **tag,
-        "class": word,
+        "class": class_of(model["comparable"], row.values.get("quantities"), END),
         "comparable": model["comparable"],
         "horizon": model["horizon"],
         **{f"model_{key}": model[key] for key in ("outcome", "tilt", "displacement")},
         **({"outcome": "failed", "failure": row.failure} if row.failed else row.values),
     }
-
-
-def summary(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:
-    """Rows of a variant from its runs, one for each configuration and one for both.
-
-    runs: those judged; differing: of these, with another outcome or failed. interval: of their share, the components
-    and configurations of a record taken as one group; design_effect: what that costs; equal: by
-    `comparisons.measuring.statistics.equality`. Each of `ERRORS`: [median, largest, number] of its absolute values.
-    """
-    for configuration in (*RANGES, BOTH) if rows else ():
-        mine = [row for row in rows if configuration in (row["configuration"], BOTH)]
-        judged = [row for row in mine if row["class"] != "left out"]
-        found = {key: rows[0][key] for key in ("engine", "variant", "tier")}
-        found |= {"part": "summary", "configuration": configuration, "runs": len(judged)}
-        found |= {"left_out": len(mine) - len(judged), **dict.fromkeys(("interval", "design_effect", "equal"))}
-        found |= {word: sum(row["class"] in words for row in judged) for word, words in COUNTED.items()}
-        if judged:
-            differs, groups = [row["class"] != "right" for row in judged], [row["record"] for row in judged]
-            word, interval = equality(differs, groups)
-            found |= {"interval": interval, "design_effect": design_effect(differs, groups), "equal": word}
-        yield found | {name: _spread([row.get(name) for row in judged]) for name in ERRORS}
-
-
-def _spread(errors: Sequence[float | None]) -> list[float | int] | None:
-    known = np.abs([error for error in errors if error is not None])
-    return [float(np.median(known)), float(known.max()), len(known)] if len(known) else None
 
 
 def _mix(configuration, known):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...measuring.errors import rms
@@ -16,11 +17,11 @@ if TYPE_CHECKING:
 FLOOR = 1e-9  # errors below are drawn here
 BOUNDS = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
 
-ERROR = Column("error of restitution, rms [-]", "rms")
+ERROR = Column("error of restitution by swings, rms [-]", "rms")
 DRAWN_ERROR = Column(ERROR.head, lambda row: row["rms"] and max(row["rms"], FLOOR))
 MEAN, WORST = Column("mean error [-]", "bias"), Column("worst impact [-]", "worst")
 JUMP = Column("base velocity jump, relative error, rms [-]", "jump_rms")
-STATE = Column("error of restitution by states, rms [-]", "rms_state")
+STATE = Column("error of restitution at the impact, rms [-]", "rms_state")
 WORST_JUMP = Column("worst base velocity jump [-]", "jump_worst")
 LATE = Column("impact times, relative, rms [-]", "time_rms")
 LOST = Column("lost impacts [-]", "lost")
@@ -87,7 +88,7 @@ def page(result: Result) -> Page:
                 MEAN,
                 ERROR,
                 WORST,
-                Column("rms from tilt rates at the impact [-]", "rms_state"),
+                STATE,
                 JUMP,
                 Column("against (8) as printed [-]", "jump_8_printed"),
                 LATE,
@@ -118,17 +119,20 @@ def _ground(row):
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """Error of restitution and of the base velocity jump, by (engine, variant)."""
+    """Error of restitution at the impact, free and on bearings, and of the base velocity jump, by (engine, variant).
+
+    Free rocking is rated by the worse of that and the error by swings, which has what an engine loses in flight.
+    """
     rows, borne = rated(result), where(result.rows, part="bearings", factor="all")
     return (
         Judgement(
-            "restitution, free rocking: error, rms",
-            {(row["engine"], row["variant"]): _mark(row, "rms", "worst") for row in rows},
+            "restitution at impacts, free rocking: error, rms",
+            {(row["engine"], row["variant"]): _free_mark(row) for row in rows},
             RESTITUTION,
             says="restitution is off by {} free",
         ),
         Judgement(
-            "restitution on bearings: error, rms",
+            "restitution at impacts, on bearings: error, rms",
             {(row["engine"], row["variant"]): _mark(row, "rms_state", "worst_state") for row in borne},
             says="by {} on bearings",
         ),
@@ -139,20 +143,36 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     )
 
 
+def _free_mark(row):
+    mark = _mark(row, "rms_state", "worst")
+    return replace(mark, level=rating(_error(row), _wrong(row)), note=f"{mark.note}; by swings {number(row['rms'], 2)}")
+
+
+def _error(row):
+    """The worse of both measures of free rocking; None where one of them is not known."""
+    return None if None in (row["rms"], row["rms_state"]) else max(row["rms"], row["rms_state"])
+
+
+def _wrong(row):
+    """Runs that failed and impacts that were missed."""
+    return row["failed"] + row["lost"]
+
+
 def _mark(row, error, worst):
-    """A lost impact is an error: it takes the rating away as a failed run does."""
+    """A missed impact is an error: it takes the rating away as a failed run does."""
     if row[error] is None:
         return Mark("none measured", "bad", f"{row['failed']} of {row['runs']} runs failed")
-    counts = {"impacts": row["impacts"], "lost": row["lost"], "runs failed": row["failed"]}
-    note = ", ".join(f"{count} {words}" for words, count in counts.items() if count)
-    level = rating(row[error], row["failed"] + row["lost"])
-    return Mark(number(row[error], 2), level, f"{note}; worst {number(row[worst], 2)}", row[error])
+    wrong = {"failed": row["failed"], "missed": row["lost"]}
+    words = ", ".join([number(row[error], 2), *(f"{count} {what}" for what, count in wrong.items() if count)])
+    level = rating(row[error], _wrong(row))
+    note = f"{row['impacts']} impacts of {row['runs']} runs, worst {number(row[worst], 2)}"
+    return Mark(words, level, note, row[error])
 
 
 def rated(result: Result) -> list[dict[str, Any]]:
     """A row for each variant at its default setting, with the worse of both grounds: what the first screen rates it by.
 
-    Settings, rms, worst, jump_rms, jump_worst, impacts, lost, failed, runs, orders and rating in words.
+    Settings, rms, worst, rms_state, jump_rms, jump_worst, impacts, lost, failed, runs, orders and rating in words.
     """
     variants = {NAME.of(variant): variant for variant in result.settings["variants"]}
     orders = grouped(where(result.rows, part="order"), NAME.of)
@@ -166,21 +186,20 @@ def _rated(variant, rows, orders):
     def most(key):
         return max((row[key] for row in rows if row[key] is not None), default=None)
 
-    errors = {key: most(key) for key in ("rms", "worst", "jump_rms", "jump_worst")}
+    errors = {key: most(key) for key in ("rms", "worst", "rms_state", "jump_rms", "jump_worst")}
     counts = {key: sum(row[key] for row in rows) for key in ("runs", "failed", "impacts", "lost")}
-    wrong = counts["failed"] + counts["lost"]
+    found = {**errors, **counts}
     return {
         **variant,
         "level": variant["default"],
-        **errors,
-        **counts,
+        **found,
         "orders": [row["order"] for row in orders if row["order"] is not None],
-        "rating": trust(errors["rms"], wrong).removesuffix(" where a per cent does not matter"),
+        "rating": trust(_error(found), _wrong(found)).removesuffix(" where a per cent does not matter"),
     }
 
 
 def _title(ranked):
-    good = [row for row in ranked if rating(row["rms"], row["failed"] + row["lost"]) == "good"]
+    good = [row for row in ranked if rating(_error(row), _wrong(row)) == "good"]
     missed = max((row["rms"] for row in ranked if row not in good and row["rms"]), default=None)
     return f"One impact: {len(good)} of {len(ranked)} settings of engines keep restitution within {TRUSTED:g}" + (
         f"; the others miss it by up to {number(missed, 2)}" if missed else ""

@@ -169,12 +169,13 @@ def _row(part, key, runs):
         **key,
         "runs": len(runs),
         "failed": len(runs) - len(sound),
-        "impacts": len(_errors(sound, "swing")),
-        "lost": sum(len(run.values["model"]) - len(run.values["errors"]["late"]) for run in sound),
+        "impacts": len(_errors(sound, "state")),
+        "lost": sum(run.values["lost"] for run in sound),
         "bias": of("swing", np.mean),
         "rms": of("swing", rms),
         "worst": of("swing", worst),
         "rms_state": of("state", rms),
+        "worst_state": of("state", worst),
         "jump_rms": of("jump", rms),
         "jump_worst": of("jump", worst),
         "jump_8": of("jump_8", rms),
@@ -223,19 +224,12 @@ def _on_bearings(runs):
                 parted.setdefault((factor, run.case.tag[factor]), []).append(run)
         for (factor, value), some in parted.items():
             row = _row("bearings", {"engine": engine, "variant": variant, "factor": factor, "of": value}, some)
-            sound = _sound(some)
-            states = _errors(sound, "state")
-            yield {
-                **{key: row[key] for key in BEARING_COLUMNS},
-                "impacts": len(states),
-                "lost": sum(run.values["lost"] for run in sound),
-                "worst_state": float(worst(states)) if len(states) else None,
-            }
+            yield {key: row[key] for key in BEARING_COLUMNS}
 
 
 BEARING_COLUMNS = (
-    "part", "engine", "variant", "factor", "of", "runs", "failed", "rms_state", "jump_rms", "jump_worst", "time_rms",
-    "cpu_per_second",
+    "part", "engine", "variant", "factor", "of", "runs", "failed", "impacts", "lost", "rms_state", "worst_state",
+    "jump_rms", "jump_worst", "time_rms", "cpu_per_second",
 )  # fmt: skip
 
 

@@ -115,7 +115,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
         for row in _defaults(result)
     }
     heading = "CPU time over the analytic model's, isolated rocking"
-    return (Judgement(heading, marks, COST, rates=False, says="{} the model's CPU time"),) if marks else ()
+    return (Judgement(heading, marks, COST, says="{} the model's CPU time"),) if marks else ()
 
 
 RATIO = Column("CPU time over the analytic model's [-]", "ratio")

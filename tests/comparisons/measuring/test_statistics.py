@@ -10,7 +10,6 @@ from comparisons.measuring.statistics import (
     cohen_kappa,
     compare,
     confusion,
-    design_effect,
     detectable_difference,
     equality,
     holm,
@@ -98,29 +97,27 @@ def test_wilson_takes_sizes_that_are_not_whole():
     assert wilson(0, 100) == pytest.approx((0.0, 1.959964**2 / (100 + 1.959964**2))) and wilson(7, 7)[1] == 1.0
 
 
-def test_the_design_effect_of_independent_runs_is_one_and_of_twins_two():
-    seen = np.random.default_rng(3).random(4000) < 0.1
-    assert design_effect(seen, range(4000)) == pytest.approx(4000 / 3999)  # groups of one: the factor G/(G - 1) alone
-    assert design_effect(np.repeat(seen, 2), np.repeat(range(4000), 2)) == pytest.approx(2 * 4000 / 3999)
-    assert design_effect(seen, np.repeat(range(2000), 2)) == pytest.approx(1.0, abs=0.08)  # pairs of independent runs
-    # as written out: totals of the groups about the mean 1/4 are 1, -1/2 and -1/2
-    assert design_effect([True, True, *[False] * 6], list("aabbccdd")) == pytest.approx(
-        (4 / 3) * (1.5**2 + 3 * 0.5**2) / 8**2 / ((1 / 4) * (3 / 4) / 8)
-    )
-    assert design_effect([True, False] * 4, np.repeat(range(4), 2)) == 1.0  # less than independent runs: not relied on
-    assert design_effect([False] * 8, list("aabbccdd")) == design_effect([True, False], list("aa")) == 1.0
-
-
 def test_equal_means_that_the_upper_limit_is_below_five_per_cent():
-    pairs = np.repeat(range(50), 2)
-    word, (low, high) = equality(np.zeros(100, dtype=bool), pairs)
+    word, (low, high) = equality(np.zeros(100, dtype=bool))
     assert word == "yes" and low == 0.0 and high == pytest.approx(0.037, abs=5e-4)  # 0 of 100: 3.7 %
-    one, two = np.zeros(200, dtype=bool), np.zeros(200, dtype=bool)
-    one[:4], two[[0, 10, 20, 30]] = True, True
-    assert equality(two, np.repeat(range(50), 4))[0] == equality(two)[0] == "no"  # 4 of 200: 5.03 %
-    assert equality(one, np.repeat(range(50), 4))[1][1] > equality(two)[1][1]  # all in one record: known less well
+    two = np.zeros(200, dtype=bool)
+    two[[0, 10, 20, 30]] = True
+    assert equality(two)[0] == "no"  # 4 of 200: 5.03 %
     two[30] = False
     assert equality(two)[0] == "yes" and equality(np.zeros(73, dtype=bool))[0] == "yes"
+
+
+def test_runs_of_one_record_count_as_one():
+    """However many they are: 0 of 187 runs under 50 records say no more than 0 of 50."""
+    records = [k % 50 for k in range(187)]
+    word, (low, high) = equality(np.zeros(187, dtype=bool), records)
+    assert word == "too few to say" and low == 0.0
+    assert high == pytest.approx(1.959964**2 / (50 + 1.959964**2)) == pytest.approx(0.0713, abs=1e-4)
+    one = np.arange(187) == 3
+    assert equality(one, records)[1] == wilson(50 / 187, 50)  # the share of runs, known as well as that of 50
+    assert equality(one, records)[1][1] > high  # a run that differs never makes it surer
+    assert equality(one, range(187)) == equality(one)
+    assert equality([True] * 40 + [False] * 147, records)[0] == "no"
 
 
 def test_few_runs_acquit_nobody_and_can_convict():

@@ -37,8 +37,18 @@ def test_what_was_not_tested_is_said_and_counts_for_less_than_trust():
 def test_the_worst_mark_is_the_rating(level):
     judgement = Judgement("a", {FINE: Mark("x", level)})
     assert decided(restitution(), judgement)[FINE].rating.level == level
-    apart = Judgement("a", {FINE: Mark("x", level)}, rates=False)
-    assert decided(restitution(), apart)[FINE].rating.level == "good"
+
+
+def test_a_row_that_only_informs_changes_no_rating():
+    """Whatever it says of whom; where it rates one, whom it does not test is not trusted in all."""
+    informs = Judgement("peak", {FINE: Mark("42 %", "none"), COARSE: Mark("0.1 %", "none")})
+    alone, beside = decided(restitution()), decided(restitution(), informs)
+    assert {name: one.rating for name, one in alone.items()} == {name: one.rating for name, one in beside.items()}
+    assert alone[FINE].rating.words == "✓ trust" and not informs.rates
+    few = Judgement("outcomes", {FINE: Mark("0 of 9 (at most 30 %)", "part")})
+    assert few.rates and decided(restitution(), few)[FINE].rating.words == "✓ as far as tested"
+    rates = Judgement("peak", {FINE: Mark("42 %", "none"), COARSE: Mark("x", "bad")})
+    assert decided(restitution(), rates)[FINE].rating.level == "part"
 
 
 def test_a_study_of_engines_as_they_come_judges_the_default_variant():
@@ -48,7 +58,7 @@ def test_a_study_of_engines_as_they_come_judges_the_default_variant():
 
 
 def test_the_recommended_engine_computes_its_impacts_itself_and_the_cheapest_wins():
-    judgements = restitution(), Judgement("cost", {FINE: Mark("9", "none", value=9.0)}, COST, rates=False)
+    judgements = restitution(), Judgement("cost", {FINE: Mark("9", "none", value=9.0)}, COST)
     found = list(decided(*judgements).values())
     assert (best_of(found).engine, best_of(found).cost) == (
         "exudyn",

@@ -69,7 +69,7 @@ def test_the_rating_of_restitution_is_the_same_on_the_first_screen_and_on_its_pa
     assert len(rows) >= 8
     for row in rows:
         marks = decision[row["engine"], row["variant"]].marks
-        assert row["rating"] == words[marks["restitution, free rocking: error, rms"].level]
+        assert row["rating"] == words[marks["restitution at impacts, free rocking: error, rms"].level]
 
 
 @pytest.mark.parametrize("name, k", [(name, k) for name in STORED for k, _ in enumerate(shown(name)[1])])

@@ -2,7 +2,8 @@
 
 import pytest
 
-from comparisons.showing.wording import indexed, listed
+from analytic.response import COMPARED, EDGE, UNCOMPARED, Difference
+from comparisons.showing.wording import differing, equal_mark, indexed, listed
 
 
 @pytest.mark.parametrize(
@@ -18,3 +19,28 @@ def test_only_a_letter_has_an_index():
     )
     for name in ("rate_before_1", "RSN1605_DUZCE_DZC270.AT2", "analytic._cache", "tilt_at_0.5", "a_long_name"):
         assert indexed(name) == name
+
+
+def test_what_differs_is_said_near_an_edge_too():
+    found = Difference("peak_tilt", 0.0189, 0.009, 0.02, (0.00807, 0.00999))
+    words = "peak tilt 0.0189 rad, in the analytic model 0.009 (0.00807 to 0.00999 within 1e-4 of the scene)"
+    assert differing(COMPARED, [found]) == differing(EDGE, [found]) == [f"differs from the analytic model: {words}"]
+    assert differing(COMPARED, []) == differing(UNCOMPARED, []) == []
+    assert differing(EDGE, []) == [
+        "agrees with the analytic model within what a change of the scene by 1e-4 does in the model"
+    ]
+    assert differing("N <= 0", []) == ["cannot be compared with the analytic model: N <= 0"]
+
+
+@pytest.mark.parametrize(
+    "differing_runs, equal, interval, level",
+    [
+        (0, "yes", (0.0, 0.03), "good"),
+        (1, "no", (0.01, 0.06), "fair"),
+        (9, "no", (0.06, 0.2), "bad"),
+        (0, "too few to say", (0.0, 0.071), "part"),
+    ],
+)
+def test_so_few_runs_that_they_say_nothing_are_no_trust_either(differing_runs, equal, interval, level):
+    mark = equal_mark(differing_runs, 0, 90, equal, interval)
+    assert mark.level == level and mark.words.startswith(f"{differing_runs} of 90 (at most ")

@@ -100,7 +100,9 @@ def test_an_engine_that_is_the_model_does_not_differ_and_the_page_says_what_woul
         assert row["left_out"] == 2 and row["both_stand"] + row["both_overturn"] == RUNS[1] - 2
     assert np.isnan(equal.arrays["free-standing/exudyn, compliant-corners/tilt"]).nonzero()[0].tolist() == [3, 7]
     mark = STUDY.judgements(equal)[0].marks["exudyn", "compliant-corners"]
-    assert mark.words.startswith(f"2 of {RUNS[1]} (at most 6.4 %)")  # Wilson; a failed run differs
+    runs = where(equal.rows, part="run", engine="exudyn", variant="compliant-corners")
+    runs = [row for row in runs if row["class"] != "left out"]  # three scenes on an edge, or where N falls to 0
+    assert len(runs) == 107 and mark.words.startswith("2 of 107 (at most 6.6 %)")  # Wilson; a failed run differs
     assert (mark.level, mark.note) == ("fair", "not shown to be equal; 2 failed")
     # two of ten fail in the tier "defaults": few as they are, they differ by more than 5 %
     assert STUDY.judgements(equal)[0].marks["pybullet", "first-script"].level == "bad"

@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections import Counter
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,12 +11,17 @@ from literature import ONE_SINE, under_a_pulse
 from page_numbers import number_in
 
 from analytic import PulseMotion, simulate
+from analytic.caryatid import MASS
+from analytic.motion import PULSES
 from comparisons.running.refine import drive
 from comparisons.running.study import Request
 from comparisons.showing.rows import where
 from comparisons.studies.overturning import STUDY
+from comparisons.studies.overturning.drawn import FREQUENCY, JUMPS, drawn_edges
 from comparisons.studies.overturning.edges import Edge, edges, least_normal, locate, pulse
+from comparisons.studies.overturning.page import _under_jumps
 from comparisons.studies.overturning.study import QUICK
+from engines.statue_range import outside
 
 # the block of the published boundaries
 SCENE = under_a_pulse(1.0, 1.0).with_(motion=None, duration=None)
@@ -96,12 +102,12 @@ def shifted(shift, moves=lambda case: True, fails=lambda case: False):
     )
 
 
-def study(tmp_path, work, shape="one-sine", levels=True):
+def study(tmp_path, work, shape="one-sine", levels=True, drawn=0):
     """What the study finds where `work` answers on rigid ground under one shape of pulse, and its page.
 
-    levels: whether it goes on after the default settings.
+    levels: whether it goes on after the default settings. drawn: blocks drawn beside it.
     """
-    grid = dataclasses.replace(QUICK, grounds=("rigid ground",), shapes=(shape,))
+    grid = dataclasses.replace(QUICK, grounds=("rigid ground",), shapes=(shape,), drawn=drawn)
     found = answered(STUDY.plan(Request(("exudyn", "pybullet"), quick=True), grid), work, None if levels else 1)[-1]
     result = stored(tmp_path, "overturning", found)
     return result, STUDY.page(result).whole()
@@ -179,3 +185,53 @@ def test_boundaries_at_which_the_model_holds_the_corner_down_are_told_apart(tmp_
     (table,) = (table for table in page.tables if "exudyn, switched-joints [%]" in table.columns)
     assert [number_in(row[3]) for row in table.rows] == pytest.approx(pulled, rel=1e-5)
     assert [abs(number_in(row[-1])) < 2e-3 for row in table.rows] == [True] * len(held)
+
+
+def test_drawn_blocks_lie_in_the_promised_range_and_have_one_boundary_to_find():
+    found = drawn_edges(5)
+    assert [edge.shape for _, edge in found] == list(PULSES) and len({edge.ground for _, edge in found}) == 5
+    assert set(JUMPS) == {"one-cosine", "rectangular"}
+    for scene, edge in found:
+        assert scene.motion is None and not any(scene.start.model_dump().values())
+        assert not outside(scene, simulate(scene.with_(duration=1.0), history=False))
+        assert edge.rises and edge.min_normal >= 0 and FREQUENCY[0] <= edge.frequency <= FREQUENCY[1]
+        assert edge.low < 0.98 * edge.amplitude and edge.high > 1.02 * edge.amplitude
+        outcomes = [
+            simulate(scene.with_(motion=pulse(scene, edge.shape, edge.frequency, edge.amplitude * side))).outcome
+            for side in (0.995, 0.9999, 1.0001, 1.005)
+        ]
+        assert [outcome == "overturns" for outcome in outcomes] == [False, False, True, True]
+    again = drawn_edges(2)
+    assert [edge for _, edge in again] == [edge for _, edge in found[:2]]  # as many as one asks, the same first
+
+
+def test_the_bound_that_is_said_is_that_of_the_drawn_blocks_too(tmp_path):
+    """In place of the engines the model, shifted by .3 % at the drawn blocks alone, which are not the Caryatid's."""
+    moves = shifted(3e-3, lambda case: case.scene.block.mass != MASS)
+    result, page = study(tmp_path, moves, levels=False, drawn=2)
+    edges, shifts = where(result.rows, part="drawn edge"), where(result.rows, part="drawn shift")
+    assert len(edges) == 2 and len(shifts) == 2 * 4  # two engines, tuned and as they come
+    for row in shifts:
+        assert row["shift"] == pytest.approx(3e-3, abs=1.01 * row["half_width"])
+    assert all(abs(row["shift"]) <= 1.01 * row["half_width"] for row in where(result.rows, part="shift"))
+    every = len(where(result.rows, part="edge")) + 2
+    for mark in STUDY.judgements(result)[0].marks.values():
+        assert mark.words == f"0.30 % at {every} of {every} boundaries"
+    (drawn,) = (table for table in page.tables if "drawn at random" in table.caption)
+    assert [row[0] for row in drawn.rows] == [edge["ground"] for edge in edges]
+    assert [number_in(row[1]) for row in drawn.rows] == pytest.approx([e["slenderness"] for e in edges], rel=5e-3)
+    assert "0.30 % at most" in page.title
+
+
+def test_a_largest_shift_under_a_jump_is_said():
+    rows = [
+        {"part": "edge", "ground": "g", "shape": shape, "frequency": 2.0, "amplitude": 3.0, "min_normal": 0.5}
+        for shape in ("one-sine", "one-cosine")
+    ]
+    for engine, shifts in (("exudyn", (1e-4, -2e-3)), ("pybullet", (2e-4, 1e-4))):
+        for edge, shift in zip(tuple(rows[:2]), shifts, strict=True):
+            rows.append({**edge, "part": "shift", "engine": engine, "variant": "v", "shift": shift})
+    settings = {"engines": ["exudyn", "pybullet"], "default_variants": {"exudyn": "v", "pybullet": "v"}}
+    assert list(_under_jumps(SimpleNamespace(rows=rows, settings=settings))) == [
+        "Largest where the ground’s acceleration begins with a jump: exudyn: −0.20 % under a one-cosine pulse."
+    ]

@@ -7,7 +7,7 @@ import pytest
 from page_numbers import number_in
 
 from analytic import Block, PulseMotion, Scene
-from analytic.response import COMPARED
+from analytic.response import COMPARED, EDGE
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.study import Request
 from comparisons.running.sweep import Row
@@ -66,7 +66,10 @@ def test_tables_and_marks_count_the_stored_rows(result):
         classes.setdefault(NAME.of(row), Counter())[row["class"]] += 1
     table, marks = study.page(result).opening().tables[0], study.judgements(result)[0].marks
     assert study.page(result).whole().tables[0] == table and [row[0] for row in table.rows] == list(classes)
-    for name, _, *counts, share in table.rows:
+    for name, _, *counts, share, edge in table.rows:
+        mine = [row for row in result.rows if NAME.of(row) == name and row["comparable"] == EDGE]
+        beyond = sum(bool(row.get("failure") or row.get("differences")) for row in mine)
+        assert edge == f"{beyond} of {len(mine)}" and all(row["class"] == "left out" for row in mine)
         right, differs, failed, left_out = [classes[name][word] for word in ("right", "differs", "failed", "left out")]
         assert [int(count) for count in counts] == [right, differs, failed, left_out]
         assert number_in(share) == pytest.approx(100 * right / (right + differs + failed), rel=0.06)
