@@ -1,8 +1,18 @@
 """The first screen: ratings are the worst of what was tested, and what was not tested is said."""
 
+from types import SimpleNamespace
+
 import pytest
 
-from comparisons.report.answer import MOST_WORDS, best_of, not_to_do, paragraph, recommendation, setups_of
+from comparisons.report.answer import (
+    MOST_WORDS,
+    best_of,
+    not_to_do,
+    own_restitution,
+    paragraph,
+    recommendation,
+    setups_of,
+)
 from comparisons.showing.parts import COST, RESTITUTION, Judgement, Mark
 from comparisons.showing.wording import rating
 
@@ -75,3 +85,18 @@ def test_the_paragraph_says_the_first_table_in_few_words():
     words = paragraph(list(decided(*judgements).values()), judgements)
     assert words == "Tuned, exudyn: error 1e-05; boundary off by 0.1 %. By default: error 0.2."
     assert len(words.split()) <= MOST_WORDS
+
+
+def test_the_blocks_own_restitution_is_that_of_its_engines():
+    """The model's row, which has no error to tell, is no setup; a failed run takes the trust away and is said."""
+    row = {"engine": "exudyn", "variant": "fine", "rms": 1e-5, "worst": 2e-5, "failed": 0, "impacts": 9}
+    rows = [
+        {**row, "engine": "analytic", "variant": None, "rms": 1e-12},
+        row,
+        {**row, "variant": "coarse", "failed": 2},
+    ]
+    judgement = own_restitution(SimpleNamespace(rows=rows))
+    assert {name: (mark.words, mark.level) for name, mark in judgement.marks.items()} == {
+        FINE: ("1.0·10⁻⁵", "good"),
+        COARSE: ("1.0·10⁻⁵, 2 failed", "bad"),
+    }

@@ -9,6 +9,7 @@ from answered import answered, by_model, stored
 
 from analytic import simulate
 from analytic.linear_oscillator import displacement_spectrum
+from comparisons.measuring.fragility import fit_fragility
 from comparisons.running.study import Request
 from comparisons.showing.rows import where
 from comparisons.studies.fragility import STUDY, fits
@@ -141,6 +142,35 @@ def test_uplift_hangs_on_the_peak_over_the_uplift_acceleration(weaker):
     (best,), (usual,) = where(rows, best=True), where(rows, measure="PGA")
     assert best["measure"] == "PGA/(g tan γ)" and 1.0 < best["median"] < 2.0
     assert usual["dispersion"] > 2 * best["dispersion"]
+
+
+def test_a_dispersion_over_the_least_lies_in_its_interval(weaker):
+    rows = [row for row in where(weaker.rows, part="fit") if row["ratio_interval"]]
+    assert len(rows) > 10
+    for row in rows:
+        (least,) = where(weaker.rows, part="fit", state=row["state"], best=True)
+        low, high = row["ratio_interval"]
+        assert low < row["dispersion"] / least["dispersion"] < high and high > 1
+
+
+def test_a_detectable_shift_changes_the_share_by_the_detectable_difference(equal):
+    """Of the runs compared: how their probabilities fall where the median grows, by the curve itself."""
+    drawn = cloud(*FREE["free-standing"], RUNS[0])
+    near = equal.arrays["free-standing/near"]
+    rows = where(equal.rows, part="effect", engine="exudyn", variant="compliant-corners")
+    assert len(rows) == 4
+    for row in rows:
+        x = drawn.measures[row["measure"]][near]
+        states = np.delete(np.arange(len(near)), [3, 7])  # those that fail
+        exceeded = tilts(equal, near, row["state"])
+        curve = fit_fragility(x[states], exceeded[states])
+        less = curve.probability(x[states]) - curve.probability(x[states] / row["detectable_shift"] ** 1e-4)
+        assert less.mean() == pytest.approx(1e-4 * row["detectable_difference"], rel=1e-3)  # to first order
+
+
+def tilts(result, near, state):
+    tilt = result.arrays["free-standing/analytic/tilt"][near]
+    return np.isinf(tilt) if state == "overturning" else tilt > float(state.rpartition(" ")[2])
 
 
 def test_a_curve_is_drawn_only_where_it_fits(weaker):
