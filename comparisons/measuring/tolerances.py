@@ -19,8 +19,6 @@ from engines.tolerance_rows import ROUNDING
 
 from . import agreement
 
-SLACK = 2.0  # a bound is no looser than this times the measured worst
-
 
 @dataclass(frozen=True)
 class Tolerance:

@@ -40,6 +40,16 @@ def test_a_tilt_below_the_range_is_compared_as_one_at_its_limit():
     assert told(scene, peak_tilt=peak + 0.022 * least) == ["peak_tilt"]
 
 
+def test_a_displacement_too_small_to_count_is_compared_as_one_at_its_limit():
+    """A thousandth of a per cent of R gamma, .01 mm of a statue's."""
+    least = 1e-5 * BLOCK.radius * BLOCK.slenderness
+    scene = SHAKEN.with_(motion=PulseMotion("one-sine", 1e-6, 6.0))
+    peak = simulate(scene, history=False).peak_base_displacement
+    assert 0 < peak < least
+    assert told(scene, peak_base_displacement=peak + 0.018 * least) == []
+    assert told(scene, peak_base_displacement=peak + 0.022 * least) == ["peak_base_displacement"]
+
+
 def test_another_outcome_and_one_that_is_not_decided():
     assert told(FREE, outcome="overturns") == ["outcome"]
     assert told(FREE, outcome="overturns", decided=False) == []
