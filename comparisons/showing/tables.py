@@ -8,13 +8,12 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rich import box
-from rich.table import Table
 from rich.text import Text
 
 from engines.statue_range import in_words
 
 from ..running.readable import readable
-from .terminal import digits, echo, grid
+from .terminal import Grid, digits, echo, grid
 from .wording import differing
 
 if TYPE_CHECKING:
@@ -31,7 +30,7 @@ def _name(scene):
     return readable(scene.name, TITLE_CHARACTERS)
 
 
-def summary(scene: Scene, response: Response) -> Table:
+def summary(scene: Scene, response: Response) -> Grid:
     """The main figures of one response, as a table."""
     title = f"{_name(scene)}: {response.engine}" + (f", {response.variant}" if response.variant else "")
     rows = {
@@ -50,13 +49,13 @@ def summary(scene: Scene, response: Response) -> Table:
     return named_values(rows, title)
 
 
-def named_values(rows: Mapping[str, str], title: str) -> Table:
+def named_values(rows: Mapping[str, str], title: str) -> Grid:
     """A table of {name: value}."""
     look = {"box": box.SIMPLE, "padding": (0, 1), "show_header": False}
     return grid(["name", "value"], rows.items(), left=["value"], wraps=["name", "value"], title=Text(title), **look)
 
 
-def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[str, Horizon]) -> Table:
+def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[str, Horizon]) -> Grid:
     """Responses of several solvers side by side, the first being the reference; horizons: {solver: its `Horizon`}."""
     limit = "Not sensitive: the histories can be compared to the end." if horizons else "No sensitivity horizon known."
     if any(found.parts for found in horizons.values()):
@@ -94,7 +93,7 @@ def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[st
     return grid(heads, rows, left=["outcome"], title=Text(_name(scene)), show_edge=False, caption=caption)
 
 
-def show(table: Table, responses: Sequence[Response]) -> None:
+def show(table: Grid, responses: Sequence[Response]) -> None:
     """Print a table of responses, and below it in what each differs from the analytic model, and its warnings.
 
     Where the result depends on little of the motion, that stands last, in bold.
@@ -111,7 +110,7 @@ def remarks(response: Response) -> list[str]:
     return [f"{name} {one}" for one in words] + [f"Warning, {name}: {warning}" for warning in warnings]
 
 
-def engines_table(engines: Sequence[Engine]) -> Table:
+def engines_table(engines: Sequence[Engine]) -> Grid:
     """Who does what: of every variant its tier, what the engine computes and what the adapter imposes."""
     caption = Text(f"Tested for {in_words()}.\nrocking engines NAME: settings, refinement levels, versions.")
     heads = ["engine", "variant", "tier", "the engine computes", "the adapter imposes"]
