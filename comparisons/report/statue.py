@@ -11,7 +11,7 @@ from analytic import simulate, simulate_many
 from analytic.errors import SceneError
 from analytic.margins import SPAN, TILT, limit_states, margins
 from analytic.nearby import SHARE, cliffs, nearby
-from analytic.records.folder import reversed_sign
+from analytic.records.folder import reversed_sign, same_reversed
 from analytic.response import COMPARED, about_record
 
 from ..showing.motions import LIFTED, odds
@@ -79,7 +79,7 @@ def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: A
         ]
     except SceneError as error:  # too long to be run so often
         found["cautions"].append(f"The distance to another outcome was not searched: {error.remedy}.")
-    if scene.motion is not None and any(scene.start.model_dump().values()):  # else it is the mirrored run
+    if scene.motion is not None and not same_reversed(scene):  # else it is the mirrored run
         found["reversed"] = _figures(scene.with_(motion=reversed_sign(scene.motion)))
     found["motions"] = [_under(scene, record, group) for record, group in motions.items()]
     return found
