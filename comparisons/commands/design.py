@@ -83,6 +83,7 @@ def _by_targets(targets, made, json_file):
     from analytic.design import design_bearings, properties
 
     from ..schemas.advice import Constants, Design, Properties
+    from ..showing.parts import percent
     from ..showing.terminal import echo
 
     check_writable([json_file])
@@ -97,8 +98,8 @@ def _by_targets(targets, made, json_file):
             f"[bold]alpha[/bold] = {bearings.alpha:.4f}   for each of {bearings.count} bearings"
         ),
         f"back: secant period {back.period:.5g} s at {xmax:g} m ({back.period_kb:.4g} s with kb alone); "
-        f"damping {back.damping_paper:.2%} as W_D/(2 pi E_s), "
-        f"{back.damping_equivalent:.2%} as W_D/(4 pi E_s); "
+        f"damping {percent(back.damping_paper, 4)} as W_D/(2 pi E_s), "
+        f"{percent(back.damping_equivalent, 4)} as W_D/(4 pi E_s); "
         f"loss {back.cycle_loss:.5g} J a cycle and bearing",
     )
     write_output({json_file: Design(bearings=constants, properties=given)}, lambda: echo(*lines))
