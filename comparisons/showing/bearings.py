@@ -25,7 +25,9 @@ def print_bearings(
     scene: Scene, scan: BearingScan, stroke: float, tilt: float, motions: int, chosen: Mapping[str, Mapping[str, Any]]
 ) -> None:
     """Print the bearings named, a column each, or how near the best ones come where none hold."""
-    echo(f"{readable(scene.name, TITLE_CHARACTERS)}: {_wanted(stroke, tilt)}; motions: {motions}", wrap=True)
+    assert scene.base is not None  # the search asks for one
+    name, wanted = readable(scene.name, TITLE_CHARACTERS), _wanted(stroke, tilt)
+    echo(f"{name}: {wanted}; base: {scene.base.mass:g} kg; motions: {motions}", wrap=True)
     if not chosen:
         return echo(nothing_holds(scan, stroke), wrap=True)
     if len({(one["period"], one["damping"]) for one in chosen.values()}) == 1:
@@ -54,8 +56,8 @@ def nothing_holds(scan: BearingScan, stroke: float) -> str:
     row, column = np.abs(scan.dampings - damping).argmin(), np.abs(scan.periods - period).argmin()
     return (
         f"no bearings {_scanned(scan)} hold. Nearest: {period:.3g} s with {damping:.3g}, at "
-        f"{scan.demand[row, column]:.3g} times a limit, the base moving {scan.stroke[row, column]:.3g} m of {stroke:g}. "
-        "Allow more stroke, or --tilt; or widen, fix or lower the block."
+        f"{scan.demand[row, column]:.3g} times a limit, the base moving {scan.stroke[row, column]:.3g} m of {stroke:g}."
+        " Allow more stroke, or --tilt; or widen, fix or lower the block."
     )
 
 

@@ -66,6 +66,18 @@ def test_least_stroke_is_the_least_and_softest_the_longest():
     assert scan.softest[0] == scan.periods[run.any(axis=0)].max()
 
 
+def test_the_mass_of_the_base_does_not_matter_where_the_block_does_not_lift():
+    """Block and base then move as one: period and damping that hold are the same, the constants go with the mass."""
+    light, heavy = (
+        scan_bearings(SCENE.with_(base={"mass": share * SCENE.block.mass}), [SCENE.motion], 0.25)
+        for share in (0.1, 3.0)
+    )
+    assert ((light.demand <= 1) == (heavy.demand <= 1)).mean() > 0.999  # in rounding
+    assert light.least_stroke == heavy.least_stroke and light.softest == heavy.softest
+    ratio = heavy.bearings(*heavy.softest).ka / light.bearings(*light.softest).ka
+    assert ratio == pytest.approx(4.0 / 1.1, rel=1e-6)
+
+
 def test_where_nothing_holds_the_nearest_is_named():
     scan = scan_bearings(SCENE, [SCENE.motion], 0.02)
     assert scan.least_stroke is scan.softest is None
