@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -103,9 +104,18 @@ def _simulate(output, scene, motion, engines, variants, many):
         if scene:
             scenes = load_scenes(scene, motion)
             motions = {name: other_motions(one, *many) for name, one in scenes.items()}
-            make_own_results(output, scenes, engines=engines, variants=variants, motions=motions)
+            first = "" if motion is None else "First write this motion into the table [motion] of its file."
+            calls = {name: (_call(place, *many), first) for name, place in zip(scenes, scene, strict=True)}
+            make_own_results(output, scenes, engines=engines, variants=variants, motions=motions, calls=calls)
         else:
             make_results(output, motion, engines=engines)
+
+
+def _call(place, records, both_signs, directions, units):
+    """A scene and the options for its motions, as other commands take them."""
+    options = {"--records": records, "--directions": directions, "--units": records and units}
+    given = [word for name, value in options.items() if value is not None for word in (name, str(value))]
+    return shlex.join([place, *given, *(["--both-signs"] if both_signs else [])])
 
 
 def _studies(folder):

@@ -18,6 +18,7 @@ from ..showing.motions import LIFTED, odds
 from ..showing.parts import number, signed
 from ..showing.rows import Column, across, table
 from ..showing.wording import listed
+from .next_step import needed_by, next_step
 from .sections import different
 
 if TYPE_CHECKING:
@@ -38,7 +39,8 @@ STATES = {"tilt": f"Tilt above {TILT:g} γ", "stroke": "Base beyond x_max"}  # b
 
 @dataclass(frozen=True)
 class Card:
-    """title: name and outcome. loud: sentences as important as that. scene: as the result's settings have it.
+    """title: name and worst outcome. loud: sentences as important as that. next: a command, and what it is for. scene:
+    as the result's settings have it.
 
     margin: of the quantity whose outcome changes nearest, None where none does. sentences: (heading, sentence) pairs.
     tables: page parts.
@@ -46,6 +48,7 @@ class Card:
 
     title: str
     loud: list
+    next: tuple[str, str]
     scene: Mapping[str, Any]
     margin: Mapping[str, Any] | None
     sentences: list
@@ -55,7 +58,7 @@ class Card:
 def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: Any = None) -> dict[str, Any]:
     """What the model says of a scene, ready for a result file.
 
-    motions : {record: its motions}, besides the scene's own.
+    motions : {record: its motions}. The scene's own is one more where it is not among them.
     """
     found: dict[str, Any] = {"own": _figures(scene), "cautions": [], "near": [], "margins": []}
     if scene.base is not None and scene.bearings is not None:
@@ -81,8 +84,27 @@ def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: A
         found["cautions"].append(f"The distance to another outcome was not searched: {error.remedy}.")
     if scene.motion is not None and not same_reversed(scene):  # else it is the mirrored run
         found["reversed"] = _figures(scene.with_(motion=reversed_sign(scene.motion)))
-    found["motions"] = [_under(scene, record, group) for record, group in motions.items()]
+    records = _with_own(scene, motions)
+    rows = [_under(scene, record, group) for record, group in records.items()]
+    found["motions"] = rows if motions else []
+    found["needed"] = None
+    if _lifts_or_goes_too_far(scene, found, rows):
+        found["needed"] = needed_by(scene, [motion for group in records.values() for motion in group])
     return found
+
+
+def _with_own(scene, motions):
+    """{record: its motions}, the scene's own among them."""
+    own = scene.motion
+    known = own is None or any(one.digest() == own.digest() for group in motions.values() for one in group)
+    return motions if known else {own.label: [own, *motions.get(own.label, ())], **motions}
+
+
+def _lifts_or_goes_too_far(scene, found, rows):
+    """Whether the block lifts, or the base goes beyond x_max, under one of its motions or within SHARE of its own."""
+    rows = [found["own"], *found["near"], *rows]
+    x_max = math.inf if scene.bearings is None else scene.bearings.x_max or math.inf
+    return any(row["outcome"] != "stands" or (row["stroke"] or 0.0) > x_max for row in rows)
 
 
 def _figures(scene):
@@ -144,8 +166,6 @@ def card_of(result: Result, name: str) -> Card:
     """The `Card` of one of the scenes of a result."""
     scene, found = result.settings["scenes"][name], result.settings["statues"][name]
     own = found["own"]
-    undecided = "" if own["decided"] else " (not decided when the run ended)"
-    title = f"{scene['name']}: the block {WORDS[own['outcome']]}{undecided}"
     sentences = [*_sentences(found), *(("Warning", text) for text in own["warnings"])]
     sentences.append(("Engines", _engines([row for row in result.rows if row["scene"] == name])))
     tables = [_main(found)]
@@ -154,7 +174,24 @@ def card_of(result: Result, name: str) -> Card:
     if found["motions"]:
         tables.append(_motion_table(found["motions"], scene))
     nearest = next((margin for margin in found["margins"][:1] if margin["nearest"] is not None), None)
-    return Card(title, found["cautions"], scene, nearest, sentences, tables)
+    title = f"{scene['name']}: the block {_worst(found, scene)}"
+    step = next_step(scene, found["needed"], *result.settings["calls"].get(name, ["FILE"]))
+    return Card(title, found["cautions"], step, scene, nearest, sentences, tables)
+
+
+def _worst(found, scene):
+    """The worst outcome of all motions, and under how many of the records; and that of the scene's own."""
+    own, rows = found["own"], found["motions"]
+    words = WORDS[own["outcome"]] + ("" if own["decided"] else " (not decided when the run ended)")
+    if not rows:
+        return words
+    worst = max((row["outcome"] for row in rows), key=WORST.index)
+    count = sum(row["outcome"] == worst for row in rows)
+    many = "any" if worst == "stands" else count
+    under = f"{WORDS[worst]} under {many} of {len(rows)} record{'s' * (len(rows) > 1)}"
+    if own["outcome"] == worst and own["decided"] and scene["motion"]:
+        return f"{under}, its own among them"
+    return f"{under}; {'under its own' if scene['motion'] else 'without a motion'} it {words}"
 
 
 def _sentences(found):
@@ -249,7 +286,7 @@ def _near_table(near, scene):
 
 def _motion_table(motions, scene):
     return table(
-        "Under other motions",
+        "By record",
         motions,
         Column("record", "record"),
         Column("motions", "motions"),

@@ -48,8 +48,8 @@ def motions_of(
     found: dict[str, list[Motion]] = {}
     own = scene.motion
     if records is not None:
-        motions, left = folder_motions(records, directions=directions, own=own, units=units)
-        found.update(motions)
+        others, left = folder_motions(records, directions=directions, own=own, units=units)
+        found = {name: [*motions] for name, motions in others.items()}
         for line in left:
             say(line)
     first = next(iter(found.values()), [])[:1]

@@ -68,7 +68,7 @@ def differing(comparable: str, differences: Iterable[Difference]) -> list[str]:
 
 def outcomes(rows: Sequence[Mapping[str, Any]]) -> str:
     """Who found what: "in all 3 solvers it overturns", or the solvers by outcome."""
-    by_outcome = {}
+    by_outcome: dict[str, list[str]] = {}
     for row in rows:
         undecided = not row.get("decided", True) and row["outcome"] != "failed"
         words = f"is {row['outcome_text']}" if undecided else OUTCOMES.get(row["outcome"], row["outcome"])
