@@ -183,15 +183,15 @@ def _worst(found, scene):
     """The worst outcome of all motions, and under how many of the records; and that of the scene's own."""
     own, rows = found["own"], found["motions"]
     words = WORDS[own["outcome"]] + ("" if own["decided"] else " (not decided when the run ended)")
-    if not rows:
+    worst = max((row["outcome"] for row in rows), key=WORST.index, default=None)
+    known = scene["motion"] and own["decided"] and own["outcome"] == worst
+    if not rows or (known and len(rows) == 1):
         return words
-    worst = max((row["outcome"] for row in rows), key=WORST.index)
-    count = sum(row["outcome"] == worst for row in rows)
-    many = "any" if worst == "stands" else count
-    under = f"{WORDS[worst]} under {many} of {len(rows)} record{'s' * (len(rows) > 1)}"
-    if own["outcome"] == worst and own["decided"] and scene["motion"]:
+    count = "any" if worst == "stands" else sum(row["outcome"] == worst for row in rows)
+    under = f"{WORDS[worst]} under {count} of {len(rows)} record{'s' * (len(rows) > 1)}"
+    if known:
         return f"{under}, its own among them"
-    return f"{under}; {'under its own' if scene['motion'] else 'without a motion'} it {words}"
+    return f"{under}; {'under its own motion' if scene['motion'] else 'without a motion'} it {words}"
 
 
 def _sentences(found):

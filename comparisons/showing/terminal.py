@@ -61,7 +61,7 @@ class Grid:
             least = [self._least(column) for column in range(len(self.heads))]
             needed = options.max_width - self._room(len(least), console, options) + sum(least)
             more = ", ".join(head.replace("-\n", "").replace("\n", " ") for head in self.heads[count:])
-            yield Text(f"A terminal of {needed} columns shows more: {more}.")
+            yield Text(f"A terminal of {needed} columns (or COLUMNS={needed}) shows more: {more}.")
 
     def _widths(self, count, room):
         """Of the first `count` columns within this room; None where they have none."""

@@ -14,7 +14,7 @@ from comparisons.showing import terminal
 from comparisons.showing.terminal import Grid, grid
 
 NUMBER = re.compile(r"(?<![\w.])[-+−]?\d[\d.]*(?:e[-+]?\d+)?")
-MORE = re.compile(r"A terminal of (\d+) columns shows more: (.*)\.$")
+MORE = re.compile(r"A terminal of (\d+) columns \(or COLUMNS=\1\) shows more: (.*)\.$")
 COMMANDS = {
     "run": ("run", "bust.toml", "--records", "records", "--json", "run.json"),
     "compare": ("compare", "bronze.toml", "--engine", "exudyn", "--engine", "pybullet"),

@@ -70,7 +70,7 @@ def test_each_scene_has_its_card_first_with_its_outcome_in_the_title(page, scene
         outcome = simulate(scene, history=False).outcome
         words = {"stands": "does not lift", "rocks": "rocks and stays upright", "overturns": "overturns"}[outcome]
         if name == "bust":  # the other record's second motion, which is the worst
-            words = f"rocks and stays upright under 1 of 2 records; under its own it {words}"
+            words = f"rocks and stays upright under 1 of 2 records; under its own motion it {words}"
         title = f"{name}: the block {words}"
         assert card.startswith(f"{title} ") and title in titles
         assert "Engines None was run." in card
@@ -105,9 +105,9 @@ def test_five_per_cent_of_the_motion_are_runs_of_their_own(scenes):
 
 TITLES = {  # worst of each record, the scene's own motion and, where it is not that of the first record, its outcome
     ("stands", "stands"): "does not lift under any of 2 records, its own among them",
-    ("rocks", "overturns"): "overturns under 1 of 2 records; under its own it rocks and stays upright",
+    ("rocks", "overturns"): "overturns under 1 of 2 records; under its own motion it rocks and stays upright",
     ("overturns", "overturns", "rocks"): "overturns under 2 of 3 records, its own among them",
-    ("stands", "failed", "rocks"): "leaves the model under 1 of 3 records; under its own it does not lift",
+    ("stands", "failed", "rocks"): "leaves the model under 1 of 3 records; under its own motion it does not lift",
 }
 
 
@@ -125,7 +125,7 @@ def test_the_title_without_other_motions_and_where_the_scene_has_none_or_is_cut(
     words = _worst(
         {"own": {"outcome": "stands", "decided": False}, "motions": [{"outcome": "stands"}]}, {"motion": "own"}
     )
-    assert words.endswith("; under its own it does not lift (not decided when the run ended)")
+    assert words.endswith("; under its own motion it does not lift (not decided when the run ended)")
 
 
 def test_the_scenes_own_motion_counts_among_the_records_and_once(scenes):
