@@ -30,7 +30,7 @@ DAMPINGS = (0.02, 0.5)  # share of critical, equivalent, at the stroke: rubber a
 PERIOD_STEP, DAMPING_STEP = 0.01, 0.005  # relative, absolute: what bearings are never known better than
 CHUNK = 200  # runs between two words on how far it is
 LINEAR_DAMPING = 0.15  # of the bearings that `first_stroke` takes, as those of `rocking new`
-ROOM = 1.5  # beyond their displacement: bearings that yield need up to 1.3 of it (20 scenes), and more is not worse
+ROOM = 1.5  # times their displacement: bearings that yield need .9 to 1.2 of it (20 scenes), and more does no harm
 COARSE = 4  # of these steps, of the first scan; cells that the limit may cross are run at every step
 
 

@@ -79,22 +79,19 @@ def _upright(scene, motions, widest):
     return _up(widths[np.flatnonzero(falls[:-1])[-1] + 1]) if falls[0] else None
 
 
-def next_step(
-    scene: Mapping[str, Any], needed: Mapping[str, float | None] | None, call: str, first: str = ""
-) -> tuple[str, str]:
+def next_step(scene: Mapping[str, Any], needed: Mapping[str, float | None] | None, call: str) -> tuple[str, str]:
     """(a command, in words what it is for) for a scene as the settings of a result have it.
 
     needed : as of `needed_by`, None where the block does not lift. call : on a command line the scene's file, and the
-    options for its motions. first : what is to be done before.
+    options for its motions.
     """
     margin = f"rocking margin {call}"
     if needed is None:
-        return margin, f"says how much it has to spare. It does not lift: there is nothing to do. {first}"
+        return margin, "says how much it has to spare. It does not lift: there is nothing to do."
     sizes = _sizes(scene, needed)
     if needed["stroke"] is None:
         cure = sizes or "widen, fix or lower it"
-        words = f"says what changes the outcome. No bearings are likely to keep it from lifting; {cure}. {first}"
-        return margin, words
+        return margin, f"says what changes the outcome. No bearings are likely to keep it from lifting; {cure}."
     base, given = "", "The stroke [m] is an example: give the room that the base has."
     if scene["base"] is None:
         mass = float(f"{scene['block']['mass']:.3g}")
@@ -102,7 +99,7 @@ def next_step(
         given = "Both numbers are examples: give the mass of the base it would stand on [kg], and its room to move [m]."
     elif scene["bearings"] and scene["bearings"]["x_max"]:
         given = "The stroke is the x_max of its bearings."
-    words = f"looks for bearings on which it does not lift. {given} {f'Or {sizes}. ' if sizes else ''}{first}"
+    words = f"looks for bearings on which it does not lift. {given}{f' Or {sizes}.' if sizes else ''}"
     return f"rocking design {call}{base} --stroke {needed['stroke']:g}", words
 
 

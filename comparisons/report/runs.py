@@ -64,15 +64,13 @@ def plan(
     histories: str | PathLike[str],
     variants: Mapping[str, str | None],
     motions: Mapping[str, Mapping[str, Sequence[Motion]]],
-    calls: Mapping[str, Sequence[str]],
     own: bool,
 ) -> Plan:
     """The plan of a report's runs: the scenes in every solver and, of scenes of one's own, what the page of a statue
     asks, and the restitution of a block that rocks.
 
     histories: folder in which those of the runs are kept meanwhile. variants: of the engines not taken as they come.
-    motions: of each scene, {record: its motions} besides its own. calls: of each scene, its file with the options for
-    these motions as on a command line, and what is to be done to it first.
+    motions: of each scene, {record: its motions} besides its own.
     """
     cases = [
         Case(
@@ -92,7 +90,7 @@ def plan(
     rows = yield Batch(cases, ToFile(str(Path(histories).resolve())), "scenes", limit)
     more: dict[str, Any] = {"variants": described_variants(request.engines), "own": own}
     if own:
-        more |= {"statues": {}, "calls": dict(calls)}
+        more["statues"] = {}
         for name, scene in scenes.items():
             with spinner(f"{scene.name}: the analytic model") as tell:
                 more["statues"][name] = statue_of(scene, motions.get(name, {}), partial(_tell, tell, scene.name))

@@ -162,8 +162,11 @@ def _under(scene, record, motions):
     }
 
 
-def card_of(result: Result, name: str) -> Card:
-    """The `Card` of one of the scenes of a result."""
+def card_of(result: Result, name: str, call: str = "FILE", first: str = "") -> Card:
+    """The `Card` of one of the scenes of a result.
+
+    call : on a command line its file, and the options for its motions. first : what is to be done to the file before.
+    """
     scene, found = result.settings["scenes"][name], result.settings["statues"][name]
     own = found["own"]
     sentences = [*_sentences(found), *(("Warning", text) for text in own["warnings"])]
@@ -175,7 +178,8 @@ def card_of(result: Result, name: str) -> Card:
         tables.append(_motion_table(found["motions"], scene))
     nearest = next((margin for margin in found["margins"][:1] if margin["nearest"] is not None), None)
     title = f"{scene['name']}: the block {_worst(found, scene)}"
-    step = next_step(scene, found["needed"], *result.settings["calls"].get(name, ["FILE"]))
+    command, words = next_step(scene, found["needed"], call)
+    step = command, f"{words} {first}".rstrip()
     return Card(title, found["cautions"], step, scene, nearest, sentences, tables)
 
 

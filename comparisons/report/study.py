@@ -29,13 +29,11 @@ def make_own_results(
     engines: Sequence[str] | None = None,
     variants: Mapping[str, str | None] | None = None,
     motions: Mapping[str, Mapping[str, Sequence[Motion]]] | None = None,
-    calls: Mapping[str, Sequence[str]] | None = None,
 ) -> None:
     """Simulate what the report on one's own scenes shows, {name: scene}, and write its result files into `folder`.
 
     engines: those to compare, all that are installed without it; variants: of those not taken as they come; motions: of
-    each scene, {record: its motions} besides its own; calls: of each scene, its file with the options for these motions
-    as on a command line, and what is to be done to it first ("" for nothing).
+    each scene, {record: its motions} besides its own.
 
     >>> from tempfile import mkdtemp
     >>> from analytic import load_scene
@@ -45,8 +43,7 @@ def make_own_results(
     >>> write_page(folder).name
     'report.html'
     """
-    asked = {"variants": dict(variants or {}), "motions": dict(motions or {}), "calls": dict(calls or {})}
-    _make(folder, engines, scenes=scenes, **asked, own=True)
+    _make(folder, engines, scenes=scenes, variants=dict(variants or {}), motions=dict(motions or {}), own=True)
 
 
 def make_results(
@@ -65,7 +62,7 @@ def make_results(
         Those to compare; None: all that are installed.
     """
     scenes = {name: scene.with_(duration=duration) for name, scene in load_scenes(CARYATID, motion).items()}
-    _make(folder, engines, scenes=scenes, variants={}, motions={}, calls={}, own=False)
+    _make(folder, engines, scenes=scenes, variants={}, motions={}, own=False)
 
 
 def _make(folder, engines, *, scenes, **options):

@@ -20,6 +20,7 @@ CARDS = {
     "bust.toml": (BUST.format(bearings=WEAK + "x_max = 0.2"), "design", None),
     "calm.toml": (BRONZE.format(scale=0.2), "margin", None),
 }
+FIRST = "First write this motion into the table [motion] of its file."
 
 
 def fate(scene, motion, width=None):
@@ -35,16 +36,27 @@ def test_the_command_on_the_card_runs_on_this_file(rocking, tmp_path, monkeypatc
     (tmp_path / "my records").mkdir()
     pairs(tmp_path / "my records", 1, seconds=2.0)
     many = ("--records", "my records", "--directions", "2", "--both-signs") if command == "design" else ()
-    status, _, err = rocking("report", name, *many, "--engine", "analytic", "--output", "page", "--studies", studies)
+    place = str(tmp_path / name) if command == "margin" else name
+    status, _, err = rocking("report", place, *many, "--engine", "analytic", "--output", "page", "--studies", studies)
     assert status == 0, err
-    (shown,) = re.findall('<p class="next">.*?data-copies="(.*?)"', (tmp_path / "page/report.html").read_text())
+    page = (tmp_path / "page/report.html").read_text()
+    (shown,) = re.findall('<p class="next">.*?data-copies="(.*?)"', page)
     words = shlex.split(html.unescape(shown))
-    assert words[:3] == ["rocking", command, name] and set(many) <= set(words)
+    assert words[:3] == ["rocking", command, place] and FIRST not in page and set(many) <= set(words)
     given = dict(zip(words, words[1:], strict=False))
     assert given.get("--base-mass") == base_mass
     status, out, err = rocking(*words[1:])
     assert status == 0 and "Traceback" not in err, err
     assert ("of critical damping" in out) == (command == "design")
+
+
+def test_a_record_in_place_of_the_files_motion_is_to_be_written_into_it_first(rocking, tmp_path, monkeypatch, studies):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "calm.toml").write_text(BRONZE.format(scale=0.2))
+    (tmp_path / "weak.csv").write_text("time [s],acc [m/s2]\n0.0,0.0\n0.1,0.3\n0.2,-0.3\n")
+    options = ("--record", "weak.csv", "--engine", "analytic", "--output", "page", "--studies", studies)
+    assert rocking("report", "calm.toml", *options)[0] == 0
+    assert f"there is nothing to do. {FIRST}" in (tmp_path / "page/report.html").read_text()
 
 
 def test_a_block_on_a_plate_has_the_same_mass_and_height_and_moves_about_the_plates_corners():
@@ -110,11 +122,11 @@ SAID = [
     (SCENE, NEEDED, "", "0.610 m wide (now 0.550 m) it does not overturn, to one of 0.800 m it does not lift"),
     (SCENE, {**NEEDED, "upright": None}, "", "fixed to a plate 0.800 m wide (now 0.550 m) it does not lift"),
     (SCENE, {**NEEDED, "stroke": None}, "rocking margin FILE", "No bearings are likely to keep it from lifting; widen"),
-    (SCENE, dict.fromkeys(NEEDED), "rocking margin FILE", "lifting; widen, fix or lower it. Write it down first."),
+    (SCENE, dict.fromkeys(NEEDED), "rocking margin FILE", "lifting; widen, fix or lower it."),
 ]
 
 
 @pytest.mark.parametrize("scene, needed, command, words", SAID)
 def test_what_is_said_next(scene, needed, command, words):
-    found, said = next_step(scene, needed, "FILE", "Write it down first.")
-    assert command in ("", found) and words in said and said.endswith("Write it down first.")
+    found, said = next_step(scene, needed, "FILE")
+    assert command in ("", found) and words in said and said.endswith(".")
