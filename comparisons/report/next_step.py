@@ -27,7 +27,7 @@ def needed_by(scene: Scene, motions: Sequence[Motion]) -> dict[str, float | None
     """What keeps the block of a scene from lifting under all these motions; None where nothing does.
 
     stroke : first one to try in a search for bearings [m]: their x_max, or `first_stroke`. stands, upright : width of
-    a plate fixed to the block [m] with which it does not lift, or, where it overturns now, does not overturn.
+    a plate fixed to the block [m] with which it does not lift, or, where it overturns on a narrower one, does not.
     """
     if scene.start.tilt or scene.start.tilt_rate or not motions:  # it lifts however it stands
         return {"stroke": None, "stands": None, "upright": None}
@@ -67,7 +67,7 @@ def _runs(scenes, motions):
 
 
 def _upright(scene, motions, widest):
-    """The width [m] from which on the block overturns under none; None where it does not now, or it takes too long."""
+    """The width [m] from which on the block overturns under none; None where it is as it is, or it takes too long."""
     least = 2 * scene.block.half_width
     widths = np.geomspace(least, widest, 1 + math.ceil(math.log(widest / least) / STEP))
     try:
@@ -76,7 +76,8 @@ def _upright(scene, motions, widest):
         return None
     scenes = [scene.with_(block=on_plate(scene.block, width)) for width in widths]
     falls = np.any([found.overturns | found.failed for found in _runs(scenes, motions)], axis=0)
-    return _up(widths[np.flatnonzero(falls[:-1])[-1] + 1]) if falls[0] else None
+    last = np.flatnonzero(falls[:-1])
+    return _up(widths[last[-1] + 1]) if len(last) else None
 
 
 def next_step(scene: Mapping[str, Any], needed: Mapping[str, float | None] | None, call: str) -> tuple[str, str]:

@@ -61,6 +61,15 @@ def test_the_scenes_own_record_in_the_folder_counts_once(rocking, folder):
     assert [row["peak"] for row in rows[:2]] == pytest.approx([2.0, 4.0], rel=1e-3)
 
 
+def test_the_same_record_read_otherwise_is_another_motion_of_it(rocking, folder):
+    (folder / "plain.txt").write_text("".join(f"{t:.2f} {0.1 * np.sin(6 * t):.8f}\n" for t in TIME))
+    file = folder.parent / "own.toml"
+    file.write_text(OWN.replace("A090.csv", "plain.txt") + 'units = "g"\n')
+    out = rocking("run", file, "--records", folder, "--units", "m/s2", "--json", "-")[1]
+    rows = [row for row in json.loads(out)["motions"] if row["record"] == "plain.txt"]
+    assert [row["peak"] for row in rows] == pytest.approx([0.981, 0.1], rel=1e-3)
+
+
 def test_run_prints_the_odds_of_records_and_not_of_motions(rocking, folder):
     status, out, _ = rocking("run", "caryatid-isolated", "--records", folder, "--both-signs")
     assert status == 0

@@ -97,6 +97,12 @@ def test_what_a_table_leaves_out_and_where_it_breaks():
     assert printed(table, 29)[1] is None
 
 
+@pytest.mark.parametrize("wraps, widths", [(["b"], [13, 7]), ([], [10, 10]), (["a"], [6, 14])])
+def test_a_column_that_wraps_is_broken_before_others_and_the_widest_of_several_first(wraps, widths):
+    table = grid(["a", "b"], [["one two three", "five six seven"]], wraps=wraps)
+    assert table._widths(2, 20) == widths and table._widths(2, 9) is None
+
+
 def test_a_name_longer_than_any_number_is_broken_and_not_lost():
     lines, none = printed(grid(["motion", "g"], [["a_very_long_name_of_a_record.AT2", "0.5"]]), 30)
     assert none is None and "0.5" in lines[-3] + lines[-2]

@@ -93,6 +93,8 @@ def test_the_width_on_bearings_and_under_vertical_motion_is_that_of_the_run():
     for scene, motion in ((stiff, stiff.motion), (GROUND, both)):
         width = needed_by(scene, [motion])["stands"]
         assert fate(scene, motion, width) == "stands" and fate(scene, motion, 0.99 * width) == "rocks"
+    weightless = SampledMotion(GROUND.motion.dt, GROUND.motion.samples, vertical=up.scaled(6.0))
+    assert needed_by(GROUND, [weightless])["stands"] is None  # nothing presses it on the ground
 
 
 def test_the_stroke_is_the_x_max_of_the_bearings_and_none_where_none_would_do():
