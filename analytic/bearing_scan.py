@@ -19,6 +19,7 @@ from scipy.interpolate import RegularGridInterpolator
 from .batch import Outcomes, simulate_many
 from .design import design_bearings
 from .errors import SceneError, SettingError
+from .linear_oscillator import displacement_spectrum
 from .scene import Bearings, Scene
 
 if TYPE_CHECKING:
@@ -28,6 +29,8 @@ PERIODS = (0.3, 5.0)  # s, secant at the stroke: those of a statue's bearings
 DAMPINGS = (0.02, 0.5)  # share of critical, equivalent, at the stroke: rubber alone to more than lead gives
 PERIOD_STEP, DAMPING_STEP = 0.01, 0.005  # relative, absolute: what bearings are never known better than
 CHUNK = 200  # runs between two words on how far it is
+LINEAR_DAMPING = 0.15  # of the bearings that `first_stroke` takes, as those of `rocking new`
+ROOM = 1.5  # times their displacement: bearings that yield need .9 to 1.2 of it (20 scenes), and more does no harm
 COARSE = 4  # of these steps, of the first scan; cells that the limit may cross are run at every step
 
 
@@ -80,6 +83,17 @@ class BearingScan:
             return None
         row, column = np.unravel_index(np.nanargmin(values), values.shape)
         return float(self.periods[column]), float(self.dampings[row])
+
+
+def first_stroke(scene: Scene, motions: Sequence[Motion]) -> float | None:
+    """A stroke [m] to begin a search with, to two digits; None where bearings are not likely to be found at any.
+
+    It is `ROOM` times the least displacement of linear bearings on which the block does not lift under any motion.
+    """
+    periods = np.geomspace(*PERIODS, round(math.log(PERIODS[1] / PERIODS[0]) / PERIOD_STEP / COARSE))
+    moved = np.max([displacement_spectrum(motion, periods, [LINEAR_DAMPING])[0] for motion in motions], axis=0)
+    held = moved[(2 * np.pi / periods) ** 2 * moved <= scene.gravity * math.tan(scene.block.slenderness)]
+    return float(f"{ROOM * held.min():.2g}") if len(held) else None
 
 
 def softened(design: Bearings, period: float) -> Bearings:

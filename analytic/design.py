@@ -7,7 +7,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from .bearing import BearingLaw
 from .errors import SettingError
-from .scene import Bearings
+from .scene import LEAST, MOST, Bearings
 
 # The usual equivalent damping is the loss W_D over 4 pi E_s; the paper's 30 % divides by 2 pi E_s and reads twice that.
 DEFINITIONS = {"equivalent": 4 * math.pi, "paper": 2 * math.pi}
@@ -161,8 +161,10 @@ def _check(targets, count, stiffness_ratio, definition):
     for name, number in targets.items():
         if not (math.isfinite(number) and number > 0):
             raise SettingError(f"{name} = {number!r}: give a finite number above 0")
-    if not (math.isfinite(stiffness_ratio) and stiffness_ratio > 1):
-        raise SettingError(f"stiffness_ratio = {stiffness_ratio!r}: ka/kb must be above 1")
+        if name != "delta_k" and not LEAST <= number <= MOST:  # products stay within the doubles
+            raise SettingError(f"{name} = {number!r}: give a number from {LEAST:g} to {MOST:g}")
+    if not 1 < stiffness_ratio <= MOST:
+        raise SettingError(f"stiffness_ratio = {stiffness_ratio!r}: ka/kb must be above 1, and at most {MOST:g}")
     if count < 1:
         raise SettingError(f"count = {count!r}: give at least one bearing")
     if definition not in DEFINITIONS:
@@ -174,7 +176,8 @@ def _exponent(damping, definition, divisor, secant, x_max, ratio):
     turn, least = _feasible(damping, divisor, secant, x_max, ratio)
     if least >= 0:
         # damping -> 0 can always be met: f0 -> 0 leaves the ratio term alone
-        most = brentq(lambda d: _feasible(d, divisor, secant, x_max, ratio)[1], 1e-9, damping)
+        widest = 8 / divisor  # damping of a rectangular loop, W_D = 4 F x: met by none
+        most = brentq(lambda d: _feasible(d, divisor, secant, x_max, ratio)[1], 1e-9, min(damping, widest))
         raise SettingError(
             f"damping = {damping:.4g} ({definition} definition) cannot be met at x_max = {x_max:.4g} m "
             f"with ka/kb = {ratio:.4g}: the most is {most:.4g}; lower it, "

@@ -135,7 +135,7 @@ def scene_text(
         "# restitution = 0.9  # eq. (7) gives it, unless it was measured",
     ]
     if base is not None:
-        lines += ["", "[base]", *_rows({"mass": (base.mass, "kg")})]
+        lines += ["", *_base(base)]
     if bearings is not None:
         lines += ["", *_bearings(bearings)]
     if motion:
@@ -145,8 +145,10 @@ def scene_text(
     return "\n".join(lines) + "\n"
 
 
-def with_bearings(text: str, bearings: Bearings) -> str:
+def with_bearings(text: str, bearings: Bearings, base: Base | None = None) -> str:
     """The text of a scene file with other bearings: its table [bearings] is replaced, or put at its end.
+
+    base : of a scene that has none; its table is put before that of the bearings.
 
     Examples
     --------
@@ -160,7 +162,12 @@ def with_bearings(text: str, bearings: Bearings) -> str:
     following = next((number for number in heads if number > own), len(lines))
     before = lines[:own] if own < len(lines) else [*lines, ""]
     after = ["", *lines[following:]] if following < len(lines) else []
-    return "\n".join([*before, *_bearings(bearings), *after]) + "\n"
+    under = [] if base is None else [*_base(base), ""]
+    return "\n".join([*before, *under, *_bearings(bearings), *after]) + "\n"
+
+
+def _base(base):
+    return ["[base]", *_rows({"mass": (base.mass, "kg")})]
 
 
 def _bearings(bearings):

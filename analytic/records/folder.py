@@ -10,6 +10,7 @@ from pathlib import Path
 from ..errors import SceneError, SettingError
 from ..motion import SampledMotion
 from ..pairing import paired
+from ..scene import Scene
 from ..types import Motion
 from . import fema
 
@@ -56,8 +57,13 @@ def reversed_sign(motion: Motion) -> Motion:
     return replace(motion, amplitude=-motion.amplitude)
 
 
+def same_reversed(scene: Scene) -> bool:
+    """Whether the motion with its sign changed does the same to a scene, mirrored: it starts at rest in the middle."""
+    return not any(scene.start.model_dump().values())
+
+
 def folder_motions(
-    folder: str | PathLike[str], *, directions: int | None = None, **said: object
+    folder: str | PathLike[str], *, directions: int | None = None, own: Motion | None = None, **said: object
 ) -> tuple[dict[str, list[SampledMotion]], list[str]]:
     """The horizontal motions of the records in a folder, and what was left out.
 
@@ -70,6 +76,9 @@ def folder_motions(
         So many directions of each pair of horizontal components, over half a turn; without it the components as they
         are. A pair is two horizontal channels of one file, or two files whose names differ in the component alone:
         E and N, EW and NS, H1 and H2, X and Y, azimuths 90 degrees apart.
+    own : SampledMotion, PulseMotion or None
+        A motion that is run besides: where it is a component of a record here, that record is the first one, and this
+        motion the first in it.
     said : units, dt
         Of records that do not say, as `read_record` takes them.
 
@@ -98,6 +107,10 @@ def folder_motions(
                 left += [f"{motion.label}: no pair of horizontal components, it is not turned" for motion in motions]
         else:
             found[record] = motions if directions is None else directions_of(motions[0], motions[1], directions, record)
+        if same := [motion for motion in motions if own is not None and motion.digest() == own.digest()]:
+            record = record if record in found else same[0].label
+            others = [motion for motion in found.pop(record) if motion.digest() != same[0].digest()]
+            found = {record: [*same[:1], *others], **found}
     if not found:
         raise SettingError(
             f"--records {folder}: no horizontal ground motion in it; " + "; ".join(left[:3] or ["empty"])

@@ -20,6 +20,10 @@ from ..running.solving import bar, compile_kernels, scene_of
 
 LEAST, SOFTEST = "least-stroke", "softest"
 WRITTEN = ("ka", "kb", "alpha")  # numbers that a file holds to six digits
+OF_SCENE = {  # what the search of a scene names otherwise than its option
+    **{"stroke": "--stroke", "x_max": "--stroke", "tilt": "--tilt"},
+    **{name: OPTIONS[name] for name in ("count", "stiffness_ratio", "definition")},
+}
 
 
 def command(
@@ -27,6 +31,9 @@ def command(
         str | None, typer.Argument(help="Scene file: finds the bearings that it needs. Without one, give four targets.")
     ] = None,
     stroke: Annotated[float | None, typer.Option(help="Scene: largest displacement of the base [m].")] = None,
+    base_mass: Annotated[
+        float | None, typer.Option(help="Scene of a block on the ground: mass of a base to put it on [kg].")
+    ] = None,
     tilt: Annotated[
         float, typer.Option(help="Scene: largest peak tilt over the slenderness; 0: the block must not lift.")
     ] = 0.0,
@@ -53,6 +60,7 @@ def command(
 ) -> None:
     """Which bearings? Those that a scene needs within a stroke, or the constants for a period and damping.
 
+    A block on the ground needs the mass of a base, which --write puts into the file as well.
     Example: rocking design bust.toml --stroke 0.25 --plot bearings.svg --write least-stroke
     Example: rocking design --period 2 --damping 0.30 --definition paper --xmax 0.30 --mass 3384.05
     """
@@ -61,6 +69,7 @@ def command(
     made: dict[str, Any] = {"count": count, "stiffness_ratio": ratio, "definition": definition}
     if scene is None:
         of_scene = {"--stroke": stroke, "--write": write, "--plot": plot, "--records": records, "--tilt": tilt or None}
+        of_scene["--base-mass"] = base_mass
         wrong = [name for name, value in of_scene.items() if value is not None]
         if wrong:
             raise SettingError(f"{wrong[0]}: belongs to a scene; rocking design SCENE --stroke METRES")
@@ -73,7 +82,7 @@ def command(
     if stroke is None:
         raise SettingError("--stroke is missing: give the largest displacement of the base [m]")
     many = {"records": records, "both_signs": both_signs, "directions": directions, "units": units}
-    _for_scene(scene, stroke, tilt, made, many, write, plot, json_file)
+    _for_scene(scene, base_mass, stroke, tilt, made, many, write, plot, json_file)
 
 
 def _by_targets(targets, made, json_file):
@@ -83,6 +92,7 @@ def _by_targets(targets, made, json_file):
     from analytic.design import design_bearings, properties
 
     from ..schemas.advice import Constants, Design, Properties
+    from ..showing.parts import percent
     from ..showing.terminal import echo
 
     check_writable([json_file])
@@ -97,14 +107,14 @@ def _by_targets(targets, made, json_file):
             f"[bold]alpha[/bold] = {bearings.alpha:.4f}   for each of {bearings.count} bearings"
         ),
         f"back: secant period {back.period:.5g} s at {xmax:g} m ({back.period_kb:.4g} s with kb alone); "
-        f"damping {back.damping_paper:.2%} as W_D/(2 pi E_s), "
-        f"{back.damping_equivalent:.2%} as W_D/(4 pi E_s); "
+        f"damping {percent(back.damping_paper, 4)} as W_D/(2 pi E_s), "
+        f"{percent(back.damping_equivalent, 4)} as W_D/(4 pi E_s); "
         f"loss {back.cycle_loss:.5g} J a cycle and bearing",
     )
     write_output({json_file: Design(bearings=constants, properties=given)}, lambda: echo(*lines))
 
 
-def _for_scene(place, stroke, tilt, made, many, write, plot, json_file):
+def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_file):
     """The bearings that hold, found by a scan; shown, drawn, written."""
     from analytic.bearing_scan import scan_bearings
     from analytic.scene_file import load_scene, shipped_scenes
@@ -112,13 +122,13 @@ def _for_scene(place, stroke, tilt, made, many, write, plot, json_file):
     from ..showing.bearings import draw_bearings, nothing_holds, print_bearings
 
     check_writable([json_file], picture=plot, inputs=[place])
-    scene = load_scene(place)
+    scene = _on_base(load_scene(place), base_mass, place)
     if write and place in shipped_scenes() and not Path(place).exists():
         raise SettingError(f"--write: {place} comes with the package; give a scene file of your own")
     groups = motions_of(scene, **many)
     motions = [motion for group in groups.values() for motion in group]
     compile_kernels(any(motion.vertical for motion in motions))
-    with bar(f"{scene.name}: bearings") as progress, named_by_options(OPTIONS | {"tilt": "--tilt"}):
+    with bar(f"{scene.name}: bearings") as progress, named_by_options(OF_SCENE):
         scan = scan_bearings(scene, motions, stroke, tilt=tilt, **made, progress=progress)
     points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None where none hold
     chosen = {name: _chosen(scene, scan, point, motions) for name, point in points.items() if point is not None}
@@ -126,7 +136,7 @@ def _for_scene(place, stroke, tilt, made, many, write, plot, json_file):
         raise SettingError(f"--write: {nothing_holds(scan, stroke)}")
     results = {json_file: _form(scene, stroke, tilt, motions, scan, chosen)}
     if write:
-        results[place] = _written(place, chosen[write]["bearings"])
+        results[place] = _written(place, chosen[write]["bearings"], None if base_mass is None else scene.base)
     write_output(
         results,
         lambda: print_bearings(scene, scan, stroke, tilt, len(motions), chosen),
@@ -135,6 +145,20 @@ def _for_scene(place, stroke, tilt, made, many, write, plot, json_file):
     )
     if write and json_file != "-":
         print(f"written into {place}: {write}")
+
+
+def _on_base(scene, mass, place):
+    """The scene with a base under its block, of this mass [kg] where it has none."""
+    from analytic.scene import Base
+
+    if mass is None and scene.base is None:
+        raise SettingError(
+            f"--base-mass is missing: in {place} the block stands on the ground; give its base's mass [kg]"
+        )
+    if mass is not None and scene.base is not None:
+        raise SettingError(f"--base-mass {mass:g}: {place} has a base, of {scene.base.mass:g} kg; leave it out")
+    with named_by_options(OPTIONS):
+        return scene if mass is None else scene.with_(base=Base(mass=float(f"{mass:.6g}")))  # as a file holds it
 
 
 def _chosen(scene, scan, point, motions):
@@ -159,13 +183,15 @@ def _chosen(scene, scan, point, motions):
     }
 
 
-def _written(place, bearings):
-    """The text of the scene file with these bearings; refused where the file holds them in another form."""
+def _written(place, bearings, base):
+    """The text of the scene file with these bearings, and a base where it has none; refused where the file holds them
+    in another form."""
     from analytic.new_scene import with_bearings
 
-    text = with_bearings(Path(place).read_text(encoding="utf-8-sig"), bearings)
+    text = with_bearings(Path(place).read_text(encoding="utf-8-sig"), bearings, base)
     try:
-        same = scene_of(text, place).bearings == bearings
+        found = scene_of(text, place)
+        same = found.bearings == bearings and base in (None, found.base)
     except SceneError:
         same = False
     if not same:
@@ -179,6 +205,7 @@ def _form(scene, stroke, tilt, motions, scan, chosen):
 
     return BearingSearch(
         scene=scene.name,
+        base_mass=scene.base.mass,
         stroke=stroke,
         tilt=tilt,
         motions=[motion.label for motion in motions],

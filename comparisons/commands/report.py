@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -75,9 +76,9 @@ def command(
     motion = _motion(scene, record, {"units": units, "dt": dt, "column": column, "channel": channel})
     if not scene and (records is not None or both_signs or directions is not None):
         raise SettingError("--records, --both-signs and --directions belong to scenes of your own; name one")
-    _simulate(output, scene, motion, engines, variants, (records, both_signs, directions, units))
+    calls = _simulate(output, scene, motion, engines, variants, (records, both_signs, directions, units))
     with bar("the page") as progress:
-        page = write_page(output, shown, progress)
+        page = write_page(output, shown, progress, calls)
     if json_file:
         write_text(json_file, form(page).text())
     if json_file != "-":
@@ -95,17 +96,26 @@ def _motion(scene, record, said):
 
 
 def _simulate(output, scene, motion, engines, variants, many):
-    """The result files of the page."""
+    """Write the result files of the page; {scene: its file and options, and what is to be done first}."""
     from ..report.runs import load_scenes
     from ..report.study import make_own_results, make_results
 
     with stdout_to_stderr():  # engines greet on standard output
-        if scene:
-            scenes = load_scenes(scene, motion)
-            motions = {name: other_motions(one, *many) for name, one in scenes.items()}
-            make_own_results(output, scenes, engines=engines, variants=variants, motions=motions)
-        else:
+        if not scene:
             make_results(output, motion, engines=engines)
+            return {}
+        scenes = load_scenes(scene, motion)
+        motions = {name: other_motions(one, *many) for name, one in scenes.items()}
+        make_own_results(output, scenes, engines=engines, variants=variants, motions=motions)
+    first = "" if motion is None else "First write this motion into the table [motion] of its file."
+    return {name: (_call(place, *many), first) for name, place in zip(scenes, scene, strict=True)}
+
+
+def _call(place, records, both_signs, directions, units):
+    """A scene and the options for its motions, as other commands take them."""
+    options = {"--records": records, "--directions": directions, "--units": records and units}
+    given = [word for name, value in options.items() if value is not None for word in (name, str(value))]
+    return shlex.join([place, *given, *(["--both-signs"] if both_signs else [])])
 
 
 def _studies(folder):

@@ -9,9 +9,9 @@ from analytic.records import G
 from ..showing.charts import figure
 from ..showing.parts import Section, Table, number
 from ..showing.rows import Column, table
+from ..showing.wording import outcomes
 from .figures import ANALYTIC, pairs
 from .sections import failures, warned
-from .summary import outcomes
 
 if TYPE_CHECKING:
     from ..running.provenance import Result

@@ -11,13 +11,14 @@ from analytic import simulate, simulate_many
 from analytic.errors import SceneError
 from analytic.margins import SPAN, TILT, limit_states, margins
 from analytic.nearby import SHARE, cliffs, nearby
-from analytic.records.folder import reversed_sign
+from analytic.records.folder import reversed_sign, same_reversed
 from analytic.response import COMPARED, EDGE, about_record
 
 from ..showing.motions import LIFTED, odds
 from ..showing.parts import number, signed
 from ..showing.rows import Column, across, table
 from ..showing.wording import listed
+from .next_step import needed_by, next_step
 from .sections import different
 
 if TYPE_CHECKING:
@@ -39,7 +40,8 @@ STATES = {"tilt": f"Tilt above {TILT:g} γ", "stroke": "Base beyond x_max"}  # b
 
 @dataclass(frozen=True)
 class Card:
-    """title: name and outcome. loud: sentences as important as that. scene: as the result's settings have it.
+    """title: name and worst outcome. loud: sentences as important as that. next: a command, and what it is for. scene:
+    as the result's settings have it.
 
     margin: of the quantity whose outcome changes nearest, None where none does. sentences: (heading, sentence) pairs.
     tables: page parts.
@@ -47,6 +49,7 @@ class Card:
 
     title: str
     loud: list
+    next: tuple[str, str]
     scene: Mapping[str, Any]
     margin: Mapping[str, Any] | None
     sentences: list
@@ -56,7 +59,7 @@ class Card:
 def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: Any = None) -> dict[str, Any]:
     """What the model says of a scene, ready for a result file.
 
-    motions : {record: its motions}, besides the scene's own.
+    motions : {record: its motions}. The scene's own is one more where it is not among them.
     """
     found: dict[str, Any] = {"own": _figures(scene), "cautions": [], "near": [], "margins": []}
     if scene.base is not None and scene.bearings is not None:
@@ -80,10 +83,29 @@ def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: A
         ]
     except SceneError as error:  # too long to be run so often
         found["cautions"].append(f"The distance to another outcome was not searched: {error.remedy}.")
-    if scene.motion is not None and any(scene.start.model_dump().values()):  # else it is the mirrored run
+    if scene.motion is not None and not same_reversed(scene):  # else it is the mirrored run
         found["reversed"] = _figures(scene.with_(motion=reversed_sign(scene.motion)))
-    found["motions"] = [_under(scene, record, group) for record, group in motions.items()]
+    records = _with_own(scene, motions)
+    rows = [_under(scene, record, group) for record, group in records.items()]
+    found["motions"] = rows if motions else []
+    found["needed"] = None
+    if _lifts_or_goes_too_far(scene, found, rows):
+        found["needed"] = needed_by(scene, [motion for group in records.values() for motion in group])
     return found
+
+
+def _with_own(scene, motions):
+    """{record: its motions}, the scene's own among them."""
+    own = scene.motion
+    known = own is None or any(one.digest() == own.digest() for group in motions.values() for one in group)
+    return motions if known else {own.label: [own, *motions.get(own.label, ())], **motions}
+
+
+def _lifts_or_goes_too_far(scene, found, rows):
+    """Whether the block lifts, or the base goes beyond x_max, under one of its motions or within SHARE of its own."""
+    rows = [found["own"], *found["near"], *rows]
+    x_max = math.inf if scene.bearings is None else scene.bearings.x_max or math.inf
+    return any(row["outcome"] != "stands" or (row["stroke"] or 0.0) > x_max for row in rows)
 
 
 def _figures(scene):
@@ -141,12 +163,13 @@ def _under(scene, record, motions):
     }
 
 
-def card_of(result: Result, name: str) -> Card:
-    """The `Card` of one of the scenes of a result."""
+def card_of(result: Result, name: str, call: str = "FILE", first: str = "") -> Card:
+    """The `Card` of one of the scenes of a result.
+
+    call : on a command line its file, and the options for its motions. first : what is to be done to the file before.
+    """
     scene, found = result.settings["scenes"][name], result.settings["statues"][name]
     own = found["own"]
-    undecided = "" if own["decided"] else " (not decided when the run ended)"
-    title = f"{scene['name']}: the block {WORDS[own['outcome']]}{undecided}"
     sentences = [*_sentences(found), *(("Warning", text) for text in own["warnings"])]
     sentences.append(("Engines", _engines([row for row in result.rows if row["scene"] == name])))
     tables = [_main(found)]
@@ -155,7 +178,25 @@ def card_of(result: Result, name: str) -> Card:
     if found["motions"]:
         tables.append(_motion_table(found["motions"], scene))
     nearest = next((margin for margin in found["margins"][:1] if margin["nearest"] is not None), None)
-    return Card(title, found["cautions"], scene, nearest, sentences, tables)
+    title = f"{scene['name']}: the block {_worst(found, scene)}"
+    command, words = next_step(scene, found["needed"], call)
+    step = command, f"{words} {first}".rstrip()
+    return Card(title, found["cautions"], step, scene, nearest, sentences, tables)
+
+
+def _worst(found, scene):
+    """The worst outcome of all motions, and under how many of the records; and that of the scene's own."""
+    own, rows = found["own"], found["motions"]
+    words = WORDS[own["outcome"]] + ("" if own["decided"] else " (not decided when the run ended)")
+    worst = max((row["outcome"] for row in rows), key=WORST.index, default=None)
+    known = scene["motion"] and own["decided"] and own["outcome"] == worst
+    if not rows or (known and len(rows) == 1):
+        return words
+    count = "any" if worst == "stands" else sum(row["outcome"] == worst for row in rows)
+    under = f"{WORDS[worst]} under {count} of {len(rows)} record{'s' * (len(rows) > 1)}"
+    if known:
+        return f"{under}, its own among them"
+    return f"{under}; {'under its own motion' if scene['motion'] else 'without a motion'} it {words}"
 
 
 def _sentences(found):
@@ -250,7 +291,7 @@ def _near_table(near, scene):
 
 def _motion_table(motions, scene):
     return table(
-        "Under other motions",
+        "By record",
         motions,
         Column("record", "record"),
         Column("motions", "motions"),

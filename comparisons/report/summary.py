@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from engines import missing_words
 
 from ..showing.parts import number, percent
-from ..showing.wording import listed
+from ..showing.wording import outcomes
 
 if TYPE_CHECKING:
     from ..running.provenance import Result
 
-WORDS = {"stands": "never lifts", "rocks": "rocks and stays upright", "overturns": "overturns"}
-MOST_NAMED = 3  # solvers of the commonest outcome; more are counted
 MOST_WARNINGS = 3  # of a scene, at the top of the page
 
 
@@ -36,30 +33,6 @@ def summary(scenes: Result, block: Result | None) -> list[str]:
     if failed:
         sentences.append("Failed runs: " + "; ".join(failed) + ".")
     return sentences
-
-
-def outcomes(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Who found what: "in all 3 solvers it overturns", or the solvers by outcome."""
-    by_outcome = {}
-    for row in rows:
-        undecided = not row.get("decided", True) and row["outcome"] != "failed"
-        words = f"is {row['outcome_text']}" if undecided else WORDS.get(row["outcome"], row["outcome"])
-        by_outcome.setdefault(words, []).append(row["engine"])
-    off = [row["engine"] for row in rows if row.get("differences")]
-    most = max(map(len, by_outcome.values()), default=0)
-
-    def who(solvers):
-        """All of them, or the many of the commonest outcome, as a number: the others are worth their names."""
-        if len(solvers) == len(rows):
-            return {1: solvers[0], 2: "both solvers"}.get(len(solvers), f"all {len(solvers)} solvers")
-        if len(solvers) == most > MOST_NAMED:
-            return f"{len(solvers)} of {len(rows)} solvers"
-        return listed(solvers)
-
-    words = ", ".join(f"in {who(solvers)} it {outcome}" for outcome, solvers in by_outcome.items())
-    if len(by_outcome) > 1:
-        words = f"the solvers disagree: {words}"
-    return f"{words}; {listed(off)} differ{'s' * (len(off) == 1)} from the analytic model" if off else words
 
 
 def _warnings(rows):

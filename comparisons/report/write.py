@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -63,10 +63,12 @@ def write_page(
     folder: str | PathLike[str],
     studies: Path = RESULTS,
     progress: Callable[[int, int], object] = lambda done, total: None,
+    calls: Mapping[str, Sequence[str]] | None = None,
 ) -> Path:
     """Write ``report.html`` into `folder`, and beside it ``pages/``, from result files there and of the studies.
 
-    progress : is called with how much of it is done, of how much. Returns the path of the page.
+    progress : is called with how much of it is done, of how much. calls : of scenes, the file and the options for the
+    motions as on a command line, and what is to be done to the file first. Returns the path of the page.
 
     Raises
     ------
@@ -87,7 +89,7 @@ def write_page(
         .render(
             **_answer(scenes, block, stored),
             **assets(),
-            cards=[card_of(scenes, name) for name in scenes.settings["scenes"]] if scenes.settings["own"] else [],
+            cards=_cards(scenes, calls or {}),
             motion=scenes.settings["motion"]["label"] if scenes.settings["motion"] else "no motion",
             contents=_contents(scenes, stored),
             explained="autopsy" if any(one.name == "autopsy" for one in stored) else "impact",
@@ -112,6 +114,12 @@ def write_page(
         html = detail(title, sections, origin, pages=listed, home=PAGE, file=f"{PAGES}/{name}.html")
         (folder / PAGES / f"{name}.html").write_text(html, encoding="utf-8")
     return path
+
+
+def _cards(scenes, calls):
+    """Of the scenes of one's own."""
+    names = scenes.settings["scenes"] if scenes.settings["own"] else ()
+    return [card_of(scenes, name, *calls.get(name, ())) for name in names]
 
 
 def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[str, Any]:

@@ -14,7 +14,12 @@ if TYPE_CHECKING:
 Records = Annotated[
     str | None, typer.Option(metavar="FOLDER", help="Also under the records in this folder, as they are recorded.")
 ]
-BothSigns = Annotated[bool, typer.Option("--both-signs", help="Also under every motion with its sign changed.")]
+BothSigns = Annotated[
+    bool,
+    typer.Option(
+        "--both-signs", help="Also under every motion with its sign changed, unless block and start are symmetric."
+    ),
+]
 Directions = Annotated[
     int | None,
     typer.Option(
@@ -26,7 +31,7 @@ Directions = Annotated[
 def motions_of(
     scene: Scene, records: str | None, both_signs: bool, directions: int | None, units: str | None = None
 ) -> dict[str, list[Motion]]:
-    """{record: its motions}, the scene's own first; what is left out of a folder is said.
+    """{record: its motions}, the scene's own first; one that lies in the folder counts once. What is left out is said.
 
     Raises
     ------
@@ -34,20 +39,25 @@ def motions_of(
         No such folder, no motion in it, or directions without a folder.
     """
     from analytic.errors import SettingError
-    from analytic.records.folder import folder_motions, reversed_sign
+    from analytic.records.folder import folder_motions, reversed_sign, same_reversed
 
     from .solving import say
 
     if directions is not None and records is None:
         raise SettingError(f"--directions {directions}: give the folder of the records with --records")
-    found: dict[str, list[Motion]] = {} if scene.motion is None else {scene.motion.label: [scene.motion]}
+    found: dict[str, list[Motion]] = {}
+    own = scene.motion
     if records is not None:
-        others, left = folder_motions(records, directions=directions, units=units)
+        others, left = folder_motions(records, directions=directions, own=own, units=units)
+        found = {name: [*motions] for name, motions in others.items()}
         for line in left:
             say(line)
-        for name, motions in others.items():
-            found.setdefault(name, []).extend(motions)
-    if both_signs:
+    first = next(iter(found.values()), [])[:1]
+    if own is not None and own.digest() not in [motion.digest() for motion in first]:
+        found = {own.label: [own, *found.pop(own.label, [])], **found}
+    if both_signs and same_reversed(scene):
+        say("--both-signs: mirrored the same, as block and start are symmetric; each motion is run once")
+    elif both_signs:
         found = {name: [*motions, *map(reversed_sign, motions)] for name, motions in found.items()}
     return found
 

@@ -139,6 +139,7 @@ class BearingSearch(Form):
 
     schema_: str = Field(default="rocking bearings 1", serialization_alias="schema")
     scene: str
+    base_mass: float = Field(description="kg, of the scene's base or as given")
     stroke: float = Field(description="m, allowed")
     tilt: float = Field(description="allowed, over the slenderness; 0: no lift")
     motions: list[str]

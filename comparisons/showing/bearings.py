@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ..running.readable import readable
+from .parts import percent
 from .plots import TITLE_CHARACTERS
 from .terminal import echo, grid
 
@@ -24,7 +25,9 @@ def print_bearings(
     scene: Scene, scan: BearingScan, stroke: float, tilt: float, motions: int, chosen: Mapping[str, Mapping[str, Any]]
 ) -> None:
     """Print the bearings named, a column each, or how near the best ones come where none hold."""
-    echo(f"{readable(scene.name, TITLE_CHARACTERS)}: {_wanted(stroke, tilt)}; motions: {motions}", wrap=True)
+    assert scene.base is not None  # the search asks for one
+    name, wanted = readable(scene.name, TITLE_CHARACTERS), _wanted(stroke, tilt)
+    echo(f"{name}: {wanted}; base: {scene.base.mass:g} kg; motions: {motions}", wrap=True)
     if not chosen:
         return echo(nothing_holds(scan, stroke), wrap=True)
     if len({(one["period"], one["damping"]) for one in chosen.values()}) == 1:
@@ -42,8 +45,7 @@ def print_bearings(
     cells = [[label, *(form.format(**one) for one in chosen.values())] for label, form in rows.items()]
     echo(
         grid(["bearings", *chosen], cells, wraps=["bearings", *chosen]),
-        f"Of bearings with {scan.periods[0]:g} to {scan.periods[-1]:g} s and {scan.dampings[0]:.0%} to "
-        f"{scan.dampings[-1]:.0%}, {np.mean(scan.demand <= 1):.0%} hold.",
+        f"Of bearings {_scanned(scan)}, {percent(float(np.mean(scan.demand <= 1)))} hold.",
         wrap=True,
     )
 
@@ -53,10 +55,15 @@ def nothing_holds(scan: BearingScan, stroke: float) -> str:
     period, damping = scan.nearest
     row, column = np.abs(scan.dampings - damping).argmin(), np.abs(scan.periods - period).argmin()
     return (
-        f"no bearings of {scan.periods[0]:g} to {scan.periods[-1]:g} s and {scan.dampings[0]:.0%} to "
-        f"{scan.dampings[-1]:.0%} hold. Nearest: {period:.3g} s with {damping:.3g}, at {scan.demand[row, column]:.3g} "
-        f"times a limit, the base moving {scan.stroke[row, column]:.3g} m of {stroke:g}. Allow more stroke, or --tilt."
+        f"no bearings {_scanned(scan)} hold. Nearest: {period:.3g} s with {damping:.3g}, at "
+        f"{scan.demand[row, column]:.3g} times a limit, the base moving {scan.stroke[row, column]:.3g} m of {stroke:g}."
+        " Allow more stroke, or --tilt; or widen, fix or lower the block."
     )
+
+
+def _scanned(scan):
+    low, high = scan.dampings[0], scan.dampings[-1]
+    return f"of {scan.periods[0]:g} to {scan.periods[-1]:g} s and {percent(low)} to {percent(high)} of critical damping"
 
 
 def draw_bearings(scene: Scene, scan: BearingScan, stroke: float, tilt: float) -> Figure:

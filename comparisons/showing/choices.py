@@ -117,8 +117,8 @@ def _table(choice, every_level):
         for one in levels
     ]
     title = Text(f"{readable(choice.scene, TITLE_CHARACTERS)}: {choice.criterion}")
-    heads = ["engine, variant", "level", "error", "CPU\n[s/s]", ""]
-    return grid(heads, rows, left=["level", ""], wraps=[""], title=title)
+    heads = ["engine, variant", "level", "error", "CPU\n[s/s]", "verdict"]
+    return grid(heads, rows, left=["level", "verdict"], wraps=["verdict"], title=title)
 
 
 def draw_choice(choice: Choice) -> Figure:

@@ -12,11 +12,9 @@ from analytic.margins import limit_states
 
 from ..running.readable import readable
 from .plots import TITLE_CHARACTERS
-from .terminal import echo, grid
+from .terminal import Grid, echo, grid
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from analytic import Scene
     from analytic.margins import Contact, Margin
 
@@ -32,7 +30,7 @@ def print_margins(scene: Scene, margins: Sequence[Margin], contact: Contact, spa
     nearest = margins[0]
     names = {state: name for state, name in _names(tilt).items() if state in limit_states(scene)}
     now = ", ".join(name for state, name in names.items() if nearest.reached(state))
-    parts: list[Table | str] = [
+    parts: list[Grid | str] = [
         f"{readable(scene.name, TITLE_CHARACTERS)}: {nearest.outcome}\nnow: {now or 'no limit state'}"
     ]
     rows = {margin: [margin.change(state) for state in names] for margin in margins}

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..measuring.statistics import wilson
 from ..running.readable import readable
+from .parts import number, percent
 from .terminal import echo, grid
 
 if TYPE_CHECKING:
@@ -52,4 +53,4 @@ def odds(rows: Iterable[Mapping[str, Any]], outcomes: Sequence[str], word: str) 
     if not known:
         return f"{word} under no record that could be run"
     low, high = wilson(int(sum(known)), len(known))
-    return f"{word} under {sum(known):.0f} of {len(known)} records ({100 * low:.0f} to {100 * high:.0f} % at 95 %)"
+    return f"{word} under {sum(known):.0f} of {len(known)} records ({number(100 * low, 2)} to {percent(high)} at 95 %)"

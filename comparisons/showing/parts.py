@@ -175,8 +175,12 @@ def short(value: float | None) -> str:
 
 
 def percent(fraction: float | None, digits: int = 2) -> str:
-    """A fraction in per cent."""
-    return "–" if fraction is None else f"{number(100 * fraction, digits)} %"
+    """A fraction in per cent; what is not all is not 100 %, as none but 0 is 0 %."""
+    if fraction is None:
+        return "–"
+    while fraction < 1 and float(f"{100 * fraction:.{digits}g}") == 100:
+        digits += 1
+    return f"{number(100 * fraction, digits)} %"
 
 
 def signed(change: float) -> str:

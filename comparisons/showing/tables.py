@@ -5,20 +5,19 @@ from __future__ import annotations
 import dataclasses
 import inspect
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rich import box
-from rich.table import Table
 from rich.text import Text
 
 from engines.statue_range import in_words
 
 from ..running.readable import readable
-from .terminal import digits, echo, grid
-from .wording import differing
+from .terminal import Grid, digits, echo, grid
+from .wording import differing, listed, outcomes
 
 if TYPE_CHECKING:
-    from analytic import Response, Scene
+    from analytic import Caution, Response, Scene
     from engines.contract import Engine
 
     from ..measuring.horizon import Horizon
@@ -31,7 +30,7 @@ def _name(scene):
     return readable(scene.name, TITLE_CHARACTERS)
 
 
-def summary(scene: Scene, response: Response) -> Table:
+def summary(scene: Scene, response: Response) -> Grid:
     """The main figures of one response, as a table."""
     title = f"{_name(scene)}: {response.engine}" + (f", {response.variant}" if response.variant else "")
     rows = {
@@ -50,21 +49,15 @@ def summary(scene: Scene, response: Response) -> Table:
     return named_values(rows, title)
 
 
-def named_values(rows: Mapping[str, str], title: str) -> Table:
+def named_values(rows: Mapping[str, str], title: str) -> Grid:
     """A table of {name: value}."""
     look = {"box": box.SIMPLE, "padding": (0, 1), "show_header": False}
     return grid(["name", "value"], rows.items(), left=["value"], wraps=["name", "value"], title=Text(title), **look)
 
 
-def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[str, Horizon]) -> Table:
+def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[str, Horizon]) -> Grid:
     """Responses of several solvers side by side, the first being the reference; horizons: {solver: its `Horizon`}."""
-    limit = "Not sensitive: the histories can be compared to the end." if horizons else "No sensitivity horizon known."
-    if any(found.parts for found in horizons.values()):
-        limit = "Sensitivity horizon, beyond which only outcomes can be compared,\nby each solver's own size of error:"
-        limit += "".join(
-            f"\n{name} {f'{found.horizon:.3g} s' if found.parts else 'none, to the end'} ({found.perturbation:.0e})"
-            for name, found in horizons.items()
-        )
+    limit = _limit(horizons) if horizons else "No sensitivity horizon known."
     caption = (
         "over: time of overturning; tilt: peak tilt over slenderness;\n"
         "base: peak base displacement; d: difference from the first row.\n" + limit
@@ -94,24 +87,64 @@ def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[st
     return grid(heads, rows, left=["outcome"], title=Text(_name(scene)), show_edge=False, caption=caption)
 
 
-def show(table: Table, responses: Sequence[Response]) -> None:
-    """Print a table of responses, and below it in what each differs from the analytic model, and its warnings.
+def _limit(horizons):
+    """Up to when histories can be compared."""
+    if not any(found.parts for found in horizons.values()):
+        size = max(found.perturbation for found in horizons.values())
+        return (
+            f"Errors of the solvers' own size, {size:.0e} at most,\ndo not grow: histories can be compared to the end."
+        )
+    lines = ["Sensitivity horizon, beyond which only outcomes can be compared,", "by each solver's own size of error:"]
+    for name, found in horizons.items():
+        until = f"{found.horizon:.3g} s" if found.parts else "none, to the end"
+        lines.append(f"{name} {until} ({found.perturbation:.0e})")
+    return "\n".join(lines)
 
-    Where the result depends on little of the motion, that stands last, in bold.
+
+def show(table: Grid, responses: Sequence[Response]) -> None:
+    """Print a table of responses, and below it in what each differs from the analytic model, and the warnings.
+
+    Of several responses the outcomes stand first. Where the result depends on little of the motion, that stands last,
+    in bold.
     """
+    if len(responses) > 1:
+        found = outcomes([{**response.to_json(), "outcome_text": response.outcome_text} for response in responses])
+        echo(f"{found[0].upper()}{found[1:]}.", wrap=True)
     motion = [warning for response in responses for warning in response.warnings if warning.kind == MOTION]
-    echo(table, *(readable(words) for response in responses for words in remarks(response)))
+    echo(table, *(readable(words) for words in remarks(responses)))
     echo(*(Text(readable(str(warning)), "bold") for warning in motion))
 
 
-def remarks(response: Response) -> list[str]:
-    """Sentences: in what a response differs from the analytic model, or why it cannot be compared; and its warnings."""
-    name, words = response.engine, differing(response.comparable, response.differences)
-    warnings = [warning for warning in response.warnings if warning.kind != MOTION]
-    return [f"{name} {one}" for one in words] + [f"Warning, {name}: {warning}" for warning in warnings]
+def remarks(responses: Sequence[Response]) -> list[str]:
+    """Sentences: in what responses differ from the analytic model, or why they cannot be compared; and the warnings.
+
+    What is said of several solvers is said once.
+    """
+    different: dict[str, list[str]] = {}
+    for response in responses:
+        for words in differing(response.comparable, response.differences):
+            different.setdefault(words, []).append(response.engine)
+    said = [f"{'each of ' * (len(names) > 1)}{listed(names)} {words}" for words, names in different.items()]
+    return said + _warnings(responses)
 
 
-def engines_table(engines: Sequence[Engine]) -> Table:
+def _warnings(responses):
+    """The warnings and whom they concern; of one quantity the first solver's, and the values of all."""
+    warned: dict[Any, list[tuple[str, Caution]]] = {}
+    for response in responses:
+        for one in response.warnings:
+            if one.kind != MOTION:
+                warned.setdefault((one.kind, one.quantity or one.text), []).append((response.engine, one))
+    said = []
+    for found in warned.values():
+        who = "all solvers" if 1 < len(found) == len(responses) else listed([engine for engine, _ in found])
+        values = {f"{one.value:.3g}": one.value for _, one in found if one.value is not None}
+        spread = f" ({min(values.values()):.3g} to {max(values.values()):.3g})" if len(values) > 1 else ""
+        said.append(f"Warning, {who}: {found[0][1]}{spread}")
+    return said
+
+
+def engines_table(engines: Sequence[Engine]) -> Grid:
     """Who does what: of every variant its tier, what the engine computes and what the adapter imposes."""
     caption = Text(f"Tested for {in_words()}.\nrocking engines NAME: settings, refinement levels, versions.")
     heads = ["engine", "variant", "tier", "the engine computes", "the adapter imposes"]

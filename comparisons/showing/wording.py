@@ -1,7 +1,8 @@
 """Words that several pages share."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 from analytic.response import COMPARED, EDGE, UNCOMPARED, Difference
 
@@ -18,6 +19,8 @@ RATINGS = {
     "fair": "is usable where a per cent does not matter",
     "bad": "is not to be trusted",
 }
+OUTCOMES = {"stands": "never lifts", "rocks": "rocks and stays upright", "overturns": "overturns"}
+MOST_NAMED = 3  # solvers of the commonest outcome; more are counted
 
 
 def indexed(html: str) -> str:
@@ -62,3 +65,27 @@ def differing(comparable: str, differences: Iterable[Difference]) -> list[str]:
     if comparable == EDGE:
         return [f"differs from the analytic model: {found}" if found else ON_EDGE]
     return [] if comparable == UNCOMPARED else [f"cannot be compared with the analytic model: {comparable}"]
+
+
+def outcomes(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Who found what: "in all 3 solvers it overturns", or the solvers by outcome."""
+    by_outcome: dict[str, list[str]] = {}
+    for row in rows:
+        undecided = not row.get("decided", True) and row["outcome"] != "failed"
+        words = f"is {row['outcome_text']}" if undecided else OUTCOMES.get(row["outcome"], row["outcome"])
+        by_outcome.setdefault(words, []).append(row["engine"])
+    off = [row["engine"] for row in rows if row.get("differences")]
+    most = max(map(len, by_outcome.values()), default=0)
+
+    def who(solvers):
+        """All of them, or the many of the commonest outcome, as a number: the others are worth their names."""
+        if len(solvers) == len(rows):
+            return {1: solvers[0], 2: "both solvers"}.get(len(solvers), f"all {len(solvers)} solvers")
+        if len(solvers) == most > MOST_NAMED:
+            return f"{len(solvers)} of {len(rows)} solvers"
+        return listed(solvers)
+
+    words = ", ".join(f"in {who(solvers)} it {outcome}" for outcome, solvers in by_outcome.items())
+    if len(by_outcome.keys() - {"failed"}) > 1:
+        words = f"outcomes differ: {words}"
+    return f"{words}; {listed(off)} differ{'s' * (len(off) == 1)} from the analytic model" if off else words

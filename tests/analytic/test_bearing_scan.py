@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from analytic import SceneError, SettingError, load_scene, simulate, simulate_many, synthetic_motion
-from analytic.bearing_scan import DAMPING_STEP, PERIOD_STEP, scan_bearings
+from analytic import PulseMotion, SceneError, SettingError, load_scene, simulate, simulate_many, synthetic_motion
+from analytic.bearing_scan import DAMPING_STEP, PERIOD_STEP, first_stroke, scan_bearings
 from analytic.design import design_bearings, properties
 from comparisons.running.provenance import commit_seed
 
@@ -66,11 +66,44 @@ def test_least_stroke_is_the_least_and_softest_the_longest():
     assert scan.softest[0] == scan.periods[run.any(axis=0)].max()
 
 
+def test_the_mass_of_the_base_does_not_matter_where_the_block_does_not_lift():
+    """Block and base then move as one: period and damping that hold are the same, the constants go with the mass."""
+    light, heavy = (
+        scan_bearings(SCENE.with_(base={"mass": share * SCENE.block.mass}), [SCENE.motion], 0.25)
+        for share in (0.1, 3.0)
+    )
+    assert ((light.demand <= 1) == (heavy.demand <= 1)).mean() > 0.999  # in rounding
+    assert light.least_stroke == heavy.least_stroke and light.softest == heavy.softest
+    ratio = heavy.bearings(*heavy.softest).ka / light.bearings(*light.softest).ka
+    assert ratio == pytest.approx(4.0 / 1.1, rel=1e-6)
+
+
 def test_where_nothing_holds_the_nearest_is_named():
     scan = scan_bearings(SCENE, [SCENE.motion], 0.02)
     assert scan.least_stroke is scan.softest is None
     assert np.nanmin(scan.demand) > 1
     assert not scan.holds(*scan.nearest) and not scan.holds(99.0, 0.1)
+
+
+@pytest.mark.parametrize(
+    "scene, motions",
+    [
+        (SCENE, [SCENE.motion.scaled(1.5)]),
+        (SCENE.with_(block={"slenderness": 0.12}), [synthetic_motion(seed=7), synthetic_motion(seed=8)]),
+        (SCENE.with_(block={"slenderness": 0.2}), [PulseMotion("one-sine", 2.0, 4.8)]),
+    ],
+)
+def test_at_the_first_stroke_there_are_bearings_and_at_a_third_of_it_there_are_none(scene, motions):
+    stroke = first_stroke(scene, motions)
+    assert (scan_bearings(scene, motions, stroke).demand <= 1).any()
+    assert not (scan_bearings(scene, motions, stroke / 3).demand <= 1).any()
+
+
+def test_there_is_no_first_stroke_where_there_are_no_bearings_at_any():
+    pulse = PulseMotion("one-sine", 10.0, 2.3)
+    assert first_stroke(SCENE, [SCENE.motion, pulse]) is None
+    for stroke in (0.3, 1.0):
+        assert not (scan_bearings(SCENE, [pulse], stroke).demand <= 1).any()
 
 
 def test_progress_ends_at_the_number_of_runs():

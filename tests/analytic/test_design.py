@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analytic import Bearings, SettingError
+from analytic import Bearings, SceneError, SettingError
 from analytic.bearing import BearingLaw
 from analytic.design import design_bearings, properties, steady_cycle
 
@@ -64,6 +64,7 @@ def test_impossible_damping_says_the_most_there_is():
     assert bearings.ka > bearings.kb > 0
 
 
+@pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(
     "change",
     [
@@ -74,9 +75,44 @@ def test_impossible_damping_says_the_most_there_is():
         {"stiffness_ratio": 1.0},
         {"definition": "mine"},
         {"count": 0},
+        {"damping": 1e308},
+        {"mass": 1.01e20},
+        {"period": 1e-21},
+        {"x_max": 1e300},
+        {"stiffness_ratio": 1e21},
     ],
 )
 def test_targets_out_of_range(change):
-    targets = {"period": 2.0, "damping": 0.3, "x_max": 0.3, **change}
-    with pytest.raises(SettingError, match=next(iter(change))):
-        design_bearings(MASS, **targets)
+    targets = {"mass": MASS, "period": 2.0, "damping": 0.3, "x_max": 0.3, **change}
+    with pytest.raises(SettingError, match=f"^{next(iter(change))} = "):
+        design_bearings(**targets)
+
+
+def test_one_bearing_carries_what_four_do():
+    one, four = (design_bearings(MASS, 2.0, 0.15, 0.3, count=count) for count in (1, 4))
+    assert (one.count, one.ka, one.kb) == (1, pytest.approx(4 * four.ka), pytest.approx(4 * four.kb))
+    assert one.alpha == pytest.approx(four.alpha)
+
+
+EXTREMES = (1e-308, 1e-20, 1e-4, 0.01, 0.64, 1.3, 30.0, 1e4, 1e20, 1e308)
+
+
+@pytest.mark.filterwarnings("error")
+@settings(max_examples=300, deadline=None)
+@given(
+    st.tuples(*(st.sampled_from((usual, *EXTREMES)) for usual in (MASS, 2.0, 0.15, 0.3))),
+    st.sampled_from((1 + 1e-15, 1.1, 10.0, 1e6, 1e20, 1e308)),
+    st.sampled_from(["paper", "equivalent"]),
+)
+def test_extreme_targets_are_met_or_refused_in_one_message_and_scipy_is_silent(targets, ratio, definition):
+    try:
+        design_bearings(*targets, stiffness_ratio=ratio, definition=definition)
+    except (SettingError, SceneError):
+        pass
+
+
+def test_a_damping_beyond_that_of_any_loop_is_told_the_most_there_is():
+    """No loop is wider than its rectangle: W_D = 4 F x is 2/pi of critical."""
+    for damping in (2 / math.pi, 1e3, 1e20):
+        with pytest.raises(SettingError, match=r"the most is 0\.2466"):
+            design_bearings(MASS, 2.0, damping, 0.3)

@@ -6,7 +6,7 @@ import pytest
 
 from analytic import Base, Bearings, Scene, SettingError, load_scene
 from analytic.design import design_bearings
-from analytic.new_scene import DAMPING, MATERIALS, PERIOD, block_from, derived, scene_text
+from analytic.new_scene import DAMPING, MATERIALS, PERIOD, block_from, derived, scene_text, with_bearings
 
 BEARINGS = Bearings(count=4, ka=6.22e4, kb=6.22e3, alpha=44.69)
 
@@ -31,6 +31,18 @@ def test_the_file_reads_back_as_what_was_asked_for(tmp_path):
     assert scene.bearings == BEARINGS and scene.base.mass == 400.0
     assert scene.block.radius == pytest.approx(block.radius, rel=1e-5)
     assert text.startswith("# first\n") and "# m; base corner to centre of mass" in text
+
+
+@pytest.mark.parametrize("end", ["", "\n", "\n[run]\nduration = 3.0", '\n[motion]\nsynthetic = "duzce-like"\n\n\n'])
+def test_a_base_and_bearings_are_put_below_a_block_on_the_ground(tmp_path, end):
+    before = scene_text("bust", block_from(1.9, 0.55, mass=1500.0)) + end
+    after = with_bearings(before, BEARINGS, Base(mass=400.0))
+    assert after.startswith(before.rstrip())
+    for name, text in (("before", before), ("after", after)):
+        (tmp_path / f"{name}.toml").write_text(text)
+    scene = load_scene(tmp_path / "after.toml")
+    assert scene.base == Base(mass=400.0) and scene.bearings == BEARINGS
+    assert scene.with_(base=None, bearings=None).digest() == load_scene(tmp_path / "before.toml").digest()
 
 
 def test_derived_numbers_are_the_closed_forms():

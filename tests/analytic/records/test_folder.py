@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from analytic import PulseMotion, SettingError
+from analytic import PulseMotion, SettingError, load_scene, simulate
 from analytic.motion import SampledMotion
-from analytic.records.folder import directions_of, folder_motions, reversed_sign, turned
+from analytic.records.folder import directions_of, folder_motions, reversed_sign, same_reversed, turned
 
 FIRST, SECOND = np.array([0.0, 1.0, -2.0, 0.5]), np.array([0.0, 0.5, 1.5, -1.0])
 
@@ -86,3 +86,34 @@ def test_the_sign_of_a_motion_changes_and_its_vertical_one_stays():
     assert reversed_sign(level).acceleration(0.1) == -level.acceleration(0.1)
     both = reversed_sign(SampledMotion(0.01, FIRST, vertical=SampledMotion(0.01, SECOND)))
     assert (both.samples == -FIRST).all() and (both.vertical.samples == SECOND).all()
+
+
+@pytest.mark.parametrize("own, directions, count", [(0, None, 2), (1, None, 2), (0, 3, 3), (1, 3, 4), (2, None, 1)])
+def test_a_motion_of_ones_own_that_lies_in_the_folder_is_there_once_and_first(tmp_path, own, directions, count):
+    names = ("B_E.csv", "B_N.csv", "c.csv")
+    for name, values in zip(names, (FIRST, SECOND, 2 * FIRST), strict=True):
+        write(tmp_path, name, values)
+    mine = SampledMotion(0.01, (FIRST, SECOND, 2 * FIRST)[own], "as the scene calls it")
+    found, _ = folder_motions(tmp_path, directions=directions, own=mine)
+    assert len(found) == 2 and next(iter(found)) == ("c.csv" if own == 2 else "B_*.csv")
+    first = next(iter(found.values()))
+    assert len(first) == count and first[0].digest() == mine.digest()
+    assert len({motion.digest() for motion in first}) == count
+    other = SampledMotion(0.01, 1.5 * FIRST)
+    assert folder_motions(tmp_path, own=other)[0].keys() == folder_motions(tmp_path)[0].keys()
+
+
+def test_a_reversed_motion_does_the_same_where_the_start_is_at_rest_and_only_there():
+    for scene in (load_scene("caryatid-rigid"), load_scene("caryatid-isolated")):
+        sway = 4.0 * np.sin(6.0 * 0.01 * np.arange(200))
+        scene = scene.with_(motion=SampledMotion(0.01, sway, vertical=SampledMotion(0.01, 0.3 * sway)), duration=3.0)
+        for start, same in (({}, True), ({"tilt": 0.02}, False), ({"tilt_rate": 0.05}, False)):
+            started = scene.with_(start=start)
+            ours, mirrored = (
+                simulate(started.with_(motion=motion), history=False)
+                for motion in (started.motion, reversed_sign(started.motion))
+            )
+            assert same_reversed(started) == same
+            assert (ours.impacts[0].time == mirrored.impacts[0].time) == same == (ours.peak_tilt == mirrored.peak_tilt)
+            if scene.base is not None:
+                assert (ours.peak_base_displacement == mirrored.peak_base_displacement) == same

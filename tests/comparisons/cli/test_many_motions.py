@@ -9,6 +9,7 @@ from analytic import SampledMotion, load_scene, simulate
 from comparisons.measuring.statistics import wilson
 from comparisons.showing.motions import LIFTED, odds
 
+OWN = '[block]\nmass = 100.0\nradius = 1.0\nslenderness = 0.25\n[motion]\nrecord = "records/A090.csv"\n'
 TIME = 0.01 * np.arange(300)
 
 
@@ -27,16 +28,46 @@ def test_run_tells_every_motion_as_a_run_of_its_own_does(rocking, folder):
     status, out, err = rocking(
         "run", "caryatid-rigid", "--records", folder, "--directions", 2, "--both-signs", "--json", "-"
     )
-    assert status == 0 and "notes.txt: left out" in err, err
+    assert status == 0 and "notes.txt: left out" in err and "mirrored the same" in err, err
     rows = json.loads(out)["motions"]
-    assert len(rows) == 2 * (1 + 2 + 1)
+    assert len(rows) == 1 + 2 + 1  # a symmetric block: each motion once
     scene = load_scene("caryatid-rigid")
-    for row, peak in zip(rows[2:4], (4.0, 2.0), strict=True):
+    for row, peak in zip(rows[1:3], (4.0, 2.0), strict=True):
         found = simulate(scene.with_(motion=SampledMotion(0.01, np.round(peak * np.sin(6 * TIME), 8))), history=False)
         assert row["outcome"] == found.outcome
         assert row["tilt"] == pytest.approx(found.peak_tilt_ratio, rel=1e-9)
-    assert [row["outcome"] for row in rows[4:6]] == [row["outcome"] for row in rows[2:4]]  # a symmetric block
     assert rows[-1]["outcome"] == "stands"
+
+
+def test_a_tilted_block_is_run_under_both_signs(rocking, folder):
+    file = folder.parent / "tilted.toml"
+    file.write_text(f"{OWN}scale = 0.3\n[start]\ntilt = 0.02\n")  # another motion than the record's
+    status, out, err = rocking("run", file, "--records", folder, "--both-signs", "--json", "-")
+    assert status == 0 and "mirrored" not in err, err
+    rows = json.loads(out)["motions"]
+    assert len(rows) == 2 * (1 + 2 + 1)
+    scene = load_scene(file)
+    mirrored = simulate(scene.with_(motion=scene.motion.scaled(-1.0)), history=False)
+    assert rows[1]["tilt"] == pytest.approx(mirrored.peak_tilt_ratio, rel=1e-9) != rows[0]["tilt"]
+
+
+def test_the_scenes_own_record_in_the_folder_counts_once(rocking, folder):
+    file = folder.parent / "own.toml"
+    file.write_text('[block]\nmass = 100.0\nradius = 1.0\nslenderness = 0.25\n[motion]\nrecord = "records/A090.csv"\n')
+    status, out, _ = rocking("run", file, "--records", folder)
+    assert status == 0 and "of 2 records" in " ".join(out.split()) and out.count("A090.csv") == 1
+    rows = json.loads(rocking("run", file, "--records", folder, "--json", "-")[1])["motions"]
+    assert [row["record"] for row in rows] == ["A*.csv", "A*.csv", "weak.csv"]
+    assert [row["peak"] for row in rows[:2]] == pytest.approx([2.0, 4.0], rel=1e-3)
+
+
+def test_the_same_record_read_otherwise_is_another_motion_of_it(rocking, folder):
+    (folder / "plain.txt").write_text("".join(f"{t:.2f} {0.1 * np.sin(6 * t):.8f}\n" for t in TIME))
+    file = folder.parent / "own.toml"
+    file.write_text(OWN.replace("A090.csv", "plain.txt") + 'units = "g"\n')
+    out = rocking("run", file, "--records", folder, "--units", "m/s2", "--json", "-")[1]
+    rows = [row for row in json.loads(out)["motions"] if row["record"] == "plain.txt"]
+    assert [row["peak"] for row in rows] == pytest.approx([0.981, 0.1], rel=1e-3)
 
 
 def test_run_prints_the_odds_of_records_and_not_of_motions(rocking, folder):

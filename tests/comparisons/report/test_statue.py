@@ -6,12 +6,12 @@ import re
 import pytest
 from own_scenes import BRONZE, BUST, CLIFF
 
-from analytic import PulseMotion, load_scene, simulate, synthetic_motion
+from analytic import PulseMotion, SampledMotion, load_scene, simulate, synthetic_motion
 from analytic.errors import SceneError
 from analytic.response import COMPARED, EDGE
 from comparisons.commands.report import form
 from comparisons.report.runs import RESTITUTION, SCENES, load_scenes
-from comparisons.report.statue import _engines, statue_of
+from comparisons.report.statue import _engines, _worst, statue_of
 from comparisons.report.study import make_own_results
 from comparisons.report.write import PAGE, write_page
 from comparisons.running.provenance import read_result
@@ -69,7 +69,10 @@ def test_each_scene_has_its_card_first_with_its_outcome_in_the_title(page, scene
     for card, (name, scene) in zip(found, scenes.items(), strict=True):
         outcome = simulate(scene, history=False).outcome
         words = {"stands": "does not lift", "rocks": "rocks and stays upright", "overturns": "overturns"}[outcome]
-        assert card.startswith(f"{name}: the block {words}") and f"{name}: the block {words}" in titles
+        if name == "bust":  # the other record's second motion, which is the worst
+            words = f"rocks and stays upright under 1 of 2 records; under its own motion it {words}"
+        title = f"{name}: the block {words}"
+        assert card.startswith(f"{title} ") and title in titles
         assert "Engines None was run." in card
     assert page.index('class="statue"') < page.index("Which engine may be trusted")
 
@@ -100,6 +103,40 @@ def test_five_per_cent_of_the_motion_are_runs_of_their_own(scenes):
     assert rows[3]["stroke"] >= max(row["stroke"] for row in rows[:3])
 
 
+TITLES = {  # worst of each record, the scene's own motion and, where it is not that of the first record, its outcome
+    ("stands", "stands"): "does not lift under any of 2 records, its own among them",
+    ("rocks", "overturns"): "overturns under 1 of 2 records; under its own motion it rocks and stays upright",
+    ("overturns", "overturns", "rocks"): "overturns under 2 of 3 records, its own among them",
+    ("stands", "failed", "rocks"): "leaves the model under 1 of 3 records; under its own motion it does not lift",
+}
+
+
+@pytest.mark.parametrize("outcomes, words", TITLES.items())
+def test_the_title_is_the_worst_of_all_records_and_what_the_scenes_own_motion_does(outcomes, words):
+    found = {"own": {"outcome": outcomes[0], "decided": True}, "motions": [{"outcome": one} for one in outcomes]}
+    assert _worst(found, {"motion": "own"}) == words
+
+
+def test_the_title_without_other_motions_and_where_the_scene_has_none_or_is_cut():
+    rocks = {"outcome": "rocks", "decided": True}
+    assert _worst({"own": rocks, "motions": []}, {"motion": "own"}) == "rocks and stays upright"
+    words = _worst({"own": rocks, "motions": [{"outcome": "rocks"}]}, {"motion": None})
+    assert words == "rocks and stays upright under 1 of 1 record; without a motion it rocks and stays upright"
+    words = _worst(
+        {"own": {"outcome": "stands", "decided": False}, "motions": [{"outcome": "stands"}]}, {"motion": "own"}
+    )
+    assert words.endswith("; under its own motion it does not lift (not decided when the run ended)")
+
+
+def test_the_scenes_own_motion_counts_among_the_records_and_once(scenes):
+    scene, other = scenes["bronze"], synthetic_motion(seed=7).scaled(0.1)
+    same = SampledMotion(scene.motion.dt, scene.motion.samples, "the record in the folder")
+    for motions, count in (({"other": [other]}, 2), ({"a pair": [other, same]}, 1), ({}, 0)):
+        rows = statue_of(scene, motions)["motions"]
+        assert len(rows) == count
+        assert [row["overturns"] for row in rows if row["record"] != "other"] == [1] * bool(count)
+
+
 def test_a_symmetric_scene_is_the_same_reversed_and_another_is_run(scenes):
     assert "reversed" not in statue_of(scenes["bust"], {})
     scene = scenes["cabinet"]
@@ -120,7 +157,9 @@ def test_free_standing_beside_isolated(page, scenes):
 def test_other_motions_are_counted_by_record(page, scenes):
     bust, motions = cards(page)[1], (synthetic_motion(seed=7), synthetic_motion(seed=8).scaled(2.5))
     found = [simulate(scenes["bust"].with_(motion=motion, duration=None), history=False) for motion in motions]
-    assert f"lifts under {int(any(one.outcome != 'stands' for one in found))} of 1 records" in bust
+    own = simulate(scenes["bust"], history=False)
+    lifting = [any(one.outcome != "stands" for one in record) for record in ([own], found)]
+    assert f"lifts under {sum(lifting)} of 2 records" in bust
     assert f"{max(one.peak_base_displacement for one in found):.3f}" in bust
 
 

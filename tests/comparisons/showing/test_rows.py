@@ -105,3 +105,19 @@ def test_numbers_are_written_for_reading(given, shown):
 
 def test_fractions_in_per_cent():
     assert percent(0.0213) == "2.1 %" and percent(None) == "–"
+
+
+@pytest.mark.parametrize(
+    "fraction, words",
+    [
+        (0, "0 %"),
+        (1, "100 %"),
+        (0.004, "0.40 %"),
+        (3e-4, "0.030 %"),
+        (0.995, "99.5 %"),
+        (0.99996, "99.996 %"),
+        (2.0, "200 %"),
+    ],
+)
+def test_a_share_is_0_and_100_per_cent_only_where_it_is_none_and_all(fraction, words):
+    assert percent(fraction) == words

@@ -1,0 +1,134 @@
+"""What a statue's card says to do next: its command runs on the file, and its sizes are right."""
+
+import html
+import re
+import shlex
+
+import numpy as np
+import pytest
+from own_scenes import BRONZE, BUST, CLIFF
+from record_files import pairs
+
+from analytic import Bearings, PulseMotion, SampledMotion, load_scene, simulate, synthetic_motion
+from comparisons.report.next_step import needed_by, next_step, on_plate
+
+GROUND = load_scene("caryatid-rigid")
+ISOLATED = load_scene("caryatid-isolated")
+WEAK = "[bearings]\nka = 229505\nkb = 22950.5\nalpha = 66.6021\ncount = 4\n"
+CARDS = {
+    "a block's file.toml": (BRONZE.format(scale=CLIFF), "design", "739"),
+    "bust.toml": (BUST.format(bearings=WEAK + "x_max = 0.2"), "design", None),
+    "calm.toml": (BRONZE.format(scale=0.2), "margin", None),
+}
+FIRST = "First write this motion into the table [motion] of its file."
+
+
+def fate(scene, motion, width=None):
+    block = scene.block if width is None else on_plate(scene.block, width)
+    return simulate(scene.with_(block=block, motion=motion, duration=None), history=False).outcome
+
+
+@pytest.mark.parametrize("name", CARDS)
+def test_the_command_on_the_card_runs_on_this_file(rocking, tmp_path, monkeypatch, studies, name):
+    monkeypatch.chdir(tmp_path)
+    text, command, base_mass = CARDS[name]
+    (tmp_path / name).write_text(text)
+    (tmp_path / "my records").mkdir()
+    pairs(tmp_path / "my records", 1, seconds=2.0)
+    many = ("--records", "my records", "--directions", "2", "--both-signs") if command == "design" else ()
+    place = str(tmp_path / name) if command == "margin" else name
+    status, _, err = rocking("report", place, *many, "--engine", "analytic", "--output", "page", "--studies", studies)
+    assert status == 0, err
+    page = (tmp_path / "page/report.html").read_text()
+    (shown,) = re.findall('<p class="next">.*?data-copies="(.*?)"', page)
+    words = shlex.split(html.unescape(shown))
+    assert words[:3] == ["rocking", command, place] and FIRST not in page and set(many) <= set(words)
+    given = dict(zip(words, words[1:], strict=False))
+    assert given.get("--base-mass") == base_mass
+    status, out, err = rocking(*words[1:])
+    assert status == 0 and "Traceback" not in err, err
+    assert ("of critical damping" in out) == (command == "design")
+
+
+def test_a_record_in_place_of_the_files_motion_is_to_be_written_into_it_first(rocking, tmp_path, monkeypatch, studies):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "calm.toml").write_text(BRONZE.format(scale=0.2))
+    (tmp_path / "weak.csv").write_text("time [s],acc [m/s2]\n0.0,0.0\n0.1,0.3\n0.2,-0.3\n")
+    options = ("--record", "weak.csv", "--engine", "analytic", "--output", "page", "--studies", studies)
+    assert rocking("report", "calm.toml", *options)[0] == 0
+    assert f"there is nothing to do. {FIRST}" in (tmp_path / "page/report.html").read_text()
+
+
+def test_a_block_on_a_plate_has_the_same_mass_and_height_and_moves_about_the_plates_corners():
+    block = on_plate(GROUND.block, 0.9)
+    assert 2 * block.half_width == pytest.approx(0.9, rel=1e-14)
+    assert block.half_height == pytest.approx(GROUND.block.half_height, rel=1e-14)
+    assert block.centre_inertia == pytest.approx(GROUND.block.centre_inertia, rel=1e-12)
+
+
+def test_on_the_ground_the_width_that_does_not_lift_is_the_height_times_the_peak_in_g():
+    motions = [GROUND.motion, synthetic_motion(seed=7).scaled(1.4)]
+    found = needed_by(GROUND, motions)
+    height = 2 * GROUND.block.half_height
+    assert found["stands"] == pytest.approx(height * max(motion.peak for motion in motions) / GROUND.gravity, rel=5e-3)
+    assert [fate(GROUND, motion, found["stands"]) for motion in motions] == ["stands"] * 2
+    assert "rocks" in [fate(GROUND, motion, 0.99 * found["stands"]) for motion in motions]
+
+
+def test_the_width_that_stays_upright_does_so_under_all_motions_and_a_little_less_does_not():
+    motions = [GROUND.motion, synthetic_motion(seed=7).scaled(1.4)]
+    upright = needed_by(GROUND, motions)["upright"]
+    assert "overturns" in [fate(GROUND, motion) for motion in motions]
+    assert 2 * GROUND.block.half_width < upright
+    assert "overturns" not in [fate(GROUND, motion, upright) for motion in motions]
+    less = upright * np.linspace(0.984, 0.999, 16)
+    assert "overturns" in [fate(GROUND, motion, width) for motion in motions for width in less]
+    assert needed_by(GROUND, [PulseMotion("one-sine", 3.5, 20.0)])["upright"] is None  # it rocks as it is
+
+
+def test_the_width_on_bearings_and_under_vertical_motion_is_that_of_the_run():
+    stiff = ISOLATED.with_(bearings=Bearings(law="linear", ka=1e6, count=4, damping=1e4))
+    up = SampledMotion(GROUND.motion.dt, 0.5 * np.roll(GROUND.motion.samples, 40))
+    both = SampledMotion(GROUND.motion.dt, GROUND.motion.samples, vertical=up)
+    for scene, motion in ((stiff, stiff.motion), (GROUND, both)):
+        width = needed_by(scene, [motion])["stands"]
+        assert fate(scene, motion, width) == "stands" and fate(scene, motion, 0.99 * width) == "rocks"
+    weightless = SampledMotion(GROUND.motion.dt, GROUND.motion.samples, vertical=up.scaled(6.0))
+    assert needed_by(GROUND, [weightless])["stands"] is None  # nothing presses it on the ground
+
+
+def test_the_stroke_is_the_x_max_of_the_bearings_and_none_where_none_would_do():
+    weak = ISOLATED.with_(motion=ISOLATED.motion.scaled(3.0))
+    assert needed_by(weak, [weak.motion])["stroke"] > 0.1
+    built = weak.with_(bearings={"x_max": 0.07})
+    assert needed_by(built, [built.motion])["stroke"] == 0.07
+    assert needed_by(GROUND, [PulseMotion("one-sine", 10.0, 2.3)])["stroke"] is None
+    nothing = {"stroke": None, "stands": None, "upright": None}
+    assert needed_by(load_scene("free-rocking-isolated"), []) == nothing
+    assert needed_by(GROUND.with_(start={"tilt": 0.01}), [GROUND.motion]) == nothing
+
+
+SCENE = {"block": {"mass": 1551.83}, "base": None, "bearings": None, "half_width": 0.275}
+BASE = {**SCENE, "base": {"mass": 400.0}}
+NEEDED = {"stroke": 0.25, "stands": 0.8, "upright": 0.61}
+SAID = [
+    (SCENE, None, "rocking margin FILE", "there is nothing to do"),
+    (SCENE, NEEDED, "rocking design FILE --base-mass 1550 --stroke 0.25", "Both numbers are examples"),
+    (BASE, NEEDED, "rocking design FILE --stroke 0.25", "The stroke [m] is an example"),
+    (
+        {**BASE, "bearings": {"x_max": 0.25}},
+        NEEDED,
+        "rocking design FILE --stroke 0.25",
+        "is the x_max of its bearings",
+    ),
+    (SCENE, NEEDED, "", "0.610 m wide (now 0.550 m) it does not overturn, to one of 0.800 m it does not lift"),
+    (SCENE, {**NEEDED, "upright": None}, "", "fixed to a plate 0.800 m wide (now 0.550 m) it does not lift"),
+    (SCENE, {**NEEDED, "stroke": None}, "rocking margin FILE", "No bearings are likely to keep it from lifting; widen"),
+    (SCENE, dict.fromkeys(NEEDED), "rocking margin FILE", "lifting; widen, fix or lower it."),
+]
+
+
+@pytest.mark.parametrize("scene, needed, command, words", SAID)
+def test_what_is_said_next(scene, needed, command, words):
+    found, said = next_step(scene, needed, "FILE")
+    assert command in ("", found) and words in said and said.endswith(".")
