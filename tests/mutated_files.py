@@ -146,6 +146,42 @@ def jma(values, titles="NS,EW,UD"):
     ) + "".join(f"{100 * value:.3f},{-50 * value:.3f},{value:.3f}\n" for value in values)
 
 
+def knet_csv(values, offsets=(0.1, 1.7, 16.5), seconds=None):
+    """A K-NET CSV of 50 Hz, times of one minute; its three components are the offsets and the values, 1, -2 and 3
+    times, in 0.01 gal."""
+    seconds = len(values) / 50 if seconds is None else seconds
+    rows = [
+        [f"2030/01/02 03:04:{15 + 0.02 * i:05.2f}", f"{0.02 * i:.2f}"]
+        + [f"{offset + times * value:.2f}" for offset, times in zip(offsets, (1, -2, 3), strict=True)]
+        for i, value in enumerate(values)
+    ]
+    return (
+        "#K-NET CSV\n#Event\n#OriginTime,Depth(km),Magnitude\n#2030/01/02 03:04:00,31,7.0\n#Record\n"
+        f"#SamplingFrequency(Hz)\n#50\n#DurationTime(s)\n#{seconds:g}\n#Offset\n#N-S(gal),E-W(gal),U-D(gal)\n"
+        f"#{','.join(f'{offset:.2f}' for offset in offsets)}\n#Time,RelativeTime(s),N-S(gal),E-W(gal),U-D(gal)\n"
+    ) + "".join(",".join(row) + "\n" for row in rows)
+
+
+def csmnc(values):
+    """A file of China's network [cm/s2] at 0.02 s."""
+    return (
+        "099XYZ300102030401\n0300102030415 2030-01-02 03:04:15 BTM\nMADE UP, NOWHERE\nCOMP. EW\n"
+        "UNCORRECTED ACCELERATION          UNIT: CM/SEC/SEC\n"
+        f"NO. OF POINTS: {len(values):6d}  EQUALLY SPACED INTERVALS OF:  0.02  SEC\n"
+        "PRE-EVENT TIME:  0  SEC  RECORDER TIME:  2030-01-2 03:04:15.000 BTM\n"
+    ) + _columns([100 * value for value in values], 8, 10, 3)
+
+
+def corrected(values, step=0.005):
+    """Corrected accelerations [m/s2] in 5E14.7, whose signs fill the columns."""
+    return (
+        "Station Code / Name           : 1 / Nowhere\nOrientation                   : NS\n"
+        "Filter Cut-off Frequency (Hz) : 0.100 - 50.000\n"
+        f"Time Increment (s)            : {step}\n"
+        f"Number of Data                : {len(values)}\nAccelaration time series in m/s/s\n"
+    ) + _fortran(values, 14)
+
+
 def turkey(values):
     """Columns of Turkey's disaster management."""
     return (
@@ -262,6 +298,7 @@ def records():
         ("smc", smc(VALUES), {}),
         ("smc, long numbers", smc(VALUES, high=True), {}),
         *changed(),
+        *titled(),
     ]
 
 
@@ -317,6 +354,50 @@ def changed():
         ("at2, small", _at2(history, "NPTS= 12, DT= .005", _fortran([1e-102, *VALUES[1:]])), {}),
         ("dyna, no last end", _dyna(VALUES).rstrip("\n"), {}),
         *stated(),
+    ]
+
+
+def titled():
+    """Records whose columns say in their titles what they are, or whose first lines how many they are."""
+    pairs = [f"{0.005 * i:.3f} {VALUES[i % 12]:.5f}" for i in range(24)]
+    stamps = "".join(f"2030-01-02T03:04:{15 + 0.005 * i:06.3f},{VALUES[i % 12]:.4f}\n" for i in range(24))
+    plots = _rows("{t:.4f}\t{a:.5f}\t{t:.4f}\t-{t:.5f}\t")
+    numbered = [f"{0.005 * i:.3f},{VALUES[i % 12]}" for i in range(24)]
+    clocks = stamps.replace("2030-01-02T", "").replace(",", ";").replace(".", ",")
+    spectrum = "".join(f"{0.05 * i:.2f},{1 + VALUES[i % 12] / 10:.5f}\n" for i in range(24))
+    return [
+        ("knet csv", knet_csv([100 * value for value in SMOOTH]), {"channel": 3}),
+        ("knet csv, name", knet_csv([100 * value for value in VALUES * 2]).rstrip("\n"), {"channel": "n-s"}),
+        ("csmnc", csmnc(SMOOTH), {}),
+        ("csmnc, step given", csmnc(VALUES), {"dt": 0.02}),
+        ("corrected", corrected(VALUES * 2), {}),
+        ("counted", "made up\n24 0.0050\n" + _rows("{a:.6f}"), {"units": "m/s2"}),
+        ("counted, a list", f"46 .01\n{_list(SMOOTH)}", {"units": "g"}),
+        ("counted, times", "24 0.005\n" + _rows("{t:.3f} {a:.4f}"), {"units": "g"}),
+        ("counted, lines", "24\n0.005\n" + _rows("{a:.4f}"), {"units": "cm/s2"}),
+        ("step line", "Time Step: 0.005\n" + _rows("{a:.5f}"), {"units": "g"}),
+        ("pairs", "$ in g\n" + _lines([f"{pair}  " for pair in pairs], 4), {"units": "g"}),
+        ("pairs, column", _lines([f"{pair} " for pair in pairs], 3), {"units": "g", "column": 2}),
+        ("quoted", '"Time (s)","Acc (g)"\n' + _rows('"{t:.3f}","{a:.4f}"'), {}),
+        ("quoted commas", '"t [s]","a, g"\n' + _rows('"{t:.3f}","{a:.4f}"').replace(".", ","), {}),
+        ("quoted numbers", '"","time","acc_g"\n' + "".join(f'"{i}",{row}\n' for i, row in enumerate(numbered, 1)), {}),
+        ("stamps", "time,acc (gal)\n" + stamps, {}),
+        ("stamps, clock", f"time;acc (gal)\n{clocks}", {}),
+        ("plots", "Time [s] - 0\tA - Plot 0\tTime [s] - 1\tA - Plot 1\t\n" + plots, {"units": "g", "column": 2}),
+        ("plots, second", "Time [ms]\tA [mg]\tTime [s]\tB [g]\n" + plots, {"column": 4}),
+        ("units below", "Time,Acc,Vel\nms,mg,m/s\n" + _rows("{t:.1f},{a:.4f},1", 5.0), {"column": "acc"}),
+        ("glued units", "time,acc_cms2,vel_cms\n" + _rows("{t:.3f},{a:.4f},1"), {"column": 2}),
+        ("numbered", "no.,time,acc_m_s2\n" + "".join(f"{i},{row}\n" for i, row in enumerate(numbered)), {}),
+        ("a v d", "t a v d\n" + _rows("{t:.3f} {a:.4f} 1 2"), {"units": "g", "column": "a"}),
+        ("reversed", "acc (g),time (s)\n" + _rows("{a:.4f},{t:.3f}"), {}),
+        ("velocity, refused", "t a v d\n" + _rows("{t:.3f} {a:.4f} 1 2"), {"units": "g", "column": "v"}),
+        ("spectrum, refused", "T (s),Sa (g)\n" + spectrum, {}),
+        ("spectra, refused", "Period [sec],Acc./Elastic\n" + spectrum, {"units": "g", "column": 2}),
+        ("frequency, refused", "f [Hz],Acc (g)\n" + spectrum, {}),
+        ("spectrum above, refused", "# Design spectrum\n" + spectrum, {"units": "g"}),
+        ("unknown unit, refused", "time,acc [lsb]\n" + _rows("{t:.3f},{a:.4f}"), {"units": "g"}),
+        ("unknown suffix, refused", "time,acc_foo2\n" + _rows("{t:.3f},{a:.4f}"), {"units": "g"}),
+        ("km, refused", "# acceleration in km/s2\n" + _rows("{t:.3f},{a:.4f}"), {"units": "g"}),
     ]
 
 
@@ -411,6 +492,21 @@ WORDS = [
     "muestras/s",
     "200 samples per second",
     "dt = 5",
+    "T",
+    "Sa",
+    "Period",
+    "Hz sampling",
+    "acc_cms2",
+    "(counts)",
+    "_foo2",
+    "spectrum",
+    "24",
+    "NO. OF POINTS: 24",
+    "samples: 24",
+    "03:04:15.020",
+    "step",
+    "0.005 s intervals",
+    "time_ms",
     "dt = 0.005 s",
     "dt:",
     "# dt = .01",
@@ -568,7 +664,7 @@ DAMAGE = (
 def cases(number, seed=0):
     """`number` damaged files: (kind, name, content, what the user says), kind "record" or "scene"."""
     chance = random.Random(seed)
-    kinds = [("record", *record) for record in records()] * 2 + [("scene", *scene, {}) for scene in scenes()] * 22
+    kinds = [("record", *record) for record in records()] * 2 + [("scene", *scene, {}) for scene in scenes()] * 30
     for _ in range(number):
         kind, name, text, said = chance.choice(kinds)
         if kind == "record" and chance.random() < 0.1:

@@ -6,9 +6,10 @@ Each function takes the lines of a file and gives None if the file is not of its
 
 import re
 from fractions import Fraction
+from itertools import pairwise
 
 from strict_statements import flat, fold
-from strict_words import KNOWN, NUMBER, G, form_of, need, single, step_of, unit_of
+from strict_words import KNOWN, NUMBER, G, form_of, need, single, step_of, uniform, unit_of
 
 GAL = Fraction(1, 100)
 FORTRAN = re.compile(r"\( *([1-9][0-9]?)[A-Z]{1,2} *([1-9][0-9]?) *[.] *([0-9]{1,2})(?: *E *[0-9]?)? *\)")
@@ -109,10 +110,10 @@ def _cosmos_data(line):
     """(count, kind, unit, its code or "") of a line that announces data; None of another."""
     low = line[:400].lower()
     head = re.match(r"\s*([0-9]{1,9})\s+([a-z]+)\s+pts,(.*)", low)
-    stated = head and re.search("units *=(.*)", head[3])
-    if not stated or len(low.split()) < 4 or re.search(r"\w$", head[3][: stated.start()]):
+    stated = head and re.fullmatch("(.*)units *=(.*)", head[3])  # the last one
+    if not stated or len(low.split()) < 4 or re.search(r"\w$", stated[1]):
         return None
-    rest, _, layout = stated[1].partition("format")
+    rest, _, layout = stated[2].partition("format")
     unit = re.fullmatch(r" *([^,(]*[^,( ]) *(?:\( *0*([0-9]+) *\) *)?,? *", rest)
     if not re.match(" *=", layout) or re.search(r"\w$", rest) or not unit:
         return None
@@ -167,6 +168,29 @@ def _knet_numbers(header, pattern):
     return [single(number) for number in found.groups()]
 
 
+def knet_csv(lines):
+    if not re.match(r"#\s*k-net csv(?!\w)", first_of(lines).lower()):
+        return None
+    header = [line[:400].strip()[1:] for line in lines if line.startswith("#")]
+    rows = [line.split(",") for line in lines if line.strip() and not line.startswith("#")]
+    below = {key: [after for line, after in pairwise(header) if line == key] for key in header}
+    (frequency,), (duration,) = below["SamplingFrequency(Hz)"], below["DurationTime(s)"]
+    ((titles, offsets),) = [(key, below[key][0]) for key in below["Offset"] if len(below[key]) == 1]
+    need(header[-1] == f"Time,RelativeTime(s),{titles}" and len(below["Offset"]) == 1)
+    names, offsets = re.findall(r"([^,()]+)\((?i:gal)\)", titles), [single(offset) for offset in offsets.split(",")]
+    frequency, _ = single(frequency), single(duration)
+    need(len(names) == len(offsets) and len(rows) > 1 and frequency > 0)
+    need(all(len(row) == 2 + len(names) for row in rows))
+    values = [[single(field) for field in column] for column in list(zip(*rows, strict=True))[1:]]
+    need(all(len({form_of(field) for field in column}) == 1 for column in list(zip(*rows, strict=True))[1:]))
+    least, most = uniform([row[1] for row in rows])
+    need(least * (1 - Fraction(1, 10**6)) <= 1 / frequency <= most * (1 + Fraction(1, 10**6)))
+    return [
+        (str(place), name.casefold(), 1 / frequency, [value - offset for value in column], GAL)
+        for place, (name, offset, column) in enumerate(zip(names, offsets, values[1:], strict=True), 1)
+    ]
+
+
 def smc(lines):
     begin = lines.index(first_of(lines))
     kinds = r"(accelerogram|velocity|displacement|response(?=\s+spectra(?!\S)))\b"
@@ -188,7 +212,7 @@ def smc(lines):
 UNREAD = re.compile(
     r"(?:un)?corrected accelerogram\s+[0-9]{8}_[0-9]{6}_|uncorrected accelerogram\b"
     r"|(?:response|fourier)\b(?!.*\(format)[^(]*\bspectr(?:a|um)\b|raw acceleration counts\b.*\(format"
-    r"|\*?\s*vol[12]ds file\b|timeseries\b(?:.*[\s,])?slist(?:[\s,]|$)|# dataset: geocsv"
+    r"|\*?\s*vol[12]ds file\b|timeseries\b(?:.*[\s,])?(?:slist|tspair)(?:[\s,]|$)|# dataset: geocsv"
 )
 
 

@@ -56,7 +56,7 @@ DT = re.compile(r"\bdt\s*(?:[(\[]\s*[a-z]*\s*[)\]]\s*)?[=:]")
 
 def _channel(lines, wanted):
     """(step, samples, factor) of the channel wanted, by its number or else its direction; None of columns."""
-    channels = strict_formats.csmip(lines) or strict_formats.cosmos(lines)
+    channels = strict_formats.csmip(lines) or strict_formats.cosmos(lines) or strict_formats.knet_csv(lines)
     if not channels:
         need(wanted is None)
         return strict_formats.knet(lines) or strict_formats.smc(lines)
@@ -103,7 +103,7 @@ def _dyna(lines):
     if i == begin or not any(line.startswith(signs) for line in lines[:70]):
         return None
     factor, samples = KNOWN[keys["UNITS"].lower()], fortran(lines[i:])
-    need(keys.get("DATA_TYPE", "").lower()[:3] in ("", "acc"))
+    need(keys.get("DATA_TYPE", "").lower()[:3] in ("", "acc") and "spectr" not in keys.get("DATA_TYPE", "").lower())
     need(whole(keys["NDATA"]) == len(samples))
     step = step_of(keys["SAMPLING_INTERVAL_S"])
     return (step, step), samples, factor

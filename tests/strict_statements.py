@@ -15,24 +15,30 @@ def _spelled(*parts):
     return {"".join(words) for words in product(*parts)}
 
 
+SAMPLING = ("sample", "sampling", "digitizing", "digitising", "digitization", "digitisation")
 RATE_KEYS = {"fs", "sampled at"}.union(
-    _spelled(
-        ("sample", "sampling", "digitizing", "digitising", "digitization", "digitisation"),
-        GAP,
-        ("rate", "freq", "frequency"),
-    ),
-    _spelled(("tasa", "frecuencia", "velocidad"), (" de muestreo",)),
+    _spelled((*SAMPLING, "data", "acquisition", "scan", "record", "recording"), GAP, ("rate", "freq", "frequency")),
+    _spelled(("tasa", "frecuencia", "velocidad"), (" de muestreo", " de adquisicion")),
     _spelled(("abtast", "sampling"), GAP, ("rate", "frequenz")),
     _spelled(("frequence", "taux", "cadence"), SAMPLING_FR),
     _spelled(("ornekleme ",), ("frekansi", "hizi", "orani")),
 )
 INTERVAL_KEYS = {"dt", "interval of", "intervals of"}.union(
-    _spelled(("delta",), GAP, ("t",)),
+    _spelled(("delta", "δ", "∆"), GAP, ("t",)),
     _spelled(("equally",), GAP, ("spaced at",)),
-    _spelled(("sample", "sampling"), GAP, ("interval", "period", "step", "time", "spacing")),
-    _spelled(("time",), GAP, ("step", "interval", "increment", "spacing")),
-    _spelled(("intervalo", "periodo", "paso"), (" de muestreo", " de tiempo")),
-    _spelled(("abtast", "zeit"), GAP, ("intervall", "periode", "zeit", "schritt", "schrittweite", "inkrement")),
+    _spelled((*SAMPLING, "data", "recording"), GAP, ("interval", "period", "step", "time", "spacing", "increment")),
+    _spelled(
+        ("time",),
+        GAP,
+        ("step", "interval", "increment", "spacing"),
+        ("", " size"),
+        ("", *(f" between {what}" for what in ("samples", "points", "values", "readings"))),
+    ),
+    _spelled(("intervalo", "periodo", "paso", "incremento"), (" de muestreo", " de tiempo")),
+    _spelled(("paso", "intervalo"), (" temporal",)),
+    _spelled(
+        ("abtast", "zeit"), GAP, ("intervall", "periode", "zeit", "schritt", "schrittweite", "inkrement", "abstand")
+    ),
     _spelled(("pas", "intervalle", "periode"), (" de temps", *SAMPLING_FR)),
     _spelled(("ornekleme", "zaman"), (" araligi", " periyodu", " adimi")),
 )
@@ -53,16 +59,33 @@ def _one_of(words):
 
 
 END = r"(?![^\W\d_])"
-KEY = re.compile(rf"(?<![^\W\d_])(?:{_one_of(RATE_KEYS | INTERVAL_KEYS)}){END}")
-RATE_KEY = re.compile(_one_of(RATE_KEYS))
+KEY = re.compile(rf"(?<![^\W\d_])(?:(?:{_one_of(RATE_KEYS | INTERVAL_KEYS)}){END}|(?:{_one_of(PER_SECOND)})(?= ?[:=]))")
+RATE_KEY = re.compile(_one_of(RATE_KEYS | PER_SECOND))
 UNIT = f"(?:{_one_of(RATES)}|[a-zµ]+){END}"
 SAID = re.compile(rf" ?[(\[]? ?((?!(?:is|of|at){END}){UNIT})? ?[)\]]? ?([:=]|is|of|at)? ?")
-BEHIND = re.compile(rf" ?[(\[]? ?({UNIT})| ?(?=[,;|)\]]|$)")
+BEHIND = re.compile(rf" ?[(\[]? ?({UNIT})(?! ?[:=])| ?(?=[,;|)\]]|$)| (?=[a-z]+ ?[:=])")
 DECIMAL_COMMA, GOES_ON = re.compile("[0-9]+,[0-9]+"), re.compile("[.,]?[0-9]")
 # A number of samples a second, of which no sign is left out before it
 SAMPLES = re.compile(
     r"(?:(?=[+-])|(?<![0-9+-])(?<![0-9][.,ed]))(?=[0-9.+-])(?=[.,ed+-]*[0-9])([0-9.,ed+-]*[0-9.])"
     f" ?(?:{_one_of(PER_SECOND)}){END}"
+)
+# Behind a number and its unit, or before them at the beginning of a line or of a part of it
+BEHIND_UNIT = re.compile(
+    r"[.]? ?-?(?>(?:time|sample|sampling) ?-?(?:intervals?|steps?|spacing|increments?|rate|freq|frequency)"
+    rf"|intervals?|steps?|spacing|increments?|sampling){END}(?! ?[:=(\[0-9])"
+)
+MERE = re.compile(
+    "(?:step|interval|spacing|rate|sampling|muestreo|schritt|abtastung|paso|pas|echantillonnage|adim|ornekleme)"
+    rf"{END} ?(?:[(\[] ?(?P<boxed>{UNIT}) ?[)\]] ?)?[:=]? ?"
+)
+COUNT = re.compile(
+    r"(?<![^\W\d_])(?:(?:no|nr|num|number)[.]? ?(?:of )?(?:data |sample |acceleration )?(?:points|samples|data|values)"
+    "|(?:numero|num[.]?|total|cantidad) (?:total )?de (?:muestras|datos|puntos|valores)"
+    "|(?:zahl|anzahl) (?:der )?(?:werte|punkte|daten|messwerte|abtastwerte|datenpunkte)"
+    "|nombre (?:de |d.?)(?:points|valeurs|donnees|mesures|echantillons)"
+    "|(?:veri|ornek|nokta) sayisi|npts|ndata|(?<!between )samples(?= ?[:=]))"
+    rf"{END} ?[:=]? ?([0-9]{{1,9}})(?![.,]?[0-9])"
 )
 
 
@@ -88,8 +111,16 @@ def blanked(lines):
                 statements.append(found)
                 line = line[:i] + " " * (end - i) + line[end:]
             i = end
+        for count in COUNT.finditer(text):
+            line = line[: count.start()] + " " * (count.end() - count.start()) + line[count.end() :]
         kept.append(line)
     return statements, kept
+
+
+def count_of(lines):
+    """The number of samples that lines of a header state, None of none and of several."""
+    counts = {int(found[1]) for line in lines for found in COUNT.finditer(fold(" ".join(line.split())))}
+    return counts.pop() if len(counts) == 1 else None
 
 
 def step_of_all(statements):
@@ -143,10 +174,27 @@ def _known(word):
 
 
 def _alone(text, i):
-    """(statement, where it ends) of samples a second that begin at i; (None, i + 1) without them."""
+    """(statement, where it ends) of a number at i that says its unit and what it is, or of a mere word and such a
+    number; (None, i + 1) of another text."""
     found = SAMPLES.match(text, i)
     number = found and _number(text, i)
-    if not found or (number and number[1] != found.end(1)):
+    if found and (not number or number[1] == found.end(1)):
+        need(number)
+        return (True, 1 / _sure(number[0])[0], 0), found.end()
+    begins = i == 0 or text[i - 1] in ",;|#%!" or (text[i - 1] == " " and i > 1 and text[i - 2] in ",;|#%!")
+    mere = MERE.match(text, i) if begins else None
+    at = mere.end() if mere else i
+    number = _number(text, at) if mere or i == 0 or text[i - 1] not in "0123456789.," else None
+    if not number:
         return None, i + 1
-    need(number)
-    return (True, 1 / _sure(number[0])[0], 0), found.end()
+    unit = re.match(rf"( ?{'' if mere else '-?'})({UNIT})", text[number[1] :])
+    word = mere["boxed"] if mere and mere["boxed"] else unit and unit[2]
+    end = number[1] if mere and mere["boxed"] else number[1] + len(unit[0]) if unit else number[1]
+    behind = None if mere else BEHIND_UNIT.match(text, end)
+    if not word or not _known(word) or not (mere or behind):
+        return None, i + 1
+    value, half = _sure(number[0], text[number[1] :])
+    end = behind.end() if behind else end
+    if word in RATES:
+        return (True, 1 / value, 0), end
+    return (False, value / TIME_WORDS[word], half / TIME_WORDS[word]), end

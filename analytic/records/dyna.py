@@ -36,7 +36,7 @@ def read(lines: Sequence[str], asked: Asked) -> tuple[Content, ...]:
     stated, line = header["UNITS"]
     kind = header.get("DATA_TYPE", ("acceleration",))[0]
     factor = factor_of(stated)
-    if factor is None or (kind and not kind.lower().startswith("acc")):
+    if factor is None or (kind and not re.match(r"acc(?!.*spectr)", kind, re.I)):
         key, value = ("UNITS", stated) if factor is None else ("DATA_TYPE", kind)
         raise SceneError(key, value, "not an acceleration this reader knows", "give the acceleration file, in cm/s^2")
     values = fortran_values(lines, begin)

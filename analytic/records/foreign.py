@@ -20,6 +20,7 @@ SIGNS = {
     "UNAM/ASA": (r"(?s:.*)^\s*archivo est.ndar de aceleraci.n", COLUMNS),
     "BHRC": (r"\s*\*?\s*vol[12]ds file", COLUMNS),
     "SLIST": (r"\s*timeseries\b.*\bslist\b", WITH_OBSPY),
+    "TSPAIR": (r"\s*timeseries\b.*\btspair\b", WITH_OBSPY),
     "GeoCSV": (r"\s*#\s*dataset:\s*geocsv", WITH_OBSPY),
 }
 _SIGNS = {name: re.compile(sign, re.I | re.M) for name, (sign, _) in SIGNS.items()}

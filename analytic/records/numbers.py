@@ -29,12 +29,22 @@ def number(where: str, token: str) -> float:
     SceneError
         It is not one, or not finite; names `where`.
     """
-    known = len(token) <= LONGEST and _NUMBER.fullmatch(token)
-    value = float(token.replace("D", "E").replace("d", "e")) if known else math.nan
+    value = value_of(token)
     if not math.isfinite(value):
-        problem = "not finite" if known or _NOT_FINITE.fullmatch(token) else "not a number"
+        problem = "not finite" if math.isinf(value) or _NOT_FINITE.fullmatch(token) else "not a number"
         raise SceneError(where, token, problem, REMEDY)
     return value
+
+
+def value_of(token: str) -> float:
+    """The number in `token`, nan where it is none."""
+    known = len(token) <= LONGEST and _NUMBER.fullmatch(token)
+    return float(token.replace("D", "E").replace("d", "e")) if known else math.nan
+
+
+def numbers_in(token: str) -> int:
+    """How many numbers a token holds, which may touch each other."""
+    return len(_NUMBER.findall(token))
 
 
 def fortran_values(lines: Sequence[str], begin: int) -> np.ndarray:

@@ -12,6 +12,7 @@ from ..errors import SceneError
 GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
 OTHERS = {b"BZh": ("bzip2", "bunzip2"), b"\xfd7zXZ": ("xz", "unxz"), b"PK\x05\x06": ("zip, and empty", "give a record")}
 LISTED = 5  # names of files in a message
+SPREADSHEET = {"[Content_Types].xml", "content.xml"}  # in the files of Excel, and of LibreOffice
 # What gzip and zipfile raise where a file is damaged.
 DAMAGE = (
     *(OSError, EOFError, ValueError, RuntimeError, IndexError, OverflowError),
@@ -69,6 +70,8 @@ def _unzipped(content: bytes, limit: int) -> tuple[bytes, str]:
             inside = [
                 one for one in archive.infolist() if not one.is_dir() and not one.filename.startswith("__MACOSX/")
             ]
+            if SPREADSHEET & {one.filename for one in inside}:
+                raise SceneError("record", None, "is a spreadsheet", "save the sheet with the record as CSV")
             if len(inside) != 1:
                 names = ", ".join(one.filename for one in inside[:LISTED]) + (", ..." if len(inside) > LISTED else "")
                 raise SceneError(

@@ -1,8 +1,9 @@
-"""What the header of a record states: sampling interval, unit of its values, unit of its times.
+"""What the header of a record states: sampling interval, number of samples, unit of its values, unit of its times.
 
 A step is stated by a word for it, in English, Spanish, German, French or Turkish, with accents or without, then a
 number with a point or a comma, its unit before or behind: "Sampling rate: 100 Hz", "INTERVALO DE MUESTREO (s): 0,01",
-"Abtastrate 200", "dt [ms] = 5", "200 samples/s". A rate without a unit is in Hz, an interval in seconds.
+"Abtastrate 200", "dt [ms] = 5", "200 samples/s", "0.02 sec intervals". A rate without a unit is in Hz, an interval in
+seconds; a mere "Step" or "Rate" begins its line and needs a unit.
 """
 
 import re
@@ -18,9 +19,9 @@ from .units import END, NOT_ACCELERATIONS, START, WORDS, Unit, factor_of, plain
 TIMES = "time|t|zeit|tiempo|temps|zaman"  # words for it, folded
 _RATE = "|".join(
     (
-        r"(?:sampl(?:e|ing)|digiti[sz](?:ing|ation)) ?-?(?:rate|freq(?:uency)?)",
+        r"(?:sampl(?:e|ing)|digiti[sz](?:ing|ation)|data|acquisition|scan|record(?:ing)?) ?-?(?:rate|freq(?:uency)?)",
         r"fs|sampled at",
-        r"(?:tasa|frecuencia|velocidad) de muestreo",
+        r"(?:tasa|frecuencia|velocidad) de (?:muestreo|adquisicion)",
         r"(?:abtast|sampling) ?-?(?:rate|frequenz)",
         r"(?:frequence|taux|cadence) d.?echantillonnage",
         r"ornekleme (?:frekansi|hizi|orani)",
@@ -28,11 +29,11 @@ _RATE = "|".join(
 )
 _INTERVAL = "|".join(
     (
-        r"dt|delta ?-?t|equally ?-?spaced at|intervals? of",
-        r"sampl(?:e|ing) ?-?(?:interval|period|step|time|spacing)",
-        r"time ?-?(?:step|interval|increment|spacing)",
-        r"(?:intervalo|periodo|paso) de (?:muestreo|tiempo)",
-        r"(?:abtast|zeit) ?-?(?:intervall|periode|zeit|schritt|schrittweite|inkrement)",
+        r"dt|(?:delta|[δ∆]) ?-?t|equally ?-?spaced at|intervals? of",
+        r"(?:sampl(?:e|ing)|data|recording|digiti[sz](?:ing|ation)) ?-?(?:interval|period|step|time|spacing|increment)",
+        r"time ?-?(?:step|interval|increment|spacing)(?: size)?(?: between (?:samples|points|values|readings))?",
+        r"(?:intervalo|periodo|paso|incremento) de (?:muestreo|tiempo)|(?:paso|intervalo) temporal",
+        r"(?:abtast|zeit) ?-?(?:intervall|periode|zeit|schritt|schrittweite|inkrement|abstand)",
         r"(?:pas|intervalle|periode) (?:de temps|d.?echantillonnage)",
         r"(?:ornekleme|zaman) (?:araligi|periyodu|adimi)",
     )
@@ -42,13 +43,38 @@ _SAMPLES = (
     "(?:s|sec|second|segundo|sekunde|seconde|saniye)"
 )
 _HERTZ = f"hz|hertz|1/s(?:ec)?|{_SAMPLES}"
-_PRINTED = rf"({NUMBER}|[0-9]+,[0-9]+(?!e[+-]?[0-9]))(?![0-9]|[.,][0-9])"
+_PRINTED = rf"(?:{NUMBER}|[0-9]+,[0-9]+(?!e[+-]?[0-9]))(?![0-9]|[.,][0-9])"
+_UNITS = f"(?:{_HERTZ}|{'|'.join(sorted(filter(None, PER_SECOND), key=len, reverse=True))}){END}"
+# Mere words, where a line or a part of it begins, or behind a number and its unit.
+_BEGINNING = "step|interval|spacing|rate|sampling|muestreo|schritt|abtastung|paso|pas|echantillonnage|adim|ornekleme"
+_BEHIND = (
+    "(?:time|sampl(?:e|ing)) ?-?(?:intervals?|steps?|spacing|increments?|rate|freq(?:uency)?)"
+    "|intervals?|steps?|spacing|increments?|sampling"
+)
 _STEP = re.compile(
-    rf"{START}(?:(?P<rate>{_RATE})|{_INTERVAL}){END}"
+    rf"{START}(?P<key>(?P<rate>{_RATE}|(?:{_SAMPLES})(?= ?[:=]))|{_INTERVAL}){END}"
     rf" ?[(\[]? ?(?P<before>(?!(?:is|of|at){END})(?:{_HERTZ}|[a-zµ]+){END})? ?[)\]]?"
     rf" ?(?P<sign>[:=]|(?:is|of|at){END})? ?"
-    rf"(?:(?P<value>{_PRINTED})(?: ?[(\[]? ?(?P<behind>{_HERTZ}|[a-zµ]+){END}| ?(?=$|[,;|)\]])))?"
+    rf"(?:(?P<value>{_PRINTED})"
+    rf"(?: ?[(\[]? ?(?P<behind>{_HERTZ}|[a-zµ]+){END}(?! ?[:=])| ?(?=$|[,;|)\]])| (?=[a-z]+ ?[:=])))?"
     rf"|(?<![0-9.,])(?P<samples>{_PRINTED}) ?(?:{_SAMPLES}){END}"
+    rf"|(?<![0-9.,])(?P<ahead>{_PRINTED}) ?-?(?P<ahead_unit>{_UNITS})\.? ?-?(?>{_BEHIND}){END}(?! ?[(\[:=0-9])"
+    rf"|(?:(?<![^,;|#%!])|(?<=[,;|#%!] ))(?:{_BEGINNING}){END} ?(?:"
+    rf"[(\[] ?(?P<boxed_unit>{_UNITS}) ?[)\]] ?[:=]? ?(?P<boxed>{_PRINTED})"
+    rf"|[:=]? ?(?P<bare>{_PRINTED}) ?(?P<bare_unit>{_UNITS}))"
+)
+_COUNT = re.compile(
+    rf"{START}(?:"
+    r"(?:no\.?|nr\.?|num\.?|number) ?(?:of )?(?:data |sample |acceleration )?(?:points|samples|data|values)"
+    r"|(?:numero|num\.?|total|cantidad) (?:total )?de (?:muestras|datos|puntos|valores)"
+    r"|(?:an)?zahl (?:der )?(?:werte|punkte|daten|messwerte|abtastwerte|datenpunkte)"
+    r"|nombre (?:de |d.?)(?:points|valeurs|donnees|mesures|echantillons)"
+    r"|(?:veri|ornek|nokta) sayisi|npts|ndata|(?<!between )samples(?= ?[:=])"
+    rf"){END} ?[:=]? ?([0-9]{{1,9}})(?![0-9]|[.,][0-9])"
+)
+_FACTOR = re.compile(
+    r"(?:fact(?:or|eur)|faktor|multipl(?:y|ier)(?: by)?|scal(?:e|ing)(?= ?[:=])) ?(?:[:=]|of|is)? ?"
+    rf"(?P<factor>{NUMBER})"
 )
 _FREQUENCY = re.compile(rf"{NUMBER} ?k?hz{END}")
 _TIME = re.compile(
@@ -62,25 +88,33 @@ _BY = r"(?:/|[ .*·](?=s(?:ec)?(?:\^|\*\*)?[-−⁻(])|(?=s-2))"  # "cm/s2", "cm
 # What may stand before it is listed: behind other signs, or a letter of any alphabet, it is the rest of a damaged word.
 _APART = r"""(?:(?<![^\s,;:=(\[{<'"|])|(?<=^[#!])|(?<=[^\W_][_-]))"""
 _QUOTIENT = re.compile(rf"{_APART}({_LENGTH}{_BY}[^\s,;:\]=]+)", re.I)
+# One that stands so is that of another length, or damaged: "km/s2".
+_SQUARED = re.compile(rf"[^\s,;:=(\[]*?{_LENGTH}/s(?:ec)?(?:/s|(?:\^|\*\*)?[-{{(]*[2²])", re.I)
+UNKNOWN = "unknown unit"
 _AFTER_NUMBER = re.compile(r"[0-9.] ?$")
 _WORD = r"((?:% ?)?[a-z][^\s,;:\]=]*)"
 # Short words are units only where a header introduces one.
-_INTRODUCED = re.compile(
+_UNIT = (
     rf"(?:[a-z]*unit(?:s|es|[eé]s?)?|unidad(?:es)?|einheit(?:en)?|birimi?){END}"
-    rf"(?: (?:of|in|is|are|de los datos)(?=[ :=(\[]))?[ :=]*[(\[]?{_WORD}",
-    re.I,
+    r"(?: (?:of|in|is|are|de los datos)(?=[ :=(\[]))?[ :=]*[(\[]?"
 )
-_SUGGESTED = re.compile(rf"(?:\bin |[(\[] ?|\b(?:acceleration|accel|acc)\.? (?!in )){_WORD}", re.I)
+_SCALED = re.compile(
+    rf"{_UNIT}({NUMBER} ?[*x]? ?({'|'.join(map(re.escape, WORDS))}))(?![^\s,;:)\]])", re.I
+)  # "0.01 gal"
+_INTRODUCED = re.compile(
+    rf"{_UNIT}(?:(?:{'|'.join(word for word in PER_SECOND if word)})(?:[,;]| and| y| und| et| ve) )?{_WORD}", re.I
+)
+_SUGGESTED = re.compile(rf"(?:\bin |[(\[] ?|\b(?:acceleration|accel|acc)\.?,? (?!in )){_WORD}", re.I)
 _GALS = re.compile(r"[(\[] ?(gals?) ?[)\]]", re.I)  # nothing else is called so
 _SUFFIX = re.compile(rf"(?<=[^\W_])_({'|'.join(word for word in WORDS if word.isalpha())})(?![^\W_])", re.I)
-_ACCELERATION = re.compile(
-    rf"{START}(?:acc(?:el|elerations?|elerograms?)?|pga|aceleracion(?:es)?|beschleunigung(?:en)?|ivme){END}"
+ACCELERATION = "acc(?:el|elerations?|elerograms?)?|pga|aceleracion(?:es)?|beschleunigung(?:en)?|ivme"
+OTHER = (
+    "velocit(?:y|ies)|veloc|vel|displacements?|displ|disp|velocidad(?:es)?|desplazamientos?"
+    "|geschwindigkeit(?:en)?|verschiebung(?:en)?|vitesses?|deplacements?"
 )
+_ACCELERATION = re.compile(rf"{START}(?:{ACCELERATION}){END}")
 # Behind a damaged sign these still refuse a record.
-_OTHER = re.compile(
-    r"(?<![a-z])(?:velocit(?:y|ies)|veloc|vel|displacements?|displ|disp|velocidad(?:es)?|desplazamientos?"
-    r"|geschwindigkeit(?:en)?|verschiebung(?:en)?|vitesses?|deplacements?)(?![a-z])"
-)
+_OTHER = re.compile(rf"(?<![a-z])(?:{OTHER})(?![a-z])")
 
 
 @dataclass(frozen=True)
@@ -106,21 +140,41 @@ def read_statements(header: Iterable[tuple[int, str]]) -> Statements:
     unread, rest = [], []
     for at, line in header:
         line = unicodedata.normalize("NFC", " ".join(line.split()))
-        text, taken = _folded(line), line
-        for match in _STEP.finditer(text):
+        text, taken = folded(line), line
+        match = _STEP.search(text)
+        while match:
             step = _step(f"line {at}, step", line, match)
             if step is not None:
                 steps.append(step)
                 taken = taken[: match.start()] + " " * len(match[0]) + taken[match.end() :]
             else:
                 unread.append(f"line {at} speaks of sampling in words that are not understood: {line[:60]}")
-        if _FREQUENCY.search(_folded(taken)):
+            match = _STEP.search(text, match.end() if step else match.end("key"))
+        if _FREQUENCY.search(folded(taken)):
             unread.append(f"line {at} names a frequency that is not understood: {line[:60]}")
+        for match in _COUNT.finditer(text):
+            taken = taken[: match.start()] + " " * len(match[0]) + taken[match.end() :]
         rest.append((at, taken))
     return Statements(_only(steps), _per_second(rest), tuple(unread), rest)
 
 
-def _folded(line: str) -> str:
+def stated_count(header: Iterable[tuple[int, str]]) -> int | None:
+    """The number of samples that the lines of a header state; None where they state none, or several."""
+    counts = {int(count) for _, line in header for count in _COUNT.findall(folded(" ".join(line.split())))}
+    return counts.pop() if len(counts) == 1 else None
+
+
+def unused_factors(header: Iterable[tuple[int, str]]) -> tuple[str, ...]:
+    """Sentences on factors other than 1 that the lines of a header name: the values stay as they are printed."""
+    found = ((at, line, _FACTOR.search(folded(line))) for at, line in header)
+    return tuple(
+        f"line {at} names a factor, and the numbers are taken without it: {line[:60]}"
+        for at, line, match in found
+        if match and exact(match["factor"]) != 1
+    )
+
+
+def folded(line: str) -> str:
     """A line in lower case without accents, as long as the line itself; underscores part words."""
     plain = "".join("i" if sign == "ı" else unicodedata.normalize("NFD", sign)[0] for sign in line)
     return "".join(sign.lower() if len(sign.lower()) == 1 else sign for sign in plain).replace("_", " ")
@@ -138,7 +192,10 @@ class _Step:
 def _step(where: str, line: str, match: re.Match[str]) -> _Step | None:
     """The step that a match states; None of a mere word, without a number."""
     if match["samples"]:
-        return _Step(usable(where, 1 / _positive(where, match["samples"])), where, 0.0)
+        return _of_unit(where, match["samples"], "sps")
+    for form in ("ahead", "boxed", "bare"):
+        if match[form]:
+            return _of_unit(where, match[form], match[f"{form}_unit"])
     before, behind = match["before"] or "", match["behind"] or ""
     known = next((word for word in (behind, before) if _kind(word)), "")
     if match["value"] is None or not (known or not before or behind):
@@ -153,10 +210,18 @@ def _step(where: str, line: str, match: re.Match[str]) -> _Step | None:
     if _kind(known) == "rate" or (not known and match["rate"]):
         if not known and value < 1:
             raise SceneError(where, line, "a rate below 1, without a unit", "write a rate in Hz, or dt = .01 s")
+        return _of_unit(where, match["value"], "hz")
+    return _of_unit(where, match["value"], known)
+
+
+def _of_unit(where: str, token: str, unit: str) -> _Step:
+    """The step of a rate or of an interval, as printed, in a unit that is known."""
+    value = _positive(where, token)
+    if _kind(unit) == "rate":
         return _Step(usable(where, 1 / value), where, 0.0)
-    per_second = PER_SECOND[known]
-    unit = 10.0 ** int(exact(match["value"].replace(",", ".")).as_tuple().exponent)
-    return _Step(usable(where, value / per_second), where, unit / 2 / per_second)
+    per_second = PER_SECOND[unit]
+    last_digit = 10.0 ** int(exact(token.replace(",", ".")).as_tuple().exponent)
+    return _Step(usable(where, value / per_second), where, last_digit / 2 / per_second)
 
 
 def _kind(word: str) -> str:
@@ -195,7 +260,7 @@ def _per_second(header: Iterable[tuple[int, str]]) -> int:
     """Units of time in a second, from the words of the header."""
     found = {}
     for at, line in header:
-        for match in _TIME.finditer(_folded(line)):
+        for match in _TIME.finditer(folded(line)):
             word = match[1]
             if word in OTHER_TIMES:
                 raise SceneError(f"line {at}", match[0], "not a time in s or ms", "write the times in seconds")
@@ -224,11 +289,11 @@ def stated_unit(header: Iterable[tuple[int, str]], titles: int | None = None) ->
     found = acceleration = other = None
     for number_of_line, line in header:
         line = _spaced(line)
-        names = _ACCELERATION.search(_folded(line)), _OTHER.search(_folded(line))
+        names = _ACCELERATION.search(folded(line)), _OTHER.search(folded(line))
         acceleration = acceleration or names[0]
         other = other or names[1] and (number_of_line, names[1][0])
         for key, word in _units_in(line, number_of_line == titles, any(names)):
-            factor = factor_of(word)
+            factor = None if key == UNKNOWN else factor_of(word)
             if factor is None:
                 raise SceneError(
                     f"line {number_of_line}, {key}",
@@ -267,6 +332,12 @@ def _units_in(line: str, titles: bool, named: bool) -> Iterator[tuple[str, str]]
             yield "UNITS OF", word
     for word in quotients.values():
         yield "unit", word
+    for match in _SCALED.finditer(line):
+        yield UNKNOWN, match[1]
+    for match in _SQUARED.finditer(line):
+        apart = any(match.start() <= found.start(1) < match.end() for found in _QUOTIENT.finditer(line))
+        if not apart and not re.match(r"[-+]?\.?[0-9]", match[0]):
+            yield UNKNOWN, match[0]
     suggested = _SUGGESTED if titles or named else _GALS
     for match in (*suggested.finditer(line), *(_SUFFIX.finditer(line) if titles else ())):
         if plain(_word(match)) in {*WORDS, *NOT_ACCELERATIONS} and match.start(1) not in quotients:

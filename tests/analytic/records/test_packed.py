@@ -56,6 +56,10 @@ BAD = {
     "bzip2": (b"BZh91AY&SY", "is packed by bzip2; unpack it first (bunzip2)"),
     "velocities": (zipped({"a.VT2": AT2}), "holds velocities, as .VT2 files do"),
     "velocities by the name without .gz": (gzip.compress(AT2.encode()), "holds velocities, as .VT2 files do"),
+    "Excel": (
+        zipped({"[Content_Types].xml": "", "xl/workbook.xml": ""}),
+        "record: is a spreadsheet; save the sheet with the record as CSV",
+    ),
     "nothing in it": (zipped({"a": ""}), "record: is empty"),
 }
 

@@ -64,14 +64,24 @@ def test_dyna(tmp_path):
 
 
 ROWS = "".join(f"\n{i / 200} {a}" for i, a in enumerate(VALUES))
-LETTERS = [*"\u00ddç¿$~%&+*\\?@^`}0.x_-!#", "\u0411", "\u00b5"]
-DAMAGED = [f"# time [s] acceleration [{letter}m/s2]" for letter in LETTERS]
-DAMAGED += [f"# time, acc ({letter}m/s^2)" for letter in LETTERS] + [f"# {letter}m/s/s" for letter in LETTERS]
+LETTERS = [*"\u00ddç¿$~%&+*\\?@^`}.x_-!#", "\u0411", "\u00b5"]
+DAMAGED = [f"# time [s] acceleration [{letter}m/s2]" for letter in [*LETTERS, "0", "."]]
+DAMAGED += [f"# time, acc ({letter}m/s^2)" for letter in [*LETTERS, "0", "."]] + [
+    f"# {letter}m/s/s" for letter in LETTERS
+]
 
 
 @pytest.mark.parametrize("header", DAMAGED)
-def test_a_damaged_letter_leaves_no_unit_behind_it(tmp_path, header):
-    """One damaged byte of "cm/s2" must not make metres of centimetres."""
+def test_a_damaged_letter_leaves_a_word_that_is_asked_about(tmp_path, header):
+    """One damaged byte of "cm/s2" must not make metres of centimetres, and units given do not overrule it."""
+    path = write(tmp_path, header + ROWS)
+    for units in (None, "cm/s2", "g"):
+        assert_refused(path, "line 1, ", units=units)
+        assert_refused(path, "not an acceleration" if "time" not in header else "", units=units)
+
+
+@pytest.mark.parametrize("header", ["# 0m/s/s", "# Vs30 = 360 m/s", "# g = 9.81m/s2", "# peak 1.2 m/s/s"])
+def test_what_stands_behind_a_number_is_no_unit_of_the_record(tmp_path, header):
     path = write(tmp_path, header + ROWS)
     assert_refused(path, "missing; the header names no unit")
     np.testing.assert_allclose(read_record(path, "cm/s2").samples, np.array(VALUES) * 0.01, rtol=1e-15)
@@ -149,6 +159,11 @@ BAD = {
     "DYNA without interval": (dyna(VALUES, SAMPLING_INTERVAL_S=None), None, "SAMPLING_INTERVAL_S: missing"),
     "DYNA without units": (dyna(VALUES, UNITS=""), None, "UNITS: missing from the header"),
     "DYNA velocity": (dyna(VALUES, UNITS="cm/s"), None, "UNITS = 'cm/s': not an acceleration"),
+    "DYNA spectrum": (
+        dyna(VALUES, DATA_TYPE="ACCELERATION RESPONSE SPECTRUM"),
+        None,
+        "DATA_TYPE = 'ACCELERATION RESPONSE SPECTRUM': not an acceleration",
+    ),
     "DYNA short": (dyna(VALUES, NDATA=9), None, "NDATA = 9: but 7 samples follow"),
     "DYNA NaN": (dyna([*VALUES, float("nan")]), None, "line 73 = 'nan': not finite"),
     "no units": ("0 1\n0.01 2\n", None, "motion.units: missing; columns of numbers carry no unit; add units, one of"),

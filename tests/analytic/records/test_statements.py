@@ -7,7 +7,7 @@ from record_files import assert_refused, write
 
 from analytic.errors import SceneError
 from analytic.records import read_channels, read_record
-from analytic.records.statements import read_statements, stated_unit
+from analytic.records.statements import read_statements, stated_count, stated_unit
 
 ONE_COLUMN = "".join(f"{value:.4f}\n" for value in VALUES)
 THREE = "".join(f"{value:9.3f} {-2 * value:9.3f} {value / 2:9.3f}\n" for value in VALUES)
@@ -46,6 +46,29 @@ THREE = "".join(f"{value:9.3f} {-2 * value:9.3f} {value / 2:9.3f}\n" for value i
         ("zaman adimi: 0.005 saniye", 0.005),
         ("sampling rate .005 sec", 0.005),
         ("Sampling rate: 120 Hz, dt = 0.0083 s", 1 / 120),
+        ("Time Step: 0.005", 0.005),
+        ("TIME INCREMENT = .005", 0.005),
+        ("EQUALLY SPACED INTERVALS OF:  0.005  SEC", 0.005),
+        ("time interval between samples: 5 ms", 0.005),
+        ("Δt = 0,005 s", 0.005),
+        ("Data interval: 0.005 s", 0.005),
+        ("Acquisition rate (Hz): 200", 0.005),
+        ("SPS: 200", 0.005),
+        ("samples per second = 200", 0.005),
+        ("Step (s): 0.005", 0.005),
+        ("record 12; interval 5 ms", 0.005),
+        ("Sampling: 200 Hz", 0.005),
+        ("recorded at 0.005 sec. intervals", 0.005),
+        ("200-Hz sampling, corner at .1 s", 0.005),
+        ("lowpass 25 Hz sampling rate 200 Hz", 0.005),
+        ("Paso temporal: 0,005 s", 0.005),
+        ("Incremento de tiempo = 0,005", 0.005),
+        ("Abtastung: 200 Hz", 0.005),
+        ("Zeitabstand: 5 ms", 0.005),
+        ("Échantillonnage : 200 Hz", 0.005),
+        ("Örnekleme: 200 Hz", 0.005),
+        ("DT= .005 UNIT= m/s2", 0.005),
+        ("Sampling interval fs 200", 0.005),
     ],
 )
 def test_a_step_in_words(tmp_path, words, step):
@@ -80,6 +103,45 @@ def test_what_is_not_understood_of_the_sampling_is_a_warning_where_the_user_give
     assert not read_record(stated, "m/s2").warnings
 
 
+@pytest.mark.parametrize("words", ["Significant interval: 5 s", "rate: 5", "pas de filtre", "steps of 5 m", "step 1"])
+def test_a_mere_word_states_no_step_without_its_unit_or_behind_others(words):
+    assert read_statements([(1, words)]).step is None
+
+
+@pytest.mark.parametrize(
+    "words, count",
+    [
+        ("NO. OF POINTS:     40  EQUALLY SPACED", 40),
+        ("Number of Data                : 40", 40),
+        ("NUMBER OF DATA POINTS = 40", 40),
+        ("NPTS = 40", 40),
+        ("samples: 40", 40),
+        ("Número de muestras: 40", 40),
+        ("Anzahl der Werte: 40", 40),
+        ("Nombre d'échantillons : 40", 40),
+        ("Veri sayısı: 40", 40),
+        ("number of points 40.5", None),
+        ("no. of points: 40, no. of data: 80", None),
+        ("samples of soil 3", None),
+    ],
+)
+def test_a_number_of_samples_in_words(words, count):
+    assert stated_count([(1, words)]) == count
+
+
+def test_another_number_of_samples_than_stated_is_a_warning(tmp_path):
+    path = write(tmp_path, f"# dt = .01 s, number of points: 40\n{ONE_COLUMN}")
+    (warning,) = read_record(path, "m/s2").warnings
+    assert "the header states 40 samples, the data have 12: check that the file is whole" in warning
+
+
+@pytest.mark.parametrize("words", ["Scale factor: 981", "Factor = 0.01", "multiply by 9.81", "Skalierungsfaktor: 1e-3"])
+def test_a_factor_that_is_not_used_is_a_warning(tmp_path, words):
+    (warning,) = read_record(write(tmp_path, f"# {words}\n# dt = .01 s\n{ONE_COLUMN}"), "m/s2").warnings
+    assert f"line 1 names a factor, and the numbers are taken without it: # {words}" in warning
+    assert not read_record(write(tmp_path, f"# scale factor 1.0\n# dt = .01\n{ONE_COLUMN}"), "m/s2").warnings
+
+
 @pytest.mark.parametrize("comment", ["# Sampling rate: 50 Hz", "# acceleration [g]"])
 def test_a_statement_inside_the_data_is_refused(tmp_path, comment):
     head = f"# dt = .01 s, acceleration [m/s2]\n{ONE_COLUMN}"
@@ -101,11 +163,21 @@ def test_a_statement_inside_the_data_is_refused(tmp_path, comment):
         ("acc_g", 1, "g"),
         ("NS_gal", None, None),
         ("mass (g)", None, None),
+        ("Acceleration, g", None, "g"),
+        ("Units: sec, g", None, "g"),
+        ("UNITS ARE SECONDS AND CM/S2", None, "CM/S2"),
     ],
 )
 def test_units_in_words(line, titles, word):
     unit = stated_unit(read_statements([(1, line)]).rest, titles)
     assert (unit and unit.word) == word
+
+
+@pytest.mark.parametrize(
+    "line", ["UNITS ARE SECONDS AND G/10", "# Units: 0.01 gal", "acc in km/s2", "# µm/s^2", "Acc [nm/s**2]"]
+)
+def test_a_unit_that_is_not_known_is_refused_whatever_the_user_gives(tmp_path, line):
+    assert_refused(write(tmp_path, f"{line}\n{ONE_COLUMN}"), "not an acceleration", units="m/s2", dt=0.01)
 
 
 def test_two_names_of_one_unit_must_agree(tmp_path):
@@ -154,7 +226,7 @@ def test_a_table_with_velocities_names_its_columns(tmp_path):
     rows = "".join(f"{0.01 * i:.2f},{a:.3f},{a:.3f}\n" for i, a in enumerate(VALUES))
     path = write(tmp_path, "Time (s),x (g),v (cm/s)\n" + rows)
     assert_refused(path, "motion.column: missing; not all columns are accelerations (line 1, unit: not")
-    assert_refused(path, "add column, 2 (x) or 3 (v)")
+    assert_refused(path, "; add column, 2 (x)")
     assert read_record(path, column="x").dt == 0.01
 
 
@@ -214,6 +286,7 @@ def test_a_sign_that_is_lost_from_a_column_is_told_by_the_length_of_the_line(tmp
             "SLIST",
             "TIMESERIES XX_AA_20_HNE_D, 4 samples, 50 sps, 2001-01-01T00:00:00.0, SLIST, FLOAT, M/S**2\n1 2 3 4\n",
         ),
+        ("TSPAIR", "TIMESERIES XX_AA__HNE_R, 4 samples, 50 sps, 2001-01-01T00:00:00.0, TSPAIR, FLOAT, Counts\n1 2\n"),
         ("GeoCSV", "# dataset: GeoCSV 2.0\n# delimiter: ,\nTime, Sample\n"),
         ("CSMIP volume 1", "UNCORRECTED ACCELEROGRAM DATA\n1 2\n"),
         ("CSMIP volume 3", "Response Spectra  00000-X0000\n1 2\n"),

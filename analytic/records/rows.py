@@ -1,0 +1,182 @@
+"""Rows of numbers below a header: the lines of a file taken apart into fields."""
+
+import itertools
+import math
+import re
+from collections.abc import Sequence
+
+from ..errors import SceneError
+from .content import HEADER_WIDTH, UNKNOWN, first_of
+from .numbers import form_of, value_of
+from .statements import read_statements, stated_count, stated_unit
+from .times import in_seconds
+
+# A line that begins like a number is data and must be read, or else damage would pass as a header.
+DATA = re.compile(r"\s*(?:[-+.0-9]|[,;](?!\s*(?!nan|inf)[^\W\d_])|(?:nan|inf|infinity)\b)", re.I)
+COMMENT = ("#", "%", "!", "//")
+HEADER_LINES = 200
+NUMERIC = re.compile(r"[-+]?[.,]?[0-9]")
+RULER = re.compile(r"[-=_*~+|]{3,}(?:\s+[-=_*~+|]{3,})*")  # below titles
+SIGNS_OF_NUMBERS = "0123456789.,;+-eEdD \t"
+QUOTED = re.compile(r'(?:(?:[^"]*[,;\s])?"[^"]*"(?=[,;\s]|$))+(?:[,;\s][^"]*)?')  # fields, some of them in quotes
+
+Table = Sequence[tuple[int, list[str]]]  # line numbers and fields of the rows
+
+
+def unquoted(lines: Sequence[str]) -> Sequence[str]:
+    """The lines without the quotes around their fields; where numbers in quotes have decimal commas, semicolons part
+    the fields."""
+    parts = {at: line.split('"') for at, line in enumerate(lines) if '"' in line and QUOTED.fullmatch(line.strip())}
+    if not parts:
+        return lines
+    commas = any("," in field for found in parts.values() for field in found[1::2] if DATA.match(field))
+    bare = list(lines)
+    for at, found in parts.items():
+        inside = [field if DATA.match(field) else re.sub("[,;]", "", field) for field in found[1::2]]
+        between = [text.replace(",", ";") if commas else text for text in found[::2]]
+        bare[at] = "".join(itertools.chain(*zip(between, [*inside, ""], strict=True)))
+    return bare
+
+
+def split(lines: Sequence[str]) -> tuple[list[tuple[int, str]], list[tuple[int, str]]]:
+    """(line number, text) of the header, cut to `HEADER_WIDTH`, and of the rows of data, without comments and blank
+    lines.
+
+    A comment inside the data that states a step or a unit is refused: there a second record begins.
+    """
+    header: list[tuple[int, str]] = []
+    rows: list[tuple[int, str]] = []
+    begin = _begin(lines)
+    for at, line in enumerate(lines, 1):
+        text = line.strip()
+        if not rows and RULER.fullmatch(text):
+            continue
+        if text.startswith(COMMENT):
+            if not rows:
+                header.append((at, text[:HEADER_WIDTH]))
+            elif (found := read_statements([(at, text[:HEADER_WIDTH])])).step or stated_unit(found.rest):
+                raise SceneError(f"line {at}", text, "a statement inside the data", "give one record of the file")
+        elif text and not rows and (at <= begin or not DATA.match(text)):
+            header.append((at, text[:HEADER_WIDTH]))
+        elif text:
+            rows.append((at, in_seconds(f"line {at}", text.split("#")[0].strip())))
+    if not rows or len(header) > HEADER_LINES:
+        raise SceneError("line 1", first_of(lines).strip()[:60], *UNKNOWN)
+    return header, rows
+
+
+def _begin(lines: Sequence[str]) -> int:
+    """Number of the last line that states how many samples follow, if none up to there is one of numbers alone."""
+    top = [line[:HEADER_WIDTH] for line in lines[:HEADER_LINES]]
+    begin = max((at for at, line in enumerate(top, 1) if stated_count([(at, line)]) is not None), default=0)
+    rows = (line for line in top[:begin] if re.search("[0-9]", line) and not line.strip(SIGNS_OF_NUMBERS))
+    return 0 if any(rows) else begin
+
+
+def parted(rows: Sequence[tuple[int, str]]) -> tuple[str | None, Table]:
+    """(separator, None of blanks; the fields of all rows, with decimal points)."""
+    separator, decimal = _dialect(rows)
+    plain = ((at, row.replace(",", ".") if decimal == "," else row) for at, row in rows)
+    table = [(at, fields_of(row, separator)) for at, row in plain]
+    while all(len(fields) > 1 and not fields[-1] for _, fields in table):  # separators behind all rows
+        table = [(at, fields[:-1]) for at, fields in table]
+    return separator, table
+
+
+def _dialect(rows: Sequence[tuple[int, str]]) -> tuple[str | None, str]:
+    """(separator, decimal sign) of all rows; the separator of blanks is None."""
+    texts = [row for _, row in rows]
+    points = sum("." in text for text in texts)
+    semicolon = ";" if any(";" in text for text in texts) else None
+    first = next((row for row in rows if "," in row[1]), None)
+    if first is None:
+        return semicolon, "."
+    spaced = any(re.search(r",[ \t]|[ \t],|^,|,$", text) for text in texts)
+    blanks = all(len(text.split()) > 1 for text in texts)
+    if not semicolon and (spaced or (not blanks and 2 * points >= len(texts))):
+        return ",", "."
+    if not (semicolon or blanks):
+        problem = "its comma may part columns or be a decimal sign"
+        raise SceneError(
+            f"line {first[0]}", first[1], problem, "write decimal points, or part the columns by semicolons"
+        )
+    if points:
+        problem = "a decimal comma in a file that has decimal points too"
+        raise SceneError(f"line {first[0]}", first[1], problem, "write decimal points throughout")
+    return semicolon, ","
+
+
+def fields_of(row: str, separator: str | None) -> list[str]:
+    """The fields of a line."""
+    return row.split() if separator is None else [field.strip() for field in row.split(separator)]
+
+
+def counted(table: Table) -> tuple[Table, list[tuple[int, str]]]:
+    """(rows, (line number, statement)) of a table that begins with the number of its values or rows, and perhaps their
+    step, as eqsig and many programs write; or the table as it is."""
+    (at, first), rest = table[0], table[1:]
+    if len(first) == 1 and rest and first[0] == str(len(rest) - 1) and len(rest[0][1]) == 1:
+        first, rest = [*first, *rest[0][1]], rest[1:]  # each in a line of its own
+    size, width = sum(len(fields) for _, fields in rest), len(rest[0][1]) if rest else 0
+    if rest and len(first) < 3 and re.fullmatch("[0-9]{1,9}", first[0]) and value_of(first[-1]) >= 0:
+        known = int(first[0]) in (size, len(rest)) and any("." in field for _, fields in rest for field in fields)
+        if not known and len(first) == 2 and width != 2:
+            problem = f"may be the number of values and their step, but {size} values follow"
+            raise SceneError(f"line {at}", " ".join(first), problem, "correct it, or begin the line with #")
+        rising = width == 2 == len(first) and value_of(rest[0][1][0]) > int(first[0])
+        if known and not rising:
+            return rest, [(at, f"samples: {first[0]}" + (f", dt = {first[1]} s" if len(first) == 2 else ""))]
+    _check_first(at, first, rest)
+    return table, []
+
+
+def _check_first(at: int, first: Sequence[str], rest: Table) -> None:
+    """Refuse a first number, other than 0, that is not printed as all others of the only column are."""
+    if len(first) != 1 or not abs(value_of(first[0])) > 0 or len(rest) < 2 or any(fields[1:] for _, fields in rest):
+        return
+    forms = {form_of(field) for _, (field,) in rest}
+    if len(forms) == 1 and form_of(first[0]) not in forms:
+        problem = "not printed as the numbers below are, and may be their step or their number"
+        raise SceneError(f"line {at}", first[0], problem, "begin the line with #, and say which: # dt = .01 s")
+
+
+def unpaired(table: Table, titles: Sequence[str]) -> Table:
+    """The table of two columns, if each line holds several pairs of time and value, which rise along the lines.
+
+    Raises
+    ------
+    SceneError
+        Few of the times do not rise: a damaged number. In columns side by side some number falls in each line.
+    """
+    width, last = len(table[0][1]), table[-1][1]
+    whole = all(len(fields) == width for _, fields in table[:-1]) and not len(last) % 2
+    if width < 4 or width % 2 or not whole or len({*titles[::2]}) > 1 or len({*titles[1::2]}) > 1:
+        return table
+    falls, before = [], -math.inf
+    for at, field in ((at, field) for at, fields in table for field in fields[::2]):
+        time = value_of(field)
+        if not before < time:
+            falls.append(at)
+            if 2 * len(falls) >= len(table):
+                return table
+        before = time
+    if falls:
+        problem, remedy = "its times do not rise along the pairs of time and value", "mend the damaged time"
+        raise SceneError(f"line {falls[0]}", None, problem, remedy)
+    return [(at, fields[place : place + 2]) for at, fields in table for place in range(0, len(fields), 2)]
+
+
+def rises(table: Table, place: int) -> bool:
+    """Whether a column may be one of times: its numbers only rise."""
+    values = [value_of(fields[place]) if place < len(fields) else math.nan for _, fields in table]
+    return len(values) > 1 and all(before < after for before, after in itertools.pairwise(values))
+
+
+def counts(table: Table, place: int) -> bool:
+    """Whether a column numbers the rows."""
+    column = [fields[place] for _, fields in table if place < len(fields)]
+    return (
+        len(column) == len(table)
+        and column[0] in ("0", "1")
+        and column == [str(at + int(column[0])) for at in range(len(column))]
+    )

@@ -1,0 +1,306 @@
+"""Layouts of programs, loggers and networks: one motion as each writes it, read as it is or refused with a remedy that
+works. The motion is made up: 120 gal of a sine of 2.5 Hz under a Gaussian, 36 samples at 0.02 s; the largest by far is
+-106.293 gal at 0.32 s.
+"""
+
+import math
+from datetime import datetime, timedelta
+
+import pytest
+from mutated_files import corrected, csmnc, knet_csv
+from record_files import assert_refused, write
+
+from analytic.records import G, read_channels, read_record
+
+DT = 0.02
+GAL = [120 * math.exp(-(((DT * i - 0.36) / 0.15) ** 2)) * math.sin(5 * math.pi * DT * i) for i in range(36)]
+IN_G, METRES = [gal / 100 / G for gal in GAL], [gal / 100 for gal in GAL]
+PEAK = -1.062929  # m/s2
+
+
+def rows(form, values=IN_G, begin="2030-01-02T03:04:15"):
+    """A line for each value a of number n, at time t or stamp s."""
+    stamps = [datetime.fromisoformat(begin) + timedelta(milliseconds=20 * i) for i in range(len(values))]
+    return "".join(
+        form.format(t=DT * i, a=value, n=i + 1, s=stamps[i].isoformat(timespec="milliseconds")) + "\n"
+        for i, value in enumerate(values)
+    )
+
+
+def lines(form, per_line, values=IN_G):
+    """So many values a line, with their times t."""
+    words = [form.format(t=DT * i, a=value) for i, value in enumerate(values)]
+    return "".join("".join(words[i : i + per_line]) + "\n" for i in range(0, len(words), per_line))
+
+
+PLOTS = "Time [s] - Plot 0\tAmplitude - Plot 0\tTime [s] - Plot 1\tAmplitude - Plot 1\t\n"
+PLOTS += rows("{t:g}\t{a:g}\t{t:g}\t-{n}\t")
+EQSIG = "example\n36 0.0200\n" + rows("{a:.6f}", METRES)
+FIVE = lines(" {a:14.7E}", 5)
+# name: (text, what the user says)
+READ = {
+    "ETABS, pairs": ("$ time and value, in g\n" + lines("{t:.3f} {a:.6f} ", 4), {"column": 2}),
+    "pairs under titles": ("Time (s) Acc (g) Time (s) Acc (g)\n" + lines("{t:.3f} {a:.6f} ", 2), {}),
+    "pairs, the last line shorter": (lines("{t:.3f} {a:.6f} ", 5), {"units": "g"}),
+    "a unit in the title": ("time,acc_cms2\n" + rows("{t:.2f},{a:.5f}", GAL), {}),
+    "China": (csmnc(METRES), {}),
+    "SMTK": (corrected(METRES, DT), {}),
+    "eqsig": (EQSIG, {"units": "m/s2"}),
+    "eqsig, five a line": ("36 0.0200\n" + lines(" {a:.7f}", 5), {"units": "g"}),
+    "DEEPSOIL": ("36 0.02\n" + rows("{t:.4f} {a:.7f}"), {"units": "g"}),
+    "number and step, a line each": ("36\n0.02\n" + rows("{a:.7f}"), {"units": "g"}),
+    "number alone": ("36\n" + rows("{a:.7f}"), {"units": "g", "dt": DT}),
+    "NPTS and DT, a line each": ("NPTS = 36\nDT = 0.02\nUNITS = g\n" + rows("{a:.7f}"), {}),
+    "a step in a line": ("Time Step: 0.02\n" + rows("{a:.9f}"), {"units": "g"}),
+    "OpenSees": (FIVE, {"units": "g", "dt": DT}),
+    "Excel, all in quotes": ('"Time (s)","Acc (g)"\n' + rows('"{t:.2f}","{a:.7f}"'), {}),
+    "quotes, commas": ('"t, s","a, g"\n' + rows('"{t:.2f}","{a:.7f}"').replace(".", ","), {}),
+    "quotes, commas in the titles": ('"Time, s","a, g"\n' + rows('"{t:.2f}","{a:.7f}"'), {}),
+    "quotes, semicolons": ('"Zeit [s]";"a [g]"\n' + rows('"{t:.2f}";"{a:.7f}"').replace(".", ","), {}),
+    "R, write.csv": ('"","time","acc_g"\n' + rows('"{n}",{t:.2f},{a:.7f}'), {}),
+    "R, write.table": ('"time" "acc"\n' + rows('"{n}" {t:.2f} {a:.7f}'), {"units": "g"}),
+    "pandas": (",time,acc_g\n" + rows("{n},{t:.2f},{a:.7f}"), {}),
+    "stamps": ("time,acc (gal)\n" + rows("{s},{a:.4f}", GAL), {}),
+    "stamps over midnight": ("t;a [gal]\n" + rows("{s}Z; {a:.4f}", GAL, "2027-12-31T23:59:59.5"), {}),
+    "stamps with blanks": ("time acc (gal)\n" + rows("{s} {a:.4f}", GAL).replace("T", " "), {}),
+    "clock": ("t;a [gal]\n" + rows("{s};{a:.4f}", GAL).replace("2030-01-02T", "").replace(".", ","), {}),
+    "LabVIEW": (PLOTS, {"units": "g", "column": 2}),
+    "units below": ("Time,Acc\ns,gal\n" + rows("{t:.2f},{a:.4f}", GAL), {}),
+    "units below, in brackets": ("Time\tAcc\n[s]\t[g]\n" + rows("{t:.2f}\t{a:.7f}"), {}),
+    "a ruler below": ("Time (s)  Acc (g)\n--------  -------\n" + rows("{t:8.2f}  {a:.7f}"), {}),
+    "accelerations first": ("acc (g),time (s)\n" + rows("{a:.7f},{t:.2f}"), {}),
+    "numbered rows": (rows("{n} {t:.2f} {a:.7f}"), {"units": "g"}),
+    "velocities beside": ("t a v d\n" + rows("{t:.2f} {a:.7f} 1.0 2.0"), {"units": "g", "column": "a"}),
+    "BBP": ("#  time(sec)  N-S(cm/s/s)\n" + rows("{t:.6e} {a:.6e}", GAL), {}),
+    "separators behind": ("Time (s),Acc (g),,\n" + rows("{t:.2f},{a:.7f},,"), {}),
+    "fit to a spectrum": ("# compatible with the spectrum of EC8\n" + rows("{t:.2f} {a:.7f}"), {"units": "g"}),
+}
+
+
+@pytest.mark.parametrize("text, said", READ.values(), ids=READ)
+def test_a_layout_is_read(tmp_path, text, said):
+    (channel,) = read_channels(write(tmp_path, text), **said)
+    motion = channel.motion
+    assert (len(motion.samples), motion.dt, motion.peak_time, motion.warnings) == (36, DT, pytest.approx(0.32), ())
+    assert motion.samples.tolist() == pytest.approx(METRES, abs=1e-5)
+    assert motion.samples[16] == pytest.approx(PEAK, abs=1e-5)
+
+
+SPECTRUM = "".join(f"{0.05 * i:.2f},{0.12 + 0.03 * math.sin(0.3 * i):.5f}\n" for i in range(36))
+TSPAIR = "TIMESERIES XX_A__HNE_R, 36 samples, 50 sps, 2030-01-02T03:04:15.0, TSPAIR, FLOAT, Counts\n"
+TSPAIR += rows("{s}  {a:+.6e}", GAL)
+NOT_A_TIME = (
+    "not a time; give the accelerations over time of this record; if these are, title their columns time [s] and"
+)
+ASKED = "may be a unit, and is none of acceleration that is known; write one of m/s2, cm/s2, g, gal, mm/s2, %g in its"
+# name: (text, what the user says, words of the message, the text after the remedy, what the user says then)
+REFUSED = {
+    "spectrum": (
+        "T (s),Sa (g)\n" + SPECTRUM,
+        {},
+        f"line 1, title = 'T (s)': is a period, {NOT_A_TIME}",
+        "time [s],acceleration (g)\n" + SPECTRUM,
+        {},
+    ),
+    "spectra of SeismoSignal": (
+        "Constant ductility spectrum\n   Period [sec]   Acc./Elastic   Vel./Elastic\n" + rows("{t:.3f} 1.2 1.5"),
+        {"units": "m/s2"},
+        "line 2, title = 'Period [sec]': is a period",
+        None,
+        {},
+    ),
+    "a spectrum by its header": (
+        "# Design spectrum, 5%\n" + SPECTRUM,
+        {"units": "g"},
+        "line 1 = '# Design spectrum, 5%': names a spectrum, not an acceleration over time",
+        "# Design spectrum, 5%\n# time [s], acceleration [g]\n" + SPECTRUM,
+        {},
+    ),
+    "unit in the title": (
+        "time,acc_cms2\n" + rows("{t:.2f},{a:.5f}", GAL),
+        {"units": "g"},
+        "motion.units = 'g': but the record carries its own unit, cm/s2 (line 1); remove units",
+        "time,acc_cms2\n" + rows("{t:.2f},{a:.5f}", GAL),
+        {},
+    ),
+    "unknown unit": (
+        "time,acc [lsb]\n" + rows("{t:.2f},{a:.7f}"),
+        {"units": "g"},
+        f"line 1, title = 'acc [lsb]': 'lsb' {ASKED}",
+        "time,acc\n" + rows("{t:.2f},{a:.7f}"),
+        {"units": "g"},
+    ),
+    "unknown unit in a list": (
+        "acc_counts\n" + rows("{a:.7f}"),
+        {"units": "g", "dt": DT},
+        f"line 1, title = 'acc_counts': 'counts' {ASKED}",
+        "acc_g\n" + rows("{a:.7f}"),
+        {"dt": DT},
+    ),
+    "units below": (
+        "Time,Acc\ns,g\n" + rows("{t:.2f},{a:.7f}"),
+        {"units": "m/s2"},
+        "but the record carries its own unit, g (line 2)",
+        "Time,Acc\ns,g\n" + rows("{t:.2f},{a:.7f}"),
+        {},
+    ),
+    "OpenSees, no step": (
+        FIVE,
+        {"units": "g"},
+        "motion.dt: missing; the file holds accelerations alone, 5 a line, or columns without times; add dt",
+        FIVE,
+        {"units": "g", "dt": DT},
+    ),
+    "pairs, a damaged time": (
+        "$ in g\n" + lines("{t:.3f} {a:.6f} ", 4).replace("0.100", "0.l00"),
+        {"column": 2},
+        "line 3: its times do not rise along the pairs of time and value; mend the damaged time",
+        "$ in g\n" + lines("{t:.3f} {a:.6f} ", 4),
+        {"column": 2},
+    ),
+    "eqsig, no unit": (EQSIG, {}, "motion.units: missing; the header names no unit", EQSIG, {"units": "m/s2"}),
+    "eqsig, a value lost": (
+        EQSIG.replace("-1.062929\n", ""),
+        {"units": "m/s2"},
+        "line 2 = '36 0.0200': may be the number of values and their step, but 35 values follow; correct it, or begin",
+        EQSIG.replace("-1.062929\n", "").replace("36 0.02", "35 0.02"),
+        {"units": "m/s2"},
+    ),
+    "SMTK, a line lost": (
+        corrected(METRES, DT).replace("\n-7.0448655E-03", "\n"),
+        {},
+        "number of samples = 36: but 35 samples follow; the file is cut or damaged",
+        None,
+        {},
+    ),
+    "the step alone above": (
+        "0.02\n" + rows("{a:.7f}"),
+        {"units": "g", "dt": DT},
+        "line 1 = '0.02': not printed as the numbers below are, and may be their step or their number; begin the line",
+        "# dt = .02 s\n" + rows("{a:.7f}"),
+        {"units": "g"},
+    ),
+    "another number than follow": (
+        "40\n" + rows("{a:.7f}"),
+        {"units": "g", "dt": DT},
+        "line 1 = '40': not printed as the numbers below are, and may be their step or their number",
+        "# 40\n" + rows("{a:.7f}"),
+        {"units": "g", "dt": DT},
+    ),
+    "days first": (
+        "time,acc (g)\n" + rows("02.01.2030 03:04:{t:06.3f},{a:.7f}"),
+        {},
+        "line 2 = '02.01.2030 03:04:00.000,0.0000000': its time is a date or a clock of no known form; write the times",
+        "time,acc (g)\n" + rows("{t:.3f},{a:.7f}"),
+        {},
+    ),
+    "a header that begins with a number": (
+        "1995 Kobe\ndt = 0.02\n" + rows("{a:.7f}"),
+        {"units": "g"},
+        "line 1 = 'Kobe': not a number; mend it, or begin the lines of the header with #",
+        "# 1995 Kobe\n# dt = 0.02\n" + rows("{a:.7f}"),
+        {"units": "g"},
+    ),
+    "TSPAIR": (
+        TSPAIR,
+        {},
+        "is a TSPAIR file, which is not read; with ObsPy, write two columns, time [s] and acceleration, counts divided",
+        "time [s] acceleration [cm/s2]\n" + rows("{t:.2f} {a:.4f}", GAL),
+        {},
+    ),
+    "only velocities": (
+        "Time (s),Vel. (cm/s),Arias (%)\n" + rows("{t:.2f},{a:.7f},1"),
+        {},
+        "line 1, title = 'Vel. (cm/s)': is a velocity, a displacement or another quantity, not an acceleration",
+        None,
+        {},
+    ),
+    "a profile": ("Depth (m),PGA (g)\n" + SPECTRUM, {"column": 2}, f"'Depth (m)': is a place, {NOT_A_TIME}", None, {}),
+}
+
+
+@pytest.mark.parametrize("text, said, message, mended, then", REFUSED.values(), ids=REFUSED)
+def test_a_layout_is_refused_and_its_remedy_works(tmp_path, text, said, message, mended, then):
+    assert_refused(write(tmp_path, text), message, **said)
+    if mended:
+        motion = read_record(write(tmp_path, mended), **then)
+        assert len(motion.samples) in (35, 36) and motion.dt in (DT, 0.05)
+
+
+def test_columns_that_are_no_accelerations_are_not_offered(tmp_path):
+    path = write(tmp_path, "Time (s),Acc (g),Vel (cm/s),Disp (cm),Sa\n" + rows("{t:.2f},{a:.7f},1,2,3"))
+    assert_refused(path, "motion.column: missing; not all columns are accelerations (line 1, title: is a velocity, ")
+    assert_refused(path, "; add column, 2 (Acc)")
+    assert read_record(path, column="acc").samples.tolist() == pytest.approx(METRES, abs=1e-5)
+    assert_refused(path, "'Vel (cm/s)': is a velocity, a displacement or another quantity", column=3, units="cm/s2")
+    assert_refused(path, "motion.column = 1: is the time; give column, 2 (Acc)", column=1)
+
+
+def test_separators_behind_all_rows_part_no_columns(tmp_path):
+    (channel,) = read_channels(write(tmp_path, "Time (s),Acc (g),,\n" + rows("{t:.2f},{a:.7f},,")), column="acc")
+    assert (channel.number, channel.direction) == ("2", "Acc")
+
+
+@pytest.mark.parametrize("titles", ["Time_A A_g Time_B B_g", "T_A A_g T_B A_g", "T A_g T B_g"])
+def test_pairs_under_titles_that_differ_are_columns(tmp_path, titles):
+    """Of two instruments that are sampled in turn."""
+    text = "".join(f"{DT * i:.3f} {a:.7f} {DT * i + 0.01:.3f} {a:.7f}\n" for i, a in enumerate(IN_G))
+    first, second = read_channels(write(tmp_path, f"{titles}\n{text}"))
+    assert (len(first.motion.samples), first.motion.dt, second.number) == (36, DT, "4")
+    assert read_record(write(tmp_path, text), "g").dt == 0.01
+
+
+def test_rows_whose_times_rise_are_not_counted_by_the_first_one(tmp_path):
+    """The first one would count them; and their number may be stated as that of all numbers."""
+    assert len(read_record(write(tmp_path, "3 0.5\n4 -.1\n5 .2\n6 .3\n"), "m/s2").samples) == 4
+    motion = read_record(write(tmp_path, "# number of data: 72\n" + rows("{t:.2f} {a:.7f}")), "g")
+    assert len(motion.samples) == 36 and "states 72 samples, the data have 36" in motion.warnings[0]
+
+
+def test_a_zero_may_be_printed_otherwise(tmp_path):
+    assert len(read_record(write(tmp_path, "0\n" + rows("{a:.7f}")), "g", dt=DT).samples) == 37
+
+
+def test_npts_without_its_number_is_refused_by_its_name(tmp_path):
+    text = "NPTS = many\nDT = 0.02\n" + rows("{a:.7f}")
+    assert_refused(write(tmp_path, text), "line 1 = 'NPTS = many': names NPTS, but not as PEER AT2 does", units="g")
+
+
+def test_each_of_several_columns_has_the_times_before_it(tmp_path):
+    text = "Time [s]\tA (g)\tTime [ms]\tB (g)\n" + rows("{t:.2f}\t{a:.7f}\t{n}\t{a:.7f}")
+    first, second = read_channels(write(tmp_path, text))
+    assert (first.direction, first.motion.dt, second.direction, second.motion.dt) == ("A", DT, "B", 0.001)
+
+
+def test_knet_csv(tmp_path):
+    """Its offsets are subtracted: one of 16.5 gal would be a constant acceleration."""
+    path = write(tmp_path, knet_csv(GAL))
+    channels = read_channels(path)
+    assert [(one.number, one.direction, one.note) for one in channels] == [
+        (number, name, "offset subtracted") for number, name in (("1", "N-S"), ("2", "E-W"), ("3", "U-D"))
+    ]
+    for channel, times in zip(channels, (1, -2, 3), strict=True):
+        assert (channel.motion.dt, channel.unit.word, channel.motion.warnings) == (DT, "gal", ())
+        assert channel.motion.samples.tolist() == pytest.approx([times * value for value in METRES], abs=0.51e-4)
+    assert read_record(path, channel="n-s").samples[16] == pytest.approx(-1.0629, abs=1e-12)
+    assert_refused(path, "motion.channel: missing; the file holds channels 1 (N-S) or 2 (E-W) or 3 (U-D); add channel")
+    assert_refused(path, "motion.column = 3: but the file is K-NET CSV; remove column", column=3)
+    (warning, *_) = read_record(write(tmp_path, knet_csv(GAL, seconds=1)), channel=1).warnings
+    assert "the header states 1 s, the data have 0.72 s: check that the file is whole" in warning
+
+
+KNET_CSV = {
+    "no offsets": ("#Offset\n", "", "Offset: missing from the header; give the file as the network sends it"),
+    "an offset too few": (",16.50\n#Time", "\n#Time", "no offset of each component"),
+    "no frequency": ("(Hz)\n#50\n", "(Hz)\n#fast\n", "SamplingFrequency(Hz) = 'fast': not a number"),
+    "another frequency": ("(Hz)\n#50\n", "(Hz)\n#100\n", "but the times have a step of 0.02 s"),
+    "a digit lost": (",-104.44,", ",-104.4,", "= '-104.4': not printed as the other numbers are"),
+    "a column lost": (",16.50\n2030", "\n2030", "holds 4 columns, not 5; the file is cut or damaged"),
+}
+
+
+@pytest.mark.parametrize("old, new, message", KNET_CSV.values(), ids=KNET_CSV)
+def test_a_damaged_knet_csv_is_refused(tmp_path, old, new, message):
+    text = knet_csv(GAL)
+    assert text.count(old) >= 1
+    assert_refused(write(tmp_path, text.replace(old, new, 1)), message)
