@@ -26,7 +26,7 @@ GRACE_SECONDS = 0.3  # beyond the time limit, for the process to write down wher
 EVIDENCE_CHARACTERS = 4000
 OUT_OF_TIME = "the run did not end in time"
 MISTAKES = (SettingError, SceneError, EngineNotInstalled)  # the caller's, not the engine's
-STOPPING = {signal.SIGINT, signal.SIGTERM}
+STOPPING = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
 PR_SET_PDEATHSIG = 1
 TRACE = getattr(signal, "SIGUSR1", None)  # tells a process that hangs to write down where
 
@@ -116,8 +116,10 @@ def _work(
 ) -> None:
     """In the process: answers through `writer`; `log` is a file number for what is printed, or None."""
     signal.set_wakeup_fd(-1)
+    for number in STOPPING:
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPPING)
     end_with_parent()

@@ -216,6 +216,7 @@ def lines_of(task: Task) -> tuple[str, ...]:
 
 def _start_worker(path):
     sys.path[:] = path  # a preloaded server keeps its own
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # pebble's handler waits for compiled code, and hides the signal
     end_with_parent()
     threading.Thread(target=end_with, args=(multiprocessing.parent_process(),), daemon=True).start()
 

@@ -34,8 +34,8 @@ def read_answers(path: str | PathLike[str]) -> dict[str, dict[str, Value]]:
         raise SceneError("answers", str(path), problem, "give the file of answers") from None
     except UnicodeDecodeError as error:
         raise SceneError("answers", str(path), "no text in UTF-8", "save it as CSV in UTF-8") from error
-    lines = enumerate(text.splitlines(), 1)
-    rows = [(number, _cells(line, f"{path}, line {number}")) for number, line in lines if line.strip() and line[0] != "#"]
+    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip() and line[0] != "#"]
+    rows = [(number, _cells(line, f"{path}, line {number}")) for number, line in lines]
     head = ",".join(rows[0][1] if rows else [])
     if head != ",".join(COLUMNS):
         raise SceneError("answers", head, f"{path}: not the head {','.join(COLUMNS)}", "begin with that line")

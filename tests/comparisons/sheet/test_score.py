@@ -176,7 +176,7 @@ def test_pages_say_nothing_of_our_code(sheet):
         ("hard,rest_time,1.6 s", "line 2: not a finite number"),
         ("hard,outcome,falls", "line 2: no outcome"),
         ("hard,outcome,rocks\nhard,outcome,rocks", "line 3: answered twice"),
-        ("hard,outcome,rocks\n" + '"hard,outcome,rocks\n' * 9000, "line 3: no line of CSV"),  # not closed
+        pytest.param("\n" + '"hard,outcome,rocks\n' * 9000, "line 3: no line of CSV", id="a quote not closed"),
         ('hard,"outcome"x,rocks', "line 2: no line of CSV"),
     ],
 )
