@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from analytic.limits import scene_warnings
 from analytic.margins import limit_states
 
 from ..running.readable import readable
@@ -33,7 +34,8 @@ def print_margins(scene: Scene, margins: Sequence[Margin], contact: Contact, spa
     names = {state: name for state, name in _names(tilt).items() if state in limit_states(scene)}
     now = ", ".join(name for state, name in names.items() if nearest.reached(state))
     parts: list[Table | str] = [
-        f"{readable(scene.name, TITLE_CHARACTERS)}: {nearest.outcome}\nnow: {now or 'no limit state'}"
+        *(f"Warning: {warning}" for warning in scene_warnings(scene)),
+        f"{readable(scene.name, TITLE_CHARACTERS)}: {nearest.outcome}\nnow: {now or 'no limit state'}",
     ]
     rows = {margin: [margin.change(state) for state in names] for margin in margins}
     rows = {margin: changes for margin, changes in rows.items() if any([*changes, margin.leaves_model])}

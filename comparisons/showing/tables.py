@@ -18,7 +18,7 @@ from .terminal import digits, echo, grid
 from .wording import differing
 
 if TYPE_CHECKING:
-    from analytic import Response, Scene
+    from analytic import Caution, Response, Scene
     from engines.contract import Engine
 
     from ..measuring.horizon import Horizon
@@ -94,11 +94,13 @@ def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[st
     return grid(heads, rows, left=["outcome"], title=Text(_name(scene)), show_edge=False, caption=caption)
 
 
-def show(table: Table, responses: Sequence[Response]) -> None:
+def show(table: Table, responses: Sequence[Response], about: Sequence[Caution] = ()) -> None:
     """Print a table of responses, and below it in what each differs from the analytic model, and its warnings.
 
-    Where the result depends on little of the motion, that stands last, in bold.
+    What is said `about` the scene itself stands first, in bold; where the result depends on little of the motion, that
+    stands last, in bold.
     """
+    echo(*(Text(f"Warning: {readable(str(warning))}", "bold") for warning in about))
     motion = [warning for response in responses for warning in response.warnings if warning.kind == MOTION]
     echo(table, *(readable(words) for response in responses for words in remarks(response)))
     echo(*(Text(readable(str(warning)), "bold") for warning in motion))

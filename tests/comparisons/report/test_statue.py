@@ -80,6 +80,12 @@ def test_the_cliff_is_said_loudly_and_only_where_it_is(page):
     assert "depends on" not in bust
 
 
+def test_a_base_that_nothing_holds_is_said_loudly_and_only_there(page):
+    heads = [card.partition("quantity")[0] for card in cards(page)]  # above the first table
+    assert ["No friction is modelled under the base" in head for head in heads] == [False, False, True]
+    assert page.count("No friction is modelled") == 1
+
+
 def test_the_nearest_change_is_where_single_runs_change(scenes):
     scene = scenes["bronze"]
     first = statue_of(scene, {})["margins"][0]
