@@ -161,9 +161,13 @@ def page_of(folder, **scenes):
     return write_page(folder, studies=folder / "none").read_text() + (folder / "pages/runs.html").read_text()
 
 
+RELEASED = load_scene("free-rocking-rigid").with_(name="released", block={"restitution": 0.9})
+
+
 def test_one_that_rocks_gets_its_own_restitution_and_replaces_an_older_report(tmp_path):
     (tmp_path / SCENES).write_text("of an older report")
-    page = page_of(tmp_path, bust=BUST_ON_PULSE, released=load_scene("free-rocking-rigid").with_(name="released"))
+    page = page_of(tmp_path, bust=BUST_ON_PULSE, released=RELEASED)
+    assert read_result(tmp_path / SCENES).settings["scenes"]["released"]["restitution"] == 0.9
     result = read_result(tmp_path / RESTITUTION)
     assert result.settings["bases"] == [None] and max(row["rms"] for row in result.rows) < 1e-9
     assert sum(row["impacts"] for row in result.rows) >= 8
