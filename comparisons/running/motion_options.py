@@ -36,13 +36,15 @@ def motions_of(
     from analytic.errors import SettingError
     from analytic.records.folder import folder_motions, reversed_sign
 
+    from .options import named_by_options
     from .solving import say
 
     if directions is not None and records is None:
         raise SettingError(f"--directions {directions}: give the folder of the records with --records")
     found: dict[str, list[Motion]] = {} if scene.motion is None else {scene.motion.label: [scene.motion]}
     if records is not None:
-        others, left = folder_motions(records, directions=directions, units=units)
+        with named_by_options({"directions": "--directions"}):
+            others, left = folder_motions(records, directions=directions, units=units)
         for line in left:
             say(line)
         for name, motions in others.items():

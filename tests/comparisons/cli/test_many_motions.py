@@ -39,6 +39,14 @@ def test_run_tells_every_motion_as_a_run_of_its_own_does(rocking, folder):
     assert rows[-1]["outcome"] == "stands"
 
 
+@pytest.mark.parametrize("command", ["run", "margin", "report"])
+@pytest.mark.parametrize("number, words", [(10**9, "give at most"), (0, "give 1 or more")])
+def test_directions_out_of_bounds_are_refused_by_the_option(rocking, folder, tmp_path, command, number, words):
+    more = ("--output", tmp_path / "page") if command == "report" else ()
+    status, _, err = rocking(command, "caryatid-rigid", "--records", folder, "--directions", number, *more)
+    assert status == 2 and f"Error: --directions = {number}: " in err and words in err
+
+
 def test_run_prints_the_odds_of_records_and_not_of_motions(rocking, folder):
     status, out, _ = rocking("run", "caryatid-isolated", "--records", folder, "--both-signs")
     assert status == 0
