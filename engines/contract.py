@@ -238,5 +238,18 @@ class Engine:
         return next(iter(self.variants))
 
     def versions(self) -> dict[str, str]:
-        """Versions that determine the result: {package: version}."""
-        return self.load().versions()
+        """Versions that determine the result: {package: version}.
+
+        Raises
+        ------
+        EngineBroken
+            An adapter from outside cannot say them.
+        """
+        adapter = self.load()
+        if not self.origin:
+            return adapter.versions()
+        try:
+            return {str(package): str(version) for package, version in adapter.versions().items()}
+        except Exception as error:
+            words = f"{self.adapter}.versions fails ({type(error).__name__}: {error})"
+            raise EngineBroken(self.origin, words) from error

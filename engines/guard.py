@@ -138,11 +138,18 @@ def _work(
     except MISTAKES as error:
         answer = ForkingPickler.dumps(("mistake", error))
     except BaseException as error:  # whatever an engine raises, its message is the evidence
-        message = f"{type(error).__name__}: {error}\n{traceback.format_exc()}"[:EVIDENCE_CHARACTERS]
+        message = f"{raised(error)}\n{traceback.format_exc()}"[:EVIDENCE_CHARACTERS]
         answer = ForkingPickler.dumps(("failure", ("the run raised an error", message)))
     sys.stdout.flush(), sys.stderr.flush()
     writer.send_bytes(answer)
     os._exit(0)  # no engine gets a chance to fail at its end
+
+
+def raised(error: BaseException) -> str:
+    """What was raised, in words: its kind, its message and, in the first line, its notes."""
+    first, end, rest = f"{type(error).__name__}: {error}".partition("\n")
+    notes = "".join(f" ({note})" for note in getattr(error, "__notes__", ()))
+    return f"{first}{notes}{end}{rest}"
 
 
 def end_with_parent() -> None:

@@ -23,7 +23,7 @@ from typing import Any
 from pebble import ProcessExpired, ProcessPool
 
 from analytic.errors import SettingError
-from engines.guard import end_with_parent
+from engines.guard import end_with_parent, raised
 
 from .cases import Case, module_of
 from .files import TemporaryFolder
@@ -204,7 +204,7 @@ def lines_of(task: Task) -> tuple[str, ...]:
             row["values"] = {"outcome": "failed"}
             row["failure"] = {
                 "kind": "exception",
-                "reason": f"{type(error).__name__}: {scrub(str(error))}",
+                "reason": scrub(raised(error)),
                 "message": scrub(traceback.format_exc())[-EVIDENCE_CHARACTERS:],
             }
             line = json.dumps(row)

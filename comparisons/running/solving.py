@@ -218,7 +218,8 @@ def _simulate(scene, solver, variant, settings, history, compare):
         from engines.settings import choose
 
         engine = get_engine(solver)
-        choose(engine, variant, settings)  # refuses those that are arguments of `simulate` under the same name
+        if settings:  # else one called as an argument of `simulate` would be taken for that
+            choose(engine, variant, settings)
         return engine.simulate(scene, variant=variant, history=history, compare=compare, **settings)
     response = _analytic(scene, variant, settings, history)
     if compare and response.decided:
