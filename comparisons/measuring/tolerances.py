@@ -68,7 +68,7 @@ class Tolerance:
         return {name: getattr(self, name) for name in names} | {"found": found, "holds": holds, "failure": failure}
 
     def check(self, runs: dict | None = None) -> float:
-        """The quantity measured here and now, asserted to hold a bound that is stated: a test of one's own engine build.
+        """The quantity measured here and now, asserted to hold a bound if one is stated: a test of one's own engine.
 
             @pytest.mark.parametrize("row", rows("exudyn"), ids=lambda row: row.name)
             def test_engine(row):
