@@ -61,6 +61,17 @@ def test_margin_tells_for_each_motion_what_change_of_it_lifts_the_block(rocking,
     scene = load_scene("caryatid-rigid")
     assert weak["peak"] * 10 < scene.gravity * np.tan(scene.block.slenderness)
     assert weak["outcome"] == "stands" and weak["changes"]["lifts"] is None  # ten times .1 m/s2 do not lift it
+    assert weak["reached"] == []
+
+
+def test_margin_tells_what_is_reached_now_from_what_a_change_reaches(rocking, folder):
+    status, out, _ = rocking("margin", "caryatid-rigid", "--records", folder)
+    told = json.loads(rocking("margin", "caryatid-rigid", "--records", folder, "--json", "-")[1])["motions"]
+    strong = next(row for row in told if row["motion"] == "A000.csv")
+    assert strong["outcome"] == "overturns" and strong["reached"] == ["lifts", "tilt", "overturns"]
+    table, kept = out[out.index("[g]") :], [row["changes"][state] for row in told for state in row["reached"]]
+    assert (table.count("no longer"), table.count(" now ")) == (len(kept) - kept.count(None), kept.count(None))
+    assert 0 < kept.count(None) < len(kept)
 
 
 @pytest.mark.parametrize(
