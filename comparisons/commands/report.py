@@ -72,10 +72,12 @@ def command(
         check_solver(name)
     engines = [name for name in engine if name != ANALYTIC] if engine else None
     variants = _variants(variant, engines or [], scene)
-    motion = _motion(scene, record, {"units": units, "dt": dt, "column": column, "channel": channel})
+    of_folder = None if records is None else units
+    of_record = None if record is None and records is not None else units
+    motion = _motion(scene, record, {"units": of_record, "dt": dt, "column": column, "channel": channel})
     if not scene and (records is not None or both_signs or directions is not None):
         raise SettingError("--records, --both-signs and --directions belong to scenes of your own; name one")
-    _simulate(output, scene, motion, engines, variants, (records, both_signs, directions, units))
+    _simulate(output, scene, motion, engines, variants, (records, both_signs, directions, of_folder))
     with bar("the page") as progress:
         page = write_page(output, shown, progress)
     if json_file:

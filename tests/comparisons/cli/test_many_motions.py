@@ -47,6 +47,26 @@ def test_directions_out_of_bounds_are_refused_by_the_option(rocking, folder, tmp
     assert status == 2 and f"Error: --directions = {number}: " in err and words in err
 
 
+@pytest.mark.parametrize("command", ["run", "margin", "design --stroke 0.3"])
+def test_a_unit_without_records_is_refused(rocking, command):
+    name, *options = command.split()
+    status, _, err = rocking(name, "caryatid-isolated", *options, "--units", "g")
+    assert status == 2 and err == "Error: --units g: give the folder of the records with --records\n"
+
+
+def test_the_page_reads_a_folder_by_the_unit_given(rocking, folder, monkeypatch):
+    """It was said to belong to a record of its own."""
+    found = {}
+    monkeypatch.setattr("comparisons.report.study.make_own_results", lambda *_, motions, **__: found.update(motions))
+    monkeypatch.setattr("comparisons.report.write.write_page", lambda *_: 1 / 0)
+    for file in folder.glob("*.csv"):
+        file.write_text(file.read_text().replace("a [m/s2]", "a"))
+    with pytest.raises(ZeroDivisionError):
+        rocking("report", "caryatid-rigid", "--records", folder, "--units", "g", "--output", folder.parent / "page")
+    weak = found["caryatid-rigid"]["weak.csv"][0]
+    assert weak.peak == pytest.approx(0.1 * 9.80665, rel=1e-3)
+
+
 def test_run_prints_the_odds_of_records_and_not_of_motions(rocking, folder):
     status, out, _ = rocking("run", "caryatid-isolated", "--records", folder, "--both-signs")
     assert status == 0

@@ -75,6 +75,7 @@ MISTAKES = {
     "verify --engine nope": "unknown engine",
     "verify --engine exudyn --variant none": "choose among compliant-corners",
     "verify --variant compliant-corners": "name it with --engine",
+    "lessons open tipping --to own.csv": "--to own.csv: is a file; give a folder",
     "lessons open tipping-over": "choose one of tipping",
     "report --units g": "--units g: belongs to a record",
     "report --channel Up": "belongs to a record; give --record FILE",
