@@ -56,6 +56,7 @@ def command(
     check_writable([json_file, csv], picture=plot, inputs=[scene])
     check_solver(engine)
     what, chosen = load_scene(scene), parse_settings(settings or [])
+    about, groups = scene_warnings(what), other_motions(what, records, both_signs, directions, units)
     response = simulate(
         what,
         engine,
@@ -66,7 +67,6 @@ def command(
         words=f"{what.name}: {engine}",
         compare=True,
     )
-    about, groups = scene_warnings(what), other_motions(what, records, both_signs, directions, units)
     rows = rows_of(what, groups, lambda one: simulate(one, engine, variant, chosen, False, time_limit))
     response = replace(response, warnings=(*response.warnings, *near_motion(what)))
     if response.history is None and (csv or plot):
