@@ -17,13 +17,13 @@ from . import fema
 VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "dwn", "ver", "v", "z", "u")  # how files call it
 # and the two horizontal components
 PAIRS = (("e", "n"), ("ew", "ns"), ("e-w", "n-s"), ("x", "y"), ("1", "2"), ("a", "b"))
+RUN_STEPS = 5000  # what a run costs beside a step for each sample, in steps: .3 ms
 # The component in a file's name: a word of its own, after the letters of an instrument (HNE), a number after such
 # letters (H1, HN2; of itself it counts files), or an azimuth.
 _WORD = re.compile(
     r"(?<![A-Za-z])(?:(?:[BEHS][HNLG])?(E-?W|N-?S|U-?D|UP|VERT|VER|DWN|[ENZXYUV])|[BEHS][HNLG]?([12]))(?![A-Za-z0-9])",
     re.I,
 )
-RUN_STEPS = 5000  # what a run costs beside a step for each sample, in steps: .3 ms
 _AZIMUTH = re.compile(r"(?<!\d)(\d{3})(?=(\.\w+)*$)")
 
 

@@ -32,7 +32,7 @@ def command(
         float | None, typer.Option(help="Mass of the base under the block [kg]; without it the ground is rigid.")
     ] = None,
     slides_freely: Annotated[
-        bool, typer.Option("--slides-freely", help="The base has no bearings and no friction under it: none is so.")
+        bool, typer.Option("--slides-freely", help="Nothing holds the base: no bearings, no friction under it.")
     ] = False,
     count: Annotated[int, typer.Option(help="Number of bearings.")] = 4,
     period: Annotated[float | None, typer.Option(help="Bearings by design: secant period at --xmax [s].")] = None,
