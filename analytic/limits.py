@@ -1,4 +1,4 @@
-"""What the parts of a scene are built for, and whether a run went beyond it."""
+"""What is beyond the limits of a scene: of the scene as it is, and of a run beyond what its parts are built for."""
 
 from __future__ import annotations
 
@@ -8,6 +8,24 @@ from .response import Caution
 
 if TYPE_CHECKING:
     from .scene import Scene
+
+
+def scene_warnings(scene: Scene) -> tuple[Caution, ...]:
+    """What is to be said of a scene before any outcome of it: a base that nothing holds, a start beyond the balance."""
+    found, tilt, gamma = [], scene.start.tilt, scene.block.slenderness
+    if scene.base is not None and scene.bearings is None:
+        words = (
+            "No friction is modelled under the base, and it has no bearings: such a base exists in thought experiments "
+            "only. Leave it out where a pedestal is fixed to the ground."
+        )
+        found.append(Caution("model", words))
+    if abs(tilt) >= gamma:
+        words = (
+            f"The block starts at a tilt of {tilt:.4g} rad, past its balance at {gamma:.4g} rad: it falls unless "
+            "something brings it back."
+        )
+        found.append(Caution("limit", words, "start.tilt", tilt, gamma))
+    return tuple(found)
 
 
 def limit_warnings(scene: Scene, peak_base_displacement: float) -> tuple[Caution, ...]:

@@ -24,7 +24,7 @@ from .budget import STEPS_PER_SAMPLE, too_long
 from .errors import SceneError, SettingError
 from .laws import LAWS, NUMBERS
 from .motion import SampledMotion
-from .rocking import RockingModel
+from .rocking import restitution
 from .scene import Scene
 from .solver import simulate
 
@@ -181,7 +181,7 @@ def _size(scene, factor):
 
 
 def _restitution(scene):
-    return max(RockingModel.of(scene).restitution, 0.0) or None
+    return restitution(scene) or None
 
 
 def _started(scene):

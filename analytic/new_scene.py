@@ -77,7 +77,7 @@ def derived(scene: Scene) -> list[tuple[str, float, str]]:
         ("mass", block.mass, "kg"),
         ("moment of inertia J_O about a corner", block.inertia, "kg m2"),
         ("rocking frequency omega_r, eq. (1)", scene.rocking_frequency, "rad/s"),
-        ("restitution e_phi, eq. (7)", model.restitution, "-"),
+        (f"restitution e_phi, {'eq. (7)' if block.restitution is None else 'given'}", model.restitution, "-"),
         (UPLIFT, uplift, "m/s2"),
     ]
     if scene.bearings is not None:

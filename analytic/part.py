@@ -49,9 +49,12 @@ MEASURED = {
         ("block.depth", "block.density", "block.material"),
         ("mass", "--height ... --width ... --depth ... --material ... (or --density ...)"),
     ),
-    "bearings.period": (
-        "ka, kb and alpha",
-        "--height ... --width ... --mass ... --base-mass ... --period ... --xmax ...",
+    **dict.fromkeys(
+        ("bearings.period", "bearings.damping_ratio", "bearings.eta", "bearings.xi", "bearings.zeta"),
+        (
+            "ka, kb and alpha",
+            "--height ... --width ... --mass ... --base-mass ... --period ... --damping ... --xmax ...",
+        ),
     ),
 }
 
@@ -126,6 +129,7 @@ def _unknown(key: str, loc: Sequence[str], value: object, part: type[Part]) -> S
     for table in tables:
         kinds = part.model_fields[table].annotation
         part = next(kind for kind in (kinds, *get_args(kinds)) if isinstance(kind, type) and issubclass(kind, Part))
-    close = difflib.get_close_matches(name, part.model_fields, 1)
-    hint = f"write {close[0]}" if close else "remove it, known are " + ", ".join(part.model_fields)
+    close = difflib.get_close_matches(name, part.model_fields, 1)  # alike, and it may still be another quantity
+    hint = f"write {close[0]} if that is meant, else remove it" if close else "remove it"
+    hint += f", known are {', '.join(part.model_fields)}"
     return SceneError(key, value, "unknown key", hint)

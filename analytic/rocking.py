@@ -31,7 +31,7 @@ class RockingModel:
         False on rigid ground.
     bearing : BearingLaw
     restitution : float
-        e_phi of eq. (7), or the scene's own value; at least 0.
+        e_phi, see `restitution`.
     """
 
     m: float
@@ -48,7 +48,6 @@ class RockingModel:
     @classmethod
     def of(cls, scene: Scene) -> Self:
         block = scene.block
-        e = restitution(scene) if block.restitution is None else block.restitution
         return cls(
             block.mass,
             scene.total_mass,
@@ -58,7 +57,7 @@ class RockingModel:
             scene.gravity,
             scene.base is not None,
             BearingLaw.of(scene.bearings),
-            max(e, 0.0),
+            restitution(scene),
             scene.mass_share,
         )
 
@@ -139,7 +138,16 @@ class RockingModel:
 
 
 def restitution(scene: Scene) -> float:
-    """e_phi of eq. (7), momentum-exact: 1 - 2 m b^2/(J_O - m mt h^2). May be negative (stocky block, light base)."""
+    """e_phi of a scene: its own where it gives one, else that of eq. (7), at least 0."""
+    given = scene.block.restitution
+    return max(momentum_restitution(scene), 0.0) if given is None else given
+
+
+def momentum_restitution(scene: Scene) -> float:
+    """e_phi of eq. (7), whatever the scene gives: momentum-exact, 1 - 2 m b^2/(J_O - m mt h^2).
+
+    May be negative (stocky block, light base).
+    """
     block = scene.block
     b, h = block.half_width, block.half_height
     return 1 - 2 * block.mass * b**2 / (block.inertia - block.mass * scene.mass_share * h**2)  # (7)

@@ -5,8 +5,10 @@ import json
 import math
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import AfterValidator, Field, model_validator
+from annotated_types import Ge, Gt, Le, Lt
+from pydantic import AfterValidator, model_validator
 from pydantic_core import PydanticCustomError
+from typing_extensions import TypeAliasType
 
 from .errors import SceneError
 from .laws import LAWS, NUMBERS
@@ -25,9 +27,11 @@ def _not_vanishing(value: float) -> float:
     return value
 
 
-Positive = Annotated[float, Field(gt=0, le=MOST), AfterValidator(_not_vanishing)]
-NotNegative = Annotated[float, Field(ge=0, le=MOST)]
-Number = Annotated[float, Field(ge=-MOST, le=MOST)]
+# By name, as the reference shows them.
+Positive = TypeAliasType("Positive", Annotated[float, Gt(0), Le(MOST), AfterValidator(_not_vanishing)])
+Slenderness = TypeAliasType("Slenderness", Annotated[float, Gt(0), Lt(math.pi / 2), AfterValidator(_not_vanishing)])
+NotNegative = Annotated[float, Ge(0), Le(MOST)]
+Number = Annotated[float, Ge(-MOST), Le(MOST)]
 
 
 class Block(Part):
@@ -42,9 +46,9 @@ class Block(Part):
 
     mass: Positive
     radius: Positive
-    slenderness: Annotated[float, Field(gt=0, lt=math.pi / 2), AfterValidator(_not_vanishing)]
+    slenderness: Slenderness
     corner_inertia: Positive | None = None
-    restitution: Annotated[float, Field(ge=0, le=1)] | None = None
+    restitution: Annotated[float, Ge(0), Le(1)] | None = None
 
     @model_validator(mode="after")
     def _inertia_is_possible(self) -> Self:
@@ -99,11 +103,11 @@ class Bearings(Part):
     table: ClassVar[str] = "bearings"
 
     law: Literal[*NUMBERS] = "algebraic"  # type: ignore[valid-type]  # the names in `LAWS`
-    count: Annotated[int, Field(ge=1, le=10**6)] = 1
+    count: Annotated[int, Ge(1), Le(10**6)] = 1
     ka: Positive
     kb: NotNegative | None = None
-    alpha: Annotated[float, Field(gt=1, le=MOST)] | None = None
-    delta_k: Annotated[float, Field(ge=1e-100, le=MOST)] = 1e-20
+    alpha: Annotated[float, Gt(1), Le(MOST)] | None = None
+    delta_k: Annotated[float, Ge(1e-100), Le(MOST)] = 1e-20
     yield_force: Positive | None = None
     damping: NotNegative = 0.0
     x_max: Positive | None = None
@@ -148,7 +152,7 @@ class Start(Part):
 
     table: ClassVar[str] = "start"
 
-    tilt: Annotated[float, Field(gt=-math.pi / 2, lt=math.pi / 2)] = 0.0
+    tilt: Annotated[float, Gt(-math.pi / 2), Lt(math.pi / 2)] = 0.0
     tilt_rate: Number = 0.0
     base_displacement: Number = 0.0
     base_velocity: Number = 0.0

@@ -14,7 +14,7 @@ SI units. Only ``[block]`` is needed; a part that is left out is not modelled::
     [base]                    # without it the block stands on rigid ground
     mass = 212.0              # kg
 
-    [bearings]                # without them the base slides freely; values per bearing
+    [bearings]                # without them the base slides without friction; values per bearing
     law = "algebraic"         # or "bouc-wen", "bilinear", "linear"
     count = 4
     ka = 6.22e4               # N/m, initial stiffness

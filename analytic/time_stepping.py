@@ -17,6 +17,7 @@ import numpy as np
 from numba import njit
 
 from .bearing import hysteretic_force
+from .budget import MOST_ROWS, MOST_STEPS
 from .errors import SettingError
 from .motion import vertical_acceleration
 from .response import History, Impact, Response, State
@@ -46,12 +47,16 @@ def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -
     Raises
     ------
     SettingError
-        The step is not positive.
+        The step is not positive, or too short for the run.
     """
     if not (step > 0 and math.isfinite(step)):
         raise SettingError(f"step = {step!r} is not positive: give a finite value above 0 [s]")
     if scene.duration is None:
         return until_decided(lambda cut: simulate_time_stepping(cut, step=step, history=history), scene)
+    most = MOST_ROWS if history else MOST_STEPS
+    if scene.duration > most * step:
+        steps, least = scene.duration / step, scene.duration / most
+        raise SettingError(f"step = {step!r}: {steps:.3g} steps; give at least {least:.3g} s")
     model, start, law = RockingModel.of(scene), scene.start, RockingModel.of(scene).bearing
     count = math.ceil(scene.duration / step * (1 - 1e-12))
     block = (model.m, model.M, model.J, model.R, model.gamma, model.g, model.on_base)

@@ -157,6 +157,8 @@ class Engine:
         In every figure; a line style of matplotlib, as (0, (6, 1)) if it is none of the named ones.
     adapter : str
         Name of the module with ``VARIANTS``, ``versions`` and ``run``.
+    library : str or None
+        Name of a module that imports the package, where it wants to be imported in its own way.
     tolerances : str or None
         Name of a module whose ``TOLERANCES``, {variant: tuple of `ToleranceRow`}, are its rows of the tolerance
         table.
@@ -173,6 +175,7 @@ class Engine:
     marker: str
     adapter: str
     dashes: str | tuple[float, tuple[float, ...]] = "-"
+    library: str | None = None
     tolerances: str | None = None
     subject: bool = False
     origin: str = ""
@@ -189,7 +192,8 @@ class Engine:
             its own error: that must not pass for a package that is absent.
         """
         try:
-            import_module(self.package)
+            for name in filter(None, (self.library, self.package)):
+                import_module(name)
         except ImportError as error:
             raise EngineNotInstalled(
                 f"engine {self.name!r} needs the package {self.package}: {self.install}"
@@ -238,5 +242,18 @@ class Engine:
         return next(iter(self.variants))
 
     def versions(self) -> dict[str, str]:
-        """Versions that determine the result: {package: version}."""
-        return self.load().versions()
+        """Versions that determine the result: {package: version}.
+
+        Raises
+        ------
+        EngineBroken
+            An adapter from outside cannot say them.
+        """
+        adapter = self.load()
+        if not self.origin:
+            return adapter.versions()
+        try:
+            return {str(package): str(version) for package, version in adapter.versions().items()}
+        except Exception as error:
+            words = f"{self.adapter}.versions fails ({type(error).__name__}: {error})"
+            raise EngineBroken(self.origin, words) from error

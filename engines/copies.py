@@ -24,8 +24,7 @@ def near_copies(scene: Scene) -> Iterator[Scene]:
 def changed_copies(scene: Scene, change: float) -> dict[str, Scene]:
     """Scenes next to `scene`, by name: restitution, motion and start changed by +-change, relative."""
     copies = {}
-    e = max(restitution(scene), 0.0) if scene.block.restitution is None else scene.block.restitution
-    start = scene.start
+    e, start = restitution(scene), scene.start
     for sign, word in ((1, "up"), (-1, "down")):
         factor = 1 + sign * change
         if 0 < e * factor <= 1:

@@ -26,7 +26,7 @@ GRACE_SECONDS = 0.3  # beyond the time limit, for the process to write down wher
 EVIDENCE_CHARACTERS = 4000
 OUT_OF_TIME = "the run did not end in time"
 MISTAKES = (SettingError, SceneError, EngineNotInstalled)  # the caller's, not the engine's
-STOPPING = {signal.SIGINT, signal.SIGTERM}
+STOPPING = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
 PR_SET_PDEATHSIG = 1
 TRACE = getattr(signal, "SIGUSR1", None)  # tells a process that hangs to write down where
 
@@ -116,8 +116,10 @@ def _work(
 ) -> None:
     """In the process: answers through `writer`; `log` is a file number for what is printed, or None."""
     signal.set_wakeup_fd(-1)
+    for number in STOPPING:
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPPING)
     end_with_parent()
@@ -136,11 +138,18 @@ def _work(
     except MISTAKES as error:
         answer = ForkingPickler.dumps(("mistake", error))
     except BaseException as error:  # whatever an engine raises, its message is the evidence
-        message = f"{type(error).__name__}: {error}\n{traceback.format_exc()}"[:EVIDENCE_CHARACTERS]
+        message = f"{raised(error)}\n{traceback.format_exc()}"[:EVIDENCE_CHARACTERS]
         answer = ForkingPickler.dumps(("failure", ("the run raised an error", message)))
     sys.stdout.flush(), sys.stderr.flush()
     writer.send_bytes(answer)
     os._exit(0)  # no engine gets a chance to fail at its end
+
+
+def raised(error: BaseException) -> str:
+    """What was raised, in words: its kind, its message and, in the first line, its notes."""
+    first, end, rest = f"{type(error).__name__}: {error}".partition("\n")
+    notes = "".join(f" ({note})" for note in getattr(error, "__notes__", ()))
+    return f"{first}{notes}{end}{rest}"
 
 
 def end_with_parent() -> None:

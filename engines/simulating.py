@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import traceback
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any, Self
 
@@ -14,15 +15,16 @@ from analytic.response import Caution, Failure
 from analytic.solver import compile_kernels
 
 from .comparison import compare as compared
-from .contract import Engine
+from .contract import Engine, Run
 from .settings import choose, refuse_restitution
 from .statue_range import outside
 from .swings import find_swings
 
 if TYPE_CHECKING:
+    from types import ModuleType
+
     from analytic import Response, Scene
 
-    from .contract import Run
     from .swings import Trace
 
 # A run that ends this many times a contact's settling time, or this many steps, after a landing or a lift ends in it:
@@ -39,8 +41,19 @@ class Simulator(Engine):
         return cls(**{part.name: getattr(engine, part.name) for part in dataclasses.fields(engine)})
 
     def run(self, scene: Scene, variant: str, settings: object) -> Run:
-        """The bare run of a scene that has a duration; settings: of the variant's dataclass, taken as they are."""
-        return self.load().run(scene, variant, settings)
+        """The bare run of a scene that has a duration; settings: of the variant's dataclass, taken as they are.
+
+        What the adapter raises says where that was.
+        """
+        adapter = self.load()
+        try:
+            ran = adapter.run(scene, variant, settings)
+            if not isinstance(ran, Run):
+                raise TypeError(f"{self.adapter}.run returned a {type(ran).__name__}, no engines.contract.Run")
+        except Exception as error:
+            error.add_note(f"in {_place(error, adapter)}")
+            raise
+        return ran
 
     def simulate(
         self, scene: Scene, *, variant: str | None = None, history: bool = True, compare: bool = True, **settings: float
@@ -135,6 +148,15 @@ class Simulator(Engine):
             return None
         longer = scene.with_(duration=scene.end + after)
         return self.run(longer, name, chosen)
+
+
+def _place(error: Exception, adapter: ModuleType) -> str:
+    """The innermost line of an adapter's package that an error passed, else where its `run` begins."""
+    package = adapter.__name__.partition(".")[0]
+    passed = [(frame.f_globals.get("__name__", ""), line) for frame, line in traceback.walk_tb(error.__traceback__)]
+    found = [place for place in passed[1:] if place[0].partition(".")[0] == package]
+    begins = getattr(getattr(adapter.run, "__code__", None), "co_firstlineno", 1)
+    return "{}, line {}".format(*found[-1] if found else (adapter.__name__, begins))
 
 
 def _beyond(scene: Scene, on: Run) -> tuple[Trace | None, tuple[Caution, ...]]:

@@ -59,7 +59,10 @@ def motion(lines):
 ONE_OF = "give exactly one of record, pulse and synthetic"
 BAD = {
     # unknown
-    "misspelt key": (replaced("slenderness", "slendernes"), "block.slendernes = 0.28: unknown key; write slenderness"),
+    "misspelt key": (
+        replaced("slenderness", "slendernes"),
+        "block.slendernes = 0.28: unknown key; write slenderness if that is meant, else remove it, known are mass,",
+    ),
     "unknown key": (
         replaced("mass = 212.0", "mass = 212.0\nheight = 2"),
         "base.height = 2: unknown key; remove it, known are mass",

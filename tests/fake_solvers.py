@@ -72,9 +72,9 @@ def segfaults(scene):
     return sound(scene)
 
 
-def killed(scene):
-    """Killed from outside, as by the system when memory runs out."""
-    os.kill(os.getpid(), 9)
+def killed(scene, *, number):
+    """Killed from outside, as by the system when memory runs out, or a terminal that is closed."""
+    os.kill(os.getpid(), number)
 
 
 def hangs(scene, *, seconds=60.0):

@@ -2,11 +2,12 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
+from ..budget import MOST_STEPS
 from ..errors import SceneError, SettingError
 from ..motion import SampledMotion
 from ..pairing import paired
@@ -17,6 +18,7 @@ from . import fema
 VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "dwn", "ver", "v", "z", "u")  # how files call it
 # and the two horizontal components
 PAIRS = (("e", "n"), ("ew", "ns"), ("e-w", "n-s"), ("x", "y"), ("1", "2"), ("a", "b"))
+RUN_STEPS = 5000  # what a run costs beside a step for each sample, in steps: .3 ms
 # The component in a file's name: a word of its own, after the letters of an instrument (HNE), a number after such
 # letters (H1, HN2; of itself it counts files), or an azimuth.
 _WORD = re.compile(
@@ -90,7 +92,7 @@ def folder_motions(
     Raises
     ------
     SettingError
-        There is no such folder, or no horizontal motion in it.
+        There is no such folder, no horizontal motion in it, or the directions are more than can be run.
     SceneError
         The set of FEMA P695 is unknown, or its package is not installed.
     """
@@ -98,6 +100,8 @@ def folder_motions(
     if not folder.is_dir() and not fema.is_one(folder):
         raise SettingError(f"--records {folder}: no folder; give one with record files")
     groups, left = _components(folder, said)
+    if directions is not None:
+        _check_cost(directions, groups.values())
     found: dict[str, list[SampledMotion]] = {}
     for record, components in groups.items():
         motions = [motion for _, motion in components]
@@ -116,6 +120,17 @@ def folder_motions(
             f"--records {folder}: no horizontal ground motion in it; " + "; ".join(left[:3] or ["empty"])
         )
     return found, left
+
+
+def _check_cost(directions: int, groups: Iterable[Sequence[tuple[str, SampledMotion]]]) -> None:
+    """Raise `SettingError` where so many directions of the pairs take more than `MOST_STEPS` in a run of each."""
+    pairs = [[motion for _, motion in group] for group in groups if is_pair([word for word, _ in group])]
+    steps = sum(RUN_STEPS + len(paired(*pair).samples) for pair in pairs)
+    if directions * steps > MOST_STEPS:
+        raise SettingError(
+            f"directions = {directions!r}: a run of each takes more than {MOST_STEPS:.0e} steps in all; give at most "
+            f"{MOST_STEPS // steps}, or fewer records"
+        )
 
 
 def _components(folder: Path, said: dict) -> tuple[dict[str, list[tuple[str, SampledMotion]]], list[str]]:

@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from ..budget import most_steps, too_long
 from ..errors import SettingError
 from ..response import Response
 from ..termination import is_decided, until_decided
@@ -65,7 +66,9 @@ def simulate_twin(
     Raises
     ------
     SettingError
-        The method is unknown or a tolerance is not positive.
+        The method is unknown, a tolerance is not positive, or `max_step` too short for the run.
+    SceneError
+        The bearings are so stiff, or the run so long, that its steps exceed those of `budget`; names the part.
     """
     settings: dict[str, Any] = {
         "method": method,
@@ -78,11 +81,22 @@ def simulate_twin(
     if scene.duration is None:
         return until_decided(functools.partial(simulate_twin, history=history, energy=energy, **settings), scene)
     run = Run(scene, {**settings, "atol": rtol if atol is None else atol}, history, energy)
+    _check_cost(run, max_step)
     run.model.bearing.hysteretic(0.0, 1e-6)  # compiled before the clock starts
     started = time.process_time()
     failure = run.go()
     response = run.response(time.process_time() - started, failure)
     return replace(response, decided=is_decided(scene, response))
+
+
+def _check_cost(run: Run, max_step: float | None) -> None:
+    """Refuse a run of more steps, were each the longest, than the model itself may take."""
+    end, most = run.scene.end, most_steps(run.scene)
+    if end <= most * run.max_step:
+        return
+    if max_step is not None:
+        raise SettingError(f"max_step = {max_step!r}: {end / max_step:.3g} steps; give at least {end / most:.3g} s")
+    raise too_long(run.scene, f"{end / run.max_step:.3g} steps of the second implementation")
 
 
 def _check(settings: Mapping[str, Any]) -> None:

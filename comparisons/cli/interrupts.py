@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM: a command ends within a second, in whatever compiled code it is."""
+"""Ctrl-C, SIGTERM and SIGHUP: a command ends within a second, in whatever compiled code it is."""
 
 import contextlib
 import os
@@ -9,7 +9,8 @@ import threading
 from collections.abc import Iterator
 
 GRACE_SECONDS = 0.5  # to close workers and files in good order; then the process is ended
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
+SIGHUP = getattr(signal, "SIGHUP", signal.SIGTERM)  # a terminal is closed; not every system has it
+SIGNALS = tuple(dict.fromkeys((signal.SIGINT, signal.SIGTERM, SIGHUP)))
 _ending = threading.Lock()  # of the thread that says so
 SHOW_CURSOR = b"\x1b[?25h"  # a progress bar that was cut off has hidden it
 
@@ -23,9 +24,10 @@ class Stopped(BaseException):
 
 @contextlib.contextmanager
 def stoppable() -> Iterator[None]:
-    """SIGINT and SIGTERM raise `Stopped` inside, and then end the process with status 130 or 143.
+    """SIGINT, SIGTERM and SIGHUP raise `Stopped` inside, and then end the process with status 130, 143 or 129.
 
     Where compiled code does not let the exception through, the process is ended in the midst. For the main thread.
+    A SIGHUP that is ignored (nohup) stays so.
     """
     read, write = os.pipe()
     os.set_blocking(write, False)
@@ -33,8 +35,10 @@ def stoppable() -> Iterator[None]:
     watch = threading.Thread(target=_watch, args=(read,), daemon=True)
     watch.start()
     handlers = {number: signal.getsignal(number) for number in SIGNALS}
+    if handlers[SIGHUP] is signal.SIG_IGN:
+        del handlers[SIGHUP]
     try:
-        for number in SIGNALS:
+        for number in handlers:
             signal.signal(number, _stop)
         yield
     except Stopped as stop:  # all is closed by now

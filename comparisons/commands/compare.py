@@ -40,6 +40,7 @@ def command(
     An engine that fails costs its own row. Status 1: the analytic model failed.
     Example: rocking compare free-rocking-rigid --plot compared.svg
     """
+    from analytic.limits import scene_warnings
     from analytic.scene_file import load_scene
 
     from ..running.files import check_writable
@@ -65,8 +66,10 @@ def command(
         return draw_histories(what, drawn, horizon)
 
     print_failures(responses)
-    form = _form(what, responses, horizons, horizon)
-    write_output({json_file: form}, lambda: show(comparison(what, responses, horizons), responses), plot, draw)
+    about = scene_warnings(what)
+    told = [replace(responses[0], warnings=(*about, *responses[0].warnings)), *responses[1:]]
+    form = _form(what, told, horizons, horizon)
+    write_output({json_file: form}, lambda: show(comparison(what, responses, horizons), responses, about), plot, draw)
     if responses[0].failure:
         raise typer.Exit(1)
 

@@ -39,7 +39,7 @@ def open_(
     from ..running.files import check_folder
 
     if to is not None:
-        check_folder(to)
+        check_folder(to, "--to")
     raise typer.Exit(open_notebook(name, to))
 
 

@@ -64,7 +64,7 @@ def command(
 
     def show():
         print_margins(what, nearest, contact, span, tilt)
-        print_motions(what, [{**row, "changes": named(row["changes"], tilt)} for row in rows])
+        print_motions(what, [{**row, "changes": named(row["changes"], row["reached"], tilt)} for row in rows])
 
     form = _form(what, nearest, contact, rows, span, tilt)
     write_output({json_file: form}, show, plot, lambda: draw_margins(what, nearest, tilt))
@@ -81,10 +81,18 @@ def _form(scene, nearest, contact, rows, span, tilt):
         outcome=nearest[0].outcome,
         tilt=tilt,
         span=span / 100,
+        reached=_reached(nearest[0]),
         margins=[Margin.of(margin, limit_states(scene)) for margin in nearest],
         contact=Contact(**dataclasses.asdict(contact)),
         motions=[MotionMargin(**row) for row in rows],
     )
+
+
+def _reached(margin):
+    """Those of the limit states that the scene as it is reaches."""
+    from analytic.margins import LIMIT_STATES
+
+    return [state for state in LIMIT_STATES if margin.reached(state)]
 
 
 def _under(scene, record, motions, span, tilt):
@@ -103,6 +111,7 @@ def _under(scene, record, motions, span, tilt):
                 "motion": motion.label,
                 "peak": motion.peak,
                 "outcome": found.outcome,
+                "reached": _reached(found),
                 "changes": {state: found.change(state) for state in limit_states(scene)},
             }
         )

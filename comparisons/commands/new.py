@@ -13,7 +13,7 @@ from analytic.errors import SettingError
 from ..cli.output import write_output
 from ..running.options import DEFINITION, OPTIONS, RATIO, named_by_options
 from ..running.record_options import Channel, Column, Step, Units
-from ..running.solving import ground_motion, say, scene_of
+from ..running.solving import ground_motion, scene_of
 
 
 def command(
@@ -31,6 +31,9 @@ def command(
     base_mass: Annotated[
         float | None, typer.Option(help="Mass of the base under the block [kg]; without it the ground is rigid.")
     ] = None,
+    slides_freely: Annotated[
+        bool, typer.Option("--slides-freely", help="Nothing holds the base: no bearings, no friction under it.")
+    ] = False,
     count: Annotated[int, typer.Option(help="Number of bearings.")] = 4,
     period: Annotated[float | None, typer.Option(help="Bearings by design: secant period at --xmax [s].")] = None,
     damping: Annotated[float, typer.Option(help="Bearings by design: damping ratio at --xmax.")] = 0.15,
@@ -85,10 +88,19 @@ def command(
         for option in ("damping", "definition", "ratio"):
             if period is None and str(ctx.get_parameter_source(option)).endswith("COMMANDLINE"):
                 raise SettingError(f"--{option} belongs to bearings by design; give --period and --xmax, or remove it")
-        bearings = _bearings(None if base is None else block.mass + base.mass, count, xmax, targets, constants)
+        borne = any(value is not None for value in (period, xmax, *constants.values()))
+        _check_base(base_mass, borne, slides_freely)
+        carried = block.mass + (base_mass or 0.0)
+        bearings = _bearings(carried, count, xmax, targets, constants) if borne else None
         motion = _motion(file, record, tilt, {"units": units, "dt": dt, "column": column, "channel": channel})
         about = f"A block {height:g} m high and {width:g} m wide along the motion; rocking run {Path(file).name}"
-        parts = {"base": base, "bearings": bearings, "motion": motion, "tilt": tilt, "friction": friction}
+        parts: dict[str, Any] = {
+            "base": base,
+            "bearings": bearings,
+            "motion": motion,
+            "tilt": tilt,
+            "friction": friction,
+        }
         text = scene_text(name or Path(file).stem, block, **parts, about=(about,))
         scene = scene_of(text, file)
         if not anyway:
@@ -132,21 +144,30 @@ def _density(density: float | None, material: str | None) -> float | None:
     return MATERIALS[material]
 
 
+def _check_base(mass: float | None, borne: bool, slides_freely: bool) -> None:
+    """Raise `SettingError` unless it is said what the base [kg], if any, stands on; borne: on bearings."""
+    if mass is None and borne:
+        raise SettingError("bearings carry a base: give its mass with --base-mass")
+    if mass is None and slides_freely:
+        raise SettingError("--slides-freely belongs to a base: give its mass with --base-mass, or remove it")
+    if borne and slides_freely:
+        raise SettingError("--slides-freely: a base on bearings does not; remove it, or what belongs to bearings")
+    if mass is not None and not borne and not slides_freely:
+        raise SettingError(
+            f"--base-mass {mass:g}: nothing holds that base; a pedestal fixed to the ground: leave it out; a base on "
+            "bearings: give --period and --xmax, or --ka, --kb and --alpha; one without bearings and friction, in a "
+            "thought experiment or for rocking design to find its bearings: give --slides-freely"
+        )
+
+
 def _bearings(
-    carried: float | None, count: int, xmax: float | None, targets: Mapping[str, Any], constants: Mapping[str, Any]
+    carried: float, count: int, xmax: float | None, targets: Mapping[str, Any], constants: Mapping[str, Any]
 ) -> Any:
-    """The `Bearings` under what they carry [kg], by design or by constants; None without a base."""
+    """The `Bearings` under what they carry [kg], by design or by constants."""
     from analytic.design import design_bearings
     from analytic.scene import Bearings
 
     by_design, by_constants = targets["period"] is not None, any(value is not None for value in constants.values())
-    if carried is None:
-        if by_design or by_constants or xmax is not None:
-            raise SettingError("bearings carry a base: give its mass with --base-mass")
-        return None
-    if not by_design and not by_constants and xmax is None:
-        say("no bearings: the base slides freely; --period and --xmax, or --ka, --kb and --alpha, put it on bearings")
-        return None
     needed = (targets["period"], xmax) if by_design else constants.values()
     if by_design == by_constants or None in needed:
         raise SettingError("give the bearings' --period and --xmax (and --damping), or their --ka, --kb and --alpha")

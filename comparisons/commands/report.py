@@ -73,10 +73,12 @@ def command(
         check_solver(name)
     engines = [name for name in engine if name != ANALYTIC] if engine else None
     variants = _variants(variant, engines or [], scene)
-    motion = _motion(scene, record, {"units": units, "dt": dt, "column": column, "channel": channel})
+    of_folder = None if records is None else units
+    of_record = None if record is None and records is not None else units
+    motion = _motion(scene, record, {"units": of_record, "dt": dt, "column": column, "channel": channel})
     if not scene and (records is not None or both_signs or directions is not None):
         raise SettingError("--records, --both-signs and --directions belong to scenes of your own; name one")
-    calls = _simulate(output, scene, motion, engines, variants, (records, both_signs, directions, units))
+    calls = _simulate(output, scene, motion, engines, variants, (records, both_signs, directions, of_folder))
     with bar("the page") as progress:
         page = write_page(output, shown, progress, calls)
     if json_file:

@@ -44,6 +44,7 @@ def command(
 
     Example: rocking run caryatid-isolated --engine exudyn --plot isolated.svg
     """
+    from analytic.limits import scene_warnings
     from analytic.scene_file import load_scene
 
     from ..running.files import check_writable
@@ -55,6 +56,7 @@ def command(
     check_writable([json_file, csv], picture=plot, inputs=[scene])
     check_solver(engine)
     what, chosen = load_scene(scene), parse_settings(settings or [])
+    about, groups = scene_warnings(what), other_motions(what, records, both_signs, directions, units)
     response = simulate(
         what,
         engine,
@@ -65,7 +67,6 @@ def command(
         words=f"{what.name}: {engine}",
         compare=True,
     )
-    groups = other_motions(what, records, both_signs, directions, units)
     rows = rows_of(what, groups, lambda one: simulate(one, engine, variant, chosen, False, time_limit))
     response = replace(response, warnings=(*response.warnings, *near_motion(what)))
     if response.history is None and (csv or plot):
@@ -76,7 +77,7 @@ def command(
         response.history.to_csv(history)
 
     def tell():
-        show(summary(what, response), [response])
+        show(summary(what, response), [response], about)
         print_motions(what, rows)
 
     def draw():
@@ -84,7 +85,8 @@ def command(
 
         return draw_histories(what, [response])
 
-    form = Run(**response.to_json(), motions=[MotionRun(**row) for row in rows])
+    told = replace(response, warnings=(*about, *response.warnings))
+    form = Run(**told.to_json(), motions=[MotionRun(**row) for row in rows])
     print_failures([response])
     write_output({json_file: form, csv: history.getvalue()}, tell, plot, draw)
     if response.failure:

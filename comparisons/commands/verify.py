@@ -22,9 +22,10 @@ def command(
         float, typer.Option(metavar="SECONDS", help="An engine that takes longer has failed.")
     ] = TIME_LIMIT,
 ) -> None:
-    """Run the tolerance table against the engine builds of this machine. Status 1: a row does not hold.
+    """Run the tolerance table against the engine builds of this machine.
 
-    Of an engine from outside that states no tolerances the rows say what was found.
+    Of an engine from outside that states no tolerances the rows say what was found. Status 1: a row does not hold, or
+    could not be measured.
     From the tests of another project: comparisons.measuring.tolerances.rows("exudyn"), each with `check()`.
     Example: rocking verify --engine exudyn
     """
@@ -44,7 +45,7 @@ def command(
     versions = {name: get_engine(name).versions() for name in dict.fromkeys(row["engine"] for row in results)}
     form = Verification(versions=versions, rows=[Tolerance(**row) for row in results])
     write_output({json_file: form}, lambda: _show(results))
-    if not results or not all(row["holds"] for row in results):
+    if not results or any(row["failure"] or row["holds"] is False for row in results):
         raise typer.Exit(1)
 
 
@@ -70,8 +71,16 @@ def _show(results):
     for solver in dict.fromkeys((row["engine"], row["variant"]) for row in results):
         echo(_table(solver, [row for row in results if (row["engine"], row["variant"]) == solver]))
     failures = [f"{row['engine']}, {row['quantity']}: {row['failure']}" for row in results if row["failure"]]
-    held = sum(row["holds"] for row in results)
-    echo(*failures, f"{held} of {len(results)} tolerances hold.")
+    bounded = [row["holds"] for row in results if row["holds"] is not None]
+    held = [f"{sum(bounded)} of {len(bounded)} tolerances hold."] if bounded else []
+    echo(*failures, *_unbounded(results), *held)
+
+
+def _unbounded(results):
+    """A sentence on each engine that states no tolerances."""
+    for name in dict.fromkeys(row["engine"] for row in results if row["bound"] is None):
+        found = [row["found"] is not None for row in results if row["engine"] == name]
+        yield f"{name}: no bound stated, so nothing holds or fails; {sum(found)} of {len(found)} quantities measured."
 
 
 def _table(solver, rows):
@@ -82,10 +91,10 @@ def _table(solver, rows):
     heads = ["", "quantity and scenes", "found", "tolerated", "unit"]
     cells = [
         [
-            "" if row["bound"] is None else "holds" if row["holds"] else Text("FAILS", style="bold red"),
+            "" if row["holds"] is None else "holds" if row["holds"] else Text("FAILS", style="bold red"),
             f"{row['quantity']}\n{row['scenes']}",
             digits(row["found"], ".3g"),
-            "not stated" if row["bound"] is None else f"{row['bound']:.2g}",
+            "no bound stated" if row["bound"] is None else f"{row['bound']:.2g}",
             row["unit"],
         ]
         for row in rows

@@ -73,7 +73,7 @@ def open_notebook(name: str, to: str | None = None) -> int:
             if not path.exists():  # a student's work is never overwritten
                 path.write_text(content, encoding="utf-8")
         say(f"the notebook is {file}" + ("; it is removed at the end: keep it with --to FOLDER" if to is None else ""))
-        return subprocess.call([sys.executable, "-m", "marimo", "edit", str(file)])
+        return subprocess.call([sys.executable, "-m", "marimo", "edit", str(file.absolute())])  # "-" is no option
 
 
 def written(value: float | str, unit: str = "", digits: int = 4) -> str:

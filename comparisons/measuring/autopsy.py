@@ -52,7 +52,7 @@ class Contact:
     before, after : float
         Tilt rates carried to tilt = 0 [rad/s].
     error : float
-        after/before less eq. (7).
+        after/before less the scene's restitution.
     parts : dict
         Of the error: support, pull, slip, rebound, see above; where the block is not `placed`, their sum as contact.
         Beside them flight and, where it is placed, shape.

@@ -106,8 +106,8 @@ def impact_errors(scene: Scene, response: Response, most: int | None = None) -> 
     Returns
     -------
     dict
-        Arrays of shape (impacts,): state, restitution less eq. (7), from the states at the impact; time [s]; for free
-        rocking with a history also swing, the same from the energies of the swings, NaN where a swing has no peak;
+        Arrays of shape (impacts,): state, restitution less the scene's, from the states at the impact; time [s]; for
+        free rocking with a history also swing, the same from the energies of the swings, NaN where a swing has no peak;
         on a base also jump, of the base velocity, relative: against momentum with the run's own rates (jump), against
         e_x of eq. (8) corrected (jump_8) and as printed (jump_8_printed).
     """

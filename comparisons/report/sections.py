@@ -106,7 +106,7 @@ PARAMETERS: tuple[tuple[str, Callable[[Mapping[str, Any]], Any]], ...] = (
     ("corner to centre of mass R [m]", lambda scene: scene["block"]["radius"]),
     ("slenderness γ [rad]", lambda scene: scene["block"]["slenderness"]),
     ("rocking frequency ω_r [rad/s], eq. (1)", lambda scene: scene["rocking_frequency"]),
-    ("restitution e_φ [-], eq. (7)", lambda scene: scene["restitution"]),
+    ("restitution e_φ [-], eq. (7) unless given", lambda scene: scene["restitution"]),
     ("mass of the base m_b [kg]", lambda scene: (scene["base"] or {}).get("mass")),
     ("bearings [-]", lambda scene: (scene["bearings"] or {}).get("count")),
     ("k_a of each [N/m]", lambda scene: (scene["bearings"] or {}).get("ka")),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from analytic import simulate, simulate_many
 from analytic.errors import SceneError
+from analytic.limits import scene_warnings
 from analytic.margins import SPAN, TILT, limit_states, margins
 from analytic.nearby import SHARE, cliffs, nearby
 from analytic.records.folder import reversed_sign, same_reversed
@@ -62,13 +63,14 @@ def statue_of(scene: Scene, motions: Mapping[str, Sequence[Motion]], progress: A
     motions : {record: its motions}. The scene's own is one more where it is not among them.
     """
     found: dict[str, Any] = {"own": _figures(scene), "cautions": [], "near": [], "margins": []}
+    found["cautions"] += map(str, scene_warnings(scene))
     if scene.base is not None and scene.bearings is not None:
         start = {"base_displacement": 0.0, "base_velocity": 0.0}
         found["free"] = _figures(scene.with_(base=None, bearings=None, start=start))
     try:
         if scene.motion is not None:
             changes, outcomes = nearby(scene)
-            found["cautions"] = [str(caution) for caution in cliffs(scene, changes, outcomes)]
+            found["cautions"] += map(str, cliffs(scene, changes, outcomes))
             found["near"] = _near(scene, changes, outcomes)
         found["margins"] = [
             {

@@ -23,7 +23,7 @@ from typing import Any
 from pebble import ProcessExpired, ProcessPool
 
 from analytic.errors import SettingError
-from engines.guard import end_with_parent
+from engines.guard import end_with_parent, raised
 
 from .cases import Case, module_of
 from .files import TemporaryFolder
@@ -204,7 +204,7 @@ def lines_of(task: Task) -> tuple[str, ...]:
             row["values"] = {"outcome": "failed"}
             row["failure"] = {
                 "kind": "exception",
-                "reason": f"{type(error).__name__}: {scrub(str(error))}",
+                "reason": scrub(raised(error)),
                 "message": scrub(traceback.format_exc())[-EVIDENCE_CHARACTERS:],
             }
             line = json.dumps(row)
@@ -216,6 +216,7 @@ def lines_of(task: Task) -> tuple[str, ...]:
 
 def _start_worker(path):
     sys.path[:] = path  # a preloaded server keeps its own
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # pebble's handler waits for compiled code, and hides the signal
     end_with_parent()
     threading.Thread(target=end_with, args=(multiprocessing.parent_process(),), daemon=True).start()
 

@@ -50,9 +50,9 @@ def check_writable(paths: Iterable[str | None], picture: str | None = None, inpu
         taken[place] = "is given for two results"
 
 
-def check_folder(output: str | PathLike[str]) -> None:
+def check_folder(output: str | PathLike[str], option: str = "--output") -> None:
     """Raise `SettingError` if `output`, the folder to write to, is a file or cannot be written; it need not exist."""
-    named, above = f"--output {output}", Path(output)
+    named, above = f"{option} {output}", Path(output)
     mode = _mode(output, named)
     if mode is not None and not stat.S_ISDIR(mode):
         what = "is a file" if stat.S_ISREG(mode) else "is a device or a pipe"

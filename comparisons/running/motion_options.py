@@ -36,19 +36,22 @@ def motions_of(
     Raises
     ------
     SettingError
-        No such folder, no motion in it, or directions without a folder.
+        No such folder, no motion in it, or directions or units without a folder.
     """
     from analytic.errors import SettingError
     from analytic.records.folder import folder_motions, reversed_sign, same_reversed
 
+    from .options import named_by_options
     from .solving import say
 
-    if directions is not None and records is None:
-        raise SettingError(f"--directions {directions}: give the folder of the records with --records")
+    for name, value in (("directions", directions), ("units", units)):
+        if value is not None and records is None:
+            raise SettingError(f"--{name} {value}: give the folder of the records with --records")
     found: dict[str, list[Motion]] = {}
     own = scene.motion
     if records is not None:
-        others, left = folder_motions(records, directions=directions, own=own, units=units)
+        with named_by_options({"directions": "--directions"}):
+            others, left = folder_motions(records, directions=directions, own=own, units=units)
         found = {name: [*motions] for name, motions in others.items()}
         for line in left:
             say(line)
@@ -66,7 +69,7 @@ def other_motions(
     scene: Scene, records: str | None, both_signs: bool, directions: int | None, units: str | None = None
 ) -> dict[str, list[Motion]]:
     """`motions_of` where one of the options is given, else none."""
-    given = records is not None or both_signs or directions is not None
+    given = both_signs or any(value is not None for value in (records, directions, units))
     return motions_of(scene, records, both_signs, directions, units) if given else {}
 
 

@@ -1,4 +1,5 @@
-"""Slips in the numbers of a new scene: centimetres for metres, a weight of no stone, bearings that do not yield."""
+"""Slips in the numbers of a new scene: centimetres for metres, a weight of no stone, a tilt past the balance, bearings
+that do not yield."""
 
 import math
 import sys
@@ -50,6 +51,10 @@ def doubts(
         found.append(
             f"--depth {depth:g} is longer than any side of a statue, {2 * RANGE['radius'][1]:g} m; give it in m"
         )
+    tilt = scene.start.tilt
+    if scene.motion is None and not 0 < abs(tilt) < block.slenderness:
+        what = "releases the block where it stands: nothing moves" if tilt == 0 else "is beyond its balance: it falls"
+        found.append(f"--tilt {tilt:g} {what}; give a size between 0 and the slenderness, {block.slenderness:.4g} rad")
     density = block.mass / (height * width * (depth or width))
     least, most = HOLLOW * min(MATERIALS.values()), max(MATERIALS.values())  # the densest one, solid
     if not least <= density <= most:

@@ -215,8 +215,12 @@ def check_time_limit(seconds: float) -> None:
 def _simulate(scene, solver, variant, settings, history, compare):
     if solver != ANALYTIC:
         from engines import get_engine
+        from engines.settings import choose
 
-        return get_engine(solver).simulate(scene, variant=variant, history=history, compare=compare, **settings)
+        engine = get_engine(solver)
+        if settings:  # else one called as an argument of `simulate` would be taken for that
+            choose(engine, variant, settings)
+        return engine.simulate(scene, variant=variant, history=history, compare=compare, **settings)
     response = _analytic(scene, variant, settings, history)
     if compare and response.decided:
         from ..measuring.horizon import unsure_outcome

@@ -145,7 +145,7 @@ def _settled(row, time_limit):
     failure = row["failure"] or {}
     if failure.get("kind") == "time limit":
         return failure.get("time_limit", 0.0) >= time_limit
-    return failure.get("exit_code") not in (-9, -15)  # SIGKILL, SIGTERM: no solver sends them to itself
+    return failure.get("exit_code") not in (-1, -9, -15)  # SIGHUP, SIGKILL, SIGTERM: no solver sends them to itself
 
 
 def _lost_line(key, lost):

@@ -27,9 +27,10 @@ class Band(Part):
 
 class Margin(Part):
     """Of one quantity, `value` as the scene has it. changes: for each limit state of the scene the nearest change at
-    which it becomes reached, or is no longer; down, up: nearest change with another outcome; leaves_model: nearest
-    change at which the model no longer holds; null where there is none in the range scanned. interleaved: the outcome
-    changes and changes back within two steps of the scan: it may change nearer, in a narrower band."""
+    which it becomes reached, or where the scene reaches it now, is no longer; down, up: nearest change with another
+    outcome; leaves_model: nearest change at which the model no longer holds; null where there is none in the range
+    scanned. interleaved: the outcome changes and changes back within two steps of the scan: it may change nearer, in a
+    narrower band."""
 
     quantity: str
     value: float
@@ -59,25 +60,27 @@ class Contact(Part):
 
 
 class MotionMargin(Part):
-    """Under one of many motions: the outcome, and the nearest relative changes of the motion at which each limit state
-    becomes reached, or no longer is."""
+    """Under one of many motions: the outcome, the limit states reached, and the nearest relative changes of the motion
+    at which each limit state becomes reached, or where it is, no longer is."""
 
     record: str
     motion: str
     peak: float = Field(description="m/s2")
     outcome: str
+    reached: list[str]
     changes: dict[str, float | None]
 
 
 class Margins(Form):
-    """How far a scene is from other limit states. tilt: the limit, a share of the slenderness; span: largest relative
-    change scanned, up and, above -1, down."""
+    """How far a scene is from other limit states. reached: those it reaches now. tilt: the limit, a share of the
+    slenderness; span: largest relative change scanned, up and, above -1, down."""
 
     schema_: str = Field(default="rocking margin 3", serialization_alias="schema")
     scene: str
     outcome: str
     tilt: float
     span: float
+    reached: list[str]
     margins: list[Margin]
     contact: Contact
     motions: list[MotionMargin]

@@ -11,8 +11,8 @@ from .runs import COMPARABLE, Difference, Warned
 
 
 class Tolerance(Part):
-    """A row of the tolerance table. bound, measured: None of an engine that states no tolerances. found: None where it
-    could not be measured; failure: why, in words."""
+    """A row of the tolerance table. bound, measured, holds: None of an engine that states no tolerances. found: None
+    where it could not be measured; failure: why, in words."""
 
     quantity: str
     engine: str
@@ -23,14 +23,14 @@ class Tolerance(Part):
     measured: float | None
     source: str
     found: float | None
-    holds: bool
+    holds: bool | None
     failure: str | None
 
 
 class Verification(Form):
     """Engines compared with the tolerance table. versions: {engine: its own}."""
 
-    schema_: str = Field(default="rocking verify 2", serialization_alias="schema")
+    schema_: str = Field(default="rocking verify 3", serialization_alias="schema")
     versions: dict[str, Any]
     rows: list[Tolerance]
 

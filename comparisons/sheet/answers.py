@@ -34,8 +34,8 @@ def read_answers(path: str | PathLike[str]) -> dict[str, dict[str, Value]]:
         raise SceneError("answers", str(path), problem, "give the file of answers") from None
     except UnicodeDecodeError as error:
         raise SceneError("answers", str(path), "no text in UTF-8", "save it as CSV in UTF-8") from error
-    reader = csv.reader("" if line.isspace() or line[:1] == "#" else line for line in text.splitlines())
-    rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader if row]
+    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip() and line[0] != "#"]
+    rows = [(number, _cells(line, f"{path}, line {number}")) for number, line in lines]
     head = ",".join(rows[0][1] if rows else [])
     if head != ",".join(COLUMNS):
         raise SceneError("answers", head, f"{path}: not the head {','.join(COLUMNS)}", "begin with that line")
@@ -55,6 +55,15 @@ def read_answers(path: str | PathLike[str]) -> dict[str, dict[str, Value]]:
         if value:
             given[name][quantity] = _value(asked[name][quantity].kind, value, place)
     return {name: values for name, values in given.items() if values}
+
+
+def _cells(line, place):
+    """The cells of a line, which none goes beyond: a quote that is not closed costs no other line."""
+    try:
+        return [cell.strip() for cell in next(csv.reader([line], strict=True))]
+    except csv.Error as error:
+        problem = f"{place}: no line of CSV ({error})"
+        raise SceneError("answers", line, problem, "write scene,quantity,value, and close each quote") from None
 
 
 def _value(kind, text, place):

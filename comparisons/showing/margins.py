@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from analytic.limits import scene_warnings
 from analytic.margins import limit_states
 
 from ..running.readable import readable
@@ -31,15 +32,16 @@ def print_margins(scene: Scene, margins: Sequence[Margin], contact: Contact, spa
     names = {state: name for state, name in _names(tilt).items() if state in limit_states(scene)}
     now = ", ".join(name for state, name in names.items() if nearest.reached(state))
     parts: list[Grid | str] = [
-        f"{readable(scene.name, TITLE_CHARACTERS)}: {nearest.outcome}\nnow: {now or 'no limit state'}"
+        *(f"Warning: {warning}" for warning in scene_warnings(scene)),
+        f"{readable(scene.name, TITLE_CHARACTERS)}: {nearest.outcome}\nnow: {now or 'no limit state'}",
     ]
     rows = {margin: [margin.change(state) for state in names] for margin in margins}
     rows = {margin: changes for margin, changes in rows.items() if any([*changes, margin.leaves_model])}
     if rows:
         parts += [
-            _table(names, rows),
-            "Each quantity alone, to the nearest change at which a limit state becomes reached, or no longer is. "
-            "Slenderness at fixed R, mass and J_O; size at fixed mass and shape."
+            _table([f"no longer\n{name}" if nearest.reached(state) else name for state, name in names.items()], rows),
+            "Each quantity alone, to the nearest change at which a limit state is reached, or no longer is, as its "
+            "column says. Slenderness at fixed R, mass and J_O; size at fixed mass and shape."
             + (" Left at: from there on the model does not hold." if _leaves(rows) else ""),
         ]
     if still := ", ".join(margin.quantity for margin in margins if margin not in rows):
@@ -68,9 +70,11 @@ def _names(tilt):
     return {"lifts": "lifts", "tilt": f"tilt > {tilt:g} γ", "stroke": "base > x_max", "overturns": "overturns"}
 
 
-def named(changes: Mapping[str, float | None], tilt: float) -> dict[str, float | None]:
-    """{limit state as tables call it: change} of {limit state: change}."""
-    return {_names(tilt)[state]: change for state, change in changes.items()}
+def named(changes: Mapping[str, float | None], reached: Collection[str], tilt: float) -> dict[str, str]:
+    """{limit state as tables call it: its change in words} of {limit state: change} and those reached without one."""
+    words = {state: _percent(change) for state, change in changes.items()}
+    words |= {state: f"no longer\n{words[state]}" if words[state] else "now" for state in reached}
+    return {_names(tilt)[state]: change for state, change in words.items()}
 
 
 def _leaves(margins):
@@ -78,9 +82,9 @@ def _leaves(margins):
 
 
 def _table(names, rows):
-    """rows: {margin: its change of each limit state}."""
+    """names: of the limit states; rows: {margin: its change of each}."""
     outside = _leaves(rows)
-    heads = ["quantity", "value", *names.values(), *(["left at"] if outside else [])]
+    heads = ["quantity", "value", *names, *(["left at"] if outside else [])]
     cells = [
         [
             margin.quantity,

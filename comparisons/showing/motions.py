@@ -20,7 +20,7 @@ LIFTED = ("rocks", "overturns")
 def print_motions(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> None:
     """Print a row for each motion, and how many records lift and overturn the block; nothing without motions.
 
-    rows : as of `rows_of`, and for each more column of a `Mapping` called changes a name and a relative change.
+    rows : as of `rows_of`, and for each more column of a `Mapping` called changes a name and what stands there.
     """
     if not rows:
         return
@@ -32,7 +32,7 @@ def print_motions(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> None:
     for row in rows:
         cells = [readable(row["motion"]), f"{row['peak'] / scene.gravity:.3g}", row["outcome"]]
         cells += [f"{row['tilt']:.3g}"] if "tilt" in row else []
-        cells += ["" if row["changes"][name] is None else f"{100 * row['changes'][name]:+.3g} %" for name in more]
+        cells += [row["changes"][name] for name in more]
         table.append(cells + ([f"{row['stroke']:.3g}"] if row.get("stroke") is not None else []))
     words = f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}."
     echo(grid(heads, table, wraps=["motion"]), words, wrap=True)

@@ -101,12 +101,13 @@ def _limit(horizons):
     return "\n".join(lines)
 
 
-def show(table: Grid, responses: Sequence[Response]) -> None:
+def show(table: Grid, responses: Sequence[Response], about: Sequence[Caution] = ()) -> None:
     """Print a table of responses, and below it in what each differs from the analytic model, and the warnings.
 
-    Of several responses the outcomes stand first. Where the result depends on little of the motion, that stands last,
-    in bold.
+    What is said `about` the scene itself stands first, in bold, then, of several responses, the outcomes. Where the
+    result depends on little of the motion, that stands last, in bold.
     """
+    echo(*(Text(f"Warning: {readable(str(warning))}", "bold") for warning in about))
     if len(responses) > 1:
         found = outcomes([{**response.to_json(), "outcome_text": response.outcome_text} for response in responses])
         echo(f"{found[0].upper()}{found[1:]}.", wrap=True)

@@ -2,6 +2,8 @@
 
 from ..contract import EXTRA, Engine
 
+__all__ = ["ENGINE"]  # else the reference imports the rest, and an extra may be absent
+
 ENGINE = Engine(
     name="drake",
     package="pydrake",

@@ -45,7 +45,7 @@ def ground_load(motion: Motion) -> Callable[[Any, Any], Any]:
     return pulse
 
 
-def segments(motion: Motion, duration: float) -> tuple[array[float], np.ndarray]:
+def segments(motion: Motion, duration: float) -> tuple[array, np.ndarray]:
     """(ends, loads): end times [s] of the n smooth segments up to `duration`; their load vectors, shape (n, 3)."""
     if isinstance(motion, SampledMotion):
         slope = np.diff(motion.samples) / motion.dt

@@ -221,7 +221,7 @@ def make_trace(
     t: np.ndarray,
     q: np.ndarray,
     v: np.ndarray,
-    z: array[float],
+    z: array,
     bearing: Bearing | None,
     contact_tilt: float,
     settle: float,

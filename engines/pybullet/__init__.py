@@ -7,6 +7,7 @@ ENGINE = Engine(
     package="pybullet",
     install="pip install pybullet (its wheels end at CPython 3.11: use Python 3.11)",
     adapter="engines.pybullet.adapter",
+    library="engines.pybullet.library",
     tolerances="engines.pybullet.tolerances",
     colour="#0072B2",
     marker="^",

@@ -9,7 +9,6 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pybullet
 
 from analytic.response import Caution, Failure
 
@@ -18,6 +17,7 @@ from ..leapfrog import raw_trace_of
 from ..stepping import Bodies, FirstScript, FixedStep, ImpactAware, Settings, run_of
 from . import first_script
 from .constants import CONSTANTS
+from .library import pybullet
 from .scene import MOST_FRICTION, MOST_VELOCITY, BulletBodies
 
 if TYPE_CHECKING:

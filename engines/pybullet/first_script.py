@@ -9,10 +9,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-import pybullet
-
 from ..placement import placement
 from ..stepping import State
+from .library import pybullet
 from .links import chain
 
 if TYPE_CHECKING:

@@ -6,8 +6,6 @@ The planar chain leaves out three of them; this is the model most scripts begin 
 
 from typing import Any
 
-import pybullet
-
 from analytic import Response, Scene
 from analytic.termination import until_decided
 
@@ -16,6 +14,7 @@ from ..observe import failed_response, observe
 from ..stepping import FirstScript, run_of
 from .adapter import versions
 from .first_script import FreeBox
+from .library import pybullet
 from .links import without_losses
 from .scene import FRICTION, iterations
 

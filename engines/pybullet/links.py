@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import pybullet
+from .library import pybullet
 
 
 def chain(client: int, links: list[tuple], **options: int) -> int:

@@ -10,12 +10,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
-import pybullet
 
 from ..placement import placement
 from ..readback import require
 from ..stepping import State
 from .first_script import BREAKING_THRESHOLD
+from .library import pybullet
 from .links import chain, without_losses
 
 if TYPE_CHECKING:

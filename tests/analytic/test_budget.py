@@ -20,6 +20,8 @@ from analytic import (
 )
 from analytic.caryatid import BASE, BEARINGS, caryatid_block
 from analytic.margins import margins
+from analytic.time_stepping import simulate_time_stepping
+from analytic.twin import simulate_twin
 
 TABLE_1 = {"count": 4, "ka": 6.22e4, "kb": 6.22e3, "alpha": 44.69}
 PULSE = PulseMotion("one-sine", 3.0, 3.0)
@@ -59,6 +61,23 @@ def test_what_does_not_get_on_is_named(small, scene, words):
     with pytest.raises(SceneError) as caught:
         margins(scene)
     assert str(caught.value).startswith(words.partition(":")[0])
+
+
+@pytest.mark.parametrize("duration", [None, 1.0])
+def test_the_second_implementation_refuses_at_once_what_the_model_gives_up(duration):
+    scene = isolated(law="linear", ka=1e20)
+    with pytest.raises(SceneError, match=r"bearings.ka = 1e\+20: the base vibrates at .* steps of the second"):
+        simulate_twin(scene.with_(duration=duration))
+
+
+def test_steps_too_short_for_the_run_are_refused_by_the_shortest_that_are_not():
+    scene = Scene(block=caryatid_block(0.28), start=Start(tilt=0.2), duration=10.0)
+    with pytest.raises(SettingError, match="max_step = 1e-09: 1e\\+10 steps; give at least 2e-06 s"):
+        simulate_twin(scene, max_step=1e-9)
+    with pytest.raises(SettingError, match="step = 1e-09: 1e\\+10 steps; give at least 1e-06 s"):
+        simulate_time_stepping(scene, step=1e-9)
+    with pytest.raises(SettingError, match="give at least 1e-07 s"):
+        simulate_time_stepping(scene, step=1e-9, history=False)
 
 
 def test_a_stiff_scene_that_runs_is_still_too_much_as_often_as_margins_run_it():

@@ -2,7 +2,8 @@
 
 import pytest
 
-from analytic import Base, Bearings, Block, PulseMotion, Scene, Start, simulate
+from analytic import Base, Bearings, Block, PulseMotion, Scene, Start, load_scene, shipped_scenes, simulate
+from analytic.limits import scene_warnings
 from analytic.twin import simulate_twin
 from engines import get_engine
 
@@ -34,3 +35,18 @@ def test_within_it_nothing_is_said_and_nothing_changes(x_max):
 def test_the_start_counts():
     scene = SCENE.with_(motion=None, start=Start(base_displacement=0.06))
     assert [warning.kind for warning in simulate(scene).warnings] == ["limit"]
+
+
+@pytest.mark.parametrize("tilt, over", [(0.28, True), (-0.28, True), (0.279999, False), (-0.279999, False)])
+def test_a_start_beyond_the_balance_is_said_of_the_scene_and_falls(tilt, over):
+    scene = Scene(block=SCENE.block, start=Start(tilt=1.001 * tilt if over else tilt))
+    assert (simulate(scene).outcome == "overturns") == over
+    told = scene_warnings(scene.with_(start={"tilt": tilt}))
+    assert [(one.quantity, one.value, one.limit) for one in told] == [("start.tilt", tilt, 0.28)] * over
+
+
+def test_a_base_that_nothing_holds_is_said_of_the_scene():
+    (told,) = scene_warnings(SCENE.with_(bearings=None))
+    assert told.text.startswith("No friction is modelled under the base, and it has no bearings")
+    assert not any(scene_warnings(one) for one in (SCENE, SCENE.with_(base=None, bearings=None)))
+    assert not any(scene_warnings(load_scene(name)) for name in shipped_scenes())

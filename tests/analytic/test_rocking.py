@@ -5,7 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
+from analytic.rocking import (
+    RockingModel,
+    base_jump_length,
+    base_jump_length_as_printed,
+    momentum_restitution,
+    restitution,
+)
 from analytic.scene import Base, Block, Scene
 
 RADIUS, MASS, BASE = 1.088388, 3172.05, 212.0
@@ -36,6 +42,15 @@ def test_impact_table(slenderness):
     digits = 5e-7 + 2 * 5e-7 / RADIUS * abs(printed)
     assert base_jump_length(scene(slenderness)) == pytest.approx(jump, abs=digits)
     assert base_jump_length_as_printed(scene(slenderness)) == pytest.approx(printed, abs=digits)
+
+
+@pytest.mark.parametrize("base, by_momentum", [(None, TABLE[0.28][0]), (BASE, TABLE[0.28][1])])
+@pytest.mark.parametrize("given", [0.0, 0.9, 1.0, None])
+def test_a_restitution_that_is_given_is_the_scenes_and_changes_no_formula(base, by_momentum, given):
+    case = scene(0.28, base, restitution=given)
+    assert momentum_restitution(case) == pytest.approx(by_momentum, abs=5e-7)
+    expected = momentum_restitution(case) if given is None else given
+    assert restitution(case) == RockingModel.of(case).restitution == expected
 
 
 def impact_by_momentum(case, rate):

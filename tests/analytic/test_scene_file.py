@@ -194,12 +194,25 @@ def test_the_lines_of_a_message_are_no_more_than_a_screen_holds(tmp_path):
 MEASURED = {"height": "block", "width": "block", "depth": "block", "density": "block", "material": "block"}
 
 
-@pytest.mark.parametrize("key, table", [*MEASURED.items(), ("period", "bearings")])
+DESIGNED = dict.fromkeys(("period", "damping_ratio", "eta", "xi", "zeta"), "bearings")
+
+
+@pytest.mark.parametrize("key, table", (MEASURED | DESIGNED).items())
 def test_a_measured_key_leads_to_the_command_that_computes_it(tmp_path, key, table):
     error = refusal(tmp_path, SCENE.replace(f"[{table}]", f"[{table}]\n{key} = 2"))
     assert error.key == f"{table}.{key}" and "unknown key; give " in str(error)
     words = "which `rocking new FILE --height " if table == "block" else "give ka, kb and alpha, which `rocking new "
-    assert words in str(error) and ("--period" in str(error)) == (key == "period")
+    assert words in str(error) and ("--period ... --damping" in str(error)) == (key in DESIGNED)
+
+
+@pytest.mark.parametrize(
+    "head, key, close", [("[motion]", "vertical_scale", "vertical_seed"), ("[start]", "tilt_velocity", "base_velocity")]
+)
+def test_a_key_like_another_is_no_more_than_a_guess_and_what_is_known_is_listed(tmp_path, head, key, close):
+    text = SCENE if head in SCENE else f"{SCENE}\n{head}\n"
+    words = str(refusal(tmp_path, text.replace(head, f"{head}\n{key} = 2.0")))
+    assert f"unknown key; write {close} if that is meant, else remove it, known are " in words
+    assert ("vertical_ratio" if head == "[motion]" else "tilt_rate") in words.partition("known are")[2]
 
 
 def test_no_such_scene():

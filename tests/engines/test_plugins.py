@@ -9,8 +9,11 @@ import pytest
 from installed_package import FAKE_ENGINE, install, install_fake_engine
 
 import engines
+from analytic import load_scene
 from analytic.errors import EngineBroken, EngineNotInstalled
+from engines.guard import raised
 from engines.plugins import find_engines
+from engines.simulating import Simulator
 
 BY = "declared as {} by the distribution {} 0.1: "
 
@@ -165,6 +168,45 @@ def test_a_broken_adapter_from_outside_costs_no_other_engine(monkeypatch, tmp_pa
     with pytest.raises(EngineBroken) as caught:
         engines.get_engine("crude")
     assert str(caught.value).startswith("engine 'crude', " + BY.format("crude_record:ENGINE", "crude-engine") + words)
+
+
+def line_of(source, words):
+    return next(number for number, line in enumerate(source.split("\n"), 1) if words in line)
+
+
+HELPED = changed("    return Run(", "    return helped(") + "\n\ndef helped(*_):\n    return None + 1\n"
+# what: (source of crude_engine, what it raises, the line that is named)
+RAISING = {
+    "in a helper": (HELPED, "TypeError: unsupported operand", "return None + 1"),
+    "in what it calls": (changed("np.array(rows).T", "np.array(rows, 'no')"), "TypeError: ", "np.array(rows, 'no')"),
+    "another signature": (changed("variant, settings):", "variant):"), "TypeError: run() takes 2", "def run("),
+    "no run": (changed("    return Run(", "    ("), "TypeError: crude_engine.run returned a NoneType", "def run("),
+}
+
+
+@pytest.mark.parametrize("source, words, place", RAISING.values(), ids=RAISING)
+def test_what_an_adapter_raises_names_its_line(monkeypatch, tmp_path, source, words, place):
+    packages = install(tmp_path, "crude-engine", {"crude": "crude_engine:ENGINE"}, crude_engine=source)
+    monkeypatch.syspath_prepend(packages)
+    engine = Simulator.of(find_engines(engines.BUILT_IN)[0]["crude"])
+    with pytest.raises(TypeError) as caught:
+        engine.simulate(load_scene("free-rocking-rigid"))
+    told, place = raised(caught.value), f"(in crude_engine, line {line_of(source, place)})"
+    assert told.startswith(words) and told.endswith(place)
+    if source is HELPED:
+        ran = python(packages, "-m", "comparisons", "run", "free-rocking-rigid", "--engine", "crude", "--json", "-")
+        assert ran.returncode == 1 and f"crude failed: the run raised an error. {words}" in ran.stderr
+        assert place in ran.stderr and str(packages) not in ran.stderr
+
+
+@pytest.mark.parametrize("versions", ["1 / 0", "'0.1'"])
+def test_versions_that_an_adapter_cannot_say_are_one_message(tmp_path, versions):
+    source = changed('{"crude-engine": "0.1"}', versions)
+    packages = install(tmp_path, "crude-engine", {"crude": "crude_engine:ENGINE"}, crude_engine=source)
+    for command in (("engines",), ("run", "free-rocking-rigid", "--engine")):
+        asked = python(packages, "-m", "comparisons", *command, "crude")
+        assert asked.returncode == 2 and "crude_engine.versions fails" in asked.stderr
+        assert asked.stderr.startswith("Error: engine 'crude'") and "Traceback" not in asked.stderr
 
 
 def test_an_engine_from_outside_may_be_absent_like_any_other(monkeypatch, tmp_path):

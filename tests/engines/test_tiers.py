@@ -10,9 +10,9 @@ PROGRAM = """
 import hashlib, json, sys
 import analytic.rocking
 
-factor, right, impact = float(sys.argv[1]), analytic.rocking.restitution, analytic.rocking.RockingModel.impact
+factor, right, impact = float(sys.argv[1]), analytic.rocking.momentum_restitution, analytic.rocking.RockingModel.impact
 # before an adapter is imported
-analytic.rocking.restitution = lambda scene: factor * right(scene)
+analytic.rocking.momentum_restitution = lambda scene: factor * right(scene)
 analytic.rocking.RockingModel.impact = lambda self, *rates: tuple(factor * value for value in impact(self, *rates))
 
 from analytic import Base, Bearings, Block, PulseMotion, Scene, Start

@@ -6,7 +6,7 @@ import numpy as np
 
 from analytic import Block, Scene, Start, simulate
 from analytic.caryatid import BASE, MASS, RADIUS, caryatid_block
-from analytic.rocking import RockingModel, restitution
+from analytic.rocking import RockingModel, momentum_restitution
 
 from ...showing.diagrams import labelled
 from ..computing import edge, history_until
@@ -24,7 +24,7 @@ def let_go(slenderness: float) -> Scene:
 
 def restitution_of(slenderness: float, on_base: bool = False) -> float:
     """e_phi of eq. (7), on rigid ground or on the Caryatid's base."""
-    return restitution(Scene(block=caryatid_block(slenderness), base=BASE if on_base else None))
+    return momentum_restitution(Scene(block=caryatid_block(slenderness), base=BASE if on_base else None))
 
 
 def view(slenderness: float) -> View:

@@ -16,7 +16,7 @@ from scipy.integrate import cumulative_simpson
 from analytic import Scene, load_scene, simulate
 from analytic.bearing import BearingLaw
 from analytic.design import design_bearings, properties
-from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
+from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, momentum_restitution
 
 from ...measuring.agreement import branch, history_point
 from .paper import (
@@ -54,7 +54,7 @@ def momentum_after(scene: Scene, jump_length: float, rate: float = -1.0) -> floa
     Before: m h w (the base stands). After: m h e_phi w + (m + m_b) jump.
     """
     before = scene.block.mass * scene.block.half_height * rate
-    return (restitution(scene) * before - scene.total_mass * jump_length * rate) / before
+    return (momentum_restitution(scene) * before - scene.total_mass * jump_length * rate) / before
 
 
 def formulas() -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
@@ -277,7 +277,7 @@ def _equations(scene, law, got, designed, jumps, literal):
             "restitution e_φ",
             REPRODUCED,
             "difference from the momentum balances [-]",
-            abs(restitution(scene) - spin / rate),
+            abs(momentum_restitution(scene) - spin / rate),
         ),
         (
             "(8)",

@@ -11,7 +11,13 @@ from scipy.integrate import solve_ivp
 
 from analytic import simulate
 from analytic.caryatid import MASS, RADIUS
-from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, restitution
+from analytic.rocking import (
+    RockingModel,
+    base_jump_length,
+    base_jump_length_as_printed,
+    momentum_restitution,
+    restitution,
+)
 from analytic.twin.run import Event
 from engines import get_engine
 
@@ -133,7 +139,7 @@ def _settings(grid, engines):
             {
                 "ratio": ratio,
                 "slenderness": gamma,
-                "restitution": restitution(scene),
+                "restitution": momentum_restitution(scene),
                 "jump_length": base_jump_length(scene),
                 "jump_length_printed": base_jump_length_as_printed(scene),
             }
@@ -298,7 +304,7 @@ def damped_error(scene: Scene, damping: float) -> np.ndarray:
     J_O phi'' = -m g R sin(gamma - phi) - d phi' [J_O + (m R^3 + I_c) |phi'|], d = damping [1/s]; impacts by eq. (7).
     """
     block = scene.block
-    p2, gamma, e = scene.rocking_frequency**2, block.slenderness, max(restitution(scene), 0.0)
+    p2, gamma, e = scene.rocking_frequency**2, block.slenderness, restitution(scene)
     quadratic = (block.mass * block.radius**3 + block.centre_inertia) / block.inertia
 
     def fall(t, y):

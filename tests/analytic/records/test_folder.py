@@ -57,6 +57,19 @@ def test_other_files_are_no_pair_and_that_is_said(tmp_path, names):
     assert ["no pair" in line for line in left] == [True] * len(names)
 
 
+def test_more_directions_than_can_be_run_are_refused_before_they_are_made(tmp_path):
+    """Of a pair of 4 samples 1e8 steps hold 1e8/(5000 + 4) runs; single components are not turned."""
+    for name in ("A_E.csv", "A_N.csv", "single.csv"):
+        write(tmp_path, name)
+    for count in (19_985, 10**9, 10**400):
+        with pytest.raises(SettingError, match=r"directions = \d+: .*give at most 19984, or fewer records"):
+            folder_motions(tmp_path, directions=count)
+    for name in ("B_E.csv", "B_N.csv"):
+        write(tmp_path, name)
+    with pytest.raises(SettingError, match="give at most 9992, or"):
+        folder_motions(tmp_path, directions=9993)
+
+
 def test_a_vertical_motion_and_what_is_no_record_are_left_out_and_said(tmp_path):
     write(tmp_path, "RSN1_A000.csv")
     write(tmp_path, "RSN1_A-UP.csv")

@@ -84,6 +84,12 @@ def test_errors_are_those_of_the_criterion(criterion, response, error):
     assert found == (None if error is None else pytest.approx(error, rel=1e-6))
 
 
+def test_a_restitution_that_the_scene_gives_is_the_right_one():
+    scene = SHORT.with_(block={"restitution": 0.9})
+    response = simulate(scene)
+    assert criteria.error("restitution", scene, response, response) < 1e-9
+
+
 @pytest.mark.parametrize(
     "rows, asked, error, why",
     [

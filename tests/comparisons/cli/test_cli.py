@@ -260,6 +260,34 @@ def test_warnings_and_undecided_outcomes_are_shown(rocking, monkeypatch, tmp_pat
     assert [one["text"] for one in result["warnings"]] == ["N <= 0 [at 1 s]."] and result["decided"] is False
 
 
+FREE_BASE = "Warning: No friction is modelled under the base, and it has no bearings"
+ON_BASE = """
+[block]
+mass = 1551.83
+radius = 0.989002
+slenderness = 0.281772
+[base]
+mass = 400.0
+[start]
+tilt = 0.1
+"""
+
+
+@pytest.mark.parametrize("bearings", ["", "[bearings]\nlaw = 'linear'\nka = 2e4\n"], ids=["free", "borne"])
+@pytest.mark.parametrize(
+    "command", [("run",), ("run", "--engine", "pymunk"), ("compare", "--engine", "pymunk"), ("margin",)], ids=" ".join
+)
+def test_a_base_that_nothing_holds_is_said_first_and_once(rocking, tmp_path, command, bearings):
+    file, said = write_scene(tmp_path, ON_BASE + bearings), not bearings
+    status, out, err = rocking(command[0], file, *command[1:], "--json", tmp_path / "r.json")
+    assert status == 0, err
+    assert out.startswith(FREE_BASE) == said and out.count("No friction is modelled") == said
+    told = json.loads((tmp_path / "r.json").read_text())
+    if command[0] != "margin":
+        texts = [f"Warning: {one['text']}" for one in told.get("responses", [told])[0]["warnings"]]
+        assert sum(text.startswith(FREE_BASE) for text in texts) == said
+
+
 CALM = 0.27  # scale at which it peaks at six tenths of uplift
 SENTENCE = "The outcome depends on less than 5% of the motion: as it is the block overturns, at -0.90% it rocks."
 

@@ -125,5 +125,6 @@ def test_a_base_that_nothing_moves_slides_nowhere(rocking, tmp_path, start, said
     """Review A12: it was said to slide on at -4e-15 m/s."""
     block = "[block]\nmass = 100.0\nradius = 1.0\nslenderness = 0.25\n[base]\nmass = 50.0\n[start]\ntilt = 0.1\n"
     (tmp_path / "base.toml").write_text(block + start)
-    warnings = json.loads(rocking("run", tmp_path / "base.toml", "--json", "-")[1])["warnings"]
+    base, *warnings = json.loads(rocking("run", tmp_path / "base.toml", "--json", "-")[1])["warnings"]
+    assert base["text"].startswith("No friction is modelled under the base")
     assert [one["kind"] for one in warnings] == said and all("slides on at" in one["text"] for one in warnings)

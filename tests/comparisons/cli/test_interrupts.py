@@ -10,6 +10,9 @@ import time
 import psutil
 import pytest
 
+from comparisons.cli.interrupts import stoppable
+from engines.guard import run_apart
+
 ENDLESS = """
 [block]
 mass = 3172.05
@@ -35,9 +38,9 @@ def endless(folder):
     return path
 
 
-def started(*arguments):
+def started(*arguments, **how):
     pipes = {"text": True, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-    return subprocess.Popen([sys.executable, *map(str, arguments)], start_new_session=True, **pipes)
+    return subprocess.Popen([sys.executable, *map(str, arguments)], start_new_session=True, **pipes, **how)
 
 
 def test_the_time_limit_costs_the_run_alone(rocking, tmp_path):
@@ -75,8 +78,10 @@ KERNEL_HERE = """
 import sys
 from comparisons import cli
 from analytic import Block, Scene, Start, simulate
+from comparisons.running.files import TemporaryFolder
 import comparisons.commands.engines as stand_in
 def command():
+    folder = TemporaryFolder("sweep-")
     print("begins", flush=True)
     simulate(Scene(block=Block(mass=3172.05, radius=1.0884, slenderness=0.28), base={"mass": 212.0},
                    bearings={"law": "linear", "count": 4, "ka": 2e4}, start=Start(base_displacement=0.2), duration=1e7))
@@ -86,15 +91,32 @@ cli.main(["engines"])
 
 
 @pytest.mark.parametrize(
-    "number, status, words", [(signal.SIGINT, 130, "Interrupted.\n"), (signal.SIGTERM, 143, "Ended by SIGTERM.\n")]
+    "number, status, words",
+    [
+        (signal.SIGINT, 130, "Interrupted.\n"),
+        (signal.SIGTERM, 143, "Ended by SIGTERM.\n"),
+        (signal.SIGHUP, 129, "Ended by SIGHUP.\n"),
+    ],
 )
-def test_signals_while_this_process_itself_is_in_the_kernel(number, status, words):
-    process = started("-c", KERNEL_HERE)
+def test_signals_while_this_process_itself_is_in_the_kernel(tmp_path, number, status, words):
+    process = started("-c", KERNEL_HERE, env={**os.environ, "TMPDIR": str(tmp_path)})
     assert process.stdout.readline() == "begins\n"
     time.sleep(5.0)
-    assert process.poll() is None
+    assert process.poll() is None and list(tmp_path.iterdir())
     seconds, _ = hears(process, number)
     assert seconds < 3 and (process.returncode, process.stderr.read()) == (status, words)
+    assert not list(tmp_path.iterdir())  # no temporary folder is left
+
+
+def test_a_hangup_that_is_ignored_as_by_nohup_stays_so():
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with stoppable():
+            os.kill(os.getpid(), signal.SIGHUP)
+            kept, failure = run_apart(signal.getsignal, signal.SIGHUP, time_limit=30.0)
+        assert (kept, failure) == (signal.SIG_IGN, None)
+    finally:
+        signal.signal(signal.SIGHUP, before)
 
 
 def test_an_interrupted_study_resumes(tmp_path):

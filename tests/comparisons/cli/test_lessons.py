@@ -28,6 +28,13 @@ def test_a_notebook_opens_as_a_copy(rocking, monkeypatch):
     assert rocking("lessons", "open", "chaos")[0] == 7
 
 
+def test_a_folder_called_as_an_option_is_a_folder(rocking, monkeypatch, tmp_path):
+    pytest.importorskip("marimo", reason="needs marimo: pip install marimo")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(notebook.subprocess, "call", lambda command: command[-1] != str(tmp_path / "-" / "chaos.py"))
+    assert rocking("lessons", "open", "chaos", "--to=-")[0] == 0
+
+
 def test_without_marimo_it_says_what_to_install(rocking, monkeypatch):
     monkeypatch.setattr(notebook.importlib.util, "find_spec", lambda name: None)
     status, _, err = rocking("lessons", "open", "chaos")

@@ -70,6 +70,34 @@ def test_the_same_record_read_otherwise_is_another_motion_of_it(rocking, folder)
     assert [row["peak"] for row in rows] == pytest.approx([0.981, 0.1], rel=1e-3)
 
 
+@pytest.mark.parametrize("command", ["run", "margin", "report"])
+@pytest.mark.parametrize("number, words", [(10**9, "give at most"), (0, "give 1 or more")])
+def test_directions_out_of_bounds_are_refused_by_the_option(rocking, folder, tmp_path, command, number, words):
+    more = ("--output", tmp_path / "page") if command == "report" else ()
+    status, _, err = rocking(command, "caryatid-rigid", "--records", folder, "--directions", number, *more)
+    assert status == 2 and f"Error: --directions = {number}: " in err and words in err
+
+
+@pytest.mark.parametrize("command", ["run", "margin", "design --stroke 0.3"])
+def test_a_unit_without_records_is_refused(rocking, command):
+    name, *options = command.split()
+    status, _, err = rocking(name, "caryatid-isolated", *options, "--units", "g")
+    assert status == 2 and err == "Error: --units g: give the folder of the records with --records\n"
+
+
+def test_the_page_reads_a_folder_by_the_unit_given(rocking, folder, monkeypatch):
+    """It was said to belong to a record of its own."""
+    found = {}
+    monkeypatch.setattr("comparisons.report.study.make_own_results", lambda *_, motions, **__: found.update(motions))
+    monkeypatch.setattr("comparisons.report.write.write_page", lambda *_: 1 / 0)
+    for file in folder.glob("*.csv"):
+        file.write_text(file.read_text().replace("a [m/s2]", "a"))
+    with pytest.raises(ZeroDivisionError):
+        rocking("report", "caryatid-rigid", "--records", folder, "--units", "g", "--output", folder.parent / "page")
+    weak = found["caryatid-rigid"]["weak.csv"][0]
+    assert weak.peak == pytest.approx(0.1 * 9.80665, rel=1e-3)
+
+
 def test_run_prints_the_odds_of_records_and_not_of_motions(rocking, folder):
     status, out, _ = rocking("run", "caryatid-isolated", "--records", folder, "--both-signs")
     assert status == 0
@@ -84,6 +112,17 @@ def test_margin_tells_for_each_motion_what_change_of_it_lifts_the_block(rocking,
     scene = load_scene("caryatid-rigid")
     assert weak["peak"] * 10 < scene.gravity * np.tan(scene.block.slenderness)
     assert weak["outcome"] == "stands" and weak["changes"]["lifts"] is None  # ten times .1 m/s2 do not lift it
+    assert weak["reached"] == []
+
+
+def test_margin_tells_what_is_reached_now_from_what_a_change_reaches(rocking, folder):
+    status, out, _ = rocking("margin", "caryatid-rigid", "--records", folder)
+    told = json.loads(rocking("margin", "caryatid-rigid", "--records", folder, "--json", "-")[1])["motions"]
+    strong = next(row for row in told if row["motion"] == "A000.csv")
+    assert strong["outcome"] == "overturns" and strong["reached"] == ["lifts", "tilt", "overturns"]
+    table, kept = out[out.index("[g]") :], [row["changes"][state] for row in told for state in row["reached"]]
+    assert (table.count("no longer"), table.count(" now ")) == (len(kept) - kept.count(None), kept.count(None))
+    assert 0 < kept.count(None) < len(kept)
 
 
 @pytest.mark.parametrize(

@@ -37,6 +37,7 @@ def test_margin_names_the_nearest_change_of_the_outcome_and_draws_it(rocking, tm
     nearest = content["margins"][0]
     assert nearest["quantity"] == "slenderness"
     assert nearest["nearest"] == pytest.approx(0.26 / 0.28 - 1, abs=1e-7)
+    assert content["reached"] == ["lifts", "tilt"]
     assert nearest["changes"] == {"lifts": None, "tilt": None, "overturns": nearest["nearest"]}
     assert [(band["reached"], band["outcome"]) for band in nearest["bands"]] == [
         (["lifts", "tilt", "overturns"], "overturns"),
@@ -55,6 +56,12 @@ SAID = {
         "start 0.03 rad, rad/s -6.67 %",
         "slenderness 0.28 rad +7.14 %",
     ),
+    (0.15,): (  # lifted and tilted by more than half now: at .14/.15 and .15/.14 of it no longer, overturns at none
+        "no longer no longer tilt quantity value lifts > 0.5 γ",
+        "start 0.15 rad, rad/s -6.67 %",
+        "slenderness 0.28 rad +7.14 %",
+    ),
+    (0.13,): ("tilt quantity value lifts > 0.5 γ", "start 0.13 rad, rad/s +7.69 %", "slenderness 0.28 rad -7.14 %"),
 }
 
 
@@ -82,7 +89,7 @@ def test_every_limit_state_has_its_column_and_the_widest_numbers_fit(capsys, mon
     shown = capsys.readouterr().out
     assert max(map(len, shown.splitlines())) <= 80 and "…" not in shown and "now: lifts\n" in shown
     words = " ".join(shown.split())
-    assert "quantity value lifts > 0.25 γ > x_max overturns left at" in words
+    assert "no longer tilt base" in words and "quantity value lifts > 0.25 γ > x_max overturns left at" in words
     assert "yield force 1.2345e-11 kg -0.123 % -0.123 % -0.123 % +123 % -12.3 %" in words
 
 

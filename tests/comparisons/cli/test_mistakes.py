@@ -46,6 +46,10 @@ MISTAKES = {
     "compare no-such-scene": "caryatid-isolated",
     f"{RIGID} --engine exudyn --variant fastest": "fastest",
     f"{RIGID} --engine exudyn --set nonsense=1": "nonsense",
+    **{
+        f"{RIGID} --engine exudyn --set {name}=1": f"exudyn compliant-corners has no setting '{name}': its settings are"
+        for name in ("self", "scene", "variant", "history", "compare")
+    },
     f"{RIGID} --engine ode": "unknown engine 'ode': choose one of exudyn, pybullet",
     f"{RIGID} --variant fast": "the analytic model has no variant 'fast'",
     f"{RIGID} --set tolerance": "write name=value",
@@ -71,6 +75,7 @@ MISTAKES = {
     "verify --engine nope": "unknown engine",
     "verify --engine exudyn --variant none": "choose among compliant-corners",
     "verify --variant compliant-corners": "name it with --engine",
+    "lessons open tipping --to own.csv": "--to own.csv: is a file; give a folder",
     "lessons open tipping-over": "choose one of tipping",
     "report --units g": "--units g: belongs to a record",
     "report --channel Up": "belongs to a record; give --record FILE",

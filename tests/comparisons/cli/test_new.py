@@ -74,6 +74,8 @@ IMPLAUSIBLE = {
     ),
     "tonnes": ((*BUST[:4], "--mass", "1.5"), ("--mass 1.5", "2.61 kg/m3", "100", "8800", "in kg")),
     "g/cm3": ((*BUST[:4], "--density", "2.7"), ("--density", "2.7 kg/m3", "100", "8800")),
+    "a fallen block": ((*BUST, "--tilt", "-1"), ("--tilt -1 is beyond its balance", "between 0 and", "0.2818 rad")),
+    "a block that stands": ((*BUST, "--tilt", "0"), ("--tilt 0 releases the block where it stands", "0.2818 rad")),
     "stiff bearings": (
         (*ISOLATED, "--ka", "1e6", "--kb", "1e4", "--alpha", "44"),
         ("yield at 23.6 m/s2", "lifts at 2.84 m/s2", "a lower --ka"),
@@ -109,6 +111,27 @@ def test_hollow_bronze_and_wood_are_taken(rocking, tmp_path):
     for mass in (100, 4000):  # 174 and 6960 kg/m3
         new(rocking, tmp_path, *BUST[:4], "--mass", mass)
         (tmp_path / "bust.toml").unlink()
+
+
+@pytest.mark.parametrize("tilt", [0.2817, -0.2817])
+def test_a_tilt_short_of_the_balance_is_taken(rocking, tmp_path, tilt):
+    assert new(rocking, tmp_path, *BUST, "--tilt", tilt)[0].start.tilt == tilt
+
+
+def test_a_base_that_nothing_holds_is_asked_for_by_name(rocking, tmp_path):
+    file = tmp_path / "bust.toml"
+    status, _, err = rocking("new", file, *ISOLATED)
+    assert status == 2 and not file.exists() and len(err.splitlines()) == 1
+    for words in ("--base-mass 400", "a pedestal fixed to the ground: leave it out", "--period", "--slides-freely"):
+        assert words in err
+    scene, _ = new(rocking, tmp_path, *ISOLATED, "--slides-freely")
+    assert scene.base.mass == 400 and scene.bearings is None
+
+
+@pytest.mark.parametrize("more", [BUST, DESIGN, CONSTANTS, (*ISOLATED, "--xmax", 0.2)])
+def test_no_other_block_slides_freely(rocking, tmp_path, more):
+    status, _, err = rocking("new", tmp_path / "bust.toml", *more, "--slides-freely")
+    assert status == 2 and err.startswith("Error: --slides-freely") and not (tmp_path / "bust.toml").exists()
 
 
 def test_new_overwrites_nothing(rocking, tmp_path):

@@ -3,7 +3,7 @@
 import dataclasses
 import json
 
-from comparisons.measuring import tolerances
+from comparisons.measuring import agreement, tolerances
 from engines import get_engine
 
 ROW = next(
@@ -22,6 +22,23 @@ def test_verify_measures_each_row_and_names_the_one_that_fails(rocking, monkeypa
     (line,) = [line for line in out.splitlines() if "FAILS" in line]
     assert "held to nothing" in line
     content = json.loads(file.read_text())
-    assert content["schema"] == "rocking verify 2" and "exudyn" in content["versions"]["exudyn"]
+    assert content["schema"] == "rocking verify 3" and "exudyn" in content["versions"]["exudyn"]
     assert [row["holds"] for row in content["rows"]] == [True, False]
     assert content["rows"][0]["found"] == content["rows"][1]["found"] > 0
+
+
+def test_without_a_bound_nothing_holds_or_fails_and_what_was_found_is_said(rocking, monkeypatch, tmp_path):
+    free = dataclasses.replace(ROW, bound=None, measured=None)
+    lost = dataclasses.replace(free, measure=lambda *_: raised(agreement.Unmeasurable("no impact")))
+    for rows, status in (((free,), 0), ((free, lost), 1)):
+        monkeypatch.setattr(tolerances, "rows", lambda engine, variant, rows=rows: rows)
+        ended, out, _ = rocking("verify", "--engine", "exudyn", "--json", tmp_path / "verify.json")
+        assert ended == status and " hold." not in out and "FAILS" not in out
+        assert f"no bound stated, so nothing holds or fails; 1 of {len(rows)} quantities measured." in out
+        told = json.loads((tmp_path / "verify.json").read_text())["rows"]
+        assert [row["holds"] for row in told] == [None] * len(rows) and told[0]["found"] > 0
+    assert free.check({}) == told[0]["found"]
+
+
+def raised(error):
+    raise error

@@ -170,6 +170,12 @@ def test_another_impact_law_is_measured_as_what_it_is():
         np.testing.assert_allclose(errors[kind], 0.9 - restitution(scene), atol=1e-8)
 
 
+def test_a_run_with_the_restitution_that_its_scene_gives_has_no_error():
+    scene = free_scene(0.2, None, 0.6).with_(block={"restitution": 0.9})
+    errors = impact_errors(scene, simulate(scene), 3)
+    assert max(np.abs(errors[kind]).max() for kind in ("swing", "state")) < 1e-8
+
+
 def test_chatter_does_not_count_as_impacts():
     response = simulate(free(duration=30.0))
     rates = [abs(impact.rate_before) for impact in strong_impacts(response)]

@@ -83,6 +83,12 @@ def test_the_cliff_is_said_loudly_and_only_where_it_is(page):
     assert "depends on" not in bust
 
 
+def test_a_base_that_nothing_holds_is_said_loudly_and_only_there(page):
+    heads = [card.partition("quantity")[0] for card in cards(page)]  # above the first table
+    assert ["No friction is modelled under the base" in head for head in heads] == [False, False, True]
+    assert page.count("No friction is modelled") == 1
+
+
 def test_the_nearest_change_is_where_single_runs_change(scenes):
     scene = scenes["bronze"]
     first = statue_of(scene, {})["margins"][0]
@@ -195,9 +201,13 @@ def page_of(folder, **scenes):
     return write_page(folder, studies=folder / "none").read_text() + (folder / "pages/runs.html").read_text()
 
 
+RELEASED = load_scene("free-rocking-rigid").with_(name="released", block={"restitution": 0.9})
+
+
 def test_one_that_rocks_gets_its_own_restitution_and_replaces_an_older_report(tmp_path):
     (tmp_path / SCENES).write_text("of an older report")
-    page = page_of(tmp_path, bust=BUST_ON_PULSE, released=load_scene("free-rocking-rigid").with_(name="released"))
+    page = page_of(tmp_path, bust=BUST_ON_PULSE, released=RELEASED)
+    assert read_result(tmp_path / SCENES).settings["scenes"]["released"]["restitution"] == 0.9
     result = read_result(tmp_path / RESTITUTION)
     assert result.settings["bases"] == [None] and max(row["rms"] for row in result.rows) < 1e-9
     assert sum(row["impacts"] for row in result.rows) >= 8

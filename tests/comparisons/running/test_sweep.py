@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -99,10 +100,12 @@ def test_a_hanging_worker_costs_one_row_with_the_place_it_hung_at(tmp_path):
     assert [row.case.tag["i"] for row in rows if not row.reused] == [5] and not rows[5].failed
 
 
-def test_a_worker_killed_from_outside_is_a_failed_row_and_runs_again_next_time(tmp_path):
-    rows = sweep(cases("killed", 1), tmp_path / "s.jsonl")
-    assert "SIGKILL" in rows[0].failure["reason"]
-    assert not sweep(cases("killed", 1), tmp_path / "s.jsonl")[0].reused
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGHUP])
+def test_a_worker_killed_from_outside_is_a_failed_row_and_runs_again_next_time(tmp_path, number):
+    which = cases("killed", 1, number=int(number))
+    rows = sweep(which, tmp_path / "s.jsonl")
+    assert number.name in rows[0].failure["reason"]
+    assert not sweep(which, tmp_path / "s.jsonl")[0].reused
 
 
 def test_exceptions_and_failed_responses_become_failed_rows(tmp_path):

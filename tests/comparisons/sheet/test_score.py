@@ -176,6 +176,8 @@ def test_pages_say_nothing_of_our_code(sheet):
         ("hard,rest_time,1.6 s", "line 2: not a finite number"),
         ("hard,outcome,falls", "line 2: no outcome"),
         ("hard,outcome,rocks\nhard,outcome,rocks", "line 3: answered twice"),
+        pytest.param("\n" + '"hard,outcome,rocks\n' * 9000, "line 3: no line of CSV", id="a quote not closed"),
+        ('hard,"outcome"x,rocks', "line 2: no line of CSV"),
     ],
 )
 def test_answers_that_cannot_be_read_are_one_message(tmp_path, line, words):
