@@ -6,6 +6,7 @@ Measured is what was computed; thinned only what a figure or the result file sho
 from __future__ import annotations
 
 import hashlib
+import io
 from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
@@ -16,6 +17,7 @@ import numpy as np
 
 from analytic.response import History, Response
 
+from ..running.files import write
 from ..running.provenance import ResultError
 
 if TYPE_CHECKING:
@@ -34,7 +36,9 @@ class ToFile:
     def __call__(self, case: Case, response: Response) -> dict[str, Any]:
         content = (response.scene, response.engine, response.variant)
         name = hashlib.sha256(repr(content).encode()).hexdigest()[:16] + ".npy"
-        np.save(Path(self.folder) / name, [getattr(response.history, column) for column in History.COLUMNS])
+        data = io.BytesIO()
+        np.save(data, [getattr(response.history, column) for column in History.COLUMNS])
+        write(Path(self.folder) / name, data.getbuffer())
         return {**response.to_json(), "history": name}
 
 
