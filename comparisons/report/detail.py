@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup, escape
 
 from ..running.files import write_all
-from ..running.provenance import age
+from ..running.provenance import ResultError, age
+from ..running.readable import readable
 from ..showing import diagrams
 from ..showing.charts import STYLE, colour, key_of
 from ..showing.mathml import mathml
@@ -45,9 +46,18 @@ def write_study(
         The page cannot be written.
     """
     result = read_study(path, study.name)
-    page = study.page(result).whole()
-    into = (Path(path) if folder is None else Path(folder) / Path(path).name).with_suffix(".html")
-    html = detail(page.title, [replace(page, age=age(result))], origin_of(result))
+    old, file = age(result), Path(path).name
+    try:
+        page = study.page(result).whole()
+    except Exception as error:
+        if old is None:  # of the very code that fails
+            raise
+        words = (
+            f"{file}: its page cannot be drawn ({readable(repr(error))}); it is {old}; run rocking study {study.name}"
+        )
+        raise ResultError(words) from error
+    into = (Path(path) if folder is None else Path(folder) / file).with_suffix(".html")
+    html = detail(page.title, [replace(page, age=old)], origin_of(result))
     write_all(into.parent, {into.name: html})
     return into, page
 

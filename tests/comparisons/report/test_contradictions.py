@@ -105,7 +105,10 @@ def test_the_readme_shows_and_says_what_the_stored_results_do(studies):
 
 def test_the_readme_of_the_results_says_where_each_of_them_comes_from():
     files = sorted(RESULTS.glob("*.json"))
-    readme, table = RESULTS_README.read_text(encoding="utf-8"), origins({file.stem: read_result(file) for file in files})
+    readme, table = (
+        RESULTS_README.read_text(encoding="utf-8"),
+        origins({file.stem: read_result(file) for file in files}),
+    )
     assert readme == with_findings(readme, table)
     lines = {line.split("`")[1]: line for line in table.splitlines()[2:]}
     assert list(lines) == [file.stem for file in files]

@@ -58,7 +58,9 @@ def test_unchanged_code_holds_and_the_result_says_when_it_was_checked(result):
     assert "12 of 12 runs hold" in last_check(read) and last_check(read) in origin_of(read)
     read.provenance["sources"]["analytic.scene"] = "0" * 16
     assert age(read).endswith(last_check(read))
+    before = result.read_bytes()
     assert check(result, 5, 2, workers=1, progress=False).runs == 5
+    assert result.read_bytes() == before  # not recorded: not asked for
 
 
 def test_a_run_that_differs_is_named_with_both_numbers(result):
