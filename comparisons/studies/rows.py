@@ -28,7 +28,7 @@ PULSE = "engine variant level ground shape frequency amplitude"
 BOUNDARY = f"{PULSE} rises mode room shift? half_width? reason? runs"
 CHANGED = "runs outcomes_changed? low? high?"
 CASE = "case engine variant level? set cpu_seconds? result outcome | outside errors until? impacts steps"
-RUN = """scene engine variant? outcome failure? | overturning_time? unstable_time? peak_tilt? peak_tilt_ratio?
+RUN = """engine variant? outcome failure? | scene overturning_time? unstable_time? peak_tilt? peak_tilt_ratio?
     peak_base_displacement? friction_demand? min_normal_ratio? end steps settings versions decided warnings differences
     comparable impact_count"""
 # study: part ("" where rows have none): columns of each of its rows; "?": null may stand there. Those behind "|" a row
@@ -100,7 +100,7 @@ ROWS = {
         "value": "where quantity engine? paper study difference? status note",
         "misprint": "where printed corrected measure value_corrected value_printed",
         "equation": "number what status check value",
-        "run": RUN,
+        "run": f"scene {RUN}",
         "rocking spectrum": f"period {RUN}",
         "displacement spectrum": f"period damping {RUN}",
         "equivalent": "definition damping period displacement nonlinear",
