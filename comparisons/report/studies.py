@@ -87,12 +87,12 @@ def _stored(file):
     try:
         page = study.page(result)  # drawn once
         judgements, variants = study.judgements(result), _variants(result.settings)
-        finding = page.opening()
+        section, finding = replace(page.whole(), age=old), page.opening()
     except Exception as error:  # settings of another version, or another package's page: the report goes on
         words = f"{file.name} cannot be shown: its page fails ({readable(repr(error))}); --replot shows where."
         return Stored(file.stem, Section(f"Study {result.kind}", (words,), age=old), origin=origin)
     finding = finding and replace(finding, age=old)
-    return Stored(file.stem, replace(page.whole(), age=old), finding, judgements, origin, variants)
+    return Stored(file.stem, section, finding, judgements, origin, variants)
 
 
 def _variants(settings):

@@ -105,7 +105,7 @@ def write_page(
         )
     )
     own_runs = [*scene_sections(scenes), *([restitution_section(block)] if block else ())]
-    files: dict[str, str | bytes] = {}
+    files: dict[str, str] = {}
     for name, title, sections, origin in (
         ("runs", "The report’s own runs", own_runs, origin_of(scenes)),
         *((one.name, one.section.title, [one.section], one.origin) for one in stored),

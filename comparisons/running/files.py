@@ -31,7 +31,7 @@ _TEMPORARY: set[str] = set()  # folders of this process
 
 
 class PlaceError(Mendable):
-    """A result could not be written where it was asked for; the message says where it is instead."""
+    """A file could not be written; the message names it, and where its content is kept instead, if anywhere."""
 
 
 def check_writable(paths: Iterable[str | None], picture: str | None = None, inputs: Iterable[str] = ()) -> None:
@@ -85,22 +85,10 @@ def write(path: str | PathLike[str], content: str | bytes | memoryview, keep: bo
         It could not be written; the message names it, and where the content is kept instead.
     """
     data = content.encode() if isinstance(content, str) else content
-    place = Path(os.path.realpath(path))
-    part = _part(place.parent)
     try:
-        with open(part, "xb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())  # some disks say only now that they are full
-        if place.exists():
-            shutil.copymode(place, part)
-        os.replace(part, place)
+        _put(Path(os.path.realpath(path)), data)
     except OSError as error:
-        raise _not_written(path, error, data if keep else None, place.suffix) from error
-    finally:
-        with contextlib.suppress(OSError):
-            part.unlink(missing_ok=True)
-    _remove_stale(place.parent)
+        raise _not_written(path, error, data if keep else None) from error
 
 
 def write_text(path: str | PathLike[str], text: str) -> None:
@@ -114,7 +102,7 @@ def write_text(path: str | PathLike[str], text: str) -> None:
     except BrokenPipeError:
         raise
     except OSError as error:
-        raise _not_written("standard output", error, text.encode(), ".json") from error
+        raise _not_written("standard output", error, text.encode()) from error
 
 
 def write_all(folder: str | PathLike[str], files: Mapping[str, str | bytes]) -> list[Path]:
@@ -138,19 +126,36 @@ def write_pair(path: Path, content: str, beside: Path, data: bytes) -> None:
     """
     wait = waiting(beside, hashlib.sha256(data).hexdigest())
     new = not wait.exists()  # else a kill has left it, and `path` may need it
-    write(wait, data)
     try:
-        write(path, content)
-    except PlaceError:
-        if new:
-            wait.unlink()
-        raise
-    try:
+        _put(wait, data)
+        try:
+            write(path, content)
+        except PlaceError:
+            if new:
+                wait.unlink()
+            raise
         os.replace(wait, beside)
+        for left in beside.parent.glob(waiting(beside, "?" * DIGITS).name):
+            left.unlink()
     except OSError as error:
         raise _not_written(beside, error) from error
-    for left in beside.parent.glob(waiting(beside, "?" * DIGITS).name):
-        left.unlink()
+
+
+def _put(place, data):
+    """Put bytes in their place by way of a part, which is gone afterwards, as are those of processes that are."""
+    part = _part(place.parent)
+    try:
+        with open(part, "xb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())  # some disks say only now that they are full
+        if place.exists():
+            shutil.copymode(place, part)
+        os.replace(part, place)
+    finally:
+        with contextlib.suppress(OSError):
+            part.unlink(missing_ok=True)
+    _remove_stale(place.parent)
 
 
 def waiting(beside: Path, digest: str) -> Path:
@@ -209,14 +214,14 @@ def _remove_stale(folder):
                 part.unlink()
 
 
-def _not_written(path, error, kept=None, suffix=""):
+def _not_written(path, error, kept=None):
     """The `PlaceError` of a file; kept: its content, to be kept elsewhere."""
     reason = f"{path}: could not be written ({error.strerror or error})"
     if kept is None:
         return PlaceError(f"{reason}; make room and run again")
     for folder in (tempfile.gettempdir, os.getcwd, Path.home):
         with contextlib.suppress(OSError):
-            number, place = tempfile.mkstemp(suffix, "rocking-", folder())
+            number, place = tempfile.mkstemp(Path(path).suffix or ".json", "rocking-", folder())
             try:
                 with open(number, "wb") as file:
                     file.write(kept)

@@ -39,7 +39,7 @@ def write_sheet(folder: Path) -> list[Path]:
     index = {
         kind: _text("index", kind=kind, title=TITLE, version=VERSION, problems=PROBLEMS) for kind in ("md", "html")
     }
-    files: dict[str, str | bytes] = {
+    files = {
         "index.md": index["md"],
         "index.html": _html(TITLE, index["html"]),
         ANSWERS: _empty_answers(),
