@@ -29,15 +29,15 @@ MOST_SHOWN, PARTS = 20_000, 1_500
 
 @dataclass(frozen=True)
 class ToFile:
-    """Measure: everything, the history as a file in `folder`, shape (columns of `History`, samples)."""
+    """Measure: everything, the history as a file in `folder`, an array for each column of `History`."""
 
     folder: str
 
     def __call__(self, case: Case, response: Response) -> dict[str, Any]:
         content = (response.scene, response.engine, response.variant)
-        name = hashlib.sha256(repr(content).encode()).hexdigest()[:16] + ".npy"
+        name = hashlib.sha256(repr(content).encode()).hexdigest()[:16] + ".npz"
         data = io.BytesIO()
-        np.save(data, [getattr(response.history, column) for column in History.COLUMNS])
+        np.savez(data, **{column: getattr(response.history, column) for column in History.COLUMNS})
         write(Path(self.folder) / name, data.getbuffer())
         return {**response.to_json(), "history": name}
 
@@ -55,7 +55,8 @@ def _history(path):
         raise ResultError(
             f"{path.parent.name}/{path.name}: missing; remove the folder {path.parent.name} and make the report again"
         )
-    return History(*np.load(path))
+    with np.load(path) as table:
+        return History(*(table[column] for column in History.COLUMNS))
 
 
 def differences(history: History, reference: History) -> dict[str, np.ndarray]:

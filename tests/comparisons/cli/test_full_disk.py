@@ -22,7 +22,7 @@ COMMANDS = {
 }
 ROOM = 20_000  # bytes that a file may have: each command writes a larger one
 # in which write each is killed: of the study and the report before, between and behind a result and its arrays
-KILLS = {"sheet": (1, 3), "check": (1,), "study": (1, 2, 3), "report": (1, 7, 9, 12), "lessons": (1, 30)}
+KILLS = {"sheet": (1, 3), "check": (1,), "study": (1, 2, 3), "report": (1, 7, 9, 12), "lessons": (1, 20)}
 EARLIER = b"of before"
 # Ends the process, as kill -9 does, before it puts the file of that number in its place.
 KILL = """

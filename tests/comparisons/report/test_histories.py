@@ -36,7 +36,7 @@ def test_a_history_that_cannot_be_kept_is_no_failed_run(tmp_path):
     (tmp_path / "file").write_text("")
     case = Case(load_scene("free-rocking-rigid").with_(duration=0.1))
     task = Task("t", (case,), ("key",), histories.ToFile(str(tmp_path / "file")), 60.0)
-    with pytest.raises(PlaceError, match=r"\.npy: could not be written \(Not a directory\)"):
+    with pytest.raises(PlaceError, match=r"\.npz: could not be written \(Not a directory\)"):
         lines_of(task)
 
 
