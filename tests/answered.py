@@ -1,12 +1,14 @@
 """A study's plan, answered in this process: by real rows, or by rows of runs that are made up."""
 
 import dataclasses
+import json
 
 from analytic import simulate
 from comparisons.running.executors import Done, Executor, lines_of
-from comparisons.running.provenance import read_result, write_result
+from comparisons.running.provenance import digest_of, write_result
 from comparisons.running.study import Batch, Computed
 from comparisons.running.sweep import Row, run_sweep
+from comparisons.studies.rows import read_study
 
 
 class Here(Executor):
@@ -63,6 +65,14 @@ def answered(plan, run, most=None):
 def stored(folder, name, found, **settings):
     """The `Result` of a study's `Computed`, with these `settings` besides, as it comes back from a file in `folder`."""
     settings = {"changed_while_running": [], **found.settings, **settings}
-    return read_result(
+    return read_study(
         write_result(folder / f"{name}.json", name, settings, found.rows, found.arrays, modules=["analytic"])
     )
+
+
+def edit(path, change):
+    """Edit a result file by ``change(its content)``, as one who makes its digest anew; returns the path."""
+    content = json.loads(path.read_text())
+    change(content)
+    path.write_text(json.dumps({**content, "digest": digest_of(content)}))
+    return path

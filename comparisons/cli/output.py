@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..running.files import STANDARD_OUTPUT, PlaceError, write, write_text
@@ -33,9 +34,9 @@ def write_output(
         for path, content in files.items()
     ]
     if plot and draw:
-        from ..showing.plots import save
+        from ..showing.plots import picture
 
-        writers.append(partial(write, plot, partial(save, draw())))
+        writers.append(partial(write, plot, picture(draw(), Path(plot).suffix), keep=True))
     problems = []
     for writer in writers:
         try:

@@ -51,7 +51,6 @@ def export(output: Annotated[str, typer.Option(metavar="DIR", help="Folder for t
     from ..running.solving import bar, stdout_to_stderr
 
     check_folder(output)
-    Path(output).mkdir(parents=True, exist_ok=True)
     with stdout_to_stderr(), bar("lessons") as progress:  # engines greet on standard output
         paths = export_pages(Path(output), progress=progress)
     print(next(path for path in paths if path.name == "index.html"))

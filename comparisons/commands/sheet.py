@@ -26,7 +26,6 @@ def command(
 
     check_folder(output)
     check_writable([json_file])
-    Path(output).mkdir(parents=True, exist_ok=True)
     paths = write_sheet(Path(output))
     problems = []
     for problem in PROBLEMS:

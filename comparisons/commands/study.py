@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import secrets
 import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any
@@ -51,6 +52,13 @@ Check = Annotated[
         "hold; of this project's results, or with --output of those in DIR. Status 1: not all hold.",
     ),
 ]
+Write = Annotated[
+    bool,
+    typer.Option("--write", help="With --check: write date, commit and outcome of the check into the result file."),
+]
+Seed = Annotated[
+    int | None, typer.Option(min=0, max=2**63, help="Of the random draw of --check; without it another each time.")
+]
 
 
 def _options(function):
@@ -64,6 +72,7 @@ def _options(function):
 
 def command_of(study: Study) -> Callable[..., None]:
     """A function that Typer makes the study's command of."""
+    asked = {parameter.name: parameter for parameter in _options(study.plan)}
 
     def command(
         quick: Quick = False,
@@ -73,6 +82,8 @@ def command_of(study: Study) -> Callable[..., None]:
         scheduler: Scheduler = None,
         replot: Replot = None,
         check: Check = None,
+        write: Write = False,
+        seed: Seed = None,
         **options: Any,
     ) -> None:
         from ..report.detail import write_study
@@ -86,7 +97,13 @@ def command_of(study: Study) -> Callable[..., None]:
                 raise SettingError(
                     "--check: takes a result as it is; leave --quick, --engine, --scheduler, --replot out"
                 )
-            return _check(study.name, output, check, workers)
+            return _check(study.name, output, check, seed, write, workers)
+        if write:
+            raise SettingError("--write: belongs to --check")
+        if "seed" in asked:
+            options["seed"] = seed
+        elif seed is not None:
+            raise SettingError(f"--seed {seed}: belongs to --check; this study draws nothing by a seed")
         folder = f"{study.name}-study" if output is None else output
         check_folder(folder)
         if replot is not None:
@@ -106,22 +123,25 @@ def command_of(study: Study) -> Callable[..., None]:
             print(*problems, sep="\n")
             raise typer.Exit(1)
 
-    own = list(inspect.signature(command, eval_str=True).parameters.values())[:-1]  # without the others
-    parameters = [*own, *_options(study.plan)]
+    own = dict(inspect.signature(command, eval_str=True).parameters)
+    for name in ("options", *({"seed"} & asked.keys())):  # where the plan takes a seed, it is one option for both
+        del own[name]
+    parameters = [*own.values(), *asked.values()]
     command.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]  # Typer reads it there
     command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
     command.__doc__ = f"{study.question}\n\nExample: rocking study {study.name} --quick"
     return command
 
 
-def _check(name, output, number, workers):
+def _check(name, output, number, seed, write, workers):
     """Check the stored results of a study; status 1 if a run does not hold."""
     from ..running.check import check_all
-    from ..running.provenance import RESULTS, commit_seed
+    from ..running.provenance import RESULTS
     from ..running.solving import stdout_to_stderr
 
     with stdout_to_stderr():  # engines greet on standard output
-        checks = check_all(name, RESULTS if output is None else output, number, commit_seed(), workers=workers)
+        seed = secrets.randbelow(2**32) if seed is None else seed
+        checks = check_all(name, RESULTS if output is None else output, number, seed, record=write, workers=workers)
     for check in checks:
         print(check.words(), *(f"  does not hold: {words}" for words in check.differences), sep="\n")
     if any(check.differences for check in checks):
@@ -143,11 +163,11 @@ def every(
 
     Example: rocking study all --output studies
     """
-    import shutil
     import time
     from pathlib import Path
 
     from ..running.files import check_folder
+    from ..running.provenance import copy_result
     from ..running.study import compute, say
 
     check_folder(output)
@@ -156,9 +176,7 @@ def every(
         say(f"study {name}")
         folder = Path(output) / name
         for path in compute(get_study(name), folder, engines=engine or None, quick=quick, workers=workers):
-            for file in (path, path.with_suffix(".npz")):
-                if file.exists():
-                    print(shutil.copy2(file, output))
+            print(*copy_result(path, Path(output)), sep="\n")
         say(f"study {name}: {(time.monotonic() - began) / 60:.1f} minutes")
 
 

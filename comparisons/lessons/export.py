@@ -10,6 +10,7 @@ from pathlib import Path
 from jinja2 import Environment
 from markupsafe import Markup
 
+from ..running.files import write_all
 from ..showing import diagrams
 from ..showing.mathml import mathml, prose
 from ..showing.templates import templates
@@ -25,7 +26,7 @@ OTHERS = (("index.html", "Lessons"), ("derivations.html", "Derivation"), ("teach
 def export_pages(
     folder: str | PathLike[str], progress: Callable[[int, int], object] = lambda done, total: None
 ) -> list[Path]:
-    """Write playground, lessons, derivation and teacher's page into `folder`, which exists; returns their paths.
+    """Write playground, lessons, derivation and teacher's page into `folder`; returns their paths.
 
     progress : is called with how many lessons are done, of how many.
     """
@@ -46,10 +47,7 @@ def export_pages(
         files |= {f"figures/lesson-{one.number}.{kind}": file for kind, file in downloads(first.figure).items()}
     page = environment.get_template("teacher.html")
     files["teacher.html"] = page.render(lessons=chosen, exercises=exercises, firsts=firsts, licence=LICENCE)
-    (Path(folder) / "figures").mkdir(exist_ok=True)
-    for name, content in files.items():
-        (Path(folder) / name).write_bytes(content.encode() if isinstance(content, str) else content)
-    return [Path(folder) / name for name in files]
+    return write_all(folder, files)
 
 
 def _environment() -> Environment:

@@ -15,7 +15,7 @@ from typing import Any
 
 from analytic.errors import SettingError
 
-from ..running.files import TemporaryFolder
+from ..running.files import TemporaryFolder, write_all
 from ..running.solving import say
 from ..showing import diagrams
 from ..showing.parts import number
@@ -68,10 +68,9 @@ def open_notebook(name: str, to: str | None = None) -> int:
         )
     with TemporaryFolder("rocking-lesson-") if to is None else contextlib.nullcontext(to) as folder:
         file = Path(folder) / f"{name}.py"
-        file.parent.mkdir(parents=True, exist_ok=True)
-        for path, content in {file: text, file.with_name("pyproject.toml"): SETTINGS}.items():
-            if not path.exists():  # a student's work is never overwritten
-                path.write_text(content, encoding="utf-8")
+        files = {file.name: text, "pyproject.toml": SETTINGS}
+        new = {name: content for name, content in files.items() if not file.with_name(name).exists()}
+        write_all(folder, new)  # a student's work is never overwritten
         say(f"the notebook is {file}" + ("; it is removed at the end: keep it with --to FOLDER" if to is None else ""))
         return subprocess.call([sys.executable, "-m", "marimo", "edit", str(file.absolute())])  # "-" is no option
 

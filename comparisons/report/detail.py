@@ -12,13 +12,16 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup, escape
 
-from ..running.provenance import age, read_result
+from ..running.files import write_all
+from ..running.provenance import ResultError, age
+from ..running.readable import readable
 from ..showing import diagrams
 from ..showing.charts import STYLE, colour, key_of
 from ..showing.mathml import mathml
 from ..showing.parts import Section, number, signed
 from ..showing.templates import templates
 from ..showing.wording import indexed
+from ..studies.rows import read_study
 from . import equations
 from .studies import origin_of
 
@@ -38,14 +41,24 @@ def write_study(
     Raises
     ------
     ResultError
-        The result file is missing or damaged.
+        The result file is missing or damaged, or of another study.
+    PlaceError
+        The page cannot be written.
     """
-    result = read_result(path)
-    page = study.page(result).whole()
-    into = (Path(path) if folder is None else Path(folder) / Path(path).name).with_suffix(".html")
-    into.parent.mkdir(parents=True, exist_ok=True)
-    html = detail(page.title, [replace(page, age=age(result))], origin_of(result))
-    into.write_text(html, encoding="utf-8")
+    result = read_study(path, study.name)
+    old, file = age(result), Path(path).name
+    try:
+        page = study.page(result).whole()
+    except Exception as error:
+        if old is None:  # of the very code that fails
+            raise
+        words = (
+            f"{file}: its page cannot be drawn ({readable(repr(error))}); it is {old}; run rocking study {study.name}"
+        )
+        raise ResultError(words) from error
+    into = (Path(path) if folder is None else Path(folder) / file).with_suffix(".html")
+    html = detail(page.title, [replace(page, age=old)], origin_of(result))
+    write_all(into.parent, {into.name: html})
     return into, page
 
 

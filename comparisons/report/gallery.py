@@ -1,21 +1,31 @@
-"""What the README shows of the studies' stored results, four small figures and what they found in words.
+"""What the README shows of the studies' stored results, four small figures and what they found in words, and where
+each result comes from, for the README beside them.
 
-``python -m comparisons.report.gallery`` makes both anew.
+``python -m comparisons.report.gallery`` makes all of it anew.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from textwrap import wrap
+from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
-from ..running.provenance import PROJECT_FOLDER, RESULTS, read_result
+from engines import ENGINES
+
+from ..running.files import write, write_all
+from ..running.provenance import PROJECT_FOLDER, RESULTS
 from ..showing.charts import alone
+from ..studies.rows import read_study
 from .answer import paragraph, setups_of
-from .studies import Stored, stored_studies, variants_of
+from .studies import Stored, commit_of, stored_studies, variants_of
+
+if TYPE_CHECKING:
+    from ..running.provenance import Result
 
 GALLERY, README = Path(__file__).with_name("gallery"), PROJECT_FOLDER / "README.md"
+RESULTS_README = RESULTS / "README.md"
 BEGIN, END = "<!-- findings of the stored studies -->", "<!-- end of findings -->"
 PANELS = {"restitution": 0, "overturning": -1, "sensitivity": 0, "speed-error": -1}  # study: which panel of its finding
 
@@ -42,18 +52,31 @@ def headlines(stored: Sequence[Stored]) -> str:
     return "\n".join((*lines, "", *wrap(paragraph(columns, judgements), 120)))
 
 
+def origins(results: Mapping[str, Result]) -> str:
+    """Where results {name: result} come from, as a table in Markdown."""
+    rows = [["result", "computed", "commit", "processor, cores, memory", "engines", "runs that held when done again"]]
+    rows += [["---"] * len(rows[0])]
+    for name, result in results.items():
+        origin, machine = result.provenance, result.provenance["machine"]
+        engines = sorted({row["engine"] for row in result.rows if row.get("engine") in ENGINES})
+        last = origin.get("check")
+        where = f"{machine['processor']}, {machine['logical_cores']}, {machine['memory_gib']:g} GiB"
+        held = f"{last['held']} of {last['runs']}, {last['date']}" if last else "none"
+        rows.append([f"`{name}`", origin["time"][:10], commit_of(origin), where, ", ".join(engines) or "none", held])
+    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+
+
 def with_findings(readme: str, words: str) -> str:
-    """The README's text with these words between its marks."""
+    """The text of a README with these words between its marks."""
     before, begin, rest = readme.partition(BEGIN)
     _, end, after = rest.partition(END)
     return f"{before}{begin}\n{words}\n{end}{after}"
 
 
 if __name__ == "__main__":
-    for file in RESULTS.glob("*.json"):
-        read_result(file)  # one that cannot be read must not leave the README without its rows
+    # one that cannot be read must not leave the README without its rows
+    results = {file.stem: read_study(file) for file in sorted(RESULTS.glob("*.json"))}
     found = stored_studies()
-    README.write_text(with_findings(README.read_text(encoding="utf-8"), headlines(found)), encoding="utf-8")
-    GALLERY.mkdir(exist_ok=True)
-    for name, svg in gallery(found).items():
-        (GALLERY / name).write_text(svg, encoding="utf-8")
+    for readme, words in ((README, headlines(found)), (RESULTS_README, origins(results))):
+        write(readme, with_findings(readme.read_text(encoding="utf-8"), words))
+    write_all(GALLERY, gallery(found))

@@ -6,6 +6,7 @@ Measured is what was computed; thinned only what a figure or the result file sho
 from __future__ import annotations
 
 import hashlib
+import io
 from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
@@ -16,6 +17,7 @@ import numpy as np
 
 from analytic.response import History, Response
 
+from ..running.files import write
 from ..running.provenance import ResultError
 
 if TYPE_CHECKING:
@@ -27,14 +29,16 @@ MOST_SHOWN, PARTS = 20_000, 1_500
 
 @dataclass(frozen=True)
 class ToFile:
-    """Measure: everything, the history as a file in `folder`, shape (columns of `History`, samples)."""
+    """Measure: everything, the history as a file in `folder`, an array for each column of `History`."""
 
     folder: str
 
     def __call__(self, case: Case, response: Response) -> dict[str, Any]:
         content = (response.scene, response.engine, response.variant)
-        name = hashlib.sha256(repr(content).encode()).hexdigest()[:16] + ".npy"
-        np.save(Path(self.folder) / name, [getattr(response.history, column) for column in History.COLUMNS])
+        name = hashlib.sha256(repr(content).encode()).hexdigest()[:16] + ".npz"
+        data = io.BytesIO()
+        np.savez(data, **{column: getattr(response.history, column) for column in History.COLUMNS})
+        write(Path(self.folder) / name, data.getbuffer())
         return {**response.to_json(), "history": name}
 
 
@@ -51,7 +55,8 @@ def _history(path):
         raise ResultError(
             f"{path.parent.name}/{path.name}: missing; remove the folder {path.parent.name} and make the report again"
         )
-    return History(*np.load(path))
+    with np.load(path) as table:
+        return History(*(table[column] for column in History.COLUMNS))
 
 
 def differences(history: History, reference: History) -> dict[str, np.ndarray]:

@@ -7,9 +7,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..running.provenance import RESULTS, ResultError, age, last_check, read_result
+from ..running.provenance import RESULTS, ResultError, age, last_check
+from ..running.readable import readable
 from ..showing.parts import Judgement, Section
 from ..studies import StudyBroken, get_study, study_names
+from ..studies.rows import read_study
 
 if TYPE_CHECKING:
     from ..running.provenance import Result
@@ -71,20 +73,26 @@ def commit_of(origin: Mapping[str, Any]) -> str:
 def _stored(file):
     """What is shown of a file."""
     try:
-        result = read_result(file)
+        result = read_study(file)
+        if not f"{file.stem}-".startswith(f"{result.kind}-"):  # <study>-<part>.json where a study has several
+            raise ResultError(f"a result of {result.kind}; call it {result.kind}.json")
     except ResultError as error:
-        return Stored(file.stem, Section(f"Study {file.stem}", (f"{file.name} cannot be shown: {error}",)))
+        return Stored(file.stem, Section(f"Study {file.stem}", (f"{file.name} cannot be shown: {readable(error)}",)))
     old, origin = age(result), origin_of(result)
     try:
         study = get_study(result.kind)
     except (KeyError, StudyBroken) as error:
         words = f"{file.name} cannot be shown: {error.args[0]}."
         return Stored(file.stem, Section(f"Study {result.kind}", (words,), age=old), origin=origin)
-    page = study.page(result)  # drawn once
-    judgements = study.judgements(result)
-    finding = page.opening()
+    try:
+        page = study.page(result)  # drawn once
+        judgements, variants = study.judgements(result), _variants(result.settings)
+        section, finding = replace(page.whole(), age=old), page.opening()
+    except Exception as error:  # settings of another version, or another package's page: the report goes on
+        words = f"{file.name} cannot be shown: its page fails ({readable(repr(error))}); --replot shows where."
+        return Stored(file.stem, Section(f"Study {result.kind}", (words,), age=old), origin=origin)
     finding = finding and replace(finding, age=old)
-    return Stored(file.stem, replace(page.whole(), age=old), finding, judgements, origin, _variants(result.settings))
+    return Stored(file.stem, section, finding, judgements, origin, variants)
 
 
 def _variants(settings):

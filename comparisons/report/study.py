@@ -8,6 +8,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..running.provenance import copy_result
 from ..running.study import Study, compute
 from .runs import CARYATID, RESTITUTION, SCENES, load_scenes, plan
 
@@ -72,10 +73,9 @@ def _make(folder, engines, *, scenes, **options):
     workers = None if samples <= SHORT_RECORD else 1
     options |= {"scenes": scenes, "histories": unfinished}
     paths = compute(STUDY, unfinished, engines=engines, workers=workers, **options)
-    for name in (SCENES, RESTITUTION):
-        for file in ((Path(folder) / name).with_suffix(".npz"), Path(folder) / name):
-            file.unlink(missing_ok=True)
     for path in paths:
-        for file in (path.with_suffix(".npz"), path):
-            shutil.move(file, Path(folder) / file.name)
+        copy_result(path, Path(folder))
+    for name in {SCENES, RESTITUTION} - {path.name for path in paths}:  # of an earlier report
+        for file in (Path(folder) / name, (Path(folder) / name).with_suffix(".npz")):
+            file.unlink(missing_ok=True)
     shutil.rmtree(unfinished)  # complete: the next report measures its times afresh

@@ -14,6 +14,7 @@ from markupsafe import Markup
 
 from engines.statue_range import in_words
 
+from ..running.files import write_all
 from ..running.provenance import PACKAGES, RESULTS, age, read_result
 from ..showing import diagrams
 from ..showing.parts import Section, Table
@@ -74,6 +75,8 @@ def write_page(
     ------
     ResultError
         A result file of the report is missing or damaged.
+    PlaceError
+        A page cannot be written; those that are not written yet are as before.
     """
     folder = Path(folder)
     scenes = read_result(folder / SCENES)
@@ -82,8 +85,7 @@ def write_page(
     stored = stored_studies(studies, lambda done, total: progress(done, total + 1))  # and the pages themselves
     pages = [("runs", "The report’s own runs"), *((one.name, one.section.title.partition(":")[0]) for one in stored)]
     listed = [{"file": f"{PAGES}/{name}.html", "title": title} for name, title in pages]
-    path = folder / PAGE
-    path.write_text(
+    first = (
         environment()
         .get_template("page.html")
         .render(
@@ -102,18 +104,17 @@ def write_page(
             pages=listed,
             ages=[f"{name} is {text}" for name, text in ((name, age(result)) for name, result in read.items()) if text],
             files=[file for name in read for file in (name, name.replace(".json", ".npz"))],
-        ),
-        encoding="utf-8",
+        )
     )
     own_runs = [*scene_sections(scenes), *([restitution_section(block)] if block else ())]
-    (folder / PAGES).mkdir(exist_ok=True)
+    files: dict[str, str] = {}
     for name, title, sections, origin in (
         ("runs", "The report’s own runs", own_runs, origin_of(scenes)),
         *((one.name, one.section.title, [one.section], one.origin) for one in stored),
     ):
-        html = detail(title, sections, origin, pages=listed, home=PAGE, file=f"{PAGES}/{name}.html")
-        (folder / PAGES / f"{name}.html").write_text(html, encoding="utf-8")
-    return path
+        file = f"{PAGES}/{name}.html"
+        files[file] = detail(title, sections, origin, pages=listed, home=PAGE, file=file)
+    return write_all(folder, {**files, PAGE: first})[-1]  # each page is there before the one that leads to it
 
 
 def _cards(scenes, calls):

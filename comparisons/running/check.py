@@ -71,11 +71,13 @@ def check_all(name: str, folder: str | PathLike[str], number: int, seed: int, **
     return checks
 
 
-def check(path: Path, number: int, seed: int, *, workers: int | None = None, progress: bool = True) -> Check:
-    """Do `number` runs of the result at `path` again, drawn with `seed` from those stored; recorded in its provenance.
+def check(
+    path: Path, number: int, seed: int, *, record: bool = False, workers: int | None = None, progress: bool = True
+) -> Check:
+    """Do `number` runs of the result at `path` again, drawn with `seed` from those stored.
 
     A run holds if all that was measured is as before, numbers within 1e-9 of themselves; CPU times are not compared.
-    What a study makes of its runs is not checked.
+    What a study makes of its runs is not checked. record: write the outcome into the result's provenance.
 
     Raises
     ------
@@ -91,7 +93,7 @@ def check(path: Path, number: int, seed: int, *, workers: int | None = None, pro
     again = _again(drawn, workers, progress) if drawn else []
     found = filter(None, (_differ(run, now) for run, now in zip(drawn, again, strict=True)))
     done = Check(path.name, seed, len(drawn), len(able), result.run_count, tuple(found), tuple(missing))
-    if drawn:
+    if drawn and record:
         today = {"date": datetime.now(UTC).date().isoformat(), **checkout()}
         record_check(path, {**today, "seed": seed, "runs": done.runs, "held": done.held})
     return done

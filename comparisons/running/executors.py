@@ -26,7 +26,7 @@ from analytic.errors import SettingError
 from engines.guard import end_with_parent, raised
 
 from .cases import Case, module_of
-from .files import TemporaryFolder
+from .files import PlaceError, TemporaryFolder
 from .provenance import json_ready, scrub
 from .solving import redirected
 
@@ -200,6 +200,8 @@ def lines_of(task: Task) -> tuple[str, ...]:
             row["values"] = json_ready(row["values"])
             row["values"].pop("cpu_seconds", None)
             line = json.dumps(row, allow_nan=False)
+        except PlaceError:  # a disk that is full is no failure of a solver
+            raise
         except Exception as error:
             row["values"] = {"outcome": "failed"}
             row["failure"] = {

@@ -1,12 +1,19 @@
-"""Result files and folders: refused before the work if they cannot be written; kept elsewhere if that fails later."""
+"""Files and folders that are written: refused before the work if they cannot be, then whole or not at all.
+
+All that this project writes goes through `write`, but for the store of runs, which is appended to, and what is
+temporary (tests/comparisons/running/test_one_way.py holds the code to that).
+"""
 
 import contextlib
+import hashlib
 import os
+import secrets
 import shutil
 import stat
 import sys
 import tempfile
-from collections.abc import Callable, Iterable
+import time
+from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
 
@@ -16,12 +23,15 @@ from .readable import Mendable
 
 PICTURES = (".png", ".svg", ".pdf")
 STANDARD_OUTPUT = "-"
-_TEMPORARY: set[str] = set()  # folders of this process
 PROBE_BYTES = 4096  # a place without room for this is full
+PART = ".rocking-{}.part"  # name of a file that is being written; never that of a result
+DIGITS = 16  # of a digest, in the name of a file that waits for its place
+STALE = 3600.0  # s without a byte more: whoever wrote the part was killed
+_TEMPORARY: set[str] = set()  # folders of this process
 
 
 class PlaceError(Mendable):
-    """A result could not be written where it was asked for; the message says where it is instead."""
+    """A file could not be written; the message names it, and where its content is kept instead, if anywhere."""
 
 
 def check_writable(paths: Iterable[str | None], picture: str | None = None, inputs: Iterable[str] = ()) -> None:
@@ -61,46 +71,96 @@ def check_folder(output: str | PathLike[str], option: str = "--output") -> None:
         above = above.parent
     if not above.is_dir():
         raise SettingError(f"{named}: {above} is no folder; give another place")
-    _probe(_part(above, ""), named)
+    _probe(_part(above), named)
 
 
-def write(path: str | PathLike[str], writer: Callable[[Path], object]) -> None:
-    """Write a result file by ``writer(path)``, whole or not at all.
+def write(path: str | PathLike[str], content: str | bytes | memoryview, keep: bool = False) -> None:
+    """Write a file, whole or not at all: as long as that is not done, what was there before is there still.
+
+    keep: where it cannot be written, the content is kept in another place.
 
     Raises
     ------
     PlaceError
-        It could not be written; the message names the file in which the result is kept instead, if any.
+        It could not be written; the message names it, and where the content is kept instead.
     """
-    place = Path(os.path.realpath(path))
-    part = _part(place.parent, place.suffix)
+    data = content.encode() if isinstance(content, str) else content
     try:
-        writer(part)
-        if place.exists():
-            shutil.copymode(place, part)
-        os.replace(part, place)
+        _put(Path(os.path.realpath(path)), data)
     except OSError as error:
-        raise _kept(path, error, writer, place.suffix) from error
-    finally:
-        with contextlib.suppress(OSError):
-            part.unlink(missing_ok=True)
+        raise _not_written(path, error, data if keep else None) from error
 
 
 def write_text(path: str | PathLike[str], text: str) -> None:
-    """Write `text` to the file `path` in UTF-8, or to standard output where that is "-"; see `write`."""
-
-    def writer(place):
-        Path(place).write_text(text, encoding="utf-8")
-
+    """Write a command's result, in UTF-8, to the file `path`, or to standard output where that is "-"; where that
+    fails it is kept elsewhere, see `write`."""
     if path != STANDARD_OUTPUT:
-        return write(path, writer)
+        return write(path, text, keep=True)
     try:
         sys.stdout.write(text)
         sys.stdout.flush()
     except BrokenPipeError:
         raise
     except OSError as error:
-        raise _kept("standard output", error, writer, ".json") from error
+        raise _not_written("standard output", error, text.encode()) from error
+
+
+def write_all(folder: str | PathLike[str], files: Mapping[str, str | bytes]) -> list[Path]:
+    """Write files, {name below the folder: content}, each by `write`; folders are made. Returns their paths."""
+    paths = [Path(folder) / name for name in files]
+    for path, content in zip(paths, files.values(), strict=True):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write(path, content)
+    return paths
+
+
+def write_pair(path: Path, content: str, beside: Path, data: bytes) -> None:
+    """Write a file and another, `beside`, whose digest it holds: at any moment the pair of before or this one is there.
+
+    `beside` waits under a name of its own until `path` is written (`waiting`), so that a kill leaves either pair whole.
+
+    Raises
+    ------
+    PlaceError
+        As `write`.
+    """
+    wait = waiting(beside, hashlib.sha256(data).hexdigest())
+    new = not wait.exists()  # else a kill has left it, and `path` may need it
+    try:
+        _put(wait, data)
+        try:
+            write(path, content)
+        except PlaceError:
+            if new:
+                wait.unlink()
+            raise
+        os.replace(wait, beside)
+        for left in beside.parent.glob(waiting(beside, "?" * DIGITS).name):
+            left.unlink()
+    except OSError as error:
+        raise _not_written(beside, error) from error
+
+
+def _put(place, data):
+    """Put bytes in their place by way of a part, which is gone afterwards, as are those of processes that are."""
+    part = _part(place.parent)
+    try:
+        with open(part, "xb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())  # some disks say only now that they are full
+        if place.exists():
+            shutil.copymode(place, part)
+        os.replace(part, place)
+    finally:
+        with contextlib.suppress(OSError):
+            part.unlink(missing_ok=True)
+    _remove_stale(place.parent)
+
+
+def waiting(beside: Path, digest: str) -> Path:
+    """Where a file of this digest waits until the one that holds its digest is written."""
+    return beside.with_name(f".{beside.stem}.{digest[:DIGITS]}{beside.suffix}")
 
 
 def _mode(path, named):
@@ -125,7 +185,7 @@ def _check_file(path):
         raise SettingError(f"{path}: there is no folder {Path(path).parent}; make it first")
     if mode is not None and not os.access(place, os.W_OK):
         raise SettingError(f"{path}: is read-only; give another file name")
-    _probe(place if mode is None else _part(place.parent, ""), path)
+    _probe(place if mode is None else _part(place.parent), path)
 
 
 def _probe(place, named):
@@ -142,20 +202,32 @@ def _probe(place, named):
         raise SettingError(f"{named}: nothing can be written there ({error.strerror}); give another place") from None
 
 
-def _part(folder, suffix):
-    return folder / f".rocking-{os.getpid()}{suffix}"
+def _part(folder):
+    return folder / PART.format(secrets.token_hex(8))
 
 
-def _kept(path, error, writer, suffix):
+def _remove_stale(folder):
+    """Remove the parts that killed processes have left in a folder."""
+    for part in folder.glob(PART.format("*")):
+        with contextlib.suppress(OSError):
+            if time.time() - part.stat().st_mtime > STALE:
+                part.unlink()
+
+
+def _not_written(path, error, kept=None):
+    """The `PlaceError` of a file; kept: its content, to be kept elsewhere."""
     reason = f"{path}: could not be written ({error.strerror or error})"
+    if kept is None:
+        return PlaceError(f"{reason}; make room and run again")
     for folder in (tempfile.gettempdir, os.getcwd, Path.home):
         with contextlib.suppress(OSError):
-            kept = Path(folder()) / f"rocking-{os.getpid()}{suffix}"
+            number, place = tempfile.mkstemp(Path(path).suffix or ".json", "rocking-", folder())
             try:
-                writer(kept)
-                return PlaceError(f"{reason}; the result is in {kept}")
+                with open(number, "wb") as file:
+                    file.write(kept)
+                return PlaceError(f"{reason}; the result is in {place}")
             except OSError:
-                kept.unlink(missing_ok=True)
+                os.unlink(place)
     return PlaceError(f"{reason}, nor anywhere else; make room and run again")
 
 

@@ -25,11 +25,14 @@ from analytic.files import read_plain
 from engines import ENGINES
 
 from ..schemas.study import StudyResult
-from .readable import Mendable
+from .files import PlaceError, waiting, write, write_pair
+from .readable import Mendable, readable
 from .sources import PROJECT, digests_of_all, source_digests, version_of
 
+SHORT = 80  # characters of a value in a message
 NAMED = 3  # modules that a sentence on a stale result names
 SCHEMA = StudyResult.model_fields["schema_"].default
+NO_DIGEST = "0" * 64  # until all is known that it is made of
 LARGEST = 2_000_000_000  # bytes of a result file, or of the arrays beside it
 PROJECT_FOLDER = Path(__file__).parents[2]
 RUNS = "runs.json"  # the array of a result that holds its sample of runs, as text
@@ -127,11 +130,14 @@ def write_result(
     ------
     ResultError
         The content names a path of this machine, or rows are no dicts.
+    PlaceError
+        It cannot be written; a result that was there is there still.
     """
     path = Path(path)
     content = json_ready(
         {
             "schema": SCHEMA,
+            "digest": NO_DIGEST,
             "kind": kind,
             "provenance": provenance(modules, seed),
             "settings": settings,
@@ -149,12 +155,26 @@ def write_result(
         )
     path.parent.mkdir(parents=True, exist_ok=True)
     arrays = dict(arrays or {}) | ({RUNS: np.frombuffer(sample.encode(), np.uint8)} if runs else {})
-    if arrays:
-        beside = path.with_suffix(".npz")
-        np.savez_compressed(beside, **arrays)  # type: ignore[arg-type]  # no array is called allow_pickle
-        content["arrays"] = {"file": beside.name, "digest": hashlib.sha256(beside.read_bytes()).hexdigest()}
-    path.write_text(_layout(content))
+    if not arrays:
+        write(path, _layout(content))
+        return path
+    beside, data = path.with_suffix(".npz"), io.BytesIO()
+    np.savez_compressed(data, **arrays)  # type: ignore[arg-type]  # no array is called allow_pickle
+    content["arrays"] = {"file": beside.name, "digest": hashlib.sha256(data.getbuffer()).hexdigest()}
+    write_pair(path, _layout(content), beside, data.getvalue())
     return path
+
+
+def copy_result(path: Path, folder: Path) -> list[Path]:
+    """Copy a result file and the arrays beside it into `folder`; returns the paths of the copies."""
+    content, into = _content(path), folder / path.name
+    text = path.read_text(encoding="utf-8")
+    if content["arrays"] is None:
+        write(into, text)
+        return [into]
+    beside = into.with_suffix(".npz")
+    write_pair(into, text, beside, _beside(path, content))
+    return [into, beside]
 
 
 def read_result(path: str | PathLike[str]) -> Result:
@@ -163,23 +183,41 @@ def read_result(path: str | PathLike[str]) -> Result:
     Raises
     ------
     ResultError
-        The file is missing, of another layout (`comparisons.schemas.study`), or its arrays are missing or another
-        study's.
+        The file is missing, of another layout (`comparisons.schemas.study`), or not as it was written; or its arrays
+        are missing or another study's.
     """
     path = Path(path)
+    content = _content(path)
+    arrays = _arrays(path, content)
+    runs = json.loads(arrays.pop(RUNS, np.frombuffer(b"[]", np.uint8)).tobytes())
+    count = content["runs"]["total"] if content.get("runs") else None
+    return Result(content["kind"], content["settings"], content["rows"], content["provenance"], arrays, runs, count)
+
+
+def _content(path):
+    """What a result file holds, as it was written."""
     try:
         content = json.loads(read_plain(path, LARGEST))
+        _check_form(path.name, content)
+        whole = content["digest"] == digest_of(content)
     except FileNotFoundError as error:
         raise ResultError(f"{path.name}: no such result file; run the study that writes it") from error
     except OSError as error:
         raise ResultError(f"{path.name}: cannot be read ({error.strerror}); give a result file of a study") from error
     except (ValueError, RecursionError) as error:
         raise ResultError(f"{path.name}: not JSON ({error}); run the study again") from error
-    _check_form(path.name, content)
-    arrays = _arrays(path, content)
-    runs = json.loads(arrays.pop(RUNS, np.frombuffer(b"[]", np.uint8)).tobytes())
-    count = content["runs"]["total"] if content.get("runs") else None
-    return Result(content["kind"], content["settings"], content["rows"], content["provenance"], arrays, runs, count)
+    if not whole:
+        raise ResultError(
+            f"{path.name}: damaged, what it holds is not what its digest was made of; take the file from where it is "
+            "whole, or run the study again"
+        )
+    return content
+
+
+def digest_of(content: Mapping[str, Any]) -> str:
+    """SHA-256 of all that a result file holds beside its digest: of its JSON, keys sorted, without spaces."""
+    rest = {name: value for name, value in content.items() if name != "digest"}
+    return hashlib.sha256(json.dumps(rest, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
 
 def _check_form(name, content):
@@ -188,10 +226,9 @@ def _check_form(name, content):
     if content.get("schema") != SCHEMA:
         origin = content.get("provenance")
         commit = origin.get("commit") if isinstance(origin, dict) else None
-        reader = f", the version {_at(commit)} reads it" if commit else ""
-        raise ResultError(
-            f"{name}: schema {content.get('schema')!r}, this version reads {SCHEMA!r}{reader}; run the study again"
-        )
+        reader = f", the version {_at(commit)} reads it" if commit and isinstance(commit, str) else ""
+        schema = readable(repr(content.get("schema")), SHORT)
+        raise ResultError(f"{name}: schema {schema}, this version reads {SCHEMA!r}{reader}; run the study again")
     try:
         StudyResult.model_validate(content)
     except ValidationError as error:
@@ -206,17 +243,14 @@ def record_check(path: Path, check: Mapping[str, Any]) -> None:
     Raises
     ------
     ResultError
-        The file cannot be written.
+        The file is damaged, or cannot be written; it is as it was.
     """
-    content = json.loads(path.read_text())
+    content = _content(path)
     content["provenance"]["check"] = dict(check)
     try:
-        path.write_text(_layout(content))
-    except OSError as error:
-        raise ResultError(
-            f"{path.name}: {check['held']} of {check['runs']} runs hold, but that cannot be recorded there "
-            f"({error.strerror}); check a copy of it, with --output"
-        ) from error
+        write(path, _layout(content))
+    except PlaceError as error:
+        raise ResultError(f"{check['held']} of {check['runs']} runs hold, but that is not recorded: {error}") from error
 
 
 def last_check(result: Result) -> str | None:
@@ -227,16 +261,21 @@ def last_check(result: Result) -> str | None:
 
 def _arrays(path, content):
     """{name: array} of the file beside a result file, {} where it has none."""
-    stated = content.get("arrays")
-    if not stated:
+    if content["arrays"] is None:
         return {}
-    beside, stored = path.with_suffix(".npz"), b""
-    with contextlib.suppress(OSError):
-        stored = read_plain(beside, LARGEST)
-    if not stored or hashlib.sha256(stored).hexdigest() != stated["digest"]:
-        raise ResultError(f"{beside.name}: missing or not the one {path.name} was written with; run the study again")
-    with np.load(io.BytesIO(stored)) as arrays:
+    with np.load(io.BytesIO(_beside(path, content))) as arrays:
         return {name: arrays[name] for name in arrays.files}
+
+
+def _beside(path, content):
+    """The bytes of the file of arrays that a result file names by its digest."""
+    beside, digest = path.with_suffix(".npz"), content["arrays"]["digest"]
+    for place in (beside, waiting(beside, digest)):  # a kill may have left it waiting
+        with contextlib.suppress(OSError):
+            stored = read_plain(place, LARGEST)
+            if hashlib.sha256(stored).hexdigest() == digest:
+                return stored
+    raise ResultError(f"{beside.name}: missing or not the one {path.name} was written with; run the study again")
 
 
 def age(result: Result) -> str | None:
@@ -311,11 +350,11 @@ def _roots():
 
 
 def _layout(content):
-    """JSON with one line per row: small, and readable in a diff."""
-    rows = content.pop("rows")
-    lines = ",\n  ".join(json.dumps(row, allow_nan=False) for row in rows)
-    head = json.dumps(content, indent=1, allow_nan=False)[:-2]
-    return f'{head},\n "rows": [\n  {lines}\n ]\n}}\n' if rows else f'{head},\n "rows": []\n}}\n'
+    """JSON with one line per row, small and readable in a diff, and the digest of it all."""
+    head = {**content, "digest": digest_of(content)}
+    lines = ",\n  ".join(json.dumps(row, allow_nan=False) for row in head.pop("rows"))
+    text = json.dumps(head, indent=1, allow_nan=False)[:-2]
+    return f'{text},\n "rows": [\n  {lines}\n ]\n}}\n' if lines else f'{text},\n "rows": []\n}}\n'
 
 
 def checkout() -> dict[str, Any]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
 from .form import Form, Part
+
+Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 
 
 class Machine(Part):
@@ -49,7 +51,7 @@ class Arrays(Part):
     """The file of arrays beside this one, and the SHA-256 of it."""
 
     file: str
-    digest: str
+    digest: Digest
 
 
 class Runs(Part):
@@ -62,7 +64,8 @@ class Runs(Part):
 class StudyResult(Form):
     """The result file of a study: a row is one object; equal columns mean the same in all rows of a study."""
 
-    schema_: Literal["rocking study 1"] = Field(default="rocking study 1", alias="schema")
+    schema_: Literal["rocking study 2"] = Field(default="rocking study 2", alias="schema")
+    digest: Digest = Field(description="SHA-256 of all else in this file, as JSON with sorted keys and without spaces")
     kind: str = Field(description="which study")
     provenance: Provenance
     settings: dict[str, Any] = Field(description="what the study was asked")

@@ -12,6 +12,7 @@ from markupsafe import Markup
 
 from analytic import SampledMotion
 
+from ..running.files import write_all
 from ..showing.templates import templates
 from ..showing.wording import indexed
 from .problems import COLUMNS, DAMPING, PERIOD, PROBLEMS, SCALES, UNITS, VERSION, record
@@ -26,7 +27,7 @@ ANSWERS, RECORD_FILE = "answers.csv", "record.csv"
 
 
 def write_sheet(folder: Path) -> list[Path]:
-    """Write the sheet into `folder`, which exists; returns the paths written, the first to be read first.
+    """Write the sheet into `folder`; returns the paths written, the first to be read first.
 
     Answers that are there already are kept.
 
@@ -49,10 +50,7 @@ def write_sheet(folder: Path) -> list[Path]:
         files |= {f"{problem.name}.md": text, f"{problem.name}.html": _html(problem.title, text)}
     if (folder / ANSWERS).exists():
         del files[ANSWERS]
-    (folder / "inputs").mkdir(exist_ok=True)
-    for name, text in files.items():
-        (folder / name).write_text(text, encoding="utf-8")
-    return [folder / name for name in files]
+    return write_all(folder, files)
 
 
 def markdown(problem: Problem) -> str:

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field
 
-from ..running.provenance import RESULTS, ResultError, read_result
+from ..running.provenance import RESULTS, ResultError
 from ..schemas.form import Form, Part
 from ..showing.wording import TRUSTED
+from ..studies.rows import read_study
 from .answers import error
 from .faults import MISTAKES
 from .observed import solved
@@ -103,7 +104,7 @@ def score(given: Mapping[str, Mapping[str, Value]], tell: Callable[[str], object
 def stored_errors() -> tuple[dict[str, list[tuple[float, str]]], str]:
     """({scene: [(error, solver)] from the least on}, where they come from in words)."""
     try:
-        result = read_result(RESULTS / STORED)
+        result = read_study(RESULTS / STORED)
     except ResultError as problem:
         return {}, f"no stored solvers ({problem})"
     table: dict[str, list[tuple[float, str]]] = {}

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import warnings
 from collections.abc import Sequence
-from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -112,8 +112,10 @@ def _draw_ground(axis, motion, end):
     axis.set_title(readable(motion.label, TITLE_CHARACTERS), fontsize="small", parse_math=False)
 
 
-def save(figure: Figure, path: str | PathLike[str]) -> None:
-    """Write a figure; the format follows from the name (see `files.check_writable`)."""
+def picture(figure: Figure, kind: str) -> bytes:
+    """A figure as the content of a file; kind: its format, one of `files.PICTURES`."""
+    file = io.BytesIO()
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing")  # a name in letters the font lacks is shown as boxes
-        figure.savefig(path, dpi=150)
+        figure.savefig(file, format=kind.lower().removeprefix("."), dpi=150)
+    return file.getvalue()

@@ -14,10 +14,11 @@ from analytic.time_stepping import simulate_time_stepping
 from engines import ENGINES
 
 from ...measuring.agreement import RIGID
-from ...running.provenance import RESULTS, read_result
+from ...running.provenance import RESULTS
 from ...showing.parts import Table, number
 from ...showing.plots import marker
 from ...showing.rows import where
+from ...studies.rows import read_study
 from ..drawing import MODEL, OTHER, SOFT, STONE, THIRD, canvas, legend
 from ..engine_runs import SCENE, SLENDERNESS, engine_runs, error_of
 from ..lesson import Control, Equation, Exercise, Lesson, View
@@ -117,7 +118,7 @@ WHICH = ("engine", "variant")
 
 def bad_example() -> View:
     """Error of restitution over the step, of the engines under study: refinement of their defaults does not help."""
-    study = read_result(RESULTS / "restitution.json")
+    study = read_study(RESULTS / "restitution.json")
     best = study.settings["default_variants"]
     chosen = [
         variant

@@ -60,7 +60,7 @@ def plan(request: Request) -> Plan:
             "variant": run.case.variant,
             **run.case.tag,
             "failure": run.failure,
-            **run.values,
+            **({} if run.failed else run.values),
         }
         for run in runs
     ]

@@ -26,7 +26,8 @@ if TYPE_CHECKING:
 SCENES, QUICK_SCENES = 500, 20  # of the engines' default variants
 FEWER = 5  # other variants run one scene in so many, and at least so many
 
-Seed = Annotated[int | None, typer.Option(min=0, max=2**63, help="Of the scenes; without it of the commit.")]
+SEED = "Of the scenes, without it of the commit; with --check of the draw of runs."
+Seed = Annotated[int | None, typer.Option(min=0, max=2**63, help=SEED)]
 Number = Annotated[int | None, typer.Option(min=1, max=10**6, help="How many are drawn. Default 500, quick 20.")]
 
 

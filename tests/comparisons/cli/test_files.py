@@ -59,7 +59,7 @@ def test_a_disk_that_is_full_after_the_run_costs_no_result(rocking, tmp_path, mo
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "else"))
     status, out, err = rocking(*QUICK, "--json", tmp_path / "r.json", "--csv", tmp_path / "r.csv")
     assert status == 2 and "outcome" in out  # the table is printed all the same
-    kept = sorted((tmp_path / "else").iterdir(), reverse=True)
+    kept = sorted((tmp_path / "else").iterdir(), key=lambda path: path.suffix, reverse=True)
     assert [path.suffix for path in kept] == [".json", ".csv"] and list(tmp_path.iterdir()) == [tmp_path / "else"]
     assert all(f"the result is in {path}" in err for path in kept)
     assert json.loads(kept[0].read_text())["outcome"] == "rocks"

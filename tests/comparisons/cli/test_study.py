@@ -1,5 +1,6 @@
 """``rocking study``: all of them side by side, and a stored result checked (running/test_check.py: how)."""
 
+import shutil
 from pathlib import Path
 from unittest.mock import Mock
 
@@ -8,7 +9,9 @@ import pytest
 from comparisons.commands import study as command
 from comparisons.running import check as module
 from comparisons.running.check import Check
+from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.study import Computed, Study
+from comparisons.showing.parts import Page
 
 
 def _plan(ask):
@@ -34,3 +37,51 @@ def test_status_is_whether_all_hold(rocking, monkeypatch, differences, status):
     found, out, _ = rocking("study", "restitution", "--check", "4", "--output", "mine")
     assert found == status and check_all.call_args.args[:3] == ("restitution", "mine", 4)
     assert f"{4 - len(differences)} of 4 runs hold" in out and all(words in out for words in differences)
+
+
+def test_a_seed_repeats_the_draw_of_a_check_and_none_draws_anew(rocking, monkeypatch):
+    check_all = Mock(return_value=[Check("stability.json", 1, 4, 60, 490)])
+    monkeypatch.setattr(module, "check_all", check_all)
+    for words in ([], [], ["--seed", "7", "--write"]):
+        assert rocking("study", "stability", "--check", "4", *words)[0] == 0
+    seeds, records = zip(*((call.args[3], call.kwargs["record"]) for call in check_all.call_args_list), strict=True)
+    assert seeds[0] != seeds[1] and seeds[2] == 7 and records == (False, False, True)
+
+
+def test_a_seed_is_the_plans_where_it_takes_one_and_else_belongs_to_a_check(rocking, monkeypatch, tmp_path):
+    def drawing(ask, *, seed: int | None = None):
+        return Computed({"seed": seed}, [{"value": 1.5}])
+        yield
+
+    for name, plan in (("draws", drawing), ("draws-nothing", _plan)):
+        monkeypatch.setattr(command, "get_study", lambda name, plan=plan: Study(name, "Asks?", plan, __name__))
+        status, _, err = rocking("study", name, "--seed", "3", "--output", tmp_path / name)
+        if plan is drawing:
+            assert status == 0 and read_result(tmp_path / name / "draws.json").settings["seed"] == 3
+        else:
+            assert status == 2 and err == "Error: --seed 3: belongs to --check; this study draws nothing by a seed\n"
+    assert rocking("study", "stability", "--write")[::2] == (2, "Error: --write: belongs to --check\n")
+    assert "--seed" in rocking("study", "random-scenes", "--help")[1]
+
+
+def page(result):
+    """Of the studies above."""
+    return Page("It asks", ())
+
+
+def test_a_damaged_result_is_one_message_of_replot(rocking, tmp_path):
+    for name in ("restitution.json", "restitution.npz"):
+        shutil.copy(RESULTS / name, tmp_path)
+    path = tmp_path / "restitution.json"
+    text = path.read_text()
+    rms = read_result(path).rows[0]["rms"]
+    for wrong in (text[:-200], text.replace(f'"rms": {rms}', '"rms": 1e-7', 1), text.replace("exudyn", "exudin", 1)):
+        path.write_text(wrong)
+        status, out, err = rocking("study", "restitution", "--replot", path, "--output", tmp_path / "page")
+        assert (status, out) == (2, "") and err.startswith("Error: restitution.json: ") and err.count("\n") == 1
+    path.write_text(text)
+    status, _, err = rocking("study", "stability", "--replot", path)
+    assert status == 2 and err == (
+        "Error: restitution.json: a result of restitution; give one that rocking study stability wrote\n"
+    )
+    assert not (tmp_path / "page").exists()

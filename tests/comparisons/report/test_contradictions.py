@@ -1,13 +1,14 @@
 """No two places contradict each other: one rating of a variant everywhere, titles as tables, the README as results."""
 
 import itertools
+import json
 import re
 from xml.etree import ElementTree
 
 import pytest
 
 from comparisons.report.answer import MOST_WORDS, setups_of
-from comparisons.report.gallery import GALLERY, README, gallery, headlines, with_findings
+from comparisons.report.gallery import GALLERY, README, RESULTS_README, gallery, headlines, origins, with_findings
 from comparisons.report.studies import stored_studies, variants_of
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.studies import BUILT_IN, get_study
@@ -100,3 +101,22 @@ def test_the_readme_shows_and_says_what_the_stored_results_do(studies):
     assert words in readme and "| exudyn, tuned |" in words.splitlines()[0]
     assert len(words.split("\n\n")[1].split()) <= MOST_WORDS
     assert with_findings(readme, words) == readme != with_findings(readme, "- something else")
+
+
+def test_the_readme_of_the_results_says_where_each_of_them_comes_from():
+    files = sorted(RESULTS.glob("*.json"))
+    readme, table = (
+        RESULTS_README.read_text(encoding="utf-8"),
+        origins({file.stem: read_result(file) for file in files}),
+    )
+    assert readme == with_findings(readme, table)
+    lines = {line.split("`")[1]: line for line in table.splitlines()[2:]}
+    assert list(lines) == [file.stem for file in files]
+    for file in files:  # as the files themselves have it
+        content = json.loads(file.read_text())
+        origin, engines = content["provenance"], {str(row.get("engine")) for row in content["rows"]}
+        assert all(words in lines[file.stem] for words in (origin["time"][:10], origin["machine"]["processor"]))
+        assert origin["commit"][:12] + ", with uncommitted changes" * origin["dirty"] + " |" in lines[file.stem]
+        assert {name for name in ENGINES if name in lines[file.stem]} == ENGINES.keys() & engines
+        if last := origin.get("check"):
+            assert f"| {last['held']} of {last['runs']}, {last['date']} |" in lines[file.stem]

@@ -13,6 +13,9 @@ import pytest
 from analytic import load_scene, simulate, synthetic_motion
 from analytic.response import History
 from comparisons.report import histories, runs
+from comparisons.running.cases import Case
+from comparisons.running.executors import Task, lines_of
+from comparisons.running.files import PlaceError
 from comparisons.running.provenance import ResultError, read_result
 
 
@@ -26,6 +29,15 @@ def test_responses_survive_the_way_through_a_result_file_and_a_lost_history_is_s
     (tmp_path / values["history"]).unlink()
     with pytest.raises(ResultError, match="missing; remove the folder"):
         histories.response_of(values, tmp_path)
+
+
+def test_a_history_that_cannot_be_kept_is_no_failed_run(tmp_path):
+    """A full disk ends the report with a message; the run itself failed nowhere."""
+    (tmp_path / "file").write_text("")
+    case = Case(load_scene("free-rocking-rigid").with_(duration=0.1))
+    task = Task("t", (case,), ("key",), histories.ToFile(str(tmp_path / "file")), 60.0)
+    with pytest.raises(PlaceError, match=r"\.npz: could not be written \(Not a directory\)"):
+        lines_of(task)
 
 
 def test_thinning_keeps_ends_and_the_extremes_of_every_part():

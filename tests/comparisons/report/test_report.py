@@ -1,6 +1,5 @@
 """The report: its pages say what the result files say, and need nothing but themselves."""
 
-import json
 import re
 from html import unescape
 from pathlib import Path
@@ -8,6 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from answered import edit
 from page_numbers import number_in
 
 from analytic import EngineNotInstalled, load_scene, simulate, synthetic_motion
@@ -72,12 +72,6 @@ def copied(copy_of, tmp_path):
     return copy_of(tmp_path)
 
 
-def changed(path, change):
-    content = json.loads(path.read_text())
-    change(content)
-    path.write_text(json.dumps(content))
-
-
 def test_the_outcome_tables_say_what_the_result_file_says_and_that_is_the_models(folder):
     page, result = Page(folder / RUNS), read_result(folder / runs.SCENES)
     shown = {
@@ -125,7 +119,7 @@ def test_summary_follows_the_numbers(copied):
     assert words in found
     assert "it never lifts" in found
     assert f"the base moves by at most {isolated[0]['peak_base_displacement']:.4f} m" in found  # the model's
-    changed(copied / runs.SCENES, analytic_stands)
+    edit(copied / runs.SCENES, analytic_stands)
     assert "in analytic it rocks and stays upright" in items()
 
 
@@ -234,7 +228,7 @@ def test_a_study_is_shown_by_its_own_page_and_says_when_it_is_old(folder, copied
         assert page.table("Agreement")["exudyn", "kappa [-]"] == "0.75"
         assert "Two paragraphs &lt; one." in page.source
     assert "All of it" in own.source and "All of it" not in first.source and "pages/fake.html" in first.links
-    changed(file, lambda content: content["provenance"]["sources"].update({"analytic.errors": "another"}))
+    edit(file, lambda content: content["provenance"]["sources"].update({"analytic.errors": "another"}))
     warnings = write_page(copied, studies=studies).read_text().count("Out of date")
     assert warnings == first.source.count("Out of date") + 1
 
@@ -251,7 +245,7 @@ def test_undecided_outcomes_warnings_and_failures_stand_beside_the_outcomes_and_
         last.update(outcome="failed", failure={"kind": "crash", "reason": "the worker ended", "message": "<SIGSEGV>"})
         del last["agreement"]
 
-    changed(copied / runs.SCENES, cut)
+    edit(copied / runs.SCENES, cut)
     top, page = Page(write_page(copied, studies=NO_STUDIES)), Page(copied / RUNS)
     other, items = read_result(copied / runs.SCENES).rows[-2]["engine"], " ".join(top.items)
     free, isolated = (page.table(f"Caryatid {name}, until decided") for name in ("on rigid ground", "isolated"))

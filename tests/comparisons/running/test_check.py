@@ -4,6 +4,7 @@ import json
 
 import fake_solvers
 import pytest
+from answered import edit
 from fake_solvers import cases, scene
 
 from analytic import PulseMotion, SampledMotion, synthetic_motion
@@ -49,7 +50,7 @@ def changed(path, change):
 
 
 def test_unchanged_code_holds_and_the_result_says_when_it_was_checked(result):
-    found = check(result, 30, 1, workers=1, progress=False)
+    found = check(result, 30, 1, record=True, workers=1, progress=False)
     assert (found.runs, found.held, found.stored, found.total) == (12, 12, 12, 12)  # failed runs among them
     read = read_result(result)
     last = read.provenance["check"]
@@ -57,7 +58,9 @@ def test_unchanged_code_holds_and_the_result_says_when_it_was_checked(result):
     assert "12 of 12 runs hold" in last_check(read) and last_check(read) in origin_of(read)
     read.provenance["sources"]["analytic.scene"] = "0" * 16
     assert age(read).endswith(last_check(read))
+    before = result.read_bytes()
     assert check(result, 5, 2, workers=1, progress=False).runs == 5
+    assert result.read_bytes() == before  # not recorded: not asked for
 
 
 def test_a_run_that_differs_is_named_with_both_numbers(result):
@@ -66,7 +69,7 @@ def test_a_run_that_differs_is_named_with_both_numbers(result):
             run["values"]["peak"] *= 1 + 1e-8  # ten times what rounding is allowed
 
     changed(result, change)
-    found = check(result, 30, 1, workers=1, progress=False)
+    found = check(result, 30, 1, record=True, workers=1, progress=False)
     assert found.held == 11 and read_result(result).provenance["check"]["held"] == 11
     (words,) = found.differences
     assert "fake_solvers:sound, i = 2: peak: stored 0.000400000004, now 0.0004" == words
@@ -97,9 +100,7 @@ def test_results_without_stored_runs_say_what_to_do(tmp_path):
     path = write_result(tmp_path / "tilts.json", "tilts", {}, [], modules=["analytic"])
     with pytest.raises(ResultError, match="nothing to check, none of its 0 runs .* run rocking study tilts"):
         check_all("tilts", tmp_path, 3, 0)
-    content = json.loads(path.read_text())
-    del content["runs"]
-    path.write_text(json.dumps(content))
+    edit(path, lambda content: content.pop("runs"))
     with pytest.raises(ResultError, match="before runs were stored; run rocking study tilts"):
         check_all("tilts", tmp_path, 3, 0)
     with pytest.raises(ResultError, match="other.json: no such result file"):

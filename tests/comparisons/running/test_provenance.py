@@ -137,12 +137,23 @@ def test_scrub_keeps_project_files_readable(tmp_path):
     assert str(tmp_path) not in text and "0x7f" not in text
 
 
+def replaced(folder, old, new):
+    text = (folder / "r.json").read_text()
+    assert old in text
+    (folder / "r.json").write_text(text.replace(old, new, 1))
+
+
 @pytest.mark.parametrize(
     "spoil, words",
     [
         (lambda folder: (folder / "r.json").unlink(), "no such result file; run the study"),
         (lambda folder: (folder / "r.json").write_text("{"), "not JSON"),
         (lambda folder: (folder / "r.json").write_text("[]"), "schema None"),
+        (lambda folder: replaced(folder, "1.25e-05", "1.26e-05"), "r.json: damaged, .* or run the study again"),
+        (lambda folder: replaced(folder, '"rocks"', '"falls"'), "r.json: damaged"),
+        (lambda folder: replaced(folder, "true", "1"), "r.json: damaged"),
+        (lambda folder: replaced(folder, "1.25e-05", "1e999"), "r.json: damaged"),  # infinite
+        (lambda folder: replaced(folder, '"digest"', '"dogest"'), "no result file of a study, digest"),
         (lambda folder: (folder / "r.npz").unlink(), "r.npz: missing"),
         (lambda folder: np.savez(folder / "r.npz", a=np.arange(4)), "r.npz: missing or not the one r.json was"),
     ],
@@ -162,11 +173,12 @@ def test_another_layout_is_refused_with_the_one_that_is_read_and_who_reads_it(tm
         path.write_text(json.dumps(content | parts))
         return path
 
-    for schema in (1, 99, "rocking study 2"):
-        with pytest.raises(ResultError, match=f"schema {schema!r}, this version reads 'rocking study 1', the version"):
+    for schema in (1, 99, "rocking study 1"):  # that of before results had a digest
+        with pytest.raises(ResultError, match=f"schema {schema!r}, this version reads 'rocking study 2', the version"):
             read_result(changed(schema=schema, provenance=content["provenance"] | {"commit": "0" * 40}))
-    with pytest.raises(ResultError, match="schema 1, this version reads 'rocking study 1'; run"):
-        read_result(changed(schema=1, provenance=None))
+    for origin in (None, {"commit": 7}):
+        with pytest.raises(ResultError, match="schema 1, this version reads 'rocking study 2'; run"):
+            read_result(changed(schema=1, provenance=origin))
     for wrong in ({"rows": [1]}, {"settings": None}, {"provenance": {}}, {"more": 1}):
         with pytest.raises(ResultError, match=f"no result file of a study, {next(iter(wrong))}"):
             read_result(changed(**wrong))

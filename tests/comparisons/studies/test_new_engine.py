@@ -6,6 +6,7 @@ that no engine here has.
 
 import dataclasses
 import importlib
+import itertools
 import sys
 
 import pytest
@@ -16,13 +17,14 @@ from record_files import pairs
 import engines
 from analytic import synthetic_motion
 from comparisons.report.runs import restitution_cases
-from comparisons.running.provenance import RESULTS, read_result
+from comparisons.running.provenance import RESULTS, json_ready, read_result
 from comparisons.running.study import Request
 from comparisons.showing.rows import where
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.caryatid.runs import simulations
 from comparisons.studies.overturning import study as overturning
 from comparisons.studies.restitution.cases import CARYATID_BASE, Grid
+from comparisons.studies.rows import wrong_with
 from comparisons.studies.speed_error import growth
 from comparisons.studies.speed_error.cases import near_overturning, trials
 from engines.plugins import find_engines
@@ -90,6 +92,46 @@ def test_a_study_runs_and_shows_it(crude, tmp_path, name):
     assert rows_with(section) and (name in ("stability", "sheet") or drawn(section))  # which show words alone
     # the fake may blow up under scenes of any kind
     assert name == "random-scenes" or not [row for row in found.rows if row.get("failure")]
+
+
+FAILURES = (
+    {"kind": "crash", "reason": "the worker process ended", "exit_code": -11, "message": "SIGSEGV"},
+    {"kind": "time limit", "reason": "no result", "time_limit": 300.0, "message": ""},
+    {"kind": "solver", "reason": "not finite", "message": "step 3", "last_state": {"time": 0.1}},
+    {"kind": "exception", "reason": "ValueError: x", "message": "x"},
+)
+
+
+def failing(**options):
+    """Answers batches by the model, but for runs of the fake, which fail in every way in turn."""
+    kinds = itertools.cycle(FAILURES)
+    return by_model(failure=lambda case: next(kinds) if case.solver == "crude" else None, **options)
+
+
+@pytest.mark.parametrize("crude", [FAKE_ENGINE], indirect=True, ids=[""])
+@pytest.mark.parametrize("name", sorted(SHORT.keys() - {"stability"}))  # which needs runs: test_stability
+def test_runs_of_it_that_fail_make_rows_that_are_declared_and_shown(crude, tmp_path, name):
+    study = get_study(name)
+    more = {"scenes": [near_overturning()]} if name == "speed-error" else {}
+    found = answered(study.plan(ASK, **SHORT[name], **more), failing(history=name == "sheet"))[-1]
+    study.page(stored(tmp_path, name, found)).whole()
+
+
+@pytest.mark.parametrize("crude", [FAKE_ENGINE], indirect=True, ids=[""])
+def test_so_they_do_in_the_longer_studies(crude, monkeypatch, tmp_path):
+    grid = dataclasses.replace(overturning.QUICK, grounds=("rigid ground",), size=(60, 8))
+    monkeypatch.setitem(overturning.STEPPING, "levels", (1e-2,))
+    monkeypatch.setitem(engines.ENGINES["crude"].variants, "euler", dataclasses.replace(crude, tier="tuned"))
+    records = str(pairs(tmp_path, 2))
+    (paper, _), *_ = answered(simulations(synthetic_motion(), ASK.engines, True), failing(history=True))
+    rows = {
+        "overturning": answered(get_study("overturning").plan(ASK, grid), failing())[-1].rows,
+        "recorded": answered(get_study("recorded").plan(ASK, records=records), failing(history=True))[-1].rows,
+        "caryatid": paper,
+    }
+    for kind, some in rows.items():
+        failed = [row for row in json_ready(some) if row.get("failure") or row["part"] == "failure"]
+        assert len(failed) >= len(FAILURES) and not [wrong for row in failed if (wrong := wrong_with(row, kind))]
 
 
 def test_the_overturning_study_runs_and_shows_it(crude, monkeypatch, tmp_path):

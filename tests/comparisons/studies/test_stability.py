@@ -13,6 +13,7 @@ from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.study import Request, compute
 from comparisons.running.sweep import Row
 from comparisons.showing.rows import where
+from comparisons.studies.rows import wrong_with
 from comparisons.studies.stability import STUDY
 from comparisons.studies.stability.cases import BLOCK, GAP, OVERTURNS_FROM, THRESHOLD, hard_cases
 from comparisons.studies.stability.oracle import oracle
@@ -133,6 +134,7 @@ def test_a_failed_run_keeps_its_evidence(free):
     assert (row["result"], row["outcome"]) == (FAILED, "failed")
     assert row["failure"]["reason"] == failure.reason and 500 < len(row["failure"]["message"]) < 700
     assert row["last_state"]["time"] == free.end.time and row["settings"]["tolerance"] == TOLERANCE
+    assert wrong_with(row, "stability") is None
 
 
 def test_solvers_cover_every_variant_and_finer_settings_are_settings_they_have():

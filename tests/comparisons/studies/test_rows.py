@@ -1,0 +1,87 @@
+"""Studies declare their rows: those stored are so, and a row that is not is named with column, value and remedy."""
+
+import pytest
+from answered import edit
+
+from comparisons.running.provenance import RESULTS, ResultError, read_result, write_result
+from comparisons.studies import BUILT_IN
+from comparisons.studies.rows import ROWS, _columns, read_study, wrong_with
+from comparisons.studies.vocabulary import TYPES, Explained, columns_of
+
+CELL = {**{"part": "order", "engine": "exudyn", "variant": "step", "ground": "rigid ground"}, "order": 2.0}
+
+
+@pytest.mark.parametrize("file", sorted(RESULTS.glob("*.json")), ids=lambda file: file.stem)
+def test_rows_of_every_stored_result_are_those_of_its_study(file):
+    result = read_study(file)
+    assert result.rows == read_result(file).rows and result.kind in ROWS
+
+
+def test_every_study_declares_rows_of_columns_that_are_explained():
+    assert ROWS.keys() == set(BUILT_IN)
+    for kind, parts in ROWS.items():
+        known = columns_of(kind)
+        for part in parts:
+            assert all(known.keys() >= columns.keys() for columns in _columns(kind, part)), (kind, part)
+        assert all(set(one.type.split(" or ")) <= TYPES.keys() for one in known.values())
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ({"part": "ordre"}, "part = 'ordre' is none of cell, summary, order, "),
+        ({"part": ["order"]}, r"part = \['order'\] is none of "),
+        ({"order": ...}, "column 'order' is missing"),
+        ({"engine": None}, "column 'engine' is null"),
+        ({"engine": 3}, "column 'engine' = 3 is no word"),
+        ({"order": "2.0"}, "column 'order' = '2.0' is no number"),
+        ({"order": True}, "column 'order' = True is no number"),
+        ({"runs": 2.0}, "column 'runs' = 2.0 is no whole number"),
+        ({"tag": [1]}, r"column 'tag' = \[1\] is no table"),
+        ({"of": []}, r"column 'of' = \[\] is no number or word"),
+        ({"oder": 2.0}, "column 'oder' = 2.0 is none of this study"),
+    ],
+)
+def test_a_row_that_is_not_as_declared_is_named_with_its_place_and_the_remedy(tmp_path, change, words):
+    row = {name: value for name, value in {**CELL, **change}.items() if value is not ...}
+    path = write_result(tmp_path / "r.json", "restitution", {}, [CELL, row], modules=["analytic.errors"])
+    with pytest.raises(ResultError, match=rf"^r\.json, row 2: {words}.*; run rocking study restitution again$"):
+        read_study(path)
+    assert read_result(path).rows[0] == CELL  # as whole as it was written
+
+
+@pytest.mark.parametrize("more", [{"order": None}, {"order": 2}, {"runs": 4, "of": "all"}, {"failure": None}])
+def test_null_where_it_may_be_and_further_columns_of_the_study_are_taken(more):
+    assert wrong_with(CELL | more, "restitution") is None
+
+
+def test_a_row_without_numbers_says_why_and_needs_no_more():
+    row = {"engine": "exudyn", "variant": "x", "tier": "tuned", "index": 3, "class": "failed", "comparable": "yes"}
+    assert wrong_with(row, "random-scenes") == "column 'differences' is missing"
+    assert wrong_with(row | {"failure": {"kind": "crash"}}, "random-scenes") is None
+
+
+def test_a_result_of_another_study_is_refused_by_name_and_a_foreign_one_is_not_looked_at(tmp_path):
+    path = write_result(tmp_path / "r.json", "swings", {}, [{"height": "high"}], modules=["analytic.errors"])
+    assert read_study(path).rows == [{"height": "high"}] and read_study(path, "swings").kind == "swings"
+    with pytest.raises(ResultError, match=r"r\.json: a result of swings; give one that rocking study surface wrote"):
+        read_study(path, "surface")
+
+
+def test_a_number_changed_in_a_stored_result_is_seen(tmp_path):
+    """By the digest; by one who makes it anew it is not, and cannot be."""
+    text = (RESULTS / "restitution.json").read_text()
+    path = tmp_path / "restitution.json"
+    (tmp_path / "restitution.npz").write_bytes((RESULTS / "restitution.npz").read_bytes())
+    rms = read_result(RESULTS / "restitution.json").rows[0]["rms"]
+    assert f'"rms": {rms},' in text
+    path.write_text(text.replace(f'"rms": {rms},', f'"rms": {rms * 1.001:.5g},', 1))
+    with pytest.raises(ResultError, match=r"restitution\.json: damaged"):
+        read_study(path)
+    path.write_text(text)
+    assert read_study(edit(path, lambda content: None)).rows[0]["rms"] == rms
+
+
+def test_a_type_is_that_of_json():
+    assert Explained("what").holds(1) and Explained("what").holds(1.5) and not Explained("what").holds(True)
+    assert Explained("what", type="number or list").holds([]) and not Explained("what", type="flag").holds(1)
