@@ -285,6 +285,7 @@ OWN: dict[str, dict[str, Explained]] = {
         "decided": flag("whether nothing can change it any more"),
         "overturning_time": number("when the block has overturned", "s"),
         "unstable_time": number("when its overturning was certain", "s"),
+        "fall_time": number("last passage of the slenderness by a block that overturns", "s"),
         "peak_tilt": number("largest |tilt|", "rad"),
         "peak_tilt_ratio": number("largest |tilt| over the slenderness"),
         "peak_base_displacement": number("largest displacement of the base", "m"),

@@ -25,6 +25,7 @@ ELSEWHERE = {
     ("comparisons/cli/interrupts.py", "open_streams", "os.open"): "no file: os.devnull",
     ("comparisons/cli/__init__.py", "_silence", "os.open"): "no file: os.devnull",
     ("engines/guard.py", "_evidence", "tempfile.TemporaryFile"): "temporary",
+    ("engines/greeting.py", "without", "tempfile.TemporaryFile"): "temporary",
     ("engines/guard.py", "_evidence", "open"): "no file: os.devnull",
     ("analytic/records/packed.py", "_unzipped", "open"): "a member of an archive, to be read",
     ("analytic/response.py", "to_csv", "numpy.savetxt"): "from Python alone, which says where",
