@@ -16,6 +16,7 @@ from comparisons.report.answer import (
     setups_of,
 )
 from comparisons.report.runs import restitution_computed
+from comparisons.report.sections import restitution_section
 from comparisons.report.write import _outside
 from comparisons.showing.parts import COST, RESTITUTION, Judgement, Mark
 from comparisons.showing.wording import rating
@@ -127,6 +128,9 @@ def test_impacts_that_an_engine_misses_on_the_scenes_own_block_are_counted():
     ]
     found = restitution_computed(rows).rows
     assert [row["lost"] for row in found] == [0, 1] and found[1]["failed"] == 0
+    settings = {"starts": [0.6], "seconds": 3.0, "bases": [None]}
+    (shown,) = restitution_section(SimpleNamespace(rows=found, settings=settings)).tables
+    assert [row[1] for row in shown.rows] == ["may be trusted", "is not to be trusted"]
 
 
 def test_a_scene_is_outside_the_range_by_what_an_engine_warns_of():
