@@ -40,11 +40,11 @@ DIFFERENCES = {
     "outcome": "the block {here}, in the analytic model it {model}",
     "peak_tilt": "peak tilt {here:.4g} rad, in the analytic model {model:.4g}",
     "peak_base_displacement": "peak base displacement {here:.4g} m, in the analytic model {model:.4g}",
-    "fall_time": "falls from {here:.4g} s on, in the analytic model from {model:.4g} s",
-    "overturning_time": "has overturned at {here:.4g} s, in the analytic model at {model:.4g} s",
+    "fall_time": "falls from {here:.6g} s on, in the analytic model from {model:.6g} s",
+    "overturning_time": "has overturned at {here:.6g} s, in the analytic model at {model:.6g} s",
     "impacts_before_fall": "falls after {here:.0f} impacts, in the analytic model after {model:.0f}",
     "restitution": "restitution {here:.4g} at an impact, in the analytic model {model:.4g}",
-    "impact_loss": "an impact takes {here:.3g} of the energy of rotation, in the analytic model {model:.3g}",
+    "impact_loss": "loss 1 - e² of {here:.3g} at an impact, in the analytic model {model:.3g}",
     "missing_impacts": "{here:.0f} of {model:.0f} impacts of the analytic model are found",
     "extra_impacts": "{here:.0f} impacts, {model:.0f} of them in the analytic model",
 }
@@ -148,14 +148,15 @@ def about_record(motion: Any) -> tuple[Caution, ...]:
 class Difference:
     """What an engine's run has other than the analytic model: both values, and the difference that is tolerated.
 
-    quantity: one of `DIFFERENCES`; here, model: an outcome, or a number. limit: of peaks and losses relative to the
+    quantity: one of `DIFFERENCES`; here, model: an outcome, or a number; model is None where the block ends otherwise
+    there, and alike in the model of a scene next to it. limit: of peaks and losses relative to the
     model's, of the restitution [-], a time [s] or a number of impacts absolute; None for an outcome. near: between
     which the number lies in the model where the scene is changed by up to 1e-4; None where that was not asked.
     """
 
     quantity: str
     here: str | float
-    model: str | float
+    model: str | float | None
     limit: float | None
     near: tuple[float, float] | None = None
 
@@ -164,10 +165,13 @@ class Difference:
             object.__setattr__(self, "near", tuple(self.near))  # a list, from JSON
 
     def __str__(self) -> str:
-        words = DIFFERENCES[self.quantity].format(here=self.here, model=self.model)
-        if self.near is None or f"{self.near[0]:.3g}" == f"{self.near[1]:.3g}":
+        words = DIFFERENCES[self.quantity]
+        if self.model is None:
+            words = words.partition(", in the analytic model")[0]
+        words = words.format(here=self.here, model=self.model)
+        if self.near is None or self.model is not None and f"{self.near[0]:.3g}" == f"{self.near[1]:.3g}":
             return words
-        return f"{words} ({self.near[0]:.3g} to {self.near[1]:.3g} within 1e-4 of the scene)"
+        return f"{words} ({self.near[0]:.3g} to {self.near[1]:.3g} in the analytic model within 1e-4 of the scene)"
 
 
 @dataclass(frozen=True)

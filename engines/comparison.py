@@ -8,8 +8,9 @@ A `Difference` is one beyond its limit:
   likewise. Of a block that overturns the displacement is that up to its last passage of the slenderness.
 - of a block that overturns the time of that passage, by more than `FALL` of a rocking period 2 pi/omega_r, and the
   number of impacts that count before it; one whose rate is within `PEAK` of counting may count or not. And the time of
-  overturning, by `FALL` of a period and what the model takes from where its contact no longer holds (N <= 0, or more
-  friction than there is): from there on an engine's block slides or flies, by up to a sixth of that time.
+  overturning, where the model overturns, by `FALL` of a period and what the model takes from where its contact no
+  longer holds (N <= 0, or more friction than there is): from there on an engine's block slides or flies, by up to a
+  sixth of that time.
 - restitution: an impact's rate after over rate before differs by more than `RESTITUTION` from that of the model's
   impact that matches it; or, where none does, what is lost, 1 - e^2, by more than `LOSS` of the model's, which tells
   more of slender blocks. A loss below `LEAST_LOSS` is compared as one of that size.
@@ -78,7 +79,10 @@ class Reference:
             return cls(comparable=f"the analytic model reaches no end: {error}")
         if why := _outside(scene, model):
             return cls(model, comparable=why)
-        copies = tuple(simulate(copy, history=False) for copy in near_copies(scene))
+        try:
+            copies = tuple(simulate(copy, history=False) for copy in near_copies(scene))
+        except SceneError as error:
+            return cls(model, comparable=f"the analytic model of a scene next to it reaches no end: {error}")
         near = frozenset(one.quantity for copy in copies for one in _numbers(scene, (model,), copy))
         until = min((parting(scene, model, copy) for copy in copies), default=math.inf)
         return cls(model, copies, EDGE if near else COMPARED, near, until)
@@ -123,10 +127,15 @@ def _numbers(scene: Scene, known: Sequence[Response], run: Response) -> list[Dif
         low, high, here = min(values), max(values), getattr(run, name)
         if not low - _room(scene, name, low) <= here <= high + _room(scene, name, high):  # not: NaN
             limit = PEAK if name.startswith("peak") else _room(scene, name, values[0])
-            found.append(Difference(name, here, values[0], limit, _span(known, low, high)))
+            found.append(Difference(name, here, _own(known, alike, values), limit, _span(known, low, high)))
     if falls:
         found += [*_before_fall(scene, known, alike, run), *_overturning(scene, known, alike, run, found)]
     return found
+
+
+def _own(known: Sequence[Response], alike: Sequence[Response], values: Sequence[float]) -> float | None:
+    """Of the values of runs that end `alike` that of the model; None where it ends otherwise."""
+    return values[0] if alike[0] is known[0] else None
 
 
 def _span(known: Sequence[Response], low: float, high: float) -> tuple[float, float] | None:
@@ -147,16 +156,15 @@ def _room(scene: Scene, name: str, value: float) -> float:
 def _overturning(
     scene: Scene, known: Sequence[Response], alike: Sequence[Response], run: Response, found: Sequence[Difference]
 ) -> list[Difference]:
-    """The difference in the time of overturning, of runs whose falls begin alike."""
-    if any(one.quantity == "fall_time" for one in found):
+    """The difference in the time of overturning, of runs whose falls begin alike as the model's own does."""
+    if any(one.quantity == "fall_time" for one in found) or known[0].outcome != FALLS:
         return []
     here, times, room = run.overturning_time, [one.overturning_time for one in alike], _room(scene, "fall_time", 0.0)
     low, high = min(times), max(times)
-    if not low - room <= here <= high + room and known[0].outcome == FALLS:
-        room += times[0] - _released(scene, known[0])
-        if not low - room <= here <= high + room:
-            return [Difference("overturning_time", here, times[0], room, _span(known, low, high))]
-    return []
+    for more in (lambda: 0.0, lambda: times[0] - _released(scene, known[0])):  # the second costs a run
+        if low - room - (late := more()) <= here <= high + room + late:
+            return []
+    return [Difference("overturning_time", here, times[0], room + late, _span(known, low, high))]
 
 
 def _released(scene: Scene, model: Response) -> float:
@@ -185,7 +193,8 @@ def _before_fall(scene: Scene, known: Sequence[Response], alike: Sequence[Respon
     low, high = min(one[0] for one in theirs), max(one[2] for one in theirs)
     if most >= low and least <= high:
         return []
-    return [Difference("impacts_before_fall", own, theirs[0][1], 0.0, _span(known, low, high))]
+    model = _own(known, alike, [one[1] for one in theirs])
+    return [Difference("impacts_before_fall", own, model, 0.0, _span(known, low, high))]
 
 
 def _impact_differences(scene: Scene, model: Response, run: Response, until: float) -> list[Difference]:

@@ -22,6 +22,7 @@ RANGE = {
     "damping": (0.0, 1.0, "damping up to critical"),
     "tilt": (0.01, math.inf, "a peak tilt of at least {low:g} slendernesses"),
 }
+NAMES = {"base_mass": "base mass over block mass", "tilt": "peak tilt over slenderness"}  # where it is another
 
 
 def in_words() -> str:
@@ -36,7 +37,7 @@ def outside(scene: Scene, response: Response) -> tuple[Caution, ...]:
         low, high, _ = RANGE[name]
         if not low * (1 - ROUNDING) <= value <= high * (1 + ROUNDING):
             words = (
-                f"{name.replace('_', ' ')} {value:.3g} is outside the range in which engines are tested "
+                f"{NAMES.get(name, name)} {value:.3g} is outside the range in which engines are tested "
                 f"({_words(name)}): nothing is promised there"
             )
             found.append(Caution("engine", words, name, value, low if value < low else high))
@@ -64,6 +65,6 @@ def _values(scene: Scene, response: Response) -> dict[str, float]:
         omega = math.sqrt(law.count * law.kb / scene.total_mass)
         found["period"] = 2 * math.pi / omega if omega else math.inf
         found["damping"] = law.count * law.damping / (2 * omega * scene.total_mass) if omega else 0.0
-    if response.peak_tilt_ratio > 0:
+    if response.outcome != "stands":  # an engine that stands has a tilt of rounding
         found["tilt"] = response.peak_tilt_ratio
     return found

@@ -16,21 +16,21 @@ def _spelled(*parts):
 
 
 SAMPLING = ("sample", "sampling", "digitizing", "digitising", "digitization", "digitisation")
-RATE_KEYS = {"fs", "sampled at"}.union(
+RATE_KEYS = {"fs", "samprate", "sampled at"}.union(
     _spelled((*SAMPLING, "data", "acquisition", "scan", "record", "recording"), GAP, ("rate", "freq", "frequency")),
     _spelled(("tasa", "frecuencia", "velocidad"), (" de muestreo", " de adquisicion")),
     _spelled(("abtast", "sampling"), GAP, ("rate", "frequenz")),
     _spelled(("frequence", "taux", "cadence"), SAMPLING_FR),
     _spelled(("ornekleme ",), ("frekansi", "hizi", "orani")),
 )
-INTERVAL_KEYS = {"dt", "interval of", "intervals of"}.union(
+INTERVAL_KEYS = {"dt", "sampled every", "interval of", "intervals of"}.union(
     _spelled(("delta", "δ", "∆"), GAP, ("t",)),
     _spelled(("equally",), GAP, ("spaced at",)),
     _spelled((*SAMPLING, "data", "recording"), GAP, ("interval", "period", "step", "time", "spacing", "increment")),
     _spelled(
         ("time",),
         GAP,
-        ("step", "interval", "increment", "spacing"),
+        ("step", "interval", "increment", "spacing", "base"),
         ("", " size"),
         ("", *(f" between {what}" for what in ("samples", "points", "values", "readings"))),
     ),
@@ -59,7 +59,9 @@ def _one_of(words):
 
 
 END = r"(?![^\W\d_])"
-KEY = re.compile(rf"(?<![^\W\d_])(?:(?:{_one_of(RATE_KEYS | INTERVAL_KEYS)}){END}|(?:{_one_of(PER_SECOND)})(?= ?[:=]))")
+KEY = re.compile(
+    rf"(?<![^\W\d_])(?:(?:{_one_of(RATE_KEYS | INTERVAL_KEYS)}){END}|(?:delta|{_one_of(PER_SECOND)})(?= ?[:=]))"
+)
 RATE_KEY = re.compile(_one_of(RATE_KEYS | PER_SECOND))
 UNIT = f"(?:{_one_of(RATES)}|[a-zµ]+){END}"
 SAID = re.compile(rf" ?[(\[]? ?((?!(?:is|of|at){END}){UNIT})? ?[)\]]? ?([:=]|is|of|at)? ?")
@@ -77,7 +79,7 @@ BEHIND_UNIT = re.compile(
 )
 MERE = re.compile(
     "(?:step|interval|spacing|rate|sampling|muestreo|schritt|abtastung|paso|pas|echantillonnage|adim|ornekleme)"
-    rf"{END} ?(?:[(\[] ?(?P<boxed>{UNIT}) ?[)\]] ?)?[:=]? ?"
+    rf"{END} ?(?:[(\[]? ?(?P<boxed>{UNIT})(?= ?[)\]:=]) ?[)\]]? ?)?[:=]? ?"
 )
 COUNT = re.compile(
     r"(?<![^\W\d_])(?:(?:no|nr|num|number)[.]? ?(?:of )?(?:data |sample |acceleration )?(?:points|samples|data|values)"

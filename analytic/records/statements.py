@@ -20,7 +20,7 @@ TIMES = "time|t|zeit|tiempo|temps|zaman"  # words for it, folded
 _RATE = "|".join(
     (
         r"(?:sampl(?:e|ing)|digiti[sz](?:ing|ation)|data|acquisition|scan|record(?:ing)?) ?-?(?:rate|freq(?:uency)?)",
-        r"fs|sampled at",
+        r"fs|samprate|sampled at",
         r"(?:tasa|frecuencia|velocidad) de (?:muestreo|adquisicion)",
         r"(?:abtast|sampling) ?-?(?:rate|frequenz)",
         r"(?:frequence|taux|cadence) d.?echantillonnage",
@@ -29,9 +29,9 @@ _RATE = "|".join(
 )
 _INTERVAL = "|".join(
     (
-        r"dt|(?:delta|[δ∆]) ?-?t|equally ?-?spaced at|intervals? of",
+        r"dt|(?:delta|[δ∆]) ?-?t|delta(?= ?[:=])|equally ?-?spaced at|intervals? of|sampled every",
         r"(?:sampl(?:e|ing)|data|recording|digiti[sz](?:ing|ation)) ?-?(?:interval|period|step|time|spacing|increment)",
-        r"time ?-?(?:step|interval|increment|spacing)(?: size)?(?: between (?:samples|points|values|readings))?",
+        r"time ?-?(?:step|interval|increment|spacing|base)(?: size)?(?: between (?:samples|points|values|readings))?",
         r"(?:intervalo|periodo|paso|incremento) de (?:muestreo|tiempo)|(?:paso|intervalo) temporal",
         r"(?:abtast|zeit) ?-?(?:intervall|periode|zeit|schritt|schrittweite|inkrement|abstand)",
         r"(?:pas|intervalle|periode) (?:de temps|d.?echantillonnage)",
@@ -60,7 +60,7 @@ _STEP = re.compile(
     rf"|(?<![0-9.,])(?P<samples>{_PRINTED}) ?(?:{_SAMPLES}){END}"
     rf"|(?<![0-9.,])(?P<ahead>{_PRINTED}) ?-?(?P<ahead_unit>{_UNITS})\.? ?-?(?>{_BEHIND}){END}(?! ?[(\[:=0-9])"
     rf"|(?:(?<![^,;|#%!])|(?<=[,;|#%!] ))(?:{_BEGINNING}){END} ?(?:"
-    rf"[(\[] ?(?P<boxed_unit>{_UNITS}) ?[)\]] ?[:=]? ?(?P<boxed>{_PRINTED})"
+    rf"[(\[]? ?(?P<boxed_unit>{_UNITS}) ?(?:[)\]] ?[:=]?|[:=]) ?(?P<boxed>{_PRINTED})"
     rf"|[:=]? ?(?P<bare>{_PRINTED}) ?(?P<bare_unit>{_UNITS}))"
 )
 _COUNT = re.compile(

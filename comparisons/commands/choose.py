@@ -43,6 +43,7 @@ def command(
     compared with the analytic model; tilt and displacement up to the sensitivity horizon only. Status 1: none passes.
     Example: rocking choose caryatid-isolated --for displacement --error 1e-3
     """
+    from analytic.limits import scene_warnings
     from analytic.scene_file import load_scene
 
     from ..advice import choose
@@ -54,6 +55,8 @@ def command(
     check_time_limit(time_limit)
     check_writable([json_file], picture=plot, inputs=[scene])
     what = load_scene(scene)
+    for caution in scene_warnings(what):
+        say(str(caution))
     compile_kernels()
     if criterion is None and engine and (shown := fitting(what)) != "restitution":
         say(f"the block of {what.name} never hits what it stands on: there is no restitution; judged by its {shown}")

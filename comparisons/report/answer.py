@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from engines import ENGINES
 
 from ..showing.parts import COST, RESTITUTION, Judgement, Mark, number
-from ..showing.wording import rating
+from ..showing.wording import rating, with_counts
 
 if TYPE_CHECKING:
     from ..running.provenance import Result
@@ -90,12 +90,15 @@ def _rating(marks):
     return Mark(LEVELS[level], level)
 
 
-def own_restitution(block: Result) -> Judgement:
-    """Restitution of the scenes' own block, from its free rocking; takes the place of the study's."""
+def own_restitution(block: Result, outside: str = "") -> Judgement:
+    """Restitution of the scenes' own block, from its free rocking; takes the place of the study's.
+
+    outside : as of `recommendation`; an error of the restitution then says little of what an impact takes.
+    """
     marks = {
         (row["engine"], row["variant"]): Mark(
-            number(row["rms"], 2) + f", {row['failed']} failed" * bool(row["failed"]),
-            rating(row["rms"], row["failed"]),
+            with_counts(number(row["rms"], 2), {"failed": row["failed"], "missed": row["lost"]}),
+            "part" if outside else rating(row["rms"], row["failed"] + row["lost"]),
             f"{row['impacts']} impacts, worst {number(row['worst'], 2)}",
             row["rms"],
         )
@@ -111,9 +114,17 @@ def best_of(setups: Sequence[Setup]) -> Setup | None:
     return min(good, key=lambda one: (one.rating.level != "good", one.cost), default=None)
 
 
-def recommendation(setups: Sequence[Setup], judgements: Sequence[Judgement], limits: str) -> list[str]:
-    """What to use, with error, cost and limits, the range in words, within which it was tested; list of str."""
+def recommendation(
+    setups: Sequence[Setup], judgements: Sequence[Judgement], limits: str, outside: str = ""
+) -> list[str]:
+    """What to use, with error, cost and limits, the range in words, within which it was tested; list of str.
+
+    outside : the warning of a scene that lies outside that range, for which no engine is recommended.
+    """
     words = ["One rigid block, planar, on sharp corners: use the analytic model. It is exact to the closed forms."]
+    if outside:
+        words.append(f"No engine is recommended here: {outside}.")
+        return words
     best = best_of(setups)
     if best is None:
         words.append("No engine that was run here may be trusted in all that was tested.")

@@ -88,7 +88,9 @@ def next_step(scene: Mapping[str, Any], needed: Mapping[str, float | None] | Non
     """
     margin = f"rocking margin {call}"
     if needed is None:
-        return margin, "says how much it has to spare. It does not lift: there is nothing to do."
+        held = scene["base"] is None or scene["bearings"]
+        ends = "It does not lift: there is nothing to do." if held else "On a base that nothing holds it does not lift."
+        return margin, f"says how much it has to spare. {ends}"
     sizes = _sizes(scene, needed)
     if needed["stroke"] is None:
         cure = sizes or "widen, fix or lower it"

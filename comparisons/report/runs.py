@@ -19,7 +19,7 @@ from analytic.response import History, Response
 from analytic.rocking import restitution
 from engines import available_engines, get_engine
 
-from ..measuring.errors import compare, impact_errors, rms, worst
+from ..measuring.errors import compare, impact_errors, lost_impacts, rms, worst
 from ..measuring.horizon import sensitivity_horizon, solver_horizon
 from ..running.cases import Case
 from ..running.solving import spinner
@@ -138,21 +138,24 @@ def impacts_only(case: Case, response: Response) -> dict[str, Any]:
 def restitution_computed(rows: Sequence[Row]) -> Computed:
     """The answer of the block let go: a row for each solver and variant, over all grounds and starts."""
     groups: dict[tuple[str, str | None], list[Row]] = {}
+    models = {row.case.scene.digest(): Response.from_json(row.values) for row in rows if row.case.solver == "analytic"}
     for row in rows:
         groups.setdefault((row.case.solver, row.case.variant), []).append(row)
     settings = {"starts": STARTS, "seconds": rows[0].case.scene.duration, "bases": list(_bases(rows))}
-    return Computed(settings, [_restitution_row(*key, of) for key, of in groups.items()], name=Path(RESTITUTION).stem)
+    return Computed(
+        settings, [_restitution_row(*key, of, models) for key, of in groups.items()], name=Path(RESTITUTION).stem
+    )
 
 
 def _bases(rows):
     return dict.fromkeys(row.case.scene.base and row.case.scene.base.mass for row in rows)
 
 
-def _restitution_row(engine, variant, members):
-    """Errors of one solver and variant."""
+def _restitution_row(engine, variant, members, models):
+    """Errors of one solver and variant. models : {digest of a scene: the analytic model's run}."""
     sound = [(row, Response.from_json(row.values)) for row in members if not row.failed]
     errors = [impact_errors(row.case.scene, response) for row, response in sound]
-    missed = np.concatenate([one["state"] for one in errors]) if errors else np.empty(0)
+    of_states = np.concatenate([one["state"] for one in errors]) if errors else np.empty(0)
     jumps = [value for one in errors for value in one.get("jump", ())]
     simulated = sum(response.end.time for _, response in sound)
     kind = get_engine(engine).variants[variant] if variant else None
@@ -164,9 +167,10 @@ def _restitution_row(engine, variant, members):
         "runs": len(members),
         "failed": len(members) - len(sound),
         "failures": [row.failure for row in members if row.failed],
-        "impacts": len(missed),
-        "rms": rms(missed) if len(missed) else None,
-        "worst": worst(missed) if len(missed) else None,
+        "impacts": len(of_states),
+        "lost": sum(lost_impacts(response, models[row.case.scene.digest()]) for row, response in sound),
+        "rms": rms(of_states) if len(of_states) else None,
+        "worst": worst(of_states) if len(of_states) else None,
         "jump_rms": rms(jumps) if jumps else None,
         "warnings": list(dict.fromkeys(warning["text"] for row, _ in sound for warning in row.values["warnings"])),
         "settings": sound[0][0].values["settings"] if sound else None,

@@ -243,16 +243,17 @@ def restitution_section(result: Result) -> Section:
         (
             f"Free rocking for {result.settings['seconds']:g} s, released from rest at φ/γ = {starts}, {grounds}. "
             "Restitution is φ̇⁺/φ̇⁻, from the states at the impact, and is compared with eq. (7). Error and CPU time "
-            f"are those of the same runs. Trusted: error, root mean square, at most {TRUSTED:g} and no failed run; "
-            f"usable: at most {USABLE:g}.",
+            f"are those of the same runs. Trusted: error, root mean square, at most {TRUSTED:g}, no failed run and no "
+            f"missed impact; usable: at most {USABLE:g}.",
         ),
         (
             table(
                 "Restitution of this block, all grounds and starts together",
                 result.rows,
                 NAME,
-                Column("rating", lambda row: trust(row["rms"], row["failed"])),
+                Column("rating", lambda row: trust(row["rms"], row["failed"] + row["lost"])),
                 Column("impacts [-]", "impacts"),
+                Column("missed impacts [-]", "lost"),
                 Column("error, rms [-]", "rms"),
                 Column("worst impact [-]", "worst"),
                 Column("base velocity jump, relative error, rms [-]", "jump_rms"),

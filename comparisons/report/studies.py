@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from ..running.provenance import RESULTS, ResultError, age, last_check
 from ..running.readable import readable
@@ -22,7 +22,8 @@ class Stored:
     """One result file. section: all of it; finding: its answer for the first page; judgements: its rows of the first
     table.
 
-    origin: machine, versions, date and commit in one line. variants: those it knows, as `answer.setups_of` takes them.
+    wrong: why it cannot be shown, "" where it can. origin: machine, versions, date and commit in one line. variants:
+    those it knows, as `answer.setups_of` takes them.
     """
 
     name: str
@@ -31,6 +32,12 @@ class Stored:
     judgements: tuple[Judgement, ...] = ()
     origin: str = ""
     variants: tuple[Mapping[str, Any], ...] = ()
+    wrong: str = ""
+
+    @classmethod
+    def damaged(cls, name: str, title: str, words: str, **more: Any) -> Self:
+        """One of which nothing but why can be shown."""
+        return cls(name, Section(title, (words,), age=more.pop("age", None)), wrong=words, **more)
 
 
 def stored_studies(
@@ -77,20 +84,20 @@ def _stored(file):
         if not f"{file.stem}-".startswith(f"{result.kind}-"):  # <study>-<part>.json where a study has several
             raise ResultError(f"a result of {result.kind}; call it {result.kind}.json")
     except ResultError as error:
-        return Stored(file.stem, Section(f"Study {file.stem}", (f"{file.name} cannot be shown: {readable(error)}",)))
+        return Stored.damaged(file.stem, f"Study {file.stem}", f"{file.name} cannot be shown: {readable(error)}")
     old, origin = age(result), origin_of(result)
     try:
         study = get_study(result.kind)
     except (KeyError, StudyBroken) as error:
         words = f"{file.name} cannot be shown: {error.args[0]}."
-        return Stored(file.stem, Section(f"Study {result.kind}", (words,), age=old), origin=origin)
+        return Stored.damaged(file.stem, f"Study {result.kind}", words, age=old, origin=origin)
     try:
         page = study.page(result)  # drawn once
         judgements, variants = study.judgements(result), _variants(result.settings)
         section, finding = replace(page.whole(), age=old), page.opening()
     except Exception as error:  # settings of another version, or another package's page: the report goes on
         words = f"{file.name} cannot be shown: its page fails ({readable(repr(error))}); --replot shows where."
-        return Stored(file.stem, Section(f"Study {result.kind}", (words,), age=old), origin=origin)
+        return Stored.damaged(file.stem, f"Study {result.kind}", words, age=old, origin=origin)
     finding = finding and replace(finding, age=old)
     return Stored(file.stem, section, finding, judgements, origin, variants)
 

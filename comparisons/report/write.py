@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
-from engines.statue_range import in_words
+from engines.statue_range import RANGE, in_words
 
 from ..running.files import write_all
 from ..running.provenance import PACKAGES, RESULTS, age, read_result
@@ -102,7 +102,8 @@ def write_page(
             references=equations.REFERENCES,
             provenance=_provenance(scenes, block),
             pages=listed,
-            ages=[f"{name} is {text}" for name, text in ((name, age(result)) for name, result in read.items()) if text],
+            ages=[f"{name} is {text}" for name, text in ((name, age(result)) for name, result in read.items()) if text]
+            + [one.wrong for one in stored if one.wrong],
             files=[file for name in read for file in (name, name.replace(".json", ".npz"))],
         )
     )
@@ -128,7 +129,7 @@ def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[
     where = {each.heading: f"{PAGES}/{one.name}.html" for one in stored for each in one.judgements}
     judgements = [each for one in stored for each in one.judgements]
     if block:
-        own = own_restitution(block)
+        own = own_restitution(block, _outside(scenes))
         where[own.heading] = f"{PAGES}/runs.html"
         judgements = [own, *(each for each in judgements if each.key != own.key)]
     own_variants = [
@@ -138,7 +139,7 @@ def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[
     ]
     setups = setups_of(variants_of(stored, *own_variants), judgements)
     return {
-        "recommendation": recommendation(setups, judgements, in_words()) if setups else [],
+        "recommendation": recommendation(setups, judgements, in_words(), _outside(scenes)) if setups else [],
         "summary": summary(scenes, block),
         "not_to_do": not_to_do(setups, judgements),
         "decision": setups,
@@ -150,6 +151,12 @@ def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[
         "origin": origin_of(scenes),
         "stage": _stage(scenes),
     }
+
+
+def _outside(scenes: Result) -> str:
+    """What an engine's run warns of where a scene lies outside the range of a statue, or ""."""
+    warnings = (warning for row in scenes.rows if "engine" in row for warning in row.get("warnings", ()))
+    return next((one["text"] for one in warnings if one["kind"] == "engine" and one["quantity"] in RANGE), "")
 
 
 def _stage(scenes: Result) -> Mapping[str, Any] | None:

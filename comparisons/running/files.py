@@ -5,6 +5,7 @@ temporary (tests/comparisons/running/test_one_way.py holds the code to that).
 """
 
 import contextlib
+import errno
 import hashlib
 import os
 import secrets
@@ -150,6 +151,8 @@ def _put(place, data):
             file.flush()
             os.fsync(file.fileno())  # some disks say only now that they are full
         if place.exists():
+            if not os.access(place, os.W_OK):
+                raise PermissionError(errno.EACCES, "is read-only", str(place))
             shutil.copymode(place, part)
         os.replace(part, place)
     finally:

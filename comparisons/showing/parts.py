@@ -43,7 +43,7 @@ class Figure:
 @dataclass(frozen=True)
 class Mark:
     """What a study says of one solver: in words, and as "good", "fair" or "bad"; "part" where so little was tested that
-    it cannot be said; or "none", which says nothing of trust.
+    it cannot be said; or "none", which is of no rating: a row of such alone has no say.
 
     note: the number of runs or scenes behind it, and what else the words leave out. value: the number itself.
     """

@@ -33,6 +33,12 @@ def listed(names: Sequence[str]) -> str:
     return " and ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))
 
 
+def with_counts(words: str, counts: Mapping[str, int]) -> str:
+    """Words with counts {what: how many} behind them that are not 0."""
+    behind = ", ".join(f"{count} {what}" for what, count in counts.items() if count)
+    return f"{words} ({behind})" if behind else words
+
+
 def rating(rms: float | None, failed: int) -> str:
     """The level, a key of `RATINGS`, of a root mean square error of restitution, None for none, and of failed runs."""
     if rms is None or failed:

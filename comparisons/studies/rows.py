@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 SHOWN = 80  # characters of a wrong value
 NOTHING = ("failure", "why_not")  # a row that has one of these says why it has no numbers
-ERRORS = """runs failed impacts lost bias? rms? worst? rms_state? jump_rms? jump_worst? jump_8? jump_8_printed?
-    time_rms? cpu_per_second? steps_per_second?"""
+ERRORS = """runs failed impacts lost bias? rms? worst? rms_state? worst_state? jump_rms? jump_worst? jump_8?
+    jump_8_printed? time_rms? cpu_per_second? steps_per_second?"""
 PULSE = "engine variant level ground shape frequency amplitude"
 EDGE = "ground shape frequency amplitude rises mode low high min_normal"
 BOUNDARY = f"{PULSE} rises mode room shift? half_width? reason? runs"

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from analytic import Base, Bearings, Block, Failure, Impact, PulseMotion, Response, Scene, Start, load_scene, simulate
+from analytic.errors import SceneError
 from analytic.response import COMPARED, DIFFERENCES, EDGE, Difference
 from engines.comparison import FRICTION, Reference, compare
 
@@ -251,7 +252,35 @@ def test_what_lies_outside_what_near_copies_do_is_a_difference_with_their_span()
         (found,) = run.differences
         assert run.comparable == EDGE and (found.here, found.model) == (peak, model.peak_tilt)
         assert found.near == (pytest.approx(low), pytest.approx(high))
-        assert f"({low:.3g} to {high:.3g} within 1e-4 of the scene)" in str(found)
+        assert f"({low:.3g} to {high:.3g} in the analytic model within 1e-4 of the scene)" in str(found)
+
+
+def test_where_only_copies_end_as_the_run_does_no_number_is_called_the_models():
+    """The block of `EDGE_SCENE` starts just beyond its balance and falls; some copies come back."""
+    scene = EDGE_SCENE.with_(start=Start(tilt=BLOCK.slenderness * (1 + 5e-5)))
+    model = simulate(scene, history=False)
+    back = simulate(scene.with_(start=Start(tilt=BLOCK.slenderness * (1 - 4e-5))), history=False)
+    assert (model.outcome, back.outcome) == ("overturns", "rocks")
+    run = compare(scene, replace(back, peak_tilt=0.5 * back.peak_tilt))
+    (found,) = (one for one in run.differences if one.quantity == "peak_tilt")
+    assert found.model is None and found.near is not None
+    low, high = found.near
+    words = f"peak tilt {found.here:.4g} rad ({low:.3g} to {high:.3g} in the analytic model within 1e-4 of the scene)"
+    assert str(found) == words
+
+
+def test_a_near_copy_that_reaches_no_end_leaves_the_run_uncompared(monkeypatch):
+    """The run is kept: a finished one of an engine is not lost to a copy."""
+
+    def of_the_scene_alone(scene, **options):
+        if scene is not EDGE_SCENE:
+            raise SceneError("run.duration", 3e6, "too many impacts", "shorten it")
+        return simulate(scene, **options)
+
+    monkeypatch.setattr("engines.comparison.simulate", of_the_scene_alone)
+    reference = Reference.of(EDGE_SCENE)
+    assert reference.model is not None
+    assert reference.comparable.startswith("the analytic model of a scene next to it reaches no end: ")
 
 
 @pytest.mark.parametrize("change, comparable", [(5e-5, EDGE), (2e-4, COMPARED)])

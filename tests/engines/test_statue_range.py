@@ -1,6 +1,7 @@
 """The promised range: what lies outside it is said, of each quantity by itself; what lies inside is not."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -10,6 +11,7 @@ from engines import get_engine
 from engines.statue_range import RANGE, in_words, outside
 
 BLOCK = Block(mass=1000.0, radius=1.0, slenderness=0.25)
+STANDING = Scene(block=BLOCK)
 FREE = Scene(block=BLOCK, start=Start(tilt=0.1))
 # block and base of 2000 kg: a period of 2 pi sqrt(2000/ka)
 BORNE = FREE.with_(base=Base(mass=1000.0), bearings=Bearings(law="linear", ka=2000 * (2 * math.pi / 2.0) ** 2))
@@ -24,7 +26,7 @@ def named(scene):
     [
         (FREE, []),
         (BORNE, []),
-        (Scene(block=BLOCK), []),  # it stands: no tilt to be too small
+        (STANDING, []),  # it stands: no tilt to be too small
         (FREE.with_(block={"slenderness": 0.01}, start=Start(tilt=0.006)), [("slenderness", 0.01, 0.1)]),
         (FREE.with_(block={"slenderness": 0.6}), [("slenderness", 0.6, 0.5)]),
         (FREE.with_(block={"radius": 11.0}), [("radius", 11.0, 10.0)]),
@@ -44,6 +46,13 @@ def test_each_quantity_is_held_against_its_limits(scene, found):
 def test_several_at_once_are_several_sentences():
     scene = FREE.with_(block={"slenderness": 0.01, "radius": 20.0}, start=Start(tilt=0.006))
     assert [name for name, *_ in named(scene)] == ["slenderness", "radius"]
+
+
+def test_a_block_that_stands_has_no_tilt_whatever_an_engine_leaves_of_it():
+    stands = replace(simulate(STANDING, history=False), peak_tilt_ratio=1e-6)
+    assert stands.outcome == "stands" and not outside(STANDING, stands)
+    (found,) = outside(STANDING, replace(stands, outcome="rocks"))
+    assert str(found).startswith("peak tilt over slenderness 1e-06 is outside the range")
 
 
 def test_scenes_drawn_within_the_range_are_inside():

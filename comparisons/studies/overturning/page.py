@@ -43,7 +43,7 @@ def page(result: Result) -> Page:
     """The `Page` of a `Result` of the overturning study."""
     s, shapes = result.settings, result.settings["shapes"]
     edges, shifts, held, drawn = (where(result.rows, part=part) for part in ("edge", "shift", "held", "drawn edge"))
-    pressed = {_place(edge) for edge in edges if edge["min_normal"] >= 0}
+    pressed = _pressed(result)
     known = [row for row in shifts if _place(row) in pressed]
     rated = list(_rated(result))
     own = s["default_variants"]
@@ -146,7 +146,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     marks = {}
     for row in _rated(result):
         every = row["of"] + row["beyond"]
-        words = f"{percent(row['largest'])} at {row['found']} of {every} boundaries"
+        words = f"{percent(row['largest'])} ({row['found']} of {every} boundaries)"
         note = f"median {percent(row['median'])}; {row['of'] - row['found']} not found"
         if row["beyond"]:
             note += f"; {row['beyond']} with N < 0 do not count, found {row['beyond_found']}"
@@ -164,10 +164,15 @@ def _place(row):
     return tuple(row[key] for key in PLACE)
 
 
+def _pressed(result):
+    """Places of the boundaries at which the block stays pressed on its base."""
+    return {_place(edge) for edge in where(result.rows, part={"edge", "drawn edge"}) if edge["min_normal"] >= 0}
+
+
 def _rated(result):
     """A summary and a rating of each variant that is run at its default, where the block stays pressed on its base;
     beyond: the boundaries where it does not."""
-    pressed = {_place(edge) for edge in where(result.rows, part={"edge", "drawn edge"}) if edge["min_normal"] >= 0}
+    pressed = _pressed(result)
     for (name,), every in grouped(where(result.rows, part={"shift", "drawn shift"}), NAME.of).items():
         members, others = ([row for row in every if (_place(row) in pressed) == inside] for inside in (True, False))
         beyond = _summary(others) if others else {"of": 0, "found": 0, "largest": None}
@@ -359,8 +364,7 @@ def _under_jumps(result):
     """A sentence on the tuned engines whose largest shift is under a pulse that begins with a jump; none without."""
     own = result.settings["default_variants"]
     rows = where(result.rows, part={"shift", "drawn shift"})
-    pressed = {_place(edge) for edge in where(result.rows, part={"edge", "drawn edge"}) if edge["min_normal"] >= 0}
-    found = []
+    pressed, found = _pressed(result), []
     for engine in result.settings["engines"]:
         mine = [
             row for row in where(rows, engine=engine, variant=own[engine]) if row["shift"] and _place(row) in pressed

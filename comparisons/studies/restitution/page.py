@@ -9,7 +9,7 @@ from ...measuring.errors import rms
 from ...showing.figures import beside, lines, shades
 from ...showing.parts import RESTITUTION, Head, Judgement, Mark, Page, number, percent, short
 from ...showing.rows import NAME, Column, grouped, setting_of, table, where
-from ...showing.wording import TRUSTED, USABLE, rating, trust
+from ...showing.wording import TRUSTED, USABLE, rating, trust, with_counts
 
 if TYPE_CHECKING:
     from ...running.provenance import Result
@@ -144,7 +144,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 
 def _free_mark(row):
-    mark = _mark(row, "rms_state", "worst")
+    mark = _mark(row, "rms_state", "worst_state")
     return replace(mark, level=rating(_error(row), _wrong(row)), note=f"{mark.note}; by swings {number(row['rms'], 2)}")
 
 
@@ -163,7 +163,7 @@ def _mark(row, error, worst):
     if row[error] is None:
         return Mark("none measured", "bad", f"{row['failed']} of {row['runs']} runs failed")
     wrong = {"failed": row["failed"], "missed": row["lost"]}
-    words = ", ".join([number(row[error], 2), *(f"{count} {what}" for what, count in wrong.items() if count)])
+    words = with_counts(number(row[error], 2), wrong)
     level = rating(row[error], _wrong(row))
     note = f"{row['impacts']} impacts of {row['runs']} runs, worst {number(row[worst], 2)}"
     return Mark(words, level, note, row[error])
@@ -172,7 +172,8 @@ def _mark(row, error, worst):
 def rated(result: Result) -> list[dict[str, Any]]:
     """A row for each variant at its default setting, with the worse of both grounds: what the first screen rates it by.
 
-    Settings, rms, worst, rms_state, jump_rms, jump_worst, impacts, lost, failed, runs, orders and rating in words.
+    Settings, rms, worst, rms_state, worst_state, jump_rms, jump_worst, impacts, lost, failed, runs, orders and, in
+    words, rating.
     """
     variants = {NAME.of(variant): variant for variant in result.settings["variants"]}
     orders = grouped(where(result.rows, part="order"), NAME.of)
@@ -186,7 +187,7 @@ def _rated(variant, rows, orders):
     def most(key):
         return max((row[key] for row in rows if row[key] is not None), default=None)
 
-    errors = {key: most(key) for key in ("rms", "worst", "rms_state", "jump_rms", "jump_worst")}
+    errors = {key: most(key) for key in ("rms", "worst", "rms_state", "worst_state", "jump_rms", "jump_worst")}
     counts = {key: sum(row[key] for row in rows) for key in ("runs", "failed", "impacts", "lost")}
     found = {**errors, **counts}
     return {

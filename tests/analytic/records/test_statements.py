@@ -28,6 +28,11 @@ THREE = "".join(f"{value:9.3f} {-2 * value:9.3f} {value / 2:9.3f}\n" for value i
         ("Time step: 5 ms", 0.005),
         ("TIME INTERVAL (SEC) .005", 0.005),
         ("DELTA T = 0.005 SEC", 0.005),
+        ("delta: 0.005", 0.005),
+        ("samprate 200", 0.005),
+        ("sampled every 0.005 s", 0.005),
+        ("interval_ms=5", 0.005),
+        ("time base 0.005 s", 0.005),
         ("delta_t [ms]: 5", 0.005),
         ("sampling period is 0,005 s", 0.005),
         ("equally spaced at .005 sec", 0.005),
@@ -103,7 +108,9 @@ def test_what_is_not_understood_of_the_sampling_is_a_warning_where_the_user_give
     assert not read_record(stated, "m/s2").warnings
 
 
-@pytest.mark.parametrize("words", ["Significant interval: 5 s", "rate: 5", "pas de filtre", "steps of 5 m", "step 1"])
+@pytest.mark.parametrize(
+    "words", ["Significant interval: 5 s", "rate: 5", "pas de filtre", "steps of 5 m", "step 1", "Delta 3"]
+)
 def test_a_mere_word_states_no_step_without_its_unit_or_behind_others(words):
     assert read_statements([(1, words)]).step is None
 

@@ -78,6 +78,8 @@ def test_the_recommended_engine_computes_its_impacts_itself_and_the_cheapest_win
     assert "exudyn set as “fine”: restitution within 1e-05, at 9.0 times" in words and "slenderness 0.1 to 0.5" in words
     assert "1 of 1 are not to be trusted (restitution off by 0.20 in exudyn)" in not_to_do(found, judgements)[0]
     assert "No engine that was run here" in " ".join(recommendation([found[1]], judgements, ""))
+    words = recommendation(found, judgements, "slenderness 0.1 to 0.5", "slenderness 0.01 is outside the range")
+    assert words[1:] == ["No engine is recommended here: slenderness 0.01 is outside the range."]
 
 
 def test_the_paragraph_says_the_first_table_in_few_words():
@@ -89,14 +91,18 @@ def test_the_paragraph_says_the_first_table_in_few_words():
 
 def test_the_blocks_own_restitution_is_that_of_its_engines():
     """The model's row, which has no error to tell, is no setup; a failed run takes the trust away and is said."""
-    row = {"engine": "exudyn", "variant": "fine", "rms": 1e-5, "worst": 2e-5, "failed": 0, "impacts": 9}
+    row = {"engine": "exudyn", "variant": "fine", "rms": 1e-5, "worst": 2e-5, "failed": 0, "lost": 0, "impacts": 9}
     rows = [
         {**row, "engine": "analytic", "variant": None, "rms": 1e-12},
         row,
-        {**row, "variant": "coarse", "failed": 2},
+        {**row, "variant": "coarse", "failed": 2, "lost": 1},
+        {**row, "variant": "deaf", "lost": 3},
     ]
     judgement = own_restitution(SimpleNamespace(rows=rows))
     assert {name: (mark.words, mark.level) for name, mark in judgement.marks.items()} == {
         FINE: ("1.0·10⁻⁵", "good"),
-        COARSE: ("1.0·10⁻⁵, 2 failed", "bad"),
+        COARSE: ("1.0·10⁻⁵ (2 failed, 1 missed)", "bad"),
+        ("exudyn", "deaf"): ("1.0·10⁻⁵ (3 missed)", "bad"),
     }
+    outside = own_restitution(SimpleNamespace(rows=rows), "slenderness 0.01 is outside the range")
+    assert {mark.level for mark in outside.marks.values()} == {"part"}

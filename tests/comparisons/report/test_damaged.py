@@ -84,6 +84,7 @@ def test_a_report_goes_on_beside_damaged_results(copy_of, studies, tmp_path):
         file.stem: unescape(re.sub("<[^>]*>", "", file.read_text(encoding="utf-8")))
         for file in (shown / "pages").glob("*.html")
     }
+    opening = unescape(re.sub("<[^>]*>", "", (shown / "report.html").read_text(encoding="utf-8")))
     for name, words in {
         "restitution": "restitution.json: not JSON",
         "sensitivity": "sensitivity.npz: missing or not the one sensitivity.json was written with",
@@ -91,6 +92,7 @@ def test_a_report_goes_on_beside_damaged_results(copy_of, studies, tmp_path):
         "tolerances": "its page fails (KeyError(",
     }.items():
         assert f"{name}.json cannot be shown: {words}" in pages[name]
+        assert f"{name}.json cannot be shown: {words}" in opening
     assert {name for name, text in pages.items() if "cannot be shown" not in text} == {"runs", "stability"}
 
 
