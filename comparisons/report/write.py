@@ -127,9 +127,10 @@ def _cards(scenes, calls):
 def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[str, Any]:
     """What the first screen shows: the studies' numbers; restitution of the scenes' own block where it rocks."""
     where = {each.heading: f"{PAGES}/{one.name}.html" for one in stored for each in one.judgements}
+    outside = _outside(scenes)
     judgements = [each for one in stored for each in one.judgements]
     if block:
-        own = own_restitution(block, _outside(scenes))
+        own = own_restitution(block, outside)
         where[own.heading] = f"{PAGES}/runs.html"
         judgements = [own, *(each for each in judgements if each.key != own.key)]
     own_variants = [
@@ -139,7 +140,7 @@ def _answer(scenes: Result, block: Result | None, stored: list[Stored]) -> dict[
     ]
     setups = setups_of(variants_of(stored, *own_variants), judgements)
     return {
-        "recommendation": recommendation(setups, judgements, in_words(), _outside(scenes)) if setups else [],
+        "recommendation": recommendation(setups, judgements, in_words(), outside) if setups else [],
         "summary": summary(scenes, block),
         "not_to_do": not_to_do(setups, judgements),
         "decision": setups,

@@ -1,9 +1,11 @@
 """The first screen: ratings are the worst of what was tested, and what was not tested is said."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 
+from analytic import Block, Scene, Start, simulate
 from comparisons.report.answer import (
     MOST_WORDS,
     best_of,
@@ -13,6 +15,9 @@ from comparisons.report.answer import (
     recommendation,
     setups_of,
 )
+from comparisons.report.runs import restitution_computed
+from comparisons.report.sections import restitution_section
+from comparisons.report.write import _outside
 from comparisons.showing.parts import COST, RESTITUTION, Judgement, Mark
 from comparisons.showing.wording import rating
 
@@ -106,3 +111,32 @@ def test_the_blocks_own_restitution_is_that_of_its_engines():
     }
     outside = own_restitution(SimpleNamespace(rows=rows), "slenderness 0.01 is outside the range")
     assert {mark.level for mark in outside.marks.values()} == {"part"}
+
+
+def test_impacts_that_an_engine_misses_on_the_scenes_own_block_are_counted():
+    scene = Scene(block=Block(mass=1000.0, radius=1.0, slenderness=0.25), start=Start(tilt=0.15), duration=3.0)
+    model = simulate(scene, history=False)
+    deaf = replace(model, engine="exudyn", impacts=model.impacts[1:])
+    rows = [
+        SimpleNamespace(
+            case=SimpleNamespace(scene=scene, solver=solver, variant=variant),
+            failed=False,
+            values=response.to_json(),
+            cost={"cpu_seconds": 1.0},
+        )
+        for solver, variant, response in (("analytic", None, model), ("exudyn", "compliant-corners", deaf))
+    ]
+    found = restitution_computed(rows).rows
+    assert [row["lost"] for row in found] == [0, 1] and found[1]["failed"] == 0
+    settings = {"starts": [0.6], "seconds": 3.0, "bases": [None]}
+    (shown,) = restitution_section(SimpleNamespace(rows=found, settings=settings)).tables
+    assert [row[1] for row in shown.rows] == ["may be trusted", "is not to be trusted"]
+
+
+def test_a_scene_is_outside_the_range_by_what_an_engine_warns_of():
+    def rows(kind, quantity):
+        warning = {"kind": kind, "quantity": quantity, "text": "slenderness 0.01 is outside the range"}
+        return SimpleNamespace(rows=[{"engine": "exudyn", "warnings": [warning]}, {"part": "statue"}])
+
+    assert _outside(rows("engine", "slenderness")) == "slenderness 0.01 is outside the range"
+    assert _outside(rows("engine", None)) == _outside(rows("limit", "tilt")) == ""

@@ -114,6 +114,7 @@ NEEDED = {"stroke": 0.25, "stands": 0.8, "upright": 0.61}
 SAID = [
     (SCENE, None, "rocking margin FILE", "there is nothing to do"),
     (SCENE, NEEDED, "rocking design FILE --base-mass 1550 --stroke 0.25", "Both numbers are examples"),
+    (BASE, None, "rocking margin FILE", "On a base that nothing holds it does not lift"),
     (BASE, NEEDED, "rocking design FILE --stroke 0.25", "The stroke [m] is an example"),
     (
         {**BASE, "bearings": {"x_max": 0.25}},

@@ -179,3 +179,13 @@ def test_a_link_is_followed_and_a_result_without_arrays_is_one_file(tmp_path):
     path = write_result(tmp_path / "alone.json", "k", {}, [], modules=["analytic.errors"])
     assert copy_result(path, tmp_path / "there") == [tmp_path / "there" / "alone.json"]
     assert read_result(tmp_path / "there" / "alone.json").rows == []
+
+
+def test_a_read_only_file_is_not_replaced(tmp_path, monkeypatch):
+    """Its folder would let it be; who runs the tests may be allowed everything, so the answer of the system is set."""
+    place = tmp_path / "kept.html"
+    place.write_text(BEFORE)
+    monkeypatch.setattr("comparisons.running.files.os.access", lambda path, mode: not os.path.samefile(path, place))
+    with pytest.raises(PlaceError, match=r"kept\.html"):
+        write(place, AFTER)
+    assert place.read_text() == BEFORE and os.listdir(tmp_path) == ["kept.html"]

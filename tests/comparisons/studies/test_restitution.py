@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from page_numbers import number_in
 
 from analytic import simulate
 from analytic.rocking import restitution
@@ -118,6 +119,14 @@ def test_the_page_comes_from_the_result_alone(small):
     assert settings[first] == "step = 0.00417 s"
     # first; both maps; on bearings; levels and cost; step phase; damping; eq. (8): no setting to change alone
     assert len(whole.figures) == 8 and all(figure.alt and figure.caption for figure in whole.figures)
+
+
+def test_no_worst_error_is_less_than_the_root_mean_square_beside_it(small):
+    """Both are of one measure, on rigid ground and on bearings."""
+    for judgement in STUDY.judgements(read_result(small)):
+        worst = [number_in(mark.note.partition("worst ")[2].partition(";")[0]) for mark in judgement.marks.values()]
+        rms = [mark.value for mark in judgement.marks.values()]
+        assert len(rms) >= 2 and all(most > 0.97 * mean for most, mean in zip(worst, rms, strict=True))
 
 
 def test_its_own_page_needs_no_other_file(small, tmp_path):
