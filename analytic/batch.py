@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numba.np.unsafe.ndarray import to_fixed_tuple
@@ -33,7 +33,8 @@ CHUNKS_PER_WORKER = 8
 
 # The parameters of a run as one entry of an array, by name.
 ROW = np.dtype([(name, float) for name in (*Parameters._fields[:-1], *Constants._fields)])
-SIZE, OWN, PULSE = len(ROW), len(Parameters._fields) - 1, len(Pulse._fields)
+tuple_of: Any = to_fixed_tuple
+SIZE, OWN, PULSE = len(ROW.descr), len(Parameters._fields) - 1, len(Pulse._fields)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,14 +83,14 @@ class Outcomes:
 
 
 @entry
-def _run_rows(rows, pulses, kind, dt, samples, upright, chosen, arrays, totals):
+def _run_rows(rows, pulses, ground, upright, chosen, arrays, totals):
     """Run each row of `ROW` under its own pulse; totals has a row each."""
     P, work, impacts, uplifts, rests, history, _ = arrays
     for i in range(rows.shape[0]):
-        numbers = to_fixed_tuple(rows[i], SIZE)
-        par = Parameters(*numbers[:OWN], Constants(*numbers[OWN:]))
-        ground = Ground(kind, dt, samples, None, Pulse(*to_fixed_tuple(pulses[i], PULSE)))
-        integrate(par, ground, upright, chosen, Arrays(P, work, impacts, uplifts, rests, history, totals[i]))
+        numbers = tuple_of(rows[i], SIZE)
+        par = Parameters(*numbers[:OWN], Constants(*numbers[OWN:]))  # type: ignore[call-arg]  # of one length
+        own = Ground(ground.kind, ground.dt, ground.samples, None, Pulse(*tuple_of(pulses[i], PULSE)))
+        integrate(par, own, upright, chosen, Arrays(P, work, impacts, uplifts, rests, history, totals[i]))
 
 
 def run_rows(
@@ -106,8 +107,8 @@ def run_rows(
     workers = workers or os.cpu_count() or 1
 
     def run(part):
-        shared = shaking.kind, shaking.dt, shaking.samples, shaking.upright, chosen
-        _run_rows(numbers[part], pulses[part], *shared, kernel.arrays(), totals[part])
+        ground, arrays = shaking._replace(upright=None), kernel.arrays()
+        _run_rows(numbers[part], pulses[part], ground, shaking.upright, chosen, arrays, totals[part])
 
     with compiling():
         run(slice(0, 1))  # compiled or loaded before threads start

@@ -6,16 +6,30 @@ on. So it may not make an array. One that Python calls is `entry`: kept on disk,
 """
 
 import gc
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import partial
+from typing import Any
 
 from numba import njit
 
-# _nrt is no public option of numba: a test sees to it that the functions are compiled as is said here.
-inner = partial(njit, _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-inlined = partial(inner, forceinline=True)  # by LLVM, which takes a fraction of the time numba's own inlining takes
-entry = partial(njit, _nrt=False, nogil=True, cache=True)  # nogil: threads, and Ctrl-C is heard
+# Without counts of references; no public option of numba, so a test sees to it that it is obeyed.
+_UNCOUNTED: dict[str, Any] = {"_nrt": False}
+_BARE: dict[str, Any] = {**_UNCOUNTED, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+
+def inner(function: Callable[..., Any]) -> Any:
+    """Compiled for compiled code alone."""
+    return njit(**_BARE)(function)
+
+
+def inlined(function: Callable[..., Any]) -> Any:
+    """As `inner`, and made part of each caller: by LLVM, in a fraction of the time that numba's inlining takes."""
+    return njit(**_BARE, forceinline=True)(function)
+
+
+def entry(function: Callable[..., Any]) -> Any:
+    """Compiled for Python and for compiled code. It holds no lock, so that threads run and Ctrl-C is heard."""
+    return njit(**_UNCOUNTED, nogil=True, cache=True)(function)
 
 
 @contextmanager

@@ -30,8 +30,8 @@ from .laws import Constants, chosen
 from .response import Caution
 
 if TYPE_CHECKING:
-    from .scene import Scene
     from .layout import Base, Body, Parameters
+    from .scene import Scene
 
 # Share by which a reported peak could still grow when a run without a duration ends.
 PEAK_TOLERANCE = 1e-4

@@ -22,10 +22,16 @@ TOUCH = 1e-9
 
 
 @inner
-def find_uplift(par, vertical, refused, step, P, work):
+def find_uplift(shape, vertical, refused, step, P, work):
     """|absolute acceleration| exceeds the threshold g tan(gamma), or that of g + a_v."""
-    row, order, highest, h, event = P[L.ABSOLUTE if par.on_base else L.GROUND], step.order, step.highest, step.h, P[L.EVENT]
-    threshold, slope, G = step.gravity * par.slope, par.slope, P[L.GRAVITY]
+    row, order, highest, h, event = (
+        P[L.ABSOLUTE if shape.on_base else L.GROUND],
+        step.order,
+        step.highest,
+        step.h,
+        P[L.EVENT],
+    )
+    threshold, slope, G = step.gravity * shape.slope, shape.slope, P[L.GRAVITY]
     if abs(row[0]) > threshold and not refused:
         return 0.0
     size, power = abs(row[0]), 1.0

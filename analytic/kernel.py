@@ -40,7 +40,6 @@ ROUNDING = 4e-16
 ONSET = 1e-9
 
 
-
 def arrays(capacity: int = 0, outputs: int = 0) -> L.Arrays:
     """What a run writes to, with room for `capacity` events of a kind and `outputs` rows of history."""
     workspace, scratch = np.zeros((L.ROWS, MAX_ORDER + 2)), np.empty(SCRATCH)
@@ -76,8 +75,9 @@ def integrate(par, ground, upright, options, arrays):
     status, mode, s, t = L.COMPLETE, L.CONTACT, 0.0, 0.0
     if tilt != 0 or rate != 0:
         mode, s = L.ROCKING, math.copysign(1.0, tilt if tilt != 0 else rate)
-    no, none = np.bool_(False), np.int64(0)  # a literal would compile each function it is passed to once more
+    no, none = math.isnan(0.0), math.floor(0.0)  # a literal would compile each function it is passed to once more
     fresh, refused = no, no  # onset just found: phi'' = 0 exactly; onset refused: only touched the threshold
+    shape = L.Shape(par.gamma, par.slope, par.on_base)
     branch = L.Branch(0.0, par.x, 1.0)
     peak_tilt, peak_x, will_overturn = abs(par.tilt), abs(par.x), False
     held = 0.0, 1.0, 0.0, peak_x, 0.0  # friction demand, N/(m g), peaks of the base, time: up to |tilt| = gamma
@@ -138,7 +138,7 @@ def integrate(par, ground, upright, options, arrays):
                 break
 
             step = L.Step(t, h, used, highest, gravity, factors, corner)
-            found, h = first_event(par, upright, body, refused, branch.direction, step, P, work)
+            found, h = first_event(shape, upright, body, refused, branch.direction, step, P, work)
             idle = idle + 1 if tau + h <= tau else 0
             if idle > PATIENCE:
                 status = L.STUCK

@@ -41,8 +41,7 @@ NONE, UPLIFT, IMPACT, REVERSAL, CORNER, PASSAGE, OVERTURNING = range(7)
 # The scene, in numbers alone, so that a row of an array holds one; `on_base` is 0 or 1. See RockingModel and BearingLaw
 # for their meaning; slope is tan(gamma), law the number of the bearings' law, constants its `laws.Constants`.
 Parameters = namedtuple(
-    "Parameters",
-    "m M J R gamma slope g p2 e mt on_base law count kb damping tilt rate x v z duration constants",
+    "Parameters", "m M J R gamma slope g p2 e mt on_base law count kb damping tilt rate x v z duration constants"
 )
 # The ground motion: `kind` is QUIET, LINEAR_GROUND (samples at intervals of dt), HARMONIC (scale sin(phase + frequency
 # (t - start))) or RICKER. A rectangular pulse is HARMONIC with frequency 0. The vertical motion is of the same kind,
@@ -56,6 +55,8 @@ Options = namedtuple("Options", "tolerance order rest_rate record decide output_
 # What a run writes to: Taylor coefficients and scratch, events, history and totals.
 Arrays = namedtuple("Arrays", "P work impacts uplifts rests history totals")
 
+# Of the parameters those that an event needs: they are handed over in every step.
+Shape = namedtuple("Shape", "gamma slope on_base")
 # The block: side of the corner it turns about (1 or -1; 0 in full contact), tilt and its rate.
 Body = namedtuple("Body", "s tilt rate")
 # Displacement and velocity of the base, hysteretic force of a bearing.

@@ -136,9 +136,9 @@ def rocking_of_step(par, upright, kind, body, fresh, step, tolerance, P):
                 base_series(used, par, step.factors, highest, P, P[L.GRAVITY])
             good = allowed_step(P[L.F], used, tolerance, allowed_step(P[L.V], used, tolerance, good))
         elif upright is None:
-            rigid_series(used, par, highest, P, None)
+            rigid_series(used, par.p2, par.g, highest, P, None)
         else:
-            rigid_series(used, par, highest, P, P[L.GRAVITY])
+            rigid_series(used, par.p2, par.g, highest, P, P[L.GRAVITY])
         if fresh:
             P[L.PHI, 2], w[1] = 0.0, 0.0
         good = allowed_step(w, used, tolerance, good)
@@ -148,7 +148,7 @@ def rocking_of_step(par, upright, kind, body, fresh, step, tolerance, P):
 
 
 @inner
-def first_event(par, upright, body, refused, direction, step, P, work):
+def first_event(shape, upright, body, refused, direction, step, P, work):
     """(kind of the first event in the step, its time since the start; NONE and the step's length without one).
 
     refused : an onset of uplift was just a touch; direction : of the base's travel.
@@ -156,7 +156,7 @@ def first_event(par, upright, body, refused, direction, step, P, work):
     s, tilt, _ = body
     found, h, order, event, phi = L.NONE, step.h, step.order, P[L.EVENT], P[L.PHI]
     if s == 0:
-        root = find_uplift(par, upright, refused, step, P, work)
+        root = find_uplift(shape, upright, refused, step, P, work)
         if root >= 0:
             found, h = L.UPLIFT, root
     else:
@@ -164,8 +164,8 @@ def first_event(par, upright, body, refused, direction, step, P, work):
         if root >= 0:
             found, h = L.IMPACT, root
         top = upper_bound(phi, s, order, h)
-        if top > par.gamma > s * tilt:
-            root = find_fall(phi, -s, par.gamma, order, h, event, work)
+        if top > shape.gamma > s * tilt:
+            root = find_fall(phi, -s, shape.gamma, order, h, event, work)
             if root >= 0:
                 found, h = L.PASSAGE, root
         if top > 0.5 * math.pi:

@@ -81,9 +81,8 @@ def ground_series(order, kind, a0, a1, frequency, u, A):
 
 
 @inlined
-def _rigid_series(order, par, highest, P, G):
+def _rigid_series(order, p2, g, highest, P, G):
     A, phi, w, S, C = P[L.GROUND], P[L.PHI], P[L.W], P[L.S], P[L.C]
-    p2, g = par.p2, par.g
     for k in range(order):
         if k > 0:
             sine, cosine = 0.0, 0.0
@@ -105,15 +104,15 @@ def _rigid_series(order, par, highest, P, G):
 
 
 @inner
-def rigid_series(order, par, highest, P, G):
+def rigid_series(order, p2, g, highest, P, G):
     """Rocking on rigid ground, eq. (4) with x = 0: phi'' = -p^2 (S + a_g/g C).
 
     With the series G of g + a_v, as many terms as a_g has, phi'' = -p^2/g (G S + a_g C).
     """
     if order == SHORT_ORDER:  # a constant order is unrolled: twice as fast
-        _rigid_series(SHORT_ORDER, par, highest, P, G)
+        _rigid_series(SHORT_ORDER, p2, g, highest, P, G)
     else:
-        _rigid_series(order, par, highest, P, G)
+        _rigid_series(order, p2, g, highest, P, G)
 
 
 @inlined

@@ -17,9 +17,14 @@ __all__ = ["LAWS", "NUMBERS", "Constants", "Law", "chosen"]
 
 LAWS = tuple(file.LAW for file in list(globals().values()) if isinstance(file, ModuleType) and hasattr(file, "LAW"))
 NUMBERS = {law.name: number for number, law in enumerate(LAWS)}
-_own = tuple(dict.fromkeys(name for law in LAWS for name in law.own))
+
+
+def _record(names: tuple[str, ...]) -> Any:
+    return namedtuple("Constants", names, defaults=[0.0] * len(names))
+
+
 # Constants of any law: dk, f0, and all laws' own, of which each fills its own.
-Constants = namedtuple("Constants", ("dk", "f0", *_own), defaults=[0.0] * len(_own))  # type: ignore[misc]
+Constants = _record(("dk", "f0", *dict.fromkeys(name for law in LAWS for name in law.own)))
 
 
 def chosen(name: str) -> Callable[..., Any]:

@@ -37,7 +37,7 @@ def virtual_travel(s: float, z: float, c: Constants) -> float:
 
 
 @inner
-def _on_branch(s: float, travel: float, c: Constants) -> float:
+def on_branch(s: float, travel: float, c: Constants) -> float:
     """z on the branch of direction s, eqs (9), (11) less their kb x."""
     return s * (c.dk * (travel ** (1 - c.alpha) - c.d0) / (1 - c.alpha) + c.f0)
 
@@ -45,7 +45,7 @@ def _on_branch(s: float, travel: float, c: Constants) -> float:
 @inner
 def after_travel(z: float, dx: float, c: Constants) -> float:
     s = math.copysign(1.0, dx)
-    return _on_branch(s, virtual_travel(s, z, c) + abs(dx), c)
+    return on_branch(s, virtual_travel(s, z, c) + abs(dx), c)
 
 
 def work(z: float, dx: float, c: Constants) -> float:
@@ -95,7 +95,7 @@ def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarr
 
 @inner
 def reached(s: float, z: float, q: np.ndarray, order: int, h: float, travel: float, c: Constants) -> float:
-    return z if s == 0 else _on_branch(s, travel, c)
+    return z if s == 0 else on_branch(s, travel, c)
 
 
 @inner

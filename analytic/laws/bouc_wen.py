@@ -11,7 +11,7 @@ import numpy as np
 from ..compiled import inlined, inner
 from ..polynomial import INVERSE
 from . import algebraic
-from .law import Constants, Given, Law
+from .law import Constants, Law
 
 
 @inner

@@ -69,7 +69,7 @@ class Law:
     after_travel: Callable
     work: Callable
     recoverable: Callable
-    begin: Callable
+    begin: Any
     term: Callable
     expression: Callable
     own: tuple[str, ...] = ()
