@@ -17,7 +17,7 @@ from .compiled import compiling, entry
 from .decision import CAP_PERIODS, longest_duration
 from .kernel import integrate
 from .laws import Constants
-from .layout import Arrays, Ground, Parameters, Pulse
+from .layout import Arrays, Ground, Parameters, Shaking
 from .motion import PulseMotion, SampledMotion
 from .scene import Block, Scene
 from .solver import REST_RATE, TOLERANCE, ground, options, parameters
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from .layout import Options
-    from .types import Motion
+    from .motion import Motion
 
 # Chunks per worker: enough that a slow chunk does not leave the other cores idle.
 CHUNKS_PER_WORKER = 8
@@ -34,7 +34,7 @@ CHUNKS_PER_WORKER = 8
 # The parameters of a run as one entry of an array, by name.
 ROW = np.dtype([(name, float) for name in (*Parameters._fields[:-1], *Constants._fields)])
 tuple_of: Any = to_fixed_tuple
-SIZE, OWN, PULSE = len(ROW.descr), len(Parameters._fields) - 1, len(Pulse._fields)
+SIZE, OWN, SHAKING = len(ROW.descr), len(Parameters._fields) - 1, len(Shaking._fields)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +89,7 @@ def _run_rows(rows, pulses, ground, upright, chosen, arrays, totals):
     for i in range(rows.shape[0]):
         numbers = tuple_of(rows[i], SIZE)
         par = Parameters(*numbers[:OWN], Constants(*numbers[OWN:]))  # type: ignore[call-arg]  # of one length
-        own = Ground(ground.kind, ground.dt, ground.samples, None, Pulse(*tuple_of(pulses[i], PULSE)))
+        own = Ground(ground.kind, ground.dt, ground.samples, None, Shaking(*tuple_of(pulses[i], SHAKING)))
         integrate(par, own, upright, chosen, Arrays(P, work, impacts, uplifts, rests, history, totals[i]))
 
 
@@ -98,7 +98,7 @@ def run_rows(
 ) -> np.ndarray:
     """Totals, shape (n, TOTALS), of n runs that share the kind and samples of one ground motion.
 
-    rows : (n,), of dtype `ROW`, see `row_of`. pulses : (n, fields of Pulse).
+    rows : (n,), of dtype `ROW`, see `row_of`. pulses : (n, fields of Shaking).
     The result does not depend on the number of workers (threads; the kernel holds no lock).
     """
     n = len(rows)
@@ -172,7 +172,7 @@ def simulate_many(
     for members in groups.values():
         shakings = [ground(scenes[i].motion, factors[i]) for i in members]
         rows = np.array([row_of(parameters(scenes[i])) for i in members], dtype=ROW)
-        pulses = np.array([shaking.pulse for shaking in shakings])
+        pulses = np.array([shaking.shaking for shaking in shakings])
         totals[members] = run_rows(rows, pulses, shakings[0], chosen, workers)
     return Outcomes.of(totals, (len(scenes),), contact)
 
@@ -213,13 +213,13 @@ def overturning_map(
     frequencies = np.asarray(frequency_ratios, dtype=float) * scene.rocking_frequency
     unit = scene.gravity * np.tan(scene.block.slenderness)
     amplitudes = np.asarray(amplitude_ratios, dtype=float) * unit
-    columns = np.array([pulse(frequency).pulse for frequency in frequencies])
+    columns = np.array([pulse(frequency).shaking for frequency in frequencies])
     pulses = np.tile(columns, (len(amplitudes), 1))
-    scales = pulses[:, Pulse._fields.index("scale")] = np.repeat(amplitudes, len(frequencies))
-    pulses[:, Pulse._fields.index("upright_scale")] = vertical_ratio * scales
+    scales = pulses[:, Shaking._fields.index("scale")] = np.repeat(amplitudes, len(frequencies))
+    pulses[:, Shaking._fields.index("upright_scale")] = vertical_ratio * scales
     rows = np.full(len(pulses), np.array(row_of(parameters(scene)), dtype=ROW))
     if scene.duration is None:
-        rows["duration"] = pulses[:, Pulse._fields.index("end")] + longest_duration(scene.with_(motion=None))
+        rows["duration"] = pulses[:, Shaking._fields.index("end")] + longest_duration(scene.with_(motion=None))
     totals = run_rows(rows, pulses, pulse(frequencies[0]), _outcome_options(tolerance, REST_RATE, STEPS), workers)
     return Outcomes.of(totals, (len(amplitudes), len(frequencies)))
 
@@ -249,7 +249,7 @@ def rocking_spectrum(
     if duration is None:
         rows["duration"] = motion.end + CAP_PERIODS * periods
     shaking = ground(motion)
-    pulses = np.tile(np.array(shaking.pulse), (len(periods), 1))
+    pulses = np.tile(np.array(shaking.shaking), (len(periods), 1))
     chosen = _outcome_options(tolerance, REST_RATE, most_steps(scene))
     totals = run_rows(rows, pulses, shaking, chosen, workers)
     return Outcomes.of(totals, (len(periods),))

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from .compiled import entry, inner
-from .laws import LAWS, NUMBERS, Constants, chosen
+from .laws import LAWS, NUMBERS, Constants, law_function
 
 if TYPE_CHECKING:
     from .laws.law import Law
     from .scene import Bearings
     from .types import Values
 
-_after_travel, _sides = chosen("after_travel"), chosen("sides")
+_after_travel, _sides = law_function("after_travel"), law_function("sides")
 
 
 @inner

@@ -6,7 +6,7 @@ on. So it may not make an array. One that Python calls is `entry`: kept on disk,
 """
 
 import gc
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -30,6 +30,32 @@ def inlined(function: Callable[..., Any]) -> Any:
 def entry(function: Callable[..., Any]) -> Any:
     """Compiled for Python and for compiled code. It holds no lock, so that threads run and Ctrl-C is heard."""
     return njit(**_UNCOUNTED, nogil=True, cache=True)(function)
+
+
+def chosen(functions: Sequence[Callable[..., Any]]) -> Any:
+    """Compiled function of (number, *arguments): the function of that number.
+
+    Functions as arguments would compile whoever takes them once for each.
+    """
+    *before, last = functions
+
+    @inlined
+    def choose(number, *arguments):
+        return last(*arguments)
+
+    for place, own in reversed(list(enumerate(before))):
+        choose = _either(place, own, choose)
+    return choose
+
+
+def _either(place: int, own: Callable[..., Any], others: Callable[..., Any]) -> Any:
+    @inlined
+    def choose(number, *arguments):
+        if number == place:
+            return own(*arguments)
+        return others(number, *arguments)
+
+    return choose
 
 
 @contextmanager

@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING
 
 from .bearing import BearingLaw
 from .compiled import entry, inner
-from .laws import Constants, chosen
+from .laws import Constants, law_function
 from .response import Caution
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ RIGID_BEARINGS = (
 )
 
 
-_recoverable = chosen("recoverable")
+_recoverable = law_function("recoverable")
 
 
 @inner

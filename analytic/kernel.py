@@ -68,7 +68,7 @@ def run(
 @entry
 def integrate(par, ground, upright, options, arrays):
     """The run itself: (end state, rows of the history written). upright : an argument of its own, see steps.py."""
-    P, work, totals, pulse = arrays.P, arrays.work, arrays.totals, ground.pulse
+    P, work, totals, shaking = arrays.P, arrays.work, arrays.totals, ground.shaking
     totals[:] = 0.0
     totals[L.UNSTABLE_TIME], totals[L.NORMAL] = 0.0 if abs(par.tilt) >= par.gamma else -1.0, 1.0
     tilt, rate, base = par.tilt, par.rate, L.Base(par.x, par.v, par.z)
@@ -87,7 +87,7 @@ def integrate(par, ground, upright, options, arrays):
     while begin < par.duration and mode != L.OVERTURNED and status == L.COMPLETE:
         stretch = stretch_of_ground(ground, upright, segment, begin, options.order, par.duration)
         kind, finish, order = stretch.kind, stretch.end, stretch.order
-        after = kind == QUIET and begin >= pulse.end  # the motion is over
+        after = kind == QUIET and begin >= shaking.end  # the motion is over
         segment += 1
         length, tau = finish - begin, 0.0
         while tau < length:
@@ -118,9 +118,9 @@ def integrate(par, ground, upright, options, arrays):
                 status = L.SPENT
                 break
 
-            highest, h = ground_of_step(pulse, stretch, tau, h, P[L.GROUND])
+            highest, h = ground_of_step(shaking, stretch, tau, h, P[L.GROUND])
             if upright is not None:
-                gravity_of_step(pulse, par.g, stretch, tau, P[L.GRAVITY])
+                gravity_of_step(shaking, par.g, stretch, tau, P[L.GRAVITY])
             gravity, used, factors, corner = gravity_at(par, upright, P, highest, 0.0), order, (0.0, 0.0, 0.0), math.inf
             if par.on_base:
                 branch, factors, corner = bearing_of_step(par, body, base, branch, gravity, highest, P)
@@ -170,9 +170,9 @@ def integrate(par, ground, upright, options, arrays):
                     arrays.uplifts[int(totals[L.UPLIFTS])] = t
                 totals[L.UPLIFTS] += 1
             elif found == L.IMPACT:
-                shaking = value(P[L.GROUND], highest, h) if highest >= 0 else 0.0
+                level = value(P[L.GROUND], highest, h) if highest >= 0 else 0.0
                 gravity = gravity_at(par, upright, P, highest, h)
-                rate, v, stays = land(par, rate, base, gravity, shaking, rest_rate, t, arrays)
+                rate, v, stays = land(par, rate, base, gravity, level, rest_rate, t, arrays)
                 mode, s, tilt, base = L.ROCKING, math.copysign(1.0, rate), 0.0, L.Base(base.x, v, base.z)
                 if stays:
                     mode, s = L.CONTACT, 0.0
@@ -189,7 +189,7 @@ def integrate(par, ground, upright, options, arrays):
         totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], peak_x, totals[L.FALL_TIME] = held
     totals[L.STATUS], totals[L.MODE], totals[L.TIME], totals[L.STEPS] = status, mode, t, steps
     totals[L.PEAK_TILT], totals[L.PEAK_X], totals[L.WILL_OVERTURN] = peak_tilt, peak_x, will_overturn
-    _conclude(par, pulse.end, L.Body(s, tilt, rate), base, totals)
+    _conclude(par, shaking.end, L.Body(s, tilt, rate), base, totals)
     return (tilt, rate, base.x, base.v, base.z), written
 
 

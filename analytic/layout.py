@@ -43,11 +43,11 @@ NONE, UPLIFT, IMPACT, REVERSAL, CORNER, PASSAGE, OVERTURNING = range(7)
 Parameters = namedtuple(
     "Parameters", "m M J R gamma slope g p2 e mt on_base law count kb damping tilt rate x v z duration constants"
 )
-# The ground motion: `kind` is QUIET, LINEAR_GROUND (samples at intervals of dt), HARMONIC (scale sin(phase + frequency
-# (t - start))) or RICKER. A rectangular pulse is HARMONIC with frequency 0. The vertical motion is of the same kind,
+# The ground motion: `kind` is QUIET, LINEAR_GROUND (samples at intervals of dt), or from PULSE on that of a pulse,
+# scale f(phase + frequency (t - start)); with frequency 0 it is constant. The vertical motion is of the same kind,
 # times and frequency: a pulse, or samples of its own.
-Ground = namedtuple("Ground", "kind dt samples upright pulse")
-Pulse = namedtuple("Pulse", "scale frequency phase start end upright_scale upright_phase")
+Ground = namedtuple("Ground", "kind dt samples upright shaking")
+Shaking = namedtuple("Shaking", "scale frequency phase start end upright_scale upright_phase")
 # What to do: `record` keeps events (up to `capacity` of a kind), ledger and diagnostics; `decide` stops when
 # the outcome is certain and the peaks are final (decision.py), but not before the time `shortest`; without it that ends
 # a base in full contact alone. `most_steps` ends a run that does not get on (SPENT).

@@ -15,7 +15,7 @@ from .motion import SampledMotion
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from .types import Motion
+    from .motion import Motion
 
 PULSE_INTERVALS = 4000  # of a pulse; its interpolation error is then below 1e-6 of the amplitude
 

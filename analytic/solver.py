@@ -25,16 +25,17 @@ from .decision import (
     will_not_overturn,
 )
 from .errors import SettingError
-from .layout import Base, Body, Ground, Options, Parameters, Pulse
+from .layout import Base, Body, Ground, Options, Parameters, Shaking
 from .limits import limit_warnings
-from .motion import RICKER_PERIODS, SampledMotion
+from .motion import SampledMotion
+from .pulses import SERIES
 from .response import Caution, Energy, Failure, History, Impact, Response, State, about_record
 from .rocking import RockingModel
-from .taylor import HARMONIC, LINEAR_GROUND, QUIET, RICKER, SHORT_ORDER
+from .taylor import LINEAR_GROUND, PULSE, QUIET, SHORT_ORDER
 
 if TYPE_CHECKING:
+    from .motion import Motion
     from .scene import Scene
-    from .types import Motion
 
 # Chosen by measurement (`rocking study kernel`): where CPU against error is least.
 ORDER = 18  # free flight and pulses: long steps
@@ -84,20 +85,17 @@ def ground(motion: Motion | None, scale: float = 1.0) -> Ground:
     """The motion as the kernel's `Ground`, times `scale`."""
     scale = float(scale)
     if motion is None:
-        return Ground(QUIET, 1.0, _NO_SAMPLES, None, Pulse(*[0.0] * len(Pulse._fields)))
+        return Ground(QUIET, 1.0, _NO_SAMPLES, None, Shaking(*[0.0] * len(Shaking._fields)))
     if isinstance(motion, SampledMotion):
-        times = Pulse(scale, 0.0, 0.0, 0.0, motion.end, scale, 0.0)
+        times = Shaking(scale, 0.0, 0.0, 0.0, motion.end, scale, 0.0)
         upright = motion.vertical.samples if motion.vertical else None
         return Ground(LINEAR_GROUND, motion.dt, motion.samples, upright, times)
-    kind, frequency, phase = {
-        "one-sine": (HARMONIC, motion.frequency, 0.0),
-        "half-sine": (HARMONIC, motion.frequency, 0.0),
-        "one-cosine": (HARMONIC, motion.frequency, 0.5 * math.pi),
-        "rectangular": (HARMONIC, 0.0, 0.0),
-        "ricker": (RICKER, motion.frequency, -RICKER_PERIODS * math.pi),
-    }[motion.shape]
+    form, kind, frequency = motion.form, PULSE, 0.0
+    if form.series:
+        kind, frequency = PULSE + SERIES.index(form.series), motion.frequency
+    phase = form.shift
     up = (motion.vertical.amplitude * scale, phase + motion.vertical.phase) if motion.vertical else (0.0, 0.0)
-    pulse = Pulse(motion.amplitude * scale, frequency, phase + motion.phase, motion.start, motion.end, *up)
+    pulse = Shaking(motion.amplitude * scale, frequency, phase + motion.phase, motion.start, motion.end, *up)
     return Ground(kind, 1.0, _NO_SAMPLES, _NO_SAMPLES if motion.vertical else None, pulse)
 
 

@@ -10,12 +10,12 @@ import numpy as np
 from . import layout as L
 from .compiled import inlined, inner
 from .events import direction_from_rest, find_fall, find_uplift, hop_deceleration, upper_bound
-from .laws import chosen
+from .laws import law_function
 from .polynomial import bound, bracketed_root, derivative, largest, value
 from .readings import read_contact, read_energy, read_lifting, write_history
 from .taylor import (
-    HARMONIC,
     LINEAR_GROUND,
+    PULSE,
     QUIET,
     SHORT_ORDER,
     allowed_step,
@@ -30,53 +30,53 @@ from .taylor import (
 FARTHEST = 4.0
 
 # The bearings' law, see `laws.Law`.
-mark, begin_step, reached = chosen("mark"), chosen("begin"), chosen("reached")
+mark, begin_step, reached = law_function("mark"), law_function("begin"), law_function("reached")
 
 
 @inlined
 def stretch_of_ground(ground, upright, segment, begin, order, duration):
     """The next `Stretch` of ground motion, from `begin` [s]. order : of the series where the motion is no record."""
-    kind, a0, slope, lift, rise, end, pulse = QUIET, 0.0, 0.0, 0.0, 0.0, duration, ground.pulse
+    kind, a0, slope, lift, rise, end, shaking = QUIET, 0.0, 0.0, 0.0, 0.0, duration, ground.shaking
     if ground.kind == LINEAR_GROUND:
         if segment < ground.samples.shape[0] - 1:
-            a0 = pulse.scale * ground.samples[segment]
-            slope = (pulse.scale * ground.samples[segment + 1] - a0) / ground.dt
+            a0 = shaking.scale * ground.samples[segment]
+            slope = (shaking.scale * ground.samples[segment + 1] - a0) / ground.dt
             end = min((segment + 1) * ground.dt, duration)
             order = SHORT_ORDER
             if upright is not None:
-                lift = pulse.upright_scale * upright[segment]
-                rise = (pulse.upright_scale * upright[segment + 1] - lift) / ground.dt
+                lift = shaking.upright_scale * upright[segment]
+                rise = (shaking.upright_scale * upright[segment + 1] - lift) / ground.dt
             if a0 != 0 or slope != 0 or lift != 0 or rise != 0:
                 kind = LINEAR_GROUND
     elif ground.kind != QUIET:
         if segment == 0:
-            end = min(pulse.start, duration)
+            end = min(shaking.start, duration)
         elif segment == 1:
-            kind, a0, lift, end = ground.kind, pulse.scale, pulse.upright_scale, min(pulse.end, duration)
+            kind, a0, lift, end = ground.kind, shaking.scale, shaking.upright_scale, min(shaking.end, duration)
     return L.Stretch(kind, a0, slope, lift, rise, end, order)
 
 
 @inlined
-def ground_of_step(pulse, stretch, tau, h, A):
+def ground_of_step(shaking, stretch, tau, h, A):
     """Series of the ground acceleration `tau` into the stretch: (its highest order, step)."""
     kind = stretch.kind
-    if kind == HARMONIC and pulse.frequency == 0:
+    if shaking.frequency == 0 and kind != QUIET:  # a constant pulse, too
         kind = LINEAR_GROUND
-    phase = pulse.phase + pulse.frequency * tau  # not by t: late pulses are as exact as early ones
-    if kind > LINEAR_GROUND:
-        h = min(h, 1.0 / pulse.frequency)
+    phase = shaking.phase + shaking.frequency * tau  # not by t: late pulses are as exact as early ones
+    if kind >= PULSE:
+        h = min(h, 1.0 / shaking.frequency)
     level = stretch.a0 + stretch.slope * tau
-    return ground_series(stretch.order, kind, level, stretch.slope, pulse.frequency, phase, A), h
+    return ground_series(stretch.order, kind, level, stretch.slope, shaking.frequency, phase, A), h
 
 
 @inner
-def gravity_of_step(pulse, g, stretch, tau, G):
+def gravity_of_step(shaking, g, stretch, tau, G):
     """Series of g + a_v, as `ground_of_step`."""
     G[0], G[1], kind = 0.0, 0.0, stretch.kind
-    if kind == HARMONIC and pulse.frequency == 0:
+    if shaking.frequency == 0 and kind != QUIET:  # a constant pulse, too
         kind = LINEAR_GROUND
-    phase = pulse.upright_phase + pulse.frequency * tau
-    ground_series(stretch.order, kind, stretch.lift + stretch.rise * tau, stretch.rise, pulse.frequency, phase, G)
+    phase = shaking.upright_phase + shaking.frequency * tau
+    ground_series(stretch.order, kind, stretch.lift + stretch.rise * tau, stretch.rise, shaking.frequency, phase, G)
     G[0] += g
 
 

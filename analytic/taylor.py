@@ -7,9 +7,10 @@ rest is filled up to `order`. S and C are sin and cos of s gamma - phi, so n = R
 import math
 
 from . import layout as L
-from .compiled import inlined, inner
-from .laws import NUMBERS, chosen
+from .compiled import chosen, inlined, inner
+from .laws import NUMBERS, law_function
 from .polynomial import INVERSE
+from .pulses import SERIES
 
 # Order of the series between the samples of a record, where steps end anyway (`rocking study kernel`).
 SHORT_ORDER = 8
@@ -20,11 +21,12 @@ NEGLIGIBLE = 1e-200
 # A step is shortened by no more than this at once: powers of a long one overflow.
 MOST_SHRINK = 1e-3
 
-_bearing_term = chosen("term")
+_bearing_term = law_function("term")
 USUAL_LAW = NUMBERS["algebraic"]  # the one whose series is unrolled
 
-# Kinds of ground motion within a segment.
-QUIET, LINEAR_GROUND, HARMONIC, RICKER = range(4)
+# Kinds of ground motion within a segment: none, linear, and from PULSE on the series of `pulses.SERIES`.
+QUIET, LINEAR_GROUND, PULSE = range(3)
+_pulse_series = chosen(SERIES)
 
 
 @inner
@@ -60,23 +62,14 @@ def hop_order(length, order, tolerance):
 def ground_series(order, kind, a0, a1, frequency, u, A):
     """Coefficients of the ground acceleration; returns the highest one that is not zero, or -1.
 
-    LINEAR_GROUND: a0 + a1 t. HARMONIC: a0 sin(u + frequency t). RICKER: as PulseMotion, u from its centre.
+    LINEAR_GROUND: a0 + a1 t; else a0 f(u + frequency t) of a pulse.
     """
     if kind == QUIET:
         return -1
     if kind == LINEAR_GROUND:
         A[0], A[1] = a0, a1
         return 1
-    if kind == HARMONIC:
-        A[0], A[1] = a0 * math.sin(u), a0 * frequency * math.cos(u)
-        for k in range(order - 1):
-            A[k + 2] = -frequency * frequency * A[k] * INVERSE[k + 1] * INVERSE[k + 2]
-        return order
-    b0, b1, b2 = 0.25 * u * u, 0.5 * u * frequency, 0.25 * frequency * frequency
-    e2, e1, e0 = 0.0, 0.0, math.exp(-b0)  # coefficients k-2, k-1, k of exp(-b)
-    for k in range(order + 1):
-        A[k] = a0 * (e0 - 2 * (b0 * e0 + b1 * e1 + b2 * e2))
-        e2, e1, e0 = e1, e0, -(b1 * e0 + 2 * b2 * e1) * INVERSE[k + 1]
+    _pulse_series(kind - PULSE, order, a0, frequency, u, A)
     return order
 
 

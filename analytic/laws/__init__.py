@@ -1,19 +1,17 @@
 """The bearing laws, one file each; a new one is its file and a name in the first import. See `Law` for what it offers.
 
-Compiled code knows a law by its number, its place in `LAWS`, and picks its functions by that number: functions as
-arguments would compile the whole kernel once for each law.
+Compiled code knows a law by its number, its place in `LAWS`.
 """
 
 from collections import namedtuple
-from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
-from ..compiled import inlined
+from ..compiled import chosen
 from . import algebraic, bilinear, bouc_wen, linear  # noqa: F401 a new law joins this line, and is in LAWS by it
 from .law import Law
 
-__all__ = ["LAWS", "NUMBERS", "Constants", "Law", "chosen"]
+__all__ = ["LAWS", "NUMBERS", "Constants", "Law", "law_function"]
 
 LAWS = tuple(file.LAW for file in list(globals().values()) if isinstance(file, ModuleType) and hasattr(file, "LAW"))
 NUMBERS = {law.name: number for number, law in enumerate(LAWS)}
@@ -27,24 +25,6 @@ def _record(names: tuple[str, ...]) -> Any:
 Constants = _record(("dk", "f0", *dict.fromkeys(name for law in LAWS for name in law.own)))
 
 
-def chosen(name: str) -> Callable[..., Any]:
+def law_function(name: str) -> Any:
     """Compiled function of (law's number, *arguments): the law's function `name`."""
-    *before, last = (getattr(law, name) for law in LAWS)
-
-    @inlined
-    def choose(law, *arguments):
-        return last(*arguments)
-
-    for number, own in reversed(list(enumerate(before))):
-        choose = _either(number, own, choose)
-    return choose
-
-
-def _either(number: int, own: Callable[..., Any], others: Callable[..., Any]) -> Callable[..., Any]:
-    @inlined
-    def choose(law, *arguments):
-        if law == number:
-            return own(*arguments)
-        return others(law, *arguments)
-
-    return choose
+    return chosen([getattr(law, name) for law in LAWS])

@@ -28,7 +28,7 @@ from .histories import ToFile, differences, response_of, thinned
 from .statue import statue_of
 
 if TYPE_CHECKING:
-    from analytic.types import Motion
+    from analytic.motion import Motion
 
     from ..running.study import Plan, Request
     from ..running.sweep import Row

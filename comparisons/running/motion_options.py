@@ -9,7 +9,7 @@ import typer
 
 if TYPE_CHECKING:
     from analytic import Response, Scene
-    from analytic.types import Motion
+    from analytic.motion import Motion
 
 Records = Annotated[
     str | None, typer.Option(metavar="FOLDER", help="Also under the records in this folder, as they are recorded.")

@@ -16,7 +16,7 @@ from numba import njit
 if TYPE_CHECKING:
     from analytic import Block, Scene
     from analytic.bearing import BearingLaw
-    from analytic.types import Motion
+    from analytic.motion import Motion
 
 Real = exu.symbolic.Real
 

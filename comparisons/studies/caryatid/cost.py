@@ -14,8 +14,8 @@ from numba import njit
 from analytic import PulseMotion, kernel, simulate
 from analytic.laws import NUMBERS
 from analytic.laws.algebraic import after_travel, on_branch, virtual_travel
+from analytic.motion import Motion
 from analytic.solver import ground, options, parameters
-from analytic.types import Motion
 
 from .runs import ISOLATED, caryatid
 

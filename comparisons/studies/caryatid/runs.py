@@ -17,7 +17,7 @@ from ...running.study import Batch
 if TYPE_CHECKING:
     from analytic import Response
     from analytic.design import BearingProperties
-    from analytic.types import Motion
+    from analytic.motion import Motion
 
     from ...running.sweep import Row
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from analytic import Base, Bearings, Block, PulseMotion, Scene, Start
-from analytic.motion import PULSES
+from analytic.pulses import PULSES
 from engines.statue_range import RANGE
 
 DENSITY = (200.0, 2e4)  # kg per m3 of R^3: wood to bronze, hollow or solid
@@ -36,7 +36,7 @@ def random_scene(seed: int, index: int) -> Scene:
     omega = scene.rocking_frequency
     amplitude = side * scene.gravity * math.tan(block.slenderness) * _log(rng, *PULSE)
     start = float(rng.choice([0.0, rng.uniform(0, 0.5) / omega]))
-    return scene.with_(motion=PulseMotion(str(rng.choice(PULSES)), amplitude, omega * _log(rng, *PULSE), start))
+    return scene.with_(motion=PulseMotion(str(rng.choice(list(PULSES))), amplitude, omega * _log(rng, *PULSE), start))
 
 
 def _log(rng: np.random.Generator, low: float, high: float) -> float:

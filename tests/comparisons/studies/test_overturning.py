@@ -12,7 +12,7 @@ from page_numbers import number_in
 
 from analytic import PulseMotion, simulate
 from analytic.caryatid import MASS
-from analytic.motion import PULSES
+from analytic.pulses import PULSES
 from comparisons.running.refine import drive
 from comparisons.running.study import Request
 from comparisons.showing.rows import where
