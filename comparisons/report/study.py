@@ -8,8 +8,9 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..running.plan import Study
 from ..running.provenance import copy_result
-from ..running.study import Study, compute
+from ..running.study import compute
 from .runs import CARYATID, RESTITUTION, SCENES, load_scenes, plan
 
 if TYPE_CHECKING:

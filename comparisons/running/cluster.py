@@ -26,8 +26,8 @@ from analytic.errors import SettingError
 
 from .cases import compile_for, module_of, versions
 from .executors import Done, Executor, Processes, Task, end_with, number_of
+from .progress import say
 from .readable import Mendable
-from .solving import say
 from .sources import PROJECT, source_digests
 
 LOCAL = "local:"

@@ -42,7 +42,7 @@ def motions_of(
     from analytic.records.folder import folder_motions, reversed_sign, same_reversed
 
     from .options import named_by_options
-    from .solving import say
+    from .progress import say
 
     for name, value in (("directions", directions), ("units", units)):
         if value is not None and records is None:
@@ -77,7 +77,7 @@ def rows_of(
     scene: Scene, groups: Mapping[str, Sequence[Motion]], simulate: Callable[[Scene], Response]
 ) -> list[dict[str, Any]]:
     """A row for each motion: record, motion, peak [m/s2], outcome, tilt over slenderness, base displacement [m]."""
-    from .solving import bar
+    from .progress import bar
 
     pairs = [(record, motion) for record, motions in groups.items() for motion in motions]
     rows = []

@@ -10,12 +10,12 @@ from engines import get_engine
 
 from ...measuring.causes import CAUSES, LEAST, diagnosis
 from ...running.cases import Case
-from ...running.study import Batch, Computed
+from ...running.plan import Batch, Computed
 
 if TYPE_CHECKING:
     from analytic import Response
 
-    from ...running.study import Plan, Request
+    from ...running.plan import Plan, Request
 
 SLENDERNESS, START = 0.2, 0.6  # rad, tilt over slenderness
 SECONDS = 1.6  # past the swing after the first impact

@@ -15,7 +15,7 @@ from engines.statue_range import RANGE
 
 from ...measuring.errors import impact_errors, rms
 from ...running.cases import Case
-from ...running.study import Batch, Computed
+from ...running.plan import Batch, Computed
 from ..random_scenes.scenes import random_scene
 from ..restitution.cases import free_scene, variants_of
 from ..stability.cases import hard_cases
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from analytic import Response, Scene
     from engines.contract import Variant
 
-    from ...running.study import Plan, Request
+    from ...running.plan import Plan, Request
     from ...running.sweep import Row
 
 AS_IT_IS, CHANGES = "as it is", {"halved": 0.5, "doubled": 2.0}

@@ -13,8 +13,8 @@ from page_numbers import number_in
 from analytic import PulseMotion, simulate
 from analytic.caryatid import MASS
 from analytic.pulses import PULSES
+from comparisons.running.plan import Request
 from comparisons.running.refine import drive
-from comparisons.running.study import Request
 from comparisons.showing.rows import where
 from comparisons.studies.overturning import STUDY
 from comparisons.studies.overturning.drawn import FREQUENCY, JUMPS, drawn_edges

@@ -15,8 +15,8 @@ from analytic import SceneError, SettingError, simulate
 from analytic.records import read_record
 from analytic.response import COMPARED, EDGE
 from comparisons.measuring.statistics import equality
+from comparisons.running.plan import Request
 from comparisons.running.provenance import read_result, write_result
-from comparisons.running.study import Request
 from comparisons.running.sweep import Row
 from comparisons.showing.rows import where
 from comparisons.studies import get_study

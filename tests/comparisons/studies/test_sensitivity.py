@@ -8,7 +8,7 @@ from scipy.stats import norm
 from analytic import load_scene, simulate, synthetic_motion
 from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel
-from comparisons.running.study import Computed, Request
+from comparisons.running.plan import Computed, Request
 from comparisons.showing.rows import where
 from comparisons.studies import get_study
 from comparisons.studies.sensitivity.changes import changes, with_vertical
