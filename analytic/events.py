@@ -159,9 +159,9 @@ def land(par, rate, base, gravity, ground, rest_rate, t, arrays):
     base : before it; gravity, ground : g + a_v and a_g [m/s2]; rest_rate [rad/s].
     """
     impacts, rests, totals, v = arrays.impacts, arrays.rests, arrays.totals, base.v
-    before, lever = rate, par.mt * par.R * math.cos(par.gamma)
+    before = rate
     rate = par.e * before  # (7)
-    jump = lever * (before - rate)  # (8), from momentum
+    jump = par.arm * (before - rate)  # (8)
     totals[L.IMPACT_LOSS] += impact_loss(par, v, before, rate, jump)
     v += jump
     number = int(totals[L.IMPACTS])
@@ -174,7 +174,7 @@ def land(par, rate, base, gravity, ground, rest_rate, t, arrays):
         remaining = remaining_hops(par, rate, gravity, ground, force)
     if not (landed or remaining >= 0):
         return rate, v, False
-    left = lever * rate  # the hops left out: their momentum stays with the base
+    left = par.arm * rate  # the hops left out: their momentum stays with the base
     totals[L.IMPACT_LOSS] += impact_loss(par, v, rate, 0.0, left)
     if remaining >= 0:  # else it lands flat and lifts again at once
         number = int(totals[L.RESTS])

@@ -39,9 +39,10 @@ ROWS = 14
 NONE, UPLIFT, IMPACT, REVERSAL, CORNER, PASSAGE, OVERTURNING = range(7)
 
 # The scene, in numbers alone, so that a row of an array holds one; `on_base` is 0 or 1. See RockingModel and BearingLaw
-# for their meaning; slope is tan(gamma), law the number of the bearings' law, constants its `laws.Constants`.
+# for their meaning; slope is tan(gamma), arm the velocity that a
+# base gains per tilt rate lost, eq. (8), law the number of the bearings' law, constants its `laws.Constants`.
 Parameters = namedtuple(
-    "Parameters", "m M J R gamma slope g p2 e mt on_base law count kb damping tilt rate x v z duration constants"
+    "Parameters", "m M J R gamma slope g p2 e arm on_base law count kb damping tilt rate x v z duration constants"
 )
 # The ground motion: `kind` is QUIET, LINEAR_GROUND (samples at intervals of dt), or from PULSE on that of a pulse,
 # scale f(phase + frequency (t - start)); with frequency 0 it is constant. The vertical motion is of the same kind,

@@ -65,7 +65,7 @@ def parameters(scene: Scene) -> Parameters:
         g=model.g,
         p2=scene.rocking_frequency**2,
         e=float(model.restitution),
-        mt=model.mass_share,
+        arm=model.jump_arm,
         on_base=float(model.on_base),
         law=float(law.law),
         count=float(law.count),

@@ -126,7 +126,6 @@ def _march(par, h, ground, gravity, rows):
     Returns (steps taken, overturned?, impacts, uplifts, rests, (unstable time or -1, fall time), extremes, end).
     """
     m, gamma, on_base, tilt, rate, x, v, z = par.m, par.gamma, par.on_base, par.tilt, par.rate, par.x, par.v, par.z
-    arm = par.mt * par.R * math.cos(gamma)
     side = math.copysign(1.0, tilt if tilt != 0 else rate) if tilt != 0 or rate != 0 else 0.0
     impacts, uplifts, rests = [(0.0, 0.0, 0.0, 0.0)], [0.0], [0.0]
     impacts.pop(), uplifts.pop(), rests.pop()
@@ -166,11 +165,11 @@ def _march(par, h, ground, gravity, rows):
         if side != 0 and side * tilt <= 0 and side * rate < 0:
             before, rate = rate, par.e * rate  # (7)
             if on_base:
-                v += arm * (before - rate)  # (8)
-            impacts.append((t + h, before, rate, arm * (before - rate)))
+                v += par.arm * (before - rate)  # (8)
+            impacts.append((t + h, before, rate, par.arm * (before - rate)))
             side = -side
             if abs(rate) <= abs(spin) * h:  # it would not last a step
-                v += arm * rate
+                v += par.arm * rate
                 tilt, rate, side = 0.0, 0.0, 0.0
                 rests.append(t + h)
     if over:
