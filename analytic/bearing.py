@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
@@ -74,6 +75,7 @@ class BearingLaw:
     constants: Constants
 
     @classmethod
+    @functools.lru_cache(maxsize=64)  # asked for some forty times in a run of an engine
     def of(cls, bearings: Bearings | None) -> Self:
         """The law of a `Bearings` part; of None, no force at all."""
         if bearings is None:
