@@ -136,7 +136,7 @@ def impacts_only(case: Case, response: Response) -> dict[str, Any]:
 
 
 def restitution_computed(rows: Sequence[Row]) -> Computed:
-    """The answer of the block let go: a row for each solver and variant, over all grounds and starts."""
+    """The answer of the block released: a row for each solver and variant, over all grounds and starts."""
     groups: dict[tuple[str, str | None], list[Row]] = {}
     models = {row.case.scene.digest(): Response.from_json(row.values) for row in rows if row.case.solver == "analytic"}
     for row in rows:

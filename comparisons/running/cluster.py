@@ -3,8 +3,8 @@
     with Cluster("tcp://scheduler:8786", solvers) as executor:
         rows = run_sweep(cases, store="results/map.jsonl", measure=outcome, executor=executor)
 
-Each thread of a Dask worker has a process that guards its runs by `Processes`, as ever: a crash or a hang costs one row
-and no worker.
+Each thread of a Dask worker has a process that guards its runs by `Processes`, as ever: of a crash or a hang
+only that row is lost, and no worker.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ title, lead and first, the study's own page all of it; nothing is told or drawn 
     def page(result):
         rows = where(result.rows, part="summary")
         return Page(
-            "One impact: 6 of 13 settings keep restitution within 0.001",
+            "One impact: 6 of 13 variants reproduce restitution to within 0.001",
             ("What the question is, in two sentences.",),
             first=(lines(rows, SLENDERNESS, ERROR, "What to look at.", panel="ground", log="y"),
                    table("Least error first", rows, NAME, ERROR, Column("failed", "{failed} of {runs}"))),

@@ -53,7 +53,7 @@ def test_work_is_the_integral_of_the_force(rule, share, dx):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_start_in_mid_path_is_continued_as_the_law_says(name):
-    """`begin`, `term` and `reached` of the kernel's step, against `after_travel`, on a base that is let go."""
+    """`begin`, `term` and `reached` of the kernel's step, against `after_travel`, on a base that is released."""
     scene = contact(law=name, start=Start(base_displacement=0.5 * YIELD, base_velocity=0.2), duration=0.02)
     end, rule = simulate(scene).end, BearingLaw.of(scene.bearings)
     z = rule.hysteretic(0.0, end.base_displacement)  # still on its way out

@@ -1,4 +1,4 @@
-"""The autopsy study: the first impact of a block let go, on both grounds, in every engine and variant."""
+"""The autopsy study: the first impact of a block released, on both grounds, in every engine and variant."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ GROUNDS = {"rigid ground": None, "sliding base": Base(mass=BASE.mass)}
 
 
 def scene_on(ground: str) -> Scene:
-    """The block let go, on a ground of `GROUNDS`."""
+    """The block released, on a ground of `GROUNDS`."""
     return Scene(
         name="one impact",
         block=Block(mass=MASS, radius=RADIUS, slenderness=SLENDERNESS),

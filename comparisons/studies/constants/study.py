@@ -32,13 +32,13 @@ SILENT = {"history": False}
 IMPACTS, PEAKS, OUTCOMES = "impacts", "peaks", "outcomes"  # what is judged of a scene
 SEED, SCENES = 0, 12  # of the random ones
 MOST_IMPACTS = 1000  # a run of so many costs as much as the rest of the sample
-STARTS = (0.15, 0.45)  # slendernesses of the blocks that are let go
+STARTS = (0.15, 0.45)  # slendernesses of the blocks that are released
 
 
 def sample(quick: bool) -> Iterator[tuple[str, Scene]]:
-    """(what is judged, scene): impacts of blocks let go; peaks of statues that stay upright; outcomes.
+    """(what is judged, scene): impacts of blocks released; peaks of statues that stay upright; outcomes.
 
-    Only statues under a motion have a peak tilt to be judged: one that is let go has it at the start.
+    Only statues under a motion have a peak tilt to be judged: one that is released has it at the start.
     """
     for slenderness, ratio in itertools.product(STARTS, (None, BASE.mass / MASS)):
         yield IMPACTS, free_scene(slenderness, ratio, 0.6)

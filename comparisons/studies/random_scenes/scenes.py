@@ -19,7 +19,7 @@ STARTS = 0.95  # most tilt of a released block over its slenderness
 
 
 def random_scene(seed: int, index: int) -> Scene:
-    """Scene number `index` of the ensemble `seed`: a statue let go, or under a pulse, until its outcome is decided.
+    """Scene number `index` of the ensemble `seed`: a statue released, or under a pulse, until its outcome is decided.
 
     A quarter stands on rigid ground, a fifth of the others on a free base. Half of the bearings have viscous damping.
     """

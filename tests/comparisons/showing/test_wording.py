@@ -38,7 +38,7 @@ def test_what_differs_is_said_near_an_edge_too():
         (0, "yes", (0.0, 0.03), "good"),
         (1, "no", (0.01, 0.06), "fair"),
         (9, "no", (0.06, 0.2), "bad"),
-        (0, "too few to say", (0.0, 0.071), "part"),
+        (0, "inconclusive (too few runs)", (0.0, 0.071), "part"),
     ],
 )
 def test_so_few_runs_that_they_say_nothing_are_no_trust_either(differing_runs, equal, interval, level):
