@@ -435,12 +435,12 @@ def _how(settings):
     return (
         f"Blocks of slenderness {min(gammas):g} to {max(gammas):g} rad, tilted to {min(starts):g} to {max(starts):g} "
         f"of it ({len(starts)} starts) and released, on rigid ground and on bases of {bases} times their mass that "
-        f"slide without friction; the first {settings['impacts']} impacts of every run. Restitution is the root of the ratio "
-        "of a swing's energy after an impact to that before it, so that whatever takes energy counts; the base "
+        f"slide without friction; the first {settings['impacts']} impacts of every run. Restitution is the root of the "
+        "ratio of a swing's energy after an impact to that before it, so that whatever takes energy counts; the base "
         "velocity jump is compared with momentum by the run's own rates.",
         f"On bearings: {grid}, each with each, the laws in turn; released at half of the slenderness, the ground at "
-        "rest or under one sine of half the uplift acceleration and three times the rocking frequency. Under these forces "
-        "the energy of a swing is not conserved: restitution is the ratio of the tilt rates after and before the "
+        "rest or under one sine of half the uplift acceleration and three times the rocking frequency. Under these "
+        "forces the energy of a swing is not conserved: restitution is the ratio of the tilt rates after and before the "
         "impact, against eq. (7), and the base velocity jump is compared with momentum, eq. (8). An impact that a "
         "run does not have counts as missed.",
         f"Trusted: error of both grounds at most {TRUSTED:g}, no failed run, no missed impact; usable: at "
