@@ -440,8 +440,8 @@ def _how(settings):
         "velocity jump is compared with momentum by the run's own rates.",
         f"On bearings: {grid}, each with each, the laws in turn; released at half of the slenderness, the ground at "
         "rest or under one sine of half the uplift acceleration and three times the rocking frequency. Under these "
-        "forces the energy of a swing is not conserved: restitution is the ratio of the tilt rates after and before the "
-        "impact, against eq. (7), and the base velocity jump is compared with momentum, eq. (8). An impact that a "
+        "forces the energy of a swing is not conserved: restitution is the ratio of the tilt rates after and before "
+        "the impact, against eq. (7), and the base velocity jump is compared with momentum, eq. (8). An impact that a "
         "run does not have counts as missed.",
         f"Trusted: error of both grounds at most {TRUSTED:g}, no failed run, no missed impact; usable: at "
         f"most {USABLE:g}. Measured restitution of stone scatters by some per cent. The corners are set plastic, "
