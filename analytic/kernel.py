@@ -64,7 +64,7 @@ def run(
     return totals, end, *events, into.history[:written]
 
 
-# Longer than others: two loops over some twenty numbers of state, which each further part would take and give back.
+# Longer than other functions: two loops share some twenty variables of state.
 @entry
 def integrate(par, ground, upright, options, arrays):
     """The run itself: (end state, rows of the history written). upright : an argument of its own, see steps.py."""

@@ -220,7 +220,7 @@ def _output_step(scene, asked, history):
 
 @functools.cache
 def compile_kernels(vertical: bool = False) -> None:
-    """Load the compiled functions, or compile them: once per machine, some twenty seconds.
+    """Load the compiled functions, or compile them: once per machine, some ten seconds.
 
     `simulate` does so before its clock starts, and whoever starts one of his own does so before that. vertical : also
     for motions with a vertical component.

@@ -22,7 +22,7 @@ def compile_kernels(vertical: bool = False) -> None:
     """
     from analytic import solver
 
-    words = "compiling the analytic model: half a minute, once on this machine"
+    words = "compiling the analytic model: some ten seconds, once on this machine"
     with contextlib.ExitStack() as shown:
         show = (lambda: shown.enter_context(spinner(words))) if sys.stderr.isatty() else (lambda: say(words))
         telling = threading.Timer(PATIENCE, show)
