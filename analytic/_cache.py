@@ -18,7 +18,7 @@ def _folder() -> str:
     digest = hashlib.sha256()
     for file in sorted(source.rglob("*.py")):
         text = file.read_bytes()
-        if b"njit" in text:
+        if b"compiled" in text or b"numba" in text:  # more than what is compiled, never less
             digest.update(str(file.relative_to(source)).encode() + text)
     name = f"numba-{digest.hexdigest()[:16]}"
     for parent in (source / "__pycache__", Path.home() / ".cache" / "rocking", Path(tempfile.gettempdir())):

@@ -6,30 +6,35 @@ import os
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
-from numba import njit
+from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from . import kernel, layout
 from .budget import STEPS, most_steps
+from .compiled import compiling, entry
 from .decision import CAP_PERIODS, longest_duration
-from .layout import Ground, Vertical
+from .kernel import integrate
+from .laws import Constants
+from .layout import Arrays, Ground, Parameters, Shaking
 from .motion import PulseMotion, SampledMotion
 from .scene import Block, Scene
 from .solver import REST_RATE, TOLERANCE, ground, options, parameters
-from .taylor import Parameters
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
     from .layout import Options
-    from .types import Motion
+    from .motion import Motion
 
 # Chunks per worker: enough that a slow chunk does not leave the other cores idle.
 CHUNKS_PER_WORKER = 8
 
-_field = Parameters._fields.index
+# The parameters of a run as one entry of an array, by name.
+ROW = np.dtype([(name, float) for name in (*Parameters._fields[:-1], *Constants._fields)])
+tuple_of: Any = to_fixed_tuple
+SIZE, OWN, SHAKING = len(ROW.descr), len(Parameters._fields) - 1, len(Shaking._fields)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,55 +82,15 @@ class Outcomes:
         )
 
 
-@njit(cache=True, nogil=True)
-def _run_rows(
-    rows: np.ndarray,
-    pulses: np.ndarray,
-    kind: int,
-    dt: float,
-    samples: np.ndarray,
-    upright: np.ndarray | None,
-    chosen: Options,
-    totals: np.ndarray,
-) -> None:
-    """Run each row of parameters under its own pulse, see `pulse_row`; totals has a row each.
-
-    upright : samples of the vertical motion, or None without one.
-    """
+@entry
+def _run_rows(rows, pulses, ground, upright, chosen, arrays, totals):
+    """Run each row of `ROW` under its own pulse; totals has a row each."""
+    P, work, impacts, uplifts, rests, history, _ = arrays
     for i in range(rows.shape[0]):
-        r = rows[i]
-        par = Parameters(
-            r[0],
-            r[1],
-            r[2],
-            r[3],
-            r[4],
-            r[5],
-            r[6],
-            r[7],
-            r[8],
-            r[9] != 0,
-            int(r[10]),
-            int(r[11]),
-            r[12],
-            r[13],
-            r[14],
-            r[15],
-            r[16],
-            r[17],
-            r[18],
-            r[19],
-            r[20],
-            r[21],
-            r[22],
-            r[23],
-        )
-        b = pulses[i]
-        if upright is None:
-            kernel.run(par, Ground(kind, dt, samples, b[0], b[1], b[2], b[3], b[4], None), chosen, totals[i])
-        else:
-            vertical = Vertical(upright, b[5], b[6])
-            kernel.run(par, Ground(kind, dt, samples, b[0], b[1], b[2], b[3], b[4], vertical), chosen, totals[i])
+        numbers = tuple_of(rows[i], SIZE)
+        par = Parameters(*numbers[:OWN], Constants(*numbers[OWN:]))  # type: ignore[call-arg]  # of one length
+        own = Ground(ground.kind, ground.dt, ground.samples, None, Shaking(*tuple_of(pulses[i], SHAKING)))
+        integrate(par, own, upright, chosen, Arrays(P, work, impacts, uplifts, rests, history, totals[i]))
 
 
 def run_rows(
@@ -133,30 +98,34 @@ def run_rows(
 ) -> np.ndarray:
     """Totals, shape (n, TOTALS), of n runs that share the kind and samples of one ground motion.
 
-    rows : (n, fields of Parameters). pulses : (n, 7), rows of `pulse_row`.
+    rows : (n,), of dtype `ROW`, see `row_of`. pulses : (n, fields of Shaking).
     The result does not depend on the number of workers (threads; the kernel holds no lock).
     """
     n = len(rows)
     totals = np.zeros((n, layout.TOTALS))
-    upright = shaking.vertical and shaking.vertical.samples
-    arguments = (shaking.kind, shaking.dt, shaking.samples, upright, chosen)
+    numbers = rows.view(float).reshape(n, SIZE)
     workers = workers or os.cpu_count() or 1
-    _run_rows(rows[:1], pulses[:1], *arguments, totals[:1])  # compiled or loaded before threads start
+
+    def run(part):
+        ground, arrays = shaking._replace(upright=None), kernel.arrays()
+        _run_rows(numbers[part], pulses[part], ground, shaking.upright, chosen, arrays, totals[part])
+
+    with compiling():
+        run(slice(0, 1))  # compiled or loaded before threads start
     size = max(1, -(-n // (workers * CHUNKS_PER_WORKER)))
     parts = [slice(k, min(k + size, n)) for k in range(1, n, size)]
     if workers == 1 or len(parts) < 2:
         for part in parts:
-            _run_rows(rows[part], pulses[part], *arguments, totals[part])
+            run(part)
         return totals
     with ThreadPoolExecutor(workers) as pool:
-        list(pool.map(lambda part: _run_rows(rows[part], pulses[part], *arguments, totals[part]), parts))
+        list(pool.map(run, parts))
     return totals
 
 
-def pulse_row(shaking: Ground) -> tuple[float, ...]:
-    """What a run of `run_rows` has of its own: scale, frequency, phase, start, end, vertical scale and phase."""
-    vertical = (0.0, 0.0) if shaking.vertical is None else (shaking.vertical.scale, shaking.vertical.phase)
-    return shaking.scale, shaking.frequency, shaking.phase, shaking.start, shaking.end, *vertical
+def row_of(par: Parameters) -> tuple[float, ...]:
+    """Parameters as an entry of an array of dtype `ROW`."""
+    return (*par[:-1], *par.constants)
 
 
 def _outcome_options(tolerance: float, rest_rate: float, steps: int, contact: bool = False) -> Options:
@@ -197,13 +166,13 @@ def simulate_many(
     for index, scene in enumerate(scenes):
         motion = scene.motion
         shaking = ground(motion)
-        key = motion.digest() if isinstance(motion, SampledMotion) else (shaking.kind, shaking.vertical is None)
+        key = motion.digest() if isinstance(motion, SampledMotion) else (shaking.kind, shaking.upright is None)
         groups.setdefault(key, []).append(index)
     totals = np.zeros((len(scenes), layout.TOTALS))
     for members in groups.values():
         shakings = [ground(scenes[i].motion, factors[i]) for i in members]
-        rows = np.array([parameters(scenes[i]) for i in members], dtype=float)
-        pulses = np.array([pulse_row(shaking) for shaking in shakings])
+        rows = np.array([row_of(parameters(scenes[i])) for i in members], dtype=ROW)
+        pulses = np.array([shaking.shaking for shaking in shakings])
         totals[members] = run_rows(rows, pulses, shakings[0], chosen, workers)
     return Outcomes.of(totals, (len(scenes),), contact)
 
@@ -244,13 +213,13 @@ def overturning_map(
     frequencies = np.asarray(frequency_ratios, dtype=float) * scene.rocking_frequency
     unit = scene.gravity * np.tan(scene.block.slenderness)
     amplitudes = np.asarray(amplitude_ratios, dtype=float) * unit
-    columns = [pulse_row(pulse(frequency)) for frequency in frequencies]
-    pulses = np.tile(np.array(columns), (len(amplitudes), 1))
-    pulses[:, 0] = np.repeat(amplitudes, len(frequencies))
-    pulses[:, 5] = vertical_ratio * pulses[:, 0]
-    rows = np.tile(np.array(parameters(scene), dtype=float), (len(pulses), 1))
+    columns = np.array([pulse(frequency).shaking for frequency in frequencies])
+    pulses = np.tile(columns, (len(amplitudes), 1))
+    scales = pulses[:, Shaking._fields.index("scale")] = np.repeat(amplitudes, len(frequencies))
+    pulses[:, Shaking._fields.index("upright_scale")] = vertical_ratio * scales
+    rows = np.full(len(pulses), np.array(row_of(parameters(scene)), dtype=ROW))
     if scene.duration is None:
-        rows[:, _field("duration")] = pulses[:, 4] + longest_duration(scene.with_(motion=None))
+        rows["duration"] = pulses[:, Shaking._fields.index("end")] + longest_duration(scene.with_(motion=None))
     totals = run_rows(rows, pulses, pulse(frequencies[0]), _outcome_options(tolerance, REST_RATE, STEPS), workers)
     return Outcomes.of(totals, (len(amplitudes), len(frequencies)))
 
@@ -275,14 +244,12 @@ def rocking_spectrum(
     radii = 3 * gravity * (periods / (2 * np.pi)) ** 2 / 4  # (1) with J_O = 4/3 m R^2
     block = Block(mass=1.0, radius=1.0, slenderness=slenderness, restitution=restitution_value)
     scene = Scene(block=block, motion=motion, duration=duration, gravity=gravity)
-    rows = np.tile(np.array(parameters(scene), dtype=float), (len(periods), 1))
-    rows[:, _field("R")] = radii
-    rows[:, _field("J")] = 4 / 3 * radii**2
-    rows[:, _field("p2")] = (2 * np.pi / periods) ** 2
+    rows = np.full(len(periods), np.array(row_of(parameters(scene)), dtype=ROW))
+    rows["R"], rows["J"], rows["p2"] = radii, 4 / 3 * radii**2, (2 * np.pi / periods) ** 2
     if duration is None:
-        rows[:, _field("duration")] = motion.end + CAP_PERIODS * periods
+        rows["duration"] = motion.end + CAP_PERIODS * periods
     shaking = ground(motion)
-    pulses = np.tile(np.array(pulse_row(shaking)), (len(periods), 1))
+    pulses = np.tile(np.array(shaking.shaking), (len(periods), 1))
     chosen = _outcome_options(tolerance, REST_RATE, most_steps(scene))
     totals = run_rows(rows, pulses, shaking, chosen, workers)
     return Outcomes.of(totals, (len(periods),))

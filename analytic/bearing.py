@@ -2,44 +2,50 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
-from numba import njit
 
-from .laws import LAWS, NUMBERS, chosen
+from .compiled import entry, inner
+from .laws import LAWS, NUMBERS, Constants, law_function
 
 if TYPE_CHECKING:
     from .laws.law import Law
     from .scene import Bearings
     from .types import Values
 
-_after_travel, _sides = chosen("after_travel"), chosen("sides")
+_after_travel, _sides = law_function("after_travel"), law_function("sides")
 
 
-@njit(cache=True)
-def hysteretic_force(z: float, dx: float, law: int, dk: float, alpha: float, d0: float, f0: float) -> float:
+@inner
+def hysteretic_force(z: float, dx: float, law: float, c: Constants) -> float:
     """Hysteretic force [N] after monotonic travel dx [m] from a point with hysteretic force z [N]."""
     if dx == 0:
         return z
-    return _after_travel(law, z, dx, dk, alpha, d0, f0)
+    return _after_travel(law, z, dx, c)
 
 
-@njit(cache=True)
-def _path(z: float, x: np.ndarray, law: int, dk: float, alpha: float, d0: float, f0: float) -> np.ndarray:
-    forces = np.empty_like(x)
+@entry
+def _path(z: float, x: np.ndarray, law: int, c: Constants, forces: np.ndarray) -> None:
     forces[0] = z
     for i in range(1, len(x)):
-        z = hysteretic_force(z, x[i] - x[i - 1], law, dk, alpha, d0, f0)
+        z = hysteretic_force(z, x[i] - x[i - 1], float(law), c)
         forces[i] = z
-    return forces
 
 
-@njit(cache=True)
-def _moved(z: float, dx: float, law: int, dk: float, alpha: float, d0: float, f0: float) -> tuple[float, float, float]:
-    z = hysteretic_force(z, dx, law, dk, alpha, d0, f0)
-    first, second = _sides(law, z, dk, alpha, d0, f0)
+# Engines call these at every step: numbers by themselves are handed over in half the time of a record.
+@entry
+def _hysteretic(z: float, dx: float, law: int, *constants: float) -> float:
+    return hysteretic_force(z, dx, float(law), Constants(*constants))
+
+
+@entry
+def _moved(z: float, dx: float, law: int, *constants: float) -> tuple[float, float, float]:
+    c = Constants(*constants)
+    z = hysteretic_force(z, dx, float(law), c)
+    first, second = _sides(float(law), z, c)
     return z, first, second
 
 
@@ -55,31 +61,28 @@ class BearingLaw:
         Number of bearings n_d.
     damping : float
         Viscous coefficient [N s/m].
-    kb, dk : float
-        Elastic stiffness and ka - kb [N/m]; for a linear law kb is its stiffness, and dk is 0.
-    f0 : float
-        Limit of the hysteretic part [N], 0 for a linear law.
-    alpha, x0, d0 : float
-        Constants of the law itself. algebraic: its exponent, x0 [m] of eq. (13), D0 = (1 + 2 x0)^(1 - alpha).
+    kb : float
+        Elastic stiffness [N/m]; for a linear law it is the stiffness.
+    constants : Constants
+        dk = ka - kb [N/m], f0 the limit of the hysteretic part [N], both 0 for a linear law; and the law's own:
+        of the algebraic one alpha, its exponent, x0 [m] of eq. (13), d0 = (1 + 2 x0)^(1 - alpha).
     """
 
     law: int
     count: int
     damping: float
     kb: float
-    dk: float
-    f0: float
-    alpha: float = 2.0
-    x0: float = 0.0
-    d0: float = 1.0
+    constants: Constants
 
     @classmethod
+    @functools.lru_cache(maxsize=64)  # asked for some forty times in a run of an engine
     def of(cls, bearings: Bearings | None) -> Self:
         """The law of a `Bearings` part; of None, no force at all."""
         if bearings is None:
-            return cls(NUMBERS["linear"], 0, 0.0, 0.0, 0.0, 0.0)
+            return cls(NUMBERS["linear"], 0, 0.0, 0.0, Constants(dk=0.0, f0=0.0))
         number = NUMBERS[bearings.law]
-        return cls(number, bearings.count, bearings.damping, **LAWS[number].constants(bearings))
+        values = LAWS[number].constants(bearings)
+        return cls(number, bearings.count, bearings.damping, values.pop("kb"), Constants(**values))
 
     @property
     def unit(self) -> Law:
@@ -87,13 +90,18 @@ class BearingLaw:
         return LAWS[self.law]
 
     @property
-    def constants(self) -> tuple[float, float, float, float]:
-        """(dk, alpha, d0, f0), the last arguments of the law's functions."""
-        return self.dk, self.alpha, self.d0, self.f0
+    def dk(self) -> float:
+        """ka - kb [N/m]."""
+        return self.constants.dk
+
+    @property
+    def f0(self) -> float:
+        """Limit of the hysteretic part [N]."""
+        return self.constants.f0
 
     def hysteretic(self, z: float, dx: float) -> float:
         """z of one bearing [N] after monotonic travel dx [m] from z."""
-        return hysteretic_force(z, dx, self.law, *self.constants)
+        return _hysteretic(z, dx, self.law, *self.constants)
 
     def moved(self, z: float, dx: float) -> tuple[float, float, float]:
         """(z after dx, the two numbers that `Law.expression` continues from there)."""
@@ -101,7 +109,9 @@ class BearingLaw:
 
     def path(self, x: np.ndarray) -> np.ndarray:
         """z [N] along displacements x [m], shape (n,), monotonic in between; x[0] is reached by `start`."""
-        return _path(self.start(float(x[0])), x, self.law, *self.constants)
+        forces = np.empty(len(x))
+        _path(self.start(float(x[0])), x, self.law, self.constants, forces)
+        return forces
 
     def start(self, displacement: float) -> float:
         """z of one bearing [N] after monotonic loading of the virgin bearing to `displacement` [m]."""
@@ -113,4 +123,4 @@ class BearingLaw:
 
     def work(self, z: float, dx: float) -> float:
         """Integral of the hysteretic force of one bearing over monotonic travel dx [m] from z [J], exact."""
-        return 0.0 if dx == 0 else self.unit.work(z, dx, *self.constants)
+        return 0.0 if dx == 0 else self.unit.work(z, dx, self.constants)

@@ -23,7 +23,7 @@ from .linear_oscillator import displacement_spectrum
 from .scene import Bearings, Scene
 
 if TYPE_CHECKING:
-    from .types import Motion
+    from .motion import Motion
 
 PERIODS = (0.3, 5.0)  # s, secant at the stroke: those of a statue's bearings
 DAMPINGS = (0.02, 0.5)  # share of critical, equivalent, at the stroke: rubber alone to more than lead gives

@@ -24,15 +24,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from numba import njit
-
 from .bearing import BearingLaw
-from .laws import chosen
+from .compiled import entry, inner
+from .laws import Constants, law_function
 from .response import Caution
 
 if TYPE_CHECKING:
+    from .layout import Base, Body, Parameters
     from .scene import Scene
-    from .taylor import Parameters
 
 # Share by which a reported peak could still grow when a run without a duration ends.
 PEAK_TOLERANCE = 1e-4
@@ -47,26 +46,26 @@ RIGID_BEARINGS = (
 )
 
 
-_recoverable = chosen("recoverable")
+_recoverable = law_function("recoverable")
 
 
-@njit(cache=True)
-def recoverable_energy(law: int, dk: float, alpha: float, d0: float, f0: float, z: float) -> float:
+@inner
+def recoverable_energy(law: float, c: Constants, z: float) -> float:
     """S(z) [J] of one bearing: the integral of |z| dx on the way back to z = 0; at least z^2/(2 (ka - kb))."""
     z = abs(z)
     if z == 0:
         return 0.0
-    return max(0.5 * z * z / dk, _recoverable(law, z, dk, alpha, d0, f0))
+    return max(0.5 * z * z / c.dk, _recoverable(law, z, c))
 
 
-@njit(cache=True)
-def remaining_energy(par: Parameters, rocking: bool, tilt: float, rate: float, x: float, v: float, z: float) -> float:
+@inner
+def remaining_energy(par: Parameters, body: Body, base: Base) -> float:
     """E [J] that can still reach the block, see the module's docstring."""
+    (s, tilt, rate), (x, v, z) = body, base
     kinetic, gravity, momentum = 0.5 * par.M * v * v, 0.0, par.M * v
     if not par.on_base:
         kinetic = 0.0
-    if rocking:
-        s = math.copysign(1.0, tilt if tilt != 0 else rate)
+    if s != 0:
         c = par.R * math.cos(s * par.gamma - tilt)
         kinetic += 0.5 * par.J * rate * rate
         if par.on_base:
@@ -77,60 +76,50 @@ def remaining_energy(par: Parameters, rocking: bool, tilt: float, rate: float, x
         return kinetic + gravity
     if par.count == 0:
         return max(kinetic - 0.5 * momentum * momentum / par.M, 0.0) + gravity
-    back = recoverable_energy(par.law, par.dk, par.alpha, par.d0, par.f0, z)
+    back = recoverable_energy(par.law, par.constants, z)
     return kinetic + gravity + par.count * (0.5 * par.kb * x * x + back)
 
 
-@njit(cache=True)
+@inner
 def largest_force(par: Parameters, energy: float) -> float:
     """Largest force of all bearings [N] that `energy` allows in full contact.
 
     By Cauchy and Schwarz over kinetic, elastic and recoverable energy, the last at least z^2/(2 (ka - kb)); or with
     the hysteretic part at its limit f0.
     """
-    n = float(par.count)
+    n, c = par.count, par.constants
     viscous = n * n * par.damping * par.damping / par.M
     return min(
-        math.sqrt(2 * energy * (n * (par.kb + par.dk) + viscous)),
-        n * par.f0 + math.sqrt(2 * energy * (n * par.kb + viscous)),
+        math.sqrt(2 * energy * (n * (par.kb + c.dk) + viscous)),
+        n * c.f0 + math.sqrt(2 * energy * (n * par.kb + viscous)),
     )
 
 
-@njit(cache=True)
-def will_not_overturn(
-    par: Parameters, rocking: bool, lifted: bool, tilt: float, rate: float, x: float, v: float, z: float
-) -> bool:
-    """After the motion: is the outcome "stands" or "rocks" certain? Rules (a) and (b)."""
+@entry
+def will_not_overturn(par: Parameters, body: Body, base: Base, lifted: bool) -> bool:
+    """After the motion: is the outcome "stands" or "rocks" certain? Rules (a) and (b). lifted : before, or now."""
+    rocking = body.s != 0
     if not (rocking or par.on_base):
         return True
-    energy = remaining_energy(par, rocking, tilt, rate, x, v, z)
-    if lifted and energy < par.m * par.g * par.R * (1 - math.cos(par.gamma)) and abs(tilt) < par.gamma:
+    energy = remaining_energy(par, body, base)
+    if lifted and energy < par.m * par.g * par.R * (1 - math.cos(par.gamma)) and abs(body.tilt) < par.gamma:
         return True  # (a)
-    return not rocking and largest_force(par, energy) < par.M * par.g * math.tan(par.gamma)  # (b)
+    return not rocking and largest_force(par, energy) < par.M * par.g * par.slope  # (b)
 
 
-@njit(cache=True)
-def peaks_are_final(
-    par: Parameters,
-    rocking: bool,
-    tilt: float,
-    rate: float,
-    x: float,
-    v: float,
-    z: float,
-    peak_tilt: float,
-    peak_x: float,
-    peak_acceleration: float,
-) -> bool:
-    """After a decision: can no reported peak grow by more than `PEAK_TOLERANCE`? A negative peak is not asked for.
+@entry
+def peaks_are_final(par: Parameters, body: Body, base: Base, peaks: tuple[float, float, float]) -> bool:
+    """After a decision: can no reported peak grow by more than `PEAK_TOLERANCE`?
 
-    A base without bearings slides on for ever: its displacement has no peak.
+    peaks : of tilt, base displacement and absolute base acceleration; a negative one is not asked for. A base without
+    bearings slides on for ever: its displacement has no peak.
     """
-    energy, slack = remaining_energy(par, rocking, tilt, rate, x, v, z), 1 + PEAK_TOLERANCE
+    (peak_tilt, peak_x, peak_acceleration), (x, v, z), rocking = peaks, base, body.s != 0
+    energy, slack = remaining_energy(par, body, base), 1 + PEAK_TOLERANCE
     if not par.on_base:
         highest = math.cos(par.gamma) + energy / (par.m * par.g * par.R)
         return not rocking or highest <= 1 and par.gamma - math.acos(highest) <= peak_tilt * slack
-    if rocking or largest_force(par, energy) >= par.M * par.g * math.tan(par.gamma):
+    if rocking or largest_force(par, energy) >= par.M * par.g * par.slope:
         return False
     if par.count == 0:
         return True
@@ -138,7 +127,7 @@ def peaks_are_final(
     if peak_acceleration >= 0 and largest_force(par, energy) > peak_acceleration * par.M * slack:
         return False
     if stiffness == 0:  # the rest of the energy spent against the limit force
-        return energy <= PEAK_TOLERANCE * par.count * par.f0 * peak_x
+        return energy <= PEAK_TOLERANCE * par.count * par.constants.f0 * peak_x
     # from the origin; or about the resting place, as no branch of a law is softer than kb
     near = abs(x) + abs(force) / stiffness + math.sqrt(par.M / stiffness * v * v + (force / stiffness) ** 2)
     return min(math.sqrt(2 * energy / stiffness), near) <= peak_x * slack

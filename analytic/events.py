@@ -6,9 +6,8 @@ no event.
 
 import math
 
-from numba import njit
-
-from .layout import GROUND, IMPACT_LOSS, IMPACTS, RESTS
+from . import layout as L
+from .compiled import inner
 from .polynomial import first_root
 
 # An impact slower than rest_rate omega_r ends in rest if the next hop is short too [1/omega_r]: while the ground
@@ -22,18 +21,25 @@ NO_RATE = 1e-15
 TOUCH = 1e-9
 
 
-@njit(cache=True)
-def find_uplift(P, row, order, threshold, refused, h, event, work, slope=0.0, highest=-1, G=None):
-    """|absolute acceleration| (row of P) exceeds the threshold g tan(gamma).
-
-    With the series G of g + a_v, up to `highest`, that is `slope` G, slope = tan(gamma).
-    """
-    size, power = abs(P[row, 0]), 1.0
+@inner
+def find_uplift(shape, vertical, refused, step, P, work):
+    """|absolute acceleration| exceeds the threshold g tan(gamma), or that of g + a_v."""
+    row, order, highest, h, event = (
+        P[L.ABSOLUTE if shape.on_base else L.GROUND],
+        step.order,
+        step.highest,
+        step.h,
+        P[L.EVENT],
+    )
+    threshold, slope, G = step.gravity * shape.slope, shape.slope, P[L.GRAVITY]
+    if abs(row[0]) > threshold and not refused:
+        return 0.0
+    size, power = abs(row[0]), 1.0
     for k in range(1, order + 1):
         power *= h
-        size += abs(P[row, k]) * power
+        size += abs(row[k]) * power
     found, least = -1.0, threshold
-    if G is not None:
+    if vertical is not None:
         least, power = slope * G[0], slope
         for k in range(1, highest + 1):
             power *= h
@@ -41,8 +47,8 @@ def find_uplift(P, row, order, threshold, refused, h, event, work, slope=0.0, hi
     if size >= least:
         for side in (-1.0, 1.0):
             for k in range(order + 1):
-                event[k] = side * P[row, k]
-            if G is None:
+                event[k] = side * row[k]
+            if vertical is None:
                 event[0] += threshold
             else:
                 for k in range(max(highest, 0) + 1):
@@ -57,15 +63,22 @@ def find_uplift(P, row, order, threshold, refused, h, event, work, slope=0.0, hi
     return found
 
 
-@njit(cache=True)
-def find_impact(phi, s, order, h, event, work):
-    """The tilt comes back to 0; a root at the start of the step is the event just left."""
+@inner
+def find_fall(f, side, limit, order, h, event, work):
+    """limit + side f falls below 0; a root at the start of the step is the event just left."""
+    lowest, power = limit + side * f[0], 1.0
+    for k in range(1, order + 1):
+        power *= h
+        lowest -= abs(f[k]) * power
+    if lowest > 0:
+        return -1.0
     for k in range(order + 1):
-        event[k] = s * phi[k]
+        event[k] = side * f[k]
+    event[0] += limit
     return first_root(event, order, h, work)
 
 
-@njit(cache=True)
+@inner
 def upper_bound(phi, s, order, h):
     """A bound on |tilt| over the step."""
     top, power = s * phi[0], 1.0
@@ -75,64 +88,27 @@ def upper_bound(phi, s, order, h):
     return top
 
 
-@njit(cache=True)
-def find_exceedance(phi, s, limit, order, h, event, work):
-    """|tilt| grows beyond `limit`."""
-    for k in range(order + 1):
-        event[k] = -s * phi[k]
-    event[0] += limit
-    return first_root(event, order, h, work)
-
-
-@njit(cache=True)
-def find_reversal(v, direction, order, h, event, work):
-    """The base velocity changes sign against `direction`."""
-    lowest, power = direction * v[0], 1.0
-    for k in range(1, order + 1):
-        power *= h
-        lowest -= abs(v[k]) * power
-    if lowest > 0:
-        return -1.0
-    for k in range(order + 1):
-        event[k] = direction * v[k]
-    return first_root(event, order, h, work)
-
-
-@njit(cache=True)
-def find_corner(z, direction, corner, order, h, event, work):
-    """The hysteretic force reaches `corner` in `direction`, where the bearing's stiffness jumps."""
-    lowest, power = corner - direction * z[0], 1.0
-    for k in range(1, order + 1):
-        power *= h
-        lowest -= abs(z[k]) * power
-    if lowest > 0:
-        return -1.0
-    for k in range(order + 1):
-        event[k] = -direction * z[k]
-    event[0] += corner
-    return first_root(event, order, h, work)
-
-
-@njit(cache=True)
-def direction_from_rest(par, gravity, rocking, s, tilt, rate, highest, P, force):
+@inner
+def direction_from_rest(par, body, gravity, highest, A, force):
     """Sign of the motion a base at standstill starts into: that of its first derivative that is not zero.
 
-    gravity : g + a_v [m/s2].
+    gravity : g + a_v [m/s2]; A : series of a_g; force : of all bearings [N].
     """
-    ground = P[GROUND, 0] if highest >= 0 else 0.0
-    if rocking:
-        c = par.m * par.R * math.cos(s * par.gamma - tilt)
-        n = par.m * par.R * math.sin(s * par.gamma - tilt)
-        absolute = (par.J * (-force - n * rate * rate) + c * gravity * n) / (par.M * par.J - c * c)  # (3)-(6) solved
+    ground = A[0] if highest >= 0 else 0.0
+    if body.s != 0:
+        c = par.m * par.R * math.cos(body.s * par.gamma - body.tilt)
+        n = par.m * par.R * math.sin(body.s * par.gamma - body.tilt)
+        # (3)-(6) solved
+        absolute = (par.J * (-force - n * body.rate * body.rate) + c * gravity * n) / (par.M * par.J - c * c)
     else:
         absolute = -force / par.M  # (2)
     start = absolute - ground
     if start == 0 and highest >= 1:
-        start = -P[GROUND, 1]
+        start = -A[1]
     return 0.0 if start == 0 else math.copysign(1.0, start)
 
 
-@njit(cache=True)
+@inner
 def hop_deceleration(par, s, gravity, ground, force):
     """-s phi'' at phi = 0 on side s [rad/s2]; positive where gravity brings the block back. From eqs (3)-(6).
 
@@ -145,7 +121,7 @@ def hop_deceleration(par, s, gravity, ground, force):
     return s * (par.M * par.m * gravity * b - par.m * h * force) / determinant
 
 
-@njit(cache=True)
+@inner
 def remaining_hops(par, rate, gravity, ground, force):
     """Time that the impacts after one that leaves tilt rate `rate` still take [s]; -1 if they do not end in rest.
 
@@ -165,7 +141,7 @@ def remaining_hops(par, rate, gravity, ground, force):
     return 2 * w * (1 / here + par.e / there) / (1 - par.e * par.e)
 
 
-@njit(cache=True)
+@inner
 def impact_loss(par, v, before, after, jump):
     """Kinetic energy lost [J]: the tilt rate falls from `before` to `after`, the base velocity v rises by `jump`."""
     coupling = par.m * par.R * math.cos(par.gamma)
@@ -176,44 +152,46 @@ def impact_loss(par, v, before, after, jump):
     )
 
 
-@njit(inline="always")
-def land(par, rate, base, gravity, ground, rest_rate, t, impacts, rests, totals):
+@inner
+def land(par, rate, base, gravity, ground, rest_rate, t, arrays):
     """Across an impact, eqs (7), (8): (rate, base velocity, whether the block now stays down). Keeps its row.
 
-    base : (x, v, z) before; gravity, ground : g + a_v and a_g [m/s2]; rest_rate [rad/s].
+    base : before it; gravity, ground : g + a_v and a_g [m/s2]; rest_rate [rad/s].
     """
-    (x, v, z), before, lever = base, rate, par.mt * par.R * math.cos(par.gamma)
+    impacts, rests, totals, v = arrays.impacts, arrays.rests, arrays.totals, base.v
+    before = rate
     rate = par.e * before  # (7)
-    jump = lever * (before - rate)  # (8), from momentum
-    totals[IMPACT_LOSS] += impact_loss(par, v, before, rate, jump)
+    jump = par.arm * (before - rate)  # (8)
+    totals[L.IMPACT_LOSS] += impact_loss(par, v, before, rate, jump)
     v += jump
-    number = int(totals[IMPACTS])
+    number = int(totals[L.IMPACTS])
     if number < impacts.shape[0]:
         impacts[number, 0], impacts[number, 1], impacts[number, 2], impacts[number, 3] = t, before, rate, jump
-    totals[IMPACTS] += 1
-    force = par.count * (par.kb * x + z + par.damping * v)
+    totals[L.IMPACTS] += 1
+    force = par.count * (par.kb * base.x + base.z + par.damping * v)
     landed, remaining = rate == 0, -1.0
     if landed or abs(rate) < rest_rate:
         remaining = remaining_hops(par, rate, gravity, ground, force)
     if not (landed or remaining >= 0):
         return rate, v, False
-    left = lever * rate  # the hops left out: their momentum stays with the base
-    totals[IMPACT_LOSS] += impact_loss(par, v, rate, 0.0, left)
+    left = par.arm * rate  # the hops left out: their momentum stays with the base
+    totals[L.IMPACT_LOSS] += impact_loss(par, v, rate, 0.0, left)
     if remaining >= 0:  # else it lands flat and lifts again at once
-        number = int(totals[RESTS])
+        number = int(totals[L.RESTS])
         if number < rests.shape[0]:
             rests[number] = t + remaining
-        totals[RESTS] += 1
+        totals[L.RESTS] += 1
     return 0.0, v + left, True
 
 
-@njit(cache=True)
-def settle(par, s, tilt, rate):
+@inner
+def settle(par, body):
     """(certain, overturns, peak tilt, impacts) of free rocking on rigid ground, from its energy integral.
 
     phi'^2/2 + p^2 cos(s gamma - phi) is constant in flight and has its barrier p^2 at |phi| = gamma; an impact leaves
     e^2 of phi'^2. Never uncertain but for a block beyond the barrier that is coming back.
     """
+    s, tilt, rate = body.s, body.tilt, body.rate
     here = math.cos(s * par.gamma - tilt)
     excess = 0.5 * rate * rate / par.p2 + here - 1.0  # over the barrier, in units of p^2
     if s * tilt >= par.gamma:

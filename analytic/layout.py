@@ -38,13 +38,34 @@ ROWS = 14
 # Kinds of event inside a step.
 NONE, UPLIFT, IMPACT, REVERSAL, CORNER, PASSAGE, OVERTURNING = range(7)
 
-# Ground motion: sampled (dt, samples) or a pulse; `kind` is QUIET, LINEAR_GROUND (sampled), HARMONIC
-# (scale sin(phase + frequency (t - start))) or RICKER. A rectangular pulse is HARMONIC with frequency 0.
-# `vertical` is None or a `Vertical`, of the same kind, times and frequency. As the two have types of their own the
-# kernel is compiled for each: what asks whether `vertical is None` is decided then.
-Ground = namedtuple("Ground", "kind dt samples scale frequency phase start end vertical")
-Vertical = namedtuple("Vertical", "samples scale phase")
+# The scene, in numbers alone, so that a row of an array holds one; `on_base` is 0 or 1. See RockingModel and BearingLaw
+# for their meaning; slope is tan(gamma), arm the velocity that a
+# base gains per tilt rate lost, eq. (8), law the number of the bearings' law, constants its `laws.Constants`.
+Parameters = namedtuple(
+    "Parameters", "m M J R gamma slope g p2 e arm on_base law count kb damping tilt rate x v z duration constants"
+)
+# The ground motion: `kind` is QUIET, LINEAR_GROUND (samples at intervals of dt), or from PULSE on that of a pulse,
+# scale f(phase + frequency (t - start)); with frequency 0 it is constant. The vertical motion is of the same kind,
+# times and frequency: a pulse, or samples of its own.
+Ground = namedtuple("Ground", "kind dt samples upright shaking")
+Shaking = namedtuple("Shaking", "scale frequency phase start end upright_scale upright_phase")
 # What to do: `record` keeps events (up to `capacity` of a kind), ledger and diagnostics; `decide` stops when
 # the outcome is certain and the peaks are final (decision.py), but not before the time `shortest`; without it that ends
 # a base in full contact alone. `most_steps` ends a run that does not get on (SPENT).
 Options = namedtuple("Options", "tolerance order rest_rate record decide output_step capacity shortest most_steps")
+# What a run writes to: Taylor coefficients and scratch, events, history and totals.
+Arrays = namedtuple("Arrays", "P work impacts uplifts rests history totals")
+
+# Of the parameters those that an event needs: they are handed over in every step.
+Shape = namedtuple("Shape", "gamma slope on_base")
+# The block: side of the corner it turns about (1 or -1; 0 in full contact), tilt and its rate.
+Body = namedtuple("Body", "s tilt rate")
+# Displacement and velocity of the base, hysteretic force of a bearing.
+Base = namedtuple("Base", "x v z")
+# Of the bearings: direction of travel, displacement and mark (`laws.Law`) at the last reversal.
+Branch = namedtuple("Branch", "direction x_c mark")
+# Ground motion without a corner, up to `end`: a_g is a0 + slope t, or a pulse of scale a0; a_v with lift and rise.
+Stretch = namedtuple("Stretch", "kind a0 slope lift rise end order")
+# A step from t: its length, order of its series and of the ground's (-1 without), gravity g + a_v at its start, factors
+# of the bearing's series and the hysteretic force at which the bearing's stiffness next jumps.
+Step = namedtuple("Step", "t h order highest gravity factors corner")

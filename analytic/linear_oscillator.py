@@ -9,13 +9,14 @@ import numba
 import numpy as np
 from numba import njit
 
+from .compiled import inlined, inner
 from .errors import SettingError
 from .motion import SampledMotion
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from .types import Motion
+    from .motion import Motion
 
 PULSE_INTERVALS = 4000  # of a pulse; its interpolation error is then below 1e-6 of the amplitude
 
@@ -63,21 +64,10 @@ def displacement_spectrum(
     return _spectrum(dt, samples * scale, 2 * math.pi / periods, ratios)
 
 
-@njit(cache=True, inline="always")
-def _advance(
-    x: float,
-    v: float,
-    a: float,
-    slope: float,
-    w: float,
-    zeta: float,
-    wd: float,
-    decay: float,
-    c: float,
-    s: float,
-    h: float,
-) -> tuple[float, float]:
-    """(x, v) after h from (x, v) under a + slope tau: decay = exp(-zeta w h), c and s of wd h."""
+@inlined
+def _advance(state, load, oscillator, over):
+    """State (x, v) after h under the acceleration a + slope tau. over : exp(-zeta w h), cos and sin of wd h, h."""
+    (x, v), (a, slope), (w, zeta, wd), (decay, c, s, h) = state, load, oscillator, over
     drift = -slope / (w * w)  # particular solution: offset + drift tau
     offset = -a / (w * w) + 2 * zeta * slope / (w * w * w)
     x, v = x - offset, v - drift
@@ -87,46 +77,36 @@ def _advance(
     )
 
 
-@njit(cache=True)
-def _largest_inside(x: float, v: float, a: float, slope: float, w: float, zeta: float, wd: float, h: float) -> float:
+@inner
+def _largest_inside(state, load, oscillator, h):
     """|x| where the velocity changes sign between 0 and h, by bisection of the exact solution."""
-    low, high, found = 0.0, h, x
+    w, zeta, wd = oscillator
+    low, high, found = 0.0, h, state[0]
     for _ in range(50):
         middle = 0.5 * (low + high)
-        found, speed = _advance(
-            x,
-            v,
-            a,
-            slope,
-            w,
-            zeta,
-            wd,
-            math.exp(-zeta * w * middle),
-            math.cos(wd * middle),
-            math.sin(wd * middle),
-            middle,
-        )
-        if speed * v > 0:
+        over = math.exp(-zeta * w * middle), math.cos(wd * middle), math.sin(wd * middle), middle
+        found, speed = _advance(state, load, oscillator, over)
+        if speed * state[1] > 0:
             low = middle
         else:
             high = middle
     return abs(found)
 
 
-@njit(cache=True)
-def _peak(dt: float, samples: np.ndarray, w: float, zeta: float) -> float:
+@inner
+def _peak(dt, samples, w, zeta):
     wd = w * math.sqrt(1 - zeta * zeta)
-    decay, c, s = math.exp(-zeta * w * dt), math.cos(wd * dt), math.sin(wd * dt)
+    oscillator, over = (w, zeta, wd), (math.exp(-zeta * w * dt), math.cos(wd * dt), math.sin(wd * dt), dt)
     x, v, peak = 0.0, 0.0, 0.0
     for i in range(len(samples) - 1):
-        a, slope = samples[i], (samples[i + 1] - samples[i]) / dt
-        x1, v1 = _advance(x, v, a, slope, w, zeta, wd, decay, c, s, dt)
+        load = samples[i], (samples[i + 1] - samples[i]) / dt
+        x1, v1 = _advance((x, v), load, oscillator, over)
         if v * v1 < 0 and max(abs(x), abs(x1)) + dt * max(abs(v), abs(v1)) > peak:
-            peak = max(peak, _largest_inside(x, v, a, slope, w, zeta, wd, dt))
+            peak = max(peak, _largest_inside((x, v), load, oscillator, dt))
         x, v = x1, v1
         peak = max(peak, abs(x))
     if v != 0:  # free vibration: its first extreme, within half a damped period, is the largest
-        peak = max(peak, _largest_inside(x, v, 0.0, 0.0, w, zeta, wd, math.pi / wd))
+        peak = max(peak, _largest_inside((x, v), (0.0, 0.0), oscillator, math.pi / wd))
     return peak
 
 

@@ -13,15 +13,10 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from .errors import SceneError
+from .pulses import PULSES, Pulse
 
 if TYPE_CHECKING:
-    from .types import Motion, Values
-
-PULSES = ("one-sine", "one-cosine", "half-sine", "rectangular", "ricker")
-PHASED = ("one-sine", "one-cosine", "half-sine")
-
-# A Ricker wavelet has no ends; four periods around its centre leave a step below 1e-15 of the amplitude.
-RICKER_PERIODS = 4.0
+    from .types import Values
 
 
 def _positive(key: str, value: object, unit: str) -> None:
@@ -179,7 +174,7 @@ class PulseMotion:
         _positive("motion.frequency", self.frequency, "rad/s")
         if self.start < 0:
             raise SceneError("motion.start", self.start, "negative", "start the pulse at 0 or later [s]")
-        if self.phase and self.shape not in PHASED:
+        if self.phase and not self.form.phased:
             raise SceneError(
                 "motion.phase", self.phase, f"a {self.shape} pulse has none", "leave it out, or choose a sine or cosine"
             )
@@ -198,12 +193,14 @@ class PulseMotion:
         return f"{self.shape} pulse, {self.amplitude:.4g} m/s2, {self.frequency:.4g} rad/s{up}"
 
     @property
+    def form(self) -> Pulse:
+        """What its shape is, for all solvers."""
+        return PULSES[self.shape]
+
+    @property
     def length(self) -> float:
         """Duration of the pulse [s]."""
-        turns = {"one-sine": 1.0, "one-cosine": 1.0, "half-sine": 0.5, "rectangular": 0.5, "ricker": RICKER_PERIODS}[
-            self.shape
-        ]
-        return turns * 2 * math.pi / self.frequency
+        return self.form.length / self.frequency
 
     @property
     def end(self) -> float:
@@ -218,19 +215,12 @@ class PulseMotion:
     @property
     def peak_time(self) -> float:
         """First time of the peak [s]."""
-        offset = {
-            "one-sine": (math.pi / 2 - self.phase) % math.pi,
-            "half-sine": (math.pi / 2 - self.phase) % math.pi,
-            "one-cosine": -self.phase % math.pi,
-            "rectangular": 0.0,
-            "ricker": RICKER_PERIODS * math.pi,
-        }[self.shape]
-        return self.start + offset / self.frequency
+        return self.start + self.form.first_peak(self.phase) / self.frequency
 
     @property
     def jumps(self) -> tuple[float, ...]:
         """Times above 0 at which the acceleration jumps [s]."""
-        if self.shape in ("one-cosine", "rectangular") or self.phase or self.vertical and self.vertical.phase:
+        if self.form.jumps or self.phase or self.vertical and self.vertical.phase:
             return tuple(t for t in (self.start, self.end) if t > 0)
         return ()
 
@@ -238,17 +228,8 @@ class PulseMotion:
         """Acceleration [m/s2] at time(s) t [s]; zero outside the pulse."""
         t = np.asarray(t, dtype=float)  # type: ignore[assignment]  # a number as well, see the return
         u = self.frequency * (t - self.start)
-        if self.shape == "one-cosine":
-            value = np.cos(u + self.phase)
-        elif self.shape == "rectangular":
-            value = np.ones_like(u)
-        elif self.shape == "ricker":
-            b = 0.25 * (u - RICKER_PERIODS * math.pi) ** 2
-            value = (1 - 2 * b) * np.exp(-b)
-        else:
-            value = np.sin(u + self.phase)
         inside = (t >= self.start) & (t <= self.end)
-        return np.where(inside, self.amplitude * value, 0.0)[()]  # type: ignore[return-value]  # [()]: a number for a number
+        return np.where(inside, self.amplitude * self.form.value(np, u + self.phase), 0.0)[()]  # type: ignore[return-value]  # [()]: a number for a number
 
     def scaled(self, factor: float) -> PulseMotion:
         """The same pulse times `factor`, the vertical one too."""
@@ -261,3 +242,6 @@ class PulseMotion:
         if self.phase or self.vertical:  # else the digests that stored results carry
             content += (self.phase.hex(), self.vertical.digest() if self.vertical else "")
         return hashlib.sha256(repr(content).encode()).hexdigest()
+
+
+Motion = SampledMotion | PulseMotion

@@ -11,6 +11,7 @@ from typing import Any
 from .bearing import BearingLaw
 from .design import properties
 from .errors import SettingError
+from .part import UNITS
 from .rocking import RockingModel
 from .scene import Base, Bearings, Block, Scene
 
@@ -171,11 +172,14 @@ def _base(base):
 
 
 def _bearings(bearings):
-    units = {"count": "", "ka": "N/m", "kb": "N/m", "alpha": "", "yield_force": "N", "damping": "N s/m"}
-    units["x_max"] = "m; what they are built for: a run that goes beyond it says so"
-    values = bearings.model_dump(exclude_defaults=True)
-    known = {key: (values[key], unit) for key, unit in units.items() if key in values}
-    return ["[bearings]  # per bearing", f"law = {_toml(bearings.law)}", *_rows(known)]
+    values = {key: (value, UNITS.get(f"bearings.{key}", "")) for key, value in _given(bearings).items()}
+    if bearings.x_max is not None:
+        values["x_max"] = bearings.x_max, "m; what they are built for: a run that goes beyond it says so"
+    return ["[bearings]  # per bearing", *_rows({"law": (bearings.law, ""), **values})]
+
+
+def _given(bearings):
+    return {key: value for key, value in bearings.model_dump(exclude_defaults=True).items() if key != "law"}
 
 
 def _rows(values):

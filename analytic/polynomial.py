@@ -4,14 +4,16 @@ A polynomial is an array of coefficients, lowest first; `order` is the highest p
 """
 
 import numpy as np
-from numba import njit
+
+from .compiled import inner
 
 MAX_ORDER = 24
 BISECTIONS = 60
+SCRATCH = (BISECTIONS + 2, MAX_ORDER + 3)  # of `first_root`: a row for each halving
 INVERSE = np.array([0.0] + [1.0 / k for k in range(1, 64)])
 
 
-@njit(cache=True)
+@inner
 def value(f, order, t):
     """f(t) by Horner's rule."""
     total = f[order]
@@ -20,7 +22,7 @@ def value(f, order, t):
     return total
 
 
-@njit(cache=True)
+@inner
 def bracketed_root(f, first, order, low, high):
     """Root of f(t)/t^first in (low, high], where it falls from + to -: Newton from the far end, kept in the bracket.
 
@@ -51,14 +53,14 @@ def bracketed_root(f, first, order, low, high):
     return t
 
 
-@njit(cache=True)
+@inner
 def first_root(f, order, h, work):
     """First t in [0, h] where f falls below 0, or -1; f > 0 just after 0 unless it falls at once (then 0).
 
     Leading zero coefficients are a root at 0 and are divided out (just after an impact, or at the third-order
     onset of uplift). Bernstein coefficients bound the polynomial, so no crossing is missed, however many there are.
 
-    work : scratch array, shape (BISECTIONS + 2, MAX_ORDER + 1)
+    work : scratch array, shape SCRATCH
     """
     first = 0
     while first <= order and f[first] == 0.0:
@@ -87,7 +89,7 @@ def first_root(f, order, h, work):
     return _isolated_root(f, first, order, h, work)
 
 
-@njit(cache=True)
+@inner
 def shifted(f, order, t):
     """Make f the polynomial of the time since t, in place."""
     for i in range(order):
@@ -95,7 +97,7 @@ def shifted(f, order, t):
             f[k] += t * f[k + 1]
 
 
-@njit(cache=True)
+@inner
 def derivative(f, order, t):
     """f'(t)."""
     total = 0.0
@@ -104,7 +106,7 @@ def derivative(f, order, t):
     return total
 
 
-@njit(cache=True)
+@inner
 def bound(f, order, h):
     """A bound on |f| over [0, h]."""
     total, power = abs(f[0]), 1.0
@@ -114,7 +116,7 @@ def bound(f, order, h):
     return total
 
 
-@njit(cache=True)
+@inner
 def largest(f, sign, order, h, best, rate, work):
     """The larger of `best` and the maximum of sign f over [0, h]. rate : scratch for f'."""
     best = max(best, sign * f[0], sign * value(f, order, h))
@@ -136,12 +138,11 @@ def largest(f, sign, order, h, best, rate, work):
     return best
 
 
-@njit(cache=True)
+@inner
 def _isolated_root(f, first, order, h, work):
     """`first_root` for a polynomial that is not monotone: sign changes of Bernstein coefficients, halved as needed."""
     n = order - first
-    starts = np.empty(BISECTIONS + 2)
-    widths = np.empty(BISECTIONS + 2)
+    starts, widths = work[:, MAX_ORDER + 1], work[:, MAX_ORDER + 2]
     coefficients, power, binomial = work[0], 1.0, 1.0
     for k in range(n + 1):
         coefficients[k] = f[first + k] * power / binomial

@@ -124,9 +124,9 @@ class Caution:
     """A warning of a run.
 
     kind: "record" (odd about the file of the motion), "model" (outside what the model describes), "limit" (outside what
-    a part of the scene is built for), "motion" (the result depends on little of the motion) or "engine" (said by an
-    engine or its adapter). quantity, value, limit: what is beyond which limit [SI units], where it is a number. text: a
-    sentence.
+    a part of the scene is built for), "motion" (the result is sensitive to small changes of the motion) or "engine"
+    (said by an engine or its adapter). quantity, value, limit: what is beyond which limit [SI units], where it is a
+    number. text: a sentence.
     """
 
     kind: str

@@ -103,13 +103,18 @@ class RockingModel:
         absolute = (J * push - m * c * moment) / determinant
         return (M * moment - m * c * push) / determinant, absolute - ground
 
-    def impact(self, rate: Values) -> tuple[Values, Values]:
-        """(phi'+, jump of x') of an impact at tilt rate phi'-, eqs (7) and (8).
+    @property
+    def jump_arm(self) -> float:
+        """Velocity that the base gains at an impact per tilt rate lost [m]: mt R cos(gamma), eq. (8).
 
         (8) is printed with a factor R cos(gamma) too many; this form conserves horizontal momentum.
         """
-        after = self.restitution * rate
-        return after, self.mass_share * self.R * math.cos(self.gamma) * (rate - after)
+        return self.mass_share * self.R * math.cos(self.gamma)
+
+    def impact(self, rate: Values) -> tuple[Values, Values]:
+        """(phi'+, jump of x') of an impact at tilt rate phi'-, eqs (7) and (8)."""
+        after = self.restitution * rate  # (7)
+        return after, self.jump_arm * (rate - after)
 
     def contact_forces(
         self,

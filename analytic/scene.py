@@ -19,6 +19,7 @@ from .part import Part
 RESOLUTION = 1e-4
 # No quantity of a scene is beyond these in SI units, and their products neither overflow nor vanish.
 LEAST, MOST = 1e-20, 1e20
+KEYS = tuple(dict.fromkeys(name for law in LAWS for name in law.needs + law.ignores))  # of [bearings], not of all laws
 
 
 def _not_vanishing(value: float) -> float:
@@ -115,7 +116,7 @@ class Bearings(Part):
     @model_validator(mode="after")
     def _law_is_complete(self) -> Self:
         law = LAWS[NUMBERS[self.law]]
-        for name in ("kb", "alpha", "yield_force"):
+        for name in KEYS:
             given = getattr(self, name)
             if given is None and name in law.needs:
                 raise SceneError(f"bearings.{name}", None, "missing", f"add it: the {self.law} law needs it")
@@ -246,7 +247,9 @@ class Scene(Part):
         content = self.model_dump(mode="python", exclude={"name", "motion"})
         content["motion"] = self.motion.digest() if self.motion else None
         if self.bearings:  # the digests that stored results carry
-            for name in ("yield_force", "x_max"):
-                if content["bearings"][name] is None:
-                    del content["bearings"][name]
+            content["bearings"] = {
+                name: value
+                for name, value in content["bearings"].items()
+                if value is not None or name in ("kb", "alpha")
+            }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

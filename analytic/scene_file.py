@@ -62,9 +62,10 @@ from pydantic import BeforeValidator, Field, ValidationError
 
 from .errors import SceneError
 from .files import read_plain
-from .motion import PULSES, PulseMotion, SampledMotion
+from .motion import PulseMotion, SampledMotion
 from .pairing import paired
 from .part import Part, missing, scene_error
+from .pulses import PULSES
 from .records import UNITS, fema, read_record
 from .scene import Base, Bearings, Block, NotNegative, Number, Positive, Scene, Start
 from .synthetic import DEFAULT_SEED, STYLES, synthetic_motion

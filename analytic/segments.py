@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from .motion import RICKER_PERIODS, SampledMotion
+from .motion import SampledMotion
 
 if TYPE_CHECKING:
-    from .motion import PulseMotion
-    from .types import GroundFunction, Motion
+    from .motion import Motion, PulseMotion
+    from .types import GroundFunction
 
 
 def shared_segments(
@@ -42,13 +40,7 @@ def segments(motion: Motion | None, duration: float) -> list[tuple[float, float,
             for i, (a, b) in enumerate(zip(samples[:-1], samples[1:], strict=True))
         ]
     elif motion is not None:
-        if motion.shape == "ricker":
-            centre = RICKER_PERIODS * math.pi
-            turns = [0.0, *(centre + u for u in (-(6**0.5), -(2**0.5), 0.0, 2**0.5, 6**0.5)), 2 * centre]
-        else:
-            turns = np.arange(0, motion.length * motion.frequency + 0.1, math.pi / 2).tolist()
-            if motion.phase:
-                turns = [0.0, *(u + -motion.phase % (math.pi / 2) for u in turns[:-1]), turns[-1]]
+        turns = motion.form.turns(motion.form.length, motion.phase)
         cuts = [motion.start + u / motion.frequency for u in turns[:-1]] + [motion.end]
         pieces = [(0.0, motion.start, _line(0.0, 0.0, 0.0))]
         pieces += [(a, b, _pulse(motion)) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
@@ -63,16 +55,5 @@ def _line(start: float, value: float, slope: float) -> GroundFunction:
 
 
 def _pulse(motion: PulseMotion) -> GroundFunction:
-    a, w, start, phase = motion.amplitude, motion.frequency, motion.start, motion.phase
-    if motion.shape == "rectangular":
-        return lambda t: a
-    if motion.shape == "one-cosine":
-        return lambda t: a * math.cos(w * (t - start) + phase)
-    if motion.shape == "ricker":
-
-        def ricker(t):
-            b = 0.25 * (w * (t - start) - RICKER_PERIODS * math.pi) ** 2
-            return a * (1 - 2 * b) * math.exp(-b)
-
-        return ricker
-    return lambda t: a * math.sin(w * (t - start) + phase)
+    a, w, start, phase, value = motion.amplitude, motion.frequency, motion.start, motion.phase, motion.form.value
+    return lambda t: a * value(math, w * (t - start) + phase)

@@ -13,6 +13,7 @@ import numpy as np
 from . import kernel, layout
 from .bearing import BearingLaw
 from .budget import EVENTS, MOST_ROWS, MOST_STEPS, ROWS, most_steps, too_long
+from .compiled import compiling
 from .decision import (
     CAP_PERIODS,
     PEAK_TOLERANCE,
@@ -24,16 +25,17 @@ from .decision import (
     will_not_overturn,
 )
 from .errors import SettingError
-from .layout import Ground, Options, Vertical
+from .layout import Base, Body, Ground, Options, Parameters, Shaking
 from .limits import limit_warnings
-from .motion import RICKER_PERIODS, SampledMotion
+from .motion import SampledMotion
+from .pulses import SERIES
 from .response import Caution, Energy, Failure, History, Impact, Response, State, about_record
 from .rocking import RockingModel
-from .taylor import HARMONIC, LINEAR_GROUND, QUIET, RICKER, SHORT_ORDER, Parameters
+from .taylor import LINEAR_GROUND, PULSE, QUIET, SHORT_ORDER
 
 if TYPE_CHECKING:
+    from .motion import Motion
     from .scene import Scene
-    from .types import Motion
 
 # Chosen by measurement (`rocking study kernel`): where CPU against error is least.
 ORDER = 18  # free flight and pulses: long steps
@@ -54,54 +56,47 @@ def parameters(scene: Scene) -> Parameters:
     """The scene as the kernel's `Parameters`."""
     model, law, start = RockingModel.of(scene), BearingLaw.of(scene.bearings), scene.start
     return Parameters(
-        model.m,
-        model.M,
-        model.J,
-        model.R,
-        model.gamma,
-        model.g,
-        scene.rocking_frequency**2,
-        model.restitution,
-        model.mass_share,
-        model.on_base,
-        law.law,
-        law.count,
-        law.kb,
-        law.dk,
-        law.alpha,
-        law.d0,
-        law.f0,
-        law.damping,
-        start.tilt,
-        start.tilt_rate,
-        start.base_displacement,
-        start.base_velocity,
-        law.start(start.base_displacement),
-        longest_duration(scene) if scene.duration is None else scene.duration,
+        m=model.m,
+        M=model.M,
+        J=model.J,
+        R=model.R,
+        gamma=model.gamma,
+        slope=math.tan(model.gamma),
+        g=model.g,
+        p2=scene.rocking_frequency**2,
+        e=float(model.restitution),
+        arm=model.jump_arm,
+        on_base=float(model.on_base),
+        law=float(law.law),
+        count=float(law.count),
+        kb=law.kb,
+        damping=law.damping,
+        tilt=start.tilt,
+        rate=start.tilt_rate,
+        x=start.base_displacement,
+        v=start.base_velocity,
+        z=law.start(start.base_displacement),
+        duration=longest_duration(scene) if scene.duration is None else scene.duration,
+        constants=law.constants,
     )
 
 
 def ground(motion: Motion | None, scale: float = 1.0) -> Ground:
     """The motion as the kernel's `Ground`, times `scale`."""
-    if motion is None:
-        return Ground(QUIET, 1.0, _NO_SAMPLES, 0.0, 0.0, 0.0, 0.0, 0.0, None)
-    vertical: Vertical | None = None
     scale = float(scale)
+    if motion is None:
+        return Ground(QUIET, 1.0, _NO_SAMPLES, None, Shaking(*[0.0] * len(Shaking._fields)))
     if isinstance(motion, SampledMotion):
-        if motion.vertical:
-            vertical = Vertical(motion.vertical.samples, scale, 0.0)
-        return Ground(LINEAR_GROUND, motion.dt, motion.samples, scale, 0.0, 0.0, 0.0, motion.end, vertical)
-    kind, frequency, phase = {
-        "one-sine": (HARMONIC, motion.frequency, 0.0),
-        "half-sine": (HARMONIC, motion.frequency, 0.0),
-        "one-cosine": (HARMONIC, motion.frequency, 0.5 * math.pi),
-        "rectangular": (HARMONIC, 0.0, 0.0),
-        "ricker": (RICKER, motion.frequency, -RICKER_PERIODS * math.pi),
-    }[motion.shape]
-    if motion.vertical:
-        vertical = Vertical(_NO_SAMPLES, motion.vertical.amplitude * scale, phase + motion.vertical.phase)
-    amplitude, phase = motion.amplitude * scale, phase + motion.phase
-    return Ground(kind, 1.0, _NO_SAMPLES, amplitude, frequency, phase, motion.start, motion.end, vertical)
+        times = Shaking(scale, 0.0, 0.0, 0.0, motion.end, scale, 0.0)
+        upright = motion.vertical.samples if motion.vertical else None
+        return Ground(LINEAR_GROUND, motion.dt, motion.samples, upright, times)
+    form, kind, frequency = motion.form, PULSE, 0.0
+    if form.series:
+        kind, frequency = PULSE + SERIES.index(form.series), motion.frequency
+    phase = form.shift
+    up = (motion.vertical.amplitude * scale, phase + motion.vertical.phase) if motion.vertical else (0.0, 0.0)
+    pulse = Shaking(motion.amplitude * scale, frequency, phase + motion.phase, motion.start, motion.end, *up)
+    return Ground(kind, 1.0, _NO_SAMPLES, _NO_SAMPLES if motion.vertical else None, pulse)
 
 
 def options(
@@ -183,10 +178,10 @@ def simulate(
         shortest=(shortest_duration if scene.duration is None else longest_duration)(scene),
         steps=most_steps(scene),
     )
-    par, shaking, totals = parameters(scene), ground(scene.motion), np.zeros(layout.TOTALS)
-    compile_kernels(shaking.vertical is not None)
+    par, shaking = parameters(scene), ground(scene.motion)
+    compile_kernels(shaking.upright is not None)
     begin = time.process_time()
-    result = kernel.run(par, shaking, chosen, totals)
+    totals, *result = kernel.run(par, shaking, chosen)
     most = int(totals[[layout.IMPACTS, layout.UPLIFTS, layout.RESTS]].max())
     if totals[layout.STATUS] == layout.SPENT:
         reached = f"{chosen.most_steps:.3g} steps of the analytic model reach only {totals[layout.TIME]:.3g} s"
@@ -194,12 +189,12 @@ def simulate(
     if most > EVENTS:
         raise too_long(scene, f"{most} impacts, of which no more than {EVENTS} are kept")
     if most > chosen.capacity:
-        result = kernel.run(par, shaking, chosen._replace(capacity=most), totals)
+        totals, *result = kernel.run(par, shaking, chosen._replace(capacity=most))
     cpu = time.process_time() - begin
     response = _response(scene, par, totals, result, cpu, settings, history)
     if totals[layout.WILL_OVERTURN] and totals[layout.MODE] == layout.ROCKING:  # cut while it falls
         later = par._replace(duration=par.duration + longest_duration(scene))
-        kernel.run(later, shaking, options(tolerance, rest_rate=rest_rate), totals)
+        totals, *_ = kernel.run(later, shaking, options(tolerance, rest_rate=rest_rate))
         over, fall = float(totals[layout.TIME]), float(totals[layout.FALL_TIME])
         response = replace(response, outcome="overturns", overturning_time=over, fall_time=fall)
     return response
@@ -225,7 +220,7 @@ def _output_step(scene, asked, history):
 
 @functools.cache
 def compile_kernels(vertical: bool = False) -> None:
-    """Load the compiled functions, or compile them: once per machine, some twenty seconds.
+    """Load the compiled functions, or compile them: once per machine, some ten seconds.
 
     `simulate` does so before its clock starts, and whoever starts one of his own does so before that. vertical : also
     for motions with a vertical component.
@@ -233,12 +228,14 @@ def compile_kernels(vertical: bool = False) -> None:
     from .scene import Block, Scene
 
     scene = Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.2), duration=1e-3)
-    quiet = ground(None)._replace(vertical=Vertical(_NO_SAMPLES, 0.0, 0.0) if vertical else None)
-    kernel.run(parameters(scene), quiet, options(output_step=1.0), np.zeros(layout.TOTALS))
-    # what else solvers call from Python
-    BearingLaw.of(None).moved(0.0, 1e-6)
-    will_not_overturn(parameters(scene), False, False, *[0.0] * 5)
-    peaks_are_final(parameters(scene), False, *[0.0] * 8)
+    quiet = ground(None)._replace(upright=_NO_SAMPLES if vertical else None)
+    with compiling():
+        state = parameters(scene), Body(0.0, 0.0, 0.0), Base(0.0, 0.0, 0.0)
+        kernel.run(state[0], quiet, options(output_step=1.0))
+        # what else solvers call from Python
+        BearingLaw.of(None).moved(0.0, 1e-6)
+        will_not_overturn(*state, False)
+        peaks_are_final(*state, (0.0, 0.0, 0.0))
 
 
 @functools.cache

@@ -5,12 +5,12 @@ rest is filled up to `order`. S and C are sin and cos of s gamma - phi, so n = R
 """
 
 import math
-from collections import namedtuple
 
-from numba import njit
-
-from .laws import NUMBERS, chosen_term
+from . import layout as L
+from .compiled import chosen, inlined, inner
+from .laws import NUMBERS, law_function
 from .polynomial import INVERSE
+from .pulses import SERIES
 
 # Order of the series between the samples of a record, where steps end anyway (`rocking study kernel`).
 SHORT_ORDER = 8
@@ -21,19 +21,15 @@ NEGLIGIBLE = 1e-200
 # A step is shortened by no more than this at once: powers of a long one overflow.
 MOST_SHRINK = 1e-3
 
-# Parameters of a run, one scalar each; see RockingModel and BearingLaw for their meaning.
-Parameters = namedtuple(
-    "Parameters", "m M J R gamma g p2 e mt on_base law count kb dk alpha d0 f0 damping tilt rate x v z duration"
-)
-
-_bearing_term = chosen_term()
+_bearing_term = law_function("term")
 USUAL_LAW = NUMBERS["algebraic"]  # the one whose series is unrolled
 
-# Kinds of ground motion within a segment.
-QUIET, LINEAR_GROUND, HARMONIC, RICKER = range(4)
+# Kinds of ground motion within a segment: none, linear, and from PULSE on the series of `pulses.SERIES`.
+QUIET, LINEAR_GROUND, PULSE = range(3)
+_pulse_series = chosen(SERIES)
 
 
-@njit(cache=True)
+@inner
 def allowed_step(f, order, tolerance, h):
     """Largest step up to h whose last Taylor terms stay below tolerance times the size of f in that very step.
 
@@ -54,7 +50,7 @@ def allowed_step(f, order, tolerance, h):
         h *= max(shrink, MOST_SHRINK)
 
 
-@njit(cache=True)
+@inner
 def hop_order(length, order, tolerance):
     """Order that a hop of `length` [1/omega_r] needs, at most `order`; the series falls about as (length)^k."""
     if length >= 0.25:
@@ -62,32 +58,24 @@ def hop_order(length, order, tolerance):
     return min(order, max(5, int(math.log(0.01 * tolerance) / math.log(2 * length)) + 3))
 
 
-@njit(cache=True)
+@inner
 def ground_series(order, kind, a0, a1, frequency, u, A):
     """Coefficients of the ground acceleration; returns the highest one that is not zero, or -1.
 
-    LINEAR_GROUND: a0 + a1 t. HARMONIC: a0 sin(u + frequency t). RICKER: as PulseMotion, u from its centre.
+    LINEAR_GROUND: a0 + a1 t; else a0 f(u + frequency t) of a pulse.
     """
     if kind == QUIET:
         return -1
     if kind == LINEAR_GROUND:
         A[0], A[1] = a0, a1
         return 1
-    if kind == HARMONIC:
-        A[0], A[1] = a0 * math.sin(u), a0 * frequency * math.cos(u)
-        for k in range(order - 1):
-            A[k + 2] = -frequency * frequency * A[k] * INVERSE[k + 1] * INVERSE[k + 2]
-        return order
-    b0, b1, b2 = 0.25 * u * u, 0.5 * u * frequency, 0.25 * frequency * frequency
-    e2, e1, e0 = 0.0, 0.0, math.exp(-b0)  # coefficients k-2, k-1, k of exp(-b)
-    for k in range(order + 1):
-        A[k] = a0 * (e0 - 2 * (b0 * e0 + b1 * e1 + b2 * e2))
-        e2, e1, e0 = e1, e0, -(b1 * e0 + 2 * b2 * e1) * INVERSE[k + 1]
+    _pulse_series(kind - PULSE, order, a0, frequency, u, A)
     return order
 
 
-@njit(cache=True, inline="always")
-def _rigid_series(order, p2, g, highest, A, phi, w, S, C, G):
+@inlined
+def _rigid_series(order, p2, g, highest, P, G):
+    A, phi, w, S, C = P[L.GROUND], P[L.PHI], P[L.W], P[L.S], P[L.C]
     for k in range(order):
         if k > 0:
             sine, cosine = 0.0, 0.0
@@ -108,19 +96,22 @@ def _rigid_series(order, p2, g, highest, A, phi, w, S, C, G):
         phi[k + 1] = w[k] * INVERSE[k + 1]
 
 
-@njit(cache=True)
-def rigid_series(order, p2, g, highest, A, phi, w, S, C, G=None):
-    """Rocking on rigid ground, eq. (4) with x = 0: phi'' = -p^2 (S + a_g/g C); with the series G of g + a_v, as many
-    terms as a_g has, phi'' = -p^2/g (G S + a_g C)."""
+@inner
+def rigid_series(order, p2, g, highest, P, G):
+    """Rocking on rigid ground, eq. (4) with x = 0: phi'' = -p^2 (S + a_g/g C).
+
+    With the series G of g + a_v, as many terms as a_g has, phi'' = -p^2/g (G S + a_g C).
+    """
     if order == SHORT_ORDER:  # a constant order is unrolled: twice as fast
-        _rigid_series(SHORT_ORDER, p2, g, highest, A, phi, w, S, C, G)
+        _rigid_series(SHORT_ORDER, p2, g, highest, P, G)
     else:
-        _rigid_series(order, p2, g, highest, A, phi, w, S, C, G)
+        _rigid_series(order, p2, g, highest, P, G)
 
 
-@njit(cache=True, inline="always")
-def _contact_series(order, law, par, factors, highest, A, x, v, q, F, absolute):
-    count, kb, damping, inverse_mass = float(par.count), par.kb, par.damping, -1.0 / par.M
+@inlined
+def _contact_series(order, law, par, factors, highest, P):
+    A, x, v, q, F, absolute = P[L.GROUND], P[L.X], P[L.V], P[L.Q], P[L.F], P[L.ABSOLUTE]
+    count, kb, damping, inverse_mass = par.count, par.kb, par.damping, -1.0 / par.M
     for k in range(order + 1):
         if k > 0:
             z = _bearing_term(law, k, factors, x, v, q)
@@ -132,18 +123,20 @@ def _contact_series(order, law, par, factors, highest, A, x, v, q, F, absolute):
             x[k + 1] = v[k] * INVERSE[k + 1]
 
 
-@njit(cache=True)
-def contact_series(order, par, factors, highest, A, x, v, q, F, absolute):
+@inner
+def contact_series(order, par, factors, highest, P):
     """Full contact on the base, eq. (2): (m + m_b)(a_g + x'') + n_d f = 0. F[0] and q[0] are given."""
     if order == SHORT_ORDER and par.law == USUAL_LAW:  # constants are unrolled: twice as fast
-        _contact_series(SHORT_ORDER, USUAL_LAW, par, factors, highest, A, x, v, q, F, absolute)
+        _contact_series(SHORT_ORDER, USUAL_LAW, par, factors, highest, P)
     else:
-        _contact_series(order, par.law, par, factors, highest, A, x, v, q, F, absolute)
+        _contact_series(order, par.law, par, factors, highest, P)
 
 
-@njit(cache=True, inline="always")
-def _base_series(order, law, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute, G):
-    count, kb, damping, M, J, g = float(par.count), par.kb, par.damping, par.M, par.J, par.g
+@inlined
+def _base_series(order, law, par, factors, highest, P, G):
+    A, phi, w, S, C, x, v = P[L.GROUND], P[L.PHI], P[L.W], P[L.S], P[L.C], P[L.X], P[L.V]
+    q, F, absolute = P[L.Q], P[L.F], P[L.ABSOLUTE]
+    count, kb, damping, M, J, g = par.count, par.kb, par.damping, par.M, par.J, par.g
     mR = par.m * par.R
     c0 = mR * C[0]
     scale = 1.0 / (M * J - c0 * c0)
@@ -181,14 +174,14 @@ def _base_series(order, law, par, factors, highest, A, phi, w, S, C, x, v, q, F,
             x[k + 1] = v[k] * INVERSE[k + 1]
 
 
-@njit(cache=True)
-def base_series(order, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute, G=None):
+@inner
+def base_series(order, par, factors, highest, P, G):
     """Rocking on the base, eqs (3)-(6), with c phi'' + n phi'^2 written as (c phi')'.
 
     M X + m (c phi')' = -F;   m c X + J phi'' = -m g n;   X = a_g + x''. With the series G of g + a_v, as many terms as
     a_g has, that stands for g.
     """
     if order == SHORT_ORDER and par.law == USUAL_LAW:
-        _base_series(SHORT_ORDER, USUAL_LAW, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute, G)
+        _base_series(SHORT_ORDER, USUAL_LAW, par, factors, highest, P, G)
     else:
-        _base_series(order, par.law, par, factors, highest, A, phi, w, S, C, x, v, q, F, absolute, G)
+        _base_series(order, par.law, par, factors, highest, P, G)

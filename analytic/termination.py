@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from .decision import longest_duration, motion_end, peaks_are_final, shortest_duration, will_not_overturn
+from .layout import Base, Body
 from .solver import parameters
 
 if TYPE_CHECKING:
+    from .layout import Parameters
     from .response import Response
     from .scene import Scene
-    from .taylor import Parameters
 
 
 def is_decided(scene: Scene, response: Response, *, contact_tilt: float = 0.0) -> bool:
@@ -34,37 +36,29 @@ def is_decided(scene: Scene, response: Response, *, contact_tilt: float = 0.0) -
 
 def is_finished(scene: Scene, response: Response, *, contact_tilt: float = 0.0) -> bool:
     """Is the outcome of a run certain at its end, and can its peaks no longer grow? See `is_decided`."""
-    decided, par, state = _at_end(scene, response, contact_tilt)
+    decided, state = _at_end(scene, response, contact_tilt)
     if not decided or state is None:
         return decided
-    return bool(
-        peaks_are_final(
-            par,  # type: ignore[arg-type]  # with a state come parameters
-            *state,
-            response.peak_tilt,
-            response.peak_base_displacement,
-            response.peak_base_acceleration,
-        )
-    )
+    peaks = response.peak_tilt, response.peak_base_displacement, response.peak_base_acceleration
+    return bool(peaks_are_final(*state, peaks))
 
 
-def _at_end(
-    scene: Scene, response: Response, contact_tilt: float
-) -> tuple[bool, Parameters | None, tuple[bool, float, float, float, float, float] | None]:
-    """(decided, kernel's parameters, (rocking, tilt, rate, x, v, z) or None where it has overturned or failed)."""
+def _at_end(scene: Scene, response: Response, contact_tilt: float) -> tuple[bool, tuple[Parameters, Body, Base] | None]:
+    """(decided, the kernel's parameters and state, or None where the block has overturned or the run failed)."""
     if response.outcome in ("overturns", "failed"):
-        return response.outcome == "overturns", None, None
+        return response.outcome == "overturns", None
     par, end = parameters(scene), response.end
     if end.time < motion_end(scene) * (1 - 1e-9):
-        return False, par, None
+        return False, None
     x, v, z = end.base_displacement, end.base_velocity, 0.0
     if par.count:
         z = end.bearing_force / par.count - par.kb * x - par.damping * v
-        z = min(max(z, -par.f0), par.f0)
-    rocking = abs(end.tilt) > contact_tilt or contact_tilt == 0 and end.tilt_rate != 0
-    tilt, rate = (end.tilt, end.tilt_rate) if rocking else (0.0, 0.0)
-    state = rocking, tilt, rate, x, v, z
-    return bool(will_not_overturn(par, rocking, response.outcome == "rocks", tilt, rate, x, v, z)), par, state
+        z = min(max(z, -par.constants.f0), par.constants.f0)
+    body = Body(0.0, 0.0, 0.0)
+    if abs(end.tilt) > contact_tilt or contact_tilt == 0 and end.tilt_rate != 0:
+        body = Body(math.copysign(1.0, end.tilt if end.tilt != 0 else end.tilt_rate), end.tilt, end.tilt_rate)
+    state = par, body, Base(x, v, z)
+    return bool(will_not_overturn(*state, response.outcome == "rocks")), state
 
 
 def until_decided(

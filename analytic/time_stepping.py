@@ -18,10 +18,12 @@ from numba import njit
 
 from .bearing import hysteretic_force
 from .budget import MOST_ROWS, MOST_STEPS
+from .compiled import inner
 from .errors import SettingError
+from .layout import Body
 from .motion import vertical_acceleration
 from .response import History, Impact, Response, State
-from .rocking import RockingModel
+from .solver import parameters
 from .termination import is_decided, until_decided
 
 if TYPE_CHECKING:
@@ -57,20 +59,15 @@ def simulate_time_stepping(scene: Scene, *, step: float, history: bool = True) -
     if scene.duration > most * step:
         steps, least = scene.duration / step, scene.duration / most
         raise SettingError(f"step = {step!r}: {steps:.3g} steps; give at least {least:.3g} s")
-    model, start, law = RockingModel.of(scene), scene.start, RockingModel.of(scene).bearing
-    count = math.ceil(scene.duration / step * (1 - 1e-12))
-    block = (model.m, model.M, model.J, model.R, model.gamma, model.g, model.on_base)
-    impact = model.restitution, model.mass_share * model.R * math.cos(model.gamma)
-    bearing = (law.law, law.count, law.kb, law.dk, law.alpha, law.d0, law.f0, law.damping)
-    y = (start.tilt, start.tilt_rate, start.base_displacement, start.base_velocity, law.start(start.base_displacement))
+    par, count = parameters(scene), math.ceil(scene.duration / step * (1 - 1e-12))
     nothing = np.zeros(1)
-    _march(step, nothing, nothing, y, block, impact, bearing, np.empty((0, 6)))  # compiled before the clock starts
+    _march(par, step, nothing, nothing, np.empty((0, 6)))  # compiled before the clock starts
     started = time.process_time()
     times = step * np.arange(count + 1)
     ground = np.zeros(count + 1) if scene.motion is None else scene.motion.acceleration(times)
-    gravity = np.full(count + 1, model.g) + vertical_acceleration(scene.motion, times)
+    gravity = np.full(count + 1, par.g) + vertical_acceleration(scene.motion, times)
     rows = np.empty((count + 1 if history else 0, 6))
-    marched = _march(step, ground, gravity, y, block, impact, bearing, rows)
+    marched = _march(par, step, ground, gravity, rows)
     response = _response(scene, step, marched, time.process_time() - started)
     if history:
         taken = response.steps
@@ -109,13 +106,13 @@ def _response(scene, step, marched, seconds):
     )
 
 
-@njit(cache=True, nogil=True)
-def _rocking(side, tilt, rate, a, g, force, block):
+@inner
+def _rocking(par, body, a, g, force):
     """(phi'', absolute acceleration of the base, forces at the corner) while the block rocks, (3)-(6)."""
-    m, M, J, R, gamma, _, on_base = block
-    c, n = R * math.cos(side * gamma - tilt), R * math.sin(side * gamma - tilt)
+    (side, tilt, rate), m, M, J = body, par.m, par.M, par.J
+    c, n = par.R * math.cos(side * par.gamma - tilt), par.R * math.sin(side * par.gamma - tilt)
     spin, absolute = -m * (c * a + g * n) / J, a
-    if on_base:
+    if par.on_base:
         push, moment = -m * n * rate * rate - force, -m * g * n
         determinant = M * J - (m * c) ** 2
         spin, absolute = (M * moment - m * c * push) / determinant, (J * push - m * c * moment) / determinant
@@ -123,15 +120,12 @@ def _rocking(side, tilt, rate, a, g, force, block):
 
 
 @njit(cache=True, nogil=True)
-def _march(h, ground, gravity, y, block, impact, bearing, rows):
-    """All steps, under a_g and g + a_v [m/s2] at each. impact: restitution and the length of eq. (8) [m].
+def _march(par, h, ground, gravity, rows):
+    """All steps, under a_g and g + a_v [m/s2] at each.
 
     Returns (steps taken, overturned?, impacts, uplifts, rests, (unstable time or -1, fall time), extremes, end).
     """
-    m, M, _, _, gamma, standard, on_base = block
-    law, count, kb, dk, alpha, d0, f0, damping = bearing
-    tilt, rate, x, v, z = y
-    slope, (e, arm) = math.tan(gamma), impact
+    m, gamma, on_base, tilt, rate, x, v, z = par.m, par.gamma, par.on_base, par.tilt, par.rate, par.x, par.v, par.z
     side = math.copysign(1.0, tilt if tilt != 0 else rate) if tilt != 0 or rate != 0 else 0.0
     impacts, uplifts, rests = [(0.0, 0.0, 0.0, 0.0)], [0.0], [0.0]
     impacts.pop(), uplifts.pop(), rests.pop()
@@ -139,7 +133,7 @@ def _march(h, ground, gravity, y, block, impact, bearing, rows):
     force, taken, over, held = 0.0, 0, False, (peak_x, peak_a, friction, normal, 0.0)
     for k in range(len(ground)):
         taken, t, a, g = k, k * h, ground[k], gravity[k]
-        force = count * (kb * x + z + damping * v)
+        force = par.count * (par.kb * x + z + par.damping * v)
         if len(rows) > 0:
             rows[k] = (t, tilt, rate, x, v, force)
         peak_tilt, peak_x = max(peak_tilt, abs(tilt)), max(peak_x, abs(x))
@@ -148,16 +142,16 @@ def _march(h, ground, gravity, y, block, impact, bearing, rows):
         over = abs(tilt) >= math.pi / 2
         if over:
             break
-        absolute = -force / M if on_base else a  # (2)
-        if side == 0 and abs(absolute) > g * slope:
+        absolute = -force / par.M if on_base else a  # (2)
+        if side == 0 and abs(absolute) > g * par.slope:
             side = -math.copysign(1.0, absolute)
             uplifts.append(t)
         spin, horizontal, vertical = 0.0, m * absolute, m * g
         if side != 0:
-            spin, absolute, horizontal, vertical = _rocking(side, tilt, rate, a, g, force, block)
+            spin, absolute, horizontal, vertical = _rocking(par, Body(side, tilt, rate), a, g, force)
         peak_a = max(peak_a, abs(absolute))
         friction = max(friction, abs(horizontal) / vertical if vertical > 0 else math.inf)
-        normal = min(normal, vertical / (m * standard))
+        normal = min(normal, vertical / (m * par.g))
         if abs(tilt) <= gamma:  # what comes later is the last fall, or it comes back
             held = peak_x, peak_a, friction, normal, t
         if k == len(ground) - 1:
@@ -167,15 +161,15 @@ def _march(h, ground, gravity, y, block, impact, bearing, rows):
         if on_base:
             v += h * (absolute - a)
             x += h * v
-            z = hysteretic_force(z, h * v, law, dk, alpha, d0, f0)
+            z = hysteretic_force(z, h * v, par.law, par.constants)
         if side != 0 and side * tilt <= 0 and side * rate < 0:
-            before, rate = rate, e * rate  # (7)
+            before, rate = rate, par.e * rate  # (7)
             if on_base:
-                v += arm * (before - rate)  # (8)
-            impacts.append((t + h, before, rate, arm * (before - rate)))
+                v += par.arm * (before - rate)  # (8)
+            impacts.append((t + h, before, rate, par.arm * (before - rate)))
             side = -side
             if abs(rate) <= abs(spin) * h:  # it would not last a step
-                v += arm * rate
+                v += par.arm * rate
                 tilt, rate, side = 0.0, 0.0, 0.0
                 rests.append(t + h)
     if over:

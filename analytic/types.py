@@ -5,8 +5,5 @@ from typing import TypeVar
 
 import numpy as np
 
-from .motion import PulseMotion, SampledMotion
-
-Motion = SampledMotion | PulseMotion
 GroundFunction = Callable[[float], float]  # a_g(t) [m/s2] of one time [s]
 Values = TypeVar("Values", float, np.ndarray)  # one value, or an array of them: what goes in comes out

@@ -16,7 +16,7 @@ from .swings import ArrayModel
 
 if TYPE_CHECKING:
     from analytic import Scene
-    from analytic.types import Motion
+    from analytic.motion import Motion
 
     from .swings import Trace
 

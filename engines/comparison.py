@@ -71,10 +71,13 @@ class Reference:
     until: float = math.inf
 
     @classmethod
-    def of(cls, scene: Scene) -> Self:
-        """That of a scene; it costs some ten runs of the model."""
+    def of(cls, scene: Scene, model: Response | None = None) -> Self:
+        """That of a scene; it costs some ten runs of the model.
+
+        model : its run of the scene itself, where it is known.
+        """
         try:
-            model = simulate(scene, history=False)
+            model = model or simulate(scene, history=False)
         except SceneError as error:
             return cls(comparable=f"the analytic model reaches no end: {error}")
         if why := _outside(scene, model):

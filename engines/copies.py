@@ -1,4 +1,4 @@
-"""Scenes next to a scene: what a run does there shows how much of its result hangs on the last digits."""
+"""Scenes next to a scene: what a run does there shows how sensitive its result is to the last digits."""
 
 from __future__ import annotations
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic.motion import RICKER_PERIODS, SampledMotion
+from analytic.motion import SampledMotion
 
 if TYPE_CHECKING:
     from analytic import PulseMotion
-    from analytic.types import Motion
+    from analytic.motion import Motion
 
 
 def ground_velocity(motion: Motion | None) -> Callable[[float], float] | None:
@@ -49,20 +49,9 @@ def _sampled(motion: SampledMotion) -> Callable[[float], float]:
 def _pulse(motion: PulseMotion) -> Callable[[float], float]:
     frequency, start, length = motion.frequency, motion.start, motion.length
     size, phase = motion.amplitude / frequency, motion.phase
-    half = 0.5 * RICKER_PERIODS * math.pi
-    forms = {
-        "one-sine": lambda u: math.cos(phase) - math.cos(u + phase),
-        "half-sine": lambda u: math.cos(phase) - math.cos(u + phase),
-        "one-cosine": lambda u: math.sin(u + phase) - math.sin(phase),
-        "rectangular": lambda u: u,
-        # with y = u/2 - 2 pi: d(2 y exp(-y^2))/du = (1 - 2 y^2) exp(-y^2)
-        "ricker": lambda u: (
-            2 * (0.5 * u - half) * math.exp(-((0.5 * u - half) ** 2)) + 2 * half * math.exp(-half * half)
-        ),
-    }
-    form = forms[motion.shape]
+    integral = motion.form.integral
 
     def velocity(t):
-        return size * form(frequency * min(max(t - start, 0.0), length))
+        return size * integral(math, frequency * min(max(t - start, 0.0), length), phase)
 
     return velocity

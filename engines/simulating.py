@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import traceback
+from collections.abc import Mapping
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any, Self
 
@@ -14,6 +15,7 @@ from analytic import termination
 from analytic.response import Caution, Failure
 from analytic.solver import compile_kernels
 
+from .comparison import Reference
 from .comparison import compare as compared
 from .contract import Engine, Run
 from .settings import choose, refuse_restitution
@@ -82,9 +84,12 @@ class Simulator(Engine):
         Mismatch
             exudyn alone: it holds other values than the scene asks for; nothing was run.
         """
-        response, _ = self.traced(scene, variant=variant, history=history, **settings)
+        model = self._model(scene)
+        response, _ = self._traced(scene, variant, history, settings, model)
         response = replace(response, warnings=(*response.warnings, *outside(scene, response)))
-        return compared(scene, response) if compare else response
+        if response.failure or not compare:
+            return response
+        return compared(scene, response, Reference.of(scene, model))
 
     def traced(
         self, scene: Scene, *, variant: str | None = None, history: bool = True, **settings: float
@@ -94,13 +99,23 @@ class Simulator(Engine):
         A scene without a duration is first run to where the analytic model's run ends, as engines end alike; an engine
         whose own end state is not decided there goes on for longer (`analytic.termination.until_decided`).
         """
+        return self._traced(scene, variant, history, settings, self._model(scene))
+
+    def _model(self, scene: Scene) -> Response | None:
+        """The analytic model's run where its end is needed: of a scene without a duration."""
         compile_kernels()
+        return analytic.simulate(scene, history=False) if scene.duration is None else None
+
+    def _traced(
+        self, scene: Scene, variant: str | None, history: bool, settings: Mapping[str, float], model: Response | None
+    ) -> tuple[Response, Trace | None]:
+        """`traced`, with what is known of the analytic model."""
         name, chosen = choose(self, variant, settings)
         if not self.variants[name].takes_restitution:
             refuse_restitution(self, scene)
         if scene.friction is not None and hasattr(chosen, "friction"):
             chosen = replace(chosen, friction=scene.friction)
-        if scene.duration is not None:
+        if model is None:
             return self._once(scene, name, chosen, history)
         traces: list[Trace | None] = []
 
@@ -109,9 +124,8 @@ class Simulator(Engine):
             traces[:] = [trace]  # of the last attempt
             return response
 
-        end = analytic.simulate(scene, history=False).end.time
         response = termination.until_decided(
-            attempt, scene, at_least=end, finished=lambda _, response: response.decided
+            attempt, scene, at_least=model.end.time, finished=lambda _, response: response.decided
         )
         return response, traces[0]
 

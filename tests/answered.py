@@ -5,8 +5,8 @@ import json
 
 from analytic import simulate
 from comparisons.running.executors import Done, Executor, lines_of
+from comparisons.running.plan import Batch, Computed
 from comparisons.running.provenance import digest_of, write_result
-from comparisons.running.study import Batch, Computed
 from comparisons.running.sweep import Row, run_sweep
 from comparisons.studies.rows import read_study
 

@@ -65,7 +65,7 @@ def scene(slenderness, base=None, duration=2.0, **parts):
 
 
 def released(base, slenderness=0.2, tilt=0.5, rate=0.0):
-    """A block let go, until it is well into its second swing; tilt as a share of the slenderness, its rate [rad/s]."""
+    """A released block, until it is well into its second swing; tilt as a share of the slenderness, rate [rad/s]."""
     start = Start(tilt=tilt * slenderness, tilt_rate=rate)
     given = scene(slenderness, duration=5.0, start=start).with_(base=base)
     first, second, *_ = analytic.simulate(given, history=False).impacts
@@ -83,7 +83,7 @@ def shaking(peak, duration=6.0):
 
 
 def impact_errors(simulate, slenderness, base, starts=8, duration=3.0, **settings):
-    """Of blocks let go, 3 impacts a start: root mean squares of the errors of e (absolute) and of the base velocity
+    """Of blocks released, 3 impacts a start: root mean squares of the errors of e (absolute) and of the base velocity
     jump (relative), the largest of the jump [m/s]; CPU seconds per simulated second."""
     errors, jumps, cpu = [], [], 0.0
     for share in np.linspace(0.3, 0.8, starts):

@@ -7,7 +7,7 @@ from bearing_laws import to_law
 
 from analytic import Base, Bearings, Block, PulseMotion, SampledMotion, Scene, Start
 from analytic.bearing import BearingLaw
-from analytic.motion import PULSES
+from analytic.pulses import PULSES
 
 LAWS = ("algebraic", "linear", "bouc-wen")
 
@@ -80,7 +80,7 @@ def _motion(rng, omega, unit):
         amplitude = math.copysign(unit, amplitude)
     if kind < 0.55:
         return PulseMotion(
-            str(rng.choice(PULSES)),
+            str(rng.choice(list(PULSES))),
             amplitude,
             omega * _log(rng, 0.3, 10.0),
             float(rng.choice([0.0, rng.uniform(0, 2)])),

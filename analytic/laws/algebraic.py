@@ -7,63 +7,64 @@ memory: no list of reversal points is needed.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numba import njit
 
+from ..compiled import inlined, inner
 from ..polynomial import INVERSE
-from .law import Law
-
-if TYPE_CHECKING:
-    from ..scene import Bearings
+from .law import Constants, Given, Law
 
 
-def constants(bearings: Bearings) -> dict[str, float]:
+def constants(bearings: Given) -> dict[str, float]:
     kb, alpha = bearings.given("kb"), bearings.given("alpha")
     dk = bearings.ka - kb
-    x0 = 0.5 * ((bearings.delta_k / dk) ** (-1 / alpha) - 1)  # (13)
+    x0 = 0.5 * ((bearings.given("delta_k") / dk) ** (-1 / alpha) - 1)  # (13)
     d0 = (1 + 2 * x0) ** (1 - alpha)
     f0 = 0.5 * dk * (d0 - 1) / (1 - alpha)  # (14)
     return {"kb": kb, "dk": dk, "alpha": alpha, "x0": x0, "d0": d0, "f0": f0}
 
 
-@njit(cache=True)
-def virtual_travel(s: float, z: float, dk: float, alpha: float, d0: float, f0: float) -> float:
+@inner
+def virtual_travel(s: float, z: float, c: Constants) -> float:
     """D_c: where the point with hysteretic force z stands on the limit curve of direction s [m].
 
     The literal x_j of eqs (10) and (12) raises a negative number to a power beyond 1.33 m of travel; this form
     of the same history does not. (The bracket of eq. (12) is misprinted; it must read 1 - x + x_j + 2 x0.)
     """
-    power = d0 + (1 - alpha) * (s * z - f0) / dk  # D_c^(1 - alpha)
-    return max(d0, power) ** (1 / (1 - alpha))
+    power = c.d0 + (1 - c.alpha) * (s * z - c.f0) / c.dk  # D_c^(1 - alpha)
+    return max(c.d0, power) ** (1 / (1 - c.alpha))
 
 
-@njit(cache=True)
-def after_travel(z: float, dx: float, dk: float, alpha: float, d0: float, f0: float) -> float:
-    """Eqs (9), (11) less their kb x, with the history in its stable form."""
+@inner
+def on_branch(s: float, travel: float, c: Constants) -> float:
+    """z on the branch of direction s, eqs (9), (11) less their kb x."""
+    return s * (c.dk * (travel ** (1 - c.alpha) - c.d0) / (1 - c.alpha) + c.f0)
+
+
+@inner
+def after_travel(z: float, dx: float, c: Constants) -> float:
     s = math.copysign(1.0, dx)
-    travel = virtual_travel(s, z, dk, alpha, d0, f0) + abs(dx)
-    return s * (dk * (travel ** (1 - alpha) - d0) / (1 - alpha) + f0)
+    return on_branch(s, virtual_travel(s, z, c) + abs(dx), c)
 
 
-def work(z: float, dx: float, dk: float, alpha: float, d0: float, f0: float) -> float:
-    length = abs(dx)
-    start = virtual_travel.py_func(math.copysign(1.0, dx), z, dk, alpha, d0, f0)
+def work(z: float, dx: float, c: Constants) -> float:
+    alpha, length = c.alpha, abs(dx)
+    start = virtual_travel.py_func(math.copysign(1.0, dx), z, c)
     if alpha == 2:
         curved = math.log1p(length / start)
     else:
         curved = ((start + length) ** (2 - alpha) - start ** (2 - alpha)) / (2 - alpha)
-    return dk * (curved - length * d0) / (1 - alpha) + length * f0
+    return c.dk * (curved - length * c.d0) / (1 - alpha) + length * c.f0
 
 
-@njit(cache=True)
-def recoverable(z: float, dk: float, alpha: float, d0: float, f0: float) -> float:
+@inner
+def recoverable(z: float, c: Constants) -> float:
     """Along the path of eqs (11), (12) between the virtual travels D of z and of 0.
 
     These are D^-a = D0 + a (f0 + z)/(ka - kb) with a = alpha - 1.
     """
-    a = alpha - 1
+    a, dk, d0, f0 = c.alpha - 1, c.dk, c.d0, c.f0
     begin, end = -math.log(d0 + a * (f0 + z) / dk) / a, -math.log(d0 + a * f0 / dk) / a  # log D
     length = end - begin
     if end > 600:
@@ -73,16 +74,14 @@ def recoverable(z: float, dk: float, alpha: float, d0: float, f0: float) -> floa
     return dk / a * math.exp((1 - a) * begin) * power - (f0 + dk * d0 / a) * travel
 
 
-@njit(cache=True)
-def begin(
-    s: float, z: float, travel: float, dk: float, alpha: float, d0: float, f0: float
-) -> tuple[float, tuple[float, float, float], float]:
+@inner
+def begin(s: float, z: float, travel: float, c: Constants) -> tuple[float, tuple[float, float, float], float]:
     """q is y^(1 - alpha) with y = D_c + s (x - x_c), the `travel`."""
-    power = travel ** (1 - alpha) if s != 0 else 0.0
-    return power, (s * (1.0 / travel), 2 - alpha, s * dk / (1 - alpha)), math.inf
+    power = travel ** (1 - c.alpha) if s != 0 else 0.0
+    return power, (s * (1.0 / travel), 2 - c.alpha, s * c.dk / (1 - c.alpha)), math.inf
 
 
-@njit(cache=True, inline="always")
+@inlined
 def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarray, q: np.ndarray) -> float:
     """y q' = (1 - alpha) y' q with y' = s v: k y_0 q_k = s sum((2 - alpha) v q - k x q)."""
     speed, travel = 0.0, 0.0
@@ -94,39 +93,27 @@ def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarr
     return slope * q[k]
 
 
-@njit(cache=True)
-def reached(
-    s: float,
-    z: float,
-    q: np.ndarray,
-    order: int,
-    h: float,
-    travel: float,
-    dk: float,
-    alpha: float,
-    d0: float,
-    f0: float,
-) -> float:
-    if s == 0:
-        return z
-    return s * (dk * (travel ** (1 - alpha) - d0) / (1 - alpha) + f0)  # (9), (11)
+@inner
+def reached(s: float, z: float, q: np.ndarray, order: int, h: float, travel: float, c: Constants) -> float:
+    return z if s == 0 else on_branch(s, travel, c)
 
 
-@njit(cache=True)
-def sides(z: float, dk: float, alpha: float, d0: float, f0: float) -> tuple[float, float]:
+@inner
+def sides(z: float, c: Constants) -> tuple[float, float]:
     """D_c forth and back."""
-    return virtual_travel(1.0, z, dk, alpha, d0, f0), virtual_travel(-1.0, z, dk, alpha, d0, f0)
+    return virtual_travel(1.0, z, c), virtual_travel(-1.0, z, c)
 
 
-def expression(ops: Any, dx: Any, first: Any, second: Any, dk: float, alpha: float, d0: float, f0: float) -> Any:
+def expression(ops: Any, dx: Any, first: Any, second: Any, c: Constants) -> Any:
     s = ops.where(dx >= 0.0, 1.0, -1.0)
     travel = ops.where(dx >= 0.0, first + dx, second - dx)
-    return s * ((ops.power(travel, 1 - alpha) - d0) * (dk / (1 - alpha)) + f0)
+    return s * ((ops.power(travel, 1 - c.alpha) - c.d0) * (c.dk / (1 - c.alpha)) + c.f0)
 
 
 LAW = Law(
     "algebraic",
     needs=("kb", "alpha"),
+    own=("alpha", "x0", "d0"),
     constants=constants,
     after_travel=after_travel,
     work=work,

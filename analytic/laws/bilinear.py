@@ -8,64 +8,58 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numba import njit
 
-from .law import Law
-
-if TYPE_CHECKING:
-    from ..bearing import BearingLaw
-    from ..scene import Bearings
+from ..compiled import inlined, inner
+from .law import Constants, Given, Law
 
 
-def constants(bearings: Bearings) -> dict[str, float]:
+def constants(bearings: Given) -> dict[str, float]:
     kb = bearings.given("kb")
     dk = bearings.ka - kb
     return {"kb": kb, "dk": dk, "f0": bearings.given("yield_force") * (dk / bearings.ka)}
 
 
-@njit(cache=True)
-def after_travel(z: float, dx: float, dk: float, alpha: float, d0: float, f0: float) -> float:
-    return min(max(z + dk * dx, -f0), f0)
+@inner
+def after_travel(z: float, dx: float, c: Constants) -> float:
+    return min(max(z + c.dk * dx, -c.f0), c.f0)
 
 
-def work(z: float, dx: float, dk: float, alpha: float, d0: float, f0: float) -> float:
+def work(z: float, dx: float, c: Constants) -> float:
     z, length = math.copysign(1.0, dx) * z, abs(dx)
-    elastic = min((f0 - z) / dk, length)
-    return z * elastic + 0.5 * dk * elastic**2 + f0 * (length - elastic)
+    elastic = min((c.f0 - z) / c.dk, length)
+    return z * elastic + 0.5 * c.dk * elastic**2 + c.f0 * (length - elastic)
 
 
-@njit(cache=True)
-def recoverable(z: float, dk: float, alpha: float, d0: float, f0: float) -> float:
-    return 0.5 * z * z / dk
+@inner
+def recoverable(z: float, c: Constants) -> float:
+    return 0.5 * z * z / c.dk
 
 
-@njit(cache=True)
-def begin(
-    s: float, z: float, travel: float, dk: float, alpha: float, d0: float, f0: float
-) -> tuple[float, tuple[float, float, float], float]:
-    if s * z < f0:
-        return z, (dk, 0.0, 0.0), f0
+@inner
+def begin(s: float, z: float, travel: float, c: Constants) -> tuple[float, tuple[float, float, float], float]:
+    if s * z < c.f0:
+        return z, (c.dk, 0.0, 0.0), c.f0
     return z, (0.0, 0.0, 0.0), math.inf
 
 
-@njit(cache=True, inline="always")
+@inlined
 def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarray, q: np.ndarray) -> float:
     """q is z."""
     q[k] = factors[0] * x[k]
     return q[k]
 
 
-def branch(z: float, direction: float, law: BearingLaw) -> Callable[[float, float], float]:
-    slope = law.dk if direction * z < law.f0 else 0.0
+def branch(z: float, direction: float, c: Constants) -> Callable[[float, float], float]:
+    slope = c.dk if direction * z < c.f0 else 0.0
     return lambda z, v: slope * v
 
 
-def expression(ops: Any, dx: Any, first: Any, second: Any, dk: float, alpha: float, d0: float, f0: float) -> Any:
-    elastic = first + dk * dx
-    return ops.where(elastic >= f0, f0, ops.where(elastic >= -f0, elastic, -f0))
+def expression(ops: Any, dx: Any, first: Any, second: Any, c: Constants) -> Any:
+    elastic = first + c.dk * dx
+    return ops.where(elastic >= c.f0, c.f0, ops.where(elastic >= -c.f0, elastic, -c.f0))
 
 
 LAW = Law(

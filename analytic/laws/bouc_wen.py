@@ -4,44 +4,39 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numba import njit
 
+from ..compiled import inlined, inner
 from ..polynomial import INVERSE
 from . import algebraic
-from .law import Law
-
-if TYPE_CHECKING:
-    from ..bearing import BearingLaw
+from .law import Constants, Law
 
 
-@njit(cache=True)
-def after_travel(z: float, dx: float, dk: float, alpha: float, d0: float, f0: float) -> float:
+@inner
+def after_travel(z: float, dx: float, c: Constants) -> float:
     s = math.copysign(1.0, dx)
-    return s * f0 - (s * f0 - z) * math.exp(-0.5 * dk / f0 * abs(dx))
+    return s * c.f0 - (s * c.f0 - z) * math.exp(-0.5 * c.dk / c.f0 * abs(dx))
 
 
-def work(z: float, dx: float, dk: float, alpha: float, d0: float, f0: float) -> float:
-    length, decay = abs(dx), 0.5 * dk / f0
-    return f0 * length + (f0 - math.copysign(1.0, dx) * z) * math.expm1(-decay * length) / decay
+def work(z: float, dx: float, c: Constants) -> float:
+    length, decay = abs(dx), 0.5 * c.dk / c.f0
+    return c.f0 * length + (c.f0 - math.copysign(1.0, dx) * z) * math.expm1(-decay * length) / decay
 
 
-@njit(cache=True)
-def recoverable(z: float, dk: float, alpha: float, d0: float, f0: float) -> float:
+@inner
+def recoverable(z: float, c: Constants) -> float:
     """dz/dx = (ka - kb)/2 (1 + z/f0) on the way back."""
-    return 2 / dk * f0 * (z - f0 * math.log1p(z / f0))
+    return 2 / c.dk * c.f0 * (z - c.f0 * math.log1p(z / c.f0))
 
 
-@njit(cache=True)
-def begin(
-    s: float, z: float, travel: float, dk: float, alpha: float, d0: float, f0: float
-) -> tuple[float, tuple[float, float, float], float]:
-    return z, (0.5 * dk, 0.5 * dk * s / f0, 0.0), math.inf
+@inner
+def begin(s: float, z: float, travel: float, c: Constants) -> tuple[float, tuple[float, float, float], float]:
+    return z, (0.5 * c.dk, 0.5 * c.dk * s / c.f0, 0.0), math.inf
 
 
-@njit(cache=True, inline="always")
+@inlined
 def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarray, q: np.ndarray) -> float:
     """z' = (ka - kb)/2 v (1 - s z/f0); q is z."""
     total = 0.0
@@ -51,18 +46,19 @@ def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarr
     return q[k]
 
 
-def branch(z: float, direction: float, law: BearingLaw) -> Callable[[float, float], float]:
-    return lambda z, v: 0.5 * law.dk * v * (1 - direction * z / law.f0)
+def branch(z: float, direction: float, c: Constants) -> Callable[[float, float], float]:
+    return lambda z, v: 0.5 * c.dk * v * (1 - direction * z / c.f0)
 
 
-def expression(ops: Any, dx: Any, first: Any, second: Any, dk: float, alpha: float, d0: float, f0: float) -> Any:
+def expression(ops: Any, dx: Any, first: Any, second: Any, c: Constants) -> Any:
     s = ops.where(dx >= 0.0, 1.0, -1.0)
-    return s * f0 - (s * f0 - first) * ops.exp((-0.5 * dk / f0) * s * dx)
+    return s * c.f0 - (s * c.f0 - first) * ops.exp((-0.5 * c.dk / c.f0) * s * dx)
 
 
 LAW = Law(
     "bouc-wen",
     needs=("kb", "alpha"),
+    own=algebraic.LAW.own,
     constants=algebraic.constants,
     after_travel=after_travel,
     work=work,

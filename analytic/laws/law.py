@@ -1,41 +1,41 @@
 """What a bearing law offers: the hysteretic part z of the force f = kb x + z + c v of one bearing.
 
-A law is one file of this folder with one `Law`. Its compiled functions end in the constants (dk, alpha, d0, f0): dk =
-ka - kb [N/m], f0 the limit of |z| [N]; alpha and d0 are the law's own. s is the sign of the travel, 0 at standstill.
+A law is one file of this folder with one `Law`. Its functions get its constants as the last argument, a record c with
+dk = ka - kb [N/m], f0 the limit of |z| [N], and the law's own; s is the sign of the travel, 0 at standstill.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
-from numba import njit
 
+from ..compiled import inner
 from ..polynomial import value
 
+Constants = Any  # `laws.Constants`, which has those of all laws
 
-@njit(cache=True)
-def no_mark(s: float, z: float, dk: float, alpha: float, d0: float, f0: float) -> float:
+
+class Given(Protocol):
+    """What a law is made of: the numbers of [bearings], see `scene.Bearings`."""
+
+    ka: float
+
+    def given(self, name: str) -> float: ...
+
+
+@inner
+def no_mark(s: float, z: float, c: Constants) -> float:
     return 1.0
 
 
-@njit(cache=True)
-def last_of_series(
-    s: float,
-    z: float,
-    q: np.ndarray,
-    order: int,
-    h: float,
-    travel: float,
-    dk: float,
-    alpha: float,
-    d0: float,
-    f0: float,
-) -> float:
+@inner
+def last_of_series(s: float, z: float, q: np.ndarray, order: int, h: float, travel: float, c: Constants) -> float:
     return value(q, order, h)
 
 
-@njit(cache=True)
-def only_z(z: float, dk: float, alpha: float, d0: float, f0: float) -> tuple[float, float]:
+@inner
+def only_z(z: float, c: Constants) -> tuple[float, float]:
     return z, 0.0
 
 
@@ -45,32 +45,34 @@ class Law:
 
     name : its name in scene files.
     needs, ignores : keys of [bearings] beside ka that it asks for, and that may stand there unused; others are errors.
-    constants(bearings) : dict of kb, dk, f0 and, if it has them, alpha, x0, d0; see `BearingLaw`.
+    own : names of its constants beside dk and f0.
+    constants(bearings) : dict of kb, dk, f0 and its own.
     memory : whether z depends on the path; then every reversal matters.
-    after_travel(z, dx, ..) : z after monotonic travel dx [m].
-    work(z, dx, ..) : integral of z over that travel [J]; not compiled.
-    recoverable(z, ..) : what a bearing with z > 0 gives back on its way to z = 0 [J].
-    begin(s, z, travel, ..) : (q_0, factors, corner) at the start of a Taylor step: three numbers for its terms, and the
+    after_travel(z, dx, c) : z after monotonic travel dx [m].
+    work(z, dx, c) : integral of z over that travel [J]; not compiled.
+    recoverable(z, c) : what a bearing with z > 0 gives back on its way to z = 0 [J].
+    begin(s, z, travel, c) : (q_0, factors, corner) at the start of a Taylor step: three numbers for its terms, and the
         next s z at which the stiffness jumps, an event; inf where there is none.
     term(k, factors, x, v, q) : z_k for k >= 1, with q_k filled in; x up to k, v and q up to k - 1 are given.
-    mark(s, z, ..) : where z stands on the branch of direction s, remembered at a reversal [m]; travel counts from it.
-    reached(s, z, q, order, h, travel, ..) : z at the end of a step.
-    sides(z, ..) : two numbers of `expression`, committed after each step of an engine.
-    expression(ops, dx, first, second, ..) : `after_travel` for engines with formulas of their own, with
+    mark(s, z, c) : where z stands on the branch of direction s, remembered at a reversal [m]; travel counts from it.
+    reached(s, z, q, order, h, travel, c) : z at the end of a step.
+    sides(z, c) : two numbers of `expression`, committed after each step of an engine.
+    expression(ops, dx, first, second, c) : `after_travel` for engines with formulas of their own, with
         where(condition, a, b), power(a, b) and exp(a) of `ops`.
-    branch(z, direction, law) : function (z, v) -> z' [N/s] from z on, up to the next reversal or corner. Where there is
+    branch(z, direction, c) : function (z, v) -> z' [N/s] from z on, up to the next reversal or corner. Where there is
         one the second implementation integrates z as a state, else it uses `after_travel`; not compiled.
     """
 
     name: str
     needs: tuple[str, ...]
-    constants: Callable
+    constants: Callable[[Given], dict[str, float]]
     after_travel: Callable
     work: Callable
     recoverable: Callable
-    begin: Callable
+    begin: Any
     term: Callable
     expression: Callable
+    own: tuple[str, ...] = ()
     ignores: tuple[str, ...] = ()
     memory: bool = True
     mark: Callable = no_mark

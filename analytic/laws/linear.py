@@ -3,64 +3,48 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numba import njit
 
-from .law import Law
-
-if TYPE_CHECKING:
-    from ..scene import Bearings
+from ..compiled import inlined, inner
+from .law import Constants, Given, Law
 
 
-def constants(bearings: Bearings) -> dict[str, float]:
+def constants(bearings: Given) -> dict[str, float]:
     return {"kb": bearings.ka, "dk": 0.0, "f0": 0.0}
 
 
-@njit(cache=True)
-def after_travel(z: float, dx: float, dk: float, alpha: float, d0: float, f0: float) -> float:
+@inner
+def after_travel(z: float, dx: float, c: Constants) -> float:
     return z
 
 
-def work(z: float, dx: float, dk: float, alpha: float, d0: float, f0: float) -> float:
+def work(z: float, dx: float, c: Constants) -> float:
     return 0.0
 
 
-@njit(cache=True)
-def recoverable(z: float, dk: float, alpha: float, d0: float, f0: float) -> float:
+@inner
+def recoverable(z: float, c: Constants) -> float:
     return 0.0
 
 
-@njit(cache=True)
-def begin(
-    s: float, z: float, travel: float, dk: float, alpha: float, d0: float, f0: float
-) -> tuple[float, tuple[float, float, float], float]:
+@inner
+def begin(s: float, z: float, travel: float, c: Constants) -> tuple[float, tuple[float, float, float], float]:
     return z, (0.0, 0.0, 0.0), math.inf
 
 
-@njit(cache=True, inline="always")
+@inlined
 def term(k: int, factors: tuple[float, float, float], x: np.ndarray, v: np.ndarray, q: np.ndarray) -> float:
     return 0.0
 
 
-@njit(cache=True)
-def reached(
-    s: float,
-    z: float,
-    q: np.ndarray,
-    order: int,
-    h: float,
-    travel: float,
-    dk: float,
-    alpha: float,
-    d0: float,
-    f0: float,
-) -> float:
+@inner
+def reached(s: float, z: float, q: np.ndarray, order: int, h: float, travel: float, c: Constants) -> float:
     return z
 
 
-def expression(ops: Any, dx: Any, first: Any, second: Any, dk: float, alpha: float, d0: float, f0: float) -> Any:
+def expression(ops: Any, dx: Any, first: Any, second: Any, c: Constants) -> Any:
     return first
 
 

@@ -9,10 +9,9 @@ from pathlib import Path
 
 from ..budget import MOST_STEPS
 from ..errors import SceneError, SettingError
-from ..motion import SampledMotion
+from ..motion import Motion, SampledMotion
 from ..pairing import paired
 from ..scene import Scene
-from ..types import Motion
 from . import fema
 
 VERTICAL = ("up", "u-d", "ud", "vertical", "vert", "dwn", "ver", "v", "z", "u")  # how files call it

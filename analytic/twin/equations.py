@@ -57,7 +57,7 @@ class Equations:
 
     def derivative(self, ground: GroundFunction, direction: float) -> Callable[[float, np.ndarray], np.ndarray]:
         model, law, side, energy, vertical = self.model, self.law, self.side, self.energy, self.vertical
-        branch = law.unit.branch and law.unit.branch(self.hysteretic_force(self.y), direction, law)
+        branch = law.unit.branch and law.unit.branch(self.hysteretic_force(self.y), direction, law.constants)
         if not model.on_base:
 
             def block_alone(t, y):

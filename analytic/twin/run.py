@@ -219,7 +219,7 @@ class Run(Equations):
         if direction:
             stops = self.law.unit.memory
             found.append(("reversal", Event(lambda t, y: direction * y[3] if t > turned else 1.0, terminal=stops)))
-            ahead = self.law.unit.begin(direction, self.hysteretic_force(self.y), 1.0, *self.law.constants)[2]
+            ahead = self.law.unit.begin.py_func(direction, self.hysteretic_force(self.y), 1.0, self.law.constants)[2]
             self.corner = corner = direction * ahead
             if ahead < math.inf:
                 found.append(("corner", Event(lambda t, y: direction * (y[4] - corner), direction=1)))

@@ -21,7 +21,8 @@ from engines import available_engines, get_engine
 
 from ..running.executors import Processes
 from ..running.files import TemporaryFolder
-from ..running.solving import ANALYTIC, named_engines, spinner
+from ..running.progress import spinner
+from ..running.solving import ANALYTIC, named_engines
 from .answer import Choice, Level, VariantLevels
 from .criteria import CRITERIA, fitting, neighbours, safety, until
 from .search import Search, problem

@@ -49,7 +49,7 @@ def command(
     from ..advice import choose
     from ..advice.criteria import fitting
     from ..running.files import check_writable
-    from ..running.solving import compile_kernels, say, stdout_to_stderr
+    from ..running.progress import compile_kernels, say, stdout_to_stderr
     from ..showing.choices import draw_choice, print_choice
 
     check_time_limit(time_limit)

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from ..cli.output import write_output
+from ..running.progress import say, spinner
 from ..running.readable import readable
 from ..running.solving import (
     ANALYTIC,
@@ -18,9 +19,7 @@ from ..running.solving import (
     check_time_limit,
     near_motion,
     print_failures,
-    say,
     simulate,
-    spinner,
 )
 
 

@@ -15,8 +15,9 @@ from ..cli.output import write_output
 from ..running.files import check_writable
 from ..running.motion_options import BothSigns, Directions, Records, motions_of
 from ..running.options import DEFINITION, OPTIONS, RATIO, named_by_options
+from ..running.progress import bar, compile_kernels
 from ..running.record_options import Units
-from ..running.solving import bar, compile_kernels, scene_of
+from ..running.solving import scene_of
 
 LEAST, SOFTEST = "least-stroke", "softest"
 WRITTEN = ("ka", "kb", "alpha")  # numbers that a file holds to six digits

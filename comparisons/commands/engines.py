@@ -14,7 +14,8 @@ def command(name: Annotated[str | None, typer.Argument(help="Engine to describe 
     """
     from engines import BROKEN, available_engines, get_engine, missing_words
 
-    from ..running.solving import named_engines, stdout_to_stderr
+    from ..running.progress import stdout_to_stderr
+    from ..running.solving import named_engines
     from ..showing.tables import engine_text, engines_table
     from ..showing.terminal import echo
 

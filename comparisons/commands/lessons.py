@@ -48,7 +48,7 @@ def export(output: Annotated[str, typer.Option(metavar="DIR", help="Folder for t
     """Write the pages: playground, lessons, derivation, teacher's page with figures. They open by double click."""
     from ..lessons.export import export_pages
     from ..running.files import check_folder
-    from ..running.solving import bar, stdout_to_stderr
+    from ..running.progress import bar, stdout_to_stderr
 
     check_folder(output)
     with stdout_to_stderr(), bar("lessons") as progress:  # engines greet on standard output

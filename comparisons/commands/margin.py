@@ -7,8 +7,8 @@ import typer
 
 from ..cli.output import write_output
 from ..running.motion_options import BothSigns, Directions, Records, other_motions
+from ..running.progress import compile_kernels, spinner
 from ..running.record_options import Units
-from ..running.solving import compile_kernels, spinner
 
 LEAST_SPAN = 0.1  # per cent
 

@@ -12,8 +12,9 @@ from analytic.errors import SettingError
 
 from ..running.motion_options import BothSigns, Directions, Records, other_motions
 from ..running.options import RECORD_OPTIONS, named_by_options
+from ..running.progress import bar, say, stdout_to_stderr
 from ..running.record_options import Channel, Column, Step, Units
-from ..running.solving import ANALYTIC, bar, check_solver, ground_motion, say, stdout_to_stderr
+from ..running.solving import ANALYTIC, check_solver, ground_motion
 
 if TYPE_CHECKING:
     from ..schemas.results import Report

@@ -8,6 +8,7 @@ import typer
 
 from ..cli.output import write_output
 from ..running.motion_options import BothSigns, Directions, Records, other_motions, rows_of
+from ..running.progress import say
 from ..running.record_options import Units
 from ..running.solving import (
     TIME_LIMIT,
@@ -17,7 +18,6 @@ from ..running.solving import (
     near_motion,
     parse_settings,
     print_failures,
-    say,
     simulate,
 )
 

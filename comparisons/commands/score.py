@@ -20,7 +20,7 @@ def command(
     scale. Example: rocking score answers.csv
     """
     from ..running.files import check_writable
-    from ..running.solving import spinner
+    from ..running.progress import spinner
     from ..sheet.answers import read_answers
     from ..sheet.score import score
 

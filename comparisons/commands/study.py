@@ -16,7 +16,7 @@ from analytic.errors import SettingError
 from ..studies import BUILT_IN, StudyBroken, get_study, study_names
 
 if TYPE_CHECKING:
-    from ..running.study import Study
+    from ..running.plan import Study
 
 Quick = Annotated[bool, typer.Option("--quick", help="A first look, in minutes.")]
 Output = Annotated[
@@ -88,8 +88,8 @@ def command_of(study: Study) -> Callable[..., None]:
     ) -> None:
         from ..report.detail import write_study
         from ..running.files import check_folder
+        from ..running.progress import spinner
         from ..running.provenance import read_result
-        from ..running.solving import spinner
         from ..running.study import compute
 
         if check is not None:
@@ -136,8 +136,8 @@ def command_of(study: Study) -> Callable[..., None]:
 def _check(name, output, number, seed, write, workers):
     """Check the stored results of a study; status 1 if a run does not hold."""
     from ..running.check import check_all
+    from ..running.progress import stdout_to_stderr
     from ..running.provenance import RESULTS
-    from ..running.solving import stdout_to_stderr
 
     with stdout_to_stderr():  # engines greet on standard output
         seed = secrets.randbelow(2**32) if seed is None else seed
@@ -167,17 +167,18 @@ def every(
     from pathlib import Path
 
     from ..running.files import check_folder
+    from ..running.progress import log
     from ..running.provenance import copy_result
-    from ..running.study import compute, say
+    from ..running.study import compute
 
     check_folder(output)
     for name in BUILT_IN:
         began = time.monotonic()
-        say(f"study {name}")
+        log(f"study {name}")
         folder = Path(output) / name
         for path in compute(get_study(name), folder, engines=engine or None, quick=quick, workers=workers):
             print(*copy_result(path, Path(output)), sep="\n")
-        say(f"study {name}: {(time.monotonic() - began) / 60:.1f} minutes")
+        log(f"study {name}: {(time.monotonic() - began) / 60:.1f} minutes")
 
 
 class _Studies(TyperGroup):

@@ -7,7 +7,8 @@ import typer
 from analytic.errors import SettingError
 
 from ..cli.output import write_output
-from ..running.solving import TIME_LIMIT, check_time_limit, compile_kernels, named_engines, say, spinner
+from ..running.progress import compile_kernels, say, spinner
+from ..running.solving import TIME_LIMIT, check_time_limit, named_engines
 
 
 def command(

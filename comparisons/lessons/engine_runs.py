@@ -1,4 +1,4 @@
-"""Every installed engine, in every variant, on one small scene: a block let go on rigid ground, to its second impact.
+"""Every installed engine, in every variant, on one small scene: a block released on rigid ground, to its second impact.
 
 Which engines there are is asked of `engines`; without any the lessons run on the model's own fixed-step integrator.
 """

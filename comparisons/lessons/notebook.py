@@ -16,7 +16,7 @@ from typing import Any
 from analytic.errors import SettingError
 
 from ..running.files import TemporaryFolder, write_all
-from ..running.solving import say
+from ..running.progress import say
 from ..showing import diagrams
 from ..showing.parts import number
 from ..showing.templates import templates

@@ -240,14 +240,18 @@ def branch(law: BearingLaw, x: float, s: float, x_j: float, misprinted: bool = F
     The bracket is 1 + s x - s x_j + 2 x0. As printed, eq. (12) for unloading (s = -1) has the signs of loading:
     1 + x - x_j + 2 x0.
     """
-    bracket = 1 + (1 if misprinted else s) * (x - x_j) + 2 * law.x0
-    return law.kb * x + law.dk * (bracket ** (1 - law.alpha) - law.d0) / (s * (1 - law.alpha)) + s * law.f0
+    bracket = 1 + (1 if misprinted else s) * (x - x_j) + 2 * law.constants.x0
+    return (
+        law.kb * x
+        + law.dk * (bracket ** (1 - law.constants.alpha) - law.constants.d0) / (s * (1 - law.constants.alpha))
+        + s * law.f0
+    )
 
 
 def history_point(law: BearingLaw, x: float, force: float, s: float) -> float:
     """x_j [m] of the branch of direction s through the point (x [m], force [N]) of a reversal, eqs (10), (12)."""
-    a, z = 1 - law.alpha, force - law.kb * x
-    return x + s * (1 + 2 * law.x0 - (law.d0 + a * (s * z - law.f0) / law.dk) ** (1 / a))
+    a, z = 1 - law.constants.alpha, force - law.kb * x
+    return x + s * (1 + 2 * law.constants.x0 - (law.constants.d0 + a * (s * z - law.f0) / law.dk) ** (1 / a))
 
 
 def corner_lift(engine: str, variant: str, scenes: str, runs: dict[Any, Any]) -> float:

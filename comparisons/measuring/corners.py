@@ -15,7 +15,7 @@ from engines.swings import ArrayModel
 
 if TYPE_CHECKING:
     from analytic import Scene
-    from analytic.types import Motion
+    from analytic.motion import Motion
     from engines.swings import Trace
 
 

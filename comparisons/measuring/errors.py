@@ -2,7 +2,7 @@
 
 Restitution: from the swings around each impact (`swing_restitution`: what a student measures, and the headline's), from
 the states at it (`state_restitution`: under forces too) and from successive rates (`rate_restitution`: no history is
-needed). Base velocity jump, impact times, lost impacts, distance of the tilt graphs, energy.
+needed). Base velocity jump, impact times, missed impacts, distance of the tilt graphs, energy.
 """
 
 from __future__ import annotations

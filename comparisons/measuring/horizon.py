@@ -101,7 +101,7 @@ def perturbation_of(scene: Scene, response: Response, reference: Response) -> fl
 
     Measured in the run: from `restitution_error` on, `LADDER` times as large until the copies are as far off the model
     as the solver's tilt is where it is first off by `EARLY` of `SPREAD`. That holds whatever moves the block:
-    compliance, steps, times of uplift, lost impacts.
+    compliance, steps, times of uplift, missed impacts.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
 EQUAL = 0.05  # share of runs that may differ between solvers that are called equal
-TOO_FEW = "too few to say"  # of `equality`: so few runs
+TOO_FEW = "inconclusive (too few runs)"  # of `equality`
 
 
 @dataclass(frozen=True)
@@ -73,8 +73,8 @@ def wilson(count: float, size: float, level: float = 0.95) -> tuple[float, float
 def equality(differs: npt.ArrayLike, groups: Sequence[Any] | None = None) -> tuple[str, tuple[float, float]]:
     """Whether two solvers are equal, a word, and the 95 % interval of the share of runs in which they are not.
 
-    "yes": its upper limit is below `EQUAL`. "too few to say": so few runs that it would not be with none differing, and
-    the lower limit is not above `EQUAL`. "no": otherwise; lack of power proves nothing.
+    "yes": its upper limit is below `EQUAL`. `TOO_FEW`: it would not be with none differing, and the lower limit is not
+    above `EQUAL`. "no": otherwise; lack of power proves nothing.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ from .studies import origin_of
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-    from ..running.study import Study
+    from ..running.plan import Study
 
 HERE = Path(__file__).parent
 

@@ -17,7 +17,7 @@ from ..showing.parts import number
 
 if TYPE_CHECKING:
     from analytic import Scene
-    from analytic.types import Motion
+    from analytic.motion import Motion
 
 BROAD = 10.0  # width over height of a block that no motion lifts
 STEP = 0.01  # relative, of the widths tried

@@ -22,15 +22,15 @@ from engines import available_engines, get_engine
 from ..measuring.errors import compare, impact_errors, lost_impacts, rms, worst
 from ..measuring.horizon import sensitivity_horizon, solver_horizon
 from ..running.cases import Case
-from ..running.solving import spinner
-from ..running.study import Batch, Computed, say
+from ..running.plan import Batch, Computed
+from ..running.progress import log, spinner
 from .histories import ToFile, differences, response_of, thinned
 from .statue import statue_of
 
 if TYPE_CHECKING:
-    from analytic.types import Motion
+    from analytic.motion import Motion
 
-    from ..running.study import Plan, Request
+    from ..running.plan import Plan, Request
     from ..running.sweep import Row
 
 SCENES, RESTITUTION = "scenes.json", "restitution.json"  # result files
@@ -86,7 +86,7 @@ def plan(
     longest = max((scene.motion.end for scene in scenes.values() if scene.motion), default=0.0)
     samples = max((len(getattr(scene.motion, "samples", ())) for scene in scenes.values()), default=0)
     limit = TIME_LIMIT + LIMIT_PER_SECOND * longest + LIMIT_PER_SAMPLE * samples
-    say(f"{', '.join(scenes)} in {', '.join(('the analytic model', *request.engines))}")
+    log(f"{', '.join(scenes)} in {', '.join(('the analytic model', *request.engines))}")
     rows = yield Batch(cases, ToFile(str(Path(histories).resolve())), "scenes", limit)
     more: dict[str, Any] = {"variants": described_variants(request.engines), "own": own}
     if own:
@@ -136,7 +136,7 @@ def impacts_only(case: Case, response: Response) -> dict[str, Any]:
 
 
 def restitution_computed(rows: Sequence[Row]) -> Computed:
-    """The answer of the block let go: a row for each solver and variant, over all grounds and starts."""
+    """The answer of the block released: a row for each solver and variant, over all grounds and starts."""
     groups: dict[tuple[str, str | None], list[Row]] = {}
     models = {row.case.scene.digest(): Response.from_json(row.values) for row in rows if row.case.solver == "analytic"}
     for row in rows:

@@ -201,7 +201,7 @@ def _trajectory(which: str, until: str) -> tuple[Column, ...]:
     return (
         _apart(f"up to {which} sensitivity horizon [s]:", "until", 4, until=until),
         _apart("impact times, rms [s]", "impact_time_error", until=until),
-        _apart("lost impacts [-]", "lost_impacts", until=until),
+        _apart("missed impacts [-]", "lost_impacts", until=until),
         _apart("distance of the tilt graphs [-]", "graph_distance", until=until),
     )
 

@@ -24,7 +24,7 @@ from .sections import different
 
 if TYPE_CHECKING:
     from analytic import Scene
-    from analytic.types import Motion
+    from analytic.motion import Motion
 
     from ..running.provenance import Result
 

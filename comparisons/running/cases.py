@@ -16,7 +16,7 @@ from unittest.mock import patch
 from analytic import Block, Scene, Start
 from engines import ENGINES, get_engine
 
-from .solving import compile_kernels
+from .progress import compile_kernels
 from .sources import source_digests, version_of
 
 if TYPE_CHECKING:

@@ -3,8 +3,8 @@
     with Cluster("tcp://scheduler:8786", solvers) as executor:
         rows = run_sweep(cases, store="results/map.jsonl", measure=outcome, executor=executor)
 
-Each thread of a Dask worker has a process that guards its runs by `Processes`, as ever: a crash or a hang costs one row
-and no worker.
+Each thread of a Dask worker has a process that guards its runs by `Processes`, as ever: of a crash or a hang
+only that row is lost, and no worker.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from analytic.errors import SettingError
 
 from .cases import compile_for, module_of, versions
 from .executors import Done, Executor, Processes, Task, end_with, number_of
+from .progress import say
 from .readable import Mendable
-from .solving import say
 from .sources import PROJECT, source_digests
 
 LOCAL = "local:"

@@ -27,8 +27,8 @@ from engines.guard import end_with_parent, raised
 
 from .cases import Case, module_of
 from .files import PlaceError, TemporaryFolder
+from .progress import redirected
 from .provenance import json_ready, scrub
-from .solving import redirected
 
 ENOUGH_SECONDS = 0.2  # of a task: cheap runs travel together; what a kill can cost
 MOST_BROKEN = 3  # pools in a row that end without finishing a task

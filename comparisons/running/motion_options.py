@@ -9,7 +9,7 @@ import typer
 
 if TYPE_CHECKING:
     from analytic import Response, Scene
-    from analytic.types import Motion
+    from analytic.motion import Motion
 
 Records = Annotated[
     str | None, typer.Option(metavar="FOLDER", help="Also under the records in this folder, as they are recorded.")
@@ -42,7 +42,7 @@ def motions_of(
     from analytic.records.folder import folder_motions, reversed_sign, same_reversed
 
     from .options import named_by_options
-    from .solving import say
+    from .progress import say
 
     for name, value in (("directions", directions), ("units", units)):
         if value is not None and records is None:
@@ -77,7 +77,7 @@ def rows_of(
     scene: Scene, groups: Mapping[str, Sequence[Motion]], simulate: Callable[[Scene], Response]
 ) -> list[dict[str, Any]]:
     """A row for each motion: record, motion, peak [m/s2], outcome, tilt over slenderness, base displacement [m]."""
-    from .solving import bar
+    from .progress import bar
 
     pairs = [(record, motion) for record, motions in groups.items() for motion in motions]
     rows = []

@@ -27,7 +27,7 @@ from engines import ENGINES
 from ..schemas.study import StudyResult
 from .files import PlaceError, waiting, write, write_pair
 from .readable import Mendable, readable
-from .sources import PROJECT, digests_of_all, source_digests, version_of
+from .sources import PROJECT, computes, digests_of_all, source_digests, version_of
 
 SHORT = 80  # characters of a value in a message
 NAMED = 3  # modules that a sentence on a stale result names
@@ -291,7 +291,7 @@ def _changed(result):
     then = result.provenance["sources"]
     packages = {*PROJECT, *(name.partition(".")[0] for name in then)}
     here = {digest[:16] for digest in digests_of_all(packages)}
-    changed = [name for name, digest in then.items() if digest not in here]
+    changed = [name for name, digest in then.items() if computes(name) and digest not in here]
     if not changed:
         return None
     origin = _at(result.provenance["commit"])

@@ -18,7 +18,7 @@ from .cases import Case, name_of
 from .provenance import json_ready
 
 if TYPE_CHECKING:
-    from .study import Batch
+    from .plan import Batch
     from .sweep import Row
 
 SIZE = 60  # runs stored with a result

@@ -1,23 +1,20 @@
-"""One run as a user asks for it: ground motion, solver and settings by name, checked; progress on standard error."""
+"""One run as a user asks for it: ground motion, solver and settings by name, checked."""
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import inspect
 import json
 import math
-import os
-import sys
 import tempfile
-import threading
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from analytic.errors import SceneError, SettingError
 
+from .progress import compile_kernels, say, spinner
 from .readable import readable
 
 if TYPE_CHECKING:
@@ -26,8 +23,6 @@ if TYPE_CHECKING:
 ANALYTIC = "analytic"
 TIME_LIMIT = 300.0  # s, of one run
 TIME_LIMIT_HELP = "A run that takes longer is ended, and counts as failed."
-PATIENCE = 2.0  # s that compiled functions may take to load, without a word
-SHOWN = 60  # characters of what is under way
 
 
 def parse_settings(pairs: Iterable[str]) -> dict[str, Any]:
@@ -261,73 +256,3 @@ def print_failures(responses: Iterable[Response]) -> None:
         if response.failure:
             evidence = readable(response.failure.message.partition("\n")[0])
             say(f"{response.engine} failed: {response.failure.reason}. {evidence}".rstrip(". ") + ".")
-
-
-def compile_kernels(vertical: bool = False) -> None:
-    """`analytic.solver.compile_kernels` before a clock starts; shown where it takes a while.
-
-    vertical : also for motions with a vertical component.
-    """
-    from analytic import solver
-
-    words = "compiling the analytic model: half a minute, once on this machine"
-    with contextlib.ExitStack() as shown:
-        show = (lambda: shown.enter_context(spinner(words))) if sys.stderr.isatty() else (lambda: say(words))
-        telling = threading.Timer(PATIENCE, show)
-        telling.start()
-        try:
-            solver.compile_kernels(vertical)
-        finally:
-            telling.cancel()
-            telling.join()
-
-
-def say(text: str) -> None:
-    """A line of progress on standard error."""
-    print(text, file=sys.stderr, flush=True)
-
-
-@contextlib.contextmanager
-def spinner(text: str) -> Iterator[Callable[[str], None]]:
-    """A line on standard error with the time elapsed, while something runs; nothing where that is no terminal."""
-    from rich.console import Console
-    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-
-    console = Console(stderr=True)
-    columns = SpinnerColumn(), TextColumn("{task.description}", markup=False), TimeElapsedColumn()
-    with Progress(*columns, transient=True, console=console, disable=not console.is_terminal) as progress:
-        task = progress.add_task(readable(text, SHOWN))
-        yield lambda words: progress.update(task, description=readable(words, SHOWN))
-
-
-@contextlib.contextmanager
-def bar(text: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar on standard error that is told (done, known of) while something runs; nothing where that is no terminal."""
-    from rich.console import Console
-    from rich.progress import Progress
-
-    console = Console(stderr=True)
-    with Progress(transient=True, console=console, disable=not console.is_terminal) as progress:
-        task = progress.add_task(readable(text, SHOWN), total=None)
-        yield lambda done, total: progress.update(task, completed=done, total=total)
-
-
-@contextlib.contextmanager
-def redirected(*descriptors: int, to: int) -> Iterator[None]:
-    """What this process prints to `descriptors` (1 and 2), compiled code included, goes to the file number `to`."""
-    sys.stdout.flush(), sys.stderr.flush()
-    kept = {number: os.dup(number) for number in descriptors}
-    for number in descriptors:
-        os.dup2(to, number)
-    try:
-        yield
-    finally:
-        sys.stdout.flush(), sys.stderr.flush()
-        for number, copy in kept.items():
-            os.dup2(copy, number)
-            os.close(copy)
-
-
-def stdout_to_stderr() -> contextlib.AbstractContextManager[None]:
-    """What this process prints to standard output goes to standard error."""
-    return redirected(1, to=2)

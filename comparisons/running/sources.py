@@ -14,6 +14,8 @@ from analytic.scene_file import SHIPPED, shipped_scenes
 PROJECT = ("analytic", "engines", "comparisons")
 SCENES = "analytic.scenes."  # and the name of a shipped scene: as modules are called, so are they
 SHIPPED_NAMES = shipped_scenes()
+# What runs, stores, checks and describes runs computes no number of theirs; `cases` says what is run.
+CARRIES_OUT, COMPUTES = ("comparisons.running", "comparisons.schemas"), "comparisons.running.cases"
 # (node, field) that say nothing of a number: types of arguments and results, and where an imported name comes from
 SILENT = {("arg", "annotation"), ("FunctionDef", "returns"), ("ImportFrom", "module"), ("ImportFrom", "level")}
 
@@ -25,7 +27,8 @@ def source_digests(modules: Iterable[str]) -> dict[str, str]:
     ----------
     modules : iterable of str
         Dotted names (``analytic``, ``engines.exudyn.adapter``). Imports are followed, inside functions too,
-        but only within `PROJECT` and the top-level packages of `modules` themselves. A package that holds a module
+        but only within `PROJECT` and the top-level packages of `modules` themselves, and not into what carries runs
+        out (`computes`). A package that holds a module
         is not followed for that: what a study's package imports to show a result says nothing of how it was found.
 
     Returns
@@ -47,11 +50,18 @@ def source_digests(modules: Iterable[str]) -> dict[str, str]:
     digests: dict[str, str] = {}
     while waiting:
         name = waiting.pop()
-        if name not in digests and name.partition(".")[0] in within and (file := _file(name)):
+        if name in digests or name.partition(".")[0] not in within or not computes(name):
+            continue
+        if file := _file(name):
             digests[name], imported = _read(file)
             package = name if file.name == "__init__.py" else name.rpartition(".")[0]
             waiting += [importlib.util.resolve_name(other, package) for other in imported]
     return dict(sorted(digests.items()))
+
+
+def computes(name: str) -> bool:
+    """Whether a number may depend on the module of this name, and does not only go through it."""
+    return name == COMPUTES or not any(f"{name}.".startswith(f"{one}.") for one in CARRIES_OUT)
 
 
 def digests_of_all(packages: Iterable[str]) -> set[str]:

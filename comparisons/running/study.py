@@ -1,117 +1,34 @@
-"""A study: a question, the runs that answer it, what is measured in each, and how the answer is shown.
-
-    STUDY = Study("outcomes", "Who overturns?", plan, "outcomes.page")
-
-    def plan(request):
-        rows = yield Batch([Case(scene, solver) for solver in ("analytic", *request.engines)], outcome, "outcomes")
-        return Computed({"quick": request.quick}, [row.values for row in rows])
-
-`plan` is a generator: it yields a `Batch` of cases and is sent their rows, as often as it needs (a search asks again
-where the answers point, a timing turn by turn). A `Computed` that it yields is written at once: whole as far as it
-goes; the last one is returned. What runs, stores, resumes and writes is `compute`, the same for every study. How to
-write a study, from the first file to its page: `comparisons.studies`.
-"""
+"""A study carried out, the same for all: its runs stored and resumed, its answers written as they come."""
 
 from __future__ import annotations
 
 import contextlib
-import sys
-import time
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Iterable
 from contextlib import ExitStack
-from dataclasses import dataclass, field
-from importlib import import_module
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from engines import ENGINES, installed_engines
 
-from .cases import Case, module_of
+from .cases import module_of
 from .cluster import Cluster
 from .executors import Processes, number_of
 from .files import check_folder
-from .provenance import Result, write_result
+from .plan import Batch, Computed, Request, Study
+from .progress import log, spinner, stdout_to_stderr
+from .provenance import write_result
 from .run_sample import sample_of
-from .solving import named_engines, spinner, stdout_to_stderr
+from .solving import named_engines
 from .sources import PROJECT, digests_of_all, source_digests
 from .store import Store
 from .sweep import Row, run_sweep
 
 if TYPE_CHECKING:
-    from ..showing.parts import Judgement, Page
+    pass
 
 RUNS = "runs.jsonl"  # rows of single runs, beside the result
-TIME_LIMIT = 300.0  # s, of one run
 SHOWN = 30  # runs from which on a batch shows its progress; a bisection has many small ones, what is timed takes long
-
-
-@dataclass(frozen=True)
-class Request:
-    """What a plan is asked. engines: names of those to compare; quick: a first look, in minutes."""
-
-    engines: tuple[str, ...] = ()
-    quick: bool = False
-
-
-@dataclass(frozen=True)
-class Batch:
-    """Cases to run, in parallel. measure: module-level, (`Case`, `Response`) -> dict of JSON values.
-
-    alone: timed, so one after the other in one fresh process, with nothing else under way.
-    """
-
-    cases: Sequence[Case]
-    measure: Callable
-    label: str
-    time_limit: float = TIME_LIMIT
-    alone: bool = False
-
-
-@dataclass(frozen=True)
-class Computed:
-    """An answer: what was asked (settings), rows and arrays.
-
-    solvers: on whose code it depends beside the batches'. name: of its file, where a study has several.
-    """
-
-    settings: dict
-    rows: list
-    arrays: dict = field(default_factory=dict)
-    seed: object = None
-    solvers: tuple[str, ...] = ()
-    name: str = ""
-
-
-Plan = Generator[Batch | Computed, list[Row], Computed]
-
-
-@dataclass(frozen=True)
-class Study:
-    """A study, as commands, report and `compute` know it.
-
-    name: on the command line, of its files, and the kind of its result. question: one line, the command's help.
-    plan: ``(request, **options)`` -> generator, see above; its keyword-only parameters, annotated as Typer wants them,
-    are options of the command. shown_by: the module that shows it, imported only there: its ``page(result)`` gives the
-    `comparisons.showing.parts.Page`, and its ``judgements(result)``, if it has them, rows of the report's first table.
-    problems: result -> sentences that end the command with status 1. all_engines: whether all that are installed
-    take part where none is asked for.
-    """
-
-    name: str
-    question: str
-    plan: Callable[..., Plan]
-    shown_by: str = ""
-    problems: Callable[[Result], list] = lambda result: []
-    all_engines: bool = True
-
-    def page(self, result: Result) -> Page:
-        """What is shown of a result."""
-        return import_module(self.shown_by).page(result)
-
-    def judgements(self, result: Result) -> tuple[Judgement, ...]:
-        """Rows of the report's first table; none of a study that judges no engine."""
-        return getattr(import_module(self.shown_by), "judgements", lambda result: ())(result)
 
 
 def compute(
@@ -203,13 +120,8 @@ def _carry_out(study, plan, folder, always, code, store, pool, progress):
         done += [(step, row) for row in answer]
     if progress:
         found = sum(row.reused for _, row in done)
-        say(f"{len(done) - found} runs done, {found} found in {folder.name}/{RUNS}")
+        log(f"{len(done) - found} runs done, {found} found in {folder.name}/{RUNS}")
     return list(written)
-
-
-def say(text: str) -> None:
-    """A line of progress on standard error, with the time."""
-    print(f"{time.strftime('%H:%M:%S')} {text}", file=sys.stderr, flush=True)
 
 
 def _leave_nothing_empty(folder):

@@ -160,7 +160,7 @@ PROBLEMS = (
     Problem(
         "free-rigid",
         "Free rocking on rigid ground",
-        "The block is tilted, let go from rest, and rocks on rigid ground that does not move.",
+        "The block is tilted, released from rest, and rocks on rigid ground that does not move.",
         Scene(block=_block(0.25), start=Start(tilt=0.2), duration=4.0),
         (
             OTHERS["outcome"],
@@ -171,7 +171,7 @@ PROBLEMS = (
     Problem(
         "free-sliding",
         "Free rocking on a base that slides",
-        "The block is tilted and let go from rest. Its base slides on the ground without friction; the ground does "
+        "The block is tilted and released from rest. Its base slides on the ground without friction; the ground does "
         "not move.",
         Scene(block=_block(0.2), base=BASE, start=Start(tilt=0.15), duration=4.0),
         (
@@ -225,7 +225,7 @@ PROBLEMS = (
     Problem(
         "hard",
         "Rest, and uplift again",
-        "The block is tilted and let go on rigid ground. Ever faster and weaker impacts bring it to rest in finite "
+        "The block is tilted and released on rigid ground. Ever faster and weaker impacts bring it to rest in finite "
         "time, after infinitely many of them. From t = 2 s on the ground moves by one sine, and it lifts again.",
         Scene(
             block=_block(0.45), start=Start(tilt=0.1), motion=PulseMotion("one-sine", 6.0, 6.5, start=2.0), duration=6.0

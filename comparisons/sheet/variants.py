@@ -40,10 +40,11 @@ class Printed12(BearingLaw):
     def hysteretic(self, z: float, dx: float) -> float:
         if dx >= 0:
             return super().hysteretic(z, dx)
-        full, power = 1 + 2 * self.x0, 1 - self.alpha
-        mark = max(self.d0, self.d0 + power * (-z - self.f0) / self.dk) ** (1 / power)  # 1 - x_c + x_j + 2 x0
+        c = self.constants
+        full, power = 1 + 2 * c.x0, 1 - c.alpha
+        mark = max(c.d0, c.d0 + power * (-z - c.f0) / c.dk) ** (1 / power)  # 1 - x_c + x_j + 2 x0
         bracket = 2 * full - mark + dx
-        return -(self.dk * (bracket**power - self.d0) / power + self.f0)
+        return -(c.dk * (bracket**power - c.d0) / power + c.f0)
 
 
 @dataclass(frozen=True)

@@ -105,7 +105,7 @@ def show(table: Grid, responses: Sequence[Response], about: Sequence[Caution] = 
     """Print a table of responses, and below it in what each differs from the analytic model, and the warnings.
 
     What is said `about` the scene itself stands first, in bold, then, of several responses, the outcomes. Where the
-    result depends on little of the motion, that stands last, in bold.
+    result is sensitive to small changes of the motion, that stands last, in bold.
     """
     echo(*(Text(f"Warning: {readable(str(warning))}", "bold") for warning in about))
     if len(responses) > 1:

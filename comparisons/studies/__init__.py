@@ -1,9 +1,9 @@
-"""The studies: each asks one question of many runs and holds one `comparisons.running.study.Study` called ``STUDY``.
+"""The studies: each asks one question of many runs and holds one `comparisons.running.plan.Study` called ``STUDY``.
 
 A study is two files in a folder of its name, as `restitution`; another file only for another noun (its cases).
 
 ``study.py`` computes and imports nothing that shows: a ``plan(request)`` that yields a `Batch` of cases with their
-``measure`` and returns `Computed`, plain rows and settings (`comparisons.running.study`). All rows of all studies say
+``measure`` and returns `Computed`, plain rows and settings (`comparisons.running.plan`). All rows of all studies say
 ``engine``, ``variant`` and ``part`` (what the row is), ``level`` for a value of the accuracy parameter, ``lost`` for
 impacts that a run has not; settings list ``variants``, each with engine, variant, tier, parameter, default and levels.
 `comparisons.studies.vocabulary` explains every column, `comparisons.studies.rows` says which of them a row has.
@@ -16,7 +16,7 @@ title, lead and first, the study's own page all of it; nothing is told or drawn 
     def page(result):
         rows = where(result.rows, part="summary")
         return Page(
-            "One impact: 6 of 13 settings keep restitution within 0.001",
+            "One impact: 6 of 13 variants reproduce restitution to within 0.001",
             ("What the question is, in two sentences.",),
             first=(lines(rows, SLENDERNESS, ERROR, "What to look at.", panel="ground", log="y"),
                    table("Least error first", rows, NAME, ERROR, Column("failed", "{failed} of {runs}"))),
@@ -40,7 +40,7 @@ from typing import TYPE_CHECKING
 from analytic.errors import SettingError
 
 if TYPE_CHECKING:
-    from ..running.study import Study
+    from ..running.plan import Study
 
 GROUP = "rocking.studies"
 PACKAGE = "comparisons.studies"
@@ -95,14 +95,14 @@ def get_study(name: str) -> Study:
 
 
 def _resolve(entry, who):
-    from ..running.study import Study
+    from ..running.plan import Study
 
     try:
         study = entry.load()
     except Exception as error:  # whatever another package raises as it is imported
         raise StudyBroken(f"{who}: it cannot be imported ({type(error).__name__}: {error})") from error
     if not isinstance(study, Study) or study.name != entry.name:
-        raise StudyBroken(f"{who}: it is no comparisons.running.study.Study called {entry.name!r}")
+        raise StudyBroken(f"{who}: it is no comparisons.running.plan.Study called {entry.name!r}")
     return study
 
 

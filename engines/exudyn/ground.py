@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import exudyn as exu
 import numpy as np
 
-from analytic.motion import RICKER_PERIODS, SampledMotion
+from analytic.motion import SampledMotion
 
 if TYPE_CHECKING:
-    from analytic.types import Motion
+    from analytic.motion import Motion
 
     from .model import Model
 
@@ -29,18 +29,12 @@ def ground_load(motion: Motion) -> Callable[[Any, Any], Any]:
     """
     if isinstance(motion, SampledMotion):
         return lambda t, load: load[0] + load[1] * t
-    shapes = {"one-sine": exu.symbolic.sin, "half-sine": exu.symbolic.sin, "one-cosine": exu.symbolic.cos}
 
     def pulse(t, load):
         u = motion.frequency * (t - motion.start)
         if motion.phase:
             u = u + motion.phase
-        if motion.shape == "rectangular":
-            return load[0]
-        if motion.shape == "ricker":
-            b = 0.25 * (u - RICKER_PERIODS * math.pi) * (u - RICKER_PERIODS * math.pi)
-            return load[0] * (1.0 - 2.0 * b) * exu.symbolic.exp(-b)
-        return load[0] * shapes[motion.shape](u)
+        return load[0] * motion.form.value(exu.symbolic, u)
 
     return pulse
 

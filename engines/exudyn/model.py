@@ -16,7 +16,7 @@ from numba import njit
 if TYPE_CHECKING:
     from analytic import Block, Scene
     from analytic.bearing import BearingLaw
-    from analytic.types import Motion
+    from analytic.motion import Motion
 
 Real = exu.symbolic.Real
 
@@ -70,7 +70,7 @@ class Bearing:
         exudyn has already subtracted the offset, here the committed displacement, from the displacement.
         """
         law, dx = self.law, displacement[0]
-        z = law.unit.expression(_Symbols, dx, offset[1], offset[2], *law.constants)
+        z = law.unit.expression(_Symbols, dx, offset[1], offset[2], law.constants)
         total = law.kb * (dx + offset[0]) + law.damping * velocity[0] + z
         return [law.count * total, Real(0.0), Real(0.0)]
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from bearing_laws import NAMES, bearings_of
+from from_python import from_python
 from random_scenes import random_scene
 from scipy.optimize import brentq
 
@@ -33,6 +34,8 @@ from analytic.decision import (
     shortest_duration,
     will_not_overturn,
 )
+from analytic.layout import Base as State
+from analytic.layout import Body
 from analytic.solver import parameters
 from analytic.time_stepping import simulate_time_stepping
 from analytic.twin import simulate_twin
@@ -42,10 +45,12 @@ BLOCK = Block(mass=1500.0, radius=1.0, slenderness=0.12)
 ALPHAS = (1.2, 2.0, 3.0, 44.69, 150.0)
 LAWS = {f"algebraic {alpha}": BearingLaw.of(bearings_of("algebraic", alpha=alpha)) for alpha in ALPHAS}
 LAWS |= {name: BearingLaw.of(bearings_of(name)) for name in ("bouc-wen", "bilinear")}
+STANDING = Body(0.0, 0.0, 0.0)
+left, recoverable = from_python(remaining_energy), from_python(recoverable_energy)
 
 
 def stored(law, z):
-    return recoverable_energy(law.law, law.dk, law.alpha, law.d0, law.f0, z)
+    return recoverable(float(law.law), law.constants, z)
 
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
@@ -76,7 +81,8 @@ def test_the_energy_that_can_reach_the_block_never_rises_after_the_motion():
     z = history.bearing_force / par.count - par.kb * history.base_displacement
     after = history.time >= motion_end(scene)
     rows = np.column_stack([history.tilt, history.tilt_rate, history.base_displacement, history.base_velocity, z])
-    energy = np.array([remaining_energy(par, row[0] != 0, *row) for row in rows[after]])
+    states = [(Body(float(np.sign(row[0])), *row[:2]), State(*row[2:])) for row in rows[after]]
+    energy = np.array([left(par, *state) for state in states])
     assert len(energy) > 500 and energy[0] > 1.0
     assert (np.diff(energy) <= 1e-9 * energy[0]).all()
 
@@ -85,7 +91,7 @@ def test_an_undamped_base_with_energy_for_eight_overturnings_is_decided_by_its_a
     bearings = Bearings(law="linear", ka=(2 * math.pi / 4.0) ** 2 * 3000.0)
     scene = Scene(block=BLOCK, base=Base(mass=1500.0), bearings=bearings, start=Start(base_displacement=0.45))
     barrier = BLOCK.mass * G * (1 - math.cos(0.12))
-    assert remaining_energy(parameters(scene), False, 0.0, 0.0, 0.45, 0.0, 0.0) > 2.5 * barrier
+    assert left(parameters(scene), STANDING, State(0.45, 0.0, 0.0)) > 2.5 * barrier
     response = simulate(scene)
     assert (response.outcome, response.decided) == ("stands", True)
     assert response.end.time < longest_duration(scene) / 5
@@ -105,7 +111,7 @@ def test_a_free_base_is_decided_without_the_momentum_it_keeps():
 
 def test_free_rocking_is_decided_at_once_but_its_swings_are_shown():
     scene = Scene(block=BLOCK, start=Start(tilt=0.096))
-    assert will_not_overturn(parameters(scene), True, True, 0.096, 0.0, 0.0, 0.0, 0.0)
+    assert will_not_overturn(parameters(scene), Body(1.0, 0.096, 0.0), State(0.0, 0.0, 0.0), True)
     response = simulate(scene)
     assert response.decided and len(response.impacts) > 5
     assert response.end.time == pytest.approx(shortest_duration(scene))

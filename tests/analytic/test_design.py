@@ -39,7 +39,7 @@ def test_cycle_loss_against_quadrature_and_the_closed_form(amplitude):
     forces = np.array([law.hysteretic(z, dx) for dx in x - x[0]])
     assert loss == pytest.approx(2 * np.trapezoid(forces, x), rel=1e-6)
     if amplitude >= 0.15:  # all on the limit curves
-        limit = 4 * law.f0 * amplitude - 2 * law.dk / ((law.alpha - 1) * (law.alpha - 2))
+        limit = 4 * law.f0 * amplitude - 2 * law.dk / ((law.constants.alpha - 1) * (law.constants.alpha - 2))
         assert loss == pytest.approx(limit, rel=1e-9)
 
 

@@ -6,11 +6,12 @@ from functools import partial
 
 import numpy as np
 import pytest
+from from_python import from_python
 
 from analytic import Base, Block, SampledMotion, Scene, Start, simulate
 from analytic.caryatid import BASE, caryatid_block
 from analytic.caryatid import BEARINGS as LRB
-from analytic.polynomial import BISECTIONS, MAX_ORDER, first_root
+from analytic.polynomial import MAX_ORDER, SCRATCH, first_root
 from analytic.rocking import RockingModel
 from analytic.twin import simulate_twin
 
@@ -67,7 +68,7 @@ POLYNOMIALS = {  # order of the lowest power, roots in ascending order: positive
 
 @pytest.mark.parametrize(("lowest", "roots", "accuracy"), POLYNOMIALS.values(), ids=POLYNOMIALS)
 def test_every_crossing_within_a_step_is_found_and_not_the_trivial_root(lowest, roots, accuracy):
-    work = np.empty((BISECTIONS + 2, MAX_ORDER + 1))
+    work, first = np.empty(SCRATCH), from_python(first_root)
     for k in range(max(len(roots), 1)):
         start = roots[k - 1] if k else 0.0
         left = np.array(roots[k:]) - start  # what is left after k crossings, from the last one on
@@ -75,7 +76,7 @@ def test_every_crossing_within_a_step_is_found_and_not_the_trivial_root(lowest, 
         shape = np.polynomial.polynomial.polyfromroots(left if roots else [0.5, 0.5])
         power = lowest or min(k, 1)
         f[power : power + len(shape)] = shape * np.sign(shape[0])
-        found = first_root(f, power + len(shape) - 1, 1.0 - start, work)
+        found = first(f, power + len(shape) - 1, 1.0 - start, work)
         assert found == pytest.approx(left[0] if roots else -1.0, rel=accuracy)
 
 

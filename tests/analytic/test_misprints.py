@@ -12,6 +12,7 @@ from analytic.rocking import base_jump_length, base_jump_length_as_printed
 
 ISOLATED = load_scene("caryatid-isolated")
 LAW = BearingLaw.of(ISOLATED.bearings)
+C = LAW.constants
 MASS, X_MAX = ISOLATED.total_mass, 0.30
 
 
@@ -42,12 +43,12 @@ def unloading(bracket_sign):
     """
     x_c = 0.20
     z_c = LAW.start(x_c)
-    power = LAW.d0 + (1 - LAW.alpha) * (-z_c - LAW.f0) / LAW.dk
-    x_j = power ** (1 / (1 - LAW.alpha)) - 1 - 2 * LAW.x0 + x_c
+    power = C.d0 + (1 - C.alpha) * (-z_c - LAW.f0) / LAW.dk
+    x_j = power ** (1 / (1 - C.alpha)) - 1 - 2 * C.x0 + x_c
 
     def force(x):
-        bracket = 1 + bracket_sign * (x - x_j) + 2 * LAW.x0
-        return LAW.kb * x - LAW.dk * (bracket ** (1 - LAW.alpha) - LAW.d0) / (1 - LAW.alpha) - LAW.f0
+        bracket = 1 + bracket_sign * (x - x_j) + 2 * C.x0
+        return LAW.kb * x - LAW.dk * (bracket ** (1 - C.alpha) - C.d0) / (1 - C.alpha) - LAW.f0
 
     return force, x_c, LAW.kb * x_c + z_c
 
@@ -93,5 +94,5 @@ def test_period_of_2_seconds_holds_at_x_max_only():
 
 def test_the_law_has_a_unit_of_length_inside():
     # the 1 of the brackets is 1 m: the same bearing in other units is another bearing
-    scaled = BearingLaw.of(Bearings(ka=ISOLATED.bearings.ka / 1000, kb=LAW.kb / 1000, alpha=LAW.alpha))  # N/mm
+    scaled = BearingLaw.of(Bearings(ka=ISOLATED.bearings.ka / 1000, kb=LAW.kb / 1000, alpha=C.alpha))  # N/mm
     assert abs(scaled.hysteretic(0.0, 100.0) / LAW.hysteretic(0.0, 0.1) - 1) > 0.5

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from analytic import PulseMotion, SampledMotion, SceneError
-from analytic.motion import PULSES
+from analytic.pulses import PULSES
 from analytic.solver import ground
 
 

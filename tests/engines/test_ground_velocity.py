@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from analytic import PulseMotion
-from analytic.motion import PULSES
+from analytic.pulses import PULSES
 from engines.ground_velocity import ground_velocity
 
 PHASES = [("one-sine", 0.8), ("half-sine", 0.8), ("one-cosine", 0.8)]

@@ -13,7 +13,7 @@ SCENES = {"rigid ground": (0.2, None), "sliding base": (0.3, 400.0)}
 
 
 def released(slenderness, base):
-    """A block let go, up to the third peak of its tilt."""
+    """A block released, up to the third peak of its tilt."""
     given = scene(slenderness, base, 10.0, start=Start(tilt=0.6 * slenderness))
     times = [impact.time for impact in simulate(given, history=False).impacts[:3]]
     return given.with_(duration=0.3 * times[1] + 0.7 * times[2])

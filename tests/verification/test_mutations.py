@@ -128,17 +128,17 @@ def test_eq_12_as_printed_fails(monkeypatch, engine, variant):
     """Unloading with the printed sign of x: the force jumps at a reversal."""
 
     def printed_force(law, x):
-        a, double = 1 - law.alpha, 2 * law.x0
+        a, double, d0 = 1 - law.constants.alpha, 2 * law.constants.x0, law.constants.d0
         force, s, shift = np.zeros(len(x)), 0.0, 0.0
         for i in range(1, len(x)):
             way = math.copysign(1.0, x[i] - x[i - 1]) if x[i] != x[i - 1] else s
             if way != s:
                 z = np.clip(force[i - 1] - law.kb * x[i - 1], -law.f0, law.f0)
-                inner = max(law.d0, law.d0 + a * (way * z - law.f0) / law.dk)
+                inner = max(d0, d0 + a * (way * z - law.f0) / law.dk)
                 shift, s = x[i - 1] + way * (1 + double - inner ** (1 / a)), way
             if s:
                 inner = 1 + x[i] - shift + double if s > 0 else 1 + x[i] + shift + double  # (9), (12) as printed
-                force[i] = law.kb * x[i] + law.dk * (inner**a - law.d0) / (s * a) + s * law.f0
+                force[i] = law.kb * x[i] + law.dk * (inner**a - d0) / (s * a) + s * law.f0
         return law.count * force
 
     monkeypatch.setattr(agreement, "paper_force", printed_force)

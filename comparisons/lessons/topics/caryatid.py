@@ -6,7 +6,7 @@ import math
 
 from analytic import PulseMotion, Scene, simulate, synthetic_motion
 from analytic.caryatid import BASE, BEARINGS, caryatid_block
-from analytic.types import Motion
+from analytic.motion import Motion
 
 from ..computing import G, edge, history_until, overturns
 from ..drawing import OTHER, SOFT, canvas, legend, tilt_axis

@@ -23,7 +23,7 @@ FLOOR = 1e-17  # what is exact is drawn here
 
 
 def scene(side: float = 1.0) -> Scene:
-    """The Caryatid let go on rigid ground, to the one side or the other."""
+    """The Caryatid released on rigid ground, to the one side or the other."""
     start = Start(tilt=side * START * SLENDERNESS)
     return Scene(block=caryatid_block(SLENDERNESS), start=start, duration=DURATION)
 

@@ -18,7 +18,7 @@ CURVE = np.linspace(0.02, 1.2, 80)
 
 
 def let_go(slenderness: float) -> Scene:
-    """The Caryatid's mass and radius, tilted to 0.8 of its slenderness and let go on rigid ground."""
+    """The Caryatid's mass and radius, tilted to 0.8 of its slenderness and released on rigid ground."""
     return Scene(block=Block(mass=MASS, radius=RADIUS, slenderness=slenderness), start=Start(tilt=START * slenderness))
 
 

@@ -1,6 +1,6 @@
 """One impact in every engine, taken apart: whose impulse was wrong, and what for?"""
 
-from ...running.study import Study
+from ...running.plan import Study
 from .study import plan
 
 STUDY = Study(

@@ -67,7 +67,7 @@ def page(result: Result) -> Page:
             ),
         ),
         how=(
-            f"A block of slenderness {settings['slenderness']:g} rad is let go from {settings['start']:g} of it, on "
+            f"A block of slenderness {settings['slenderness']:g} rad is released from {settings['start']:g} of it, on "
             "rigid ground and on the Caryatid’s base sliding freely. Its first impact is taken apart in every engine "
             f"and variant with default settings. A cause is named for errors from {settings['least']:g} on.",
         ),

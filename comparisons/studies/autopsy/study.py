@@ -1,4 +1,4 @@
-"""The autopsy study: the first impact of a block let go, on both grounds, in every engine and variant."""
+"""The autopsy study: the first impact of a block released, on both grounds, in every engine and variant."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from engines import get_engine
 
 from ...measuring.causes import CAUSES, LEAST, diagnosis
 from ...running.cases import Case
-from ...running.study import Batch, Computed
+from ...running.plan import Batch, Computed
 
 if TYPE_CHECKING:
     from analytic import Response
 
-    from ...running.study import Plan, Request
+    from ...running.plan import Plan, Request
 
 SLENDERNESS, START = 0.2, 0.6  # rad, tilt over slenderness
 SECONDS = 1.6  # past the swing after the first impact
@@ -23,7 +23,7 @@ GROUNDS = {"rigid ground": None, "sliding base": Base(mass=BASE.mass)}
 
 
 def scene_on(ground: str) -> Scene:
-    """The block let go, on a ground of `GROUNDS`."""
+    """The block released, on a ground of `GROUNDS`."""
     return Scene(
         name="one impact",
         block=Block(mass=MASS, radius=RADIUS, slenderness=SLENDERNESS),

@@ -5,7 +5,7 @@ misprints), ``caryatid-under-<motion>`` (what does, without a single value of th
 ``caryatid-under-<motion>-histories`` (Figs 4 and 6 over time: not to be passed on where the record may not be).
 """
 
-from ...running.study import Study
+from ...running.plan import Study
 from .study import plan
 
 STUDY = Study(

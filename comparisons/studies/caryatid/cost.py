@@ -11,17 +11,16 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from analytic import PulseMotion, kernel, layout, simulate
-from analytic.bearing import BearingLaw, hysteretic_force
+from analytic import PulseMotion, kernel, simulate
 from analytic.laws import NUMBERS
-from analytic.laws.algebraic import virtual_travel
+from analytic.laws.algebraic import after_travel, on_branch, virtual_travel
+from analytic.motion import Motion
 from analytic.solver import ground, options, parameters
-from analytic.types import Motion
 
 from .runs import ISOLATED, caryatid
 
 LAWS = ("algebraic", "bouc-wen")
-ALGEBRAIC, BOUC_WEN = (NUMBERS[law] for law in LAWS)
+BOUC_WEN = NUMBERS["bouc-wen"]
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 DIVISIONS = (1, 2, 4, 8, 16)  # fixed steps per sample of the motion
 ERRORS = {"kernel": (1e-8, 1e-10, 1e-12), "fixed-step RK4": (1e-6, 3e-7, 1e-7, 3e-8)}
@@ -70,26 +69,27 @@ def _least(runs):
 
 def _kernel(scene, tolerance, repeats):
     """CPU of the compiled run alone, and its final displacement."""
-    run = parameters(scene), ground(scene.motion), options(tolerance), np.zeros(layout.TOTALS)
+    run = parameters(scene), ground(scene.motion), options(tolerance)
     begin = time.process_time()
     for _ in range(repeats):
-        state, *_ = kernel.run(*run)
+        _, state, *_ = kernel.run(*run)
     return (time.process_time() - begin) / repeats, float(state[2])
 
 
 @njit  # no cache: numba would not see that a law has changed
-def _algebraic(z, s, travel, dx, dk, alpha, d0, f0):
+def _algebraic(z, s, travel, dx, c):
     """z after dx from z: on the branch of direction s, where `travel` = D_c + s (x - x_c) is known, with one power."""
     if dx * s < 0:
-        return hysteretic_force(z, dx, ALGEBRAIC, dk, alpha, d0, f0)
-    return s * (dk * ((travel + s * dx) ** (1 - alpha) - d0) / (1 - alpha) + f0)
+        return after_travel(z, dx, c)
+    return on_branch(s, travel + s * dx, c)
 
 
 @njit
-def _rk4(dt, samples, divisions, mass, law, count, kb, dk, alpha, d0, f0):
+def _rk4(dt, samples, divisions, par):
     """Final displacement in full contact, eq. (2), with RK4; the algebraic history is committed at each step's end."""
     x, v, z, s = 0.0, 0.0, 0.0, 1.0
-    travel = virtual_travel(s, z, dk, alpha, d0, f0)
+    law, count, kb, c, mass = par.law, par.count, par.kb, par.constants, par.M
+    travel = virtual_travel(s, z, c)
     h = dt / divisions
     for i in range(len(samples) - 1):
         slope = (samples[i + 1] - samples[i]) / dt
@@ -100,9 +100,9 @@ def _rk4(dt, samples, divisions, mass, law, count, kb, dk, alpha, d0, f0):
                 at = 0.0 if stage == 0 else (h if stage == 3 else 0.5 * h)
                 rate = 0.0
                 if law == BOUC_WEN:
-                    rate = 0.5 * dk * v1 * (1 - math.copysign(1.0, v1) * z1 / f0)
+                    rate = 0.5 * c.dk * v1 * (1 - math.copysign(1.0, v1) * z1 / c.f0)
                 elif stage > 0:
-                    z1 = _algebraic(z, s, travel, x1 - x, dk, alpha, d0, f0)
+                    z1 = _algebraic(z, s, travel, x1 - x, c)
                 push = -count * (kb * x1 + z1) / mass - (samples[i] + slope * (k * h + at))
                 weight = 1 / 6 if stage == 0 or stage == 3 else 1 / 3
                 dx, dv, dz = dx + weight * v1, dv + weight * push, dz + weight * rate
@@ -111,21 +111,20 @@ def _rk4(dt, samples, divisions, mass, law, count, kb, dk, alpha, d0, f0):
             if law == BOUC_WEN:
                 z += h * dz
             elif s * dx >= 0:
-                z = _algebraic(z, s, travel, h * dx, dk, alpha, d0, f0)
+                z = _algebraic(z, s, travel, h * dx, c)
                 travel += s * h * dx
             else:  # a reversal: the history is fixed anew
                 s, before = -s, z
-                z = hysteretic_force(before, h * dx, ALGEBRAIC, dk, alpha, d0, f0)
-                travel = virtual_travel(s, before, dk, alpha, d0, f0) + s * h * dx
+                z = after_travel(before, h * dx, c)
+                travel = virtual_travel(s, before, c) + s * h * dx
             x, v = x + h * dx, v + h * dv
     return x
 
 
 def _fixed_step(scene, divisions):
-    law, motion = BearingLaw.of(scene.bearings), scene.motion
-    properties = law.law, law.count, law.kb, law.dk, law.alpha, law.d0, law.f0
+    par, motion = parameters(scene), scene.motion
     begin = time.process_time()
-    end = _rk4(motion.dt, motion.samples, divisions, scene.total_mass, *properties)
+    end = _rk4(motion.dt, motion.samples, divisions, par)
     return time.process_time() - begin, end
 
 

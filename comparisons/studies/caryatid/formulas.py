@@ -300,7 +300,7 @@ def _equations(scene, law, got, designed, jumps, literal):
             f"force jump at a reversal over 2 f₀, corrected [-]; printed form: {jumps['printed']:.4f}",
             jumps["corrected"],
         ),
-        ("(13)", "x₀ from k_a, k_b, α, δ_k", REPRODUCED, "2 x₀ [m]", 2 * law.x0),
+        ("(13)", "x₀ from k_a, k_b, α, δ_k", REPRODUCED, "2 x₀ [m]", 2 * law.constants.x0),
         ("(14)", "f₀ from k_a, k_b, α, x₀", REPRODUCED, "f₀ of one bearing [N]", law.f0),
         (
             "Fig. 3",

@@ -373,7 +373,11 @@ def _benefit(result):
 
 def _cost(rows):
     won = [f"{row['integrator']} ({row['what']})" for row in rows if row["ratio_high"] and row["ratio_high"] < 1]
-    found = f"Cheaper beyond the spread in {', '.join(won)}." if won else "Not confirmed here: in no setting it is."
+    found = (
+        f"Cheaper beyond the spread in {', '.join(won)}."
+        if won
+        else "Not confirmed here: it was not cheaper in any variant."
+    )
     yield (
         f"{found} The Bouc-Wen law is the simplest one, linear in z: a multiplication where the algebraic law raises "
         "to a power. Not tested are the paper's own setting, sub-steps inside a time-step scheme, and other exponents."

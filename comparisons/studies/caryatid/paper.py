@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from analytic import SampledMotion
-from analytic.types import Motion
+from analytic.motion import Motion
 
 from .runs import FREE, ISOLATED, caryatid
 

@@ -12,12 +12,12 @@ from analytic import Base, Bearings, Scene, load_scene, rocking_spectrum
 from analytic.linear_oscillator import displacement_spectrum
 
 from ...running.cases import Case
-from ...running.study import Batch
+from ...running.plan import Batch
 
 if TYPE_CHECKING:
     from analytic import Response
     from analytic.design import BearingProperties
-    from analytic.types import Motion
+    from analytic.motion import Motion
 
     from ...running.sweep import Row
 

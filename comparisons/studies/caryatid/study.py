@@ -11,9 +11,10 @@ from analytic import SampledMotion
 from analytic.design import properties
 from engines import available_engines
 
+from ...running.plan import Computed, Plan, Request
+from ...running.progress import log
 from ...running.record_options import Channel, Column, Step, Units
 from ...running.solving import ground_motion
-from ...running.study import Computed, Plan, Request, say
 from .cost import cost_rows
 from .formulas import formulas
 from .paper import X_MAX, motion_values
@@ -51,8 +52,8 @@ def plan(
         What that file does not say itself.
     """
     motion = motion or ground_motion(record, units=units, dt=dt, column=column, channel=channel)
-    say(f"ground motion: {motion.label}")
-    say("bearing law, Table 1, misprints")
+    log(f"ground motion: {motion.label}")
+    log("bearing law, Table 1, misprints")
     yield Computed({"part": PART_PAPER}, *formulas(), name="caryatid-paper")
     rows, histories = yield from simulations(motion, request.engines, request.quick)
     runs = [row for row in rows if row["part"] == "run"]
@@ -79,17 +80,17 @@ def plan(
 
 def _analytic(motion, runs, quick):
     """(rows, arrays) of what the analytic model alone answers."""
-    say("spectra")
+    log("spectra")
     arrays = spectra(motion, quick)
     isolated = caryatid(ISOLATED, motion)
     (own,) = (row for row in runs if row["scene"] == ISOLATED and row["engine"] == "analytic")
     bearings = properties(isolated.bearings, isolated.total_mass, X_MAX)
     rows = equivalent_oscillators(motion, bearings, own["peak_base_displacement"])
-    say("slenderness: which values fit the claims")
+    log("slenderness: which values fit the claims")
     fitting, periods = claims(motion, quick)
-    say("other slendernesses, intensities and motions")
+    log("other slendernesses, intensities and motions")
     shares, benefit = maps(motion, quick)
-    say("algebraic against Bouc-Wen")
+    log("algebraic against Bouc-Wen")
     rows += [*fitting, *shares, *cost_rows(motion, quick)]
     arrays |= periods | benefit
     singles = {name: one.astype(np.float32) for name, one in arrays.items() if one.dtype == np.float64}

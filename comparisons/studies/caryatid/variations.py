@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from analytic import rocking_spectrum, simulate, simulate_many, synthetic_motion
-from analytic.types import Motion
+from analytic.motion import Motion
 
 from ...running.refine import boundaries, drive
 from .paper import VULNERABLE_ABOUT, VULNERABLE_PERIOD, X_MAX

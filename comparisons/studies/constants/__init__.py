@@ -1,6 +1,6 @@
 """The numbers that were chosen in an engine's variant, each halved and doubled: what moves?"""
 
-from ...running.study import Study
+from ...running.plan import Study
 from .study import plan
 
 STUDY = Study(

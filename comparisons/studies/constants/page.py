@@ -32,7 +32,7 @@ def page(result: Result) -> Page:
         f"{'move' if len(much) > 1 else 'moves'} an outcome, or an error more than twofold",
         (
             "Numbers that were chosen in the engines’ tuned variants, by experience and not by a formula, each halved "
-            "and doubled, all else as it is. No number was set to a scene; what moves much is said, and not tuned.",
+            "and doubled, all else as it is. No number was set to a scene; large effects are reported, not tuned away.",
             f"{len(still)} change no run at all, bit for bit: they concern round-off, or a limit that none of these "
             "scenes reaches.",
         ),
@@ -54,7 +54,7 @@ def page(result: Result) -> Page:
             ),
         ),
         how=(
-            f"{result.settings['scenes']} runs for each value: blocks let go on rigid ground, on a base and on "
+            f"{result.settings['scenes']} runs for each value: blocks released on rigid ground, on a base and on "
             "bearings (restitution, e); random statues under pulses that leave them upright (peak tilt); pulses 0.1 % "
             "below and above an amplitude that overturns, and the Caryatid under the synthetic motion (outcomes). "
             f"Errors are against the model. Reported is a factor beyond {SAID:g}, of CPU time beyond {SAID_CPU:g}; "

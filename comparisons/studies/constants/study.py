@@ -15,7 +15,7 @@ from engines.statue_range import RANGE
 
 from ...measuring.errors import impact_errors, rms
 from ...running.cases import Case
-from ...running.study import Batch, Computed
+from ...running.plan import Batch, Computed
 from ..random_scenes.scenes import random_scene
 from ..restitution.cases import free_scene, variants_of
 from ..stability.cases import hard_cases
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from analytic import Response, Scene
     from engines.contract import Variant
 
-    from ...running.study import Plan, Request
+    from ...running.plan import Plan, Request
     from ...running.sweep import Row
 
 AS_IT_IS, CHANGES = "as it is", {"halved": 0.5, "doubled": 2.0}
@@ -32,13 +32,13 @@ SILENT = {"history": False}
 IMPACTS, PEAKS, OUTCOMES = "impacts", "peaks", "outcomes"  # what is judged of a scene
 SEED, SCENES = 0, 12  # of the random ones
 MOST_IMPACTS = 1000  # a run of so many costs as much as the rest of the sample
-STARTS = (0.15, 0.45)  # slendernesses of the blocks that are let go
+STARTS = (0.15, 0.45)  # slendernesses of the blocks that are released
 
 
 def sample(quick: bool) -> Iterator[tuple[str, Scene]]:
-    """(what is judged, scene): impacts of blocks let go; peaks of statues that stay upright; outcomes.
+    """(what is judged, scene): impacts of blocks released; peaks of statues that stay upright; outcomes.
 
-    Only statues under a motion have a peak tilt to be judged: one that is let go has it at the start.
+    Only statues under a motion have a peak tilt to be judged: one that is released has it at the start.
     """
     for slenderness, ratio in itertools.product(STARTS, (None, BASE.mass / MASS)):
         yield IMPACTS, free_scene(slenderness, ratio, 0.6)

@@ -1,6 +1,6 @@
 """Fragility: how likely is a limit state at an intensity, in which measure, and does the engine change the answer?"""
 
-from ...running.study import Study
+from ...running.plan import Study
 from .study import plan
 
 STUDY = Study(

@@ -19,7 +19,7 @@ from analytic.linear_oscillator import displacement_spectrum
 
 if TYPE_CHECKING:
     from analytic import Scene
-    from analytic.types import Motion
+    from analytic.motion import Motion
 
 X_MAX = 0.30  # m, what the bearings are built for: Table 1(a) of the paper
 PERIOD = properties(BEARINGS, MASS + BASE.mass, X_MAX).period  # s, of isolation, secant at X_MAX

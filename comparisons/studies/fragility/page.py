@@ -120,7 +120,7 @@ def page(result: Result) -> Page:
                 STATE,
                 MEASURE,
                 Column(DISPERSION.head, "dispersion"),
-                "Dispersion of the lognormal curve of the analytic model: the smaller, the more the measure tells.",
+                "Dispersion of the lognormal curve of the analytic model: smaller is more informative.",
                 bounds=BOUNDS,
                 panel="scene",
             ),
@@ -187,7 +187,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 def _title(found):
     words = [row["equal"] for row in found]
-    count = f"{words.count('yes')} of {len(found)} settings of engines"
+    count = f"{words.count('yes')} of {len(found)} variants of engines"
     title = f"Many earthquakes: outcomes equal to the model's, to {100 * EQUAL:g} %, in {count}"
     return title + (f"; too few runs to tell for {words.count(TOO_FEW)}" if TOO_FEW in words else "")
 

@@ -13,14 +13,14 @@ from engines.comparison import END, Reference, compare
 
 from ...measuring.classes import class_of
 from ...running.cases import Case
-from ...running.study import Batch, Computed
+from ...running.plan import Batch, Computed
 from .cloud import DAMPING, DRAWN, PEAKS, PERIOD, RADII, SCENES, STRETCH, X_MAX, Cloud, cloud
 from .fits import effects, fits
 
 if TYPE_CHECKING:
     from analytic import Response, Scene
 
-    from ...running.study import Plan, Request
+    from ...running.plan import Plan, Request
     from ...running.sweep import Row
 
 CHANGE = 1e-4  # relative change of the restitution: the model's own sensitivity

@@ -1,6 +1,6 @@
 """The kernel of the analytic model against other integrators, and what it costs at its work."""
 
-from ...running.study import Study
+from ...running.plan import Study
 from .study import plan
 
 STUDY = Study(

@@ -26,14 +26,14 @@ SHORT_HOP = 0.3  # in units of 1/omega_r: below it, the first step is the whole 
 
 def kernel_run(problem: Problem, tolerance: float) -> Callable[[], tuple[float, int]]:
     """A function that runs `problem` without history or ledger; it returns (tilt at the horizon, impacts)."""
-    scene, totals = problem.scene, np.zeros(layout.TOTALS)
+    scene = problem.scene
     inside = problem.horizon < scene.duration
     rest = problem.rest_rate / scene.rocking_frequency
     chosen = options(tolerance, rest_rate=rest, record=False, output_step=problem.horizon if inside else 0.0)
-    arguments = parameters(scene), ground(scene.motion), chosen, totals
+    arguments = parameters(scene), ground(scene.motion), chosen
 
     def run():
-        end, _, _, _, history = kernel.run(*arguments)
+        totals, end, *_, history = kernel.run(*arguments)
         return float(history[1, 1] if inside else end[0]), int(totals[layout.IMPACTS])
 
     return run

@@ -14,7 +14,7 @@ from analytic import Response
 from analytic.response import State
 
 from ...running.cases import Case
-from ...running.study import Batch, Computed
+from ...running.plan import Batch, Computed
 from .integrators import METHODS, kernel_run, scipy_run
 from .peers import PEERS, installed
 from .problems import PROBLEMS
@@ -22,7 +22,7 @@ from .problems import PROBLEMS
 if TYPE_CHECKING:
     from analytic import Scene
 
-    from ...running.study import Plan, Request
+    from ...running.plan import Plan, Request
     from ...running.sweep import Row
 
 SOLVER = f"{__name__}:prepared"

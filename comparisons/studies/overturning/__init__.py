@@ -1,6 +1,6 @@
 """Overturning: where do the solvers' boundaries lie, over pulse frequency and amplitude?"""
 
-from ...running.study import Study
+from ...running.plan import Study
 from .study import plan
 
 STUDY = Study(

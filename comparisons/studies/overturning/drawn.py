@@ -9,7 +9,8 @@ import numpy as np
 
 from analytic import Start
 from analytic.bearing import BearingLaw
-from analytic.motion import PULSES, PulseMotion
+from analytic.motion import PulseMotion
+from analytic.pulses import PULSES
 
 from ..random_scenes.scenes import random_scene
 from .edges import Edge, edges
@@ -36,7 +37,7 @@ def drawn_edges(count: int) -> list[tuple[Scene, Edge]]:
         low, high = map(math.log, FREQUENCY)
         frequency = math.exp(np.random.default_rng([SEED, index, 1]).uniform(low, high))
         index += 1
-        for edge in edges(scene, f"drawn block {index}", PULSES[len(found) % len(PULSES)], (frequency,)):
+        for edge in edges(scene, f"drawn block {index}", list(PULSES)[len(found) % len(PULSES)], (frequency,)):
             room = min(1 - edge.low / edge.amplitude, edge.high / edge.amplitude - 1)
             if edge.rises and edge.min_normal >= 0 and room >= ROOM:
                 found.append((scene, edge))

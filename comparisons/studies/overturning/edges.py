@@ -19,7 +19,7 @@ from ...running.refine import boundaries, drive
 
 if TYPE_CHECKING:
     from analytic import Scene
-    from analytic.types import Motion
+    from analytic.motion import Motion
 
 LOWEST, HIGHEST = 0.5, 20.0  # of the amplitudes searched
 SCAN = 400  # points of the first scan, equidistant in the logarithm: 0.9 % apart

@@ -15,8 +15,9 @@ from engines import get_engine
 
 from ...measuring.statistics import cohen_kappa, confusion
 from ...running.cases import Case, variant_settings
+from ...running.plan import Batch, Computed
+from ...running.progress import log
 from ...running.refine import together
-from ...running.study import Batch, Computed, say
 from .drawn import drawn_columns, drawn_edges
 from .edges import HIGHEST, LOWEST, edges, least_normal, locate, pulse
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from analytic import Response, Scene
     from engines.contract import Variant
 
-    from ...running.study import Plan, Request
+    from ...running.plan import Plan, Request
 
 # The isolated Caryatid itself overturns at base displacements far beyond its bearings' 0.30 m only; a more slender
 # block on the same bearings does at amplitudes of a strong earthquake.
@@ -121,7 +122,7 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     }
     arrays, found = _maps(grounds, grid), []
     for ground, shape in itertools.product(grounds, grid.shapes):
-        say(f"analytic boundaries: {ground}, {shape}")
+        log(f"analytic boundaries: {ground}, {shape}")
         found += edges(grounds[ground], ground, shape, grid.frequencies)
     rows = [{"part": "edge", **vars(edge)} for edge in found]
     variants = [
@@ -147,7 +148,7 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     rows += yield from runs.search("shift", default, found, DISTANCES, TOLERANCE)
     coarser = [one for one in first_scripts if one not in default]
     rows += yield from runs.search("shift", coarser, found, LEVEL_DISTANCES, LEVEL_TOLERANCE)
-    say(f"analytic boundaries: {grid.drawn} drawn blocks")
+    log(f"analytic boundaries: {grid.drawn} drawn blocks")
     drawn = drawn_edges(grid.drawn)
     rows += [{"part": "drawn edge", **vars(edge), **drawn_columns(scene)} for scene, edge in drawn]
     others = _Runs({edge.ground: scene for scene, edge in drawn})
@@ -215,7 +216,7 @@ def _maps(grounds, grid):
     frequency, amplitude = np.linspace(1.5, 8.5, grid.size[1]), np.geomspace(LOWEST, HIGHEST, grid.size[0])
     arrays = {"frequency": frequency, "amplitude": amplitude}
     for (ground, scene), shape in itertools.product(grounds.items(), grid.shapes):
-        say(f"analytic map: {ground}, {shape}")
+        log(f"analytic map: {ground}, {shape}")
         outcomes = overturning_map(scene, shape, frequency, amplitude)
         impacts = np.minimum(outcomes.impacts, 32767)
         arrays[f"{ground}/{shape}"] = np.where(outcomes.overturns, impacts, -1).astype(np.int16)

@@ -1,6 +1,6 @@
 """Random scenes within the range of a statue: how often is an engine right, and is every wrong run reported?"""
 
-from ...running.study import Study
+from ...running.plan import Study
 from .study import plan
 
 STUDY = Study(

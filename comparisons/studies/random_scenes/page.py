@@ -64,7 +64,7 @@ def page(result: Result) -> Page:
         ),
         how=(
             f"{settings['scenes']} scenes drawn at random (seed {result.provenance['seed']}, of the commit): "
-            f"{limits}; let go or under a pulse, until the outcome is decided. {settings['below_range']} "
+            f"{limits}; released or under a pulse, until the outcome is decided. {settings['below_range']} "
             "whose peak tilt stays below the range are not run.",
             "Left out, of all engines alike: the normal force falls to 0, the friction demand is more than any contact "
             "provides, or the scene is on an edge, where a change by 10⁻⁴ makes such a difference in the analytic "

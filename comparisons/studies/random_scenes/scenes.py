@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from analytic import Base, Bearings, Block, PulseMotion, Scene, Start
-from analytic.motion import PULSES
+from analytic.pulses import PULSES
 from engines.statue_range import RANGE
 
 DENSITY = (200.0, 2e4)  # kg per m3 of R^3: wood to bronze, hollow or solid
@@ -19,7 +19,7 @@ STARTS = 0.95  # most tilt of a released block over its slenderness
 
 
 def random_scene(seed: int, index: int) -> Scene:
-    """Scene number `index` of the ensemble `seed`: a statue let go, or under a pulse, until its outcome is decided.
+    """Scene number `index` of the ensemble `seed`: a statue released, or under a pulse, until its outcome is decided.
 
     A quarter stands on rigid ground, a fifth of the others on a free base. Half of the bearings have viscous damping.
     """
@@ -36,7 +36,7 @@ def random_scene(seed: int, index: int) -> Scene:
     omega = scene.rocking_frequency
     amplitude = side * scene.gravity * math.tan(block.slenderness) * _log(rng, *PULSE)
     start = float(rng.choice([0.0, rng.uniform(0, 0.5) / omega]))
-    return scene.with_(motion=PulseMotion(str(rng.choice(PULSES)), amplitude, omega * _log(rng, *PULSE), start))
+    return scene.with_(motion=PulseMotion(str(rng.choice(list(PULSES))), amplitude, omega * _log(rng, *PULSE), start))
 
 
 def _log(rng: np.random.Generator, low: float, high: float) -> float:

@@ -13,14 +13,14 @@ from engines.statue_range import RANGE, in_words
 
 from ...measuring.classes import class_of
 from ...running.cases import Case
+from ...running.plan import Batch, Computed
 from ...running.provenance import commit_seed
-from ...running.study import Batch, Computed
 from .scenes import random_scene
 
 if TYPE_CHECKING:
     from analytic import Response
 
-    from ...running.study import Plan, Request
+    from ...running.plan import Plan, Request
     from ...running.sweep import Row
 
 SCENES, QUICK_SCENES = 500, 20  # of the engines' default variants

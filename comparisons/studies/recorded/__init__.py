@@ -1,6 +1,6 @@
 """Recorded motions: does an engine overturn the blocks that the analytic model overturns?"""
 
-from ...running.study import Study
+from ...running.plan import Study
 from .study import plan
 
 STUDY = Study(

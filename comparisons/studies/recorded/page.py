@@ -64,7 +64,7 @@ def page(result: Result) -> Page:
             "What counts is how the block ends: whether it stands, rocks or overturns, and in which swing it falls. "
             f"Equal means that the upper limit of the interval is below {equal}; a failed run counts as differing. "
             "Runs under one record may all tell the same: the interval takes a record as one run. Where so few "
-            "records could not show equality even if no run differed, they are too few to say.",
+            "records could not show equality even if no run differed, they are inconclusive.",
         ),
         first=(
             _tilts(runs),
@@ -182,7 +182,7 @@ def _peak_mark(errors):
 
 def _title(both: list[dict[str, Any]], equal: str) -> str:
     words = [row["equal"] for row in both]
-    title = f"Recorded motions: {words.count('yes')} of {len(words)} settings of engines end as the model does, "
+    title = f"Recorded motions: {words.count('yes')} of {len(words)} variants of engines end as the model does, "
     title += f"within {equal}"
     few = words.count(TOO_FEW)
     return title + (f"; {few} have too few runs to say" if few else "")

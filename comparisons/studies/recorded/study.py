@@ -21,15 +21,15 @@ from ...measuring.classes import class_of
 from ...measuring.horizon import PERTURBATION, SAMPLES_PER_PERIOD, sensitivity_horizon, solver_horizon
 from ...measuring.statistics import EQUAL
 from ...running.cases import Case, variant_settings
+from ...running.plan import Batch, Computed
 from ...running.sources import version_of
-from ...running.study import Batch, Computed
 from .scenes import LAWS, RANGES, SEED, X_MAX, drawn_scene
 
 if TYPE_CHECKING:
     from analytic import Response, Scene
     from analytic.motion import SampledMotion
 
-    from ...running.study import Plan, Request
+    from ...running.plan import Plan, Request
     from ...running.sweep import Row
 
 # records for the tuned variants of the engines in question (None: all), and for the other variants

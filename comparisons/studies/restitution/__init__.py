@@ -1,6 +1,6 @@
 """How far off are restitution and the base velocity jump, where, why, at what cost?"""
 
-from ...running.study import Study
+from ...running.plan import Study
 from .study import plan
 
 STUDY = Study(

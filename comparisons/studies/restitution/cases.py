@@ -1,6 +1,6 @@
 """The runs of the restitution study: blocks released from rest, in every engine, variant and refinement level.
 
-Three parts: the grid (slenderness x base x level), blocks on bearings, let go or under a pulse (slenderness x base x
+Three parts: the grid (slenderness x base x level), blocks on bearings, released or under a pulse (slenderness x base x
 isolation period, laws in turn), and experiments that change one suspected cause of error at a time.
 """
 
@@ -70,7 +70,7 @@ SCALES = (0.25, 1.0, 4.0)  # of the block, to tell (8) from (8) as printed
 
 
 def free_scene(slenderness: float, ratio: float | None, start: float, scale: float = 1.0) -> Scene:
-    """A block on rigid ground (ratio None) or on a freely sliding base of ratio times its mass, tilted and let go.
+    """A block on rigid ground (ratio None) or on a freely sliding base of ratio times its mass, tilted and released.
 
     It ends past the peak of the swing after the third impact of the model, or a little after coming to rest.
     scale: size of the block over the Caryatid's.
@@ -95,7 +95,7 @@ def _cut(scene, times, rest):
 def bearing_scene(slenderness: float, ratio: float, period: float, law: str, excitation: str) -> Scene:
     """The Caryatid's block of a slenderness on bearings of a period [s], at the stiffness after yielding.
 
-    It is let go at `LET_GO`, the ground at rest or under a pulse, (amplitude over g tan(slenderness), frequency over
+    It is released at `LET_GO`, the ground at rest or under a pulse, (amplitude over g tan(slenderness), frequency over
     omega_r) in `PULSE`. It ends as `free_scene` does.
     """
     base = Base(mass=ratio * MASS)

@@ -24,7 +24,7 @@ JUMP = Column("base velocity jump, relative error, rms [-]", "jump_rms")
 STATE = Column("error of restitution at the impact, rms [-]", "rms_state")
 WORST_JUMP = Column("worst base velocity jump [-]", "jump_worst")
 LATE = Column("impact times, relative, rms [-]", "time_rms")
-LOST = Column("lost impacts [-]", "lost")
+LOST = Column("missed impacts [-]", "lost")
 CPU = Column("CPU time per simulated second [s/s]", "cpu_per_second")
 FAILED = Column("failed runs [-]", "{failed} of {runs}")
 GROUND = Column("ground", "ground")
@@ -202,8 +202,9 @@ def _rated(variant, rows, orders):
 def _title(ranked):
     good = [row for row in ranked if rating(_error(row), _wrong(row)) == "good"]
     missed = max((row["rms"] for row in ranked if row not in good and row["rms"]), default=None)
-    return f"One impact: {len(good)} of {len(ranked)} settings of engines keep restitution within {TRUSTED:g}" + (
-        f"; the others miss it by up to {number(missed, 2)}" if missed else ""
+    return (
+        f"One impact: {len(good)} of {len(ranked)} variants of engines reproduce restitution to within {TRUSTED:g}"
+        + (f"; the others are off by up to {number(missed, 2)}" if missed else "")
     )
 
 
@@ -433,16 +434,16 @@ def _how(settings):
     grid = "; ".join(f"{name} {', '.join(map(short, values))}" for name, values in settings["bearings"].items())
     return (
         f"Blocks of slenderness {min(gammas):g} to {max(gammas):g} rad, tilted to {min(starts):g} to {max(starts):g} "
-        f"of it ({len(starts)} starts) and let go, on rigid ground and on bases of {bases} times their mass that slide "
-        f"without friction; the first {settings['impacts']} impacts of every run. Restitution is the root of the ratio "
-        "of a swing's energy after an impact to that before it, so that whatever takes energy counts; the base "
+        f"of it ({len(starts)} starts) and released, on rigid ground and on bases of {bases} times their mass that "
+        f"slide without friction; the first {settings['impacts']} impacts of every run. Restitution is the root of the "
+        "ratio of a swing's energy after an impact to that before it, so that whatever takes energy counts; the base "
         "velocity jump is compared with momentum by the run's own rates.",
-        f"On bearings: {grid}, each with each, the laws in turn; let go at half of the slenderness, the ground at rest "
-        "or under one sine of half the uplift acceleration and three times the rocking frequency. Under these forces "
-        "the energy of a swing is not conserved: restitution is the ratio of the tilt rates after and before the "
-        "impact, against eq. (7), and the base velocity jump is compared with momentum, eq. (8). An impact that a "
-        "run does not have counts as lost.",
-        f"Trusted: error of both grounds at most {TRUSTED:g}, no failed run, no lost impact; usable: at "
+        f"On bearings: {grid}, each with each, the laws in turn; released at half of the slenderness, the ground at "
+        "rest or under one sine of half the uplift acceleration and three times the rocking frequency. Under these "
+        "forces the energy of a swing is not conserved: restitution is the ratio of the tilt rates after and before "
+        "the impact, against eq. (7), and the base velocity jump is compared with momentum, eq. (8). An impact that a "
+        "run does not have counts as missed.",
+        f"Trusted: error of both grounds at most {TRUSTED:g}, no failed run, no missed impact; usable: at "
         f"most {USABLE:g}. Measured restitution of stone scatters by some per cent. The corners are set plastic, "
         "non-slipping and planar, which are Housner's assumptions: agreement is verification of the engine, not "
         "independent physics.",

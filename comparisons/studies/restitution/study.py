@@ -23,7 +23,7 @@ from engines import get_engine
 
 from ...measuring.errors import SLOWEST_IMPACT, impact_errors, lost_impacts, rms, strong_impacts, worst
 from ...running.cases import variant_settings
-from ...running.study import Batch, Computed
+from ...running.plan import Batch, Computed
 from .cases import (
     CARYATID_BASE,
     EXPERIMENT_SLENDERNESS,
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from analytic import Response, Scene
 
     from ...running.cases import Case
-    from ...running.study import Plan, Request
+    from ...running.plan import Plan, Request
     from ...running.sweep import Row
     from .cases import Grid
 

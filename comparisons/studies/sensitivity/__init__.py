@@ -1,6 +1,6 @@
 """What changes the outcome more often than the engine does: each uncertainty in turn, the engine's error among them."""
 
-from ...running.study import Study
+from ...running.plan import Study
 from .study import plan
 
 STUDY = Study(

@@ -15,7 +15,7 @@ from analytic.rocking import RockingModel
 
 if TYPE_CHECKING:
     from analytic import Scene
-    from analytic.types import Motion
+    from analytic.motion import Motion
 
 OTHERS = 100_000  # seeds of the other horizontal, and twice of the vertical component, above those of the first
 USUAL_RATIO = 2 / 3  # peak vertical over peak horizontal acceleration, as codes took it for long

@@ -119,7 +119,7 @@ def _title(shown):
     first = _most(grouped(where(shown, engine=REFERENCE), "scene")[shown[0]["scene"],])
     title = f"What matters more than the engine: {first['change']} changes {percent(SHARE.of(first))} of outcomes"
     if most := _most([row for row in shown if row["engine"] != REFERENCE and row["runs"]]):
-        title += f", engines at their best {percent(SHARE.of(most))} ({percent(most['high'])} not excluded)"
+        title += f", engines at their best {percent(SHARE.of(most))} (95 % upper bound {percent(most['high'])})"
     return title
 
 

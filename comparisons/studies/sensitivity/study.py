@@ -17,13 +17,14 @@ from engines import get_engine
 
 from ...measuring.statistics import confusion, mcnemar, wilson
 from ...running.cases import Case
-from ...running.study import Batch, Computed, say
+from ...running.plan import Batch, Computed
+from ...running.progress import log
 from .changes import changes, with_vertical
 
 if TYPE_CHECKING:
     from analytic import Response
 
-    from ...running.study import Plan, Request
+    from ...running.plan import Plan, Request
 
 SPREAD = 0.4  # standard deviation of the logarithm of the motions' factors
 TRIED = np.geomspace(0.1, 4.0, 40)  # factors among which the one is found that overturns half
@@ -102,7 +103,7 @@ def plan(request: Request, scenes: dict[str, Any] | None = None, motions: tuple[
 
 def _half(name, scene, count):
     """The factor at which half of the motions overturn a block."""
-    say(f"{name}: slenderness {scene.block.slenderness:g}, the factor that overturns half")
+    log(f"{name}: slenderness {scene.block.slenderness:g}, the factor that overturns half")
     scenes = [scene.with_(motion=synthetic_motion(seed=seed)) for seed in range(count) for _ in TRIED]
     runs = simulate_many(scenes, scales=np.tile(TRIED, count))
     fallen = runs.overturns.reshape(count, -1).mean(axis=0)

@@ -1,6 +1,6 @@
 """The problem sheet solved by every engine and variant: what ``rocking score`` ranks other codes beside."""
 
-from ...running.study import Study
+from ...running.plan import Study
 from .study import plan
 
 STUDY = Study(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from engines import get_engine
 
 from ...running.cases import Case
-from ...running.study import Batch, Computed
+from ...running.plan import Batch, Computed
 from ...sheet.answers import error, own_error
 from ...sheet.observed import of_response, solved
 from ...sheet.problems import PROBLEMS, VERSION
@@ -15,7 +15,7 @@ from ...sheet.problems import PROBLEMS, VERSION
 if TYPE_CHECKING:
     from analytic import Response
 
-    from ...running.study import Plan, Request
+    from ...running.plan import Plan, Request
 
 
 def plan(request: Request) -> Plan:

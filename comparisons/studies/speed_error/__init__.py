@@ -1,6 +1,6 @@
 """Speed against error: what each solver costs at what error, on five scenes; and how the cost grows."""
 
-from ...running.study import Study
+from ...running.plan import Study
 from .study import plan
 
 STUDY = Study(

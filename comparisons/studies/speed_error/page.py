@@ -157,7 +157,7 @@ def _defaults_table(result):
 
 CAPTION = (
     "Left and low is better. Coloured: solvers of which a level and all finer ones keep 0.001; grey: the others, named "
-    "under the pointer. Levels that lost impacts have no error. Errors below 10⁻⁹ are drawn there."
+    "under the pointer. No error is given for levels with missed impacts. Errors below 10⁻⁹ are drawn there."
 )
 
 

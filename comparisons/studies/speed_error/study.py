@@ -27,7 +27,7 @@ from ...measuring.errors import (
     strong_time_errors,
 )
 from ...running.cases import variant_settings
-from ...running.study import Batch, Computed
+from ...running.plan import Batch, Computed
 from .boundary import RUNS, Boundary, searched
 from .cases import PLAIN, Entry, Trial, entries, levels_of, trials
 from .growth import TICK, grown, growth_cases
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from analytic import Response
 
     from ...running.cases import Case
-    from ...running.study import Plan, Request
+    from ...running.plan import Plan, Request
 
 REPEATS, QUICK_REPEATS = 5, 3
 SLOW = 0.5  # s of CPU: next to it what is loaded in a first run is nothing; such a measurement needs no warm-up

@@ -1,6 +1,6 @@
 """Numerical stability: which solver gets which hard case right, where it does not, and which finer settings do."""
 
-from ...running.study import Study
+from ...running.plan import Study
 from .study import plan
 
 STUDY = Study(

@@ -13,15 +13,15 @@ from engines import get_engine
 
 from ...measuring.errors import energy_errors
 from ...running.cases import Case
+from ...running.plan import Batch, Computed
 from ...running.provenance import scrub
-from ...running.study import Batch, Computed
 from .cases import hard_cases
 from .oracle import LAST_PART, column_at, comparable_until, oracle, twin_step
 
 if TYPE_CHECKING:
     from analytic import Response
 
-    from ...running.study import Plan, Request
+    from ...running.plan import Plan, Request
     from ...running.sweep import Row
     from .cases import HardCase
     from .oracle import Oracle

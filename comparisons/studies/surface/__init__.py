@@ -1,6 +1,6 @@
 """The fragility surface: how likely is overturning at an intensity and a slenderness, from a million runs."""
 
-from ...running.study import Study
+from ...running.plan import Study
 from .study import plan
 
 STUDY = Study(

@@ -15,7 +15,7 @@ from engines import ENGINES, get_engine
 
 from ...measuring.statistics import wilson
 from ...running.cases import Case
-from ...running.study import Batch, Computed, Plan, Request
+from ...running.plan import Batch, Computed, Plan, Request
 
 ANALYTIC = "analytic"
 # slendernesses [rad], peak ground accelerations [g], synthetic motions

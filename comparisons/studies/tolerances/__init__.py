@@ -1,6 +1,6 @@
 """The table of agreement tolerances, every row measured anew: how far is each engine, and what is it held to?"""
 
-from ...running.study import Study
+from ...running.plan import Study
 from .study import plan, problems
 
 STUDY = Study(

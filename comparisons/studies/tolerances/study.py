@@ -7,18 +7,19 @@ from typing import TYPE_CHECKING
 from engines import ENGINES, get_engine
 
 from ...measuring.tolerances import TABLE, measure_all
-from ...running.study import Computed, say
+from ...running.plan import Computed
+from ...running.progress import log
 
 if TYPE_CHECKING:
+    from ...running.plan import Plan, Request
     from ...running.provenance import Result
-    from ...running.study import Plan, Request
 
 
 def plan(request: Request) -> Plan:
     """The plan of the study: rows of `TABLE`, where it is quick of default variants only."""
     rows = []
     for engine in request.engines:
-        say(f"tolerances: {engine}")
+        log(f"tolerances: {engine}")
         default = get_engine(engine).default_variant
         own = [row for row in TABLE if row.engine == engine and (row.variant == default or not request.quick)]
         rows += [{"part": "tolerance", **row} for row in measure_all(own)]

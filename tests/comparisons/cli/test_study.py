@@ -9,8 +9,8 @@ import pytest
 from comparisons.commands import study as command
 from comparisons.running import check as module
 from comparisons.running.check import Check
+from comparisons.running.plan import Computed, Study
 from comparisons.running.provenance import RESULTS, read_result
-from comparisons.running.study import Computed, Study
 from comparisons.showing.parts import Page
 
 

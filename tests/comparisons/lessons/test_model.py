@@ -16,7 +16,7 @@ BEARINGS = {
     "caryatid": {"mass": 212.0, "count": 4, "ka": 6.22e4, "kb": 6.22e3, "alpha": 44.69},
     "heavy": {"mass": 800.0, "count": 4, "ka": 1.2e5, "kb": 2e4, "alpha": 10.0},
 }
-DURATIONS = {  # [s] by (kind, amplitude [m/s2], period [s]), (kind, scale), None: let go
+DURATIONS = {  # [s] by (kind, amplitude [m/s2], period [s]), (kind, scale), None: released
     ("pulse", 3.0, 0.5): 6.0,
     ("pulse", 5.0, 0.8): 6.0,
     ("pulse", 8.0, 1.2): 6.0,

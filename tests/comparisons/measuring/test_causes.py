@@ -62,7 +62,7 @@ GROUNDS = [pytest.param(None, id="rigid ground"), pytest.param(BASE, id="sliding
 
 
 def falling(base):
-    """A block on its way to the impact, as fast as if let go: what is spoilt there is seen soon."""
+    """A block on its way to the impact, as fast as if released: what is spoilt there is seen soon."""
     return released(base, tilt=0.1, rate=-0.4)
 
 
@@ -128,7 +128,7 @@ def test_too_small_a_friction_is_seen_through(engine, variant, settings, base, c
 
 
 def random_scenes(count):
-    """Statues that rock, let go or under a pulse, on every ground, with three impacts."""
+    """Statues that rock, released or under a pulse, on every ground, with three impacts."""
     scenes = (random_scene(15, index) for index in itertools.count())
     runs = ((scene, simulate(scene, history=False)) for scene in scenes)
     rocking = ((scene, run.impacts) for scene, run in runs if run.outcome == "rocks" and run.impact_count > 2)

@@ -111,7 +111,7 @@ def test_runs_of_one_record_count_as_one():
     """However many they are: 0 of 187 runs under 50 records say no more than 0 of 50."""
     records = [k % 50 for k in range(187)]
     word, (low, high) = equality(np.zeros(187, dtype=bool), records)
-    assert word == "too few to say" and low == 0.0
+    assert word == "inconclusive (too few runs)" and low == 0.0
     assert high == pytest.approx(1.959964**2 / (50 + 1.959964**2)) == pytest.approx(0.0713, abs=1e-4)
     one = np.arange(187) == 3
     assert equality(one, records)[1] == wilson(50 / 187, 50)  # the share of runs, known as well as that of 50
@@ -121,5 +121,8 @@ def test_runs_of_one_record_count_as_one():
 
 
 def test_few_runs_acquit_nobody_and_can_convict():
-    assert equality(np.zeros(72, dtype=bool))[0] == "too few to say"  # with none differing 5.07 % are left
-    assert equality([True] + [False] * 39)[0] == "too few to say" and equality([True] * 20 + [False] * 20)[0] == "no"
+    assert equality(np.zeros(72, dtype=bool))[0] == "inconclusive (too few runs)"  # with none differing 5.07 % are left
+    assert (
+        equality([True] + [False] * 39)[0] == "inconclusive (too few runs)"
+        and equality([True] * 20 + [False] * 20)[0] == "no"
+    )

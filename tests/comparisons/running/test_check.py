@@ -14,9 +14,10 @@ from comparisons.report.studies import origin_of
 from comparisons.running import check as module
 from comparisons.running import run_sample
 from comparisons.running.check import check, check_all
+from comparisons.running.plan import Batch, Computed, Study
 from comparisons.running.provenance import ResultError, age, last_check, read_result, write_result
 from comparisons.running.run_sample import case_of, sample_of
-from comparisons.running.study import Batch, Computed, Study, compute
+from comparisons.running.study import compute
 from comparisons.running.sweep import Case, Row
 
 

@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from comparisons.running.sources import source_digests
+from comparisons.running.sources import computes, source_digests
 
 
 @pytest.fixture
@@ -77,6 +77,16 @@ def test_code_counts_and_words_do_not(package, old, new, same):
 
 def test_the_reference_does_not_depend_on_engines_nor_studies():
     assert {name.partition(".")[0] for name in source_digests(["analytic"])} == {"analytic"}
+
+
+def test_what_carries_runs_out_ages_nothing_and_what_measures_them_does():
+    """A progress bar, the store or a schema may change; the measure, the study and what a case runs may not."""
+    found = source_digests(["comparisons.studies.restitution.study", "comparisons.running.cases"])
+    assert {"comparisons.measuring.errors", "comparisons.running.cases", "analytic.kernel"} <= found.keys()
+    carrying = [name for name in found if name.startswith(("comparisons.running", "comparisons.schemas"))]
+    assert carrying == ["comparisons.running.cases"]
+    assert not any(map(computes, ("comparisons.running", "comparisons.running.progress", "comparisons.schemas.runs")))
+    assert all(map(computes, ("comparisons.running_mate", "comparisons.measuring.errors", "analytic")))
 
 
 def test_an_unknown_module_is_an_error():

@@ -23,7 +23,8 @@ def test_only_a_letter_has_an_index():
 
 def test_what_differs_is_said_near_an_edge_too():
     found = Difference("peak_tilt", 0.0189, 0.009, 0.02, (0.00807, 0.00999))
-    words = "peak tilt 0.0189 rad, in the analytic model 0.009 (0.00807 to 0.00999 within 1e-4 of the scene)"
+    near = "0.00807 to 0.00999 in the analytic model within 1e-4 of the scene"
+    words = f"peak tilt 0.0189 rad, in the analytic model 0.009 ({near})"
     assert differing(COMPARED, [found]) == differing(EDGE, [found]) == [f"differs from the analytic model: {words}"]
     assert differing(COMPARED, []) == differing(UNCOMPARED, []) == []
     assert differing(EDGE, []) == [
@@ -38,7 +39,7 @@ def test_what_differs_is_said_near_an_edge_too():
         (0, "yes", (0.0, 0.03), "good"),
         (1, "no", (0.01, 0.06), "fair"),
         (9, "no", (0.06, 0.2), "bad"),
-        (0, "too few to say", (0.0, 0.071), "part"),
+        (0, "inconclusive (too few runs)", (0.0, 0.071), "part"),
     ],
 )
 def test_so_few_runs_that_they_say_nothing_are_no_trust_either(differing_runs, equal, interval, level):

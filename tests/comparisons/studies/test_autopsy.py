@@ -5,8 +5,8 @@ from answered import answered
 
 from analytic import simulate
 from comparisons.measuring.causes import CAUSES
+from comparisons.running.plan import Request
 from comparisons.running.provenance import Result
-from comparisons.running.study import Request
 from comparisons.running.sweep import Row
 from comparisons.studies.autopsy import STUDY
 from comparisons.studies.autopsy.study import GROUNDS, SECONDS, plan, scene_on

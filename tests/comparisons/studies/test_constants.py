@@ -4,8 +4,8 @@ import pytest
 from answered import answered, by_model, stored
 
 from comparisons.running.cases import Case
+from comparisons.running.plan import Request
 from comparisons.running.run_sample import case_of
-from comparisons.running.study import Request
 from comparisons.showing.rows import where
 from comparisons.studies import get_study
 from comparisons.studies.constants.page import NOT_A_BIT

@@ -47,15 +47,18 @@ def test_a_page_writes_numbers_and_symbols_as_a_reader_does_and_its_finding_is_s
 def test_the_boundaries_judged_are_those_where_the_block_stays_pressed():
     result, study = stored("overturning"), get_study("overturning")
     place, marks = itemgetter("ground", "shape", "frequency", "amplitude"), study.judgements(result)[0].marks
-    pressed = {place(row) for row in where(result.rows, part="edge") if row["min_normal"] >= 0}
+    edges = where(result.rows, part={"edge", "drawn edge"})
+    pressed = {place(row) for row in edges if row["min_normal"] >= 0}
     for name, _, _, _, _, largest, *_ in study.page(result).opening().tables[0].rows:
         pair = tuple(name.split(", "))
-        mark, rows = marks[pair], where(result.rows, part="shift", engine=pair[0], variant=pair[1])
+        mark, rows = marks[pair], where(result.rows, part={"shift", "drawn shift"}, engine=pair[0], variant=pair[1])
         shifts = [row["shift"] for row in rows if place(row) in pressed]
         found = [abs(shift) for shift in shifts if shift is not None]
-        assert mark.note.startswith(f"{len(found)} of {len(shifts)} boundaries found") and 0 < len(shifts) < len(rows)
+        assert f"({len(found)} of {len(rows)} boundaries)" in mark.words and 0 < len(shifts) < len(rows) == len(edges)
+        assert f"{len(shifts) - len(found)} not found" in mark.note
         beyond = [row["shift"] for row in rows if place(row) not in pressed]
-        assert f"with N < 0: {len(beyond) - beyond.count(None)} of {len(beyond)}" in mark.note
+        words = f"{len(beyond)} with N < 0 do not count, found {len(beyond) - beyond.count(None)}"
+        assert words in mark.note
         assert [number_in(mark.words), number_in(largest)] == pytest.approx([100 * max(found)] * 2, rel=0.06)
 
 

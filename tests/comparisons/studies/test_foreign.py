@@ -18,7 +18,7 @@ SOURCE = '''
 """How high does a released block swing back after one impact?"""
 from analytic import Block, Scene, Start
 from comparisons.running.cases import Case
-from comparisons.running.study import Batch, Computed, Study
+from comparisons.running.plan import Batch, Computed, Study
 from comparisons.showing.parts import Page
 from comparisons.showing.rows import Column, table
 
@@ -83,7 +83,7 @@ def test_a_study_of_another_package_gets_command_resumption_and_section(tmp_path
     "source, words",
     [
         ("raise ValueError('no licence')", "it cannot be imported (ValueError: no licence)"),
-        ("STUDY = 3", "it is no comparisons.running.study.Study called 'swings'"),
+        ("STUDY = 3", "it is no comparisons.running.plan.Study called 'swings'"),
     ],
 )
 def test_a_broken_one_is_one_message_that_names_who_declares_it(tmp_path, source, words):

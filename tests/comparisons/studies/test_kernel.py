@@ -6,7 +6,7 @@ import pytest
 from answered import answered, by_runs, stored
 
 from analytic.twin import METHODS as OFFERED
-from comparisons.running.study import Request
+from comparisons.running.plan import Request
 from comparisons.showing.rows import where
 from comparisons.studies import get_study
 from comparisons.studies.kernel import page, peers, study

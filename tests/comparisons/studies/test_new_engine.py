@@ -17,8 +17,8 @@ from record_files import pairs
 import engines
 from analytic import synthetic_motion
 from comparisons.report.runs import restitution_cases
+from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS, json_ready, read_result
-from comparisons.running.study import Request
 from comparisons.showing.rows import where
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.caryatid.runs import simulations

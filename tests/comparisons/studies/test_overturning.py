@@ -12,9 +12,9 @@ from page_numbers import number_in
 
 from analytic import PulseMotion, simulate
 from analytic.caryatid import MASS
-from analytic.motion import PULSES
+from analytic.pulses import PULSES
+from comparisons.running.plan import Request
 from comparisons.running.refine import drive
-from comparisons.running.study import Request
 from comparisons.showing.rows import where
 from comparisons.studies.overturning import STUDY
 from comparisons.studies.overturning.drawn import FREQUENCY, JUMPS, drawn_edges
@@ -216,7 +216,7 @@ def test_the_bound_that_is_said_is_that_of_the_drawn_blocks_too(tmp_path):
     assert all(abs(row["shift"]) <= 1.01 * row["half_width"] for row in where(result.rows, part="shift"))
     every = len(where(result.rows, part="edge")) + 2
     for mark in STUDY.judgements(result)[0].marks.values():
-        assert mark.words == f"0.30 % at {every} of {every} boundaries"
+        assert mark.words == f"0.30 % ({every} of {every} boundaries)"
     (drawn,) = (table for table in page.tables if "drawn at random" in table.caption)
     assert [row[0] for row in drawn.rows] == [edge["ground"] for edge in edges]
     assert [number_in(row[1]) for row in drawn.rows] == pytest.approx([e["slenderness"] for e in edges], rel=5e-3)

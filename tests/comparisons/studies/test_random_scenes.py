@@ -8,8 +8,8 @@ from page_numbers import number_in
 
 from analytic import Block, PulseMotion, Scene
 from analytic.response import COMPARED, EDGE
+from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS, read_result
-from comparisons.running.study import Request
 from comparisons.running.sweep import Row
 from comparisons.showing.rows import NAME
 from comparisons.studies import get_study

@@ -15,8 +15,8 @@ from analytic import SceneError, SettingError, simulate
 from analytic.records import read_record
 from analytic.response import COMPARED, EDGE
 from comparisons.measuring.statistics import equality
+from comparisons.running.plan import Request
 from comparisons.running.provenance import read_result, write_result
-from comparisons.running.study import Request
 from comparisons.running.sweep import Row
 from comparisons.showing.rows import where
 from comparisons.studies import get_study
@@ -204,7 +204,7 @@ def test_the_page_counts_the_rows_and_names_every_run_that_differs(found, tmp_pa
         assert number_in(share) == pytest.approx(100 * int(differ) / int(judged), rel=0.06)
         mark = study.judgements(result)[0].marks[tuple(name.split(", "))]
         assert mark.words.startswith(f"{differ} of {judged} (at most ")
-        assert (mark.level, equal) in (("bad", "no"), ("part", "too few to say"))
+        assert (mark.level, equal) in (("bad", "no"), ("part", "inconclusive (too few runs)"))
     wrong = [row for row in runs if row["class"] in ("differs", "failed")]
     assert len(page.tables[-1].rows) == len(wrong) and len(page.evidence) == sum(
         row["class"] == "failed" for row in wrong

@@ -8,7 +8,7 @@ from scipy.stats import norm
 from analytic import load_scene, simulate, synthetic_motion
 from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel
-from comparisons.running.study import Computed, Request
+from comparisons.running.plan import Computed, Request
 from comparisons.showing.rows import where
 from comparisons.studies import get_study
 from comparisons.studies.sensitivity.changes import changes, with_vertical
@@ -155,7 +155,7 @@ def test_changes_and_engines_are_ranked_and_drawn_and_the_title_sets_the_first_a
         "pybullet, impact-aware", "exudyn, native-contact",
     ]  # fmt: skip
     assert ranked.rows[0][1:3] == ["30 % (15 % to 62 %)", "30 of 100"] and ranked.rows[-1][1] == "–"
-    assert "direction turned by 30° changes 30 %" in page.title and "1.0 % (4.0 %" in page.title
+    assert "direction turned by 30° changes 30 %" in page.title and "1.0 % (95 % upper bound 4.0 %)" in page.title
     assert len(vertical.rows) == 1 + len(FASTER) * len(RATIOS)
     (sentence,) = [text for text in page.lead if "pybullet, impact-aware" in text]
     assert "2 of 4" in sentence and "4.0 %" in sentence  # lower ends above its upper one

@@ -9,8 +9,9 @@ from analytic import PulseMotion, Scene, simulate
 from analytic.response import Failure
 from analytic.rocking import momentum_restitution, restitution
 from analytic.solver import TOLERANCE
+from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS, read_result
-from comparisons.running.study import Request, compute
+from comparisons.running.study import compute
 from comparisons.running.sweep import Row
 from comparisons.showing.rows import where
 from comparisons.studies.rows import wrong_with

@@ -7,7 +7,7 @@ from page_numbers import number_in
 
 from analytic import load_scene, simulate, synthetic_motion
 from analytic.synthetic import PEAK, G
-from comparisons.running.study import Request
+from comparisons.running.plan import Request
 from comparisons.studies import get_study
 from comparisons.studies.surface.study import crossing
 

@@ -6,8 +6,8 @@ import pytest
 from answered import answered, by_model
 from record_files import pairs
 
+from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS, read_result
-from comparisons.running.study import Request
 from comparisons.running.sweep import Row
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.vocabulary import OWN, SHARED, columns_of

@@ -1,0 +1,66 @@
+"""Inner functions are compiled as `analytic.compiled` says: numba has no public option for one part of it."""
+
+import gc
+
+import numpy as np
+import pytest
+from from_python import from_python
+from numba import njit
+
+from analytic import kernel
+from analytic.compiled import compiling, entry, inner
+from analytic.layout import ROWS
+
+
+def native(function):
+    """Machine code of a compiled function itself, without its wrappers."""
+    (text,) = function.inspect_llvm().values()
+    bodies = [part.partition("\n}")[0] for part in text.split("\ndefine ")[1:]]
+    return "".join(
+        body for body in bodies if not any(word in body.split("(")[0] for word in ("cpython", "cfunc", "NRT_"))
+    )
+
+
+def test_no_reference_is_counted_in_what_is_compiled_without():
+    """Where an array is handed on and kept, numba counts a reference, an atomic operation; not here."""
+
+    def hand_on(array, other, first):
+        kept = array if first else other
+        for _ in range(int(kept[0])):
+            kept = other if kept[1] > 0 else array
+        return kept[0]
+
+    found = {}
+    for name, decorate in (("counted", njit), ("entry", entry)):
+        function = decorate(hand_on)
+        function(np.ones(3), np.ones(3), True)
+        found[name] = "NRT_incref" in native(function) or "atomicrmw" in native(function)
+    assert found == {"counted": True, "entry": False}
+
+
+def test_an_inner_function_makes_no_array_and_is_not_called_from_python():
+    @inner
+    def makes():
+        return np.zeros(3)
+
+    with pytest.raises(Exception, match="Only accept returning of array passed into the function"):
+        from_python(makes)()
+
+
+def test_the_collector_is_as_before_after_compiling():
+    assert gc.isenabled()
+    with compiling():
+        assert not gc.isenabled()
+    assert gc.isenabled()
+    gc.disable()
+    try:
+        with compiling():
+            pass
+        assert not gc.isenabled()
+    finally:
+        gc.enable()
+
+
+def test_the_kernel_keeps_to_the_arrays_it_is_given():
+    arrays = kernel.arrays(capacity=2, outputs=3)
+    assert arrays.P.shape[0] == ROWS and [len(rows) for rows in arrays[2:6]] == [2, 2, 2, 3]
