@@ -157,7 +157,7 @@ class Engine:
         In every figure; a line style of matplotlib, as (0, (6, 1)) if it is none of the named ones.
     adapter : str
         Name of the module with ``VARIANTS``, ``versions`` and ``run``.
-    library : str or None
+    imported : str or None
         Name of a module that imports the package, where it wants to be imported in its own way.
     tolerances : str or None
         Name of a module whose ``TOLERANCES``, {variant: tuple of `ToleranceRow`}, are its rows of the tolerance
@@ -175,7 +175,7 @@ class Engine:
     marker: str
     adapter: str
     dashes: str | tuple[float, tuple[float, ...]] = "-"
-    library: str | None = None
+    imported: str | None = None
     tolerances: str | None = None
     subject: bool = False
     origin: str = ""
@@ -192,7 +192,7 @@ class Engine:
             its own error: that must not pass for a package that is absent.
         """
         try:
-            for name in filter(None, (self.library, self.package)):
+            for name in filter(None, (self.imported, self.package)):
                 import_module(name)
         except ImportError as error:
             raise EngineNotInstalled(

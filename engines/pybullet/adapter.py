@@ -17,7 +17,7 @@ from ..leapfrog import raw_trace_of
 from ..stepping import Bodies, FirstScript, FixedStep, ImpactAware, Settings, run_of
 from . import first_script
 from .constants import CONSTANTS
-from .library import pybullet
+from .imported import pybullet
 from .scene import MOST_FRICTION, MOST_VELOCITY, BulletBodies
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from ..placement import placement
 from ..stepping import State
-from .library import pybullet
+from .imported import pybullet
 from .links import chain
 
 if TYPE_CHECKING:

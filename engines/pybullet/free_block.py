@@ -14,7 +14,7 @@ from ..observe import failed_response, observe
 from ..stepping import FirstScript, run_of
 from .adapter import versions
 from .first_script import FreeBox
-from .library import pybullet
+from .imported import pybullet
 from .links import without_losses
 from .scene import FRICTION, iterations
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .library import pybullet
+from .imported import pybullet
 
 
 def chain(client: int, links: list[tuple], **options: int) -> int:

@@ -15,7 +15,7 @@ from ..placement import placement
 from ..readback import require
 from ..stepping import State
 from .first_script import BREAKING_THRESHOLD
-from .library import pybullet
+from .imported import pybullet
 from .links import chain, without_losses
 
 if TYPE_CHECKING:
