@@ -19,7 +19,7 @@ from own_scenes import BRONZE, CLIFF
 from analytic import Caution, Failure, load_scene, simulate, solver
 from comparisons import cli, commands
 from comparisons.cli.application import app
-from comparisons.running import solving
+from comparisons.running import progress, solving
 from comparisons.running.readable import readable
 from engines import ENGINES, get_engine, installed_engines
 
@@ -84,7 +84,7 @@ def test_compiling_is_said_and_is_not_on_the_clock_of_the_run(rocking, monkeypat
     def slowly(vertical=False):
         time.sleep(2.0)
 
-    monkeypatch.setattr(solving, "PATIENCE", 0.1)
+    monkeypatch.setattr(progress, "PATIENCE", 0.1)
     monkeypatch.setattr(solver, "compile_kernels", slowly)
     status, out, err = rocking("run", "free-rocking-rigid", "--time-limit", "2", "--json", "-")
     assert status == 0 and json.loads(out)["cpu_seconds"] < 1.0
