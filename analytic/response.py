@@ -171,7 +171,7 @@ class Difference:
         words = words.format(here=self.here, model=self.model)
         if self.near is None or self.model is not None and f"{self.near[0]:.3g}" == f"{self.near[1]:.3g}":
             return words
-        return f"{words} ({self.near[0]:.3g} to {self.near[1]:.3g} in the analytic model within 1e-4 of the scene)"
+        return f"{words} ({self.near[0]:.3g} to {self.near[1]:.3g} in the analytic model within 0.01 % of the scene)"
 
 
 @dataclass(frozen=True)

@@ -146,7 +146,7 @@ def paragraph(setups: Sequence[Setup], judgements: Sequence[Judgement]) -> str:
         words = []
         for each in judgements:
             marks = {one.engine: one.marks[each.heading] for one in columns}
-            tested = {engine: mark.words for engine, mark in marks.items() if mark is not UNTESTED}
+            tested = {engine: mark.short or mark.words for engine, mark in marks.items() if mark is not UNTESTED}
             if each.says and tested and (tier == "tuned" or each.rates):
                 whose = f" ({', '.join(tested)})" if len(tested) < len(marks) else ""
                 words.append(each.says.format(" and ".join(tested.values()) + whose))

@@ -45,13 +45,15 @@ class Mark:
     """What a study says of one solver: in words, and as "good", "fair" or "bad"; "part" where so little was tested that
     it cannot be said; or "none", which is of no rating: a row of such alone has no say.
 
-    note: the number of runs or scenes behind it, and what else the words leave out. value: the number itself.
+    note: the number of runs or scenes behind it, and what else the words leave out. value: the number itself. short:
+    the words as they stand in a sentence, where they are shorter there.
     """
 
     words: str
     level: str
     note: str = ""
     value: float | None = None
+    short: str = ""
 
 
 RESTITUTION, COST = "restitution", "cost"  # keys of judgements that the report's first screen takes numbers of
@@ -172,6 +174,11 @@ def short(value: float | None) -> str:
     digits, point, power = number(value).partition("·")
     digits = digits.rstrip("0").rstrip(".") if "." in digits else digits
     return power if point and digits == "1" else digits + point + power
+
+
+def typeset(text: str) -> str:
+    """A sentence made for a terminal as a page writes it: powers of ten in place of "1e-05"."""
+    return re.sub(r"(?<![\w.])(\d(?:\.\d+)?)e([-+]?\d+)", lambda found: short(float(found[0])), text)
 
 
 def percent(fraction: float | None, digits: int = 2) -> str:

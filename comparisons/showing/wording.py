@@ -60,7 +60,8 @@ def equal_mark(differing: int, failed: int, runs: int, equal: str, interval: Seq
     levels = {"yes": "good", "no": "bad" if interval[0] > EQUAL else "fair"}
     words = f"{differing} of {runs} (at most {percent(interval[1])})"
     note = {"yes": "equal", "no": "not shown to be equal"}.get(equal, equal)
-    return Mark(words, levels.get(equal, "part"), f"{note}; {failed} failed", differing / runs)
+    short = f"{differing} of {runs} (≤ {percent(interval[1])})"
+    return Mark(words, levels.get(equal, "part"), f"{note}; {failed} failed", differing / runs, short)
 
 
 def differing(comparable: str, differences: Iterable[Difference]) -> list[str]:

@@ -252,7 +252,7 @@ def test_what_lies_outside_what_near_copies_do_is_a_difference_with_their_span()
         (found,) = run.differences
         assert run.comparable == EDGE and (found.here, found.model) == (peak, model.peak_tilt)
         assert found.near == (pytest.approx(low), pytest.approx(high))
-        assert f"({low:.3g} to {high:.3g} in the analytic model within 1e-4 of the scene)" in str(found)
+        assert f"({low:.3g} to {high:.3g} in the analytic model within 0.01 % of the scene)" in str(found)
 
 
 def test_where_only_copies_end_as_the_run_does_no_number_is_called_the_models():
@@ -265,7 +265,7 @@ def test_where_only_copies_end_as_the_run_does_no_number_is_called_the_models():
     (found,) = (one for one in run.differences if one.quantity == "peak_tilt")
     assert found.model is None and found.near is not None
     low, high = found.near
-    words = f"peak tilt {found.here:.4g} rad ({low:.3g} to {high:.3g} in the analytic model within 1e-4 of the scene)"
+    words = f"peak tilt {found.here:.4g} rad ({low:.3g} to {high:.3g} in the analytic model within 0.01 % of the scene)"
     assert str(found) == words
 
 

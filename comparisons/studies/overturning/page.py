@@ -147,16 +147,16 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     for row in _rated(result):
         every = row["of"] + row["beyond"]
         words = f"{percent(row['largest'])} ({row['found']} of {every} boundaries)"
+        short = f"{percent(row['largest'])} ({row['found']}/{every})"
         note = f"median {percent(row['median'])}; {row['of'] - row['found']} not found"
         if row["beyond"]:
             note += f"; {row['beyond']} with N < 0 do not count, found {row['beyond_found']}"
             note += f", {percent(row['beyond_largest'])}" if row["beyond_found"] else ""
-        words = "none found" if row["largest"] is None else words
-        marks[row["engine"], row["variant"]] = Mark(words, row["rating"], note, row["largest"])
+        if row["largest"] is None:
+            words = short = "none found"
+        marks[row["engine"], row["variant"]] = Mark(words, row["rating"], note, row["largest"], short)
     return (
-        Judgement(
-            "overturning boundary under pulses: shift, worst", marks, says="overturning boundaries move by at most {}"
-        ),
+        Judgement("overturning boundary under pulses: shift, worst", marks, says="overturning boundaries by up to {}"),
     )
 
 

@@ -10,7 +10,7 @@ from ...measuring.classes import CLASSES
 from ...measuring.statistics import wilson
 from ...showing.charts import Axis
 from ...showing.figures import ranks
-from ...showing.parts import Judgement, Mark, Page
+from ...showing.parts import Judgement, Mark, Page, typeset
 from ...showing.rows import NAME, Column, grouped, table, where
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def page(result: Result) -> Page:
                 differing,
                 NAME,
                 Column("scene", "index"),
-                Column("in what", lambda row: "; ".join(row["differences"])),
+                Column("in what", lambda row: typeset("; ".join(row["differences"]))),
             ),
         ),
         how=(

@@ -12,7 +12,7 @@ from analytic.records.fema import PREFIX
 from ...measuring.statistics import TOO_FEW, equality
 from ...showing.charts import Axis, Chart, figure, key_of
 from ...showing.figures import LOOKS
-from ...showing.parts import Figure, Judgement, Mark, Page, number, percent, short
+from ...showing.parts import Figure, Judgement, Mark, Page, number, percent, short, typeset
 from ...showing.rows import NAME, Column, grouped, table, where
 from ...showing.wording import equal_mark
 from .study import ERRORS
@@ -106,7 +106,7 @@ def page(result: Result) -> Page:
                 Column("engine", "outcome"),
                 Column("peak tilt, model [-]", "model_tilt"),
                 Column("peak tilt, engine [-]", lambda row: row.get("tilt")),
-                Column("in what", lambda row: "; ".join(row.get("differences", ())) or None),
+                Column("in what", lambda row: typeset("; ".join(row.get("differences", ()))) or None),
             ),
         ),
         how=_how(result),
@@ -134,7 +134,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
             Judgement(
                 f"{words} under recorded motions: error, median",
                 {name: _peak_mark(row[f"{key}_error"]) for name, row in rows.items()},
-                says="median peak tilts are off by {}" if key == "tilt" else "",
+                says="median peak tilts by {}" if key == "tilt" else "",
             )
             for key, words in PEAKS.items()
         ),

@@ -129,7 +129,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
             "restitution at impacts, free rocking: error, rms",
             {(row["engine"], row["variant"]): _free_mark(row) for row in rows},
             RESTITUTION,
-            says="restitution is off by {} free",
+            says="restitution errs by {} free",
         ),
         Judgement(
             "restitution at impacts, on bearings: error, rms",

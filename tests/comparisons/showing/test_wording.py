@@ -23,7 +23,7 @@ def test_only_a_letter_has_an_index():
 
 def test_what_differs_is_said_near_an_edge_too():
     found = Difference("peak_tilt", 0.0189, 0.009, 0.02, (0.00807, 0.00999))
-    near = "0.00807 to 0.00999 in the analytic model within 1e-4 of the scene"
+    near = "0.00807 to 0.00999 in the analytic model within 0.01 % of the scene"
     words = f"peak tilt 0.0189 rad, in the analytic model 0.009 ({near})"
     assert differing(COMPARED, [found]) == differing(EDGE, [found]) == [f"differs from the analytic model: {words}"]
     assert differing(COMPARED, []) == differing(UNCOMPARED, []) == []
