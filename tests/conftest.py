@@ -1,6 +1,7 @@
 """What all tests share."""
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -26,6 +27,7 @@ COMPILED = (
 
 def pytest_configure(config):
     """New processes that tests start find the project too, and workers the kernel, which each would compile."""
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # else ignored under nohup, and by all that tests start
     others = os.environ.get("PYTHONPATH")
     os.environ["PYTHONPATH"] = os.pathsep.join([str(PROJECT), *([others] if others else [])])
     if getattr(config.option, "numprocesses", None) and not hasattr(config, "workerinput"):
