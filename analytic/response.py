@@ -51,6 +51,7 @@ DIFFERENCES = {
 # Whether a run can be compared: "yes", "no" (it was not asked for, or has failed), "on an edge" (a change of 1e-4 of
 # the scene makes such a difference in the model: what lies between such changes is no difference), else why not.
 COMPARED, UNCOMPARED, EDGE = "yes", "no", "on an edge"
+JUDGED = (COMPARED, EDGE)  # of these the differences are looked for
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ import numpy as np
 
 from analytic import simulate
 from analytic.errors import SceneError
-from analytic.response import COMPARED, EDGE, UNCOMPARED, Difference
+from analytic.response import COMPARED, EDGE, JUDGED, UNCOMPARED, Difference
 
 from .copies import near_copies
 from .events import at_contact
@@ -109,7 +109,7 @@ def compare(scene: Scene, response: Response, reference: Reference | None = None
 
 def differences(scene: Scene, reference: Reference, run: Response) -> tuple[Difference, ...]:
     """What a run has other than its reference; nothing where it cannot be compared."""
-    if reference.model is None or reference.comparable not in (COMPARED, EDGE):
+    if reference.model is None or reference.comparable not in JUDGED:
         return ()
     known = (reference.model, *reference.copies)
     return (*_numbers(scene, known, run), *_impact_differences(scene, reference.model, run, reference.until))

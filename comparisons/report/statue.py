@@ -13,7 +13,7 @@ from analytic.limits import scene_warnings
 from analytic.margins import SPAN, TILT, limit_states, margins
 from analytic.nearby import SHARE, cliffs, nearby
 from analytic.records.folder import reversed_sign, same_reversed
-from analytic.response import COMPARED, EDGE, about_record
+from analytic.response import JUDGED, about_record
 
 from ..showing.motions import LIFTED, odds
 from ..showing.parts import number, signed
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
     from ..running.provenance import Result
 
-AGREE = (COMPARED, EDGE)  # where a run without differences agrees with the model
 WORST = ("stands", "rocks", "failed", "overturns")  # of a record's motions, from the best to the worst
 WORDS = {
     "stands": "does not lift",
@@ -243,7 +242,7 @@ def _engines(rows):
     engines = [row for row in rows if row["engine"] != "analytic"]
     if not engines:
         return "None was run."
-    agree = [row["engine"] for row in engines if row.get("comparable") in AGREE and not row.get("differences")]
+    agree = [row["engine"] for row in engines if row.get("comparable") in JUDGED and not row.get("differences")]
     sentences = [f"{listed(agree)} agree{'s' * (len(agree) == 1)} with the analytic model"] if agree else []
     for row in engines:
         if row["engine"] not in agree:

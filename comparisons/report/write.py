@@ -102,8 +102,8 @@ def write_page(
             references=equations.REFERENCES,
             provenance=_provenance(scenes, block),
             pages=listed,
-            ages=[f"{name} is {text}" for name, text in ((name, age(result)) for name, result in read.items()) if text]
-            + [one.wrong for one in stored if one.wrong],
+            ages=[f"{name} is {text}" for name, text in ((name, age(result)) for name, result in read.items()) if text],
+            damaged=[one.wrong.rstrip(".") for one in stored if one.wrong],
             files=[file for name in read for file in (name, name.replace(".json", ".npz"))],
         )
     )

@@ -92,7 +92,7 @@ def test_a_report_goes_on_beside_damaged_results(copy_of, studies, tmp_path):
         "tolerances": "its page fails (KeyError(",
     }.items():
         assert f"{name}.json cannot be shown: {words}" in pages[name]
-        assert f"{name}.json cannot be shown: {words}" in opening
+        assert f"Missing here: {name}.json cannot be shown: {words}" in opening
     assert {name for name, text in pages.items() if "cannot be shown" not in text} == {"runs", "stability"}
 
 
