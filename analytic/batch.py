@@ -6,18 +6,16 @@ import os
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
-from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from . import kernel, layout
 from .budget import STEPS, most_steps
-from .compiled import compiling, entry
+from .compiled import compiling
 from .decision import CAP_PERIODS, longest_duration
-from .kernel import integrate
-from .laws import Constants
-from .layout import Arrays, Ground, Parameters, Shaking
+from .kernel import ROW, SIZE, row_of
+from .layout import Shaking
 from .motion import PulseMotion, SampledMotion
 from .scene import Block, Scene
 from .solver import REST_RATE, TOLERANCE, ground, options, parameters
@@ -25,16 +23,11 @@ from .solver import REST_RATE, TOLERANCE, ground, options, parameters
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from .layout import Options
+    from .layout import Ground, Options
     from .motion import Motion
 
 # Chunks per worker: enough that a slow chunk does not leave the other cores idle.
 CHUNKS_PER_WORKER = 8
-
-# The parameters of a run as one entry of an array, by name.
-ROW = np.dtype([(name, float) for name in (*Parameters._fields[:-1], *Constants._fields)])
-tuple_of: Any = to_fixed_tuple
-SIZE, OWN, SHAKING = len(ROW.descr), len(Parameters._fields) - 1, len(Shaking._fields)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,17 +75,6 @@ class Outcomes:
         )
 
 
-@entry
-def _run_rows(rows, pulses, ground, upright, chosen, arrays, totals):
-    """Run each row of `ROW` under its own pulse; totals has a row each."""
-    P, work, impacts, uplifts, rests, history, _ = arrays
-    for i in range(rows.shape[0]):
-        numbers = tuple_of(rows[i], SIZE)
-        par = Parameters(*numbers[:OWN], Constants(*numbers[OWN:]))  # type: ignore[call-arg]  # of one length
-        own = Ground(ground.kind, ground.dt, ground.samples, None, Shaking(*tuple_of(pulses[i], SHAKING)))
-        integrate(par, own, upright, chosen, Arrays(P, work, impacts, uplifts, rests, history, totals[i]))
-
-
 def run_rows(
     rows: np.ndarray, pulses: np.ndarray, shaking: Ground, chosen: Options, workers: int | None = None
 ) -> np.ndarray:
@@ -102,13 +84,12 @@ def run_rows(
     The result does not depend on the number of workers (threads; the kernel holds no lock).
     """
     n = len(rows)
-    totals = np.zeros((n, layout.TOTALS))
+    totals = np.empty((n, layout.TOTALS))
     numbers = rows.view(float).reshape(n, SIZE)
     workers = workers or os.cpu_count() or 1
 
     def run(part):
-        ground, arrays = shaking._replace(upright=None), kernel.arrays()
-        _run_rows(numbers[part], pulses[part], ground, shaking.upright, chosen, arrays, totals[part])
+        kernel.run_rows(numbers[part], pulses[part], shaking, chosen, kernel.arrays(totals[part]))
 
     with compiling():
         run(slice(0, 1))  # compiled or loaded before threads start
@@ -121,11 +102,6 @@ def run_rows(
     with ThreadPoolExecutor(workers) as pool:
         list(pool.map(run, parts))
     return totals
-
-
-def row_of(par: Parameters) -> tuple[float, ...]:
-    """Parameters as an entry of an array of dtype `ROW`."""
-    return (*par[:-1], *par.constants)
 
 
 def _outcome_options(tolerance: float, rest_rate: float, steps: int, contact: bool = False) -> Options:
@@ -168,7 +144,7 @@ def simulate_many(
         shaking = ground(motion)
         key = motion.digest() if isinstance(motion, SampledMotion) else (shaking.kind, shaking.upright is None)
         groups.setdefault(key, []).append(index)
-    totals = np.zeros((len(scenes), layout.TOTALS))
+    totals = np.empty((len(scenes), layout.TOTALS))
     for members in groups.values():
         shakings = [ground(scenes[i].motion, factors[i]) for i in members]
         rows = np.array([row_of(parameters(scenes[i])) for i in members], dtype=ROW)

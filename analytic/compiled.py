@@ -2,7 +2,9 @@
 
 A function that compiled code alone calls is `inner`: without wrappers for Python and C, which take longer to compile
 than most functions themselves, and without counts of references to arrays, an atomic operation wherever one is passed
-on. So it may not make an array. One that Python calls is `entry`: kept on disk, see `_cache`.
+on. So it may not make an array. Nor is it optimised and made machine code on its own, as numba does with every function
+at every level of calls: its intermediate code is linked into the `entry` above it, which is optimised once, as a whole.
+An entry is a function that Python calls: kept on disk, see `_cache`.
 """
 
 import gc
@@ -10,11 +12,54 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from numba import njit
+from numba import _dynfunc, njit  # type: ignore[attr-defined]  # _dynfunc is of C
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler_machinery import register_pass
+from numba.core.typed_passes import NativeLowering
+
+
+class _Linked(JITCodeLibrary):
+    """Code of one function and what it calls, to be linked into its callers; never machine code."""
+
+    def finalize(self):
+        for library in dict.fromkeys(self._linking_libraries):
+            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _Lowering(NativeLowering):
+    """The last pass of numba's pipeline, without its call for machine code."""
+
+    _name = "inner_lowering"
+
+    def run_pass(self, state):
+        state.flags.no_compile = True
+        state.library = _Linked(state.targetctx.codegen(), state.func_id.func_qualname)
+        super().run_pass(state)
+        made = state["cr"]
+        # as numba does with machine code; callers find the function by this key, which nothing calls
+        where, name = made.fndesc.lookup_module(), made.fndesc.qualname
+        key = _dynfunc.make_function(where, name, "", 0, made.env, (state.library,))
+        state.targetctx.insert_user_function(key, made.fndesc, [state.library])
+        state["cr"] = made._replace(cfunc=key)
+        return True
+
+
+class _Inner(CompilerBase):
+    """numba's pipeline for compiled code, with `_Lowering`."""
+
+    def define_pipelines(self):
+        manager = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        manager.passes = [(_Lowering if each is NativeLowering else each, words) for each, words in manager.passes]
+        return [manager]
+
 
 # Without counts of references; no public option of numba, so a test sees to it that it is obeyed.
 _UNCOUNTED: dict[str, Any] = {"_nrt": False}
-_BARE: dict[str, Any] = {**_UNCOUNTED, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_BARE: dict[str, Any] = {**_UNCOUNTED, "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "pipeline_class": _Inner}
 
 
 def inner(function: Callable[..., Any]) -> Any:

@@ -6,13 +6,16 @@ the bearings' laws in laws, the events in events.py.
 """
 
 import math
+from typing import Any
 
 import numpy as np
+from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from . import layout as L
 from .compiled import entry, inner
 from .decision import peaks_are_final, will_not_overturn
 from .events import NEARLY_ELASTIC, land, settle
+from .laws import Constants
 from .polynomial import MAX_ORDER, SCRATCH, value
 from .readings import gravity_at, write_history
 from .steps import (
@@ -40,34 +43,67 @@ ROUNDING = 4e-16
 ONSET = 1e-9
 
 
-def arrays(capacity: int = 0, outputs: int = 0) -> L.Arrays:
-    """What a run writes to, with room for `capacity` events of a kind and `outputs` rows of history."""
+# The parameters of a run as one entry of an array, by name.
+ROW = np.dtype([(name, float) for name in (*L.Parameters._fields[:-1], *Constants._fields)])
+OWN, SIZE, SHAKING = len(L.Parameters._fields) - 1, len(ROW.descr), len(L.Shaking._fields)
+tuple_of: Any = to_fixed_tuple
+
+
+def row_of(par: L.Parameters) -> tuple[float, ...]:
+    """Parameters as an entry of an array of dtype `ROW`."""
+    return (*par[:-1], *par.constants)
+
+
+def arrays(totals: np.ndarray, capacity: int = 0, outputs: int = 0) -> L.Arrays:
+    """What runs write to, with room for `capacity` events of a kind and `outputs` rows of history.
+
+    totals : (n, TOTALS), a row of each run.
+    """
     workspace, scratch = np.zeros((L.ROWS, MAX_ORDER + 2)), np.empty(SCRATCH)
     events = np.empty((capacity, 4)), np.empty(capacity), np.empty(capacity)
-    return L.Arrays(workspace, scratch, *events, np.empty((outputs, 6)), np.zeros(L.TOTALS))
+    return L.Arrays(workspace, scratch, *events, np.empty((outputs, 6)), totals)
 
 
 def run(
     par: L.Parameters, ground: L.Ground, options: L.Options
-) -> tuple[np.ndarray, tuple[float, ...], np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Simulate; (totals by the slots of layout.py, end state, impacts, uplifts, rests, history).
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Simulate; (totals by the slots of layout.py, impacts, uplifts, rests, history).
 
-    end : (tilt, rate, x, v, z); impacts : (n, 4) time, rates before and after, base velocity jump; uplifts, rests :
-    (n,); history : (n, 6) at multiples of output_step: time, tilt, rate, x, v, F (empty if output_step is 0).
+    impacts : (n, 4) time, rates before and after, base velocity jump; uplifts, rests : (n,); history : (n, 6) at
+    multiples of output_step: time, tilt, rate, x, v, F (empty if output_step is 0).
     """
     outputs = int(math.floor(par.duration / options.output_step * (1 + 1e-14))) + 1 if options.output_step > 0 else 0
-    into = arrays(options.capacity if options.record else 0, outputs)
-    end, written = integrate(par, ground._replace(upright=None), ground.upright, options, into)
-    totals = into.totals
-    counts = [int(totals[slot]) for slot in (L.IMPACTS, L.UPLIFTS, L.RESTS)]
-    events = [rows[:count] for rows, count in zip((into.impacts, into.uplifts, into.rests), counts, strict=True)]
-    return totals, end, *events, into.history[:written]
+    into = arrays(np.empty((1, L.TOTALS)), options.capacity if options.record else 0, outputs)
+    run_rows(np.array([row_of(par)]), np.array([ground.shaking]), ground, options, into)
+    (totals,) = into.totals
+    counts = [int(totals[slot]) for slot in (L.IMPACTS, L.UPLIFTS, L.RESTS, L.WRITTEN)]
+    written = into.impacts, into.uplifts, into.rests, into.history
+    return totals, *(rows[:count] for rows, count in zip(written, counts, strict=True))
+
+
+def run_rows(rows: np.ndarray, pulses: np.ndarray, ground: L.Ground, options: L.Options, into: L.Arrays) -> None:
+    """Run each of `rows` under its own of `pulses` and the samples of `ground`.
+
+    rows : (n, SIZE), entries of `ROW`. pulses : (n, SHAKING). into : `arrays`; events and history are the last run's.
+    """
+    _run_rows(rows, pulses, ground._replace(upright=None), ground.upright, options, into)
+
+
+@entry
+def _run_rows(rows, pulses, ground, upright, options, into):
+    """upright : an argument of its own, see steps.py."""
+    P, work, impacts, uplifts, rests, history, totals = into
+    for i in range(rows.shape[0]):
+        numbers = tuple_of(rows[i], SIZE)
+        par = L.Parameters(*numbers[:OWN], Constants(*numbers[OWN:]))  # type: ignore[call-arg]  # of one length
+        own = L.Ground(ground.kind, ground.dt, ground.samples, None, L.Shaking(*tuple_of(pulses[i], SHAKING)))
+        _integrate(par, own, upright, options, L.Arrays(P, work, impacts, uplifts, rests, history, totals[i]))
 
 
 # Longer than other functions: two loops share some twenty variables of state.
-@entry
-def integrate(par, ground, upright, options, arrays):
-    """The run itself: (end state, rows of the history written). upright : an argument of its own, see steps.py."""
+@inner
+def _integrate(par, ground, upright, options, arrays):
+    """One run. upright : an argument of its own, see steps.py."""
     P, work, totals, shaking = arrays.P, arrays.work, arrays.totals, ground.shaking
     totals[:] = 0.0
     totals[L.UNSTABLE_TIME], totals[L.NORMAL] = 0.0 if abs(par.tilt) >= par.gamma else -1.0, 1.0
@@ -189,8 +225,9 @@ def integrate(par, ground, upright, options, arrays):
         totals[L.FRICTION], totals[L.NORMAL], totals[L.PEAK_ACCELERATION], peak_x, totals[L.FALL_TIME] = held
     totals[L.STATUS], totals[L.MODE], totals[L.TIME], totals[L.STEPS] = status, mode, t, steps
     totals[L.PEAK_TILT], totals[L.PEAK_X], totals[L.WILL_OVERTURN] = peak_tilt, peak_x, will_overturn
+    totals[L.END_TILT], totals[L.END_RATE], totals[L.WRITTEN] = tilt, rate, written
+    totals[L.END_X], totals[L.END_V], totals[L.END_Z] = base
     _conclude(par, shaking.end, L.Body(s, tilt, rate), base, totals)
-    return (tilt, rate, base.x, base.v, base.z), written
 
 
 @inner

@@ -249,7 +249,8 @@ def versions() -> dict[str, str]:
 def _response(
     scene: Scene, par: Parameters, totals: np.ndarray, result: Any, cpu: float, settings: dict[str, Any], history: bool
 ) -> Response:
-    (tilt, rate, x, v, z), impacts, uplifts, rests, table = result
+    impacts, uplifts, rests, table = result
+    tilt, rate, x, v, z = totals[layout.END_TILT : layout.END_Z + 1].tolist()
     law = BearingLaw.of(scene.bearings)
     end = State(float(totals[layout.TIME]), tilt, rate, x, v, law.force(x, z, v))
     gamma, status = scene.block.slenderness, int(totals[layout.STATUS])

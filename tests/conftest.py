@@ -14,13 +14,13 @@ settings.load_profile("ci" if os.environ.get("CI") else "default")
 
 PROJECT = Path(__file__).parents[1]
 
-# The kernel is compiled without and with vertical motion, and once more over batches: two parts of like length.
+# The kernel is compiled without and with vertical motion.
 SCENE = """
-from analytic import PulseMotion, load_scene, simulate, simulate_many
+from analytic import PulseMotion, load_scene, simulate
 scene = load_scene("caryatid-rigid").with_(motion=PulseMotion("one-sine", 1.0, 60.0), duration=0.1)
 """
 COMPILED = (
-    SCENE + "simulate(scene), simulate_many([scene])",
+    SCENE + "simulate(scene)",
     SCENE + "simulate(scene.with_(motion=PulseMotion('one-sine', 1.0, 60.0, vertical=scene.motion)))",
 )
 

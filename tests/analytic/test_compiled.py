@@ -9,7 +9,7 @@ from numba import njit
 
 from analytic import kernel
 from analytic.compiled import compiling, entry, inner
-from analytic.layout import ROWS
+from analytic.layout import ROWS, TOTALS
 
 
 def native(function):
@@ -61,6 +61,29 @@ def test_the_collector_is_as_before_after_compiling():
         gc.enable()
 
 
+def test_an_inner_function_is_no_machine_code_but_in_its_entry():
+    """numba would optimise and emit it at every level of calls, for some half of the time."""
+
+    @inner
+    def twice(x):
+        return 2 * x
+
+    @inner
+    def four_times(x):
+        return twice(twice(x))
+
+    @njit
+    def called(x):
+        return four_times(x) + 1
+
+    assert called(2.0) == 9.0
+    linked = [next(iter(function.overloads.values())) for function in (twice, four_times)]
+    engine = linked[0].library.codegen._engine
+    assert [engine.is_symbol_defined(one.fndesc.mangled_name) for one in linked] == [False, False]
+    (whole,) = called.overloads.values()
+    assert engine.is_symbol_defined(whole.fndesc.mangled_name)
+
+
 def test_the_kernel_keeps_to_the_arrays_it_is_given():
-    arrays = kernel.arrays(capacity=2, outputs=3)
+    arrays = kernel.arrays(np.empty((1, TOTALS)), capacity=2, outputs=3)
     assert arrays.P.shape[0] == ROWS and [len(rows) for rows in arrays[2:6]] == [2, 2, 2, 3]

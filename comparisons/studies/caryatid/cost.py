@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from analytic import PulseMotion, kernel, simulate
+from analytic import PulseMotion, kernel, layout, simulate
 from analytic.laws import NUMBERS
 from analytic.laws.algebraic import after_travel, on_branch, virtual_travel
 from analytic.motion import Motion
@@ -72,8 +72,8 @@ def _kernel(scene, tolerance, repeats):
     run = parameters(scene), ground(scene.motion), options(tolerance)
     begin = time.process_time()
     for _ in range(repeats):
-        _, state, *_ = kernel.run(*run)
-    return (time.process_time() - begin) / repeats, float(state[2])
+        totals, *_ = kernel.run(*run)
+    return (time.process_time() - begin) / repeats, float(totals[layout.END_X])
 
 
 @njit  # no cache: numba would not see that a law has changed

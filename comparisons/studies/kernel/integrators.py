@@ -33,8 +33,8 @@ def kernel_run(problem: Problem, tolerance: float) -> Callable[[], tuple[float, 
     arguments = parameters(scene), ground(scene.motion), chosen
 
     def run():
-        totals, end, *_, history = kernel.run(*arguments)
-        return float(history[1, 1] if inside else end[0]), int(totals[layout.IMPACTS])
+        totals, *_, history = kernel.run(*arguments)
+        return float(history[1, 1] if inside else totals[layout.END_TILT]), int(totals[layout.IMPACTS])
 
     return run
 
