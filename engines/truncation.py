@@ -25,14 +25,15 @@ def finite_part(trace: Trace, failure: Failure | None) -> tuple[Trace | None, Fa
         finite &= np.isfinite(getattr(trace, name))
     if trace.centre is not None:
         finite &= np.isfinite(trace.centre).all(axis=1)
-    count = len(finite) if finite.all() else int(np.argmin(finite))
-    last = last_state(trace, count - 1) if count else None
-    if count < len(finite):
-        first = Failure("the state is no longer finite", f"at step {count}, t = {trace.time[count]:.9g} s")
-        failure = failure or first
-    if failure is not None and failure.last_state is None:
-        failure = Failure(failure.reason, failure.message, last)
-    return (trace.upto(count) if count >= 2 else None), failure
+    whole = bool(finite.all())
+    count = len(finite) if whole else int(np.argmin(finite))
+    if not whole:
+        failure = failure or Failure("the state is no longer finite", f"at step {count}, t = {trace.time[count]:.9g} s")
+    if failure is not None and failure.last_state is None and count:
+        failure = replace(failure, last_state=last_state(trace, count - 1))
+    if count < 2:
+        return None, failure
+    return trace if whole else trace.upto(count), failure
 
 
 def upto_overturning(scene: Scene, trace: Trace, ended: str | None) -> tuple[Trace, float | None]:
