@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -144,7 +143,12 @@ def scan_bearings(
     columns = np.geomspace(*periods, number + 1)
     shape = len(dampings), len(columns)
     scan = BearingScan(columns, dampings, np.full(shape, np.nan), np.full(shape, np.nan), designs)
-    run = partial(_fill, scan, scene, motions, stroke, tilt, workers, progress)
+
+    def run(wanted):
+        at = [scene.with_(bearings=softened(designs[i], columns[k]), duration=None) for i, k in np.argwhere(wanted)]
+        demand, moved = _worst(at, motions, tilt, workers, progress)
+        scan.demand[wanted], scan.stroke[wanted] = np.maximum(demand, moved / stroke), moved
+
     coarse = np.zeros(shape, dtype=bool)
     coarse[::COARSE, ::COARSE] = True
     run(coarse)
@@ -152,20 +156,18 @@ def scan_bearings(
     return replace(scan, demand=np.where(np.isnan(scan.stroke), _between(scan.demand), scan.demand))
 
 
-def _fill(scan, scene, motions, stroke, tilt, workers, progress, wanted):
-    """Run the nodes wanted and put what the worst motion does into the arrays of the scan."""
-    places = np.argwhere(wanted)
-    scenes = [scene.with_(bearings=softened(scan.designs[i], scan.periods[k]), duration=None) for i, k in places]
-    demand, moved, done = np.zeros(len(places)), np.zeros(len(places)), 0
+def _worst(scenes, motions, tilt, workers, progress):
+    """(demand, largest displacement of the base [m]) of each scene, of the motion that is worst for it."""
+    demand, moved, done = np.zeros(len(scenes)), np.zeros(len(scenes)), 0
     for motion in motions:
-        for part in np.array_split(np.arange(len(places)), 1 + len(places) // CHUNK):
+        for part in np.array_split(np.arange(len(scenes)), 1 + len(scenes) // CHUNK):
             found = simulate_many([scenes[j].with_(motion=motion) for j in part], contact=True, workers=workers)
             moved[part] = np.maximum(moved[part], found.peak_base_displacement)
-            demand[part] = np.maximum(demand[part], _lift(found, scene.block.slenderness, tilt))
+            demand[part] = np.maximum(demand[part], _lift(found, scenes[0].block.slenderness, tilt))
             done += len(part)
             if progress:
-                progress(done, len(places) * len(motions))
-    scan.demand[wanted], scan.stroke[wanted] = np.maximum(demand, moved / stroke), moved
+                progress(done, len(scenes) * len(motions))
+    return demand, moved
 
 
 def _lift(found: Outcomes, slenderness: float, tilt: float) -> np.ndarray:
