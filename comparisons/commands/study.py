@@ -41,6 +41,14 @@ Scheduler = Annotated[
     ),
 ]
 EVERY = "all"
+Into = Annotated[
+    str | None,
+    typer.Option(
+        metavar="FILE",
+        help="Run the engines of --engine alone, with the options that FILE was computed with, and put their rows into "
+        "that result: in place of theirs, or beside those of others.",
+    ),
+]
 Replot = Annotated[str | None, typer.Option(metavar="FILE", help="Run nothing, show this result file again.")]
 
 Check = Annotated[
@@ -61,25 +69,18 @@ Seed = Annotated[
 ]
 
 
-def _options(function):
-    """The keyword-only parameters of a plan; annotations that are kept as text stand for what they do where it is."""
-    for parameter in inspect.signature(function).parameters.values():
-        if parameter.kind is inspect.Parameter.KEYWORD_ONLY:
-            kind = parameter.annotation
-            known = eval(kind, function.__globals__) if isinstance(kind, str) else kind
-            yield parameter.replace(annotation=known)
-
-
 def command_of(study: Study) -> Callable[..., None]:
     """A function that Typer makes the study's command of."""
-    asked = {parameter.name: parameter for parameter in _options(study.plan)}
+    asked = study.options()
 
     def command(
+        context: typer.Context,
         quick: Quick = False,
         output: Output = None,
         engine: Engines = None,
         workers: Workers = None,
         scheduler: Scheduler = None,
+        into: Into = None,
         replot: Replot = None,
         check: Check = None,
         write: Write = False,
@@ -93,9 +94,9 @@ def command_of(study: Study) -> Callable[..., None]:
         from ..running.study import compute
 
         if check is not None:
-            if quick or engine or scheduler or replot:
+            if quick or engine or scheduler or into or replot:
                 raise SettingError(
-                    "--check: takes a result as it is; leave --quick, --engine, --scheduler, --replot out"
+                    "--check: takes a result as it is; leave --quick, --engine, --scheduler, --into, --replot out"
                 )
             return _check(study.name, output, check, seed, write, workers)
         if write:
@@ -106,16 +107,18 @@ def command_of(study: Study) -> Callable[..., None]:
             raise SettingError(f"--seed {seed}: belongs to --check; this study draws nothing by a seed")
         folder = f"{study.name}-study" if output is None else output
         check_folder(folder)
-        if replot is not None:
+        if replot is not None and into is None:
             print(write_study(study, replot, output)[0])
             return
         problems = []
         if scheduler is not None and workers is not None:
             raise SettingError("--workers: are those of --scheduler; give one of the two")
-        place: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
+        if into is not None:
+            options = _given(context, options, into, engine)
+        place: dict[str, Any] = {"workers": workers, "scheduler": scheduler, "into": into}
         for path in compute(study, folder, engines=engine or None, quick=quick, **place, **options):
             with spinner(f"{path.name}: page"):
-                file, page = write_study(study, path)
+                file, page = write_study(study, path, None if into is None else folder)
             print(path, file, sep="\n")
             print(page.title, *page.text, sep="\n", file=sys.stderr)
             problems += study.problems(read_result(path))
@@ -131,6 +134,13 @@ def command_of(study: Study) -> Callable[..., None]:
     command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
     command.__doc__ = f"{study.question}\n\nExample: rocking study {study.name} --quick"
     return command
+
+
+def _given(context, options, into, engine):
+    """Of the plan's options those that the user gives: a default is not meant to contradict the file."""
+    if not engine or context.params["replot"] is not None:
+        raise SettingError(f"--into {into}: name the engines to be run by --engine, and leave --replot out")
+    return {name: value for name, value in options.items() if context.get_parameter_source(name).name != "DEFAULT"}
 
 
 def _check(name, output, number, seed, write, workers):

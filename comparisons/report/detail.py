@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup, escape
 
+from ..running.age import age
 from ..running.files import write_all
-from ..running.provenance import ResultError, age
+from ..running.provenance import ResultError
 from ..running.readable import readable
 from ..showing import diagrams
 from ..showing.charts import STYLE, colour, key_of

@@ -14,6 +14,7 @@ from xml.etree import ElementTree
 
 from engines import ENGINES
 
+from ..running.age import by_engine, date_of
 from ..running.files import write, write_all
 from ..running.provenance import PROJECT_FOLDER, RESULTS
 from ..showing.charts import alone
@@ -57,13 +58,18 @@ def origins(results: Mapping[str, Result]) -> str:
     rows = [["result", "computed", "commit", "processor, cores, memory", "engines", "runs that held when done again"]]
     rows += [["---"] * len(rows[0])]
     for name, result in results.items():
-        origin, machine = result.provenance, result.provenance["machine"]
+        origin = result.provenance
         engines = sorted({row["engine"] for row in result.rows if row.get("engine") in ENGINES})
         last = origin.get("check")
-        where = f"{machine['processor']}, {machine['logical_cores']}, {machine['memory_gib']:g} GiB"
         held = f"{last['held']} of {last['runs']}, {last['date']}" if last else "none"
-        rows.append([f"`{name}`", origin["time"][:10], commit_of(origin), where, ", ".join(engines) or "none", held])
+        told = (by_engine(origin, words) for words in (date_of, commit_of, _machine))
+        rows.append([f"`{name}`", *told, ", ".join(engines) or "none", held])
     return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+
+
+def _machine(origin):
+    machine = origin["machine"]
+    return f"{machine['processor']}, {machine['logical_cores']}, {machine['memory_gib']:g} GiB"
 
 
 def with_findings(readme: str, words: str) -> str:

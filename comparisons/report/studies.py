@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from ..running.provenance import RESULTS, ResultError, age, last_check
+from ..running.age import age, by_engine, date_of, last_check
+from ..running.provenance import RESULTS, ResultError
 from ..running.readable import readable
 from ..showing.parts import Judgement, Section
 from ..studies import StudyBroken, get_study, study_names
@@ -63,11 +64,13 @@ def variants_of(stored: Iterable[Stored], *more: Mapping[str, Any]) -> list[Mapp
 
 
 def origin_of(result: Result) -> str:
-    """Date, commit, machine, versions and the last check, in one line."""
-    origin = result.provenance
-    packages = [f"{name} {version}" for name, version in origin["packages"].items() if version]
-    first = (origin["time"][:10], f"commit {commit_of(origin)}", origin["machine"]["processor"])
-    return ", ".join((*first, *packages)) + (f"; {last}" if (last := last_check(result)) else "")
+    """Date, commit, machine, versions and the last check, in one line; of engines run later than the rest, theirs."""
+
+    def words(origin):
+        packages = [f"{name} {version}" for name, version in origin["packages"].items() if version]
+        return ", ".join((date_of(origin), f"commit {commit_of(origin)}", origin["machine"]["processor"], *packages))
+
+    return "; ".join(filter(None, (by_engine(result.provenance, words), last_check(result))))
 
 
 def commit_of(origin: Mapping[str, Any]) -> str:

@@ -14,8 +14,9 @@ from markupsafe import Markup
 
 from engines.statue_range import RANGE, in_words
 
+from ..running.age import age
 from ..running.files import write_all
-from ..running.provenance import PACKAGES, RESULTS, age, read_result
+from ..running.provenance import PACKAGES, RESULTS, read_result
 from ..showing import diagrams
 from ..showing.parts import Section, Table
 from ..showing.wording import TRUSTED, USABLE

@@ -23,7 +23,8 @@ from .run_sample import case_of, outcome_of
 from .sweep import run_sweep
 
 RELATIVE, ABSOLUTE = 1e-9, 1e-12  # numbers this near are equal: another processor rounds otherwise
-NOT_COMPARED = ("cpu_seconds", "traced_bytes", "resident_bytes", "versions")  # costs, and what they were paid with
+NOT_COMPARED = ("traced_bytes", "resident_bytes", "versions")  # costs, and what they were paid with,
+CPU = "cpu_"  # and all that begins so
 SHOWN = 3  # differences named of a run
 
 
@@ -139,21 +140,21 @@ def _differ(run: Mapping[str, Any], now: Any) -> str | None:
         return f"{_named(run)}: {now}"
     if run["failure"] != now["failure"]:
         return f"{_named(run)}: {_state(run['failure'])} when stored, now {_state(now['failure'])}"
-    found = [each for part in ("digest", "values") for each in _differences(part, run[part], now[part])]
-    shown = "; ".join(f"{where}: stored {_short(then)}, now {_short(here)}" for where, then, here in found[:SHOWN])
+    found = [each for part in ("digest", "values") for each in differences(part, run[part], now[part])]
+    shown = "; ".join(f"{where}: stored {short(then)}, now {short(here)}" for where, then, here in found[:SHOWN])
     more = f"; and {len(found) - SHOWN} more" if len(found) > SHOWN else ""
     return f"{_named(run)}: {shown}{more}" if found else None
 
 
-def _differences(where: str, stored: Any, now: Any) -> Iterator[tuple[str, Any, Any]]:
+def differences(where: str, stored: Any, now: Any) -> Iterator[tuple[str, Any, Any]]:
     """(quantity, stored, now) of all that differs."""
     if isinstance(stored, dict) and isinstance(now, dict):
         for name in dict.fromkeys((*stored, *now)):
-            if name not in NOT_COMPARED:
-                yield from _differences(f"{where}.{name}", stored.get(name), now.get(name))
+            if name not in NOT_COMPARED and not name.startswith(CPU):
+                yield from differences(f"{where}.{name}", stored.get(name), now.get(name))
     elif isinstance(stored, list) and isinstance(now, list):
         for k, (one, other) in enumerate(zip_longest(stored, now)):
-            yield from _differences(f"{where}[{k}]", one, other)
+            yield from differences(f"{where}[{k}]", one, other)
     elif not _equal(stored, now):
         yield where.removeprefix("values."), stored, now
 
@@ -173,6 +174,7 @@ def _named(run):
     return ", ".join(filter(None, (run["engine"], run["variant"], run["scene"]["name"], own)))
 
 
-def _short(value):
+def short(value: object) -> str:
+    """A value as a sentence has it."""
     text = f"{value:.9g}" if isinstance(value, float) else str(value)
     return text if len(text) <= 80 else f"{text[:80]}..."

@@ -14,7 +14,8 @@ to write a study, from the first file to its page: `comparisons.studies`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Sequence
+import inspect
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING
@@ -78,7 +79,9 @@ class Study:
     are options of the command. shown_by: the module that shows it, imported only there: its ``page(result)`` gives the
     `comparisons.showing.parts.Page`, and its ``judgements(result)``, if it has them, rows of the report's first table.
     problems: result -> sentences that end the command with status 1. all_engines: whether all that are installed
-    take part where none is asked for.
+    take part where none is asked for. whole: why one engine's rows cannot be computed anew by themselves (`merge`); ""
+    where they can. indexed: {array: its column that says of which engine a row is, by the place in the settings'
+    "engines"}; other arrays of an engine bear its name.
     """
 
     name: str
@@ -87,6 +90,18 @@ class Study:
     shown_by: str = ""
     problems: Callable[[Result], list] = lambda result: []
     all_engines: bool = True
+    whole: str = ""
+    indexed: Mapping[str, int] = field(default_factory=dict)
+
+    def options(self) -> dict[str, inspect.Parameter]:
+        """The plan's options by name; annotations that are kept as text stand for what they do where it is."""
+        found = {}
+        for name, parameter in inspect.signature(self.plan).parameters.items():
+            if parameter.kind is inspect.Parameter.KEYWORD_ONLY:
+                kind = parameter.annotation
+                known = eval(kind, self.plan.__globals__) if isinstance(kind, str) else kind
+                found[name] = parameter.replace(annotation=known)
+        return found
 
     def page(self, result: Result) -> Page:
         """What is shown of a result."""

@@ -27,10 +27,9 @@ from engines import ENGINES
 from ..schemas.study import StudyResult
 from .files import PlaceError, waiting, write, write_pair
 from .readable import Mendable, readable
-from .sources import PROJECT, computes, digests_of_all, source_digests, version_of
+from .sources import source_digests, version_of
 
 SHORT = 80  # characters of a value in a message
-NAMED = 3  # modules that a sentence on a stale result names
 SCHEMA = StudyResult.model_fields["schema_"].default
 NO_DIGEST = "0" * 64  # until all is known that it is made of
 LARGEST = 2_000_000_000  # bytes of a result file, or of the arrays beside it
@@ -97,8 +96,12 @@ def machine() -> dict[str, Any]:
     }
 
 
-def write_result(
-    path: str | PathLike[str],
+def write_result(path: str | PathLike[str], *content: Any, modules: Iterable[str], **more: Any) -> Path:
+    """`save` what is `made_here`."""
+    return save(path, made_here(*content, modules=modules, **more))
+
+
+def made_here(
     kind: str,
     settings: Mapping[str, Any],
     rows: Sequence[Any],
@@ -108,23 +111,15 @@ def write_result(
     seed: object = None,
     runs: Sequence[Any] = (),
     run_count: int = 0,
-) -> Path:
-    """Write a result file: JSON at `path`, and the arrays, if any, beside it as ``.npz``.
+) -> Result:
+    """The `Result` of numbers computed here and now, made JSON-ready. modules, seed: see `provenance`."""
+    origin = json_ready(provenance(modules, seed))
+    own = [json_ready(each) for each in (settings, rows, runs)]
+    return Result(kind, own[0], own[1], origin, dict(arrays or {}), own[2], run_count)
 
-    Parameters
-    ----------
-    path : path
-        Ends in ``.json``.
-    kind : str
-        Which study.
-    settings : dict
-    rows : list of dict
-        JSON-ready after `json_ready`.
-    arrays : dict of ndarray, optional
-    modules, seed
-        See `provenance`.
-    runs, run_count
-        A sample of its runs (see `run_sample`), stored with the arrays, and how many there were in all.
+
+def save(path: str | PathLike[str], result: Result) -> Path:
+    """Write a result file: JSON at `path`, which ends in ``.json``, and the arrays, if any, beside it as ``.npz``.
 
     Raises
     ------
@@ -133,33 +128,31 @@ def write_result(
     PlaceError
         It cannot be written; a result that was there is there still.
     """
-    path = Path(path)
-    content = json_ready(
-        {
-            "schema": SCHEMA,
-            "digest": NO_DIGEST,
-            "kind": kind,
-            "provenance": provenance(modules, seed),
-            "settings": settings,
-            "arrays": None,
-            "runs": {"stored": len(runs), "total": run_count},
-            "rows": rows,
-        }
-    )
+    path, runs = Path(path), result.runs
+    content: dict[str, Any] = {
+        "schema": SCHEMA,
+        "digest": NO_DIGEST,
+        "kind": result.kind,
+        "provenance": result.provenance,
+        "settings": result.settings,
+        "arrays": None,
+        "runs": {"stored": len(runs), "total": result.run_count or 0},
+        "rows": result.rows,
+    }
     _check_form(path.name, content)
-    text, sample = json.dumps(content, allow_nan=False), json.dumps(json_ready(runs), allow_nan=False)
+    text, sample = json.dumps(content, allow_nan=False), json.dumps(runs, allow_nan=False)
     if any(root in each for root, _ in _roots() for each in (text, sample)):
         raise ResultError(
             f"{path.name}: the content names a folder of this machine; pass file names without "
             "folders, or messages through scrub()"
         )
     path.parent.mkdir(parents=True, exist_ok=True)
-    arrays = dict(arrays or {}) | ({RUNS: np.frombuffer(sample.encode(), np.uint8)} if runs else {})
+    arrays = result.arrays | ({RUNS: np.frombuffer(sample.encode(), np.uint8)} if runs else {})
     if not arrays:
         write(path, _layout(content))
         return path
     beside, data = path.with_suffix(".npz"), io.BytesIO()
-    np.savez_compressed(data, **arrays)  # type: ignore[arg-type]  # no array is called allow_pickle
+    np.savez_compressed(data, **arrays)  # no array is called allow_pickle
     content["arrays"] = {"file": beside.name, "digest": hashlib.sha256(data.getbuffer()).hexdigest()}
     write_pair(path, _layout(content), beside, data.getvalue())
     return path
@@ -226,7 +219,7 @@ def _check_form(name, content):
     if content.get("schema") != SCHEMA:
         origin = content.get("provenance")
         commit = origin.get("commit") if isinstance(origin, dict) else None
-        reader = f", the version {_at(commit)} reads it" if commit and isinstance(commit, str) else ""
+        reader = f", the version {at_commit(commit)} reads it" if commit and isinstance(commit, str) else ""
         schema = readable(repr(content.get("schema")), SHORT)
         raise ResultError(f"{name}: schema {schema}, this version reads {SCHEMA!r}{reader}; run the study again")
     try:
@@ -253,12 +246,6 @@ def record_check(path: Path, check: Mapping[str, Any]) -> None:
         raise ResultError(f"{check['held']} of {check['runs']} runs hold, but that is not recorded: {error}") from error
 
 
-def last_check(result: Result) -> str | None:
-    """In words when some of a result's runs were done again and how many held; None if never."""
-    last = result.provenance.get("check")
-    return last and f"last check: {last['date']}, {_at(last['commit'])}, {last['held']} of {last['runs']} runs hold"
-
-
 def _arrays(path, content):
     """{name: array} of the file beside a result file, {} where it has none."""
     if content["arrays"] is None:
@@ -278,39 +265,9 @@ def _beside(path, content):
     raise ResultError(f"{beside.name}: missing or not the one {path.name} was written with; run the study again")
 
 
-def age(result: Result) -> str | None:
-    """In words: None if code, shipped scenes and packages behind `result` are those here, else what has changed since.
-
-    Code counts wherever it has moved; comments, docstrings and packages that are not installed here do not.
-    """
-    words = "; ".join(filter(None, (_changed(result), _other_versions(result))))
-    return "; ".join(filter(None, (words, last_check(result)))) if words else None
-
-
-def _changed(result):
-    then = result.provenance["sources"]
-    packages = {*PROJECT, *(name.partition(".")[0] for name in then)}
-    here = {digest[:16] for digest in digests_of_all(packages)}
-    changed = [name for name, digest in then.items() if computes(name) and digest not in here]
-    if not changed:
-        return None
-    origin = _at(result.provenance["commit"])
-    others = f" and {len(changed) - NAMED} more" if len(changed) > NAMED else ""
-    return (
-        f"older than the code: computed on {result.provenance['time'][:10]} {origin}; since then changed: "
-        f"{', '.join(changed[:NAMED])}{others}"
-    )
-
-
-def _at(commit):
+def at_commit(commit: str | None) -> str:
+    """Where code stood, in words."""
     return f"at commit {commit[:7]}" if commit else "outside a checkout"
-
-
-def _other_versions(result):
-    then = result.provenance["packages"]
-    here = {name: version_of(name) for name, version in then.items() if version}
-    found = [f"{name} {then[name]} (here {own})" for name, own in here.items() if own and own != then[name]]
-    return f"computed with other versions than those here: {', '.join(found)}" if found else None
 
 
 def scrub(text: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+from collections import Counter
 from collections.abc import Iterable
 from contextlib import ExitStack
 from os import PathLike
@@ -15,9 +16,10 @@ from .cases import module_of
 from .cluster import Cluster
 from .executors import Processes, number_of
 from .files import check_folder
+from .merge import merged, opened, the_one
 from .plan import Batch, Computed, Request, Study
 from .progress import log, spinner, stdout_to_stderr
-from .provenance import write_result
+from .provenance import made_here, save
 from .run_sample import sample_of
 from .solving import named_engines
 from .sources import PROJECT, digests_of_all, source_digests
@@ -25,7 +27,7 @@ from .store import Store
 from .sweep import Row, run_sweep
 
 if TYPE_CHECKING:
-    pass
+    from .provenance import Result
 
 RUNS = "runs.jsonl"  # rows of single runs, beside the result
 SHOWN = 30  # runs from which on a batch shows its progress; a bisection has many small ones, what is timed takes long
@@ -40,6 +42,7 @@ def compute(
     workers: int | None = None,
     scheduler: str | None = None,
     progress: bool = True,
+    into: str | PathLike[str] | None = None,
     **options: Any,
 ) -> list[Path]:
     """Run a study's plan; returns the paths of its result files in `folder`, mostly one.
@@ -59,8 +62,10 @@ def compute(
         Address of a Dask scheduler whose workers do the runs, or "local:N". What is timed is done here all the same.
     progress : bool
         Show it on standard error.
+    into : path or None
+        A result file of the study, whose rows of the `engines` are replaced (`merge`), in place of files in `folder`.
     **options
-        Of the study's plan.
+        Of the study's plan; with `into` those that differ from their defaults there.
 
     Raises
     ------
@@ -76,6 +81,8 @@ def compute(
         The answer cannot be written as a result file.
     """
     check_folder(folder)
+    if into is not None:
+        old, quick, options = opened(study, into, quick, options)
     workers, folder = number_of(workers), Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     with ExitStack() as stack:
@@ -92,13 +99,22 @@ def compute(
         solvers = ("analytic", *asked)
         pool = Processes(workers, solvers) if scheduler is None else Cluster(scheduler, solvers)
         plan = study.plan(Request(asked, quick), **options)
-        return _carry_out(study, plan, folder, solvers, code, store, stack.enter_context(pool), progress)
+        keep = save if into is None else _keep
+        found, runs = _carry_out(study, plan, folder, solvers, code, store, stack.enter_context(pool), progress, keep)
+    if into is None:
+        return list(found)
+    return [save(into, merged(study, old, the_one(found, Path(into)), asked, runs))]
 
 
-def _carry_out(study, plan, folder, always, code, store, pool, progress):
-    """Run what the plan asks for and write what it finds; returns the paths written."""
+def _keep(path, result):
+    """What is to be merged is not written by itself."""
+
+
+def _carry_out(study, plan, folder, always, code, store, pool, progress, keep):
+    """Run what the plan asks for, and keep what it finds; ({path: result}, how many runs of each solver)."""
     done: list[tuple[Batch, Row]] = []
-    written, answer, ended = {}, None, False
+    found: dict[Path, Result] = {}
+    answer, ended = None, False
     solvers = dict.fromkeys(always)
     while not ended:
         try:
@@ -113,15 +129,16 @@ def _carry_out(study, plan, folder, always, code, store, pool, progress):
             edited = [name for name, digest in source_digests(modules).items() if digest not in code]
             settings = {**step.settings, "changed_while_running": edited}  # its numbers are of the code before
             origin: dict[str, Any] = dict(modules=modules, seed=step.seed, runs=sample_of(done), run_count=len(done))
-            written[path] = write_result(path, study.name, settings, step.rows, step.arrays, **origin)
+            found[path] = made_here(study.name, settings, step.rows, step.arrays, **origin)
+            keep(path, found[path])
             continue
         answer = _run(step, store, pool, progress)
         solvers.update(dict.fromkeys(case.solver for case in step.cases))
         done += [(step, row) for row in answer]
     if progress:
-        found = sum(row.reused for _, row in done)
-        log(f"{len(done) - found} runs done, {found} found in {folder.name}/{RUNS}")
-    return list(written)
+        reused = sum(row.reused for _, row in done)
+        log(f"{len(done) - reused} runs done, {reused} found in {folder.name}/{RUNS}")
+    return found, Counter(row.case.solver for _, row in done)
 
 
 def _leave_nothing_empty(folder):

@@ -32,9 +32,9 @@ class Checked(Part):
     held: int
 
 
-class Provenance(Part):
-    """Where the numbers come from. commit, dirty: of the checkout, and whether tracked files differed from it; null
-    outside one."""
+class Origin(Part):
+    """Where numbers come from. commit, dirty: of the checkout, and whether tracked files differed from it; null outside
+    one."""
 
     time: str = Field(description="UTC, ISO 8601")
     machine: Machine
@@ -43,8 +43,14 @@ class Provenance(Part):
     commit: str | None
     dirty: bool | None
     sources: dict[str, str] = Field(description="digests of the code that the numbers depend on, by module")
+
+
+class Provenance(Origin):
+    """Where a result comes from; engines: of those whose rows were computed later than the rest, where these do."""
+
     seed: int | list[int] | None = Field(description="of the random numbers used; null where none are")
     check: Checked | None = None
+    engines: dict[str, Origin] | None = None
 
 
 class Arrays(Part):
@@ -55,7 +61,8 @@ class Arrays(Part):
 
 
 class Runs(Part):
-    """How many single runs there were, and how many, drawn at random, are stored among the arrays (`runs.json`)."""
+    """How many single runs there were, and how many, drawn at random, are stored among the arrays (`runs.json`). An
+    engine run again counts as when it was first run."""
 
     stored: int
     total: int

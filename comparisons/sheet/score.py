@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field
 
+from ..running.age import by_engine, date_of
 from ..running.provenance import RESULTS, ResultError
 from ..schemas.form import Form, Part
 from ..showing.wording import TRUSTED
@@ -111,7 +112,7 @@ def stored_errors() -> tuple[dict[str, list[tuple[float, str]]], str]:
     for row in result.rows:
         if row["error"] is not None:
             table.setdefault(row["scene"], []).append((row["error"], f"{row['engine']}, {row['variant']}"))
-    when = f"{STORED}, computed on {result.provenance['time'][:10]}"
+    when = f"{STORED}, computed on {by_engine(result.provenance, date_of)}"
     return {name: sorted(rows) for name, rows in table.items()}, when
 
 

@@ -13,4 +13,5 @@ STUDY = Study(
     "The Caryatid paper: every equation, figure and table reproduced or corrected, and what it leaves out.",
     plan,
     f"{__name__}.page",
+    whole="its answer is several files, under a motion that they do not hold, with CPU times measured together",
 )

@@ -9,4 +9,5 @@ STUDY = Study(
     plan,
     f"{__name__}.page",
     all_engines=False,
+    whole="its CPU times are compared with each other, so they have to be measured together",
 )

@@ -8,4 +8,5 @@ STUDY = Study(
     "Overturning boundaries under pulses, on rigid ground and isolated, solver by solver.",
     plan,
     f"{__name__}.page",
+    indexed={"points": 2},
 )

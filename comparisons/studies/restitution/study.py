@@ -97,7 +97,7 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
         *_flight_damping(cells),
         *_failures(runs),
     ]
-    return Computed(_settings(grid, request.engines), [_short(row) for row in rows], arrays)
+    return Computed({"quick": request.quick, **_settings(grid, request.engines)}, [_short(row) for row in rows], arrays)
 
 
 def _grouped(runs, part, *tags):

@@ -42,6 +42,7 @@ def plan(request: Request) -> Plan:
         for run in runs
     ]
     settings = {
+        "quick": request.quick,
         "sheet": VERSION,
         "engines": request.engines,
         "scenes": {problem.name: problem.title for problem in PROBLEMS},

@@ -8,4 +8,5 @@ STUDY = Study(
     "Error and CPU time of the same runs: kernel, scipy, time stepping, Bouc-Wen, engines and variants.",
     plan,
     f"{__name__}.page",
+    whole="its CPU times are compared with each other, so they have to be measured together",
 )

@@ -9,4 +9,5 @@ STUDY = Study(
     plan,
     f"{__name__}.page",
     all_engines=False,
+    whole="its settings count the failed and undecided runs of all solvers together",
 )

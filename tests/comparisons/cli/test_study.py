@@ -64,6 +64,33 @@ def test_a_seed_is_the_plans_where_it_takes_one_and_else_belongs_to_a_check(rock
     assert "--seed" in rocking("study", "random-scenes", "--help")[1]
 
 
+def test_an_engine_is_run_into_a_result_with_the_options_of_that(rocking, monkeypatch, tmp_path):
+    def weighing(ask, *, mass: float = 1.0):
+        return Computed({"mass": mass}, [{"engine": name, "mass": mass} for name in ask.engines])
+        yield
+
+    monkeypatch.setattr(command, "get_study", lambda name: Study("weighs", "Asks?", weighing, __name__))
+    words = ("study", "restitution", "--output", tmp_path / "runs", "--engine")
+    assert rocking(*words, "pybullet", "--mass", "2")[0] == 0
+    path = shutil.copy(tmp_path / "runs" / "weighs.json", tmp_path / "weighs.json")
+    status, out, err = rocking(*words, "exudyn", "--into", path)  # the option's default does not count as given
+    assert status == 0 and out.split() == [str(path), str(tmp_path / "runs" / "weighs.html")], err
+    assert read_result(path).rows == [{"engine": name, "mass": 2.0} for name in ("pybullet", "exudyn")]
+    assert len(read_result(tmp_path / "runs" / "weighs.json").rows) == 1
+    for more, message in (
+        (("exudyn", "--mass", "1"), f"--mass 1.0: {path} was computed with 2.0; leave it out"),
+        (
+            ("exudyn", "--replot", path),
+            f"--into {path}: name the engines to be run by --engine, and leave --replot out",
+        ),
+        (("exudyn", "--check", "3"), "--check: takes a result as it is; leave --quick, --engine, --scheduler, --into,"),
+    ):
+        status, _, err = rocking(*words, *more, "--into", path)
+        assert status == 2 and err.startswith(f"Error: {message}")
+    status, _, err = rocking("study", "restitution", "--into", path)
+    assert status == 2 and "name the engines to be run by --engine" in err
+
+
 def page(result):
     """Of the studies above."""
     return Page("It asks", ())

@@ -13,9 +13,10 @@ from analytic.pairing import paired
 from comparisons.report.studies import origin_of
 from comparisons.running import check as module
 from comparisons.running import run_sample
+from comparisons.running.age import age, last_check
 from comparisons.running.check import check, check_all
 from comparisons.running.plan import Batch, Computed, Study
-from comparisons.running.provenance import ResultError, age, last_check, read_result, write_result
+from comparisons.running.provenance import ResultError, read_result, write_result
 from comparisons.running.run_sample import case_of, sample_of
 from comparisons.running.study import compute
 from comparisons.running.sweep import Case, Row
@@ -159,7 +160,7 @@ def test_few_long_motions_and_few_runs_are_stored():
     ],
 )
 def test_differences_are_found_in_their_place(stored, now, places):
-    assert [where for where, _, _ in module._differences("x", stored, now)] == places
+    assert [where for where, _, _ in module.differences("x", stored, now)] == places
 
 
 def test_runs_of_an_engine_that_is_not_installed_are_left_out_and_named(result, monkeypatch):

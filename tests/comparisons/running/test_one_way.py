@@ -14,7 +14,7 @@ ELSEWHERE = {
     ("comparisons/running/store.py", "_read", "truncate"): "the same",
     ("comparisons/running/executors.py", "_work", "open"): "what a worker prints, in a temporary folder",
     ("comparisons/running/solving.py", "scene_of", "tempfile.NamedTemporaryFile"): "temporary",
-    ("comparisons/running/provenance.py", "write_result", "numpy.savez_compressed"): "into memory",
+    ("comparisons/running/provenance.py", "save", "numpy.savez_compressed"): "into memory",
     ("comparisons/report/histories.py", "__call__", "numpy.savez"): "into memory",
     ("comparisons/showing/plots.py", "picture", "savefig"): "into memory",
     ("comparisons/lessons/drawing.py", "svg", "savefig"): "into memory",

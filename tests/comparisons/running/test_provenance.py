@@ -12,10 +12,10 @@ import pytest
 from analytic.scene_file import SHIPPED
 from comparisons.running import provenance as module
 from comparisons.running import sources
+from comparisons.running.age import age
 from comparisons.running.provenance import (
     RESULTS,
     ResultError,
-    age,
     json_ready,
     provenance,
     read_result,
