@@ -57,8 +57,8 @@ def opened(
     asked = {"quick": bool(old.settings.get("quick")), **stored}
     for name, value in {**({"quick": True} if quick else {}), **options}.items():
         if value is not None and name in asked and value != asked[name]:
-            given, known = ("--quick", "in full") if name == "quick" else (f"--{name} {value}", f"with {asked[name]}")
-            raise SettingError(f"{given}: {path} was computed {known}; leave it out")
+            words = ("--quick", "in full") if name == "quick" else (f"--{name} {value}", f"with {asked[name]}")
+            raise SettingError(f"{words[0]}: {path} was computed {words[1]}; leave it out")
     return old, asked.pop("quick"), {**options, **asked}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
 import sys
 import threading
@@ -11,24 +12,51 @@ from collections.abc import Callable, Iterator
 
 from .readable import readable
 
+COMPILING = "compiling the analytic model, once on this machine"
 PATIENCE = 2.0  # s that compiled functions may take to load, without a word
 SHOWN = 60  # characters of what is under way
 
 
-def compile_kernels(vertical: bool = False) -> None:
+def compile_kernels(vertical: bool = False, many: bool = False) -> None:
     """`analytic.solver.compile_kernels` before a clock starts; shown where it takes a while.
 
-    vertical : also for motions with a vertical component.
+    vertical : also for motions with a vertical component. many : also for many scenes at once.
     """
     from analytic import solver
 
-    words = "compiling the analytic model: some ten seconds, once on this machine"
+    with compiling():
+        solver.compile_kernels(vertical)
+        if many:
+            _compile_many()
+
+
+@functools.cache
+def _compile_many():
+    from analytic import Block, Scene, simulate_many
+
+    simulate_many([Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.2), duration=1e-3)], workers=1)
+
+
+@contextlib.contextmanager
+def compiling() -> Iterator[None]:
+    """Shows how many functions of the analytic model are compiled so far inside: a bar, or a line that it takes a while
+    where that is no terminal. Nothing where they are found on the disk."""
+    from .compiled import Counted
+
+    counted = Counted()
     with contextlib.ExitStack() as shown:
-        show = (lambda: shown.enter_context(spinner(words))) if sys.stderr.isatty() else (lambda: say(words))
+
+        def show():
+            if sys.stderr.isatty():
+                counted.show(shown.enter_context(bar(COMPILING, counted.known)))
+            else:
+                say(f"{COMPILING}: some ten seconds")
+
         telling = threading.Timer(PATIENCE, show)
         telling.start()
         try:
-            solver.compile_kernels(vertical)
+            with counted:
+                yield
         finally:
             telling.cancel()
             telling.join()
@@ -58,14 +86,19 @@ def spinner(text: str) -> Iterator[Callable[[str], None]]:
 
 
 @contextlib.contextmanager
-def bar(text: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar on standard error that is told (done, known of) while something runs; nothing where that is no terminal."""
-    from rich.console import Console
-    from rich.progress import Progress
+def bar(text: str, functions: int | None = None) -> Iterator[Callable[[int, int], None]]:
+    """A bar on standard error that is told (done, known of) while something runs; nothing where that is no terminal.
 
-    console = Console(stderr=True)
-    with Progress(transient=True, console=console, disable=not console.is_terminal) as progress:
-        task = progress.add_task(readable(text, SHOWN), total=None)
+    functions: about how many are to be compiled; they are counted behind the bar.
+    """
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    console, count = Console(stderr=True), TextColumn("{task.completed:.0f} of about {task.total:.0f} functions")
+    counting = TextColumn("{task.description}", markup=False), BarColumn(), count, TimeElapsedColumn()
+    columns = counting if functions else Progress.get_default_columns()
+    with Progress(*columns, transient=True, console=console, disable=not console.is_terminal) as progress:
+        task = progress.add_task(readable(text, SHOWN), total=functions)
         yield lambda done, total: progress.update(task, completed=done, total=total)
 
 

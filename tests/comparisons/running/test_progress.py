@@ -1,0 +1,83 @@
+"""What is said while the analytic model is compiled: how many functions so far, of about how many."""
+
+import contextlib
+import os
+import re
+import subprocess
+import sys
+import time
+
+import pytest
+from numba import njit
+
+from comparisons.running import progress
+from comparisons.running.compiled import Counted
+from comparisons.running.provenance import PROJECT_FOLDER
+
+COUNTED = re.compile(r"(\d+) of about (\d+) functions")
+
+
+def compiled(name, module):
+    """Compile a function of this name and module, and return what it gives."""
+
+    def function(x):
+        return x + 1
+
+    function.__name__, function.__module__ = name, module
+    return njit(function)(1)
+
+
+@pytest.fixture
+def told(monkeypatch):
+    """What a bar is told, from the start on, on a terminal."""
+    found = []
+
+    @contextlib.contextmanager
+    def bar(text, functions):
+        found.append((text, functions))
+        yield lambda done, known: found.append((done, known))
+
+    monkeypatch.setattr(progress, "PATIENCE", 0.0)
+    monkeypatch.setattr(progress, "bar", bar)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    return found
+
+
+def test_functions_of_the_model_are_counted_as_they_are_compiled(told):
+    known = Counted().known
+    with progress.compiling():
+        while not told:
+            time.sleep(0.01)  # the bar is shown from another thread
+        compiled("first", "analytic.made")
+        compiled("other", "somewhere.analytic")
+        compiled("second", "analytic.made")
+    assert told[0] == (progress.COMPILING, known) and told[1:] == [(0, known), *((k, max(k, known)) for k in (1, 2))]
+    compiled("third", "analytic.made")  # nobody listens any more
+    assert len(told) == 4
+
+
+def test_the_bar_shows_the_count_and_goes_beyond_what_was_known(capsys, monkeypatch):
+    monkeypatch.setenv("FORCE_COLOR", "1")  # rich takes standard error for a terminal
+    with progress.bar(progress.COMPILING, 3) as tell:
+        tell(2, 3)
+    assert "2 of about 3 functions" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+def test_the_first_run_on_a_machine_counts_what_it_compiles(tmp_path):
+    pty = pytest.importorskip("pty")
+    whole, terminal = pty.openpty()
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "TERM": "xterm", "COLUMNS": "120"}
+    words = [sys.executable, "-m", "comparisons", "run", "free-rocking-rigid"]
+    with subprocess.Popen(words, cwd=PROJECT_FOLDER, env=environment, stdout=terminal, stderr=terminal) as run:
+        os.close(terminal)
+        text = ""
+        with contextlib.suppress(OSError):  # the terminal ends with the run
+            while data := os.read(whole, 65536):
+                text += data.decode(errors="replace")
+    assert run.returncode == 0
+    found = [(int(done), int(known)) for done, known in COUNTED.findall(re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", text))]
+    counts = [done for done, _ in found]
+    assert len(set(counts)) > 20 and counts == sorted(counts)
+    assert abs(found[0][1] / counts[-1] - 1) < 0.1  # about
