@@ -14,6 +14,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from markupsafe import Markup
@@ -44,6 +45,26 @@ SHAPES = {
     "x": "M-4-4L4 4M4-4L-4 4",
     "X": "M-4.5-2.5l2-2 2.5 2.5 2.5-2.5 2 2-2.5 2.5 2.5 2.5-2 2-2.5-2.5-2.5 2.5-2-2 2.5-2.5z",
 }
+
+
+class Look(NamedTuple):
+    """How one of several curves of one solver is drawn. tone: its colour."""
+
+    tone: str
+    dashes: str
+    mark: str
+
+
+# None of an engine: Tol's "bright", which the colour-blind tell apart, its yellow and cyan darkened; in print
+# dashes and marks tell. Twelve curves differ; no chart can show more.
+TONES = ("#4477AA", "#EE6677", "#228833", "#AA3377", "#B8A42E", "#3FA7C4")
+
+
+def curve(rank: int) -> Look:
+    """The look of the first, second, ... curve of a solver that is alone in its chart."""
+    dashes, marks = list(DASHES.values()), [mark for mark in SHAPES if mark != "x"]
+    turn, place = divmod(rank, len(TONES))
+    return Look(_inked(TONES[place]), dashes[(turn + rank) % len(dashes)], marks[rank % len(marks)])
 
 
 @dataclass(frozen=True)
@@ -106,7 +127,7 @@ class Chart:
         self.left, self.right = left, WIDTH - right
         self.top, self.bottom = (30 if title else 12) + head, height - (foot or (46 if x.label else 28))
         self.height, self.parts, self.over = height, list[str](), list[str]()
-        self.ends: list[tuple[float, str, str, str]] = []
+        self.ends: list[tuple[float, str, str]] = []
         self.taken, self.moved = list[tuple[float, float]](), False  # places of marks; whether one gave way
 
     def at(self, xs: Sequence[float] | np.ndarray, ys: Sequence[float] | np.ndarray) -> np.ndarray:
@@ -122,8 +143,9 @@ class Chart:
         *,
         grey: bool = False,
         tone: str = "",
+        look: Look | None = None,
     ) -> None:
-        """A line of one solver, or in a colour `tone`; points that are not finite part it."""
+        """A line of one solver, or in a colour `tone`; look: of one curve of several. Points not finite part it."""
         places = self.at(xs, ys).round(1)
         new = np.append(True, (np.diff(places, axis=0) != 0).any(axis=1))[: len(places)]
         places = places[new]
@@ -131,7 +153,7 @@ class Chart:
         begins = sound & ~np.append(False, sound)[:-1]
         pairs = zip(places[sound], begins[sound], strict=True)
         path = "".join(f"{'M' if begin else 'L'}{x:g} {y:g}" for (x, y), begin in pairs)
-        self.parts.append(f'{_group(who, grey, tone)}<path class="line" d="{path}"/></g>')
+        self.parts.append(f'{_group(who, grey, tone, look)}<path class="line" d="{path}"/></g>')
 
     def dots(
         self,
@@ -146,18 +168,19 @@ class Chart:
         mark: str | None = None,
         tone: str = "",
         apart: bool = False,
+        look: Look | None = None,
     ) -> None:
         """Marks of one solver; says: what each tells under the pointer. apart: one that would cover another stands
-        beside it.
+        beside it. look: of one curve of several.
         """
-        shape, kind = _mark(who, filled, mark), "dot" if filled else "dot open"
+        shape, kind = _mark(who, filled, look.mark if look else mark), "dot" if filled else "dot open"
         told = says or [""] * len(xs)
         marks = []
         for (x, y), words in zip(self.at(xs, ys), told, strict=True):
             if self.left - 1 <= x <= self.right + 1 and self.top - 1 <= y <= self.bottom + 1:
                 place = self._free(x, y) if apart else x
                 marks.append(f'<path class="{kind}" transform="{_placed(place, y, small)}" d="{shape}"{_told(words)}/>')
-        self.over.append(f"{_group(who, grey, tone)}{''.join(marks)}</g>")
+        self.over.append(f"{_group(who, grey, tone, look)}{''.join(marks)}</g>")
 
     def reach(self, xs: Sequence[float], ys: Sequence[float], lows: Sequence[float], highs: Sequence[float],
               who: str = "", *, along: str = "y", grey: bool = False, tone: str = "") -> None:  # fmt: skip
@@ -196,9 +219,9 @@ class Chart:
             f'<text x="{place:.1f}" y="{height}" class="soft" text-anchor="{anchor}">{escape(words)}</text>'
         )
 
-    def label(self, y: float, text: str, who: str = "", tone: str = "") -> None:
+    def label(self, y: float, text: str, who: str = "", tone: str = "", look: Look | None = None) -> None:
         """Name of a line, in the right margin at the height where it ends."""
-        self.ends.append((float(self.at([self.x.low], [y])[0][1]), text, who, tone))
+        self.ends.append((float(self.at([self.x.low], [y])[0][1]), text, _group(who, False, tone, look)))
 
     def cell(self, x: float, y: float, kind: str, sign: str, says: str) -> None:
         """A square of a matrix about (x, y), values one apart, of a class, with a sign in it."""
@@ -248,11 +271,16 @@ class Chart:
     def _labels(self):
         """(height, name, beginning of its group) of names of lines, pushed apart."""
         placed, last = [], -math.inf
-        for y, text, who, tone in sorted(self.ends):
+        for y, text, opening in sorted(self.ends):
             last = max(y, last + LETTER + 2)
-            placed.append((last, text, _group(who, False, tone)))
-        over = max(0.0, last - self.bottom)
-        return [(y - over, text, opening) for y, text, opening in placed]
+            placed.append((last, text, opening))
+        lowest: float = (
+            self.bottom
+        )  # those that this pushes below the panel are pushed back, no farther than they must be
+        for place, (y, text, opening) in reversed(list(enumerate(placed))):
+            placed[place] = min(y, lowest), text, opening
+            lowest = placed[place][0] - LETTER - 2
+        return placed
 
 
 def slanting(words: Sequence[str], width: float) -> bool:
@@ -269,8 +297,12 @@ def colour(who: str) -> str:
     """Colour of a solver, as a style has it; the model's is the page's ink."""
     engine = engine_of(who)
     if engine in ENGINES:
-        return f"color-mix(in srgb, {ENGINES[engine].colour} {100 - INK}%, var(--ink))"
+        return _inked(ENGINES[engine].colour)
     return "var(--ink)" if engine == REFERENCE else "var(--soft)"
+
+
+def _inked(tone):
+    return f"color-mix(in srgb, {tone} {100 - INK}%, var(--ink))"
 
 
 def engine_of(who: str) -> str:
@@ -278,14 +310,15 @@ def engine_of(who: str) -> str:
     return who.partition(", ")[0]
 
 
-def key_of(who: str, *, filled: bool = True, small: bool = False, joined: bool = True) -> str:
+def key_of(who: str, *, filled: bool = True, small: bool = False, joined: bool = True, look: Look | None = None) -> str:
     """A small picture of a solver's line and marker, for a legend."""
     kind = "dot" if filled else "dot open"
-    mark = f'<path class="{kind}" transform="{_placed(16, 7, small)}" d="{_mark(who, filled)}"/>'
+    shape = _mark(who, filled, look and look.mark)
+    mark = f'<path class="{kind}" transform="{_placed(16, 7, small)}" d="{shape}"/>'
     line = '<path class="line" d="M1 7H31"/>' if joined else ""
     return (
-        f'<svg class="chart mini" viewBox="0 0 32 14" aria-hidden="true">{_group(who, False)}'
-        f"{line}{'' if engine_of(who) == REFERENCE else mark}</g></svg>"
+        f'<svg class="chart mini" viewBox="0 0 32 14" aria-hidden="true">{_group(who, False, look=look)}'
+        f"{line}{'' if engine_of(who) == REFERENCE and not look else mark}</g></svg>"
     )
 
 
@@ -328,12 +361,12 @@ def _placed(x, y, small):
     return f"translate({x:.1f} {y:.1f})" + ("scale(.55)" if small else "")
 
 
-def _group(who, grey, tone=""):
-    """The beginning of a group in a solver's colour and dashes, or in another colour."""
+def _group(who, grey, tone="", look=None):
+    """The beginning of a group in a solver's colour and dashes, or in another colour, or look."""
     if not who:
         return f'<g class="who" style="--c:{tone}">' if tone else '<g class="who">'
-    engine = engine_of(who)
-    drawn, dashes = "var(--faint)" if grey else colour(who), _dashes(engine)
+    drawn, dashes = (look.tone, look.dashes) if look else (colour(who), _dashes(engine_of(who)))
+    drawn = "var(--faint)" if grey else drawn
     return f'<g class="who" data-who="{escape(who)}" style="--c:{drawn};--d:{dashes or "none"}">'
 
 

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from .charts import REFERENCE, WIDTH, Axis, Chart, figure, key_of, log_axis, room, slanting
+from .charts import REFERENCE, WIDTH, Axis, Chart, curve, figure, key_of, log_axis, room, slanting
 from .parts import Figure
 from .rows import Column, Key, Row, grouped, value_of
 
@@ -28,6 +28,7 @@ LOOKS: tuple[dict[str, Any], ...] = (
     {"filled": True, "small": True},
     {"filled": False, "small": True},
 )
+LONGEST = 14  # characters of a name beside a line; longer ones stand in the legend alone
 MOVED = " Marks that would cover each other stand side by side."
 Rule = tuple[str, float, str]
 
@@ -48,6 +49,8 @@ def lines(
     like: Iterable[Row] = (),
 ) -> Figure | None:
     """Panels of lines and marks, one series for each engine and what tells its series apart; None: nothing to draw.
+
+    Where the model alone has several, each has a colour, dashes and marks of its own, and its name beside it.
 
     Parameters
     ----------
@@ -90,8 +93,10 @@ def lines(
     ranked = grouped([*like, *(row for row in rows if not grey(row))], "engine", name)
     engines = grouped(ranked, lambda pair: pair[0]).values()
     looks = {who: LOOKS[rank % len(LOOKS)] for pairs in engines for rank, (_, who) in enumerate(pairs)}
+    looks |= _of_one([who for _, who in ranked], {engine for engine, _ in ranked})
     panels = grouped(kept, panel)
-    ends = joined and len({engine for engine, _ in coloured}) == len(coloured)
+    names = {who: who.removeprefix(f"{engine}, ") if "look" in looks[who] else engine for engine, who in coloured}
+    ends = joined and len(set(names.values())) == len(coloured) and max(map(len, names.values()), default=0) <= LONGEST
     charts = []
     for (title,), members in panels.items():
         series = grouped(members, lambda row: not grey(row), "engine", name)
@@ -101,7 +106,7 @@ def lines(
             f"{title + ': ' if title else ''}{y.head} over {x.head}; {', '.join(who for *_, who in series)}.",
             title=str(title),
             height=300 + 20 * (not title),
-            right=92 if ends or any(along == "y" for along, *_ in rules) else 14,
+            right=max(92, 19 + room(names.values()) * ends) if ends or any(along == "y" for along, *_ in rules) else 14,
             head=16 * len(rules) * any(along == "x" for along, *_ in rules),
         )
         for line, (along, value, words) in enumerate(rules):
@@ -115,14 +120,24 @@ def lines(
             told = [says(row) if says else f"{who}: {y.text(row)} at {x.text(row)}" for row in points]
             look = looks[who] if shown else LOOKS[1]
             if joined:
-                chart.line(*places, who, grey=not shown)
-            if engine != REFERENCE:
-                chart.dots(*places, who, grey=not shown, says=told, apart=shown and joined, **look)
+                chart.line(*places, who, grey=not shown, look=look.get("look"))
+            if engine != REFERENCE or "look" in look:
+                chart.dots(
+                    *places, who, grey=not shown, says=told, apart=shown and joined and "look" not in look, **look
+                )
             if ends and shown:
-                chart.label(places[1][-1], engine, who)
+                chart.label(places[1][-1], names[who], who, look=look.get("look"))
         charts.append(chart)
     keys = {who: key_of(who, joined=joined, **looks[who]) for _, who in coloured}
     return figure(charts, caption + MOVED if any(chart.moved for chart in charts) else caption, keys, keys)
+
+
+def _of_one(series, engines):
+    """{series: its look} where all are of one solver, and more than its own looks tell apart: the model has one."""
+    most = 1 if engines == {REFERENCE} else len(LOOKS)
+    if len(engines) > 1 or len(series) <= most:
+        return {}
+    return {who: {"look": curve(rank)} for rank, who in enumerate(series)}
 
 
 def beside(*figures: Figure | None) -> Figure | None:

@@ -10,7 +10,21 @@ import pytest
 from contrast import contrast
 from page_numbers import number_in
 
-from comparisons.showing.charts import HAIR, INK, NEAR, SHAPES, STYLE, Axis, Chart, figure, key_of, log_axis, marker
+from comparisons.showing.charts import (
+    HAIR,
+    INK,
+    NEAR,
+    SHAPES,
+    STYLE,
+    TONES,
+    Axis,
+    Chart,
+    curve,
+    figure,
+    key_of,
+    log_axis,
+    marker,
+)
 from comparisons.showing.figures import MOVED, beside, lines, ranks, regions, shades
 from comparisons.showing.rows import NAME, Column
 from engines import ENGINES
@@ -287,11 +301,47 @@ def test_lines_and_shades_can_be_told_from_the_page(scheme):
     style = STYLE.read_text(encoding="utf-8")
     known = [dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6})", part)) for part in style.split("@media")[:2]]
     colours = {name: rgb(colour) for name, colour in (known[0] | known[scheme]).items()}
-    for engine in ENGINES.values():
-        mixed = (rgb(engine.colour) * (100 - INK) + colours["ink"] * INK) / 100
-        assert contrast(mixed, colours["paper"]) >= 3, engine.name
+    for tone in (*TONES, *(engine.colour for engine in ENGINES.values())):
+        mixed = (rgb(tone) * (100 - INK) + colours["ink"] * INK) / 100
+        assert contrast(mixed, colours["paper"]) >= 3, tone
     assert contrast(colours["faint"], colours["paper"]) >= 3
     assert min(contrast(colours["ink"], colours[f"s{shade}"]) for shade in range(6)) >= 4.5
+
+
+def test_curves_of_the_model_alone_are_told_apart_and_named_where_they_end():
+    rows = [row("analytic", f"{level:g}", x, 1.0 + level * x) for level in (0.2, 0.4, 0.6) for x in (0.1, 0.3)]
+    made = lines(rows, X, Y, "Levels.")
+    (panel,) = panels(made)
+    assert groups(panel) == {f"analytic, {level}": (1, 2) for level in ("0.2", "0.4", "0.6")}
+    for part in ("--c:", "--d:"):
+        drawn = {
+            re.search(f"{part}([^;]*)", group.get("style"))[1] for group in panel.iter("g") if group.get("data-who")
+        }
+        assert len(drawn) == 3, drawn
+    named = {text.text: float(text.get("y", 0)) for text in panel.iter("text")}
+    assert named["0.6"] < named["0.4"] < named["0.2"]  # upward
+    assert len(set(made.keys.values())) == 3 and "analytic" not in named
+    assert len({curve(rank) for rank in range(12)}) == 12
+    assert not {engine.colour for engine in ENGINES.values()} & set(TONES)
+    long = [{**one, "variant": f"with a long name, {one['variant']}"} for one in rows]
+    assert not any("long" in text.text for text in panels(lines(long, X, Y, "Levels."))[0].iter("text"))
+
+
+def test_one_curve_of_the_model_or_an_engine_beside_it_keep_their_ink_and_colour():
+    one, both = (row("analytic", "0.2", 0.1, 1.0), row("analytic", "0.4", 0.1, 2.0))
+    assert "--c:var(--ink)" in lines([one], X, Y, "One.").svg.decode()
+    drawn = lines([one, both, row(FIRST, "fine", 0.2, 1e-4)], X, Y, "An engine, too.").svg.decode()
+    assert drawn.count("--c:var(--ink)") == 2 and ENGINES[FIRST].colour in drawn and TONES[0] not in drawn
+
+
+def test_names_pushed_down_by_others_go_back_no_farther_than_into_the_panel():
+    chart = Chart(LINEAR, LINEAR, "Labels.", right=80)
+    for y in (4.0, -1.9, -2.0):
+        chart.label(y, f"at {y:g}")
+    found = {text.text: float(text.get("y")) for text in element(chart).iter("text") if (text.text or "")[:2] == "at"}
+    assert found["at -2"] == pytest.approx(chart.bottom + 4, abs=0.1)
+    assert found["at -1.9"] == pytest.approx(found["at -2"] - 15, abs=0.1)
+    assert found["at 4"] == pytest.approx(float(chart.at([0], [4.0])[0][1]) + 4, abs=0.1)  # where its line ends
 
 
 def test_a_map_of_many_cells_draws_a_rectangle_for_each_run_of_equal_ones():
