@@ -128,7 +128,7 @@ def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_fil
         raise SettingError(f"--write: {place} comes with the package; give a scene file of your own")
     groups = motions_of(scene, **many)
     motions = [motion for group in groups.values() for motion in group]
-    compile_kernels(any(motion.vertical for motion in motions), many=True)
+    compile_kernels(any(motion.vertical for motion in motions))
     with bar(f"{scene.name}: bearings") as progress, named_by_options(OF_SCENE):
         scan = scan_bearings(scene, motions, stroke, tilt=tilt, **made, progress=progress)
     points = {LEAST: scan.least_stroke, SOFTEST: scan.softest}  # (period, damping), None where none hold

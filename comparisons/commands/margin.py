@@ -54,7 +54,7 @@ def command(
     check_writable([json_file], picture=plot, inputs=[scene])
     what = load_scene(scene)
     groups = other_motions(what, records, both_signs, directions, units)
-    compile_kernels(many=True)
+    compile_kernels()
     with spinner(f"{what.name}: margins") as tell:
         nearest = margins(
             what, tilt=tilt, span=span / 100, step=span / 100 / 400, progress=lambda name: tell(f"{what.name}: {name}")

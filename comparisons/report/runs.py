@@ -23,7 +23,7 @@ from ..measuring.errors import compare, impact_errors, lost_impacts, rms, worst
 from ..measuring.horizon import sensitivity_horizon, solver_horizon
 from ..running.cases import Case
 from ..running.plan import Batch, Computed
-from ..running.progress import compile_kernels, log, spinner
+from ..running.progress import log, spinner
 from .histories import ToFile, differences, response_of, thinned
 from .statue import statue_of
 
@@ -91,7 +91,6 @@ def plan(
     more: dict[str, Any] = {"variants": described_variants(request.engines), "own": own}
     if own:
         more["statues"] = {}
-        compile_kernels(many=True)
         for name, scene in scenes.items():
             with spinner(f"{scene.name}: the analytic model") as tell:
                 more["statues"][name] = statue_of(scene, motions.get(name, {}), partial(_tell, tell, scene.name))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import functools
 import os
 import sys
 import threading
@@ -17,24 +16,15 @@ PATIENCE = 2.0  # s that compiled functions may take to load, without a word
 SHOWN = 60  # characters of what is under way
 
 
-def compile_kernels(vertical: bool = False, many: bool = False) -> None:
+def compile_kernels(vertical: bool = False) -> None:
     """`analytic.solver.compile_kernels` before a clock starts; shown where it takes a while.
 
-    vertical : also for motions with a vertical component. many : also for many scenes at once.
+    vertical : also for motions with a vertical component.
     """
     from analytic import solver
 
     with compiling():
         solver.compile_kernels(vertical)
-        if many:
-            _compile_many()
-
-
-@functools.cache
-def _compile_many():
-    from analytic import Block, Scene, simulate_many
-
-    simulate_many([Scene(block=Block(mass=1.0, radius=1.0, slenderness=0.2), duration=1e-3)], workers=1)
 
 
 @contextlib.contextmanager

@@ -155,7 +155,6 @@ def near_motion(scene: Scene) -> tuple[Caution, ...]:
 
     if scene.motion is None:
         return ()
-    compile_kernels(scene.motion.vertical is not None, many=True)
     with spinner(f"{scene.name}: within {SHARE:.0%} of the motion"):
         try:
             return cliffs(scene, *nearby(scene))
