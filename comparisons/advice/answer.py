@@ -1,7 +1,5 @@
 """What `choose` answers, as typed values that become JSON; ``Choice.model_json_schema()`` is its schema."""
 
-from __future__ import annotations
-
 from pydantic import Field
 
 from ..schemas.form import Form, Part

@@ -5,12 +5,9 @@ level on to the finest, those levels are run on the neighbours, the cheapest fir
 it and all finer ones do, everywhere, with `criteria.safety` to spare: none passes by luck.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +15,7 @@ from analytic import Scene, simulate
 from analytic.errors import SettingError
 from analytic.solver import TOLERANCE
 from engines import available_engines, get_engine
+from engines.contract import Variant
 
 from ..running.executors import Processes
 from ..running.files import TemporaryFolder
@@ -27,9 +25,6 @@ from .answer import Choice, Level, VariantLevels
 from .criteria import CRITERIA, fitting, neighbours, safety, until
 from .search import Search, problem
 from .unneeded import cpu_seconds, model_parts
-
-if TYPE_CHECKING:
-    from engines.contract import Variant
 
 TIME_LIMIT = 60.0  # s, of one run
 

@@ -1,23 +1,17 @@
 """What a setting is chosen for: up to when a scene is run, and how far off a run is."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from analytic import Scene, simulate
+from analytic import Response, Scene, simulate
 from analytic.errors import SettingError
 from analytic.rocking import restitution
 
 from ..measuring.errors import impact_errors, impact_time_errors, rate_restitution, rms, strong_impacts
 from ..measuring.horizon import sensitivity_horizon
-
-if TYPE_CHECKING:
-    from analytic import Response
-
-    from ..running.cases import Case
+from ..running.cases import Case
 
 CRITERIA = ("restitution", "tilt", "displacement", "outcome")
 IMPACTS = 8  # strong ones of the model up to which a scene is run for its restitution

@@ -1,24 +1,19 @@
 """The runs of a choice, and the search among them: neighbours are run of hopeful settings only, the cheapest first."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from analytic import Scene
 from engines import get_engine
 
 from ..running.cases import Case
 from ..running.sweep import Row, run_sweep
 from .criteria import SAFETY, Measure, safety
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from analytic import Scene
 
 LevelKey = tuple[str, str, float]  # engine, variant, value of its accuracy parameter
 

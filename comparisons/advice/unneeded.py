@@ -1,20 +1,14 @@
 """What need not be modelled in a scene, and what modelling it would cost."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
 
-from analytic import simulate
+from analytic import Scene, simulate
 from engines import get_engine
 
 from ..measuring.models import on_heavy_base, on_stiff_springs
 from ..running.cases import Case
 from .answer import Level, ModelPart
-
-if TYPE_CHECKING:
-    from analytic import Scene
 
 REPEATS = 7  # of a timing, of which the least counts
 

@@ -1,7 +1,5 @@
 """``rocking compare``: all solvers on one scene."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import nan
 from typing import Annotated, Any

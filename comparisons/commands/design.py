@@ -1,7 +1,5 @@
 """``rocking design``: bearings from target period, damping and displacement, or those that a scene needs."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from pathlib import Path

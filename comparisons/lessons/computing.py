@@ -1,7 +1,5 @@
 """What several lessons compute."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from analytic import Response, Scene, simulate

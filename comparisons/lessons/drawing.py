@@ -1,17 +1,13 @@
 """Figures of the lessons: drawn once with stand-ins for colours, which a page replaces by its own, light or dark."""
 
-from __future__ import annotations
-
 import io
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..showing.parts import element_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 INK, SOFT, GRID, PANEL = "#1c1b19", "#5f5b54", "#e4e0d8", "#fffffe"
 MODEL, OTHER, THIRD = "#0072b2", "#d55e00", "#00795c"  # told apart by colour-blind readers, and by their dashes

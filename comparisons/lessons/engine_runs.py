@@ -3,8 +3,6 @@
 Which engines there are is asked of `engines`; without any the lessons run on the model's own fixed-step integrator.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Callable, Iterable

@@ -1,7 +1,5 @@
 """The pages that one can open without a network: `export_pages`."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Sequence
 from os import PathLike

@@ -3,19 +3,14 @@
 Texts are paragraphs with ``$formulas$`` in TeX: a notebook shows them as they are, a page as MathML (`mathml.prose`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from markupsafe import Markup
-    from matplotlib.figure import Figure
+from markupsafe import Markup
+from matplotlib.figure import Figure
 
-    from ..showing.parts import Table
-
+from ..showing.parts import Table
 
 # Every symbol of the lessons' equations, as `Lesson.symbols` lists them.
 SYMBOLS = {

@@ -1,7 +1,5 @@
 """A lesson as a notebook: its file, and what its cells show; `mo` is the module marimo, which only they import."""
 
-from __future__ import annotations
-
 import contextlib
 import importlib.util
 import inspect

@@ -15,24 +15,18 @@ half of the swing before gained, as a share of w. `shape`: what the strike does 
 just before, when the landing corner is in the air and should bear nothing.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from analytic import Scene
 from analytic.rocking import restitution
 from engines.checks import energy_balance, pivoting_centre
-from engines.swings import find_swings, to_contact
+from engines.swings import Trace, find_swings, to_contact
 
 from .agreement import Unmeasurable
 from .corners import corner_impulses, corner_motion, pivot_forces
-
-if TYPE_CHECKING:
-    from analytic import Scene
-    from engines.swings import Trace
 
 PARTS = ("support", "pull", "slip", "rebound")  # of the error of e
 BESIDE = 3  # steps in flight that are shown on each side of the contact

@@ -1,18 +1,14 @@
 """Why an engine's restitution is off, from the story of one contact alone: no setting is looked at."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from analytic import Scene
 from engines import get_engine
 
 from .agreement import Unmeasurable
 from .autopsy import Contact, contact_of, frames
-
-if TYPE_CHECKING:
-    from analytic import Scene
 
 LEAST = 1e-3  # of e, or of the rate before: a smaller error has no cause worth a name
 CAUSES = {

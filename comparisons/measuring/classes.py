@@ -1,7 +1,5 @@
 """The class of a run beside the analytic model's, one word, the same in every study."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 
 from analytic.response import COMPARED

@@ -3,20 +3,12 @@
 Pairs are (landing corner, old corner): the one that comes down in an impact, and the pivot before it.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from analytic.motion import vertical_acceleration
+from analytic import Scene
+from analytic.motion import Motion, vertical_acceleration
 from engines.ground_velocity import ground_velocity
-from engines.swings import ArrayModel
-
-if TYPE_CHECKING:
-    from analytic import Scene
-    from analytic.motion import Motion
-    from engines.swings import Trace
+from engines.swings import ArrayModel, Trace
 
 
 def corner_motion(scene: Scene, trace: Trace, side: float) -> dict[str, np.ndarray]:

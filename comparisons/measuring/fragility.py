@@ -1,19 +1,15 @@
 """Lognormal fragility of independent runs: the fit, its intervals by bootstrap, and whether the curve fits at all."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from scipy.special import log_ndtr
 from scipy.stats import chi2, norm
 
 from .statistics import wilson
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
 
 NORMAL = 1.959963984540054  # standard deviations that hold 95 %
 ITERATIONS, HALVINGS = 60, 30  # of Newton

@@ -1,18 +1,14 @@
 """Are two solvers' overturning outcomes different? Intervals and paired tests."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from scipy.optimize import brentq
 from scipy.stats import binom, binomtest, norm
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
 
 EQUAL = 0.05  # share of runs that may differ between solvers that are called equal
 TOO_FEW = "inconclusive (too few runs)"  # of `equality`

@@ -1,14 +1,11 @@
 """The runs on one clock: what the page's script moves, and the frame shown without one."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from ..running.provenance import Result
+from ..running.provenance import Result
 
 FRAMES = 25.0  # 1/s
 LONGEST = 2000  # frames; a longer run is shown in longer steps

@@ -1,19 +1,15 @@
 """The first screen: a recommendation, the answers of all studies side by side, what not to do; from results alone."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from engines import ENGINES
 
+from ..running.provenance import Result
 from ..showing.parts import COST, RESTITUTION, Judgement, Mark, number
 from ..showing.wording import rating, with_counts
-
-if TYPE_CHECKING:
-    from ..running.provenance import Result
 
 # part: good in all that was tested, and something was not
 LEVELS = {"good": "✓ trust", "part": "✓ as far as tested", "fair": "~ with care", "bad": "✗ do not trust"}

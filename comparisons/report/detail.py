@@ -1,18 +1,17 @@
 """A page of its own: of one study's result, or of what else the report folds away."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from jinja2 import Environment
 from markupsafe import Markup, escape
 
 from ..running.files import write_all
+from ..running.plan import Study
 from ..running.provenance import ResultError, age
 from ..running.readable import readable
 from ..showing import diagrams
@@ -24,11 +23,6 @@ from ..showing.wording import indexed
 from ..studies.rows import read_study
 from . import equations
 from .studies import origin_of
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
-
-    from ..running.plan import Study
 
 HERE = Path(__file__).parent
 

@@ -1,20 +1,14 @@
 """The section about the report's own runs: what each solver made of the same scenes, in one figure and one table."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from analytic.records import G
 
+from ..running.provenance import Result
 from ..showing.charts import figure
 from ..showing.parts import Section, Table, number
 from ..showing.rows import Column, table
 from ..showing.wording import outcomes
 from .figures import ANALYTIC, pairs
 from .sections import failures, warned
-
-if TYPE_CHECKING:
-    from ..running.provenance import Result
 
 CAPTION = (
     "Left: all solvers over each other. Right: how far the engines are from the analytic model, logarithmic. A "

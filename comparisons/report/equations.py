@@ -1,7 +1,5 @@
 """The equations that the page prints, with the misprints of the paper beside their corrections, and its words."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,22 +1,18 @@
 """The figures of the report's own runs, each drawn from the arrays and rows of a result file."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from analytic.records import G
 
+from ..running.provenance import Result
 from ..showing.charts import Axis, Chart, figure
 from ..showing.parts import Figure, number
+from ..showing.rows import Row
 from .detail import environment
 from .histories import thinned
-
-if TYPE_CHECKING:
-    from ..running.provenance import Result
-    from ..showing.rows import Row
 
 ANALYTIC = "analytic"
 TILT = 0.01, 1.6  # least and greatest limit of a tilt's axis, over slenderness: contact noise is no tilt to look at

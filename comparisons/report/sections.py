@@ -1,20 +1,16 @@
 """The sections of the page of the report's own runs; every number in them stands in the result files."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from analytic.response import UNCOMPARED, Difference
 
+from ..running.provenance import Result
 from ..showing.charts import figure
 from ..showing.parts import Section, Table
 from ..showing.rows import NAME, Column, across, grouped, table
 from ..showing.wording import TRUSTED, USABLE, differing, trust
 from . import figures
-
-if TYPE_CHECKING:
-    from ..running.provenance import Result
 
 
 def scene_sections(result: Result) -> list[Section]:

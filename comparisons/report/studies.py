@@ -1,20 +1,15 @@
 """The studies' stored results: what the report's first page takes of them, and their own pages."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
-from ..running.provenance import RESULTS, ResultError, age, last_check
+from ..running.provenance import RESULTS, Result, ResultError, age, last_check
 from ..running.readable import readable
 from ..showing.parts import Judgement, Section
 from ..studies import StudyBroken, get_study, study_names
 from ..studies.rows import read_study
-
-if TYPE_CHECKING:
-    from ..running.provenance import Result
 
 
 @dataclass(frozen=True)

@@ -1,16 +1,10 @@
 """The answer in plain words, put together from the numbers of the result files."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from engines import missing_words
 
+from ..running.provenance import Result
 from ..showing.parts import number, percent
 from ..showing.wording import outcomes
-
-if TYPE_CHECKING:
-    from ..running.provenance import Result
 
 MOST_WARNINGS = 3  # of a scene, at the top of the page
 

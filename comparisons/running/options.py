@@ -1,7 +1,5 @@
 """Messages that name what a command offers: its options, not the parameters or the keys behind them."""
 
-from __future__ import annotations
-
 import contextlib
 import re
 from collections.abc import Iterator, Mapping

@@ -7,8 +7,6 @@ The store can be reused: rows whose scene, solver, variant, settings, tag, measu
 unchanged are not run again.
 """
 
-from __future__ import annotations
-
 import json
 from collections import deque
 from collections.abc import Callable, Iterable

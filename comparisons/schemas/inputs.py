@@ -1,7 +1,5 @@
 """What `rocking new` and `rocking record` write: what was made, what was read."""
 
-from __future__ import annotations
-
 from pydantic import Field
 
 from .form import Form, Part

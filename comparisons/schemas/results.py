@@ -1,7 +1,5 @@
 """What `rocking verify`, `rocking sheet` and `rocking report` write."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 from pydantic import Field

@@ -1,7 +1,5 @@
 """What `rocking run` and `rocking compare` write: responses without their histories. Null: not known, or none."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 from pydantic import Field

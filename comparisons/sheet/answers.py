@@ -1,7 +1,5 @@
 """A file of answers, read; and what the exact ones may be off by."""
 
-from __future__ import annotations
-
 import csv
 import math
 from collections.abc import Mapping

@@ -1,17 +1,12 @@
 """Mistakes that are known to happen, and what each would answer: computed, by the model or a variant of it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from .observed import Value, solved
+from .problems import Problem
 from .variants import Fault, with_fault
-
-if TYPE_CHECKING:
-    from .problems import Problem
 
 Answers = Mapping[str, Value]
 STEPS = tuple(digit * 10.0**-power for power in (2, 3, 4, 5) for digit in (1, 2, 2.5, 4, 5))

@@ -1,21 +1,14 @@
 """What a run shows of what the sheet asks for, whoever made the run."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from analytic import simulate
+from analytic import Response, Scene, simulate
 from analytic.response import State
 
-from .problems import IMPACT, STATE
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene
-
-    from .problems import Problem, Quantity
+from .problems import IMPACT, STATE, Problem, Quantity
 
 Value = float | str
 HISTORY_STEP = 1e-3  # s, of which every time asked for is a multiple

@@ -4,11 +4,8 @@ A mistake is named only where what it would answer has been computed and all ans
 of it, while no other mistake's do. Else the cause is unknown.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
 
 from pydantic import Field
 
@@ -18,11 +15,8 @@ from ..showing.wording import TRUSTED
 from ..studies.rows import read_study
 from .answers import error
 from .faults import MISTAKES
-from .observed import solved
+from .observed import Value, solved
 from .problems import PROBLEMS, VERSION
-
-if TYPE_CHECKING:
-    from .observed import Value
 
 MATCHING = 1e-5  # largest error of answers against those of the mistake they come from
 WRONG = 1e-3  # error from which a cause is looked for: far beyond what `MATCHING` allows for

@@ -1,10 +1,8 @@
 """The second implementation with a fault built in: small variants, one for each mistake that changes an equation."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,13 +10,10 @@ from analytic.bearing import BearingLaw
 from analytic.response import State
 from analytic.rocking import RockingModel
 from analytic.twin.run import Run
+from analytic.types import GroundFunction
 
 from .observed import Value, answers_of
-
-if TYPE_CHECKING:
-    from analytic.types import GroundFunction
-
-    from .problems import Problem
+from .problems import Problem
 
 TOLERANCE = 1e-10  # of the variants: far below what an answer must match them by
 LONGEST = 0.05  # s, of a step: events are found on its interpolant, which is less exact than its end

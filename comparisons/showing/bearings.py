@@ -1,22 +1,19 @@
 """The bearings that a scene needs, as a table for the terminal and as a picture."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from analytic import Scene
+from analytic.bearing_scan import BearingScan
+
 from ..running.readable import readable
 from .parts import percent
 from .plots import TITLE_CHARACTERS
 from .terminal import echo, grid
-
-if TYPE_CHECKING:
-    from analytic import Scene
-    from analytic.bearing_scan import BearingScan
 
 HELD = "#009E73"  # Okabe and Ito
 

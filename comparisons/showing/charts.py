@@ -6,8 +6,6 @@ made by `comparisons.showing.figures`. Sizes are in units of which `WIDTH` fill 
 390 px.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence

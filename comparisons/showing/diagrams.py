@@ -1,7 +1,5 @@
 """Free-body diagrams of the derivation, drawn to their angles: inline SVG in the page's colours."""
 
-from __future__ import annotations
-
 import math
 from html import escape
 from pathlib import Path

@@ -7,8 +7,6 @@ shades(rows, Column("base over block mass [-]", "ratio"), Column("slenderness γ
 ranks(rows, NAME, Column("share [-]", "share", within="interval"), "Share of ...", Axis("share [-]", 0, 1))
 """
 
-from __future__ import annotations
-
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping, Sequence

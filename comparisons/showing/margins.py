@@ -1,23 +1,17 @@
 """The margins of a scene, as a table for the terminal and as a picture."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from analytic import Scene
 from analytic.limits import scene_warnings
-from analytic.margins import limit_states
+from analytic.margins import Contact, Margin, limit_states
 
 from ..running.readable import readable
 from .plots import TITLE_CHARACTERS
 from .terminal import Grid, echo, grid
-
-if TYPE_CHECKING:
-    from analytic import Scene
-    from analytic.margins import Contact, Margin
 
 # Okabe and Ito; hatches, and the lines’ places, tell them apart in print.
 COLOURS = {"stands": ("#009E73", ""), "rocks": ("#F0E442", ".."), "overturns": ("#D55E00", "//"), "failed": ("0.4", "")}

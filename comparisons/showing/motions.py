@@ -1,18 +1,15 @@
 """What a scene does under many motions: a table for the terminal, and the odds."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from analytic import Scene
 
 from ..measuring.statistics import wilson
 from ..running.readable import readable
 from .parts import number, percent
 from .terminal import echo, grid
-
-if TYPE_CHECKING:
-    from analytic import Scene
 
 LIFTED = ("rocks", "overturns")
 

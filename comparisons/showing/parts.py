@@ -1,7 +1,5 @@
 """What a section of the report is made of, and how numbers are written in it."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass, field, replace

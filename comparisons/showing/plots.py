@@ -1,21 +1,17 @@
 """Plots that several commands share. Colours are those of Okabe and Ito, told apart by colour-blind readers."""
 
-from __future__ import annotations
-
 import io
 import warnings
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from analytic import Response, Scene
 from engines import ENGINES
 
 from ..running.readable import readable
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene
 
 # colour, dashes, width; the reference lies wide underneath, dots need width to be seen
 REFERENCE: tuple[str, str | tuple[float, tuple[float, ...]], float] = ("#000000", "-", 2.4)

@@ -1,25 +1,19 @@
 """What was read of a record file, as a table for the terminal and as a picture."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
 from rich.text import Text
 
 from analytic.linear_oscillator import displacement_spectrum
-from analytic.records import G
+from analytic.motion import SampledMotion
+from analytic.records import Channel, G
 
 from ..running.readable import readable
 from ..schemas import inputs
 from .plots import TITLE_CHARACTERS
 from .terminal import echo, grid
-
-if TYPE_CHECKING:
-    from analytic.motion import SampledMotion
-    from analytic.records import Channel
 
 DAMPING = 0.05  # of the spectrum, as codes and catalogues have it
 PERIODS = np.geomspace(0.05, 10.0, 150)  # s

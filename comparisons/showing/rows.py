@@ -6,8 +6,6 @@
 The same `Column` is an axis of a figure (`comparisons.showing.figures`).
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass

@@ -1,26 +1,21 @@
 """Tables for the terminal."""
 
-from __future__ import annotations
-
 import dataclasses
 import inspect
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rich import box
 from rich.text import Text
 
+from analytic import Caution, Response, Scene
+from engines.contract import Engine
 from engines.statue_range import in_words
 
+from ..measuring.horizon import Horizon
 from ..running.readable import readable
 from .terminal import Grid, digits, echo, grid
 from .wording import differing, listed, outcomes
-
-if TYPE_CHECKING:
-    from analytic import Caution, Response, Scene
-    from engines.contract import Engine
-
-    from ..measuring.horizon import Horizon
 
 TITLE_CHARACTERS = 100
 MOTION = "motion"  # the kind of warning that is of the scene, not of a solver

@@ -1,42 +1,18 @@
 """Tables and sentences in the terminal."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rich import box
 from rich.cells import cell_len
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderResult
 from rich.table import Table
 from rich.text import Text
 
-if TYPE_CHECKING:
-    from rich.console import ConsoleOptions, RenderResult
-
 LONGEST_NUMBER = 15  # characters: sign, nine digits, point, exponent; longer words are names, and may be broken
 WIDE = 10**4  # columns: wider than any table
-
-
-def grid(
-    heads: Sequence[str],
-    rows: Iterable[Sequence[str | Text]],
-    *,
-    left: Collection[str] = (),
-    wraps: Collection[str] = (),
-    **look: Any,
-) -> Grid:
-    """A table of cells as they are: a unit in brackets is no markup.
-
-    left : heads of the columns whose cells stand to the left, besides the first. wraps : of those that a narrow
-    terminal breaks first. look : as `rich.table.Table` takes it.
-    """
-    cells = [[Text(cell) if isinstance(cell, str) else cell for cell in row] for row in rows]
-    sides = ["left" if head == heads[0] or head in left else "right" for head in heads]
-    look = {"box": box.SIMPLE_HEAD, "padding": (0, 1, 0, 0), **look}
-    return Grid(list(heads), cells, sides, [head in wraps for head in heads], look)
 
 
 @dataclass(frozen=True)
@@ -96,6 +72,25 @@ class Grid:
         for row in self.rows:
             table.add_row(*row[: len(widths)])
         return table
+
+
+def grid(
+    heads: Sequence[str],
+    rows: Iterable[Sequence[str | Text]],
+    *,
+    left: Collection[str] = (),
+    wraps: Collection[str] = (),
+    **look: Any,
+) -> Grid:
+    """A table of cells as they are: a unit in brackets is no markup.
+
+    left : heads of the columns whose cells stand to the left, besides the first. wraps : of those that a narrow
+    terminal breaks first. look : as `rich.table.Table` takes it.
+    """
+    cells = [[Text(cell) if isinstance(cell, str) else cell for cell in row] for row in rows]
+    sides = ["left" if head == heads[0] or head in left else "right" for head in heads]
+    look = {"box": box.SIMPLE_HEAD, "padding": (0, 1, 0, 0), **look}
+    return Grid(list(heads), cells, sides, [head in wraps for head in heads], look)
 
 
 def echo(*parts: Grid | Text | str, wrap: bool = False) -> None:

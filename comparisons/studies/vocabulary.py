@@ -9,8 +9,6 @@ Unit "-": a number without one, a word, or a part with units of its own. A row h
 depends on.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from typing import NamedTuple
 

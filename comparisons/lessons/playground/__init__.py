@@ -4,8 +4,6 @@ polynomial.js, scene.js, series.js and model.js are the compiled kernel in JavaS
 integrator of `analytic.time_stepping` and a block on soft corners; tests hold their numbers to those of `analytic`.
 """
 
-from __future__ import annotations
-
 import base64
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Lesson 3: a lead-rubber bearing."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from analytic.bearing import BearingLaw

@@ -1,7 +1,5 @@
 """Lesson 4: the isolated Caryatid."""
 
-from __future__ import annotations
-
 import math
 
 from analytic import PulseMotion, Scene, simulate, synthetic_motion

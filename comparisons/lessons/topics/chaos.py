@@ -1,7 +1,5 @@
 """Lesson 6: two almost equal blocks."""
 
-from __future__ import annotations
-
 import functools
 import math
 

@@ -1,7 +1,5 @@
 """Lesson 8: how to check a simulation."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Lesson 5: what an engine does at a corner."""
 
-from __future__ import annotations
-
 import functools
 import math
 

@@ -1,7 +1,5 @@
 """Lesson 7: speed against error."""
 
-from __future__ import annotations
-
 import functools
 import math
 from itertools import groupby, takewhile

@@ -1,7 +1,5 @@
 """Lesson 2: why impacts lose speed."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from analytic import Block, Scene, Start, simulate

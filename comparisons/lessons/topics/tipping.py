@@ -1,7 +1,5 @@
 """Lesson 1: when does a block tip?"""
 
-from __future__ import annotations
-
 import functools
 import math
 

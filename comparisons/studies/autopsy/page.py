@@ -1,18 +1,12 @@
 """What is shown of the autopsy study."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
 from ...showing.figures import MOVED
 from ...showing.parts import Page
 from ...showing.rows import NAME, Column, table, where
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 RIGID = "rigid ground"
 WINDOW = 20.0  # ms before and after the landing that are drawn

@@ -1,7 +1,5 @@
 """The paper's cost claim: the algebraic bearing against Bouc-Wen, at equal error, interleaved in one process."""
 
-from __future__ import annotations
-
 import math
 import time
 from functools import partial

@@ -4,8 +4,6 @@
 the model's own.
 """
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from typing import Any

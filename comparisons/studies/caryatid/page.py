@@ -1,7 +1,5 @@
 """What is shown of the study of the paper, a page for each of its three result files."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any

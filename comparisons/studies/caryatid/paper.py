@@ -1,7 +1,5 @@
 """What the Caryatid paper prints, as far as it is known here, and each number of it beside this study's."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 

@@ -1,25 +1,19 @@
 """The paper's simulations in every solver: Figs 4(b) and 6, points of Figs 5(a) and 5(b)."""
 
-from __future__ import annotations
-
 from collections.abc import Generator, Sequence
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from analytic import Base, Bearings, Scene, load_scene, rocking_spectrum
+from analytic import Base, Bearings, Response, Scene, load_scene, rocking_spectrum
+from analytic.design import BearingProperties
 from analytic.linear_oscillator import displacement_spectrum
+from analytic.motion import Motion
 
 from ...running.cases import Case
 from ...running.plan import Batch
-
-if TYPE_CHECKING:
-    from analytic import Response
-    from analytic.design import BearingProperties
-    from analytic.motion import Motion
-
-    from ...running.sweep import Row
+from ...running.sweep import Row
 
 FREE, ISOLATED = "free-standing", "isolated"
 SHIPPED = {FREE: "caryatid-rigid", ISOLATED: "caryatid-isolated"}

@@ -1,4 +1,9 @@
-"""The plan of the study of the paper: an answer of what needs no motion, one of a motion, one of histories."""
+"""The Caryatid paper: every equation, figure and table of it reproduced or corrected, and what it leaves out.
+
+There are three result files, all of kind "caryatid": ``caryatid-paper`` (what needs no motion: bearing law, Table 1,
+misprints), ``caryatid-under-<motion>`` (what does, without a single value of the motion itself) and
+``caryatid-under-<motion>-histories`` (Figs 4 and 6 over time: not to be passed on where the record may not be).
+"""
 
 import re
 from pathlib import Path

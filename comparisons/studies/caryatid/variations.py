@@ -1,7 +1,5 @@
 """What the paper leaves out: which slenderness it can have meant, and other slendernesses, intensities and motions."""
 
-from __future__ import annotations
-
 import math
 from functools import partial, reduce
 from itertools import product

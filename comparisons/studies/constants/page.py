@@ -1,15 +1,9 @@
 """What is shown of the constants study: of each constant what moves where it is halved and doubled."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
+from ...running.provenance import Result
 from ...showing.parts import Page, number, short
 from ...showing.rows import NAME, Column, grouped, table, where
 from .study import AS_IT_IS, CHANGES
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 # Factor from which an error is said to move, and one of CPU time, which other work on the machine changes, too.
 SAID, SAID_CPU = 1.1, 1.2

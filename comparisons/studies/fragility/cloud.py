@@ -4,22 +4,16 @@ No two runs share a motion, a block or an intensity, so that runs are independen
 the logarithm, far below and far above what matters: then no intensity sees another choice of motions than the next.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic import SampledMotion, load_scene, synthetic_motion
+from analytic import SampledMotion, Scene, load_scene, synthetic_motion
 from analytic.caryatid import BASE, BEARINGS, MASS
 from analytic.design import properties
 from analytic.linear_oscillator import displacement_spectrum
-
-if TYPE_CHECKING:
-    from analytic import Scene
-    from analytic.motion import Motion
+from analytic.motion import Motion
 
 X_MAX = 0.30  # m, what the bearings are built for: Table 1(a) of the paper
 PERIOD = properties(BEARINGS, MASS + BASE.mass, X_MAX).period  # s, of isolation, secant at X_MAX

@@ -1,7 +1,5 @@
 """Fragility curves: of the analytic model in every intensity measure, and what an engine makes of them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,21 +1,17 @@
 """What is shown of the fragility study."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.stats import norm
 
 from ...measuring.statistics import EQUAL, TOO_FEW, equality
+from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
 from ...showing.figures import ranks, shades
 from ...showing.parts import Head, Judgement, Page, number, percent, short
 from ...showing.rows import NAME, Column, grouped, table, where
 from ...showing.wording import equal_mark
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 LEVEL = 0.05  # of the test between an engine and the model, and least p of a curve that is shown
 OVERTURNING = "overturning"

@@ -1,27 +1,21 @@
 """The fragility study: a cloud of runs of the analytic model, the first of it in every engine, and curves of both."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from analytic import Response, Scene
 from analytic.rocking import RockingModel
 from engines import get_engine
 from engines.comparison import END, Reference, compare
 
 from ...measuring.classes import class_of
 from ...running.cases import Case
-from ...running.plan import Batch, Computed
+from ...running.plan import Batch, Computed, Plan, Request
+from ...running.sweep import Row
 from .cloud import DAMPING, DRAWN, PEAKS, PERIOD, RADII, SCENES, STRETCH, X_MAX, Cloud, cloud
 from .fits import effects, fits
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene
-
-    from ...running.plan import Plan, Request
-    from ...running.sweep import Row
 
 CHANGE = 1e-4  # relative change of the restitution: the model's own sensitivity
 MODEL, PERTURBED = ("analytic", ""), ("analytic", "perturbed")

@@ -4,11 +4,8 @@ No classes, floats instead of arrays in the right-hand side, the smallest set of
 length of the coming hop. The readable set-up, the one to learn from, is `analytic.twin`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -17,8 +14,7 @@ from analytic import kernel, layout
 from analytic.solver import ground, options, parameters
 from analytic.twin.run import Event
 
-if TYPE_CHECKING:
-    from .problems import Problem
+from .problems import Problem
 
 METHODS = ("RK45", "DOP853", "LSODA", "Radau")
 SHORT_HOP = 0.3  # in units of 1/omega_r: below it, the first step is the whole hop

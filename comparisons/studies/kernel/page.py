@@ -1,16 +1,12 @@
 """What is shown of the kernel beside other integrators: cost at an error, error against cost."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from ...running.provenance import Result
 from ...showing.figures import lines
 from ...showing.parts import Page, number, short
 from ...showing.rows import NAME, Column, cheapest, grouped, table, where
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 LEVELS = (1e-6, 1e-9, 1e-12)  # of |tilt| at the horizon over the slenderness
 TOLD = 1e-9

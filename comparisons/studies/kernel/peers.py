@@ -1,14 +1,10 @@
 """Integrators of the optional extra `peers`, where installed: heyoka, of what a user would pick the nearest in cost."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from importlib.metadata import version
 from importlib.util import find_spec
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from .problems import Problem
+from .problems import Problem
 
 COOLDOWN = 1e-12  # s; heyoka's own choice drops the shortest hops silently
 

@@ -1,7 +1,5 @@
 """Problems A and B: a block alone, that every integrator solves, with references of 30 digits."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -1,29 +1,22 @@
 """What is run, and what is kept of it: error and CPU time of the very same runs, of the kernel and of others."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 import math
 import statistics
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from analytic import Response
+from analytic import Response, Scene
 from analytic.response import State
 
 from ...running.cases import Case
-from ...running.plan import Batch, Computed
+from ...running.plan import Batch, Computed, Plan, Request
+from ...running.sweep import Row
 from .integrators import METHODS, kernel_run, scipy_run
 from .peers import PEERS, installed
 from .problems import PROBLEMS
-
-if TYPE_CHECKING:
-    from analytic import Scene
-
-    from ...running.plan import Plan, Request
-    from ...running.sweep import Row
 
 SOLVER = f"{__name__}:prepared"
 KERNEL = ("analytic", "kernel")

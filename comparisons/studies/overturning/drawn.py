@@ -1,22 +1,17 @@
 """Blocks drawn at random in the promised range, each under one pulse, with the boundary that is looked for."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from analytic import Start
+from analytic import Scene, Start
 from analytic.bearing import BearingLaw
 from analytic.motion import PulseMotion
 from analytic.pulses import PULSES
 
 from ..random_scenes.scenes import random_scene
 from .edges import Edge, edges
-
-if TYPE_CHECKING:
-    from analytic import Scene
 
 SEED = 46
 FREQUENCY = (1.5, 8.0)  # of the pulses over omega_r, evenly over the logarithm

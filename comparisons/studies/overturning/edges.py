@@ -3,23 +3,18 @@
 Amplitudes are over g tan(slenderness), frequencies over omega_r.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from analytic import PulseMotion, simulate, simulate_many
+from analytic import PulseMotion, Scene, simulate, simulate_many
+from analytic.motion import Motion
 
 from ...running.refine import boundaries, drive
-
-if TYPE_CHECKING:
-    from analytic import Scene
-    from analytic.motion import Motion
 
 LOWEST, HIGHEST = 0.5, 20.0  # of the amplitudes searched
 SCAN = 400  # points of the first scan, equidistant in the logarithm: 0.9 % apart

@@ -1,23 +1,18 @@
 """What is shown of the overturning study."""
 
-from __future__ import annotations
-
 import itertools
 import statistics
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure, key_of
 from ...showing.figures import MOVED, lines
 from ...showing.parts import Head, Judgement, Mark, Page, number, percent
 from ...showing.rows import NAME, Column, grouped, setting_of, table, where
 from .drawn import FREQUENCY as FREQUENCIES
 from .drawn import JUMPS, ROOM
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 LIMIT, FAIR = 0.005, 0.03  # shifts of a trusted and of a usable engine
 RATINGS = {"good": "trusted", "fair": "usable", "bad": "not to be trusted"}

@@ -1,31 +1,24 @@
 """The overturning study: boundaries of the analytic model, those of every engine beside them, and outcomes between."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from analytic import load_scene, overturning_map, simulate
+from analytic import Response, Scene, load_scene, overturning_map, simulate
 from engines import get_engine
+from engines.contract import Variant
 
 from ...measuring.statistics import cohen_kappa, confusion
 from ...running.cases import Case, variant_settings
-from ...running.plan import Batch, Computed
+from ...running.plan import Batch, Computed, Plan, Request
 from ...running.progress import log
 from ...running.refine import together
 from .drawn import drawn_columns, drawn_edges
 from .edges import HIGHEST, LOWEST, edges, least_normal, locate, pulse
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene
-    from engines.contract import Variant
-
-    from ...running.plan import Plan, Request
 
 # The isolated Caryatid itself overturns at base displacements far beyond its bearings' 0.30 m only; a more slender
 # block on the same bearings does at amplitudes of a strong earthquake.

@@ -1,20 +1,16 @@
 """What is shown of random scenes: how often each engine is right, and every run that is not."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from analytic.response import EDGE
 
 from ...measuring.classes import CLASSES
 from ...measuring.statistics import wilson
+from ...running.provenance import Result
 from ...showing.charts import Axis
 from ...showing.figures import ranks
 from ...showing.parts import Judgement, Mark, Page, typeset
 from ...showing.rows import NAME, Column, grouped, table, where
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 TRUSTED = 0.95  # share of right runs, of those not left out
 LEAST = 1e-3  # that the figure's axis begins at

@@ -1,7 +1,5 @@
 """Random scenes within the range of a statue, `engines.statue_range`."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

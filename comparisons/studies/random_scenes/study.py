@@ -1,27 +1,20 @@
 """What is run of an ensemble of random scenes, and the class of each run."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
-from analytic import simulate
+from analytic import Response, simulate
 from engines import get_engine
 from engines.comparison import Reference
 from engines.statue_range import RANGE, in_words
 
 from ...measuring.classes import class_of
 from ...running.cases import Case
-from ...running.plan import Batch, Computed
+from ...running.plan import Batch, Computed, Plan, Request
 from ...running.provenance import commit_seed
+from ...running.sweep import Row
 from .scenes import random_scene
-
-if TYPE_CHECKING:
-    from analytic import Response
-
-    from ...running.plan import Plan, Request
-    from ...running.sweep import Row
 
 SCENES, QUICK_SCENES = 500, 20  # of the engines' default variants
 FEWER = 5  # other variants run one scene in so many, and at least so many

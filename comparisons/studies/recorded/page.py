@@ -1,24 +1,20 @@
 """What is shown of recorded motions: whether outcomes are equal, and every run that is another."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from analytic.records.fema import PREFIX
 
 from ...measuring.statistics import TOO_FEW, equality
+from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure, key_of
 from ...showing.figures import LOOKS
 from ...showing.parts import Figure, Judgement, Mark, Page, number, percent, short, typeset
 from ...showing.rows import NAME, Column, grouped, table, where
 from ...showing.wording import equal_mark
 from .study import ERRORS
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 BOTH = "both"  # of the column "configuration": free-standing and isolated together
 COUNTED = {"differing": ("differs", "failed"), "failed": ("failed",)}  # {column: classes}

@@ -3,11 +3,9 @@
 All is drawn by a fixed seed and the component's name alone, so that no result could choose it.
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,11 +13,9 @@ from analytic import Base, Bearings, Scene
 from analytic.bearing import BearingLaw
 from analytic.caryatid import MASS, caryatid_block
 from analytic.design import design_bearings
+from analytic.motion import SampledMotion
 
 from ..fragility.cloud import peak_velocity
-
-if TYPE_CHECKING:
-    from analytic.motion import SampledMotion
 
 SEED = 695
 X_MAX = 0.30  # m, at which period and damping of the bearings hold

@@ -1,15 +1,14 @@
 """The study of recorded motions: each component once, free-standing and isolated, in the model and in the engines."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 import typer
 
-from analytic import simulate
+from analytic import Response, Scene, simulate
 from analytic.errors import SceneError
+from analytic.motion import SampledMotion
 from analytic.records.fema import PREFIX
 from analytic.records.folder import folder_motions
 from analytic.response import OUTCOMES
@@ -21,16 +20,11 @@ from ...measuring.classes import class_of
 from ...measuring.horizon import PERTURBATION, SAMPLES_PER_PERIOD, sensitivity_horizon, solver_horizon
 from ...measuring.statistics import EQUAL
 from ...running.cases import Case, variant_settings
-from ...running.plan import Batch, Computed
+from ...running.plan import Batch, Computed, Plan, Request
+from ...running.provenance import Result
 from ...running.sources import version_of
+from ...running.sweep import Row
 from .scenes import LAWS, RANGES, SEED, X_MAX, drawn_scene
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene
-    from analytic.motion import SampledMotion
-
-    from ...running.plan import Plan, Request
-    from ...running.sweep import Row
 
 # records for the tuned variants of the engines in question (None: all), and for the other variants
 FULL, QUICK = (None, 20), (2, 1)
@@ -191,3 +185,8 @@ def _mix(configuration, known):
     """How often each outcome comes in the model."""
     found = [row["outcome"] for row in known if row["configuration"] == configuration]
     return {outcome: found.count(outcome) for outcome in OUTCOMES if outcome in found}
+
+
+def problems(result: Result) -> list[str]:
+    """Why nothing was run, where it was not."""
+    return [row["reason"] for row in result.rows if row["part"] == "absent"]

@@ -1,18 +1,14 @@
 """What is shown of the restitution study."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...measuring.errors import rms
+from ...running.provenance import Result
 from ...showing.figures import beside, lines, shades
 from ...showing.parts import RESTITUTION, Head, Judgement, Mark, Page, number, percent, short
 from ...showing.rows import NAME, Column, grouped, setting_of, table, where
 from ...showing.wording import TRUSTED, USABLE, rating, trust, with_counts
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 FLOOR = 1e-9  # errors below are drawn here
 BOUNDS = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)

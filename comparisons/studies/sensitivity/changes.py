@@ -1,21 +1,15 @@
 """What may be different from what was modelled: each change of a scene with its size, by name."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic import SampledMotion, synthetic_motion
+from analytic import SampledMotion, Scene, synthetic_motion
 from analytic.bearing import BearingLaw
+from analytic.motion import Motion
 from analytic.rocking import RockingModel
-
-if TYPE_CHECKING:
-    from analytic import Scene
-    from analytic.motion import Motion
 
 OTHERS = 100_000  # seeds of the other horizontal, and twice of the vertical component, above those of the first
 USUAL_RATIO = 2 / 3  # peak vertical over peak horizontal acceleration, as codes took it for long

@@ -4,27 +4,20 @@ The factors of the motions lie about the one at which half of them overturn the 
 outcome depends on how near the boundary the motions are, and this is said with the answer.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.stats import norm
 
-from analytic import load_scene, simulate_many, synthetic_motion
+from analytic import Response, load_scene, simulate_many, synthetic_motion
 from analytic.rocking import RockingModel
 from engines import get_engine
 
 from ...measuring.statistics import confusion, mcnemar, wilson
 from ...running.cases import Case
-from ...running.plan import Batch, Computed
+from ...running.plan import Batch, Computed, Plan, Request
 from ...running.progress import log
 from .changes import changes, with_vertical
-
-if TYPE_CHECKING:
-    from analytic import Response
-
-    from ...running.plan import Plan, Request
 
 SPREAD = 0.4  # standard deviation of the logarithm of the motions' factors
 TRIED = np.geomspace(0.1, 4.0, 40)  # factors among which the one is found that overturns half

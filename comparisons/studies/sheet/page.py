@@ -1,15 +1,9 @@
 """What is shown of the sheet study."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
+from ...running.provenance import Result
 from ...showing.parts import Page
 from ...showing.rows import NAME, Column, grouped, table, where
 from ...showing.wording import USABLE
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 
 def page(result: Result) -> Page:

@@ -1,16 +1,11 @@
 """An overturning boundary, and the search for the one that a solver has in the reference's place."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
+from analytic import Response, Scene, State
 from analytic.motion import PulseMotion
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene, State
 
 RUNS = 6  # of a search: the first at the reference's boundary, then at the corrected ones
 STRIDE = 0.05  # longest move of a search, relative; it ends within its runs or finds no boundary

@@ -1,30 +1,25 @@
 """The five scenes of the speed-error study with their references, and what runs on each: solvers and their levels."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import zip_longest
-from typing import TYPE_CHECKING, Any
+from typing import Any, Self
 
 from scipy.optimize import brentq
 
-from analytic import Scene, Start, simulate
+from analytic import Response, Scene, Start, simulate
 from analytic.caryatid import BASE, BEARINGS, caryatid_block
 from analytic.motion import PulseMotion
 from analytic.synthetic import synthetic_motion
 from engines import ENGINES, get_engine
+from engines.contract import Variant
 
 from ...measuring import models
 from ...measuring.horizon import sensitivity_horizon
 from ...running.cases import Case
 from .boundary import Boundary, at_amplitude, margin
-
-if TYPE_CHECKING:
-    from analytic import Response
-    from engines.contract import Variant
 
 TIGHTEST = 1e-17  # tolerance of the kernel as a reference
 LONGEST = 10.0  # s, of a run under the synthetic motion: the strong shaking and what follows
@@ -56,7 +51,7 @@ class Trial:
     def reference(self) -> Response:
         return tight(self.scene)
 
-    def with_law(self, law: str) -> Trial:
+    def with_law(self, law: str) -> Self:
         """The same trial with another bearing law, and that law's own reference."""
         return replace(self, scene=self.scene.with_(bearings={"law": law}))
 

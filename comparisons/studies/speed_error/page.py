@@ -1,24 +1,20 @@
 """What is shown of the speed-error study."""
 
-from __future__ import annotations
-
 import statistics
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from engines import ENGINES
 
+from ...running.provenance import Result
 from ...showing.figures import beside, lines
 from ...showing.parts import COST, Head, Judgement, Mark, Page, number, percent, short
 from ...showing.rows import NAME as SOLVER
 from ...showing.rows import Column, Row, cheapest, grouped, table, where
 from .cases import NEEDED, PLAIN
 from .growth import fit
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 FIRST = ("free-sliding", PLAIN)  # scenes of the report's first page
 LEVELS = (1e-2, 1e-3, 1e-4, 1e-5)  # of an error; finer ones are the kernel study's

@@ -1,18 +1,17 @@
 """Speed against error: fresh processes, warm, solvers in turn, repeated; error and CPU time from the very same runs."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import math
 import statistics
 from collections.abc import Callable, Mapping, Sequence
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 import typer
 
+from analytic import Response
 from analytic.response import Impact
 from analytic.rocking import restitution
 from analytic.twin import simulate_twin
@@ -26,18 +25,12 @@ from ...measuring.errors import (
     strong_impacts,
     strong_time_errors,
 )
-from ...running.cases import variant_settings
-from ...running.plan import Batch, Computed
+from ...running.cases import Case, variant_settings
+from ...running.plan import Batch, Computed, Plan, Request
 from .boundary import RUNS, Boundary, searched
 from .cases import PLAIN, Entry, Trial, entries, levels_of, trials
 from .growth import TICK, grown, growth_cases
 from .share import own_share
-
-if TYPE_CHECKING:
-    from analytic import Response
-
-    from ...running.cases import Case
-    from ...running.plan import Plan, Request
 
 REPEATS, QUICK_REPEATS = 5, 3
 SLOW = 0.5  # s of CPU: next to it what is loaded in a first run is nothing; such a measurement needs no warm-up

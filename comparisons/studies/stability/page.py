@@ -1,19 +1,14 @@
 """What is shown of the stability study."""
 
-from __future__ import annotations
-
 import re
 from itertools import product
-from typing import TYPE_CHECKING
 
+from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
 from ...showing.parts import Head, Judgement, Mark, Page, short
 from ...showing.rows import NAME as ENGINE
 from ...showing.rows import Column, grouped, table, where
 from .study import DEFAULT, DIFFERS, FAILED, FINER, RIGHT, worst
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 WRONG = "wrong"  # a run that differs in its outcome: never the colour of a small error
 # sign in a cell, its class in the style sheet

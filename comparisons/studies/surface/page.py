@@ -1,19 +1,14 @@
 """What is shown of the fragility surface."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
 from ...showing.parts import Page, number, percent
 from ...showing.rows import NAME, Column, grouped, table
 from .study import crossing
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 LEVELS = (0.16, 0.5, 0.84)  # shares whose lines are drawn
 TICKS = (0.1, 0.2, 0.5, 1, 2, 3, 5)  # g

@@ -1,14 +1,8 @@
 """What is shown of the tolerances study."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
+from ...running.provenance import Result
 from ...showing.parts import Page
 from ...showing.rows import NAME, Column, table, where
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 
 def page(result: Result) -> Page:
