@@ -68,7 +68,6 @@ QUESTIONS = {
         "settings."
     ),
     "speed-error": "Error and CPU time of the same runs: kernel, scipy, time stepping, Bouc-Wen, engines and variants.",
-    "kernel": "The analytic model's kernel against other integrators: error and CPU time of the same runs.",
     "caryatid": "The Caryatid paper: every equation, figure and table reproduced or corrected, and what it leaves out.",
     "tolerances": (
         "How far each engine is from the analytic model, beside what it is held to. Status 1: a row does not hold."
@@ -77,7 +76,7 @@ QUESTIONS = {
     "sheet": "The problem sheet in every engine: what rocking score ranks other codes beside.",
 }
 BUILT_IN = tuple(QUESTIONS)
-ALONE = ("surface", "kernel")  # of the analytic model, where no engine is asked for
+ALONE = ("surface",)  # of the analytic model, where no engine is asked for
 
 
 class StudyBroken(SettingError):

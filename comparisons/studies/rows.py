@@ -89,10 +89,6 @@ ROWS = {
         "share": "scene engine variant level failure? share?",
         "growth": "engine variant against value failure? | cpu_seconds traced_bytes? resident_bytes?",
     },
-    "kernel": {
-        "work-precision": """engine variant problem tolerance expected_impacts failure? timings repeatable |
-            cpu_seconds cpu_low cpu_high error? impacts"""
-    },
     "caryatid": {
         "value": "where quantity engine? paper study difference? status note",
         "misprint": "where printed corrected measure value_corrected value_printed",

@@ -201,8 +201,8 @@ OWN: dict[str, dict[str, Explained]] = {
         "parameter": word("accuracy parameter whose value is the level"),
         "outcome": word("of the run: stands, rocks, overturns or failed"),
         "errors": table(
-            "by measure: restitution, boundary_shift, peak_displacement [-]; peak_tilt, end_tilt [slenderness]; "
-            "impact_time [s]"
+            "by measure: restitution, boundary_shift, peak_displacement [-]; peak_tilt, end_tilt, horizon_tilt "
+            "[slenderness]; impact_time [s]"
         ),
         "simulated": number("simulated time", "s"),
         "steps": whole("steps of the run"),
@@ -229,13 +229,6 @@ OWN: dict[str, dict[str, Explained]] = {
         "comparable": word('"yes", or why the run is not compared with the analytic model'),
         "differences": series("in what the run differs from the model, in words"),
         "quantities": series("in what the run differs from the model, by name"),
-    },
-    "kernel": {
-        "problem": word("which of the two"),
-        "tolerance": number("relative tolerance asked for"),
-        "expected_impacts": whole("impacts of the reference"),
-        "impacts": whole("impacts found"),
-        "error": number("of the tilt at the horizon against the reference, over the slenderness"),
     },
     "autopsy": {
         "best": flag("whether the variant is its engine's default"),

@@ -1,4 +1,4 @@
-"""The five scenes of the speed-error study with their references, and what runs on each: solvers and their levels."""
+"""The scenes of the speed-error study with their references, and what runs on each: solvers and their levels."""
 
 import math
 from collections.abc import Callable, Iterator, Sequence
@@ -19,6 +19,7 @@ from engines.contract import Variant
 from ...measuring import models
 from ...measuring.horizon import sensitivity_horizon
 from ...running.cases import Case
+from . import integrators
 from .boundary import Boundary, at_amplitude, margin
 
 TIGHTEST = 1e-17  # tolerance of the kernel as a reference
@@ -78,6 +79,11 @@ def trials() -> list[Trial]:
         Trial("isolated-rocking", rocks, ("restitution", "peak_tilt", "impact_time", "peak_displacement")),
         near_overturning(),
     ]
+
+
+def problems() -> list[Trial]:
+    """Problems A and B as trials: of integrators, to fine errors; their references are not the kernel's."""
+    return [Trial(name, problem.scene, ("horizon_tilt",)) for name, problem in integrators.PROBLEMS.items()]
 
 
 def near_overturning() -> Trial:
@@ -170,6 +176,9 @@ def entries(scenes: Sequence[Trial], engines: Sequence[str], quick: bool) -> lis
 
 def _ladders(trial: Trial, engines: Sequence[str], quick: bool) -> Iterator[list[Entry]]:
     """Each solver's entries on a trial, level after level."""
+    if trial.name in integrators.PROBLEMS:
+        yield from _integrators(trial, quick)
+        return
     yield from _models(trial, SCIPY_SAMPLED if trial.name in SAMPLED else SCIPY, quick)
     for name in engines:
         for variant, kind in get_engine(name).variants.items():
@@ -194,6 +203,18 @@ def _models(trial, methods, quick):
     for method, levels in methods.items():
         settings = {"energy": False, "method": method}
         yield [Entry(trial, "scipy", method, "rtol", level, "twin", settings) for level in levels[quick]]
+
+
+def _integrators(trial, quick):
+    """Those that are here; a peer's version is part of what a stored run is known by."""
+    peers = integrators.installed()
+    for (engine, variant), levels in integrators.TOLERANCES.items():
+        if (engine, variant) in peers or (engine, variant) not in integrators.PEERS:
+            settings = {"engine": engine, "variant": variant, "version": peers.get((engine, variant))}
+            yield [
+                Entry(trial, engine, variant, "tolerance", level, integrators.SOLVER, settings)
+                for level in levels[quick]
+            ]
 
 
 def _kernel(trial, level, **modelled):

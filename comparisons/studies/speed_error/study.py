@@ -12,6 +12,7 @@ import numpy as np
 import typer
 
 from analytic import Response
+from analytic.errors import SettingError
 from analytic.response import Impact
 from analytic.rocking import restitution
 from analytic.twin import simulate_twin
@@ -28,8 +29,9 @@ from ...measuring.errors import (
 from ...running.cases import Case, variant_settings
 from ...running.plan import Batch, Computed, Plan, Request
 from .boundary import RUNS, Boundary, searched
-from .cases import PLAIN, Entry, Trial, entries, levels_of, trials
+from .cases import PLAIN, Entry, Trial, entries, levels_of, problems, trials
 from .growth import TICK, grown, growth_cases
+from .integrators import PROBLEMS, SOLVER, timed
 from .share import own_share
 
 REPEATS, QUICK_REPEATS = 5, 3
@@ -42,6 +44,9 @@ EVIDENCE = 600  # characters of an engine's message that a row keeps
 STRAY, LAST = 0.025, 3
 
 Repeats = Annotated[int | None, typer.Option(min=1, max=1000, help="Fresh processes in turn. Default 5, quick 3.")]
+Only = Annotated[
+    str | None, typer.Option("--scene", metavar="NAME", help='One scene alone, as "problem A"; no growth of cost.')
+]
 
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
@@ -50,6 +55,8 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
     The run that made `response` has loaded code and caches; where it was long enough it is the measurement itself. A
     case whose tag holds a boundary, (amplitude, slope) of a `Boundary`, is a search for it.
     """
+    if case.solver == SOLVER:
+        return timed(case, TICK)
     goal = Boundary(*case.tag["boundary"]) if case.tag["boundary"] else None
 
     def run(scene):
@@ -108,6 +115,7 @@ def plan(
     grow: bool = True,
     *,
     repeats: Repeats = None,
+    scene: Only = None,
 ) -> Plan:
     """The plan of the study: in each round, one fresh process, every solver has its turn.
 
@@ -115,16 +123,21 @@ def plan(
     ----------
     request : Request
     scenes : list of Trial or None
-        None: all five.
+        None: all.
     keep : callable
         Entry -> bool: which of them to run.
     grow : bool
         Whether to measure the growth of cost too; it needs the scene "isolated-standing".
     repeats : int or None
         Rounds.
+    scene : str or None
+        Name of the one scene that is run; None: all.
     """
     rounds = repeats or (QUICK_REPEATS if request.quick else REPEATS)
-    scenes = scenes or trials()
+    known = scenes or [*trials(), *problems()]
+    scenes = [trial for trial in known if scene in (None, trial.name)]
+    if not scenes:
+        raise SettingError(f"--scene {scene}: no such scene; give one of {', '.join(trial.name for trial in known)}")
     measured = [(entry, []) for entry in entries(scenes, request.engines, request.quick) if keep(entry)]
     for turn in range(rounds):
         cases = [entry.case(turn) for entry, _ in measured]
@@ -133,7 +146,7 @@ def plan(
             rows.append(row)
     rows = [_row(entry, timings) for entry, timings in measured]
     rows += yield from _shares([entry for entry, _ in measured])
-    if grow:
+    if grow and scene is None:
         rows += yield from _growth(scenes, request, rounds)
     settings = {
         "quick": request.quick,
@@ -171,7 +184,7 @@ def _row(entry, timings):
     seconds = [timing.cost["cpu_seconds"] for timing in timings if timing.cost.get("cpu_seconds")]
     if first.failure or not seconds:
         return row
-    found = errors(trial, values, values["boundary_shifts"])
+    found = values["errors"] if "errors" in values else errors(trial, values, values["boundary_shifts"])
     cpu, simulated, steps = statistics.median(seconds), values["end"]["time"], values["steps"]
     return row | {
         "lost": found.pop("lost"),
@@ -246,11 +259,15 @@ def _growth(scenes, request, rounds):
 
 
 def description(trial: Trial) -> dict[str, Any]:
-    """A trial for the result file.
+    """A trial for the result file; of a problem its title and measures.
 
     reference_difference: errors of an independent solution, scipy DOP853 at its tightest. bouc_wen: what that law
     changes in the scene itself, relative; None without bearings.
     """
+
+    if trial.name in PROBLEMS:
+        title = f"{trial.name}, {PROBLEMS[trial.name].impacts} impacts"
+        return {"title": title, "measures": list(trial.measures), "reference_difference": {}}
 
     def run(scene):
         return simulate_twin(scene, rtol=TWIN_TOLERANCE, history=False, energy=False)
