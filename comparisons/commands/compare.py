@@ -41,7 +41,7 @@ def command(
     from analytic.scene_file import load_scene
 
     from ..running.files import check_writable
-    from ..showing.tables import comparison, show
+    from ..showing.terminal import comparison, show
 
     check_time_limit(time_limit)
     check_writable([json_file], picture=plot, inputs=[scene])

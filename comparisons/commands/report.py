@@ -11,9 +11,8 @@ import typer
 from analytic.errors import SettingError
 
 from ..running.motion_options import BothSigns, Directions, Records, other_motions
-from ..running.options import RECORD_OPTIONS, named_by_options
+from ..running.options import RECORD_OPTIONS, Channel, Column, Step, Units, named_by_options
 from ..running.progress import bar, say, stdout_to_stderr
-from ..running.record_options import Channel, Column, Step, Units
 from ..running.solving import ANALYTIC, check_solver, ground_motion
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from markupsafe import Markup
 from ..running.files import write_all
 from ..showing import diagrams
 from ..showing.mathml import mathml, prose
-from ..showing.templates import templates
+from ..showing.parts import templates
 from .drawing import LICENCE, downloads, svg
 from .lesson import Lesson, View
 from .notebook import PAGES, answer, code_of, written

@@ -16,8 +16,7 @@ from analytic.errors import SettingError
 from ..running.files import TemporaryFolder, write_all
 from ..running.progress import say
 from ..showing import diagrams
-from ..showing.parts import number
-from ..showing.templates import templates
+from ..showing.parts import number, templates
 from .drawing import svg
 from .lesson import Exercise, Lesson, View
 from .topics import lesson

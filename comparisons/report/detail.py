@@ -17,8 +17,7 @@ from ..running.readable import readable
 from ..showing import diagrams
 from ..showing.charts import STYLE, colour, key_of
 from ..showing.mathml import mathml
-from ..showing.parts import Section, number, signed
-from ..showing.templates import templates
+from ..showing.parts import Section, number, signed, templates
 from ..showing.wording import indexed
 from ..studies.rows import read_study
 from . import equations

@@ -9,8 +9,7 @@ from analytic.records import G
 
 from ..running.provenance import Result
 from ..showing.charts import Axis, Chart, figure
-from ..showing.parts import Figure, number
-from ..showing.rows import Row
+from ..showing.parts import Figure, Row, number
 from .detail import environment
 from .histories import thinned
 

@@ -15,9 +15,8 @@ from analytic.records.folder import reversed_sign, same_reversed
 from analytic.response import JUDGED, about_record
 
 from ..running.provenance import Result
-from ..showing.motions import LIFTED, odds
-from ..showing.parts import number, signed
-from ..showing.rows import Column, across, table
+from ..showing.margins import LIFTED, odds
+from ..showing.parts import Column, across, number, signed, table
 from ..showing.wording import listed
 from .next_step import needed_by, next_step
 from .sections import different

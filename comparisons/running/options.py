@@ -1,11 +1,21 @@
-"""Messages that name what a command offers: its options, not the parameters or the keys behind them."""
+"""Options that commands share, and messages that name them: options, not the parameters or the keys behind them."""
 
 import contextlib
 import re
 from collections.abc import Iterator, Mapping
+from typing import Annotated
+
+import typer
 
 from analytic.errors import SceneError, SettingError
 
+# What a user says of a record that the file itself does not.
+Units = Annotated[str | None, typer.Option(help="Unit, if the file states none: m/s2, cm/s2, gal, mm/s2, g or %g.")]
+Step = Annotated[float | None, typer.Option(metavar="SECONDS", help="Sampling interval, if the file states none.")]
+Column = Annotated[
+    str | None, typer.Option(help="Of several columns: the accelerations', its number from 1 on or its title.")
+]
+Channel = Annotated[str | None, typer.Option(help="Of several channels: its number or direction, 3 or Up.")]
 # What `rocking new` and `rocking design` share; those of a record, wherever one is read.
 DEFINITION = "Of the damping. equivalent: W_D/(4 pi E_s), the usual one; paper: W_D/(2 pi E_s), twice as much."
 RATIO = "By design: ka/kb; Table 1(b) of the paper has 10."

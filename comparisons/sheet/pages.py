@@ -11,7 +11,7 @@ from markupsafe import Markup
 from analytic import SampledMotion
 
 from ..running.files import write_all
-from ..showing.templates import templates
+from ..showing.parts import templates
 from ..showing.wording import indexed
 from .problems import COLUMNS, DAMPING, PERIOD, PROBLEMS, SCALES, UNITS, VERSION, Problem, record
 

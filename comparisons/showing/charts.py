@@ -19,9 +19,8 @@ from matplotlib.ticker import LogLocator, MaxNLocator
 
 from engines import ENGINES
 
-from .parts import Figure, power_of_ten
+from .parts import Figure, power_of_ten, templates
 from .plots import OTHERS, marker
-from .templates import templates
 
 DRAWN = templates(Path(__file__).parent).get_template("chart.html")
 STYLE = Path(__file__).with_name("charts.css")  # colours of pages, light and dark, and the rules of charts

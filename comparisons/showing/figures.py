@@ -16,8 +16,7 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from .charts import REFERENCE, WIDTH, Axis, Chart, figure, key_of, log_axis, room, slanting
-from .parts import Figure
-from .rows import Column, Key, Row, grouped, value_of
+from .parts import Column, Figure, Key, Row, grouped, value_of
 
 # Of the first, second, ... series of one engine; all have the engine's colour, dashes and shape of marks.
 LOOKS: tuple[dict[str, Any], ...] = (

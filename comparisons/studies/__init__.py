@@ -26,7 +26,7 @@ title, lead and first, the study's own page all of it; nothing is told or drawn 
             how=("What was run, and how it is measured.",),
         )
 
-The layer: `comparisons.showing.rows` (where, grouped, Column, table), `comparisons.showing.figures` (lines, shades,
+The layer: `comparisons.showing.parts` (where, grouped, Column, table), `comparisons.showing.figures` (lines, shades,
 beside); what they cannot draw is a `comparisons.showing.charts.Chart`. The page is imported only where it is shown.
 
 Other packages declare theirs in the entry point group `rocking.studies`; an entry resolves to a `Study` of its name.

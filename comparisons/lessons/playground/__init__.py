@@ -13,7 +13,7 @@ from markupsafe import Markup
 
 from analytic import synthetic_motion
 
-from ...showing.templates import templates
+from ...showing.parts import templates
 
 FOLDER = Path(__file__).parent
 # Of the equations, run in the page and in its workers; then those of the page alone.

@@ -13,9 +13,8 @@ from engines import ENGINES
 
 from ...measuring.agreement import RIGID
 from ...running.provenance import RESULTS
-from ...showing.parts import Table, number
+from ...showing.parts import Table, number, where
 from ...showing.plots import marker
-from ...showing.rows import where
 from ...studies.rows import read_study
 from ..drawing import MODEL, OTHER, SOFT, STONE, THIRD, canvas, legend
 from ..engine_runs import SCENE, SLENDERNESS, engine_runs, error_of

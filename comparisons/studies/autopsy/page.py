@@ -5,8 +5,7 @@ import numpy as np
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
 from ...showing.figures import MOVED
-from ...showing.parts import Page
-from ...showing.rows import NAME, Column, table, where
+from ...showing.parts import NAME, Column, Page, table, where
 
 RIGID = "rigid ground"
 WINDOW = 20.0  # ms before and after the landing that are drawn

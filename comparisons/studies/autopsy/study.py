@@ -6,7 +6,7 @@ from analytic import Base, Block, Response, Scene, Start
 from analytic.caryatid import BASE, MASS, RADIUS
 from engines import get_engine
 
-from ...measuring.causes import CAUSES, LEAST, diagnosis
+from ...measuring.autopsy import CAUSES, LEAST, diagnosis
 from ...running.cases import Case
 from ...running.plan import Batch, Computed, Plan, Request
 

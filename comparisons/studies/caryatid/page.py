@@ -12,8 +12,7 @@ from engines import missing_words
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
 from ...showing.figures import lines, regions
-from ...showing.parts import Head, Page, Table, number, percent
-from ...showing.rows import Column, grouped, table, where
+from ...showing.parts import Column, Head, Page, Table, grouped, number, percent, table, where
 from . import paper
 from .runs import FREE, ISOLATED
 from .variations import CATEGORIES, WITHIN

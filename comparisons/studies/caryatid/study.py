@@ -16,15 +16,14 @@ from analytic import SampledMotion
 from analytic.design import properties
 from engines import available_engines
 
+from ...running.options import Channel, Column, Step, Units
 from ...running.plan import Computed, Plan, Request
 from ...running.progress import log
-from ...running.record_options import Channel, Column, Step, Units
 from ...running.solving import ground_motion
-from .cost import cost_rows
 from .formulas import formulas
 from .paper import X_MAX, motion_values
 from .runs import ISOLATED, caryatid, equivalent_oscillators, simulations, spectra
-from .variations import claims, maps, uplift_slenderness
+from .variations import claims, cost_rows, maps, uplift_slenderness
 
 PART_PAPER, PART_MOTION, PART_HISTORIES = "paper", "motion", "histories"
 

@@ -1,8 +1,7 @@
 """What is shown of the constants study: of each constant what moves where it is halved and doubled."""
 
 from ...running.provenance import Result
-from ...showing.parts import Page, number, short
-from ...showing.rows import NAME, Column, grouped, table, where
+from ...showing.parts import NAME, Column, Page, grouped, number, short, table, where
 from .study import AS_IT_IS, CHANGES
 
 # Factor from which an error is said to move, and one of CPU time, which other work on the machine changes, too.

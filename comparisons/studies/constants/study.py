@@ -16,7 +16,7 @@ from ...measuring.errors import impact_errors, rms
 from ...running.cases import Case
 from ...running.plan import Batch, Computed, Plan, Request
 from ...running.sweep import Row
-from ..random_scenes.scenes import random_scene
+from ..random_scenes.study import random_scene
 from ..restitution.cases import free_scene, variants_of
 from ..stability.cases import hard_cases
 

@@ -5,8 +5,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import norm
 
-from ...measuring.fragility import draws, fit_fragility, goodness, interval, points, resampled
-from ...measuring.statistics import compare, holm
+from ...measuring.statistics import compare, draws, fit_fragility, goodness, holm, interval, points, resampled
 
 DRAWS, POINTS = 200, 14
 PAIRED_DRAWS = 500

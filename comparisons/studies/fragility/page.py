@@ -9,8 +9,7 @@ from ...measuring.statistics import EQUAL, TOO_FEW, equality
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
 from ...showing.figures import ranks, shades
-from ...showing.parts import Head, Judgement, Page, number, percent, short
-from ...showing.rows import NAME, Column, grouped, table, where
+from ...showing.parts import NAME, Column, Head, Judgement, Page, grouped, number, percent, short, table, where
 from ...showing.wording import equal_mark
 
 LEVEL = 0.05  # of the test between an engine and the model, and least p of a curve that is shown

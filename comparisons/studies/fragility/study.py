@@ -10,7 +10,7 @@ from analytic.rocking import RockingModel
 from engines import get_engine
 from engines.comparison import END, Reference, compare
 
-from ...measuring.classes import class_of
+from ...measuring.statistics import class_of
 from ...running.cases import Case
 from ...running.plan import Batch, Computed, Plan, Request
 from ...running.sweep import Row

@@ -9,10 +9,22 @@ import numpy as np
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure, key_of
 from ...showing.figures import MOVED, lines
-from ...showing.parts import Head, Judgement, Mark, Page, number, percent
-from ...showing.rows import NAME, Column, grouped, setting_of, table, where
-from .drawn import FREQUENCY as FREQUENCIES
-from .drawn import JUMPS, ROOM
+from ...showing.parts import (
+    NAME,
+    Column,
+    Head,
+    Judgement,
+    Mark,
+    Page,
+    grouped,
+    number,
+    percent,
+    setting_of,
+    table,
+    where,
+)
+from .edges import APART, JUMPS
+from .edges import FREQUENCY as FREQUENCIES
 
 LIMIT, FAIR = 0.005, 0.03  # shifts of a trusted and of a usable engine
 RATINGS = {"good": "trusted", "fair": "usable", "bad": "not to be trusted"}
@@ -447,7 +459,7 @@ def _how(result):
         "analytic model becomes negative, that model is the one not to be trusted, and the boundary is not rated. The "
         "drawn blocks are those of the random scenes, at rest; shapes of pulses take turns, frequencies are drawn from "
         f"{FREQUENCIES[0]:g} to {FREQUENCIES[1]:g} times the rocking frequency; of each the lowest boundary that no "
-        f"other one is nearer to than {percent(ROOM, 1)}.",
+        f"other one is nearer to than {percent(APART, 1)}.",
         f"Trusted: all boundaries found, shifted by at most {percent(LIMIT, 1)}, no outcome that differs beyond the "
         f"band; usable: all found, at most {percent(FAIR, 1)}. Tier assisted: the adapter applies the impact, so "
         "that the boundaries test the integration alone; no other level is tried.",

@@ -17,8 +17,7 @@ from ...running.cases import Case, variant_settings
 from ...running.plan import Batch, Computed, Plan, Request
 from ...running.progress import log
 from ...running.refine import together
-from .drawn import drawn_columns, drawn_edges
-from .edges import HIGHEST, LOWEST, edges, least_normal, locate, pulse
+from .edges import HIGHEST, LOWEST, drawn_columns, drawn_edges, edges, least_normal, locate, pulse
 
 # The isolated Caryatid itself overturns at base displacements far beyond its bearings' 0.30 m only; a more slender
 # block on the same bearings does at amplitudes of a strong earthquake.

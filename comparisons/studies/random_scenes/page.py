@@ -4,13 +4,11 @@ from typing import Any
 
 from analytic.response import EDGE
 
-from ...measuring.classes import CLASSES
-from ...measuring.statistics import wilson
+from ...measuring.statistics import CLASSES, wilson
 from ...running.provenance import Result
 from ...showing.charts import Axis
 from ...showing.figures import ranks
-from ...showing.parts import Judgement, Mark, Page, typeset
-from ...showing.rows import NAME, Column, grouped, table, where
+from ...showing.parts import NAME, Column, Judgement, Mark, Page, grouped, table, typeset, where
 
 TRUSTED = 0.95  # share of right runs, of those not left out
 LEAST = 1e-3  # that the figure's axis begins at

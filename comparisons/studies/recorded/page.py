@@ -11,8 +11,21 @@ from ...measuring.statistics import TOO_FEW, equality
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure, key_of
 from ...showing.figures import LOOKS
-from ...showing.parts import Figure, Judgement, Mark, Page, number, percent, short, typeset
-from ...showing.rows import NAME, Column, grouped, table, where
+from ...showing.parts import (
+    NAME,
+    Column,
+    Figure,
+    Judgement,
+    Mark,
+    Page,
+    grouped,
+    number,
+    percent,
+    short,
+    table,
+    typeset,
+    where,
+)
 from ...showing.wording import equal_mark
 from .study import ERRORS
 

@@ -6,8 +6,22 @@ from typing import Any
 from ...measuring.errors import rms
 from ...running.provenance import Result
 from ...showing.figures import beside, lines, shades
-from ...showing.parts import RESTITUTION, Head, Judgement, Mark, Page, number, percent, short
-from ...showing.rows import NAME, Column, grouped, setting_of, table, where
+from ...showing.parts import (
+    NAME,
+    RESTITUTION,
+    Column,
+    Head,
+    Judgement,
+    Mark,
+    Page,
+    grouped,
+    number,
+    percent,
+    setting_of,
+    short,
+    table,
+    where,
+)
 from ...showing.wording import TRUSTED, USABLE, rating, trust, with_counts
 
 FLOOR = 1e-9  # errors below are drawn here

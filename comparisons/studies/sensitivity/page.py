@@ -4,8 +4,7 @@ from ...measuring.statistics import wilson
 from ...running.provenance import Result
 from ...showing.charts import REFERENCE, Axis
 from ...showing.figures import ranks, shades
-from ...showing.parts import Head, Page, percent, short
-from ...showing.rows import NAME, Column, grouped, table, where
+from ...showing.parts import NAME, Column, Head, Page, grouped, percent, short, table, where
 
 LEAST = 5e-4  # share at which smaller ones are drawn
 TICKS = ((LEAST, "0"), (0.01, "1 %"), (0.1, "10 %"), (1.0, "100 %"))

@@ -1,8 +1,7 @@
 """What is shown of the sheet study."""
 
 from ...running.provenance import Result
-from ...showing.parts import Page
-from ...showing.rows import NAME, Column, grouped, table, where
+from ...showing.parts import NAME, Column, Page, grouped, table, where
 from ...showing.wording import USABLE
 
 

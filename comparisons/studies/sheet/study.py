@@ -7,9 +7,8 @@ from engines import get_engine
 
 from ...running.cases import Case
 from ...running.plan import Batch, Computed, Plan, Request
-from ...sheet.answers import error, own_error
-from ...sheet.observed import of_response, solved
 from ...sheet.problems import PROBLEMS, VERSION
+from ...sheet.variants import error, of_response, own_error, solved
 
 
 def plan(request: Request) -> Plan:

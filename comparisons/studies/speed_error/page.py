@@ -10,9 +10,23 @@ from engines import ENGINES
 
 from ...running.provenance import Result
 from ...showing.figures import beside, lines
-from ...showing.parts import COST, Head, Judgement, Mark, Page, number, percent, short
-from ...showing.rows import NAME as SOLVER
-from ...showing.rows import Column, Row, cheapest, grouped, table, where
+from ...showing.parts import (
+    COST,
+    Column,
+    Head,
+    Judgement,
+    Mark,
+    Page,
+    Row,
+    cheapest,
+    grouped,
+    number,
+    percent,
+    short,
+    table,
+    where,
+)
+from ...showing.parts import NAME as SOLVER
 from .cases import NEEDED, PLAIN
 from .growth import fit
 

@@ -5,9 +5,8 @@ from itertools import product
 
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
-from ...showing.parts import Head, Judgement, Mark, Page, short
-from ...showing.rows import NAME as ENGINE
-from ...showing.rows import Column, grouped, table, where
+from ...showing.parts import NAME as ENGINE
+from ...showing.parts import Column, Head, Judgement, Mark, Page, grouped, short, table, where
 from .study import DEFAULT, DIFFERS, FAILED, FINER, RIGHT, worst
 
 WRONG = "wrong"  # a run that differs in its outcome: never the colour of a small error

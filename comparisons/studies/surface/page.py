@@ -6,8 +6,7 @@ import numpy as np
 
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
-from ...showing.parts import Page, number, percent
-from ...showing.rows import NAME, Column, grouped, table
+from ...showing.parts import NAME, Column, Page, grouped, number, percent, table
 from .study import crossing
 
 LEVELS = (0.16, 0.5, 0.84)  # shares whose lines are drawn

@@ -1,8 +1,7 @@
 """What is shown of the tolerances study."""
 
 from ...running.provenance import Result
-from ...showing.parts import Page
-from ...showing.rows import NAME, Column, table, where
+from ...showing.parts import NAME, Column, Page, table, where
 
 
 def page(result: Result) -> Page:

@@ -16,8 +16,7 @@ from comparisons.report.study import make_results
 from comparisons.report.write import write_page
 from comparisons.running.provenance import read_result, write_result
 from comparisons.showing import parts
-from comparisons.showing.parts import Table
-from comparisons.showing.rows import where
+from comparisons.showing.parts import Table, where
 from comparisons.showing.wording import listed
 from comparisons.studies import get_study
 from engines import installed_engines

@@ -9,9 +9,9 @@ PROJECT = Path(__file__).parents[3]
 WAY = "comparisons/running/files.py"
 # (file, function, call): why what it writes need not be there whole or not at all
 ELSEWHERE = {
-    ("comparisons/running/store.py", "__init__", "open"): "runs are appended, and a torn end is found",
-    ("comparisons/running/store.py", "append", "truncate"): "the same",
-    ("comparisons/running/store.py", "_read", "truncate"): "the same",
+    ("comparisons/running/sweep.py", "__init__", "open"): "runs are appended, and a torn end is found",
+    ("comparisons/running/sweep.py", "append", "truncate"): "the same",
+    ("comparisons/running/sweep.py", "_read", "truncate"): "the same",
     ("comparisons/running/executors.py", "_work", "open"): "what a worker prints, in a temporary folder",
     ("comparisons/running/solving.py", "scene_of", "tempfile.NamedTemporaryFile"): "temporary",
     ("comparisons/running/provenance.py", "write_result", "numpy.savez_compressed"): "into memory",

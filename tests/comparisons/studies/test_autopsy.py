@@ -4,7 +4,7 @@ import pytest
 from answered import answered
 
 from analytic import simulate
-from comparisons.measuring.causes import CAUSES
+from comparisons.measuring.autopsy import CAUSES
 from comparisons.running.plan import Request
 from comparisons.running.provenance import Result
 from comparisons.running.sweep import Row

@@ -20,7 +20,7 @@ from analytic import Block, Scene, Start
 from comparisons.running.cases import Case
 from comparisons.running.plan import Batch, Computed, Study
 from comparisons.showing.parts import Page
-from comparisons.showing.rows import Column, table
+from comparisons.showing.parts import Column, table
 
 
 def measure(case, response):

@@ -9,9 +9,9 @@ from answered import answered, by_model, stored
 
 from analytic import simulate
 from analytic.linear_oscillator import displacement_spectrum
-from comparisons.measuring.fragility import fit_fragility
+from comparisons.measuring.statistics import fit_fragility
 from comparisons.running.plan import Request
-from comparisons.showing.rows import where
+from comparisons.showing.parts import where
 from comparisons.studies.fragility import STUDY, fits
 from comparisons.studies.fragility.cloud import PERIOD, SCENES, cloud
 from comparisons.studies.fragility.study import NEAR, plan

@@ -8,7 +8,7 @@ from answered import answered, by_runs, stored
 from analytic.errors import SettingError
 from analytic.twin import METHODS as OFFERED
 from comparisons.running.plan import Request
-from comparisons.showing.rows import where
+from comparisons.showing.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.speed_error import integrators, page
 from comparisons.studies.speed_error.cases import entries, problems

@@ -11,8 +11,7 @@ from analytic.rocking import restitution
 from comparisons.report.detail import write_study
 from comparisons.running.provenance import read_result
 from comparisons.running.study import compute
-from comparisons.showing.parts import Figure, Table
-from comparisons.showing.rows import where
+from comparisons.showing.parts import Figure, Table, where
 from comparisons.studies.restitution import STUDY
 from comparisons.studies.restitution.cases import (
     CARYATID_BASE,

@@ -13,7 +13,7 @@ from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.study import compute
 from comparisons.running.sweep import Row
-from comparisons.showing.rows import where
+from comparisons.showing.parts import where
 from comparisons.studies.rows import wrong_with
 from comparisons.studies.stability import STUDY
 from comparisons.studies.stability.cases import BLOCK, GAP, OVERTURNS_FROM, THRESHOLD, hard_cases
