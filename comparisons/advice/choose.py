@@ -22,9 +22,8 @@ from ..running.files import TemporaryFolder
 from ..running.progress import spinner
 from ..running.solving import ANALYTIC, named_engines
 from .answer import Choice, Level, VariantLevels
-from .criteria import CRITERIA, fitting, neighbours, safety, until
+from .criteria import CRITERIA, cpu_seconds, fitting, model_parts, neighbours, safety, until
 from .search import Search, problem
-from .unneeded import cpu_seconds, model_parts
 
 TIME_LIMIT = 60.0  # s, of one run
 

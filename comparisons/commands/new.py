@@ -202,7 +202,7 @@ def _tell(file: str, scene: Any, json_file: str | None, asked: Mapping[str, tupl
     """Print or write what follows from a scene, beside what was asked for."""
     from analytic.new_scene import derived
 
-    from ..schemas.results import Derived, New
+    from ..schemas.runs import Derived, New
     from ..showing.terminal import echo, named_values
 
     found, shown = [], {}

@@ -38,7 +38,7 @@ def command(
     from analytic.records.written import two_columns
 
     from ..running.files import check_writable
-    from ..schemas.results import Record
+    from ..schemas.runs import Record
     from ..showing.plots import channel_words, described, draw_channels, print_channels
 
     check_writable([json_file, to], picture=plot, inputs=[file])

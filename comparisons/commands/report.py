@@ -16,7 +16,7 @@ from ..running.progress import bar, say, stdout_to_stderr
 from ..running.solving import ANALYTIC, check_solver, ground_motion
 
 if TYPE_CHECKING:
-    from ..schemas.results import Report
+    from ..schemas.runs import Report
 
 
 def command(
@@ -136,7 +136,7 @@ def form(page: Path) -> Report:
 
     from ..report.runs import RESTITUTION, SCENES
     from ..running.provenance import read_result
-    from ..schemas.results import Report, Reported
+    from ..schemas.runs import Report, Reported
 
     files = [page.with_name(name) for name in (SCENES, RESTITUTION) if page.with_name(name).exists()]
     result = read_result(files[0])

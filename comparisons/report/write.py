@@ -22,7 +22,7 @@ from ..showing.wording import TRUSTED, USABLE
 from . import equations
 from .answer import not_to_do, own_restitution, paragraph, recommendation, setups_of
 from .detail import assets, detail, environment
-from .histories import animation
+from .figures import animation
 from .runs import RESTITUTION, SCENES
 from .sections import earthquake, restitution_section, scene_sections, summary
 from .statue import card_of

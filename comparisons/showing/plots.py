@@ -19,7 +19,7 @@ from analytic.records import Channel, G
 from engines import ENGINES
 
 from ..running.readable import readable
-from ..schemas import results
+from ..schemas import runs
 from .terminal import echo, grid
 
 # colour, dashes, width; the reference lies wide underneath, dots need width to be seen
@@ -136,10 +136,10 @@ def channel_words(channel: Channel) -> str:
     return f"{number} ({direction})" if number and direction else number or direction
 
 
-def described(channel: Channel) -> results.Channel:
+def described(channel: Channel) -> runs.Channel:
     """What was read of a channel, as it stands in JSON; peak and step in SI units."""
     motion = channel.motion
-    return results.Channel(
+    return runs.Channel(
         channel=channel.number,
         direction=channel.direction,
         units=channel.unit.word,

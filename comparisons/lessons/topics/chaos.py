@@ -9,8 +9,8 @@ from analytic import SampledMotion, Scene, simulate
 from analytic.caryatid import caryatid_block
 
 from ...showing.parts import MINUS_DIGITS
-from ..computing import G
 from ..drawing import MODEL, OTHER, SOFT, canvas, legend
+from ..engine_runs import G
 from ..lesson import Control, Equation, Exercise, Lesson, View
 
 SLENDERNESS, RESTITUTION, DURATION = 0.28, 0.98, 30.0  # rad, -, s

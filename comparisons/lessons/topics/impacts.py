@@ -7,8 +7,8 @@ from analytic.caryatid import BASE, MASS, RADIUS, caryatid_block
 from analytic.rocking import RockingModel, momentum_restitution
 
 from ...showing.diagrams import labelled
-from ..computing import edge, history_until
 from ..drawing import MODEL, OTHER, SOFT, canvas, legend
+from ..engine_runs import edge, history_until
 from ..lesson import Control, Equation, Exercise, Lesson, View
 
 START, WINDOW = 0.8, 8.0  # tilt over slenderness, s

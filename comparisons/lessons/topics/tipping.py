@@ -11,8 +11,8 @@ from analytic.caryatid import MASS, RADIUS, caryatid_block
 from analytic.rocking import RockingModel
 
 from ...showing.diagrams import labelled
-from ..computing import G, edge, history_until, overturns
 from ..drawing import INK, OUTCOMES, PANEL, canvas, tilt_axis
+from ..engine_runs import G, edge, history_until, overturns
 from ..lesson import Control, Equation, Exercise, Lesson, View
 
 SLENDERNESS, PERIOD = 0.28, 0.8  # rad, s

@@ -13,7 +13,7 @@ from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
 from ...showing.figures import lines, regions
 from ...showing.parts import Column, Head, Page, Table, grouped, number, percent, table, where
-from . import paper
+from . import runs as paper
 from .runs import FREE, ISOLATED
 from .variations import CATEGORIES, WITHIN
 

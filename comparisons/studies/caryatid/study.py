@@ -21,8 +21,7 @@ from ...running.plan import Computed, Plan, Request
 from ...running.progress import log
 from ...running.solving import ground_motion
 from .formulas import formulas
-from .paper import X_MAX, motion_values
-from .runs import ISOLATED, caryatid, equivalent_oscillators, simulations, spectra
+from .runs import ISOLATED, X_MAX, caryatid, equivalent_oscillators, motion_values, simulations, spectra
 from .variations import claims, cost_rows, maps, uplift_slenderness
 
 PART_PAPER, PART_MOTION, PART_HISTORIES = "paper", "motion", "histories"

@@ -18,8 +18,7 @@ from analytic.motion import Motion
 from analytic.solver import ground, options, parameters
 
 from ...running.refine import boundaries, drive
-from .paper import VULNERABLE_ABOUT, VULNERABLE_PERIOD, X_MAX
-from .runs import FREE, ISOLATED, caryatid
+from .runs import FREE, ISOLATED, VULNERABLE_ABOUT, VULNERABLE_PERIOD, X_MAX, caryatid
 
 LOW, HIGH = 0.10, 0.45  # rad
 TOLERANCE = 1e-5  # rad

@@ -32,7 +32,7 @@ from ...running.plan import Batch, Computed, Plan, Request
 from ...running.provenance import Result
 from ...running.sources import version_of
 from ...running.sweep import Row
-from ..fragility.cloud import peak_velocity
+from ..fragility.study import peak_velocity
 
 SEED = 695
 X_MAX = 0.30  # m, at which period and damping of the bearings hold

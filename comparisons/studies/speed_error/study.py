@@ -28,8 +28,7 @@ from ...measuring.errors import (
 )
 from ...running.cases import Case, variant_settings
 from ...running.plan import Batch, Computed, Plan, Request
-from .boundary import RUNS, Boundary, searched
-from .cases import PLAIN, Entry, Trial, entries, levels_of, problems, trials
+from .cases import PLAIN, RUNS, Boundary, Entry, Trial, entries, levels_of, problems, searched, trials
 from .growth import TICK, grown, growth_cases
 from .integrators import PROBLEMS, SOLVER, timed
 from .share import own_share

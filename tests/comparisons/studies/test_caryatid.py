@@ -14,18 +14,22 @@ from comparisons.running.study import compute
 from comparisons.showing.parts import where
 from comparisons.studies.caryatid import STUDY
 from comparisons.studies.caryatid.formulas import formulas
-from comparisons.studies.caryatid.paper import (
+from comparisons.studies.caryatid.runs import (
     CORRECTED,
     DERIVED,
+    FREE,
+    ISOLATED,
     NOT_CHECKABLE,
     NOT_REPRODUCIBLE,
     OTHER_MOTION,
     REPRODUCED,
+    caryatid,
     is_papers_motion,
     judged,
     motion_values,
+    oscillator,
+    slender_block,
 )
-from comparisons.studies.caryatid.runs import FREE, ISOLATED, caryatid, oscillator, slender_block
 from comparisons.studies.caryatid.variations import (
     BOTH,
     DIVISIONS,

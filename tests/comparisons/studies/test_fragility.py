@@ -13,8 +13,7 @@ from comparisons.measuring.statistics import fit_fragility
 from comparisons.running.plan import Request
 from comparisons.showing.parts import where
 from comparisons.studies.fragility import STUDY, fits
-from comparisons.studies.fragility.cloud import PERIOD, SCENES, cloud
-from comparisons.studies.fragility.study import NEAR, plan
+from comparisons.studies.fragility.study import NEAR, PERIOD, SCENES, cloud, plan
 
 FREE = {"free-standing": SCENES["free-standing"]}
 RUNS = (300, 110, 10)

@@ -16,8 +16,7 @@ from comparisons.running.study import compute
 from comparisons.showing.parts import COST, Figure, Table
 from comparisons.studies import get_study
 from comparisons.studies.speed_error import growth
-from comparisons.studies.speed_error.boundary import margin, searched
-from comparisons.studies.speed_error.cases import NEEDED, entries, trials
+from comparisons.studies.speed_error.cases import NEEDED, entries, margin, searched, trials
 from comparisons.studies.speed_error.page import LEVELS, levels_run, passing
 from comparisons.studies.speed_error.share import own_share, seconds_inside
 from comparisons.studies.speed_error.study import errors, measure
