@@ -11,8 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from analytic import Scene, simulate
-from analytic.errors import SettingError
+from analytic import Scene, SettingError, simulate
 from analytic.solver import TOLERANCE
 from engines import available_engines, get_engine
 from engines.contract import Variant

@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from analytic import Response, Scene, simulate
-from analytic.errors import SettingError
+from analytic import Response, Scene, SettingError, simulate
 from analytic.rocking import restitution
 from engines import get_engine
 

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from analytic import Response, Scene, simulate
-from analytic.response import Caution
+from analytic import Caution, Response, Scene, simulate
 from analytic.rocking import RockingModel
 from engines.copies import changed_copies
 

@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from analytic import Block, Scene, simulate_many
+from analytic import Block, Scene, SceneError, simulate_many
 from analytic.bearing_scan import first_stroke
-from analytic.errors import SceneError
 from analytic.margins import check_cost
 from analytic.motion import Motion
 

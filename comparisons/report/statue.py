@@ -5,8 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from analytic import Scene, simulate, simulate_many
-from analytic.errors import SceneError
+from analytic import Scene, SceneError, simulate, simulate_many
 from analytic.limits import scene_warnings
 from analytic.margins import SPAN, TILT, limit_states, margins
 from analytic.motion import Motion
@@ -103,7 +102,6 @@ def _lifts_or_goes_too_far(scene, found, rows):
 
 
 def _figures(scene):
-    """The numbers of one run."""
     response = simulate(scene, history=False)
     warnings = (*about_record(scene.motion), *response.warnings)
     return {
@@ -143,7 +141,6 @@ def _near(scene, changes, found):
 
 
 def _under(scene, record, motions):
-    """What the motions of one record do."""
     found = simulate_many([scene.with_(motion=motion, duration=None) for motion in motions])
     return {
         "record": record,

@@ -73,7 +73,6 @@ def commit_of(origin: Mapping[str, Any]) -> str:
 
 
 def _stored(file):
-    """What is shown of a file."""
     try:
         result = read_study(file)
         if not f"{file.stem}-".startswith(f"{result.kind}-"):  # <study>-<part>.json where a study has several

@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from analytic import Response, Scene, simulate
+from analytic import Response, Scene, State, simulate
 from analytic.bearing import BearingLaw
-from analytic.response import State
 from analytic.rocking import RockingModel
 from analytic.twin.run import Run
 from analytic.types import GroundFunction

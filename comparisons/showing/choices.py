@@ -54,7 +54,6 @@ def answer(choice: Choice) -> str:
 
 
 def named(one: Level) -> str:
-    """A level as sentences call it."""
     return f"{one.engine}, {one.variant}, {one.parameter} = {one.value:g}{' (the default)' if one.default else ''}"
 
 

@@ -12,9 +12,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.text import Text
 
-from analytic import Response, Scene
+from analytic import Response, SampledMotion, Scene
 from analytic.linear_oscillator import displacement_spectrum
-from analytic.motion import SampledMotion
 from analytic.records import Channel, G
 from engines import ENGINES
 

@@ -22,7 +22,6 @@ ERROR = Column("error of restitution [-]", "error")
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the autopsy study."""
     settings = result.settings
     told = [row for row in result.rows if row["failure"] is None and "why_not" not in row]
     ranked = sorted(told, key=lambda row: -abs(row["error"]))

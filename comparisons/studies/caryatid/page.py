@@ -43,7 +43,6 @@ SHARES = (*CATEGORIES, WITHIN, "isolated lifts", "beyond x_max")
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the study."""
     return {"paper": _paper, "motion": _motion, "histories": _histories}[result.settings["part"]](result)
 
 
@@ -348,7 +347,6 @@ def _vulnerable(result):
 
 
 def _benefit(result):
-    """Who stays upright, over slenderness and intensity."""
     gamma, intensity = (result.arrays[f"benefit/{name}"].astype(float) for name in ("slenderness", "intensity"))
     panels = {"": result.arrays["benefit/category"]}
     (chart,), keys = regions(GAMMA, "intensity: motion times [-]", gamma, intensity, panels, HARMS, right=76)

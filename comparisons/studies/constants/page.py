@@ -14,7 +14,6 @@ VALUE = Column("value", "value", digits=None)
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the constants study."""
     first = {NAME.of(row): row for row in where(result.rows, change=AS_IT_IS)}
     changed = grouped(where(result.rows, change=set(CHANGES)), "engine", "variant", "constant")
     shown = [_merged(rows, first[NAME.of(rows[0])]) for rows in changed.values()]

@@ -44,7 +44,6 @@ EFFECT = (
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the fragility study."""
     fits, effects = where(result.rows, part="fit"), where(result.rows, part="effect")
     costs = {(row["scene"], NAME.of(row)): row["cpu_per_run"] for row in where(result.rows, part="cost")}
     best = {row["scene"]: row["measure"] for row in where(fits, state=OVERTURNING, best=True)}

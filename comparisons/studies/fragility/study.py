@@ -119,7 +119,6 @@ def variants_of(engines: Sequence[str]) -> list[tuple[str, str]]:
 
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
-    """What is kept of a run."""
     return {
         "overturns": response.outcome == "overturns",
         "tilt": response.peak_tilt_ratio,

@@ -47,7 +47,6 @@ LARGEST = Column("largest shift [%]", lambda row: row["largest"] and 100 * row["
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the overturning study."""
     s, shapes = result.settings, result.settings["shapes"]
     edges, shifts, held, drawn = (where(result.rows, part=part) for part in ("edge", "shift", "held", "drawn edge"))
     pressed = _pressed(result)
@@ -287,7 +286,6 @@ def _shade(chart, frequency, amplitude, falls):
 
 
 def _over_frequency(shifts, engines):
-    """Size of every shift; engines stand beside each other."""
     aside = {engine: 0.24 * (k - 0.5 * (len(engines) - 1)) for k, engine in enumerate(engines)}
     return lines(
         [row for row in shifts if row["shift"] is not None],
@@ -354,7 +352,6 @@ def _held_down(edges, shifts, held):
 
 
 def _drawn(edges, shifts):
-    """The drawn blocks, with the shifts of each setting in a column of its own."""
     return _boundaries(
         "Blocks drawn at random in the promised range, each under one pulse: shift of its lowest boundary",
         edges,

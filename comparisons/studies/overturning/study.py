@@ -88,7 +88,6 @@ class Point(NamedTuple):
 
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
-    """What is kept of a run."""
     return {"outcome": response.outcome, "decided": response.decided, "end_tilt": response.end.tilt}
 
 
@@ -176,7 +175,6 @@ def _refined(described, levels):
 
 
 def _settings(request, grid, grounds, described):
-    """What the study was asked, for its result file."""
     return {
         "quick": request.quick,
         "grounds": {
@@ -296,7 +294,6 @@ class _Runs:
 
 
 def _under(grounds, point):
-    """The scene of a ground under the pulse of a point."""
     scene = grounds[point.ground]
     return scene.with_(motion=pulse(scene, point.shape, point.frequency, point.amplitude))
 

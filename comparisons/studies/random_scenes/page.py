@@ -18,7 +18,6 @@ TOLD = "Every run that differs is reported as one, wherever it is shown."
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of random scenes."""
     counts = tallies(result)
     tuned = where(counts, tier="tuned")
     right, judged, failed = (sum(row[key] for row in tuned) for key in ("right", "judged", "failed"))

@@ -60,7 +60,6 @@ COUNTS = (
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of recorded motions."""
     if absent := where(result.rows, part="absent"):
         return Page("Recorded motions: not computed, no records are installed", (f"{absent[0]['reason']}.",))
     runs = where(result.rows, part="run")

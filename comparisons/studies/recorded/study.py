@@ -12,12 +12,10 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from analytic import Base, Bearings, Response, Scene, simulate
+from analytic import Base, Bearings, Response, SampledMotion, Scene, SceneError, simulate
 from analytic.bearing import BearingLaw
 from analytic.caryatid import MASS, caryatid_block
 from analytic.design import design_bearings
-from analytic.errors import SceneError
-from analytic.motion import SampledMotion
 from analytic.records.fema import PREFIX
 from analytic.records.folder import folder_motions
 from analytic.response import OUTCOMES
@@ -218,7 +216,6 @@ def _peak(history, name, until):
 
 
 def _run_row(row: Row, known: Iterable[dict[str, Any]]) -> dict[str, Any]:
-    """The row of an engine's run."""
     tag = {key: row.case.tag[key] for key in NAMES}
     (model,) = (one for one in known if tag.items() <= one.items())
     variant = get_engine(row.case.solver).variants[row.case.variant]

@@ -44,7 +44,6 @@ BASE = Column("base mass over block mass [-]", lambda row: "rigid" if row["ratio
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the restitution study."""
     variants = {NAME.of(variant): variant for variant in result.settings["variants"]}
     default = where(result.rows, part="summary", scope="all")
     cells = [
@@ -237,7 +236,6 @@ def _over_slenderness(cells, defaults):
 
 
 def _maps(cells):
-    """Maps of both errors."""
     for error, rows in ((ERROR, cells), (JUMP, [row for row in cells if row["ratio"] is not None])):
         yield shades(
             rows,
@@ -253,7 +251,6 @@ def _maps(cells):
 
 
 def _on_bearings(result):
-    """Blocks on bearings: errors by the states before and after the impact."""
     rows, defaults = where(result.rows, part="bearings"), result.settings["default_variants"]
     if not rows:
         return
@@ -285,7 +282,6 @@ def _on_bearings(result):
 
 
 def _refinement(levels):
-    """Error along the accuracy parameters and against cost."""
     over_default = Column("accuracy parameter over its default [-]", lambda row: row["level"] / row["default"])
     words = "Error of restitution along each variant's accuracy parameter; a stiffness refines upward, a step downward."
     yield beside(

@@ -107,7 +107,6 @@ def _named(key, *tags):
 
 
 def _settings(grid, engines):
-    """What was asked, for the result file."""
     scenes = {(ratio, gamma): free_scene(gamma, ratio, 0.6) for ratio in grid.ratios for gamma in grid.slendernesses}
     return {
         "slendernesses": grid.slendernesses,
@@ -151,7 +150,6 @@ def _errors(runs, name):
 
 
 def _row(part, key, runs):
-    """A row: errors and cost of some runs together."""
     sound = _sound(runs)
     simulated = sum(run.values["end"] for run in sound)
 

@@ -24,7 +24,6 @@ FASTER = Column("vertical over horizontal frequency [-]", "faster")
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the study of what changes the outcome."""
     ranked = {scene: _ranked(where(result.rows, part="change", scene=scene)) for scene in result.settings["scenes"]}
     defaults, vertical = result.settings["default_variants"], where(result.rows, part="vertical")
     shown = [

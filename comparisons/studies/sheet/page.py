@@ -6,7 +6,6 @@ from ...showing.wording import USABLE
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the sheet study."""
     scenes = result.settings["scenes"]
     rows = [
         {"name": name, **dict.fromkeys(scenes), **{row["scene"]: _error(row) for row in own}}

@@ -11,10 +11,8 @@ from typing import Any, Self
 
 from scipy.optimize import brentq
 
-from analytic import Response, Scene, Start, State, simulate
+from analytic import PulseMotion, Response, Scene, Start, State, simulate, synthetic_motion
 from analytic.caryatid import BASE, BEARINGS, caryatid_block
-from analytic.motion import PulseMotion
-from analytic.synthetic import synthetic_motion
 from engines import ENGINES, get_engine
 from engines.contract import Variant
 

@@ -11,8 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import psutil
 
-from analytic import Response, Scene
-from analytic.motion import SampledMotion
+from analytic import Response, SampledMotion, Scene
 from engines import get_engine
 
 from ...running.cases import Case

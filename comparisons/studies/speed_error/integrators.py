@@ -18,9 +18,8 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from analytic import Response, Scene, kernel, layout
+from analytic import Response, Scene, State, kernel, layout
 from analytic.problems import problem_a, problem_b
-from analytic.response import State
 from analytic.rocking import RockingModel
 from analytic.solver import REST_RATE, ground, options, parameters
 from analytic.twin.run import Event

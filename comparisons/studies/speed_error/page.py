@@ -57,7 +57,6 @@ CPU = Column("CPU time of a run [s]", "cpu_seconds")
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the speed-error study."""
     shown = levels_run(result)
     every = where(shown, principal=True)
     rows = [row for row in where(shown, model=NEEDED) if row["law"] != "bouc-wen"]
@@ -265,7 +264,6 @@ def _figure(rows, x, caption, like):
 
 
 def _costs(result, rows):
-    """CPU times to keep an error, of one scene."""
     levels = FINE_LEVELS if rows[0]["measure"] == FINE else LEVELS
     found = {level: passing(rows, level) for level in levels}
     assisted = _assisted(result)
@@ -390,7 +388,6 @@ def _more_than_needed(result, every):
 
 
 def _growth(rows):
-    """Cost against duration and sample rate."""
     if not rows:
         return
     figures = [

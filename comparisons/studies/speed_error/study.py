@@ -11,9 +11,7 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from analytic import Response
-from analytic.errors import SettingError
-from analytic.response import Impact
+from analytic import Impact, Response, SettingError
 from analytic.rocking import restitution
 from analytic.twin import simulate_twin
 from engines import ENGINES, get_engine

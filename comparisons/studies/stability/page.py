@@ -39,7 +39,6 @@ TOLERANCE = Column("tolerance", "tolerance", digits=None)
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the stability study."""
     cases, measures = result.settings["cases"], result.settings["measures"]
     cells, variants = _cells(result), result.settings["variants"]
     counts = sorted(_counts(result, cells), key=lambda row: -row[RIGHT])

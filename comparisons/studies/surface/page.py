@@ -19,7 +19,6 @@ FALLS = Column("falls again by", "falls_by", percent=True)
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the fragility surface."""
     s, engines = result.settings, grouped(result.rows, "engine")
     first = next(iter(engines.values()))
     worst = max(first, key=lambda row: row["falls_by"])
@@ -75,7 +74,6 @@ def _title(rows):
 
 
 def _surface(result, engine, rows):
-    """Lines of equal share over slenderness and intensity."""
     gammas, intensities = (np.array(result.settings[key]) for key in ("slendernesses", "intensities"))
     sound = result.arrays[f"{engine}/sound"]
     shares = result.arrays[f"{engine}/overturned"] / np.where(sound > 0, sound, 1)

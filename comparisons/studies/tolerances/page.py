@@ -5,7 +5,6 @@ from ...showing.parts import NAME, Column, Page, table, where
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the tolerances study."""
     broken = len(where(result.rows, holds=False))
     return Page(
         f"Agreement tolerances: {f'{broken} of {len(result.rows)} do not hold' if broken else 'all hold'}",
