@@ -11,8 +11,17 @@ from analytic.errors import SceneError, SettingError
 
 from ..cli.output import write_output
 from ..running.files import check_writable
-from ..running.motion_options import BothSigns, Directions, Records, motions_of
-from ..running.options import DEFINITION, OPTIONS, RATIO, Units, named_by_options
+from ..running.options import (
+    DEFINITION,
+    OPTIONS,
+    RATIO,
+    BothSigns,
+    Directions,
+    Records,
+    Units,
+    motions_of,
+    named_by_options,
+)
 from ..running.progress import bar, compile_kernels
 from ..running.solving import scene_of
 

@@ -6,8 +6,7 @@ from typing import Annotated
 import typer
 
 from ..cli.output import write_output
-from ..running.motion_options import BothSigns, Directions, Records, other_motions
-from ..running.options import Units
+from ..running.options import BothSigns, Directions, Records, Units, other_motions
 from ..running.progress import compile_kernels, spinner
 
 LEAST_SPAN = 0.1  # per cent

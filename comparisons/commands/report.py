@@ -10,8 +10,18 @@ import typer
 
 from analytic.errors import SettingError
 
-from ..running.motion_options import BothSigns, Directions, Records, other_motions
-from ..running.options import RECORD_OPTIONS, Channel, Column, Step, Units, named_by_options
+from ..running.options import (
+    RECORD_OPTIONS,
+    BothSigns,
+    Channel,
+    Column,
+    Directions,
+    Records,
+    Step,
+    Units,
+    named_by_options,
+    other_motions,
+)
 from ..running.progress import bar, say, stdout_to_stderr
 from ..running.solving import ANALYTIC, check_solver, ground_motion
 

@@ -7,8 +7,7 @@ from typing import Annotated
 import typer
 
 from ..cli.output import write_output
-from ..running.motion_options import BothSigns, Directions, Records, other_motions, rows_of
-from ..running.options import Units
+from ..running.options import BothSigns, Directions, Records, Units, other_motions, rows_of
 from ..running.progress import say
 from ..running.solving import (
     TIME_LIMIT,

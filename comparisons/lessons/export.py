@@ -25,8 +25,7 @@ from ..running.progress import say
 from ..showing import diagrams
 from ..showing.mathml import mathml, prose
 from ..showing.parts import number, templates
-from .drawing import LICENCE, downloads, svg
-from .lesson import Exercise, Lesson, View
+from .lesson import LICENCE, Exercise, Lesson, View, downloads, svg
 from .playground import PAGE, playground_page
 from .topics import lesson, lessons
 

@@ -21,7 +21,7 @@ from ..showing.parts import Section, number, signed, templates
 from ..showing.wording import indexed
 from ..studies.rows import read_study
 from . import equations
-from .studies import origin_of
+from .answer import origin_of
 
 HERE = Path(__file__).parent
 

@@ -15,8 +15,7 @@ from ..running.files import write, write_all
 from ..running.provenance import PROJECT_FOLDER, RESULTS, Result
 from ..showing.charts import alone
 from ..studies.rows import read_study
-from .answer import paragraph, setups_of
-from .studies import Stored, commit_of, stored_studies, variants_of
+from .answer import Stored, commit_of, paragraph, setups_of, stored_studies, variants_of
 
 GALLERY, README = Path(__file__).with_name("gallery"), PROJECT_FOLDER / "README.md"
 RESULTS_README = RESULTS / "README.md"

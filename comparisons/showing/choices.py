@@ -7,7 +7,7 @@ from rich.text import Text
 
 from engines import missing_words
 
-from ..advice.answer import Choice, Level
+from ..advice.criteria import Choice, Level
 from ..running.readable import readable
 from .plots import TITLE_CHARACTERS, marker, style
 from .terminal import digits, echo, grid

@@ -9,9 +9,8 @@ from analytic import SampledMotion, Scene, simulate
 from analytic.caryatid import caryatid_block
 
 from ...showing.parts import MINUS_DIGITS
-from ..drawing import MODEL, OTHER, SOFT, canvas, legend
 from ..engine_runs import G
-from ..lesson import Control, Equation, Exercise, Lesson, View
+from ..lesson import MODEL, OTHER, SOFT, Control, Equation, Exercise, Lesson, View, canvas, legend
 
 SLENDERNESS, RESTITUTION, DURATION = 0.28, 0.98, 30.0  # rad, -, s
 APART = 0.1  # of the slenderness: what counts as parted

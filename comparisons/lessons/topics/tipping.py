@@ -11,9 +11,8 @@ from analytic.caryatid import MASS, RADIUS, caryatid_block
 from analytic.rocking import RockingModel
 
 from ...showing.diagrams import labelled
-from ..drawing import INK, OUTCOMES, PANEL, canvas, tilt_axis
 from ..engine_runs import G, edge, history_until, overturns
-from ..lesson import Control, Equation, Exercise, Lesson, View
+from ..lesson import INK, OUTCOMES, PANEL, Control, Equation, Exercise, Lesson, View, canvas, tilt_axis
 
 SLENDERNESS, PERIOD = 0.28, 0.8  # rad, s
 PERIODS, AMPLITUDES = np.linspace(0.2, 2.0, 61), np.linspace(0.02, 1.5, 50)  # s, g

@@ -12,7 +12,7 @@ from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.refine import Transition
 from comparisons.running.study import compute
 from comparisons.showing.parts import where
-from comparisons.studies.caryatid import STUDY
+from comparisons.studies import get_study
 from comparisons.studies.caryatid.formulas import formulas
 from comparisons.studies.caryatid.runs import (
     CORRECTED,
@@ -44,6 +44,8 @@ from comparisons.studies.caryatid.variations import (
     claims,
     uplift_slenderness,
 )
+
+STUDY = get_study("caryatid")
 
 
 @pytest.fixture(scope="module")

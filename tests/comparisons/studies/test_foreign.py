@@ -60,7 +60,7 @@ def study(folder, *arguments):
 
 
 PAGE = """
-import sys; from pathlib import Path; from comparisons.report.studies import stored_studies
+import sys; from pathlib import Path; from comparisons.report.answer import stored_studies
 [one] = [one.section for one in stored_studies(Path(sys.argv[1]))]
 print(one.title, one.age, len(one.tables[0].rows))
 """
