@@ -85,12 +85,11 @@ class Search:
         return None if row.failed else row.cost["cpu_seconds"]
 
     def _sweep(self, runs, criterion, label):
-        cases = []
-        for (engine, variant, value), scene in runs:
-            kind = get_engine(engine).variants[variant]
-            cases.append(
-                Case(scene, engine, variant, {} if value == kind.default else {kind.accuracy_parameter: value})
-            )
+        cases = [
+            Case(scene, engine, variant, {} if value == kind.default else {kind.accuracy_parameter: value})
+            for (engine, variant, value), scene in runs
+            for kind in (get_engine(engine).variants[variant],)
+        ]
         store = self.folder / f"{criterion}.jsonl"
         return run_sweep(cases, store=store, measure=Measure(criterion), label=label, **self.options)
 

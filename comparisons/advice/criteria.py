@@ -1,5 +1,5 @@
-"""What a setting is chosen for: up to when a scene is run, and how far off a run is; what need not be modelled, and what
-modelling it would cost; and what `choose` answers, as typed values that become JSON.
+"""What a setting is chosen for: until when a scene is run, and how far off a run is; what need not be modelled, and
+what modelling it would cost; and what `choose` answers, as typed values that become JSON.
 """
 
 import dataclasses

@@ -253,10 +253,11 @@ class _Runs:
 
     def scan(self, setting, grid):
         """A coarse map of one engine."""
-        points = []
-        for place in itertools.product(grid.grounds, grid.shapes, grid.frequencies, grid.scan):
-            scene = self._grounds[place[0]]
-            points.append((setting, Point(*place, least_normal(scene, pulse(scene, *place[1:])))))
+        points = [
+            (setting, Point(*place, least_normal(scene, pulse(scene, *place[1:]))))
+            for place in itertools.product(grid.grounds, grid.shapes, grid.frequencies, grid.scan)
+            for scene in (self._grounds[place[0]],)
+        ]
         yield from self.ask(points, f"scan: {setting.engine}", scan=True)
 
     def search(self, part, settings, found, distances, tolerance):

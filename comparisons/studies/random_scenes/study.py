@@ -88,16 +88,14 @@ def plan(request: Request, *, seed: Seed = None, scenes: Number = None) -> Plan:
     most = scenes or (QUICK_SCENES if request.quick else SCENES)
     drawn = [random_scene(seed, index) for index in range(most)]
     reached = [simulate(scene, history=False).peak_tilt_ratio >= RANGE["tilt"][0] for scene in drawn]
-    cases = []
-    for name in request.engines:
-        engine = get_engine(name)
-        for variant in engine.variants:
-            count = most if variant == engine.default_variant else min(most, max(FEWER, most // FEWER))
-            cases += [
-                Case(drawn[k], name, variant, {"history": False, "compare": True}, {"index": k})
-                for k in range(count)
-                if reached[k]
-            ]
+    few = min(most, max(FEWER, most // FEWER))
+    cases = [
+        Case(drawn[k], engine.name, variant, {"history": False, "compare": True}, {"index": k})
+        for engine in map(get_engine, request.engines)
+        for variant in engine.variants
+        for k in range(most if variant == engine.default_variant else few)
+        if reached[k]
+    ]
     rows = yield Batch(cases, compared, "random scenes")
     found = [
         {

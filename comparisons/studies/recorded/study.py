@@ -160,14 +160,13 @@ def _variants(name: str) -> Iterator[tuple[str, str, bool]]:
 
 def _model_cases(found: dict[str, list[SampledMotion]]) -> list[Case]:
     """Each component in each configuration, with what was drawn for it."""
-    cases = []
-    for record, motions in found.items():
-        for component, motion in zip("ab", motions, strict=False):
-            for configuration in RANGES:
-                scene, drawn = drawn_scene(configuration, motion.label, motion)
-                tag = dict(zip(NAMES, (record, component, configuration), strict=True)) | drawn
-                cases.append(Case(scene, settings={"history": False}, tag=tag))
-    return cases
+    return [
+        Case(scene, settings={"history": False}, tag=dict(zip(NAMES, (record, component, name), strict=True)) | drawn)
+        for record, motions in found.items()
+        for component, motion in zip("ab", motions, strict=False)
+        for name in RANGES
+        for scene, drawn in (drawn_scene(name, motion.label, motion),)
+    ]
 
 
 def of_model(case: Case, response: Response) -> dict[str, Any]:

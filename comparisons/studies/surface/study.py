@@ -34,10 +34,8 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
         outcomes = simulate_many([case.scene] * len(scales), scales=scales, workers=1)
         digits = np.where(outcomes.failed, FAILED, np.where(outcomes.overturns, OVERTURNS, STANDS)).tolist()
         return {"outcomes": "".join(digits), "undecided": int((~outcomes.decided).sum())}
-    motion, responses = case.scene.motion, [response]
-    for scale in scales[1:]:
-        scene = case.scene.with_(motion=motion.scaled(float(scale)))
-        responses.append(Case(scene, case.solver, case.variant, case.settings).run())
+    scenes = [case.scene.with_(motion=case.scene.motion.scaled(float(scale))) for scale in scales[1:]]
+    responses = [response, *(Case(scene, case.solver, case.variant, case.settings).run() for scene in scenes)]
     digits = [{"failed": FAILED, "overturns": OVERTURNS}.get(each.outcome, STANDS) for each in responses]
     return {"outcomes": "".join(digits), "undecided": sum(not each.decided for each in responses)}
 
