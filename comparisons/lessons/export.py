@@ -100,7 +100,7 @@ def _view_parts(view: View, name: str) -> dict:
 PAGES = Path(__file__).parent / "pages"
 # Cells run when the notebook opens; by default marimo does not run them.
 SETTINGS = "[tool.marimo.runtime]\nauto_instantiate = true\n"
-# Stand-ins of `drawing` in a notebook, light or dark.
+# Stand-ins of `lesson` in a notebook, light or dark.
 COLOURS = (
     "--ink: currentColor; --soft: #8a867e; --grid: #88888844; --panel: #ffffff; --model: #2b8fd0; --ghost: #e0701a; "
     "--third: #1a9a78; --stone: #c9bea3; --stands: #c4c0b7"

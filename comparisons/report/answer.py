@@ -24,7 +24,7 @@ class Stored:
     table.
 
     wrong: why it cannot be shown, "" where it can. origin: machine, versions, date and commit in one line. variants:
-    those it knows, as `answer.setups_of` takes them.
+    those it knows, as `setups_of` takes them.
     """
 
     name: str

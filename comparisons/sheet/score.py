@@ -134,7 +134,7 @@ class Score(Form):
 
 
 def score(given: Mapping[str, Mapping[str, Value]], tell: Callable[[str], object] = lambda name: None) -> Score:
-    """The `Score` of answers as `answers.read_answers` gives them; `tell` is called with each scene's name.
+    """The `Score` of answers as `read_answers` gives them; `tell` is called with each scene's name.
 
     >>> from comparisons.sheet.variants import solved
     >>> from comparisons.sheet.problems import PROBLEMS
