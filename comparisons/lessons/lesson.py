@@ -73,7 +73,6 @@ def tilt_axis(axes: Axes, time: Any, ratio: Any, window: float, **more: Any) -> 
 
 
 def legend(axes: Axes, **more: Any) -> None:
-    """A legend in the lessons' style."""
     with matplotlib.rc_context(STYLE):
         axes.legend(**more)
 

@@ -136,12 +136,10 @@ def rate_restitution(response: Response) -> np.ndarray:
 
 
 def rms(values: npt.ArrayLike) -> float:
-    """Root mean square."""
     return float(np.sqrt(np.mean(np.square(values))))
 
 
 def worst(values: npt.ArrayLike) -> float:
-    """Largest absolute value."""
     return float(np.abs(values).max())
 
 

@@ -126,7 +126,6 @@ def blocks(scenes: Sequence[Mapping[str, Any]]) -> Figure:
 
 
 def ground_motion(result: Result) -> Figure:
-    """Ground acceleration over time."""
     motion, time = result.settings["motion"], result.arrays["motion/time"]
     chart = Chart(
         Axis("time [s]", 0.0, float(time[-1])),

@@ -270,7 +270,6 @@ CAPTION = (
 
 
 def earthquake(result: Result) -> Section:
-    """The `Section` of the scenes under their motion."""
     scenes, motion = result.settings["scenes"], result.settings["motion"]
     charts = [chart for name in scenes for pair in pairs(result, name) for chart in pair]
     found = "; ".join(

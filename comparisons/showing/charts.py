@@ -227,7 +227,6 @@ class Chart:
         self.parts.append(f'<g class="who" data-who="{escape(who)}" shape-rendering="crispEdges">{rectangles}</g>')
 
     def svg(self) -> str:
-        """The element."""
         read = {"x": _read(self.x, self.left, self.right), "y": _read(self.y, self.bottom, self.top)}
         across, up = self.x.marks(), self.y.marks()
         xs = self.at([value for value, _ in across], [self.y.low] * len(across))[:, 0].round(1).tolist()

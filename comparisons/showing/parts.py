@@ -45,7 +45,6 @@ class Figure:
 
     @property
     def element(self) -> Markup:
-        """The picture as a part of a page."""
         return Markup(self.svg.decode())
 
 
@@ -331,7 +330,6 @@ def setting_of(row: Row) -> str:
 
 
 def templates(folder: Path) -> Environment:
-    """The templates in a folder."""
     return Environment(
         loader=FileSystemLoader(folder),
         autoescape=select_autoescape(disabled_extensions=["jinja"], default=True),

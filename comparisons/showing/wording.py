@@ -47,7 +47,6 @@ def rating(rms: float | None, failed: int) -> str:
 
 
 def trust(rms: float | None, failed: int) -> str:
-    """The `rating` in words."""
     return RATINGS[rating(rms, failed)]
 
 

@@ -23,5 +23,4 @@ def lesson(name: str) -> Lesson:
 
 
 def lessons() -> tuple[Lesson, ...]:
-    """All lessons in their order."""
     return tuple(lesson(name) for name in NAMES)

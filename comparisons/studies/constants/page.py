@@ -81,7 +81,6 @@ def _factors(row, first):
 
 
 def _words(row, factors):
-    """What moves, in words."""
     counts = {"runs fail": row["failed"], "other outcomes": row["outcomes_changed"] - row["failed"]}
     said = [f"{count} {word}" for word, count in counts.items() if count]
     for name, factor in factors.items():

@@ -148,7 +148,6 @@ def page(result: Result) -> Page:
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """Largest shift of a boundary, by (engine, variant)."""
     marks = {}
     for row in _rated(result):
         every = row["of"] + row["beyond"]

@@ -73,7 +73,6 @@ class Setting:
     settings: Mapping[str, float] = field(default_factory=dict)
 
     def row(self) -> dict[str, Any]:
-        """Its columns in rows."""
         return {"engine": self.engine, "variant": self.variant, "level": self.level}
 
 
@@ -252,7 +251,6 @@ class _Runs:
         return answers
 
     def scan(self, setting, grid):
-        """A coarse map of one engine."""
         points = [
             (setting, Point(*place, least_normal(scene, pulse(scene, *place[1:]))))
             for place in itertools.product(grid.grounds, grid.shapes, grid.frequencies, grid.scan)

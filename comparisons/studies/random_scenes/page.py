@@ -99,7 +99,6 @@ def tallies(result: Result) -> list[dict[str, Any]]:
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """Runs that are right, by (engine, variant)."""
     marks = {}
     for row in tallies(result):
         if row["judged"]:

@@ -163,7 +163,6 @@ def _error(row):
 
 
 def _wrong(row):
-    """Runs that failed and impacts that were missed."""
     return row["failed"] + row["lost"]
 
 

@@ -135,7 +135,6 @@ def page(result: Result) -> Page:
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """Hard cases right of all, by (engine, variant)."""
     marks, cells = {}, _cells(result)
     for row in _counts(result, cells):
         level = "good" if row[RIGHT] >= MOST * row["run"] else "fair" if row[RIGHT] >= SOME * row["run"] else "bad"
@@ -179,7 +178,6 @@ def _farthest(row, measures):
 
 
 def _remedy(row, finer):
-    """Which finer settings are right, in words."""
     if finer is None or finer["result"] != RIGHT:
         return NOT_TRIED if finer is None else NONE_FOUND
     unit = {"stiffness": " N/m", "tolerance": ""}

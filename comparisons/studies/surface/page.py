@@ -57,7 +57,6 @@ def page(result: Result) -> Page:
 
 
 def _some(rows):
-    """Rows from the first to the last, evenly."""
     return [rows[k] for k in np.unique(np.linspace(0, len(rows) - 1, min(SHOWN, len(rows))).astype(int))]
 
 
