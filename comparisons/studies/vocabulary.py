@@ -63,11 +63,7 @@ SHARED = {
     "both_overturn": whole("runs that overturn in both"),
     "only_a": whole("runs that overturn in the analytic model alone"),
     "only_b": whole("runs that overturn in the engine alone"),
-    "timings": whole("fresh processes in which the run was timed"),
-    "repeatable": flag("whether all of them gave the same numbers, bit for bit"),
     "cpu_seconds": number("CPU time of one run: median over the processes", "s"),
-    "cpu_low": number("CPU time of one run: least", "s"),
-    "cpu_high": number("CPU time of one run: most", "s"),
 }
 
 OWN: dict[str, dict[str, Explained]] = {
@@ -204,6 +200,10 @@ OWN: dict[str, dict[str, Explained]] = {
             "by measure: restitution, boundary_shift, peak_displacement [-]; peak_tilt, end_tilt, horizon_tilt "
             "[slenderness]; impact_time [s]"
         ),
+        "timings": whole("fresh processes in which the run was timed"),
+        "cpu_low": number("CPU time of one run: least", "s"),
+        "cpu_high": number("CPU time of one run: most", "s"),
+        "repeatable": flag("whether all of them gave the same numbers, bit for bit"),
         "simulated": number("simulated time", "s"),
         "steps": whole("steps of the run"),
         "step": number("mean step size", "s"),
