@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from .motion import Motion
     from .scene import Scene
 
-# Chosen by measurement (`rocking study kernel`): where CPU against error is least.
+# Chosen by measurement (`rocking study speed-error`): where CPU against error is least.
 ORDER = 18  # free flight and pulses: long steps
 TOLERANCE = 1e-11
 # Impacts are followed down to this fraction of omega_r, then summed to their limit; see kernel.remaining_hops.

@@ -12,7 +12,7 @@ from .laws import NUMBERS, law_function
 from .polynomial import INVERSE
 from .pulses import SERIES
 
-# Order of the series between the samples of a record, where steps end anyway (`rocking study kernel`).
+# Order of the series between the samples of a record, where steps end anyway (`rocking study speed-error`).
 SHORT_ORDER = 8
 
 # A damped motion decays until its numbers have no digits left; below this size [rad, m, ...] it sets no step.

@@ -5,31 +5,128 @@ level on to the finest, those levels are run on the neighbours, the cheapest fir
 it and all finer ones do, everywhere, with `criteria.safety` to spare: none passes by luck.
 """
 
-from __future__ import annotations
-
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
-from analytic import Scene, simulate
-from analytic.errors import SettingError
+from analytic import Scene, SettingError, simulate
 from analytic.solver import TOLERANCE
 from engines import available_engines, get_engine
+from engines.contract import Variant
 
+from ..running.cases import Case
 from ..running.executors import Processes
 from ..running.files import TemporaryFolder
 from ..running.progress import spinner
 from ..running.solving import ANALYTIC, named_engines
-from .answer import Choice, Level, VariantLevels
-from .criteria import CRITERIA, fitting, neighbours, safety, until
-from .search import Search, problem
-from .unneeded import cpu_seconds, model_parts
+from ..running.sweep import Row, run_sweep
+from .criteria import (
+    CRITERIA,
+    SAFETY,
+    Choice,
+    Level,
+    Measure,
+    VariantLevels,
+    cpu_seconds,
+    fitting,
+    model_parts,
+    neighbours,
+    safety,
+    until,
+)
 
-if TYPE_CHECKING:
-    from engines.contract import Variant
+LevelKey = tuple[str, str, float]  # engine, variant, value of its accuracy parameter
+
+
+def problem(rows: Mapping[float, Row], limit: float, criterion: str) -> tuple[float | None, str | None]:
+    """(error over these runs, why they do not pass or None)."""
+    for factor, row in rows.items():
+        if row.failed:
+            return None, f"failed at {factor:g} of the scene: {row.failure['reason']}"  # type: ignore[index]  # it has one
+        if row.values["error"] is None or not math.isfinite(row.values["error"]):
+            return None, f"shows no {criterion} at {factor:g} of the scene"
+    errors = [row.values["error"] for row in rows.values()]
+    found = float(np.mean(errors) if criterion == "outcome" else np.max(errors))
+    if found * safety(criterion) > limit:
+        return found, f"error {found:.1e}" + ("" if found > limit else f", less than {SAFETY:g} times below")
+    return found, None
+
+
+class Search:
+    """Runs levels on a scene and its neighbours, files the rows, and looks for the cheapest level that passes.
+
+    family: the scene and its neighbours by their factor, as long as they are looked at. error: asked for, in the sense
+    of `criterion`. options: of the sweeps, whose stores are in `folder`. rows: {level: {factor: `Row`}}, of all that
+    was run.
+    """
+
+    def __init__(
+        self, scene: Scene, family: dict[float, Scene], error: float, criterion: str, folder: Path, **options: Any
+    ) -> None:
+        self.scene, self.family, self.error, self.criterion = scene, family, error, criterion
+        self.folder, self.options = folder, options
+        self.rows: dict[LevelKey, dict[float, Row]] = {}
+
+    def run(self, levels: Sequence[LevelKey], factors: Sequence[float], label: str) -> None:
+        """Run levels on the scene and neighbours of these factors."""
+        wanted = [(level, factor) for factor in factors for level in levels]
+        found = self._sweep([(level, self.family[factor]) for level, factor in wanted], self.criterion, label)
+        for (level, factor), row in zip(wanted, found, strict=True):
+            self.rows.setdefault(level, {})[factor] = row
+
+    def whole(self, level: LevelKey) -> float | None:
+        """CPU seconds of the whole scene, None where it fails."""
+        (row,) = self._sweep([(level, self.scene)], "outcome", "the whole scene")
+        return None if row.failed else row.cost["cpu_seconds"]
+
+    def _sweep(self, runs, criterion, label):
+        cases = [
+            Case(scene, engine, variant, {} if value == kind.default else {kind.accuracy_parameter: value})
+            for (engine, variant, value), scene in runs
+            for kind in (get_engine(engine).variants[variant],)
+        ]
+        store = self.folder / f"{criterion}.jsonl"
+        return run_sweep(cases, store=store, measure=Measure(criterion), label=label, **self.options)
+
+    def cheapest(self, levels: Sequence[LevelKey]) -> tuple[LevelKey | None, float | None]:
+        """(the level, CPU seconds of the whole scene with it), None where none passes; of levels run on the scene,
+        neighbours are run of hopeful ones only, the cheapest first."""
+        for level in sorted(filter(self._hopeful, levels), key=self._cost):
+            suffix = self._suffix(level)
+            missing = [factor for factor in self.family if any(factor not in self.rows[one] for one in suffix)]
+            if self._hopeful(level):  # what was run meanwhile may tell
+                self.run(suffix, missing, f"{level[0]}, {level[1]}: neighbours")
+            if self._pass(suffix):
+                spent = self.whole(level)
+                if spent is not None:
+                    return level, spent
+                failed = {"reason": "the whole scene failed"}
+                self.rows[level][1.0] = replace(self.rows[level][1.0], failure=failed)
+        return None, None
+
+    def _suffix(self, level):
+        levels = get_engine(level[0]).variants[level[1]].levels
+        return [(*level[:2], value) for value in levels[levels.index(level[2]) :]]
+
+    def _pass(self, levels):
+        return all(problem(self.rows[one], self.error, self.criterion)[1] is None for one in levels)
+
+    def _hopeful(self, level):
+        """Whether a level and all finer ones of its variant pass on what they have run."""
+        suffix = self._suffix(level)
+        if self.criterion == "outcome":  # one run that differs does not tell a share
+            return not any(row.failed for one in suffix for row in self.rows[one].values())
+        return self._pass(suffix)
+
+    def _cost(self, level):
+        row = self.rows[level][1.0]
+        return row.cost["cpu_seconds"] / row.values["simulated"]
+
 
 TIME_LIMIT = 60.0  # s, of one run
 

@@ -1,23 +1,97 @@
-"""What a setting is chosen for: up to when a scene is run, and how far off a run is."""
+"""What a setting is chosen for: until when a scene is run, and how far off a run is; what need not be modelled, and
+what modelling it would cost; and what `choose` answers, as typed values that become JSON.
+"""
 
-from __future__ import annotations
-
+import dataclasses
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from pydantic import Field
 
-from analytic import Scene, simulate
-from analytic.errors import SettingError
+from analytic import Response, Scene, SettingError, simulate
 from analytic.rocking import restitution
+from engines import get_engine
 
 from ..measuring.errors import impact_errors, impact_time_errors, rate_restitution, rms, strong_impacts
 from ..measuring.horizon import sensitivity_horizon
+from ..measuring.models import on_heavy_base, on_stiff_springs
+from ..running.cases import Case
+from ..schemas.form import Form, Part
 
-if TYPE_CHECKING:
-    from analytic import Response
 
-    from ..running.cases import Case
+class Level(Part):
+    """One value of a variant's accuracy parameter. error: the worst over the scene and its neighbours, of outcomes the
+    share that differs; None if unknown. untried: it passes the scene, but was not run on the neighbours,
+    as a cheaper one passes there. why: in words, why it does not pass. cpu_per_second: CPU seconds for a simulated
+    second."""
+
+    engine: str
+    variant: str
+    parameter: str
+    value: float
+    default: bool
+    runs: int
+    error: float | None
+    cpu_per_second: float | None
+    passes: bool
+    untried: bool
+    why: str | None
+
+
+class VariantLevels(Part):
+    """A variant's levels from coarse to fine. order: the error goes as the parameter to this power, where that shows.
+    applies_impact: the adapter, not the engine, applies eqs (7) and (8)."""
+
+    engine: str
+    variant: str
+    tier: str
+    applies_impact: bool
+    order: float | None
+    levels: list[Level]
+
+    def cheapest(self) -> Level:
+        """The cheapest level that passes; else of those untried; else the finest."""
+        for kind in ("passes", "untried"):
+            if own := [one for one in self.levels if getattr(one, kind)]:
+                return min(own, key=lambda one: one.cpu_per_second or 0.0)
+        return self.levels[-1]
+
+
+class ModelPart(Part):
+    """A part of a model. needed: whether this scene asks for it; cost: times the CPU time that modelling it all the
+    same takes, as measured on this scene; None where that was not measured."""
+
+    part: str
+    needed: bool
+    why: str
+    cost: float | None
+
+
+class Choice(Form):
+    """The answer. chosen: the cheapest level at which it and all finer ones pass; None where none does, and `best` is
+    then the one of least error of all. safety_factor: of the error asked for over the largest that passes. neighbours:
+    factors of start and motion. until: time [s] up to which histories were compared, or were run for their impacts.
+    cpu_seconds: of the chosen level on the whole scene; of the analytic model."""
+
+    schema_: str = Field(default="rocking choose 3", serialization_alias="schema")
+    scene: str
+    criterion: str
+    error: float
+    safety_factor: float
+    neighbours: list[float]
+    until: float
+    chosen: Level | None
+    best: Level | None
+    cpu_seconds: float | None
+    analytic_cpu_seconds: float
+    command: str | None
+    snippet: str | None
+    variants: list[VariantLevels]
+    parts: list[ModelPart]
+    missing: dict[str, str]
+
 
 CRITERIA = ("restitution", "tilt", "displacement", "outcome")
 IMPACTS = 8  # strong ones of the model up to which a scene is run for its restitution
@@ -138,3 +212,79 @@ def _restitution(scene, response, reference):
         swings = rate_restitution(response)
         errors += [rms(swings - restitution(scene))] if len(swings) else []
     return max(errors)
+
+
+REPEATS = 7  # of a timing, of which the least counts
+
+
+def cpu_seconds(scene: Scene) -> float:
+    """CPU time of the analytic model on a scene, the least of several [s]."""
+    return min(simulate(scene, history=False).cpu_seconds for _ in range(REPEATS))
+
+
+def model_parts(
+    scene: Scene, family: Mapping[float, Scene], error: float, found: Level | None, engines: Iterable[str], own: float
+) -> list[ModelPart]:
+    """Which parts of a model the scene needs; family: its neighbours; found: the level chosen, or the best; own:
+    `cpu_seconds` of the scene."""
+    runs = [simulate(one, history=False) for one in family.values()]
+    engine = None if found is None or found.cpu_per_second is None else found.cpu_per_second * runs[0].end.time / own
+    parts = {
+        "rocking": _rocking(runs, engine),
+        "base": _base(scene, own),
+        "vertical motion": _vertical(scene, runs[0], own, error),
+        "third dimension": _space(scene, engines),
+    }
+    return [ModelPart(part=part, needed=need, why=why, cost=cost) for part, (need, why, cost) in parts.items()]
+
+
+# Each returns (needed, why, cost) of its `ModelPart`.
+
+
+def _rocking(runs, engine):
+    lifted = sum(run.outcome != "stands" for run in runs)
+    if lifted:
+        return True, f"the block lifts in {lifted} of {len(runs)} scenes looked at", None
+    why = "the block never lifts, nor in any neighbour: block and base are one mass on the bearings"
+    return False, f"{why}; an engine's contact model is not needed", engine
+
+
+def _base(scene, own):
+    if scene.base is not None:
+        return True, "the block stands on a base that moves", None
+    if scene.motion is None:
+        more, words = on_heavy_base(scene), "a heavy base"
+    else:
+        more, words = on_stiff_springs(scene), "a support of 50 Hz"
+    return False, f"the ground is rigid (tried: {words})", cpu_seconds(more) / own
+
+
+def _vertical(scene, reference, own, error):
+    if scene.motion is None or scene.motion.vertical is None:
+        return False, "the scene has none", None
+    level = scene.with_(motion=dataclasses.replace(scene.motion, vertical=None))
+    without = simulate(level, history=False)
+    apart = abs(without.peak_tilt - reference.peak_tilt) / scene.block.slenderness
+    if reference.peak_base_displacement:
+        apart = max(apart, abs(without.peak_base_displacement / reference.peak_base_displacement - 1))
+    same = without.outcome == reference.outcome and apart <= error
+    why = f"without it the outcome is {without.outcome} and the peaks differ by {apart:.1e}"
+    return not same, why, own / cpu_seconds(level)
+
+
+def _space(scene, engines):
+    """A free block of six degrees of freedom against the planar one, at one step."""
+    why = "nothing acts out of the plane"
+    able = [] if scene.bearings is not None else [get_engine(name) for name in engines]
+    scene = scene.with_(duration=simulate(scene, history=False).end.time)
+    for engine, variant, kind in [(one, *each) for one in able for each in one.variants.items()]:
+        if kind.free_block and kind.step:
+            step = kind.default if kind.accuracy_parameter == kind.step else min(kind.levels)
+            free, planar = (
+                Case(scene, kind.free_block, settings={"step": step, "history": False}).run(),
+                Case(scene, engine.name, variant, {kind.step: step, "history": False}).run(),
+            )
+            if not free.failure and not planar.failure:
+                dearer = free.cpu_seconds / free.end.time / (planar.cpu_seconds / planar.end.time)
+                return False, f"{why} (tried: {engine.name})", dearer
+    return False, why, None

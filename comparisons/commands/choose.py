@@ -1,7 +1,5 @@
 """``rocking choose``: the cheapest setting that is good enough for one's own scene."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 import typer

@@ -1,7 +1,5 @@
 """``rocking compare``: all solvers on one scene."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import nan
 from typing import Annotated, Any
@@ -43,7 +41,7 @@ def command(
     from analytic.scene_file import load_scene
 
     from ..running.files import check_writable
-    from ..showing.tables import comparison, show
+    from ..showing.terminal import comparison, show
 
     check_time_limit(time_limit)
     check_writable([json_file], picture=plot, inputs=[scene])

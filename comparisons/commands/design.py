@@ -1,7 +1,5 @@
 """``rocking design``: bearings from target period, damping and displacement, or those that a scene needs."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from pathlib import Path
@@ -13,10 +11,18 @@ from analytic.errors import SceneError, SettingError
 
 from ..cli.output import write_output
 from ..running.files import check_writable
-from ..running.motion_options import BothSigns, Directions, Records, motions_of
-from ..running.options import DEFINITION, OPTIONS, RATIO, named_by_options
+from ..running.options import (
+    DEFINITION,
+    OPTIONS,
+    RATIO,
+    BothSigns,
+    Directions,
+    Records,
+    Units,
+    motions_of,
+    named_by_options,
+)
 from ..running.progress import bar, compile_kernels
-from ..running.record_options import Units
 from ..running.solving import scene_of
 
 LEAST, SOFTEST = "least-stroke", "softest"
@@ -120,7 +126,7 @@ def _for_scene(place, base_mass, stroke, tilt, made, many, write, plot, json_fil
     from analytic.bearing_scan import scan_bearings
     from analytic.scene_file import load_scene, shipped_scenes
 
-    from ..showing.bearings import draw_bearings, nothing_holds, print_bearings
+    from ..showing.margins import draw_bearings, nothing_holds, print_bearings
 
     check_writable([json_file], picture=plot, inputs=[place])
     scene = _on_base(load_scene(place), base_mass, place)

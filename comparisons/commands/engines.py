@@ -16,8 +16,7 @@ def command(name: Annotated[str | None, typer.Argument(help="Engine to describe 
 
     from ..running.progress import stdout_to_stderr
     from ..running.solving import named_engines
-    from ..showing.tables import engine_text, engines_table
-    from ..showing.terminal import echo
+    from ..showing.terminal import echo, engine_text, engines_table
 
     with stdout_to_stderr():  # engines greet on standard output
         names, missing = ((), {}) if name else available_engines()

@@ -6,9 +6,8 @@ from typing import Annotated
 import typer
 
 from ..cli.output import write_output
-from ..running.motion_options import BothSigns, Directions, Records, other_motions
+from ..running.options import BothSigns, Directions, Records, Units, other_motions
 from ..running.progress import compile_kernels, spinner
-from ..running.record_options import Units
 
 LEAST_SPAN = 0.1  # per cent
 
@@ -44,8 +43,7 @@ def command(
     from analytic.scene_file import load_scene
 
     from ..running.files import check_writable
-    from ..showing.margins import draw_margins, named, print_margins
-    from ..showing.motions import print_motions
+    from ..showing.margins import draw_margins, named, print_margins, print_motions
 
     if not LEAST_SPAN <= span <= 100 * LARGEST_SPAN:
         raise SettingError(f"--span {span:g}: give per cent, from {LEAST_SPAN:g} to {100 * LARGEST_SPAN:g}")

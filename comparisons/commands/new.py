@@ -11,8 +11,7 @@ import typer
 from analytic.errors import SettingError
 
 from ..cli.output import write_output
-from ..running.options import DEFINITION, OPTIONS, RATIO, named_by_options
-from ..running.record_options import Channel, Column, Step, Units
+from ..running.options import DEFINITION, OPTIONS, RATIO, Channel, Column, Step, Units, named_by_options
 from ..running.solving import ground_motion, scene_of
 
 
@@ -203,9 +202,8 @@ def _tell(file: str, scene: Any, json_file: str | None, asked: Mapping[str, tupl
     """Print or write what follows from a scene, beside what was asked for."""
     from analytic.new_scene import derived
 
-    from ..schemas.inputs import Derived, New
-    from ..showing.tables import named_values
-    from ..showing.terminal import echo
+    from ..schemas.runs import Derived, New
+    from ..showing.terminal import echo, named_values
 
     found, shown = [], {}
     for name, value, unit in derived(scene):

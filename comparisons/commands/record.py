@@ -6,8 +6,7 @@ from typing import Annotated
 import typer
 
 from ..cli.output import write_output
-from ..running.options import RECORD_OPTIONS, named_by_options
-from ..running.record_options import Channel, Column, Step, Units
+from ..running.options import RECORD_OPTIONS, Channel, Column, Step, Units, named_by_options
 
 
 def command(
@@ -39,8 +38,8 @@ def command(
     from analytic.records.written import two_columns
 
     from ..running.files import check_writable
-    from ..schemas.inputs import Record
-    from ..showing.records import channel_words, described, draw_channels, print_channels
+    from ..schemas.runs import Record
+    from ..showing.plots import channel_words, described, draw_channels, print_channels
 
     check_writable([json_file, to], picture=plot, inputs=[file])
     name = file if fema.is_one(file) else Path(file).name

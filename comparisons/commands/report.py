@@ -10,14 +10,23 @@ import typer
 
 from analytic.errors import SettingError
 
-from ..running.motion_options import BothSigns, Directions, Records, other_motions
-from ..running.options import RECORD_OPTIONS, named_by_options
+from ..running.options import (
+    RECORD_OPTIONS,
+    BothSigns,
+    Channel,
+    Column,
+    Directions,
+    Records,
+    Step,
+    Units,
+    named_by_options,
+    other_motions,
+)
 from ..running.progress import bar, say, stdout_to_stderr
-from ..running.record_options import Channel, Column, Step, Units
 from ..running.solving import ANALYTIC, check_solver, ground_motion
 
 if TYPE_CHECKING:
-    from ..schemas.results import Report
+    from ..schemas.runs import Report
 
 
 def command(
@@ -137,7 +146,7 @@ def form(page: Path) -> Report:
 
     from ..report.runs import RESTITUTION, SCENES
     from ..running.provenance import read_result
-    from ..schemas.results import Report, Reported
+    from ..schemas.runs import Report, Reported
 
     files = [page.with_name(name) for name in (SCENES, RESTITUTION) if page.with_name(name).exists()]
     result = read_result(files[0])

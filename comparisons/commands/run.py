@@ -7,9 +7,8 @@ from typing import Annotated
 import typer
 
 from ..cli.output import write_output
-from ..running.motion_options import BothSigns, Directions, Records, other_motions, rows_of
+from ..running.options import BothSigns, Directions, Records, Units, other_motions, rows_of
 from ..running.progress import say
-from ..running.record_options import Units
 from ..running.solving import (
     TIME_LIMIT,
     TIME_LIMIT_HELP,
@@ -49,8 +48,8 @@ def command(
 
     from ..running.files import check_writable
     from ..schemas.runs import MotionRun, Run
-    from ..showing.motions import print_motions
-    from ..showing.tables import show, summary
+    from ..showing.margins import print_motions
+    from ..showing.terminal import show, summary
 
     check_time_limit(time_limit)
     check_writable([json_file, csv], picture=plot, inputs=[scene])

@@ -21,8 +21,7 @@ def command(
     """
     from ..running.files import check_writable
     from ..running.progress import spinner
-    from ..sheet.answers import read_answers
-    from ..sheet.score import score
+    from ..sheet.score import read_answers, score
 
     check_writable([json_file], inputs=[file])
     given = read_answers(file)

@@ -20,7 +20,7 @@ def command(
     Example: rocking sheet --output problems
     """
     from ..running.files import check_folder, check_writable
-    from ..schemas.results import Asked, Problem, Sheet
+    from ..schemas.runs import Asked, Problem, Sheet
     from ..sheet.pages import write_sheet
     from ..sheet.problems import PROBLEMS, UNITS, VERSION
 

@@ -34,7 +34,7 @@ def command(
 
     from ..measuring.tolerances import rows
     from ..running.files import check_writable
-    from ..schemas.results import Tolerance, Verification
+    from ..schemas.runs import Tolerance, Verification
 
     check_time_limit(time_limit)
     check_writable([json_file])

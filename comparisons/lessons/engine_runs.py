@@ -1,9 +1,8 @@
-"""Every installed engine, in every variant, on one small scene: a block released on rigid ground, to its second impact.
+"""What several lessons compute, and every installed engine, in every variant, on one small scene: a block released on
+rigid ground, to its second impact.
 
 Which engines there are is asked of `engines`; without any the lessons run on the model's own fixed-step integrator.
 """
-
-from __future__ import annotations
 
 import functools
 import math
@@ -14,6 +13,36 @@ from analytic import Response, Scene, Start, simulate
 from analytic.caryatid import caryatid_block
 from analytic.time_stepping import simulate_time_stepping
 from engines import get_engine, installed_engines
+
+G = 9.81  # m/s2
+HALVINGS = 50
+
+
+def edge(differs: Callable[[float], bool], low: float, high: float) -> float:
+    """Where `differs` changes between low and high, by halving; the value on the side of high.
+
+    Raises
+    ------
+    ValueError
+        It is the same at both ends.
+    """
+    there = differs(high)
+    if differs(low) == there:
+        raise ValueError(f"nothing changes between {low:g} and {high:g}")
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if differs(middle) == there else (middle, high)
+    return high
+
+
+def overturns(scene: Scene) -> bool:
+    return simulate(scene, history=False).outcome == "overturns"
+
+
+def history_until(scene: Scene, duration: float) -> Response:
+    """The response of the first `duration` [s], with its history every 0.01 s."""
+    return simulate(scene.with_(duration=duration), output_step=0.01)
+
 
 SLENDERNESS, START = 0.28, 0.6  # rad, tilt over slenderness
 SCENE = Scene(block=caryatid_block(SLENDERNESS), start=Start(tilt=START * SLENDERNESS), duration=1.5)

@@ -4,24 +4,19 @@ Each takes (engine, variant, scenes, runs) and returns one number, the worst fou
 names below. runs: a dict in which simulations are kept that several measures share.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from analytic import PulseMotion, SampledMotion, Scene, Start, load_scene, simulate
+from analytic import PulseMotion, Response, SampledMotion, Scene, Start, load_scene, simulate
 from analytic.bearing import BearingLaw
 from analytic.caryatid import BASE, BEARINGS, caryatid_block
 from engines import get_engine
 from engines.momentum import impulse_error
+from engines.swings import Trace
 
 from .errors import compare, impact_errors, rms
-
-if TYPE_CHECKING:
-    from analytic import Response
-    from engines.swings import Trace
 
 STARTS = (0.3, 0.37, 0.44, 0.51, 0.59, 0.66, 0.73, 0.8)  # released tilt over slenderness
 SLENDERNESSES = (0.1, 0.2, 0.3, 0.45)

@@ -12,27 +12,26 @@ and w the rate before the impact:
 `pull` is what is negative of the old corner's impulses. What is left over is the bearings' and gravity's while the
 contact lasts, of second order. Two more stand beside the parts in the same unit. `flight`: the energy that the second
 half of the swing before gained, as a share of w. `shape`: what the strike does to e if it acts where the weight did
-just before, when the landing corner is in the air and should bear nothing.
-"""
+just before, when just before, when the landing corner is in the air and should bear nothing.
 
-from __future__ import annotations
+The cause of the error is read from that story alone: no setting is looked at.
+"""
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
+from analytic import Scene
+from analytic.motion import Motion, vertical_acceleration
 from analytic.rocking import restitution
+from engines import get_engine
 from engines.checks import energy_balance, pivoting_centre
-from engines.swings import find_swings, to_contact
+from engines.ground_velocity import ground_velocity
+from engines.swings import ArrayModel, Trace, find_swings, to_contact
 
 from .agreement import Unmeasurable
-from .corners import corner_impulses, corner_motion, pivot_forces
-
-if TYPE_CHECKING:
-    from analytic import Scene
-    from engines.swings import Trace
 
 PARTS = ("support", "pull", "slip", "rebound")  # of the error of e
 BESIDE = 3  # steps in flight that are shown on each side of the contact
@@ -227,3 +226,165 @@ def _parts(scene: Scene, told: dict[str, np.ndarray], rate: float, borne: float,
         "slip": float(-block.mass * block.half_height * (1 - scene.mass_share) * slipped / scale),
         "rebound": float(-block.mass * block.half_width * risen / scale),
     }
+
+
+LEAST = 1e-3  # of e, or of the rate before: a smaller error has no cause worth a name
+CAUSES = {
+    "damping": "the block loses speed in flight: something is damped that was not asked for",
+    "shape": "a corner in the air bears weight: the contact is not where the block's corner is",
+    "gap": "the corner is struck more than a step before or after it is level with the pivot: a slop, margin or radius",
+    "iterations": "the impulse is spread over steps, pulls or slips: the solver stops before it converges",
+    "adhesion": "the corner that should lift is pulled at, over many steps: the contact's damper acts outward, too",
+    "compliance": "the impulse takes many steps to grow and to fade, while the block turns on: the contact is soft",
+    "rebound": "the struck corner leaves the ground at once: a restitution, or a penetration corrected by a velocity",
+    "friction": "a corner slides, friction and normal impulse being in one ratio: the friction is too small",
+    "unseen": "the contact itself, and more than a step explains; the engine does not report where the block was",
+    "step": "no part is larger than what the block gains in one step: the step straddles the impact",
+}
+# Steps in which a strike is seen. Solvers of velocities strike at once, which is seen in two, as velocities are those
+# of the steps' ends; not converged they take up to eight (one iteration, begun with the step before). A
+# compliant contact that is resolved takes a dozen and more.
+AT_ONCE, MANY = 2, 10
+SATURATED = 5.0  # largest friction over normal impulse of a sliding contact, over the strike's, in which it may turn
+STRADDLING = 2.0  # parts over what gravity gains in a step, up to which the step explains them: a strike is seen in two
+HALF = 0.5  # of the largest part, from which on a part or a reason of parts is named
+
+
+def cause_of(contact: Contact) -> str | None:
+    """One of `CAUSES`, or None where the error is below `LEAST`."""
+    parts = {name: abs(value) for name, value in contact.parts.items()}
+    flight, shape = parts.pop("flight"), parts.pop("shape", 0.0)
+    if max(flight, abs(contact.error)) < LEAST:
+        return None
+    largest = max(parts.values())
+    if flight >= max(LEAST, largest, STRADDLING * contact.phase):
+        return "damping"
+    if contact.placed and shape >= HALF * max(largest, LEAST):
+        return "shape"
+    part = max(parts, key=parts.__getitem__)
+    pulled = contact.placed and parts["pull"] >= HALF * largest
+    if contact.steps >= MANY:
+        slides = part == "slip" and _saturated(contact)
+        return "friction" if slides else "adhesion" if pulled else "compliance"
+    if largest <= STRADDLING * contact.phase:
+        return "step"
+    return _sudden(contact, part, pulled)
+
+
+def _sudden(contact, part, pulled):
+    """The cause of a sudden strike's error that one step does not explain, by its largest part."""
+    if not contact.placed:
+        return "unseen"
+    if part == "slip":
+        return "friction" if _saturated(contact) else "iterations"
+    if pulled or contact.steps > AT_ONCE:
+        return "iterations"
+    return "gap" if part == "support" else "rebound"
+
+
+def _saturated(contact):
+    """Whether friction over normal impulse is nowhere larger than at the strike, as of a contact that slides."""
+    window = slice(contact.first, contact.last)
+    upward, strike = contact.impulse[window].sum(axis=1), contact.strike[window]
+    loaded = upward > 1e-3 * upward.max()
+    demand = np.abs(contact.friction[window][loaded]) / upward[loaded]
+    return bool(demand.max() <= SATURATED * np.average(demand, weights=np.maximum(strike[loaded], 0.0)))
+
+
+def diagnosis(engine: str, variant: str, scene: Scene, which: int = 0, **settings: Any) -> dict[str, object]:
+    """What the impact number `which` of a run tells, ready for JSON.
+
+    Returns
+    -------
+    dict
+        engine, variant, tier, best (the default variant); if it can be analysed: placed, error, cause and words
+        (None below `LEAST`), parts, steps, energy_lost (over the kinetic one before), frames, and where
+        the block is placed deepest [m]; else why_not.
+    """
+    record = get_engine(engine)
+    row: dict[str, object] = {"engine": engine, "variant": variant, "tier": record.variants[variant].tier}
+    row["best"] = variant == record.default_variant
+    _, trace = record.traced(scene, variant=variant, history=False, **settings)
+    try:
+        if trace is None:
+            raise Unmeasurable("the run has no steps")
+        contact = contact_of(scene, trace, which)
+    except Unmeasurable as error:
+        return row | {"why_not": str(error)}
+    cause = cause_of(contact)
+    row |= {
+        "placed": contact.placed,
+        "error": contact.error,
+        "cause": cause,
+        "words": cause and CAUSES[cause],
+        "parts": contact.parts,
+        "steps": contact.steps,
+        "energy_lost": float(contact.energy[contact.first] - contact.energy[contact.last]),
+        "frames": frames(contact),
+    }
+    return row | ({"deepest": contact.deepest} if contact.placed else {})
+
+
+def corner_motion(scene: Scene, trace: Trace, side: float) -> dict[str, np.ndarray]:
+    """How the corners move in a trace with a centre; `side`, +1 or -1, is the old corner's.
+
+    Returns
+    -------
+    dict
+        height above the ground [m], sinking: speed downward, slip: speed along the base [m/s]; arrays, shape (n, 2).
+    """
+    lever, drop = _levers(scene, trace.tilt, side)
+    _, z, vx, vz = np.asarray(trace.centre).T
+    height = z + scene.block.half_height + drop.T
+    slip = vx - trace.base_velocity + drop.T * trace.tilt_rate
+    return {"height": height.T, "sinking": (lever.T * trace.tilt_rate - vz).T, "slip": slip.T}
+
+
+def _levers(scene: Scene, tilt: np.ndarray, side: float) -> tuple[np.ndarray, np.ndarray]:
+    """(x, z) [m] of landing corner and old corner from the block's centre, shapes (n, 2)."""
+    b, h = scene.block.half_width, scene.block.half_height
+    across, cos, sin = np.array([-side * b, side * b]), np.cos(tilt)[:, None], np.sin(tilt)[:, None]
+    return across * cos - h * sin, -across * sin - h * cos
+
+
+def corner_impulses(scene: Scene, trace: Trace, side: float) -> dict[str, np.ndarray]:
+    """What the corners were given between the n steps of a trace with a centre: what its momentum gained.
+
+    Returns
+    -------
+    dict
+        impulse: of each corner upward, shape (n - 1, 2), friction: of both along the ground, shape (n - 1,) [N s].
+    """
+    block, time, (_, _, across, up) = scene.block, trace.time, np.asarray(trace.centre).T
+    lever, drop = (0.5 * (each[1:] + each[:-1]) for each in _levers(scene, trace.tilt, side))
+    ground, upright = (_gained(part, time) for part in (scene.motion, scene.motion and scene.motion.vertical))
+    friction = block.mass * (np.diff(across) + ground)
+    upward = block.mass * (np.diff(up) + scene.gravity * np.diff(time) + upright)
+    spin = block.centre_inertia * np.diff(trace.tilt_rate)
+    # Friction at the lower corner (both are loaded where level): z H - x_a N_a - x_o N_o = spin, N_a + N_o = N
+    landing = (drop.min(axis=1) * friction - lever[:, 1] * upward - spin) / (lever[:, 0] - lever[:, 1])
+    return {"impulse": np.column_stack([landing, upward - landing]), "friction": friction}
+
+
+def _gained(motion: Motion | None, time: np.ndarray) -> np.ndarray | float:
+    """Velocity [m/s] that the ground gains in each step."""
+    velocity = ground_velocity(motion)
+    return np.diff([velocity(t) for t in time.tolist()]) if velocity else 0.0
+
+
+def pivot_forces(
+    scene: Scene, trace: Trace, side: float, landing: float, rates: tuple[float, float]
+) -> tuple[float, float]:
+    """What bears a block that pivots at tilt 0 [N], before and after the landing [s], by eqs (3)-(6).
+
+    rates: tilt rates before and after it [rad/s].
+    """
+    model, motion = ArrayModel.of(scene), scene.motion
+    ground, up = (motion.acceleration(landing), vertical_acceleration(motion, landing)) if motion else (0.0, 0.0)
+    force = float(np.interp(landing, trace.time, trace.bearing_force))
+
+    def normal(s, rate):
+        tilting, sliding = model.accelerations(s, 0.0, rate, ground, force, up)
+        return float(model.contact_forces(s, 0.0, rate, tilting, ground + sliding, up)[1])
+
+    return normal(side, rates[0]), normal(-side, rates[1])

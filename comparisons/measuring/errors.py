@@ -5,25 +5,19 @@ the states at it (`state_restitution`: under forces too) and from successive rat
 needed). Base velocity jump, impact times, missed impacts, distance of the tilt graphs, energy.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 from numba import njit
 
+from analytic import Impact, Response, Scene
 from analytic.rocking import base_jump_length, base_jump_length_as_printed, restitution
+from analytic.types import Values
 from engines.checks import energy_balance, energy_gain
 from engines.swings import Trace
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
-    from analytic import Impact, Response, Scene
-    from analytic.types import Values
 
 # Of the run's fastest: slower impacts are no swings but an engine's own chatter on its way to rest.
 SLOWEST_IMPACT = 0.1
@@ -142,12 +136,10 @@ def rate_restitution(response: Response) -> np.ndarray:
 
 
 def rms(values: npt.ArrayLike) -> float:
-    """Root mean square."""
     return float(np.sqrt(np.mean(np.square(values))))
 
 
 def worst(values: npt.ArrayLike) -> float:
-    """Largest absolute value."""
     return float(np.abs(values).max())
 
 

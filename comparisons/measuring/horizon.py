@@ -5,22 +5,15 @@ exact model too. Point-wise agreement of two solvers can be asked for only until
 large the solvers' errors are: each solver has its own horizon.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic import simulate
-from analytic.response import Caution
+from analytic import Caution, Response, Scene, simulate
 from analytic.rocking import RockingModel
 from engines.copies import changed_copies
 
 from .errors import state_restitution
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene
 
 # Relative changes of the copies where no solver is asked for; a good engine's are 1e-5 to 1e-3 (`perturbation_of`).
 PERTURBATION = 1e-4

@@ -1,14 +1,8 @@
 """Scenes modelled with more than they need: what the extra costs, and what it does to the error."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
-from analytic import Base, Bearings
-
-if TYPE_CHECKING:
-    from analytic import Scene
+from analytic import Base, Bearings, Scene
 
 HEAVY = 1e6  # mass of a base that stands for rigid ground, over the block's
 SUPPORT_FREQUENCY = 2 * math.pi * 50  # rad/s: a support meant to be rigid

@@ -1,35 +1,28 @@
 """A page of its own: of one study's result, or of what else the report folds away."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from jinja2 import Environment
 from markupsafe import Markup, escape
 
 from ..running.age import age
 from ..running.files import write_all
+from ..running.plan import Study
 from ..running.provenance import ResultError
 from ..running.readable import readable
 from ..showing import diagrams
 from ..showing.charts import STYLE, colour, key_of
 from ..showing.mathml import mathml
-from ..showing.parts import Section, number, signed
-from ..showing.templates import templates
+from ..showing.parts import Section, number, signed, templates
 from ..showing.wording import indexed
 from ..studies.rows import read_study
 from . import equations
-from .studies import origin_of
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
-
-    from ..running.plan import Study
+from .answer import origin_of
 
 HERE = Path(__file__).parent
 

@@ -1,7 +1,5 @@
 """The equations that the page prints, with the misprints of the paper beside their corrections, and its words."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -136,6 +134,7 @@ def frames() -> list[tuple[Markup, str]]:
 def _foot(tilt, corner, says, lift=0.0):
     """The foot of a block, its angle exaggerated, about its right (1) or left (-1) corner, `lift` above the ground."""
     drawing = Drawing(*SIZE, 98, f"The foot of the block, {says}")
-    drawing.line((6, 0), (184, 0), "floor")
-    drawing.block((95 + 50.0 * corner, lift), EXAGGERATED * tilt, 50.0, 74.0, corner)
-    return drawing.svg()
+    return drawing.svg(
+        drawing.line((6, 0), (184, 0), "floor"),
+        drawing.block((95 + 50.0 * corner, lift), EXAGGERATED * tilt, 50.0, 74.0, corner),
+    )

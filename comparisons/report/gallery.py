@@ -4,26 +4,19 @@ each result comes from, for the README beside them.
 ``python -m comparisons.report.gallery`` makes all of it anew.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from textwrap import wrap
-from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 from engines import ENGINES
 
 from ..running.age import by_engine, date_of
 from ..running.files import write, write_all
-from ..running.provenance import PROJECT_FOLDER, RESULTS
+from ..running.provenance import PROJECT_FOLDER, RESULTS, Result
 from ..showing.charts import alone
 from ..studies.rows import read_study
-from .answer import paragraph, setups_of
-from .studies import Stored, commit_of, stored_studies, variants_of
-
-if TYPE_CHECKING:
-    from ..running.provenance import Result
+from .answer import Stored, commit_of, paragraph, setups_of, stored_studies, variants_of
 
 GALLERY, README = Path(__file__).with_name("gallery"), PROJECT_FOLDER / "README.md"
 RESULTS_README = RESULTS / "README.md"

@@ -3,25 +3,21 @@
 Measured is what was computed; thinned only what a figure or the result file shows of a long record.
 """
 
-from __future__ import annotations
-
 import hashlib
 import io
 from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from analytic.response import History, Response
 
+from ..running.cases import Case
 from ..running.files import write
 from ..running.provenance import ResultError
-
-if TYPE_CHECKING:
-    from ..running.cases import Case
 
 # A history of up to so many samples is shown whole; of a longer one the extremes in each of so many parts.
 MOST_SHOWN, PARTS = 20_000, 1_500

@@ -1,23 +1,17 @@
 """What to do next with a statue: a command that runs on its file, and how wide a plate under it would have to be."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from analytic import Block, simulate_many
+from analytic import Block, Scene, SceneError, simulate_many
 from analytic.bearing_scan import first_stroke
-from analytic.errors import SceneError
 from analytic.margins import check_cost
+from analytic.motion import Motion
 
 from ..showing.parts import number
-
-if TYPE_CHECKING:
-    from analytic import Scene
-    from analytic.motion import Motion
 
 BROAD = 10.0  # width over height of a block that no motion lifts
 STEP = 0.01  # relative, of the widths tried

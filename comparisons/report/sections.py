@@ -1,20 +1,18 @@
-"""The sections of the page of the report's own runs; every number in them stands in the result files."""
-
-from __future__ import annotations
+"""The answer in words, and the sections on the report's own runs; every number in them stands in the result files."""
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from analytic.records import G
 from analytic.response import UNCOMPARED, Difference
+from engines import missing_words
 
+from ..running.provenance import Result
 from ..showing.charts import figure
-from ..showing.parts import Section, Table
-from ..showing.rows import NAME, Column, across, grouped, table
-from ..showing.wording import TRUSTED, USABLE, differing, trust
+from ..showing.parts import NAME, Column, Section, Table, across, grouped, number, percent, table
+from ..showing.wording import TRUSTED, USABLE, differing, outcomes, trust
 from . import figures
-
-if TYPE_CHECKING:
-    from ..running.provenance import Result
+from .figures import ANALYTIC, pairs
 
 
 def scene_sections(result: Result) -> list[Section]:
@@ -263,3 +261,110 @@ def restitution_section(result: Result) -> Section:
             *_warnings("Free rocking", _carried(map(NAME.text, result.rows), [row["warnings"] for row in result.rows])),
         ),
     )
+
+
+CAPTION = (
+    "Left: all solvers over each other. Right: how far the engines are from the analytic model, logarithmic. A "
+    "block that never lifts in any solver has no tilt to show."
+)
+
+
+def earthquake(result: Result) -> Section:
+    scenes, motion = result.settings["scenes"], result.settings["motion"]
+    charts = [chart for name in scenes for pair in pairs(result, name) for chart in pair]
+    found = "; ".join(
+        f"{scene['name']}: {outcomes([row for row in result.rows if row['scene'] == name])}"
+        for name, scene in scenes.items()
+    )
+    under = f"Under {motion['label']}, peak {number(motion['peak'] / G)} g. " if motion else ""
+    warnings = [
+        [scenes[name]["name"], ", ".join(who), words] for name in scenes for words, who in warned(result, name).items()
+    ]
+    told = Table("Warnings, and differences from the analytic model", ("scene", "solver", "warning"), warnings)
+    return Section(
+        f"{'One earthquake' if motion else 'One scene'}: {found}",
+        (
+            f"{under}Each solver runs until its outcome is decided. Tilt is compared up to the sensitivity horizon, "
+            "the same for all: after it a change of the scene by 10⁻⁴ visibly changes the motion.",
+        ),
+        (_table(result), told) if warnings else (_table(result),),
+        (figure(charts, CAPTION, [row["engine"] for row in result.rows]),) if charts else (),
+        evidence=failures(result),
+        measured=(
+            "Distance of tilt graphs (Hausdorff): how far a point of one can lie from the other, time in units of "
+            "2π/ω_r and tilt in units of γ. Friction demand and normal force are taken over the run, but for the fall "
+            "of a block that overturns; engines' are computed from their states by the model's equations. All that was "
+            "measured of these runs, the bearings' loops among it, is on the page of the runs.",
+        ),
+    )
+
+
+def _table(result):
+    def agreement(key):
+        return lambda row: (row.get("agreement") or {}).get(key) if row["engine"] != ANALYTIC else None
+
+    return table(
+        "Outcomes, and distance from the analytic model up to the sensitivity horizon",
+        result.rows,
+        Column("solver", "engine"),
+        Column("scene", lambda row: result.settings["scenes"][row["scene"]]["name"]),
+        Column("outcome", "outcome_text"),
+        Column("overturns at [s]", lambda row: row.get("overturning_time"), 5),
+        Column("peak |φ|/γ [-]", lambda row: row.get("peak_tilt_ratio"), 3),
+        Column("peak x [m]", lambda row: row.get("peak_base_displacement"), 4),
+        Column("its error", agreement("peak_displacement_error"), percent=True),
+        Column("distance of tilt graphs [-]", agreement("graph_distance")),
+        Column("horizon [s]", agreement("until"), 3),
+        Column("warnings", lambda row: len(row.get("warnings") or ())),
+    )
+
+
+MOST_WARNINGS = 3  # of a scene, at the top of the page
+
+
+def summary(scenes: Result, block: Result | None) -> list[str]:
+    """Sentences, list of str: outcomes, engines that are missing, runs that failed."""
+    sentences = []
+    for name, scene in scenes.settings["scenes"].items():
+        rows = [row for row in scenes.rows if row["scene"] == name]
+        sentences.append(f"{scene['name']}: {outcomes(rows)}{_times(rows)}{_displacement(rows)}.{_warned(rows)}")
+    sentences += [f"Not in this report: {words}." for words in missing_words(scenes.settings["missing"])]
+    failed = [
+        f"{row['engine']} on {row['scene']} ({row['failure']['reason']})" for row in scenes.rows if row["failure"]
+    ]
+    failed += [
+        f"{row['failed']} of free rocking in {row['engine']}, {row['variant']} ({row['failures'][0]['reason']})"
+        for row in (block.rows if block else ())
+        if row["failed"]
+    ]
+    if failed:
+        sentences.append("Failed runs: " + "; ".join(failed) + ".")
+    return sentences
+
+
+def _warned(rows):
+    """The warnings of a scene's runs, each once; the table beside the outcomes says whose they are."""
+    warnings = list(dict.fromkeys(warning["text"] for row in rows for warning in row.get("warnings", ())))
+    if not warnings:
+        return ""
+    more = f"; {len(warnings) - MOST_WARNINGS} more in the table of warnings" if len(warnings) > MOST_WARNINGS else ""
+    return f" Warning: {'; '.join(text.rstrip('.') for text in warnings[:MOST_WARNINGS])}{more}."
+
+
+def _times(rows):
+    times = [row["overturning_time"] for row in rows if row.get("overturning_time") is not None]
+    if not times:
+        return ""
+    low, high = number(min(times), 4), number(max(times), 4)
+    return f", at {low} s" if low == high else f", between {low} and {high} s"
+
+
+def _displacement(rows):
+    peaks = {row["engine"]: row["peak_base_displacement"] for row in rows if row.get("peak_base_displacement")}
+    if "analytic" not in peaks:
+        return ""
+    text = f"; the base moves by at most {number(peaks['analytic'], 4)} m"
+    apart = {solver: abs(peak / peaks["analytic"] - 1) for solver, peak in peaks.items() if solver != "analytic"}
+    if apart:
+        text += " (" + ", ".join(f"{solver} off by {percent(value)}" for solver, value in apart.items()) + ")"
+    return text

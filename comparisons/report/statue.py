@@ -1,32 +1,24 @@
 """The card of a statue: what the analytic model says of one's own scene, on one page that can be filed."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from analytic import simulate, simulate_many
-from analytic.errors import SceneError
+from analytic import Scene, SceneError, simulate, simulate_many
 from analytic.limits import scene_warnings
 from analytic.margins import SPAN, TILT, limit_states, margins
+from analytic.motion import Motion
 from analytic.nearby import SHARE, cliffs, nearby
 from analytic.records.folder import reversed_sign, same_reversed
 from analytic.response import JUDGED, about_record
 
-from ..showing.motions import LIFTED, odds
-from ..showing.parts import number, signed
-from ..showing.rows import Column, across, table
+from ..running.provenance import Result
+from ..showing.margins import LIFTED, odds
+from ..showing.parts import Column, across, number, signed, table
 from ..showing.wording import listed
 from .next_step import needed_by, next_step
 from .sections import different
-
-if TYPE_CHECKING:
-    from analytic import Scene
-    from analytic.motion import Motion
-
-    from ..running.provenance import Result
 
 WORST = ("stands", "rocks", "failed", "overturns")  # of a record's motions, from the best to the worst
 WORDS = {
@@ -110,7 +102,6 @@ def _lifts_or_goes_too_far(scene, found, rows):
 
 
 def _figures(scene):
-    """The numbers of one run."""
     response = simulate(scene, history=False)
     warnings = (*about_record(scene.motion), *response.warnings)
     return {
@@ -150,7 +141,6 @@ def _near(scene, changes, found):
 
 
 def _under(scene, record, motions):
-    """What the motions of one record do."""
     found = simulate_many([scene.with_(motion=motion, duration=None) for motion in motions])
     return {
         "record": record,

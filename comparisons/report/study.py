@@ -1,21 +1,17 @@
 """The report's own runs as a study, and their results in the report's folder."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+from analytic import Scene
+from analytic.motion import Motion
 
 from ..running.plan import Study
 from ..running.provenance import copy_result
 from ..running.study import compute
 from .runs import CARYATID, RESTITUTION, SCENES, load_scenes, plan
-
-if TYPE_CHECKING:
-    from analytic import Scene
-    from analytic.motion import Motion
 
 # Under a record of more samples one engine runs at a time: each needs some 100 bytes a step several times over.
 SHORT_RECORD = 200_000

@@ -21,15 +21,23 @@ from ..showing import diagrams
 from ..showing.parts import Section, Table
 from ..showing.wording import TRUSTED, USABLE
 from . import equations
-from .animation import animation
-from .answer import not_to_do, own_restitution, paragraph, recommendation, setups_of
+from .answer import (
+    Stored,
+    commit_of,
+    not_to_do,
+    origin_of,
+    own_restitution,
+    paragraph,
+    recommendation,
+    setups_of,
+    stored_studies,
+    variants_of,
+)
 from .detail import assets, detail, environment
-from .earthquake import earthquake
+from .figures import animation
 from .runs import RESTITUTION, SCENES
-from .sections import restitution_section, scene_sections
+from .sections import earthquake, restitution_section, scene_sections, summary
 from .statue import card_of
-from .studies import Stored, commit_of, origin_of, stored_studies, variants_of
-from .summary import summary
 
 if TYPE_CHECKING:
     from ..running.provenance import Result

@@ -1,7 +1,5 @@
 """One run of a study: which scene, which solver, how set; and what its result depends on."""
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import hashlib
@@ -10,17 +8,14 @@ import pkgutil
 import platform
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from unittest.mock import patch
 
-from analytic import Block, Scene, Start
+from analytic import Block, Response, Scene, Start
 from engines import ENGINES, get_engine
 
 from .progress import compile_kernels
 from .sources import source_digests, version_of
-
-if TYPE_CHECKING:
-    from analytic import Response
 
 # every other name is an engine's, or such a "module:function" itself
 SOLVERS = {

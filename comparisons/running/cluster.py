@@ -7,8 +7,6 @@ Each thread of a Dask worker has a process that guards its runs by `Processes`, 
 only that row is lost, and no worker.
 """
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import logging

@@ -1,13 +1,29 @@
-"""Messages that name what a command offers: its options, not the parameters or the keys behind them."""
+"""Options that commands share (of a record, of the many motions a scene is tried under), and messages that name them:
+options, not the parameters or the keys behind them.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
 
 from analytic.errors import SceneError, SettingError
 
+if TYPE_CHECKING:
+    from analytic import Response, Scene
+    from analytic.motion import Motion
+
+# What a user says of a record that the file itself does not.
+Units = Annotated[str | None, typer.Option(help="Unit, if the file states none: m/s2, cm/s2, gal, mm/s2, g or %g.")]
+Step = Annotated[float | None, typer.Option(metavar="SECONDS", help="Sampling interval, if the file states none.")]
+Column = Annotated[
+    str | None, typer.Option(help="Of several columns: the accelerations', its number from 1 on or its title.")
+]
+Channel = Annotated[str | None, typer.Option(help="Of several channels: its number or direction, 3 or Up.")]
 # What `rocking new` and `rocking design` share; those of a record, wherever one is read.
 DEFINITION = "Of the damping. equivalent: W_D/(4 pi E_s), the usual one; paper: W_D/(2 pi E_s), twice as much."
 RATIO = "By design: ka/kb; Table 1(b) of the paper has 10."
@@ -44,3 +60,88 @@ def _by_options(error: SceneError, options: Mapping[str, str]) -> SceneError:
     file = error.file if of_a_file else None  # other options name no file
     others = tuple(_by_options(other, options) for other in error.others)
     return SceneError(key, error.value, error.problem, error.remedy, file, others)
+
+
+Records = Annotated[
+    str | None, typer.Option(metavar="FOLDER", help="Also under the records in this folder, as they are recorded.")
+]
+BothSigns = Annotated[
+    bool,
+    typer.Option(
+        "--both-signs", help="Also under every motion with its sign changed, unless block and start are symmetric."
+    ),
+]
+Directions = Annotated[
+    int | None,
+    typer.Option(
+        metavar="NUMBER", help="Under so many directions of each record's two horizontal components, over half a turn."
+    ),
+]
+
+
+def motions_of(
+    scene: Scene, records: str | None, both_signs: bool, directions: int | None, units: str | None = None
+) -> dict[str, list[Motion]]:
+    """{record: its motions}, the scene's own first; one that lies in the folder counts once. What is left out is said.
+
+    Raises
+    ------
+    SettingError
+        No such folder, no motion in it, or directions or units without a folder.
+    """
+    from analytic.records.folder import folder_motions, reversed_sign, same_reversed
+
+    from .progress import say
+
+    for name, value in (("directions", directions), ("units", units)):
+        if value is not None and records is None:
+            raise SettingError(f"--{name} {value}: give the folder of the records with --records")
+    found: dict[str, list[Motion]] = {}
+    own = scene.motion
+    if records is not None:
+        with named_by_options({"directions": "--directions"}):
+            others, left = folder_motions(records, directions=directions, own=own, units=units)
+        found = {name: [*motions] for name, motions in others.items()}
+        for line in left:
+            say(line)
+    first = next(iter(found.values()), [])[:1]
+    if own is not None and own.digest() not in [motion.digest() for motion in first]:
+        found = {own.label: [own, *found.pop(own.label, [])], **found}
+    if both_signs and same_reversed(scene):
+        say("--both-signs: mirrored the same, as block and start are symmetric; each motion is run once")
+    elif both_signs:
+        found = {name: [*motions, *map(reversed_sign, motions)] for name, motions in found.items()}
+    return found
+
+
+def other_motions(
+    scene: Scene, records: str | None, both_signs: bool, directions: int | None, units: str | None = None
+) -> dict[str, list[Motion]]:
+    """`motions_of` where one of the options is given, else none."""
+    given = both_signs or any(value is not None for value in (records, directions, units))
+    return motions_of(scene, records, both_signs, directions, units) if given else {}
+
+
+def rows_of(
+    scene: Scene, groups: Mapping[str, Sequence[Motion]], simulate: Callable[[Scene], Response]
+) -> list[dict[str, Any]]:
+    """A row for each motion: record, motion, peak [m/s2], outcome, tilt over slenderness, base displacement [m]."""
+    from .progress import bar
+
+    pairs = [(record, motion) for record, motions in groups.items() for motion in motions]
+    rows = []
+    with bar(f"{scene.name}: motions") as progress:
+        for number, (record, motion) in enumerate(pairs, 1):
+            response = simulate(scene.with_(motion=motion))
+            rows.append(
+                {
+                    "record": record,
+                    "motion": motion.label,
+                    "peak": motion.peak,
+                    "outcome": response.outcome,
+                    "tilt": response.peak_tilt_ratio,
+                    "stroke": response.peak_base_displacement if scene.base else None,
+                }
+            )
+            progress(number, len(pairs))
+    return rows

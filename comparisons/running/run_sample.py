@@ -1,13 +1,11 @@
 """A random sample of a study's runs, stored with its result: all that is needed to do them again without the plan."""
 
-from __future__ import annotations
-
 import inspect
 import random
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,11 +13,9 @@ from analytic import PulseMotion, SampledMotion, Scene, synthetic_motion
 from analytic.synthetic import STYLES
 
 from .cases import Case, name_of
+from .plan import Batch
 from .provenance import json_ready
-
-if TYPE_CHECKING:
-    from .plan import Batch
-    from .sweep import Row
+from .sweep import Row
 
 SIZE = 60  # runs stored with a result
 SEED = 0  # of their choice

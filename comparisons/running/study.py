@@ -23,8 +23,7 @@ from .provenance import made_here, save
 from .run_sample import sample_of
 from .solving import named_engines
 from .sources import PROJECT, digests_of_all, source_digests
-from .store import Store
-from .sweep import Row, run_sweep
+from .sweep import Row, Store, run_sweep
 
 if TYPE_CHECKING:
     from .provenance import Result

@@ -1,16 +1,13 @@
 """What `rocking margin` and `rocking design` write."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
 from pydantic import Field
 
-from .form import Form, Part
+from analytic import margins
 
-if TYPE_CHECKING:
-    from analytic import margins
+from .form import Form, Part
 
 
 class Band(Part):

@@ -1,7 +1,5 @@
 """What all that is written as JSON has in common."""
 
-from __future__ import annotations
-
 import json
 
 from pydantic import BaseModel, ConfigDict

@@ -1,7 +1,5 @@
 """What a study's result file holds; its columns are explained in `comparisons.studies.vocabulary`."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Literal
 
 from pydantic import Field

@@ -1,11 +1,9 @@
 """The sheet as files: a page a problem in Markdown and HTML, the record, and an empty file for the answers."""
 
-from __future__ import annotations
-
 import re
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from markdown_it import MarkdownIt
 from markupsafe import Markup
@@ -13,12 +11,9 @@ from markupsafe import Markup
 from analytic import SampledMotion
 
 from ..running.files import write_all
-from ..showing.templates import templates
+from ..showing.parts import templates
 from ..showing.wording import indexed
-from .problems import COLUMNS, DAMPING, PERIOD, PROBLEMS, SCALES, UNITS, VERSION, record
-
-if TYPE_CHECKING:
-    from .problems import Problem
+from .problems import COLUMNS, DAMPING, PERIOD, PROBLEMS, SCALES, UNITS, VERSION, Problem, record
 
 TEMPLATES = templates(Path(__file__).parent / "templates")
 TITLE = "Rocking blocks: reference problems for other codes"

@@ -1,7 +1,5 @@
 """The scenes of the sheet, and what is asked of each."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

@@ -1,29 +1,92 @@
-"""Answers scored: how far off, in which place beside the solvers measured here, and what probably went wrong.
+"""Answers read from a file and scored: how far off, in which place beside the solvers measured here, and what probably
+went wrong.
 
 A mistake is named only where what it would answer has been computed and all answers of the scene lie within `MATCHING`
 of it, while no other mistake's do. Else the cause is unknown.
 """
 
-from __future__ import annotations
-
+import csv
 import math
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
+from os import PathLike
 
 from pydantic import Field
+
+from analytic.errors import SceneError
+from analytic.files import read_plain
 
 from ..running.age import by_engine, date_of
 from ..running.provenance import RESULTS, ResultError
 from ..schemas.form import Form, Part
 from ..showing.wording import TRUSTED
 from ..studies.rows import read_study
-from .answers import error
-from .faults import MISTAKES
-from .observed import solved
-from .problems import PROBLEMS, VERSION
+from .problems import COLUMNS, PROBLEMS, VERSION
+from .variants import MISTAKES, Value, error, solved
 
-if TYPE_CHECKING:
-    from .observed import Value
+LARGEST = 1_000_000  # bytes of a file of answers, a hundred times what the sheet asks for
+WORDS = ("stands", "rocks", "overturns")
+
+
+def read_answers(path: str | PathLike[str]) -> dict[str, dict[str, Value]]:
+    """{problem: {quantity: value}} of a file of answers; what is not answered is not in it.
+
+    Raises
+    ------
+    SceneError
+        A line is not (scene, quantity, value), or names what the sheet does not ask; says file, line and remedy.
+    """
+    try:
+        text = read_plain(path, LARGEST).decode("utf-8-sig")
+    except OSError as error:
+        problem = f"cannot be read ({error.strerror})"
+        raise SceneError("answers", str(path), problem, "give the file of answers") from None
+    except UnicodeDecodeError as error:
+        raise SceneError("answers", str(path), "no text in UTF-8", "save it as CSV in UTF-8") from error
+    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip() and line[0] != "#"]
+    rows = [(number, _cells(line, f"{path}, line {number}")) for number, line in lines]
+    head = ",".join(rows[0][1] if rows else [])
+    if head != ",".join(COLUMNS):
+        raise SceneError("answers", head, f"{path}: not the head {','.join(COLUMNS)}", "begin with that line")
+    asked = {problem.name: {one.name: one for one in problem.quantities} for problem in PROBLEMS}
+    given: dict[str, dict[str, Value]] = {}
+    for number, row in rows[1:]:
+        place = f"{path}, line {number}"
+        if len(row) != len(COLUMNS):
+            raise SceneError("answers", ",".join(row), f"{place}: not three columns", "write scene,quantity,value")
+        name, quantity, value = row
+        if name not in asked:
+            raise SceneError("scene", name, f"{place}: no scene of the sheet", f"choose one of {', '.join(asked)}")
+        if quantity not in asked[name]:
+            raise SceneError("quantity", quantity, f"{place}: not asked of {name}", f"see {name}.md")
+        if quantity in given.setdefault(name, {}):
+            raise SceneError("quantity", quantity, f"{place}: answered twice", "remove one")
+        if value:
+            given[name][quantity] = _value(asked[name][quantity].kind, value, place)
+    return {name: values for name, values in given.items() if values}
+
+
+def _cells(line, place):
+    """The cells of a line, which none goes beyond: a quote that is not closed costs no other line."""
+    try:
+        return [cell.strip() for cell in next(csv.reader([line], strict=True))]
+    except csv.Error as error:
+        problem = f"{place}: no line of CSV ({error})"
+        raise SceneError("answers", line, problem, "write scene,quantity,value, and close each quote") from None
+
+
+def _value(kind, text, place):
+    if kind == "outcome":
+        if text not in WORDS:
+            raise SceneError("value", text, f"{place}: no outcome", f"write one of {', '.join(WORDS)}")
+        return text
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise SceneError("value", text, f"{place}: not a finite number", "write one with a decimal point, or nothing")
+    return value
+
 
 MATCHING = 1e-5  # largest error of answers against those of the mistake they come from
 WRONG = 1e-3  # error from which a cause is looked for: far beyond what `MATCHING` allows for
@@ -72,9 +135,9 @@ class Score(Form):
 
 
 def score(given: Mapping[str, Mapping[str, Value]], tell: Callable[[str], object] = lambda name: None) -> Score:
-    """The `Score` of answers as `answers.read_answers` gives them; `tell` is called with each scene's name.
+    """The `Score` of answers as `read_answers` gives them; `tell` is called with each scene's name.
 
-    >>> from comparisons.sheet.observed import solved
+    >>> from comparisons.sheet.variants import solved
     >>> from comparisons.sheet.problems import PROBLEMS
     >>> found = score({"free-rigid": solved(PROBLEMS[0])})
     >>> found.passed, found.scenes[0].cause

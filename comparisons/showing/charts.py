@@ -6,8 +6,6 @@ made by `comparisons.showing.figures`. Sizes are in units of which `WIDTH` fill 
 390 px.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -22,9 +20,8 @@ from matplotlib.ticker import LogLocator, MaxNLocator
 
 from engines import ENGINES
 
-from .parts import Figure, power_of_ten
+from .parts import Figure, power_of_ten, templates
 from .plots import OTHERS, marker
-from .templates import templates
 
 DRAWN = templates(Path(__file__).parent).get_template("chart.html")
 STYLE = Path(__file__).with_name("charts.css")  # colours of pages, light and dark, and the rules of charts
@@ -253,7 +250,6 @@ class Chart:
         self.parts.append(f'<g class="who" data-who="{escape(who)}" shape-rendering="crispEdges">{rectangles}</g>')
 
     def svg(self) -> str:
-        """The element."""
         read = {"x": _read(self.x, self.left, self.right), "y": _read(self.y, self.bottom, self.top)}
         across, up = self.x.marks(), self.y.marks()
         xs = self.at([value for value, _ in across], [self.y.low] * len(across))[:, 0].round(1).tolist()

@@ -1,21 +1,16 @@
 """A `Choice` in words and as a picture."""
 
-from __future__ import annotations
-
 import textwrap
-from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 from rich.text import Text
 
 from engines import missing_words
 
+from ..advice.criteria import Choice, Level
 from ..running.readable import readable
 from .plots import TITLE_CHARACTERS, marker, style
 from .terminal import digits, echo, grid
-
-if TYPE_CHECKING:
-    from ..advice.answer import Choice, Level
 
 AXES = {
     "restitution": "error of restitution, rms, worst scene [-]",
@@ -59,7 +54,6 @@ def answer(choice: Choice) -> str:
 
 
 def named(one: Level) -> str:
-    """A level as sentences call it."""
     return f"{one.engine}, {one.variant}, {one.parameter} = {one.value:g}{' (the default)' if one.default else ''}"
 
 

@@ -7,8 +7,6 @@ shades(rows, Column("base over block mass [-]", "ratio"), Column("slenderness γ
 ranks(rows, NAME, Column("share [-]", "share", within="interval"), "Share of ...", Axis("share [-]", 0, 1))
 """
 
-from __future__ import annotations
-
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -18,8 +16,7 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from .charts import REFERENCE, WIDTH, Axis, Chart, curve, figure, key_of, log_axis, room, slanting
-from .parts import Figure
-from .rows import Column, Key, Row, grouped, value_of
+from .parts import Column, Figure, Key, Row, grouped, value_of
 
 # Of the first, second, ... series of one engine; all have the engine's colour, dashes and shape of marks.
 LOOKS: tuple[dict[str, Any], ...] = (

@@ -1,23 +1,24 @@
-"""The margins of a scene, as a table for the terminal and as a picture."""
+"""The margins of a scene, what it does under many motions, the bearings it needs: as tables for the terminal and as
+pictures."""
 
-from __future__ import annotations
+import math
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import Any
 
-from collections.abc import Collection, Mapping, Sequence
-from typing import TYPE_CHECKING
-
+import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from analytic import Scene
+from analytic.bearing_scan import BearingScan
 from analytic.limits import scene_warnings
-from analytic.margins import limit_states
+from analytic.margins import Contact, Margin, limit_states
 
+from ..measuring.statistics import wilson
 from ..running.readable import readable
+from .parts import number, percent
 from .plots import TITLE_CHARACTERS
 from .terminal import Grid, echo, grid
-
-if TYPE_CHECKING:
-    from analytic import Scene
-    from analytic.margins import Contact, Margin
 
 # Okabe and Ito; hatches, and the lines’ places, tell them apart in print.
 COLOURS = {"stands": ("#009E73", ""), "rocks": ("#F0E442", ".."), "overturns": ("#D55E00", "//"), "failed": ("0.4", "")}
@@ -173,3 +174,124 @@ def _friction_words(contact):
     if contact.friction_demand > contact.friction:
         return f"{demand}, above the scene's {contact.friction:g}: the outcome is outside the model."
     return f"{demand}, the scene's coefficient {contact.friction:g}."
+
+
+LIFTED = ("rocks", "overturns")
+
+
+def print_motions(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Print a row for each motion, and how many records lift and overturn the block; nothing without motions.
+
+    rows : as of `rows_of`, and for each more column of a `Mapping` called changes a name and what stands there.
+    """
+    if not rows:
+        return
+    more = list(dict.fromkeys(name for row in rows for name in row.get("changes", ())))
+    more_heads = [name.replace(" > ", " >\n") for name in more]
+    heads = ["motion", "peak\n[g]", "outcome", *(["tilt\n[-]"] if "tilt" in rows[0] else []), *more_heads]
+    heads += ["base\n[m]"] if rows[0].get("stroke") is not None else []
+    table = []
+    for row in rows:
+        cells = [readable(row["motion"]), f"{row['peak'] / scene.gravity:.3g}", row["outcome"]]
+        cells += [f"{row['tilt']:.3g}"] if "tilt" in row else []
+        cells += [row["changes"][name] for name in more]
+        table.append(cells + ([f"{row['stroke']:.3g}"] if row.get("stroke") is not None else []))
+    words = f"The block {odds(rows, LIFTED, 'lifts')}, and {odds(rows, LIFTED[1:], 'overturns')}."
+    echo(grid(heads, table, wraps=["motion"]), words, wrap=True)
+
+
+def odds(rows: Iterable[Mapping[str, Any]], outcomes: Sequence[str], word: str) -> str:
+    """Under how many records the block comes to one of these outcomes, in some direction or sign at least.
+
+    The interval of the share is Wilson's, of records: motions of one record are no sample. A record under which no
+    motion does so and one failed is left out.
+    """
+    found: dict[str, float] = {}
+    for row in rows:
+        hit = 1.0 if row["outcome"] in outcomes else math.nan if row["outcome"] == "failed" else 0.0
+        before = found.get(row["record"], 0.0)
+        found[row["record"]] = 1.0 if 1.0 in (hit, before) else before + hit
+    known = [hit for hit in found.values() if not math.isnan(hit)]
+    if not known:
+        return f"{word} under no record that could be run"
+    low, high = wilson(int(sum(known)), len(known))
+    return f"{word} under {sum(known):.0f} of {len(known)} records ({number(100 * low, 2)} to {percent(high)} at 95 %)"
+
+
+HELD = "#009E73"  # Okabe and Ito
+
+
+def print_bearings(
+    scene: Scene, scan: BearingScan, stroke: float, tilt: float, motions: int, chosen: Mapping[str, Mapping[str, Any]]
+) -> None:
+    """Print the bearings named, a column each, or how near the best ones come where none hold."""
+    assert scene.base is not None  # the search asks for one
+    name, wanted = readable(scene.name, TITLE_CHARACTERS), _wanted(stroke, tilt)
+    echo(f"{name}: {wanted}; base: {scene.base.mass:g} kg; motions: {motions}", wrap=True)
+    if not chosen:
+        return echo(nothing_holds(scan, stroke), wrap=True)
+    if len({(one["period"], one["damping"]) for one in chosen.values()}) == 1:
+        chosen = {" and ".join(chosen): next(iter(chosen.values()))}
+    rows = {
+        "secant period at the stroke [s]": "{period:.3g}",
+        "equivalent damping at the stroke": "{damping:.3g}",
+        "ka of each [N/m]": "{bearings.ka:.6g}",
+        "kb of each [N/m]": "{bearings.kb:.6g}",
+        "alpha": "{bearings.alpha:.6g}",
+        "base displacement, worst motion [m]": "{stroke:.4g}",
+        "acceleration over that of uplift": "{uplift:.3g}",
+        "peak tilt / slenderness": "{tilt:.3g}",
+    }
+    cells = [[label, *(form.format(**one) for one in chosen.values())] for label, form in rows.items()]
+    echo(
+        grid(["bearings", *chosen], cells, wraps=["bearings", *chosen]),
+        f"Of bearings {_scanned(scan)}, {percent(float(np.mean(scan.demand <= 1)))} hold.",
+        wrap=True,
+    )
+
+
+def nothing_holds(scan: BearingScan, stroke: float) -> str:
+    """That no bearings hold, and which come nearest."""
+    period, damping = scan.nearest
+    row, column = np.abs(scan.dampings - damping).argmin(), np.abs(scan.periods - period).argmin()
+    return (
+        f"no bearings {_scanned(scan)} hold. Nearest: {period:.3g} s with {damping:.3g}, at "
+        f"{scan.demand[row, column]:.3g} times a limit, the base moving {scan.stroke[row, column]:.3g} m of {stroke:g}."
+        " Allow more stroke, or --tilt; or widen, fix or lower the block."
+    )
+
+
+def _scanned(scan):
+    low, high = scan.dampings[0], scan.dampings[-1]
+    return f"of {scan.periods[0]:g} to {scan.periods[-1]:g} s and {percent(low)} to {percent(high)} of critical damping"
+
+
+def draw_bearings(scene: Scene, scan: BearingScan, stroke: float, tilt: float) -> Figure:
+    """The region of period and damping that holds, and the points named: a matplotlib Figure."""
+    figure = Figure(figsize=(7, 4.5), layout="constrained")
+    axis = figure.subplots()
+    shown = np.clip(scan.demand, 0, 3)
+    axis.contourf(scan.periods, 100 * scan.dampings, shown, [0, 1], colors=[HELD], alpha=0.35)
+    axis.contour(scan.periods, 100 * scan.dampings, shown, [1], colors=[HELD], linewidths=1.5)
+    lines = axis.contour(scan.periods, 100 * scan.dampings, shown, [1.25, 1.5, 2], colors="0.5", linewidths=0.8)
+    axis.clabel(lines, fmt="%g", fontsize="small")
+    for name, point, marker in (("least stroke", scan.least_stroke, "o"), ("softest", scan.softest, "D")):
+        if point is not None:
+            label = f"{name}: {point[0]:.3g} s, {point[1]:.1%}"
+            axis.plot(point[0], 100 * point[1], marker, color="black", fillstyle="none", label=label, clip_on=False)
+    axis.set_xscale("log")
+    ticks = [t for t in (0.3, 0.5, 0.7, 1, 1.5, 2, 3, 4, 5, 7, 10) if scan.periods[0] <= t <= scan.periods[-1] * 1.001]
+    axis.set_xticks(ticks, [f"{tick:g}" for tick in ticks], minor=False)
+    axis.minorticks_off()
+    axis.set_xlabel(f"secant period at {stroke:g} m [s]")
+    axis.set_ylabel(f"equivalent damping at {stroke:g} m [%]")
+    axis.set_title(f"{readable(scene.name, TITLE_CHARACTERS)}: {_wanted(stroke, tilt)}", loc="left", fontsize="medium")
+    handles = [Patch(facecolor=HELD, alpha=0.35, label="hold"), *axis.get_legend_handles_labels()[0]]
+    lines_label = Patch(facecolor="none", edgecolor="0.5", label="times the nearer limit")
+    figure.legend(handles=[*handles, lines_label], loc="outside lower center", ncols=4, frameon=False, fontsize="small")
+    return figure
+
+
+def _wanted(stroke, tilt):
+    limit = "no uplift" if tilt == 0 else f"tilt up to {tilt:g} of the slenderness"
+    return f"bearings for {limit} within {stroke:g} m"

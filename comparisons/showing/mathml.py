@@ -1,7 +1,5 @@
 """The small part of TeX that the pages use, as MathML: browsers draw that without a script."""
 
-from __future__ import annotations
-
 import re
 from html import escape
 

@@ -1,42 +1,28 @@
-"""Tables and sentences in the terminal."""
+"""Tables and sentences in the terminal: any, and those of responses and engines."""
 
-from __future__ import annotations
-
+import dataclasses
+import inspect
 import math
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rich import box
 from rich.cells import cell_len
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderResult
 from rich.table import Table
 from rich.text import Text
 
-if TYPE_CHECKING:
-    from rich.console import ConsoleOptions, RenderResult
+from analytic import Caution, Response, Scene
+from engines.contract import Engine
+from engines.statue_range import in_words
+
+from ..measuring.horizon import Horizon
+from ..running.readable import readable
+from .wording import differing, listed, outcomes
 
 LONGEST_NUMBER = 15  # characters: sign, nine digits, point, exponent; longer words are names, and may be broken
 WIDE = 10**4  # columns: wider than any table
-
-
-def grid(
-    heads: Sequence[str],
-    rows: Iterable[Sequence[str | Text]],
-    *,
-    left: Collection[str] = (),
-    wraps: Collection[str] = (),
-    **look: Any,
-) -> Grid:
-    """A table of cells as they are: a unit in brackets is no markup.
-
-    left : heads of the columns whose cells stand to the left, besides the first. wraps : of those that a narrow
-    terminal breaks first. look : as `rich.table.Table` takes it.
-    """
-    cells = [[Text(cell) if isinstance(cell, str) else cell for cell in row] for row in rows]
-    sides = ["left" if head == heads[0] or head in left else "right" for head in heads]
-    look = {"box": box.SIMPLE_HEAD, "padding": (0, 1, 0, 0), **look}
-    return Grid(list(heads), cells, sides, [head in wraps for head in heads], look)
 
 
 @dataclass(frozen=True)
@@ -98,6 +84,25 @@ class Grid:
         return table
 
 
+def grid(
+    heads: Sequence[str],
+    rows: Iterable[Sequence[str | Text]],
+    *,
+    left: Collection[str] = (),
+    wraps: Collection[str] = (),
+    **look: Any,
+) -> Grid:
+    """A table of cells as they are: a unit in brackets is no markup.
+
+    left : heads of the columns whose cells stand to the left, besides the first. wraps : of those that a narrow
+    terminal breaks first. look : as `rich.table.Table` takes it.
+    """
+    cells = [[Text(cell) if isinstance(cell, str) else cell for cell in row] for row in rows]
+    sides = ["left" if head == heads[0] or head in left else "right" for head in heads]
+    look = {"box": box.SIMPLE_HEAD, "padding": (0, 1, 0, 0), **look}
+    return Grid(list(heads), cells, sides, [head in wraps for head in heads], look)
+
+
 def echo(*parts: Grid | Text | str, wrap: bool = False) -> None:
     """Print tables, and sentences as they are; wrap: their lines broken to the width of the terminal."""
     console = Console(highlight=False)
@@ -108,3 +113,158 @@ def echo(*parts: Grid | Text | str, wrap: bool = False) -> None:
 def digits(value: float | None, form: str = ".4g") -> str:
     """A number so written; a hyphen where there is none."""
     return "-" if value is None or math.isnan(value) else f"{value:{form}}"
+
+
+TITLE_CHARACTERS = 100
+MOTION = "motion"  # the kind of warning that is of the scene, not of a solver
+
+
+def _name(scene):
+    return readable(scene.name, TITLE_CHARACTERS)
+
+
+def summary(scene: Scene, response: Response) -> Grid:
+    """The main figures of one response, as a table."""
+    title = f"{_name(scene)}: {response.engine}" + (f", {response.variant}" if response.variant else "")
+    rows = {
+        "outcome": response.outcome_text,
+        "overturning time [s]": digits(response.overturning_time, ".6g"),
+        "peak tilt [rad]": digits(response.peak_tilt),
+        "peak tilt / slenderness": digits(response.peak_tilt_ratio),
+        "peak base displacement [m]": digits(response.peak_base_displacement),
+        "peak base acceleration [m/s2]": digits(response.peak_base_acceleration),
+        "impacts": str(response.impact_count),
+        "friction demand |H|/N": digits(response.friction_demand),
+        "least normal force N/(m g)": digits(response.min_normal_ratio),
+        "CPU time [s]": digits(response.cpu_seconds, ".3g"),
+        "steps": str(response.steps),
+    }
+    return named_values(rows, title)
+
+
+def named_values(rows: Mapping[str, str], title: str) -> Grid:
+    """A table of {name: value}."""
+    look = {"box": box.SIMPLE, "padding": (0, 1), "show_header": False}
+    return grid(["name", "value"], rows.items(), left=["value"], wraps=["name", "value"], title=Text(title), **look)
+
+
+def comparison(scene: Scene, responses: Sequence[Response], horizons: Mapping[str, Horizon]) -> Grid:
+    """Responses of several solvers side by side, the first being the reference; horizons: {solver: its `Horizon`}."""
+    limit = _limit(horizons) if horizons else "No sensitivity horizon known."
+    caption = (
+        "over: time of overturning; tilt: peak tilt over slenderness;\n"
+        "base: peak base displacement; d: difference from the first row.\n" + limit
+    )
+    heads = "solver", "outcome", "over\n[s]", "tilt\n[-]", "d\n[-]", "base\n[m]", "d\n[%]", "im-\npacts", "CPU\n[ms]"
+    reference, rows = responses[0], []
+    for response in responses:
+        tilt, displacement = "", ""
+        if response is not reference and not response.failure and not reference.failure:
+            if "overturns" not in (response.outcome, reference.outcome):
+                tilt = f"{response.peak_tilt_ratio - reference.peak_tilt_ratio:+.0e}"
+            if reference.peak_base_displacement > 0:
+                displacement = f"{100 * (response.peak_base_displacement / reference.peak_base_displacement - 1):+.0e}"
+        rows.append(
+            [
+                f"{response.engine}\n{response.variant}".rstrip(),
+                response.outcome_text.replace(" ", "\n", 1),  # narrow: undecided, and so far what
+                digits(response.overturning_time, ".4f"),
+                digits(response.peak_tilt_ratio, ".4f"),
+                tilt,
+                digits(response.peak_base_displacement, ".4f"),
+                displacement,
+                str(response.impact_count),
+                digits(1e3 * response.cpu_seconds, ".1f"),
+            ]
+        )
+    return grid(heads, rows, left=["outcome"], title=Text(_name(scene)), show_edge=False, caption=caption)
+
+
+def _limit(horizons):
+    """Up to when histories can be compared."""
+    if not any(found.parts for found in horizons.values()):
+        size = max(found.perturbation for found in horizons.values())
+        return (
+            f"Errors of the solvers' own size, {size:.0e} at most,\ndo not grow: histories can be compared to the end."
+        )
+    lines = ["Sensitivity horizon, beyond which only outcomes can be compared,", "by each solver's own size of error:"]
+    for name, found in horizons.items():
+        until = f"{found.horizon:.3g} s" if found.parts else "none, to the end"
+        lines.append(f"{name} {until} ({found.perturbation:.0e})")
+    return "\n".join(lines)
+
+
+def show(table: Grid, responses: Sequence[Response], about: Sequence[Caution] = ()) -> None:
+    """Print a table of responses, and below it in what each differs from the analytic model, and the warnings.
+
+    What is said `about` the scene itself stands first, in bold, then, of several responses, the outcomes. Where the
+    result is sensitive to small changes of the motion, that stands last, in bold.
+    """
+    echo(*(Text(f"Warning: {readable(str(warning))}", "bold") for warning in about))
+    if len(responses) > 1:
+        found = outcomes([{**response.to_json(), "outcome_text": response.outcome_text} for response in responses])
+        echo(f"{found[0].upper()}{found[1:]}.", wrap=True)
+    motion = [warning for response in responses for warning in response.warnings if warning.kind == MOTION]
+    echo(table, *(readable(words) for words in remarks(responses)))
+    echo(*(Text(readable(str(warning)), "bold") for warning in motion))
+
+
+def remarks(responses: Sequence[Response]) -> list[str]:
+    """Sentences: in what responses differ from the analytic model, or why they cannot be compared; and the warnings.
+
+    What is said of several solvers is said once.
+    """
+    different: dict[str, list[str]] = {}
+    for response in responses:
+        for words in differing(response.comparable, response.differences):
+            different.setdefault(words, []).append(response.engine)
+    said = [f"{'each of ' * (len(names) > 1)}{listed(names)} {words}" for words, names in different.items()]
+    return said + _warnings(responses)
+
+
+def _warnings(responses):
+    """The warnings and whom they concern; of one quantity the first solver's, and the values of all."""
+    warned: dict[Any, list[tuple[str, Caution]]] = {}
+    for response in responses:
+        for one in response.warnings:
+            if one.kind != MOTION:
+                warned.setdefault((one.kind, one.quantity or one.text), []).append((response.engine, one))
+    said = []
+    for found in warned.values():
+        who = "all solvers" if 1 < len(found) == len(responses) else listed([engine for engine, _ in found])
+        values = {f"{one.value:.3g}": one.value for _, one in found if one.value is not None}
+        spread = f" ({min(values.values()):.3g} to {max(values.values()):.3g})" if len(values) > 1 else ""
+        said.append(f"Warning, {who}: {found[0][1]}{spread}")
+    return said
+
+
+def engines_table(engines: Sequence[Engine]) -> Grid:
+    """Who does what: of every variant its tier, what the engine computes and what the adapter imposes."""
+    caption = Text(f"Tested for {in_words()}.\nrocking engines NAME: settings, refinement levels, versions.")
+    heads = ["engine", "variant", "tier", "the engine computes", "the adapter imposes"]
+    rows = [
+        [engine.name if name == engine.default_variant else "", name, variant.tier, variant.computes, variant.imposes]
+        for engine in engines
+        for name, variant in engine.variants.items()
+    ]
+    return grid(heads, rows, left=heads, wraps=heads[3:], show_edge=False, caption=caption, caption_justify="left")
+
+
+def engine_text(engine: Engine) -> str:
+    """What an `Engine` says of itself: versions, and of each variant tier, settings (the accuracy parameter first),
+    refinement levels, and who does what."""
+    versions = ", ".join(f"{package} {version}" for package, version in engine.versions().items())
+    lines = [f"{engine.name} ({versions})"]
+    for name, variant in engine.variants.items():
+        default = "default, " if name == engine.default_variant else ""
+        about = (inspect.getdoc(type(variant.settings)) or name).split("\n\n")[0].replace("\n", " ")
+        values = [f"{field}={value:.6g}" for field, value in dataclasses.asdict(variant.settings).items()]
+        values[:1] = [f"{value} (accuracy parameter)" for value in values[:1]]
+        lines += [
+            f"  --variant {name} ({default}{variant.tier}): {about}",
+            f"      settings: {', '.join(values)}",
+            f"      levels, coarse to fine: {', '.join(f'{value:.4g}' for value in variant.levels)}",
+            f"      the engine computes: {variant.computes}",
+            f"      the adapter imposes: {variant.imposes}",
+        ]
+    return "\n".join(lines) + "\n"

@@ -6,7 +6,7 @@ from typing import Any
 
 from analytic.response import COMPARED, EDGE, UNCOMPARED, Difference
 
-from ..measuring.statistics import EQUAL
+from ..measuring.statistics import EQUAL, equality
 from .parts import Mark, percent
 
 # Root mean square error of restitution: measured restitution of stone scatters by some per cent.
@@ -47,21 +47,32 @@ def rating(rms: float | None, failed: int) -> str:
 
 
 def trust(rms: float | None, failed: int) -> str:
-    """The `rating` in words."""
     return RATINGS[rating(rms, failed)]
 
 
-def equal_mark(differing: int, failed: int, runs: int, equal: str, interval: Sequence[float]) -> Mark:
-    """What a study says of outcomes that differ in some of these runs, failed ones among them.
-
-    equal, interval: of `comparisons.measuring.statistics.equality`. An engine that is neither shown to be equal nor
-    shown to differ by more than `EQUAL` is fair.
+def tally(rows: Sequence[Mapping[str, Any]], group: str) -> dict[str, Any]:
+    """Of the runs of a variant: how many are judged (not left out), differ from the model, failed ones among them, and
+    whether that is equal, with the interval of the share that differs; runs alike in the column `group` count as one.
     """
-    levels = {"yes": "good", "no": "bad" if interval[0] > EQUAL else "fair"}
-    words = f"{differing} of {runs} (at most {percent(interval[1])})"
-    note = {"yes": "equal", "no": "not shown to be equal"}.get(equal, equal)
-    short = f"{differing} of {runs} (≤ {percent(interval[1])})"
-    return Mark(words, levels.get(equal, "part"), f"{note}; {failed} failed", differing / runs, short)
+    judged = [row for row in rows if row["class"] != "left out"]
+    differs = [row["class"] != "right" for row in judged]
+    equal, interval = equality(differs, [row[group] for row in judged]) if judged else (None, None)
+    failed = sum(row["class"] == "failed" for row in judged)
+    counts = {"runs": len(judged), "left_out": len(rows) - len(judged), "differing": sum(differs), "failed": failed}
+    return {**counts, "share": sum(differs) / len(judged) if judged else None, "equal": equal, "interval": interval}
+
+
+def equal_mark(found: Mapping[str, Any]) -> Mark:
+    """What a study says of a `tally`. An engine that is neither shown to be equal nor shown to differ by more than
+    `EQUAL` is fair.
+    """
+    if not found["runs"]:
+        return Mark("no run judged", "part")
+    equal, (low, high) = found["equal"], found["interval"]
+    levels = {"yes": "good", "no": "bad" if low > EQUAL else "fair"}
+    words, most = f"{found['differing']} of {found['runs']}", percent(high)
+    note = {"yes": "equal", "no": "not shown to be equal"}.get(equal, equal) + f"; {found['failed']} failed"
+    return Mark(f"{words} (at most {most})", levels.get(equal, "part"), note, found["share"], f"{words} (≤ {most})")
 
 
 def differing(comparable: str, differences: Iterable[Difference]) -> list[str]:

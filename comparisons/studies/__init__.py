@@ -1,9 +1,11 @@
-"""The studies: each asks one question of many runs and holds one `comparisons.running.plan.Study` called ``STUDY``.
+"""The studies: each asks one question of many runs, and is one `comparisons.running.plan.Study`.
 
-A study is two files in a folder of its name, as `restitution`; another file only for another noun (its cases).
+A study is two files in a folder of its name, as `restitution`, and a line of `QUESTIONS`; another file only for another
+noun (its cases).
 
 ``study.py`` computes and imports nothing that shows: a ``plan(request)`` that yields a `Batch` of cases with their
-``measure`` and returns `Computed`, plain rows and settings (`comparisons.running.plan`). All rows of all studies say
+``measure`` and returns `Computed`, plain rows and settings (`comparisons.running.plan`); where `Study` has them other
+than usual, also ``problems``, ``WHOLE``, ``INDEXED``. All rows of all studies say
 ``engine``, ``variant`` and ``part`` (what the row is), ``level`` for a value of the accuracy parameter, ``lost`` for
 impacts that a run has not; settings list ``variants``, each with engine, variant, tier, parameter, default and levels.
 `comparisons.studies.vocabulary` explains every column, `comparisons.studies.rows` says which of them a row has.
@@ -24,9 +26,8 @@ title, lead and first, the study's own page all of it; nothing is told or drawn 
             how=("What was run, and how it is measured.",),
         )
 
-The layer: `comparisons.showing.rows` (where, grouped, Column, table), `comparisons.showing.figures` (lines, shades,
-beside); what they cannot draw is a `comparisons.showing.charts.Chart`. ``__init__.py`` holds ``STUDY``,
-which names the module of the page: it is imported only where it is shown.
+The layer: `comparisons.showing.parts` (where, grouped, Column, table), `comparisons.showing.figures` (lines, shades,
+beside); what they cannot draw is a `comparisons.showing.charts.Chart`. The page is imported only where it is shown.
 
 Other packages declare theirs in the entry point group `rocking.studies`; an entry resolves to a `Study` of its name.
 """
@@ -39,29 +40,45 @@ from typing import TYPE_CHECKING
 
 from analytic.errors import SettingError
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # loads engines: not where only the names are asked for
     from ..running.plan import Study
 
 GROUP = "rocking.studies"
 PACKAGE = "comparisons.studies"
-# in the order of the report and of the rows of its first table
-BUILT_IN = (
-    "restitution",
-    "autopsy",
-    "overturning",
-    "recorded",
-    "fragility",
-    "surface",
-    "sensitivity",
-    "random-scenes",
-    "stability",
-    "speed-error",
-    "kernel",
-    "caryatid",
-    "tolerances",
-    "constants",
-    "sheet",
-)
+# name: its question; in the order of the report and of the rows of its first table
+QUESTIONS = {
+    "restitution": (
+        "Error of restitution and base velocity jump over slenderness, base mass and accuracy setting, with its cost."
+    ),
+    "autopsy": "One impact in every engine and variant, taken apart: the parts of its error and their cause.",
+    "overturning": "Overturning boundaries under pulses, on rigid ground and isolated, solver by solver.",
+    "recorded": "Recorded motions: does an engine overturn the blocks that the analytic model overturns?",
+    "fragility": (
+        "Fragility over intensity: which measure tells most, does a lognormal curve fit, does the engine shift it?"
+    ),
+    "surface": "Probability of overturning over intensity and slenderness, from a million runs of the analytic model.",
+    "sensitivity": (
+        "What changes the outcome more often than the choice of the engine: vertical motion, a per cent of slenderness?"
+    ),
+    "random-scenes": (
+        "Random scenes in the range of a statue: how often is an engine right, and is every wrong run reported?"
+    ),
+    "stability": (
+        "Named hard cases in every solver and variant: right, differs or failed, with measures, evidence, finer "
+        "settings."
+    ),
+    "speed-error": "Error and CPU time of the same runs: kernel, scipy, time stepping, Bouc-Wen, engines and variants.",
+    "caryatid": "The Caryatid paper: every equation, figure and table reproduced or corrected, and what it leaves out.",
+    "tolerances": (
+        "How far each engine is from the analytic model, beside what it is held to. Status 1: a row does not hold."
+    ),
+    "constants": "Each number that was chosen in an engine's variant, halved and doubled: what moves?",
+    "sheet": "The problem sheet in every engine: what rocking score ranks other codes beside.",
+}
+BUILT_IN = tuple(QUESTIONS)
+# What a study.py may have beside its plan: {its name there: the field of `Study`}.
+OWN = {"problems": "problems", "WHOLE": "whole", "INDEXED": "indexed"}
+ALONE = ("surface",)  # of the analytic model, where no engine is asked for
 
 
 class StudyBroken(SettingError):
@@ -83,26 +100,25 @@ def get_study(name: str) -> Study:
     StudyBroken
         Another package declares it, and it cannot be used.
     """
-    if name in BUILT_IN:
-        return import_module(f"{PACKAGE}.{name.replace('-', '_')}").STUDY
+    from ..running.plan import Study
+
+    if name in QUESTIONS:
+        package = f"{PACKAGE}.{name.replace('-', '_')}"
+        found = import_module(f"{package}.study")
+        own = {field: getattr(found, given) for given, field in OWN.items() if hasattr(found, given)}
+        return Study(name, QUESTIONS[name], found.plan, f"{package}.page", all_engines=name not in ALONE, **own)
     entries = list(entry_points(group=GROUP, name=name))
     if not entries:
         raise KeyError(f"unknown study {name!r}: choose one of {', '.join(study_names())}")
     who = f"study {name!r}, declared as {entries[0].value} by {', '.join(sorted(map(_distribution, entries)))}"
     if len(entries) > 1:
         raise StudyBroken(f"{who}: several declare that name; uninstall all but one")
-    return _resolve(entries[0], who)
-
-
-def _resolve(entry, who):
-    from ..running.plan import Study
-
     try:
-        study = entry.load()
+        study = entries[0].load()
     except Exception as error:  # whatever another package raises as it is imported
         raise StudyBroken(f"{who}: it cannot be imported ({type(error).__name__}: {error})") from error
-    if not isinstance(study, Study) or study.name != entry.name:
-        raise StudyBroken(f"{who}: it is no comparisons.running.plan.Study called {entry.name!r}")
+    if not isinstance(study, Study) or study.name != name:
+        raise StudyBroken(f"{who}: it is no comparisons.running.plan.Study called {name!r}")
     return study
 
 

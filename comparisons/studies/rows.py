@@ -4,21 +4,16 @@ A new column needs a line in `comparisons.studies.vocabulary` alone: a row may t
 without also stands here, and a result without it is refused.
 """
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Mapping
 from functools import cache
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from ..running.provenance import ResultError, read_result
+from ..running.provenance import Result, ResultError, read_result
 from ..running.readable import readable
 from .vocabulary import columns_of
-
-if TYPE_CHECKING:
-    from ..running.provenance import Result
 
 SHOWN = 80  # characters of a wrong value
 NOTHING = ("failure", "why_not")  # a row that has one of these says why it has no numbers
@@ -93,10 +88,6 @@ ROWS = {
             boundary_shifts? settings""",
         "share": "scene engine variant level failure? share?",
         "growth": "engine variant against value failure? | cpu_seconds traced_bytes? resident_bytes?",
-    },
-    "kernel": {
-        "work-precision": """engine variant problem tolerance expected_impacts failure? timings repeatable |
-            cpu_seconds cpu_low cpu_high error? impacts"""
     },
     "caryatid": {
         "value": "where quantity engine? paper study difference? status note",

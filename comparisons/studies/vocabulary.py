@@ -9,8 +9,6 @@ Unit "-": a number without one, a word, or a part with units of its own. A row h
 depends on.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from typing import NamedTuple
 
@@ -65,11 +63,7 @@ SHARED = {
     "both_overturn": whole("runs that overturn in both"),
     "only_a": whole("runs that overturn in the analytic model alone"),
     "only_b": whole("runs that overturn in the engine alone"),
-    "timings": whole("fresh processes in which the run was timed"),
-    "repeatable": flag("whether all of them gave the same numbers, bit for bit"),
     "cpu_seconds": number("CPU time of one run: median over the processes", "s"),
-    "cpu_low": number("CPU time of one run: least", "s"),
-    "cpu_high": number("CPU time of one run: most", "s"),
 }
 
 OWN: dict[str, dict[str, Explained]] = {
@@ -203,9 +197,13 @@ OWN: dict[str, dict[str, Explained]] = {
         "parameter": word("accuracy parameter whose value is the level"),
         "outcome": word("of the run: stands, rocks, overturns or failed"),
         "errors": table(
-            "by measure: restitution, boundary_shift, peak_displacement [-]; peak_tilt, end_tilt [slenderness]; "
-            "impact_time [s]"
+            "by measure: restitution, boundary_shift, peak_displacement [-]; peak_tilt, end_tilt, horizon_tilt "
+            "[slenderness]; impact_time [s]"
         ),
+        "timings": whole("fresh processes in which the run was timed"),
+        "cpu_low": number("CPU time of one run: least", "s"),
+        "cpu_high": number("CPU time of one run: most", "s"),
+        "repeatable": flag("whether all of them gave the same numbers, bit for bit"),
         "simulated": number("simulated time", "s"),
         "steps": whole("steps of the run"),
         "step": number("mean step size", "s"),
@@ -231,13 +229,6 @@ OWN: dict[str, dict[str, Explained]] = {
         "comparable": word('"yes", or why the run is not compared with the analytic model'),
         "differences": series("in what the run differs from the model, in words"),
         "quantities": series("in what the run differs from the model, by name"),
-    },
-    "kernel": {
-        "problem": word("which of the two"),
-        "tolerance": number("relative tolerance asked for"),
-        "expected_impacts": whole("impacts of the reference"),
-        "impacts": whole("impacts found"),
-        "error": number("of the tilt at the horizon against the reference, over the slenderness"),
     },
     "autopsy": {
         "best": flag("whether the variant is its engine's default"),

@@ -5,9 +5,7 @@ import json
 from comparisons.advice import Choice
 from comparisons.running.provenance import PROJECT_FOLDER
 from comparisons.schemas.advice import BearingSearch, Design, Margins
-from comparisons.schemas.inputs import New, Record
-from comparisons.schemas.results import Report, Sheet, Verification
-from comparisons.schemas.runs import Comparison, Run
+from comparisons.schemas.runs import Comparison, New, Record, Report, Run, Sheet, Verification
 from comparisons.schemas.study import StudyResult
 from comparisons.sheet.score import Score
 

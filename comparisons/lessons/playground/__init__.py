@@ -4,8 +4,6 @@ polynomial.js, scene.js, series.js and model.js are the compiled kernel in JavaS
 integrator of `analytic.time_stepping` and a block on soft corners; tests hold their numbers to those of `analytic`.
 """
 
-from __future__ import annotations
-
 import base64
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,7 +13,7 @@ from markupsafe import Markup
 
 from analytic import synthetic_motion
 
-from ...showing.templates import templates
+from ...showing.parts import templates
 
 FOLDER = Path(__file__).parent
 # Of the equations, run in the page and in its workers; then those of the page alone.

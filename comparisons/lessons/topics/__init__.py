@@ -1,14 +1,10 @@
 """The lessons, one module each: its content as a `lesson.Lesson` called LESSON, and what it computes."""
 
-from __future__ import annotations
-
 from importlib import import_module
-from typing import TYPE_CHECKING
 
 from analytic.errors import SettingError
 
-if TYPE_CHECKING:
-    from ..lesson import Lesson
+from ..lesson import Lesson
 
 NAMES = ("tipping", "impacts", "bearing", "caryatid", "corner", "chaos", "cost", "checks")  # in their order
 
@@ -27,5 +23,4 @@ def lesson(name: str) -> Lesson:
 
 
 def lessons() -> tuple[Lesson, ...]:
-    """All lessons in their order."""
     return tuple(lesson(name) for name in NAMES)

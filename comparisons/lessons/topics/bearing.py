@@ -1,7 +1,5 @@
 """Lesson 3: a lead-rubber bearing."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from analytic.bearing import BearingLaw
@@ -9,8 +7,7 @@ from analytic.caryatid import BASE, BEARINGS, MASS
 from analytic.design import BearingProperties, properties
 
 from ...showing.diagrams import labelled_on_bearings
-from ..drawing import MODEL, OTHER, THIRD, canvas, legend
-from ..lesson import Control, Equation, Exercise, Lesson, View
+from ..lesson import MODEL, OTHER, THIRD, Control, Equation, Exercise, Lesson, View, canvas, legend
 
 LAW = BearingLaw.of(BEARINGS)
 CARRIED, X_MAX = MASS + BASE.mass, 0.30  # kg, m

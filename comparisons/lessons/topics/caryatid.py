@@ -1,16 +1,13 @@
 """Lesson 4: the isolated Caryatid."""
 
-from __future__ import annotations
-
 import math
 
 from analytic import PulseMotion, Scene, simulate, synthetic_motion
 from analytic.caryatid import BASE, BEARINGS, caryatid_block
 from analytic.motion import Motion
 
-from ..computing import G, edge, history_until, overturns
-from ..drawing import OTHER, SOFT, canvas, legend, tilt_axis
-from ..lesson import Control, Equation, Exercise, Lesson, View
+from ..engine_runs import G, edge, history_until, overturns
+from ..lesson import OTHER, SOFT, Control, Equation, Exercise, Lesson, View, canvas, legend, tilt_axis
 
 BEARING_CHOICE = {"none": None, "as designed": 1.0, "twice as stiff": 2.0}
 NEAR_FAULT = synthetic_motion()

@@ -1,7 +1,5 @@
 """Lesson 6: two almost equal blocks."""
 
-from __future__ import annotations
-
 import functools
 import math
 
@@ -11,9 +9,8 @@ from analytic import SampledMotion, Scene, simulate
 from analytic.caryatid import caryatid_block
 
 from ...showing.parts import MINUS_DIGITS
-from ..computing import G
-from ..drawing import MODEL, OTHER, SOFT, canvas, legend
-from ..lesson import Control, Equation, Exercise, Lesson, View
+from ..engine_runs import G
+from ..lesson import MODEL, OTHER, SOFT, Control, Equation, Exercise, Lesson, View, canvas, legend
 
 SLENDERNESS, RESTITUTION, DURATION = 0.28, 0.98, 30.0  # rad, -, s
 APART = 0.1  # of the slenderness: what counts as parted

@@ -1,7 +1,5 @@
 """Lesson 8: how to check a simulation."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np
@@ -13,8 +11,7 @@ from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as
 from analytic.time_stepping import simulate_time_stepping
 from analytic.twin import simulate_twin
 
-from ..drawing import MODEL, SOFT, canvas
-from ..lesson import Control, Equation, Exercise, Lesson, View
+from ..lesson import MODEL, SOFT, Control, Equation, Exercise, Lesson, View, canvas
 
 SLENDERNESS, START, DURATION = 0.28, 0.6, 2.5  # rad, tilt over slenderness, s
 SOLVERS = ("event-driven", "fixed steps")

@@ -1,7 +1,5 @@
 """Lesson 5: what an engine does at a corner."""
 
-from __future__ import annotations
-
 import functools
 import math
 
@@ -15,13 +13,11 @@ from engines import ENGINES
 
 from ...measuring.agreement import RIGID
 from ...running.provenance import RESULTS
-from ...showing.parts import Table, number
+from ...showing.parts import Table, number, where
 from ...showing.plots import marker
-from ...showing.rows import where
 from ...studies.rows import read_study
-from ..drawing import MODEL, OTHER, SOFT, STONE, THIRD, canvas, legend
 from ..engine_runs import SCENE, SLENDERNESS, engine_runs, error_of
-from ..lesson import Control, Equation, Exercise, Lesson, View
+from ..lesson import MODEL, OTHER, SOFT, STONE, THIRD, Control, Equation, Exercise, Lesson, View, canvas, legend
 
 STEPS = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0, 40.0)  # ms
 SCAN = np.geomspace(4e-4, 0.05, 160)  # s

@@ -1,7 +1,5 @@
 """Lesson 7: speed against error."""
 
-from __future__ import annotations
-
 import functools
 import math
 from itertools import groupby, takewhile
@@ -11,9 +9,8 @@ from analytic import simulate
 
 from ...showing.parts import Table, number
 from ...showing.plots import marker, style
-from ..drawing import INK, OTHER, SOFT, THIRD, canvas, legend
 from ..engine_runs import OWN, OWN_STEPS, EngineRun, engine_runs, own_runs, timed
-from ..lesson import Control, Equation, Exercise, Lesson, View
+from ..lesson import INK, OTHER, SOFT, THIRD, Control, Equation, Exercise, Lesson, View, canvas, legend
 
 TARGET = 0.01  # error asked for
 MODEL = "event-driven"

@@ -1,7 +1,5 @@
 """Lesson 2: why impacts lose speed."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from analytic import Block, Scene, Start, simulate
@@ -9,9 +7,8 @@ from analytic.caryatid import BASE, MASS, RADIUS, caryatid_block
 from analytic.rocking import RockingModel, momentum_restitution
 
 from ...showing.diagrams import labelled
-from ..computing import edge, history_until
-from ..drawing import MODEL, OTHER, SOFT, canvas, legend
-from ..lesson import Control, Equation, Exercise, Lesson, View
+from ..engine_runs import edge, history_until
+from ..lesson import MODEL, OTHER, SOFT, Control, Equation, Exercise, Lesson, View, canvas, legend
 
 START, WINDOW = 0.8, 8.0  # tilt over slenderness, s
 CURVE = np.linspace(0.02, 1.2, 80)

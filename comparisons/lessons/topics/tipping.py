@@ -1,7 +1,5 @@
 """Lesson 1: when does a block tip?"""
 
-from __future__ import annotations
-
 import functools
 import math
 
@@ -13,9 +11,8 @@ from analytic.caryatid import MASS, RADIUS, caryatid_block
 from analytic.rocking import RockingModel
 
 from ...showing.diagrams import labelled
-from ..computing import G, edge, history_until, overturns
-from ..drawing import INK, OUTCOMES, PANEL, canvas, tilt_axis
-from ..lesson import Control, Equation, Exercise, Lesson, View
+from ..engine_runs import G, edge, history_until, overturns
+from ..lesson import INK, OUTCOMES, PANEL, Control, Equation, Exercise, Lesson, View, canvas, tilt_axis
 
 SLENDERNESS, PERIOD = 0.28, 0.8  # rad, s
 PERIODS, AMPLITUDES = np.linspace(0.2, 2.0, 61), np.linspace(0.02, 1.5, 50)  # s, g

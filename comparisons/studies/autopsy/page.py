@@ -1,18 +1,11 @@
 """What is shown of the autopsy study."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
 from ...showing.figures import MOVED
-from ...showing.parts import Page
-from ...showing.rows import NAME, Column, table, where
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
+from ...showing.parts import NAME, Column, Page, table, where
 
 RIGID = "rigid ground"
 WINDOW = 20.0  # ms before and after the landing that are drawn
@@ -29,7 +22,6 @@ ERROR = Column("error of restitution [-]", "error")
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the autopsy study."""
     settings = result.settings
     told = [row for row in result.rows if row["failure"] is None and "why_not" not in row]
     ranked = sorted(told, key=lambda row: -abs(row["error"]))

@@ -1,21 +1,14 @@
 """The autopsy study: the first impact of a block released, on both grounds, in every engine and variant."""
 
-from __future__ import annotations
+from typing import Any
 
-from typing import TYPE_CHECKING, Any
-
-from analytic import Base, Block, Scene, Start
+from analytic import Base, Block, Response, Scene, Start
 from analytic.caryatid import BASE, MASS, RADIUS
 from engines import get_engine
 
-from ...measuring.causes import CAUSES, LEAST, diagnosis
+from ...measuring.autopsy import CAUSES, LEAST, diagnosis
 from ...running.cases import Case
-from ...running.plan import Batch, Computed
-
-if TYPE_CHECKING:
-    from analytic import Response
-
-    from ...running.plan import Plan, Request
+from ...running.plan import Batch, Computed, Plan, Request
 
 SLENDERNESS, START = 0.2, 0.6  # rad, tilt over slenderness
 SECONDS = 1.6  # past the swing after the first impact

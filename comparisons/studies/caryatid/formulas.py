@@ -4,8 +4,6 @@
 the model's own.
 """
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from typing import Any
@@ -19,7 +17,7 @@ from analytic.design import design_bearings, properties
 from analytic.rocking import RockingModel, base_jump_length, base_jump_length_as_printed, momentum_restitution
 
 from ...measuring.agreement import branch, history_point
-from .paper import (
+from .runs import (
     ALPHA,
     BASE_MASS,
     CORRECTED,

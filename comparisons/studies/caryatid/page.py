@@ -1,7 +1,5 @@
 """What is shown of the study of the paper, a page for each of its three result files."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
@@ -14,9 +12,8 @@ from engines import missing_words
 from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
 from ...showing.figures import lines, regions
-from ...showing.parts import Head, Page, Table, number, percent
-from ...showing.rows import Column, grouped, table, where
-from . import paper
+from ...showing.parts import Column, Head, Page, Table, grouped, number, percent, table, where
+from . import runs as paper
 from .runs import FREE, ISOLATED
 from .variations import CATEGORIES, WITHIN
 
@@ -46,7 +43,6 @@ SHARES = (*CATEGORIES, WITHIN, "isolated lifts", "beyond x_max")
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the study."""
     return {"paper": _paper, "motion": _motion, "histories": _histories}[result.settings["part"]](result)
 
 
@@ -351,7 +347,6 @@ def _vulnerable(result):
 
 
 def _benefit(result):
-    """Who stays upright, over slenderness and intensity."""
     gamma, intensity = (result.arrays[f"benefit/{name}"].astype(float) for name in ("slenderness", "intensity"))
     panels = {"": result.arrays["benefit/category"]}
     (chart,), keys = regions(GAMMA, "intensity: motion times [-]", gamma, intensity, panels, HARMS, right=76)

@@ -1,4 +1,9 @@
-"""The plan of the study of the paper: an answer of what needs no motion, one of a motion, one of histories."""
+"""The Caryatid paper: every equation, figure and table of it reproduced or corrected, and what it leaves out.
+
+There are three result files, all of kind "caryatid": ``caryatid-paper`` (what needs no motion: bearing law, Table 1,
+misprints), ``caryatid-under-<motion>`` (what does, without a single value of the motion itself) and
+``caryatid-under-<motion>-histories`` (Figs 4 and 6 over time: not to be passed on where the record may not be).
+"""
 
 import re
 from pathlib import Path
@@ -11,15 +16,16 @@ from analytic import SampledMotion
 from analytic.design import properties
 from engines import available_engines
 
+from ...running.options import Channel, Column, Step, Units
 from ...running.plan import Computed, Plan, Request
 from ...running.progress import log
-from ...running.record_options import Channel, Column, Step, Units
 from ...running.solving import ground_motion
-from .cost import cost_rows
 from .formulas import formulas
-from .paper import X_MAX, motion_values
-from .runs import ISOLATED, caryatid, equivalent_oscillators, simulations, spectra
-from .variations import claims, maps, uplift_slenderness
+from .runs import ISOLATED, X_MAX, caryatid, equivalent_oscillators, motion_values, simulations, spectra
+from .variations import claims, cost_rows, maps, uplift_slenderness
+
+# Why one engine's rows cannot be computed anew by themselves, see `Study.whole`.
+WHOLE = "its answer is several files, under a motion that they do not hold, with CPU times measured together"
 
 PART_PAPER, PART_MOTION, PART_HISTORIES = "paper", "motion", "histories"
 

@@ -1,15 +1,8 @@
 """What is shown of the constants study: of each constant what moves where it is halved and doubled."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
-from ...showing.parts import Page, number, short
-from ...showing.rows import NAME, Column, grouped, table, where
+from ...running.provenance import Result
+from ...showing.parts import NAME, Column, Page, grouped, number, short, table, where
 from .study import AS_IT_IS, CHANGES
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 # Factor from which an error is said to move, and one of CPU time, which other work on the machine changes, too.
 SAID, SAID_CPU = 1.1, 1.2
@@ -21,7 +14,6 @@ VALUE = Column("value", "value", digits=None)
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the constants study."""
     first = {NAME.of(row): row for row in where(result.rows, change=AS_IT_IS)}
     changed = grouped(where(result.rows, change=set(CHANGES)), "engine", "variant", "constant")
     shown = [_merged(rows, first[NAME.of(rows[0])]) for rows in changed.values()]
@@ -89,7 +81,6 @@ def _factors(row, first):
 
 
 def _words(row, factors):
-    """What moves, in words."""
     counts = {"runs fail": row["failed"], "other outcomes": row["outcomes_changed"] - row["failed"]}
     said = [f"{count} {word}" for word, count in counts.items() if count]
     for name, factor in factors.items():

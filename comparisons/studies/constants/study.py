@@ -1,31 +1,24 @@
 """The constants study: a sample of runs with every constant of a variant in turn halved and doubled."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Sequence
 from pkgutil import resolve_name
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from analytic import Base, Start, load_scene, simulate
+from analytic import Base, Response, Scene, Start, load_scene, simulate
 from analytic.caryatid import BASE, MASS, caryatid_block
+from engines.contract import Variant
 from engines.statue_range import RANGE
 
 from ...measuring.errors import impact_errors, rms
 from ...running.cases import Case
-from ...running.plan import Batch, Computed
-from ..random_scenes.scenes import random_scene
+from ...running.plan import Batch, Computed, Plan, Request
+from ...running.sweep import Row
+from ..random_scenes.study import random_scene
 from ..restitution.cases import free_scene, variants_of
 from ..stability.cases import hard_cases
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene
-    from engines.contract import Variant
-
-    from ...running.plan import Plan, Request
-    from ...running.sweep import Row
 
 AS_IT_IS, CHANGES = "as it is", {"halved": 0.5, "doubled": 2.0}
 SILENT = {"history": False}

@@ -1,14 +1,11 @@
 """Fragility curves: of the analytic model in every intensity measure, and what an engine makes of them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 from scipy.stats import norm
 
-from ...measuring.fragility import draws, fit_fragility, goodness, interval, points, resampled
-from ...measuring.statistics import compare, holm
+from ...measuring.statistics import compare, draws, fit_fragility, goodness, holm, interval, points, resampled
 
 DRAWS, POINTS = 200, 14
 PAIRED_DRAWS = 500

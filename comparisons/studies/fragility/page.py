@@ -1,21 +1,16 @@
 """What is shown of the fragility study."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.stats import norm
 
-from ...measuring.statistics import EQUAL, TOO_FEW, equality
+from ...measuring.statistics import EQUAL, TOO_FEW
+from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
 from ...showing.figures import ranks, shades
-from ...showing.parts import Head, Judgement, Page, number, percent, short
-from ...showing.rows import NAME, Column, grouped, table, where
-from ...showing.wording import equal_mark
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
+from ...showing.parts import NAME, Column, Head, Judgement, Page, grouped, number, percent, short, table, where
+from ...showing.wording import equal_mark, tally
 
 LEVEL = 0.05  # of the test between an engine and the model, and least p of a curve that is shown
 OVERTURNING = "overturning"
@@ -49,7 +44,6 @@ EFFECT = (
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the fragility study."""
     fits, effects = where(result.rows, part="fit"), where(result.rows, part="effect")
     costs = {(row["scene"], NAME.of(row)): row["cpu_per_run"] for row in where(result.rows, part="cost")}
     best = {row["scene"]: row["measure"] for row in where(fits, state=OVERTURNING, best=True)}
@@ -162,26 +156,15 @@ def page(result: Result) -> Page:
 def tallies(result: Result) -> list[dict[str, Any]]:
     """A row for each variant: its runs of all scenes, those that end otherwise than the model's or failed, their share
     with its interval, runs under one motion taken as one, and whether that is equal."""
-    rows = []
-    for (engine, variant), every in grouped(where(result.rows, part="run"), "engine", "variant").items():
-        runs = [row for row in every if row["class"] != "left out"]
-        differs = [row["class"] != "right" for row in runs]
-        equal, interval = equality(differs, [row["seed"] for row in runs]) if runs else (None, None)
-        counts = {"runs": len(runs), "left_out": len(every) - len(runs), "differing": sum(differs)}
-        counts["failed"] = len(where(runs, **{"class": "failed"}))
-        counts["share"] = sum(differs) / len(runs) if runs else None
-        rows.append({"engine": engine, "variant": variant, **counts, "equal": equal, "interval": interval})
-    return rows
+    return [
+        {"engine": engine, "variant": variant, **tally(runs, "seed")}
+        for (engine, variant), runs in grouped(where(result.rows, part="run"), "engine", "variant").items()
+    ]
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
     """Whether the outcomes are equal to the model's, by (engine, variant)."""
-    keys = ("differing", "failed", "runs", "equal", "interval")
-    marks = {
-        (row["engine"], row["variant"]): equal_mark(*(row[key] for key in keys))
-        for row in tallies(result)
-        if row["runs"]
-    }
+    marks = {(row["engine"], row["variant"]): equal_mark(row) for row in tallies(result) if row["runs"]}
     return (Judgement("outcomes that differ under synthetic motions", marks),)
 
 

@@ -1,23 +1,30 @@
 """What is shown of the overturning study."""
 
-from __future__ import annotations
-
 import itertools
 import statistics
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure, key_of
 from ...showing.figures import MOVED, lines
-from ...showing.parts import Head, Judgement, Mark, Page, number, percent
-from ...showing.rows import NAME, Column, grouped, setting_of, table, where
-from .drawn import FREQUENCY as FREQUENCIES
-from .drawn import JUMPS, ROOM
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
+from ...showing.parts import (
+    NAME,
+    Column,
+    Head,
+    Judgement,
+    Mark,
+    Page,
+    grouped,
+    number,
+    percent,
+    setting_of,
+    table,
+    where,
+)
+from .edges import APART, JUMPS
+from .edges import FREQUENCY as FREQUENCIES
 
 LIMIT, FAIR = 0.005, 0.03  # shifts of a trusted and of a usable engine
 RATINGS = {"good": "trusted", "fair": "usable", "bad": "not to be trusted"}
@@ -40,7 +47,6 @@ LARGEST = Column("largest shift [%]", lambda row: row["largest"] and 100 * row["
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the overturning study."""
     s, shapes = result.settings, result.settings["shapes"]
     edges, shifts, held, drawn = (where(result.rows, part=part) for part in ("edge", "shift", "held", "drawn edge"))
     pressed = _pressed(result)
@@ -142,7 +148,6 @@ def page(result: Result) -> Page:
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """Largest shift of a boundary, by (engine, variant)."""
     marks = {}
     for row in _rated(result):
         every = row["of"] + row["beyond"]
@@ -280,7 +285,6 @@ def _shade(chart, frequency, amplitude, falls):
 
 
 def _over_frequency(shifts, engines):
-    """Size of every shift; engines stand beside each other."""
     aside = {engine: 0.24 * (k - 0.5 * (len(engines) - 1)) for k, engine in enumerate(engines)}
     return lines(
         [row for row in shifts if row["shift"] is not None],
@@ -347,7 +351,6 @@ def _held_down(edges, shifts, held):
 
 
 def _drawn(edges, shifts):
-    """The drawn blocks, with the shifts of each setting in a column of its own."""
     return _boundaries(
         "Blocks drawn at random in the promised range, each under one pulse: shift of its lowest boundary",
         edges,
@@ -452,7 +455,7 @@ def _how(result):
         "analytic model becomes negative, that model is the one not to be trusted, and the boundary is not rated. The "
         "drawn blocks are those of the random scenes, at rest; shapes of pulses take turns, frequencies are drawn from "
         f"{FREQUENCIES[0]:g} to {FREQUENCIES[1]:g} times the rocking frequency; of each the lowest boundary that no "
-        f"other one is nearer to than {percent(ROOM, 1)}.",
+        f"other one is nearer to than {percent(APART, 1)}.",
         f"Trusted: all boundaries found, shifted by at most {percent(LIMIT, 1)}, no outcome that differs beyond the "
         f"band; usable: all found, at most {percent(FAIR, 1)}. Tier assisted: the adapter applies the impact, so "
         "that the boundaries test the integration alone; no other level is tried.",

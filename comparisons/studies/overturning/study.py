@@ -1,31 +1,25 @@
 """The overturning study: boundaries of the analytic model, those of every engine beside them, and outcomes between."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from analytic import load_scene, overturning_map, simulate
+from analytic import Response, Scene, load_scene, overturning_map, simulate
 from engines import get_engine
+from engines.contract import Variant
 
 from ...measuring.statistics import cohen_kappa, confusion
 from ...running.cases import Case, variant_settings
-from ...running.plan import Batch, Computed
+from ...running.plan import Batch, Computed, Plan, Request
 from ...running.progress import log
 from ...running.refine import together
-from .drawn import drawn_columns, drawn_edges
-from .edges import HIGHEST, LOWEST, edges, least_normal, locate, pulse
+from .edges import HIGHEST, LOWEST, drawn_columns, drawn_edges, edges, least_normal, locate, pulse
 
-if TYPE_CHECKING:
-    from analytic import Response, Scene
-    from engines.contract import Variant
-
-    from ...running.plan import Plan, Request
+INDEXED = {"points": 2}  # see `Study.indexed`
 
 # The isolated Caryatid itself overturns at base displacements far beyond its bearings' 0.30 m only; a more slender
 # block on the same bearings does at amplitudes of a strong earthquake.
@@ -81,7 +75,6 @@ class Setting:
     settings: Mapping[str, float] = field(default_factory=dict)
 
     def row(self) -> dict[str, Any]:
-        """Its columns in rows."""
         return {"engine": self.engine, "variant": self.variant, "level": self.level}
 
 
@@ -96,7 +89,6 @@ class Point(NamedTuple):
 
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
-    """What is kept of a run."""
     return {"outcome": response.outcome, "decided": response.decided, "end_tilt": response.end.tilt}
 
 
@@ -184,7 +176,6 @@ def _refined(described, levels):
 
 
 def _settings(request, grid, grounds, described):
-    """What the study was asked, for its result file."""
     return {
         "quick": request.quick,
         "grounds": {
@@ -262,11 +253,11 @@ class _Runs:
         return answers
 
     def scan(self, setting, grid):
-        """A coarse map of one engine."""
-        points = []
-        for place in itertools.product(grid.grounds, grid.shapes, grid.frequencies, grid.scan):
-            scene = self._grounds[place[0]]
-            points.append((setting, Point(*place, least_normal(scene, pulse(scene, *place[1:])))))
+        points = [
+            (setting, Point(*place, least_normal(scene, pulse(scene, *place[1:]))))
+            for place in itertools.product(grid.grounds, grid.shapes, grid.frequencies, grid.scan)
+            for scene in (self._grounds[place[0]],)
+        ]
         yield from self.ask(points, f"scan: {setting.engine}", scan=True)
 
     def search(self, part, settings, found, distances, tolerance):
@@ -304,7 +295,6 @@ class _Runs:
 
 
 def _under(grounds, point):
-    """The scene of a ground under the pulse of a point."""
     scene = grounds[point.ground]
     return scene.with_(motion=pulse(scene, point.shape, point.frequency, point.amplitude))
 

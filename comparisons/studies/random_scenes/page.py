@@ -1,20 +1,14 @@
 """What is shown of random scenes: how often each engine is right, and every run that is not."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from analytic.response import EDGE
 
-from ...measuring.classes import CLASSES
-from ...measuring.statistics import wilson
+from ...measuring.statistics import CLASSES, wilson
+from ...running.provenance import Result
 from ...showing.charts import Axis
 from ...showing.figures import ranks
-from ...showing.parts import Judgement, Mark, Page, typeset
-from ...showing.rows import NAME, Column, grouped, table, where
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
+from ...showing.parts import NAME, Column, Judgement, Mark, Page, grouped, table, typeset, where
 
 TRUSTED = 0.95  # share of right runs, of those not left out
 LEAST = 1e-3  # that the figure's axis begins at
@@ -24,7 +18,6 @@ TOLD = "Every run that differs is reported as one, wherever it is shown."
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of random scenes."""
     counts = tallies(result)
     tuned = where(counts, tier="tuned")
     right, judged, failed = (sum(row[key] for row in tuned) for key in ("right", "judged", "failed"))
@@ -106,7 +99,6 @@ def tallies(result: Result) -> list[dict[str, Any]]:
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """Runs that are right, by (engine, variant)."""
     marks = {}
     for row in tallies(result):
         if row["judged"]:

@@ -1,27 +1,78 @@
-"""What is run of an ensemble of random scenes, and the class of each run."""
+"""Random scenes within the range of a statue, `engines.statue_range`, and the class of each run."""
 
-from __future__ import annotations
+import math
+from typing import Annotated, Any
 
-from typing import TYPE_CHECKING, Annotated, Any
-
+import numpy as np
 import typer
 
-from analytic import simulate
+from analytic import Base, Bearings, Block, PulseMotion, Response, Scene, Start, simulate
+from analytic.pulses import PULSES
 from engines import get_engine
 from engines.comparison import Reference
 from engines.statue_range import RANGE, in_words
 
-from ...measuring.classes import class_of
+from ...measuring.statistics import class_of
 from ...running.cases import Case
-from ...running.plan import Batch, Computed
+from ...running.plan import Batch, Computed, Plan, Request
 from ...running.provenance import commit_seed
-from .scenes import random_scene
+from ...running.sweep import Row
 
-if TYPE_CHECKING:
-    from analytic import Response
+DENSITY = (200.0, 2e4)  # kg per m3 of R^3: wood to bronze, hollow or solid
+HEAVIEST_BASE = 20.0  # block masses
+STIFFER = (2.0, 20.0)  # initial stiffness of a bearing over that after yielding
+YIELDS = (1e-2, 1.0)  # displacement at which it yields, over R gamma
+PULSE = (0.5, 6.0)  # amplitude over the uplift acceleration, and frequency over omega_r
+STARTS = 0.95  # most tilt of a released block over its slenderness
 
-    from ...running.plan import Plan, Request
-    from ...running.sweep import Row
+
+def random_scene(seed: int, index: int) -> Scene:
+    """Scene number `index` of the ensemble `seed`: a statue released, or under a pulse, until its outcome is decided.
+
+    A quarter stands on rigid ground, a fifth of the others on a free base. Half of the bearings have viscous damping.
+    """
+    rng = np.random.default_rng([seed, index])
+    block = _block(rng)
+    base = bearings = None
+    if rng.random() < 0.75:
+        base = Base(mass=block.mass * _log(rng, RANGE["base_mass"][0], HEAVIEST_BASE))
+        bearings = _bearings(rng, block, base) if rng.random() < 0.8 else None
+    scene = Scene(block=block, base=base, bearings=bearings, name=f"random scene {seed}/{index}")
+    side = float(rng.choice([-1.0, 1.0]))
+    if rng.random() < 0.5:
+        return scene.with_(start=Start(tilt=side * block.slenderness * _log(rng, RANGE["tilt"][0], STARTS)))
+    omega = scene.rocking_frequency
+    amplitude = side * scene.gravity * math.tan(block.slenderness) * _log(rng, *PULSE)
+    start = float(rng.choice([0.0, rng.uniform(0, 0.5) / omega]))
+    return scene.with_(motion=PulseMotion(str(rng.choice(list(PULSES))), amplitude, omega * _log(rng, *PULSE), start))
+
+
+def _log(rng: np.random.Generator, low: float, high: float) -> float:
+    return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+
+def _block(rng: np.random.Generator) -> Block:
+    low, high, _ = RANGE["inertia"]
+    radius = _log(rng, *RANGE["radius"][:2])
+    mass = _log(rng, *DENSITY) * radius**3
+    inertia = mass * radius**2 * rng.uniform(low, high) if rng.random() < 0.5 else None  # else a cuboid's, 4/3
+    slenderness = float(rng.uniform(*RANGE["slenderness"][:2]))
+    return Block(mass=mass, radius=radius, slenderness=slenderness, corner_inertia=inertia)
+
+
+def _bearings(rng: np.random.Generator, block: Block, base: Base) -> Bearings:
+    law, count = str(rng.choice(["algebraic", "linear", "bouc-wen"])), int(rng.integers(1, 9))
+    carried = block.mass + base.mass
+    omega = 2 * math.pi / _log(rng, *RANGE["period"][:2])
+    k = carried * omega**2 / count
+    share = rng.uniform(*RANGE["damping"][:2]) if rng.random() < 0.5 else 0.0
+    damping = share * 2 * omega * carried / count
+    if law == "linear":
+        return Bearings(law=law, count=count, ka=k, damping=damping)
+    # x = 1/(2 (alpha - 1)): where the algebraic law has lost half of its excess of stiffness
+    alpha = 1 + 0.5 / (block.radius * block.slenderness * _log(rng, *YIELDS))
+    return Bearings(law=law, count=count, ka=k * _log(rng, *STIFFER), kb=k, alpha=alpha, damping=damping)
+
 
 SCENES, QUICK_SCENES = 500, 20  # of the engines' default variants
 FEWER = 5  # other variants run one scene in so many, and at least so many
@@ -37,16 +88,14 @@ def plan(request: Request, *, seed: Seed = None, scenes: Number = None) -> Plan:
     most = scenes or (QUICK_SCENES if request.quick else SCENES)
     drawn = [random_scene(seed, index) for index in range(most)]
     reached = [simulate(scene, history=False).peak_tilt_ratio >= RANGE["tilt"][0] for scene in drawn]
-    cases = []
-    for name in request.engines:
-        engine = get_engine(name)
-        for variant in engine.variants:
-            count = most if variant == engine.default_variant else min(most, max(FEWER, most // FEWER))
-            cases += [
-                Case(drawn[k], name, variant, {"history": False, "compare": True}, {"index": k})
-                for k in range(count)
-                if reached[k]
-            ]
+    few = min(most, max(FEWER, most // FEWER))
+    cases = [
+        Case(drawn[k], engine.name, variant, {"history": False, "compare": True}, {"index": k})
+        for engine in map(get_engine, request.engines)
+        for variant in engine.variants
+        for k in range(most if variant == engine.default_variant else few)
+        if reached[k]
+    ]
     rows = yield Batch(cases, compared, "random scenes")
     found = [
         {

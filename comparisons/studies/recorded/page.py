@@ -1,27 +1,35 @@
 """What is shown of recorded motions: whether outcomes are equal, and every run that is another."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from analytic.records.fema import PREFIX
 
-from ...measuring.statistics import TOO_FEW, equality
+from ...measuring.statistics import TOO_FEW
+from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure, key_of
 from ...showing.figures import LOOKS
-from ...showing.parts import Figure, Judgement, Mark, Page, number, percent, short, typeset
-from ...showing.rows import NAME, Column, grouped, table, where
-from ...showing.wording import equal_mark
+from ...showing.parts import (
+    NAME,
+    Column,
+    Figure,
+    Judgement,
+    Mark,
+    Page,
+    grouped,
+    number,
+    percent,
+    short,
+    table,
+    typeset,
+    where,
+)
+from ...showing.wording import equal_mark, tally
 from .study import ERRORS
 
-if TYPE_CHECKING:
-    from ...running.provenance import Result
-
 BOTH = "both"  # of the column "configuration": free-standing and isolated together
-COUNTED = {"differing": ("differs", "failed"), "failed": ("failed",)}  # {column: classes}
 LEAST, FALLEN, MOST = 0.01, 4.0, 6.0  # tilt over slenderness: the axes begin, "overturns" stands, and they end
 TICKS = ((0.01, "≤ 0.01"), (0.1, "0.1"), (1.0, "1"), (FALLEN, "overturns"))
 PEAKS = {"tilt": "peak tilt", "displacement": "peak base displacement"}
@@ -40,18 +48,12 @@ COUNTS = (
     Column("that differ", "differing"),
     Column("of these failed", "failed"),
     Column("left out", "left_out"),
-    Column(
-        "share that differs",
-        lambda row: row["differing"] / row["runs"] if row["runs"] else None,
-        percent=True,
-        within="interval",
-    ),
+    Column("share that differs", "share", percent=True, within="interval"),
     Column("equal", lambda row: row["equal"] or "–"),
 )
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of recorded motions."""
     if absent := where(result.rows, part="absent"):
         return Page("Recorded motions: not computed, no records are installed", (f"{absent[0]['reason']}.",))
     runs = where(result.rows, part="run")
@@ -127,7 +129,7 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
     return (
         Judgement(
             "outcomes that differ under recorded motions",
-            {name: _outcomes_mark(row) for name, row in rows.items()},
+            {name: equal_mark(row) for name, row in rows.items()},
             says="outcomes under records differ in {}",
         ),
         *(
@@ -142,35 +144,20 @@ def judgements(result: Result) -> tuple[Judgement, ...]:
 
 
 def summary(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, Any]]:
-    """Rows of a variant from its runs, one for each configuration and one for both together.
-
-    runs: those judged; differing: of these, with another outcome, a fall at another time, or failed. interval: of their
-    share, the components and configurations of a record taken as one group; equal: by
-    `comparisons.measuring.statistics.equality`. Each of `ERRORS`: [median, largest, number] of its absolute values.
+    """Rows of a variant from its runs, one for each configuration and one for both together: their `tally`, the
+    components and configurations of a record taken as one. Each of `ERRORS`: [median, largest, number] of its absolute
+    values.
     """
     for configuration in (*dict.fromkeys(row["configuration"] for row in rows), BOTH) if rows else ():
         mine = [row for row in rows if configuration in (row["configuration"], BOTH)]
-        judged = [row for row in mine if row["class"] != "left out"]
-        found = {key: rows[0][key] for key in ("engine", "variant", "tier")}
-        found |= {"configuration": configuration, "runs": len(judged)}
-        found |= {"left_out": len(mine) - len(judged), **dict.fromkeys(("interval", "equal"))}
-        found |= {word: sum(row["class"] in words for row in judged) for word, words in COUNTED.items()}
-        if judged:
-            differs, groups = [row["class"] != "right" for row in judged], [row["record"] for row in judged]
-            word, interval = equality(differs, groups)
-            found |= {"interval": interval, "equal": word}
-        yield found | {name: _spread([row.get(name) for row in judged]) for name in ERRORS}
+        errors = {name: _spread([row.get(name) for row in mine if row["class"] != "left out"]) for name in ERRORS}
+        named = {**{key: rows[0][key] for key in ("engine", "variant", "tier")}, "configuration": configuration}
+        yield named | tally(mine, "record") | errors
 
 
 def _spread(errors: Sequence[float | None]) -> list[float | int] | None:
     known = np.abs([error for error in errors if error is not None])
     return [float(np.median(known)), float(known.max()), len(known)] if len(known) else None
-
-
-def _outcomes_mark(row):
-    if not row["runs"]:
-        return Mark("no run judged", "part")
-    return equal_mark(row["differing"], row["failed"], row["runs"], row["equal"], row["interval"])
 
 
 def _peak_mark(errors):

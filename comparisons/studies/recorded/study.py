@@ -1,15 +1,21 @@
-"""The study of recorded motions: each component once, free-standing and isolated, in the model and in the engines."""
+"""The study of recorded motions: each component once, free-standing and isolated, in the model and in the engines.
 
-from __future__ import annotations
+For each component a block, a scale, and under the isolated one a base on bearings are drawn by a fixed seed and the
+component's name alone, so that no result could choose it.
+"""
 
+import hashlib
+import math
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 import typer
 
-from analytic import simulate
-from analytic.errors import SceneError
+from analytic import Base, Bearings, Response, SampledMotion, Scene, SceneError, simulate
+from analytic.bearing import BearingLaw
+from analytic.caryatid import MASS, caryatid_block
+from analytic.design import design_bearings
 from analytic.records.fema import PREFIX
 from analytic.records.folder import folder_motions
 from analytic.response import OUTCOMES
@@ -17,20 +23,61 @@ from engines import get_engine
 from engines.comparison import END, LEAST_DISPLACEMENT, Reference, compare
 from engines.matching import LEAST_TILT
 
-from ...measuring.classes import class_of
 from ...measuring.horizon import PERTURBATION, SAMPLES_PER_PERIOD, sensitivity_horizon, solver_horizon
-from ...measuring.statistics import EQUAL
+from ...measuring.statistics import EQUAL, class_of
 from ...running.cases import Case, variant_settings
-from ...running.plan import Batch, Computed
+from ...running.plan import Batch, Computed, Plan, Request
+from ...running.provenance import Result
 from ...running.sources import version_of
-from .scenes import LAWS, RANGES, SEED, X_MAX, drawn_scene
+from ...running.sweep import Row
+from ..fragility.study import peak_velocity
 
-if TYPE_CHECKING:
-    from analytic import Response, Scene
-    from analytic.motion import SampledMotion
+SEED = 695
+X_MAX = 0.30  # m, at which period and damping of the bearings hold
+LAWS = ("algebraic", "bouc-wen", "bilinear")
+# Chosen once by the outcomes of the analytic model alone: both kinds mixed, few blocks that do not lift. intensity:
+# omega_r PGV/(g tan(slenderness)); base_mass: over the block's; period [s] and damping of the bearings at X_MAX.
+RANGES: dict[str, dict[str, tuple[float, float]]] = {
+    "free-standing": {"slenderness": (0.1, 0.3), "intensity": (0.35, 1.8)},
+    "isolated": {
+        "slenderness": (0.1, 0.2),
+        "intensity": (0.5, 1.6),
+        "base_mass": (0.1, 2.0),
+        "period": (1.0, 2.0),
+        "damping": (0.1, 0.2),
+    },
+}
+LOGARITHMIC = ("intensity", "base_mass")  # evenly over the logarithm
 
-    from ...running.plan import Plan, Request
-    from ...running.sweep import Row
+
+def drawn_scene(configuration: str, name: str, motion: SampledMotion) -> tuple[Scene, dict[str, Any]]:
+    """(the scene of a component, what was drawn for it); name: the component's, motion: as recorded."""
+    seed = int(hashlib.sha256(f"{configuration} {name}".encode()).hexdigest()[:16], 16)
+    rng = np.random.default_rng([SEED, seed])
+    drawn: dict[str, Any] = {key: _draw(rng, key, *ends) for key, ends in RANGES[configuration].items()}
+    scene = Scene(block=caryatid_block(drawn["slenderness"]), name=f"{name}, {configuration}")
+    if "period" in drawn:
+        drawn["law"] = str(rng.choice(LAWS))
+        base = Base(mass=MASS * drawn["base_mass"])
+        bearings = design_bearings(MASS + base.mass, drawn["period"], drawn["damping"], X_MAX)
+        scene = scene.with_(base=base, bearings=_by_law(bearings, drawn["law"]))
+    uplift = scene.gravity * math.tan(drawn["slenderness"])
+    drawn["scale"] = drawn["intensity"] * uplift / (scene.rocking_frequency * peak_velocity(motion))
+    return scene.with_(motion=motion.scaled(drawn["scale"])), drawn
+
+
+def _draw(rng: np.random.Generator, key: str, low: float, high: float) -> float:
+    return low * (high / low) ** rng.random() if key in LOGARITHMIC else float(rng.uniform(low, high))
+
+
+def _by_law(bearings: Bearings, law: str) -> Bearings:
+    """Bearings of another law with the stiffnesses and the characteristic strength of algebraic ones."""
+    if law != "bilinear":
+        return Bearings(**{**bearings.model_dump(), "law": law})
+    given = BearingLaw.of(bearings)
+    strength = given.f0 / (1 - bearings.given("kb") / bearings.ka)
+    return Bearings(law=law, count=bearings.count, ka=bearings.ka, kb=bearings.kb, yield_force=strength, x_max=X_MAX)
+
 
 # records for the tuned variants of the engines in question (None: all), and for the other variants
 FULL, QUICK = (None, 20), (2, 1)
@@ -113,14 +160,13 @@ def _variants(name: str) -> Iterator[tuple[str, str, bool]]:
 
 def _model_cases(found: dict[str, list[SampledMotion]]) -> list[Case]:
     """Each component in each configuration, with what was drawn for it."""
-    cases = []
-    for record, motions in found.items():
-        for component, motion in zip("ab", motions, strict=False):
-            for configuration in RANGES:
-                scene, drawn = drawn_scene(configuration, motion.label, motion)
-                tag = dict(zip(NAMES, (record, component, configuration), strict=True)) | drawn
-                cases.append(Case(scene, settings={"history": False}, tag=tag))
-    return cases
+    return [
+        Case(scene, settings={"history": False}, tag=dict(zip(NAMES, (record, component, name), strict=True)) | drawn)
+        for record, motions in found.items()
+        for component, motion in zip("ab", motions, strict=False)
+        for name in RANGES
+        for scene, drawn in (drawn_scene(name, motion.label, motion),)
+    ]
 
 
 def of_model(case: Case, response: Response) -> dict[str, Any]:
@@ -169,7 +215,6 @@ def _peak(history, name, until):
 
 
 def _run_row(row: Row, known: Iterable[dict[str, Any]]) -> dict[str, Any]:
-    """The row of an engine's run."""
     tag = {key: row.case.tag[key] for key in NAMES}
     (model,) = (one for one in known if tag.items() <= one.items())
     variant = get_engine(row.case.solver).variants[row.case.variant]
@@ -191,3 +236,8 @@ def _mix(configuration, known):
     """How often each outcome comes in the model."""
     found = [row["outcome"] for row in known if row["configuration"] == configuration]
     return {outcome: found.count(outcome) for outcome in OUTCOMES if outcome in found}
+
+
+def problems(result: Result) -> list[str]:
+    """Why nothing was run, where it was not."""
+    return [row["reason"] for row in result.rows if row["part"] == "absent"]

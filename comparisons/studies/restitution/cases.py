@@ -11,10 +11,8 @@ from itertools import product
 
 import numpy as np
 
-from analytic import simulate
+from analytic import Base, Bearings, Block, PulseMotion, Scene, Start, simulate
 from analytic.caryatid import BASE, BEARINGS, MASS, RADIUS
-from analytic.motion import PulseMotion
-from analytic.scene import Base, Bearings, Block, Scene, Start
 from engines import get_engine
 from engines.contract import Variant
 

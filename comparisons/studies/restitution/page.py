@@ -1,18 +1,28 @@
 """What is shown of the restitution study."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...measuring.errors import rms
+from ...running.provenance import Result
 from ...showing.figures import beside, lines, shades
-from ...showing.parts import RESTITUTION, Head, Judgement, Mark, Page, number, percent, short
-from ...showing.rows import NAME, Column, grouped, setting_of, table, where
+from ...showing.parts import (
+    NAME,
+    RESTITUTION,
+    Column,
+    Head,
+    Judgement,
+    Mark,
+    Page,
+    grouped,
+    number,
+    percent,
+    setting_of,
+    short,
+    table,
+    where,
+)
 from ...showing.wording import TRUSTED, USABLE, rating, trust, with_counts
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 FLOOR = 1e-9  # errors below are drawn here
 BOUNDS = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
@@ -34,7 +44,6 @@ BASE = Column("base mass over block mass [-]", lambda row: "rigid" if row["ratio
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the restitution study."""
     variants = {NAME.of(variant): variant for variant in result.settings["variants"]}
     default = where(result.rows, part="summary", scope="all")
     cells = [
@@ -154,7 +163,6 @@ def _error(row):
 
 
 def _wrong(row):
-    """Runs that failed and impacts that were missed."""
     return row["failed"] + row["lost"]
 
 
@@ -227,7 +235,6 @@ def _over_slenderness(cells, defaults):
 
 
 def _maps(cells):
-    """Maps of both errors."""
     for error, rows in ((ERROR, cells), (JUMP, [row for row in cells if row["ratio"] is not None])):
         yield shades(
             rows,
@@ -243,7 +250,6 @@ def _maps(cells):
 
 
 def _on_bearings(result):
-    """Blocks on bearings: errors by the states before and after the impact."""
     rows, defaults = where(result.rows, part="bearings"), result.settings["default_variants"]
     if not rows:
         return
@@ -275,7 +281,6 @@ def _on_bearings(result):
 
 
 def _refinement(levels):
-    """Error along the accuracy parameters and against cost."""
     over_default = Column("accuracy parameter over its default [-]", lambda row: row["level"] / row["default"])
     words = "Error of restitution along each variant's accuracy parameter; a stiffness refines upward, a step downward."
     yield beside(

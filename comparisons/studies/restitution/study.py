@@ -1,15 +1,13 @@
 """The restitution study: what is measured in a run, and rows of errors of each cell, each level and each experiment."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from analytic import simulate
+from analytic import Response, Scene, simulate
 from analytic.caryatid import MASS, RADIUS
 from analytic.rocking import (
     RockingModel,
@@ -22,14 +20,16 @@ from analytic.twin.run import Event
 from engines import get_engine
 
 from ...measuring.errors import SLOWEST_IMPACT, impact_errors, lost_impacts, rms, strong_impacts, worst
-from ...running.cases import variant_settings
-from ...running.plan import Batch, Computed
+from ...running.cases import Case, variant_settings
+from ...running.plan import Batch, Computed, Plan, Request
+from ...running.sweep import Row
 from .cases import (
     CARYATID_BASE,
     EXPERIMENT_SLENDERNESS,
     FULL,
     IMPACTS,
     QUICK,
+    Grid,
     bearing_cases,
     experiment_cases,
     experiments_of,
@@ -37,14 +37,6 @@ from .cases import (
     grid_cases,
     variants_of,
 )
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene
-
-    from ...running.cases import Case
-    from ...running.plan import Plan, Request
-    from ...running.sweep import Row
-    from .cases import Grid
 
 GROUNDS = ("rigid ground", "sliding base")
 FACTORS = ("slenderness", "ratio", "period", "law", "excitation")  # of blocks on bearings
@@ -115,7 +107,6 @@ def _named(key, *tags):
 
 
 def _settings(grid, engines):
-    """What was asked, for the result file."""
     scenes = {(ratio, gamma): free_scene(gamma, ratio, 0.6) for ratio in grid.ratios for gamma in grid.slendernesses}
     return {
         "slendernesses": grid.slendernesses,
@@ -159,7 +150,6 @@ def _errors(runs, name):
 
 
 def _row(part, key, runs):
-    """A row: errors and cost of some runs together."""
     sound = _sound(runs)
     simulated = sum(run.values["end"] for run in sound)
 

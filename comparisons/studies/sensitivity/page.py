@@ -1,17 +1,10 @@
 """What is shown of the study of what changes the outcome."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from ...measuring.statistics import wilson
+from ...running.provenance import Result
 from ...showing.charts import REFERENCE, Axis
 from ...showing.figures import ranks, shades
-from ...showing.parts import Head, Page, percent, short
-from ...showing.rows import NAME, Column, grouped, table, where
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
+from ...showing.parts import NAME, Column, Head, Page, grouped, percent, short, table, where
 
 LEAST = 5e-4  # share at which smaller ones are drawn
 TICKS = ((LEAST, "0"), (0.01, "1 %"), (0.1, "10 %"), (1.0, "100 %"))
@@ -31,7 +24,6 @@ FASTER = Column("vertical over horizontal frequency [-]", "faster")
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the study of what changes the outcome."""
     ranked = {scene: _ranked(where(result.rows, part="change", scene=scene)) for scene in result.settings["scenes"]}
     defaults, vertical = result.settings["default_variants"], where(result.rows, part="vertical")
     shown = [

@@ -1,19 +1,11 @@
 """What is shown of the sheet study."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
-from ...showing.parts import Page
-from ...showing.rows import NAME, Column, grouped, table, where
+from ...running.provenance import Result
+from ...showing.parts import NAME, Column, Page, grouped, table, where
 from ...showing.wording import USABLE
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the sheet study."""
     scenes = result.settings["scenes"]
     rows = [
         {"name": name, **dict.fromkeys(scenes), **{row["scene"]: _error(row) for row in own}}

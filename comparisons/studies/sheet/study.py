@@ -1,21 +1,14 @@
 """The sheet study: the problem sheet's scenes in every engine and variant, compared with the exact answers."""
 
-from __future__ import annotations
+from typing import Any
 
-from typing import TYPE_CHECKING, Any
-
+from analytic import Response
 from engines import get_engine
 
 from ...running.cases import Case
-from ...running.plan import Batch, Computed
-from ...sheet.answers import error, own_error
-from ...sheet.observed import of_response, solved
+from ...running.plan import Batch, Computed, Plan, Request
 from ...sheet.problems import PROBLEMS, VERSION
-
-if TYPE_CHECKING:
-    from analytic import Response
-
-    from ...running.plan import Plan, Request
+from ...sheet.variants import error, of_response, own_error, solved
 
 
 def plan(request: Request) -> Plan:

@@ -1,30 +1,99 @@
-"""The five scenes of the speed-error study with their references, and what runs on each: solvers and their levels."""
-
-from __future__ import annotations
+"""The scenes of the speed-error study with their references, and what runs on each: solvers and their levels; and an
+overturning boundary, and the search for the one that a solver has in the reference's place.
+"""
 
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import zip_longest
-from typing import TYPE_CHECKING, Any
+from typing import Any, Self
 
 from scipy.optimize import brentq
 
-from analytic import Scene, Start, simulate
+from analytic import PulseMotion, Response, Scene, Start, State, simulate, synthetic_motion
 from analytic.caryatid import BASE, BEARINGS, caryatid_block
-from analytic.motion import PulseMotion
-from analytic.synthetic import synthetic_motion
 from engines import ENGINES, get_engine
+from engines.contract import Variant
 
 from ...measuring import models
 from ...measuring.horizon import sensitivity_horizon
 from ...running.cases import Case
-from .boundary import Boundary, at_amplitude, margin
+from . import integrators
 
-if TYPE_CHECKING:
-    from analytic import Response
-    from engines.contract import Variant
+RUNS = 6  # of a search: the first at the reference's boundary, then at the corrected ones
+STRIDE = 0.05  # longest move of a search, relative; it ends within its runs or finds no boundary
+SMALL = 1e-3  # margin below which the reference's slope alone is as good as a chord
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """Pulse amplitude [m/s2] at which the block just overturns, and slope: d margin / d (amplitude / boundary)."""
+
+    amplitude: float
+    slope: float
+
+
+def margin(scene: Scene, end: State) -> float:
+    """Energy beyond what tipping over needs, over m g R (1 - cos gamma), after the motion's end; conserved in flight.
+
+    Negative: the block falls back; positive: it overturns. With u = gamma - |phi|: (w^2/2 - p^2 (1 - cos u))/(p^2 (1 -
+    cos gamma)).
+    """
+    gamma, p2 = scene.block.slenderness, scene.rocking_frequency**2
+    u = gamma - abs(end.tilt)
+    return (0.5 * end.tilt_rate**2 - 2 * p2 * math.sin(0.5 * u) ** 2) / (2 * p2 * math.sin(0.5 * gamma) ** 2)
+
+
+def at_amplitude(scene: Scene, amplitude: float) -> Scene:
+    """The scene with its pulse at another amplitude [m/s2]."""
+    assert isinstance(scene.motion, PulseMotion)
+    return scene.with_(motion=replace(scene.motion, amplitude=float(amplitude)))
+
+
+def searched(
+    run: Callable[[Scene], Response], scene: Scene, boundary: Boundary | None
+) -> tuple[Response, list[float] | None, float]:
+    """A single run, or a search for the solver's own boundary.
+
+    The margin is smooth in the amplitude, so moving by the reference's slope converges at once for a solver near the
+    reference; one far from it is bracketed.
+
+    Returns
+    -------
+    response : Response
+        The first.
+    shifts : list of float or None
+        Relative position of the boundary against the reference's after each run; None without one, or if a run failed.
+    cpu_seconds : float
+        Of all runs.
+    """
+    first = run(scene)
+    if boundary is None:
+        return first, None, first.cpu_seconds
+    shift, shifts, cpu, known = 0.0, list[float](), 0.0, dict[float, float]()
+    for _ in range(RUNS):
+        moved = at_amplitude(scene, boundary.amplitude * (1 + shift))
+        response = run(moved) if known else first
+        cpu += response.cpu_seconds
+        if response.outcome == "failed":
+            return response, None, cpu
+        known[shift] = margin(moved, response.end) / boundary.slope
+        shift = _next(known, shift)
+        shifts.append(shift)
+    return first, shifts, cpu
+
+
+def _next(known, last):
+    """Where to look next: by the chord of the two nearest points on either side, else by the reference's slope."""
+    below = max((at for at, value in known.items() if value <= 0), default=None)
+    above = min((at for at, value in known.items() if value > 0), default=None)
+    if below is None or above is None or abs(known[last]) < SMALL:
+        return last - min(max(known[last], -STRIDE), STRIDE)
+    if below > above:  # not monotone here: stay
+        return last
+    return below + (above - below) * min(max(-known[below] / (known[above] - known[below]), 0.1), 0.9)
+
 
 TIGHTEST = 1e-17  # tolerance of the kernel as a reference
 LONGEST = 10.0  # s, of a run under the synthetic motion: the strong shaking and what follows
@@ -56,7 +125,7 @@ class Trial:
     def reference(self) -> Response:
         return tight(self.scene)
 
-    def with_law(self, law: str) -> Trial:
+    def with_law(self, law: str) -> Self:
         """The same trial with another bearing law, and that law's own reference."""
         return replace(self, scene=self.scene.with_(bearings={"law": law}))
 
@@ -83,6 +152,11 @@ def trials() -> list[Trial]:
         Trial("isolated-rocking", rocks, ("restitution", "peak_tilt", "impact_time", "peak_displacement")),
         near_overturning(),
     ]
+
+
+def problems() -> list[Trial]:
+    """Problems A and B as trials: of integrators, to fine errors; their references are not the kernel's."""
+    return [Trial(name, problem.scene, ("horizon_tilt",)) for name, problem in integrators.PROBLEMS.items()]
 
 
 def near_overturning() -> Trial:
@@ -175,6 +249,9 @@ def entries(scenes: Sequence[Trial], engines: Sequence[str], quick: bool) -> lis
 
 def _ladders(trial: Trial, engines: Sequence[str], quick: bool) -> Iterator[list[Entry]]:
     """Each solver's entries on a trial, level after level."""
+    if trial.name in integrators.PROBLEMS:
+        yield from _integrators(trial, quick)
+        return
     yield from _models(trial, SCIPY_SAMPLED if trial.name in SAMPLED else SCIPY, quick)
     for name in engines:
         for variant, kind in get_engine(name).variants.items():
@@ -199,6 +276,18 @@ def _models(trial, methods, quick):
     for method, levels in methods.items():
         settings = {"energy": False, "method": method}
         yield [Entry(trial, "scipy", method, "rtol", level, "twin", settings) for level in levels[quick]]
+
+
+def _integrators(trial, quick):
+    """Those that are here; a peer's version is part of what a stored run is known by."""
+    peers = integrators.installed()
+    for (engine, variant), levels in integrators.TOLERANCES.items():
+        if (engine, variant) in peers or (engine, variant) not in integrators.PEERS:
+            settings = {"engine": engine, "variant": variant, "version": peers.get((engine, variant))}
+            yield [
+                Entry(trial, engine, variant, "tolerance", level, integrators.SOLVER, settings)
+                for level in levels[quick]
+            ]
 
 
 def _kernel(trial, level, **modelled):

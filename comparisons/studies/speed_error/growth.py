@@ -1,26 +1,20 @@
 """How CPU time and memory of a run grow with its duration and with the sample rate of its record."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import tracemalloc
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import psutil
 
-from analytic.motion import SampledMotion
+from analytic import Response, SampledMotion, Scene
 from engines import get_engine
 
 from ...running.cases import Case
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
-    from analytic import Response, Scene
 
 TICK = 4e-3  # s of CPU: shorter measurements are repeated until they took as long, and the mean counts
 WARM_SECONDS = 0.02  # s simulated before the memory is measured: code and caches are loaded

@@ -1,23 +1,18 @@
 """How much of a run's CPU time is spent inside its engine's compiled functions."""
 
-from __future__ import annotations
-
 import cProfile
 import statistics
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from analytic import Response, Scene
 from engines import get_engine
+from engines.contract import Run
 from engines.settings import choose
 
+from ...running.cases import Case
 from .growth import WARM_SECONDS
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene
-    from engines.contract import Run
-
-    from ...running.cases import Case
 
 RUNS = 3  # of each kind: medians count
 

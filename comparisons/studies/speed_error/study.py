@@ -1,19 +1,17 @@
 """Speed against error: fresh processes, warm, solvers in turn, repeated; error and CPU time from the very same runs."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import math
 import statistics
 from collections.abc import Callable, Mapping, Sequence
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 import typer
 
-from analytic.response import Impact
+from analytic import Impact, Response, SettingError
 from analytic.rocking import restitution
 from analytic.twin import simulate_twin
 from engines import ENGINES, get_engine
@@ -26,18 +24,15 @@ from ...measuring.errors import (
     strong_impacts,
     strong_time_errors,
 )
-from ...running.cases import variant_settings
-from ...running.plan import Batch, Computed
-from .boundary import RUNS, Boundary, searched
-from .cases import PLAIN, Entry, Trial, entries, levels_of, trials
+from ...running.cases import Case, variant_settings
+from ...running.plan import Batch, Computed, Plan, Request
+from .cases import PLAIN, RUNS, Boundary, Entry, Trial, entries, levels_of, problems, searched, trials
 from .growth import TICK, grown, growth_cases
+from .integrators import PROBLEMS, SOLVER, timed
 from .share import own_share
 
-if TYPE_CHECKING:
-    from analytic import Response
-
-    from ...running.cases import Case
-    from ...running.plan import Plan, Request
+# Why one engine's rows cannot be computed anew by themselves, see `Study.whole`.
+WHOLE = "its CPU times are compared with each other, so they have to be measured together"
 
 REPEATS, QUICK_REPEATS = 5, 3
 SLOW = 0.5  # s of CPU: next to it what is loaded in a first run is nothing; such a measurement needs no warm-up
@@ -49,6 +44,9 @@ EVIDENCE = 600  # characters of an engine's message that a row keeps
 STRAY, LAST = 0.025, 3
 
 Repeats = Annotated[int | None, typer.Option(min=1, max=1000, help="Fresh processes in turn. Default 5, quick 3.")]
+Only = Annotated[
+    str | None, typer.Option("--scene", metavar="NAME", help='One scene alone, as "problem A"; no growth of cost.')
+]
 
 
 def measure(case: Case, response: Response) -> dict[str, Any]:
@@ -57,6 +55,8 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
     The run that made `response` has loaded code and caches; where it was long enough it is the measurement itself. A
     case whose tag holds a boundary, (amplitude, slope) of a `Boundary`, is a search for it.
     """
+    if case.solver == SOLVER:
+        return timed(case, TICK)
     goal = Boundary(*case.tag["boundary"]) if case.tag["boundary"] else None
 
     def run(scene):
@@ -115,6 +115,7 @@ def plan(
     grow: bool = True,
     *,
     repeats: Repeats = None,
+    scene: Only = None,
 ) -> Plan:
     """The plan of the study: in each round, one fresh process, every solver has its turn.
 
@@ -122,16 +123,21 @@ def plan(
     ----------
     request : Request
     scenes : list of Trial or None
-        None: all five.
+        None: all.
     keep : callable
         Entry -> bool: which of them to run.
     grow : bool
         Whether to measure the growth of cost too; it needs the scene "isolated-standing".
     repeats : int or None
         Rounds.
+    scene : str or None
+        Name of the one scene that is run; None: all.
     """
     rounds = repeats or (QUICK_REPEATS if request.quick else REPEATS)
-    scenes = scenes or trials()
+    known = scenes or [*trials(), *problems()]
+    scenes = [trial for trial in known if scene in (None, trial.name)]
+    if not scenes:
+        raise SettingError(f"--scene {scene}: no such scene; give one of {', '.join(trial.name for trial in known)}")
     measured = [(entry, []) for entry in entries(scenes, request.engines, request.quick) if keep(entry)]
     for turn in range(rounds):
         cases = [entry.case(turn) for entry, _ in measured]
@@ -140,7 +146,7 @@ def plan(
             rows.append(row)
     rows = [_row(entry, timings) for entry, timings in measured]
     rows += yield from _shares([entry for entry, _ in measured])
-    if grow:
+    if grow and scene is None:
         rows += yield from _growth(scenes, request, rounds)
     settings = {
         "quick": request.quick,
@@ -178,7 +184,7 @@ def _row(entry, timings):
     seconds = [timing.cost["cpu_seconds"] for timing in timings if timing.cost.get("cpu_seconds")]
     if first.failure or not seconds:
         return row
-    found = errors(trial, values, values["boundary_shifts"])
+    found = values["errors"] if "errors" in values else errors(trial, values, values["boundary_shifts"])
     cpu, simulated, steps = statistics.median(seconds), values["end"]["time"], values["steps"]
     return row | {
         "lost": found.pop("lost"),
@@ -253,11 +259,15 @@ def _growth(scenes, request, rounds):
 
 
 def description(trial: Trial) -> dict[str, Any]:
-    """A trial for the result file.
+    """A trial for the result file; of a problem its title and measures.
 
     reference_difference: errors of an independent solution, scipy DOP853 at its tightest. bouc_wen: what that law
     changes in the scene itself, relative; None without bearings.
     """
+
+    if trial.name in PROBLEMS:
+        title = f"{trial.name}, {PROBLEMS[trial.name].impacts} impacts"
+        return {"title": title, "measures": list(trial.measures), "reference_difference": {}}
 
     def run(scene):
         return simulate_twin(scene, rtol=TWIN_TOLERANCE, history=False, energy=False)

@@ -1,15 +1,12 @@
 """What is right in a hard case: the outcome, the tilt, uplifts and rests up to where motions part."""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analytic import simulate
+from analytic import Response, Scene, simulate
 from analytic.closed_form import free_rocking_tilt, rest_time
 from analytic.rocking import restitution
 from analytic.twin import simulate_twin
@@ -17,12 +14,7 @@ from engines.copies import changed_copies
 
 from ...measuring.errors import energy_errors
 from ...measuring.horizon import PERTURBATION, sensitivity_horizon
-from .cases import hard_cases
-
-if TYPE_CHECKING:
-    from analytic import Response, Scene
-
-    from .cases import HardCase
+from .cases import HardCase, hard_cases
 
 JUDGE_TOLERANCE = 1e-15  # of the kernel where it judges others
 LEAST_RESTITUTION = 1e-30  # stands for none in the closed form, which divides by its logarithm

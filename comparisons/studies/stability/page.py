@@ -1,19 +1,13 @@
 """What is shown of the stability study."""
 
-from __future__ import annotations
-
 import re
 from itertools import product
-from typing import TYPE_CHECKING
 
+from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
-from ...showing.parts import Head, Judgement, Mark, Page, short
-from ...showing.rows import NAME as ENGINE
-from ...showing.rows import Column, grouped, table, where
+from ...showing.parts import NAME as ENGINE
+from ...showing.parts import Column, Head, Judgement, Mark, Page, grouped, short, table, where
 from .study import DEFAULT, DIFFERS, FAILED, FINER, RIGHT, worst
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 WRONG = "wrong"  # a run that differs in its outcome: never the colour of a small error
 # sign in a cell, its class in the style sheet
@@ -45,7 +39,6 @@ TOLERANCE = Column("tolerance", "tolerance", digits=None)
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the stability study."""
     cases, measures = result.settings["cases"], result.settings["measures"]
     cells, variants = _cells(result), result.settings["variants"]
     counts = sorted(_counts(result, cells), key=lambda row: -row[RIGHT])
@@ -142,7 +135,6 @@ def page(result: Result) -> Page:
 
 
 def judgements(result: Result) -> tuple[Judgement, ...]:
-    """Hard cases right of all, by (engine, variant)."""
     marks, cells = {}, _cells(result)
     for row in _counts(result, cells):
         level = "good" if row[RIGHT] >= MOST * row["run"] else "fair" if row[RIGHT] >= SOME * row["run"] else "bad"
@@ -186,7 +178,6 @@ def _farthest(row, measures):
 
 
 def _remedy(row, finer):
-    """Which finer settings are right, in words."""
     if finer is None or finer["result"] != RIGHT:
         return NOT_TRIED if finer is None else NONE_FOUND
     unit = {"stiffness": " N/m", "tolerance": ""}

@@ -1,30 +1,22 @@
 """The stability study: each hard case in each variant, judged measure by measure, then again with finer settings."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from analytic import Response
 from engines import get_engine
 
 from ...measuring.errors import energy_errors
 from ...running.cases import Case
-from ...running.plan import Batch, Computed
+from ...running.plan import Batch, Computed, Plan, Request
 from ...running.provenance import scrub
-from .cases import hard_cases
-from .oracle import LAST_PART, column_at, comparable_until, oracle, twin_step
-
-if TYPE_CHECKING:
-    from analytic import Response
-
-    from ...running.plan import Plan, Request
-    from ...running.sweep import Row
-    from .cases import HardCase
-    from .oracle import Oracle
+from ...running.sweep import Row
+from .cases import HardCase, hard_cases
+from .oracle import LAST_PART, Oracle, column_at, comparable_until, oracle, twin_step
 
 QUICK_LIMIT, TIME_LIMIT = 60.0, 300.0  # s, of one run; of those that end the longest takes 75 s of CPU time
 # s; scenes longer than the first are run with finer settings, longer than the second run at all, in the engines'

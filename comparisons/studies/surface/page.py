@@ -1,19 +1,13 @@
 """What is shown of the fragility surface."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...running.provenance import Result
 from ...showing.charts import Axis, Chart, figure
-from ...showing.parts import Page, number, percent
-from ...showing.rows import NAME, Column, grouped, table
+from ...showing.parts import NAME, Column, Page, grouped, number, percent, table
 from .study import crossing
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
 
 LEVELS = (0.16, 0.5, 0.84)  # shares whose lines are drawn
 TICKS = (0.1, 0.2, 0.5, 1, 2, 3, 5)  # g
@@ -25,7 +19,6 @@ FALLS = Column("falls again by", "falls_by", percent=True)
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the fragility surface."""
     s, engines = result.settings, grouped(result.rows, "engine")
     first = next(iter(engines.values()))
     worst = max(first, key=lambda row: row["falls_by"])
@@ -64,7 +57,6 @@ def page(result: Result) -> Page:
 
 
 def _some(rows):
-    """Rows from the first to the last, evenly."""
     return [rows[k] for k in np.unique(np.linspace(0, len(rows) - 1, min(SHOWN, len(rows))).astype(int))]
 
 
@@ -81,7 +73,6 @@ def _title(rows):
 
 
 def _surface(result, engine, rows):
-    """Lines of equal share over slenderness and intensity."""
     gammas, intensities = (np.array(result.settings[key]) for key in ("slendernesses", "intensities"))
     sound = result.arrays[f"{engine}/sound"]
     shares = result.arrays[f"{engine}/overturned"] / np.where(sound > 0, sound, 1)

@@ -17,6 +17,9 @@ from ...measuring.statistics import wilson
 from ...running.cases import Case
 from ...running.plan import Batch, Computed, Plan, Request
 
+# Why one engine's rows cannot be computed anew by themselves, see `Study.whole`.
+WHOLE = "its settings count the failed and undecided runs of all solvers together"
+
 ANALYTIC = "analytic"
 # slendernesses [rad], peak ground accelerations [g], synthetic motions
 FULL = np.linspace(0.08, 0.45, 50), np.geomspace(0.1, 3.0, 40), 500
@@ -34,10 +37,8 @@ def measure(case: Case, response: Response) -> dict[str, Any]:
         outcomes = simulate_many([case.scene] * len(scales), scales=scales, workers=1)
         digits = np.where(outcomes.failed, FAILED, np.where(outcomes.overturns, OVERTURNS, STANDS)).tolist()
         return {"outcomes": "".join(digits), "undecided": int((~outcomes.decided).sum())}
-    motion, responses = case.scene.motion, [response]
-    for scale in scales[1:]:
-        scene = case.scene.with_(motion=motion.scaled(float(scale)))
-        responses.append(Case(scene, case.solver, case.variant, case.settings).run())
+    scenes = [case.scene.with_(motion=case.scene.motion.scaled(float(scale))) for scale in scales[1:]]
+    responses = [response, *(Case(scene, case.solver, case.variant, case.settings).run() for scene in scenes)]
     digits = [{"failed": FAILED, "overturns": OVERTURNS}.get(each.outcome, STANDS) for each in responses]
     return {"outcomes": "".join(digits), "undecided": sum(not each.decided for each in responses)}
 

@@ -1,18 +1,10 @@
 """What is shown of the tolerances study."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
-from ...showing.parts import Page
-from ...showing.rows import NAME, Column, table, where
-
-if TYPE_CHECKING:
-    from ...running.provenance import Result
+from ...running.provenance import Result
+from ...showing.parts import NAME, Column, Page, table, where
 
 
 def page(result: Result) -> Page:
-    """The `Page` of a `Result` of the tolerances study."""
     broken = len(where(result.rows, holds=False))
     return Page(
         f"Agreement tolerances: {f'{broken} of {len(result.rows)} do not hold' if broken else 'all hold'}",

@@ -1,18 +1,11 @@
 """The tolerances study: the rows of the table, measured engine by engine."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from engines import ENGINES, get_engine
 
 from ...measuring.tolerances import TABLE, measure_all
-from ...running.plan import Computed
+from ...running.plan import Computed, Plan, Request
 from ...running.progress import log
-
-if TYPE_CHECKING:
-    from ...running.plan import Plan, Request
-    from ...running.provenance import Result
+from ...running.provenance import Result
 
 
 def plan(request: Request) -> Plan:

@@ -8,7 +8,7 @@ import pytest
 from analytic import PulseMotion, SampledMotion, Start, load_scene, simulate
 from analytic.errors import SettingError
 from comparisons.advice import choose, criteria
-from comparisons.advice.search import Search, problem
+from comparisons.advice.choose import Search, problem
 from comparisons.running.cases import Case
 from comparisons.running.sweep import Row
 from comparisons.sheet.problems import PROBLEMS

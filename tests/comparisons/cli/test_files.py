@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from bad_scenes import SCENE, write_scene
 
-from comparisons.running.store import Store
+from comparisons.running.sweep import Store
 from comparisons.studies import BUILT_IN
 
 QUICK = ("run", "free-rocking-rigid")

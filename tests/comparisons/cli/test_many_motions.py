@@ -7,7 +7,7 @@ import pytest
 
 from analytic import SampledMotion, load_scene, simulate
 from comparisons.measuring.statistics import wilson
-from comparisons.showing.motions import LIFTED, odds
+from comparisons.showing.margins import LIFTED, odds
 
 OWN = '[block]\nmass = 100.0\nradius = 1.0\nslenderness = 0.25\n[motion]\nrecord = "records/A090.csv"\n'
 TIME = 0.01 * np.arange(300)

@@ -10,7 +10,7 @@ from mutated_files import VALUES, csmip, knet
 from analytic import SampledMotion
 from analytic.records import G, read_record
 from analytic.records.written import two_columns
-from comparisons.showing.records import DAMPING, PERIODS, spectrum
+from comparisons.showing.plots import DAMPING, PERIODS, spectrum
 
 
 @pytest.fixture

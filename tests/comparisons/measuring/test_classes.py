@@ -3,7 +3,7 @@
 import pytest
 
 from analytic.response import EDGE
-from comparisons.measuring.classes import CLASSES, class_of
+from comparisons.measuring.statistics import CLASSES, class_of
 from engines.comparison import END
 
 

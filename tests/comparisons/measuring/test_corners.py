@@ -7,7 +7,7 @@ import pytest
 from sampled_traces import SCENES
 
 from analytic import simulate
-from comparisons.measuring.corners import corner_impulses, corner_motion
+from comparisons.measuring.autopsy import corner_impulses, corner_motion
 from engines.checks import pivoting_centre
 from engines.events import contact_measures
 from engines.swings import Trace

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from comparisons.measuring.fragility import draws, fit_fragility, goodness, interval, points, resampled
-from comparisons.measuring.statistics import wilson
+from comparisons.measuring.statistics import draws, fit_fragility, goodness, interval, points, resampled, wilson
 
 # Bliss (1935), beetles killed by carbon disulphide; probit by maximum likelihood:
 # intercept -34.935 (s.e. 2.648), slope 19.728 (s.e. 1.487) per log10 dose (Dobson; Agresti)

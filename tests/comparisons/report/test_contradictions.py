@@ -7,9 +7,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from comparisons.report.answer import MOST_WORDS, setups_of
+from comparisons.report.answer import MOST_WORDS, setups_of, stored_studies, variants_of
 from comparisons.report.gallery import GALLERY, README, RESULTS_README, gallery, headlines, origins, with_findings
-from comparisons.report.studies import stored_studies, variants_of
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.restitution.page import rated

@@ -16,8 +16,7 @@ from comparisons.report.study import make_results
 from comparisons.report.write import write_page
 from comparisons.running.provenance import read_result, write_result
 from comparisons.showing import parts
-from comparisons.showing.parts import Table
-from comparisons.showing.rows import where
+from comparisons.showing.parts import Table, where
 from comparisons.showing.wording import listed
 from comparisons.studies import get_study
 from engines import installed_engines
@@ -235,7 +234,7 @@ def test_a_study_is_shown_by_its_own_page_and_says_when_it_is_old(folder, copied
     tables = [Table(name, ("solver", "kappa [-]"), [["exudyn", "0.75"]]) for name in ("Agreement", "All of it")]
     shown = parts.Page("A fake study: agrees", ("Two paragraphs < one.",), tuple(tables[:1]), tuple(tables[1:]))
     study = SimpleNamespace(page=lambda result: shown, judgements=lambda result: ())
-    monkeypatch.setattr("comparisons.report.studies.get_study", lambda kind: study)
+    monkeypatch.setattr("comparisons.report.answer.get_study", lambda kind: study)
     first, own = Page(write_page(copied, studies=studies)), Page(copied / "pages/fake.html")
     for page in (first, own):
         assert page.table("Agreement")["exudyn", "kappa [-]"] == "0.75"

@@ -10,7 +10,7 @@ from fake_solvers import cases, scene
 from analytic import PulseMotion, SampledMotion, synthetic_motion
 from analytic.errors import EngineNotInstalled
 from analytic.pairing import paired
-from comparisons.report.studies import origin_of
+from comparisons.report.answer import origin_of
 from comparisons.running import check as module
 from comparisons.running import run_sample
 from comparisons.running.age import age, last_check

@@ -16,7 +16,7 @@ import psutil
 import pytest
 
 from comparisons.running.provenance import read_result
-from comparisons.running.store import Store
+from comparisons.running.sweep import Store
 from engines import installed_engines
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(1400), pytest.mark.xdist_group("kills")]

@@ -9,16 +9,16 @@ PROJECT = Path(__file__).parents[3]
 WAY = "comparisons/running/files.py"
 # (file, function, call): why what it writes need not be there whole or not at all
 ELSEWHERE = {
-    ("comparisons/running/store.py", "__init__", "open"): "runs are appended, and a torn end is found",
-    ("comparisons/running/store.py", "append", "truncate"): "the same",
-    ("comparisons/running/store.py", "_read", "truncate"): "the same",
+    ("comparisons/running/sweep.py", "__init__", "open"): "runs are appended, and a torn end is found",
+    ("comparisons/running/sweep.py", "append", "truncate"): "the same",
+    ("comparisons/running/sweep.py", "_read", "truncate"): "the same",
     ("comparisons/running/executors.py", "_work", "open"): "what a worker prints, in a temporary folder",
     ("comparisons/running/solving.py", "scene_of", "tempfile.NamedTemporaryFile"): "temporary",
     ("comparisons/running/provenance.py", "save", "numpy.savez_compressed"): "into memory",
     ("comparisons/report/histories.py", "__call__", "numpy.savez"): "into memory",
     ("comparisons/showing/plots.py", "picture", "savefig"): "into memory",
-    ("comparisons/lessons/drawing.py", "svg", "savefig"): "into memory",
-    ("comparisons/lessons/drawing.py", "downloads", "savefig"): "into memory",
+    ("comparisons/lessons/lesson.py", "svg", "savefig"): "into memory",
+    ("comparisons/lessons/lesson.py", "downloads", "savefig"): "into memory",
     ("comparisons/commands/run.py", "command", "to_csv"): "into memory",
     ("comparisons/studies/speed_error/growth.py", "_resident_growth", "write_text"): "a switch of the system's",
     ("comparisons/cli/interrupts.py", "open_streams", "open"): "a standard stream",

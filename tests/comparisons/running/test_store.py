@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from comparisons.running.store import Store, StoreError
+from comparisons.running.sweep import Store, StoreError
 
 
 def line(key, value):

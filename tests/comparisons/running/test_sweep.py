@@ -17,7 +17,7 @@ from fake_solvers import cases, results, scene, sweep
 from analytic import EngineNotInstalled
 from comparisons.running.cases import Case
 from comparisons.running.executors import Processes
-from comparisons.running.store import Store
+from comparisons.running.sweep import Store
 
 OURS = (str(Path(__file__).parents[2]), f"{Path.home()}/", sys.prefix)  # folders that no stored failure names
 

@@ -8,11 +8,10 @@ import pytest
 from sheet_solver import solve
 
 from analytic.errors import SceneError
-from comparisons.sheet.answers import own_error, read_answers
-from comparisons.sheet.observed import solved
 from comparisons.sheet.pages import markdown, write_sheet
 from comparisons.sheet.problems import PROBLEMS
-from comparisons.sheet.score import score
+from comparisons.sheet.score import read_answers, score
+from comparisons.sheet.variants import own_error, solved
 
 BY_NAME = {problem.name: problem for problem in PROBLEMS}
 

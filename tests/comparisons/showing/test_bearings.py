@@ -7,7 +7,7 @@ from analytic import load_scene
 from analytic.bearing_scan import BearingScan
 from analytic.design import design_bearings
 from comparisons.commands.design import _chosen
-from comparisons.showing.bearings import print_bearings
+from comparisons.showing.margins import print_bearings
 
 SCENE = load_scene("caryatid-isolated")
 

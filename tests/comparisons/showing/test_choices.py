@@ -2,7 +2,7 @@
 
 import pytest
 
-from comparisons.advice.answer import Choice, Level, VariantLevels
+from comparisons.advice.criteria import Choice, Level, VariantLevels
 from comparisons.showing.choices import print_choice
 
 

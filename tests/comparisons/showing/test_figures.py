@@ -26,7 +26,7 @@ from comparisons.showing.charts import (
     marker,
 )
 from comparisons.showing.figures import MOVED, beside, lines, ranks, regions, shades
-from comparisons.showing.rows import NAME, Column
+from comparisons.showing.parts import NAME, Column
 from engines import ENGINES
 
 LINEAR, LOG = Axis("x [m]", -2.0, 6.0), Axis("error [-]", 1e-6, 1e2, "log")

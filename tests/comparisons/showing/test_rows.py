@@ -6,9 +6,8 @@ import math
 import pytest
 from page_numbers import number_in
 
-from comparisons.showing import rows as module
-from comparisons.showing.parts import Figure, Head, Page, number, percent, short
-from comparisons.showing.rows import NAME, Column, grouped, table, where
+from comparisons.showing import parts as module
+from comparisons.showing.parts import NAME, Column, Figure, Head, Page, grouped, number, percent, short, table, where
 
 ROWS = [
     {"part": "cell", "engine": "one", "variant": "fine", "ratio": None, "rms": 1.234e-5, "failed": 0, "runs": 4},

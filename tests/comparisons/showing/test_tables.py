@@ -8,7 +8,7 @@ import pytest
 from analytic import Caution, Failure, load_scene, simulate
 from analytic.response import COMPARED, Difference
 from comparisons.measuring.horizon import Horizon
-from comparisons.showing.tables import comparison, show
+from comparisons.showing.terminal import comparison, show
 
 SCENE = load_scene("free-rocking-rigid")
 MODEL = simulate(SCENE, history=False)

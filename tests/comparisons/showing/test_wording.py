@@ -43,5 +43,6 @@ def test_what_differs_is_said_near_an_edge_too():
     ],
 )
 def test_so_few_runs_that_they_say_nothing_are_no_trust_either(differing_runs, equal, interval, level):
-    mark = equal_mark(differing_runs, 0, 90, equal, interval)
+    found = {"differing": differing_runs, "failed": 0, "runs": 90, "equal": equal, "interval": interval}
+    mark = equal_mark(found | {"share": differing_runs / 90})
     assert mark.level == level and mark.words.startswith(f"{differing_runs} of 90 (at most ")

@@ -4,12 +4,14 @@ import pytest
 from answered import answered
 
 from analytic import simulate
-from comparisons.measuring.causes import CAUSES
+from comparisons.measuring.autopsy import CAUSES
 from comparisons.running.plan import Request
 from comparisons.running.provenance import Result
 from comparisons.running.sweep import Row
-from comparisons.studies.autopsy import STUDY
+from comparisons.studies import get_study
 from comparisons.studies.autopsy.study import GROUNDS, SECONDS, plan, scene_on
+
+STUDY = get_study("autopsy")
 
 
 def told(engine, variant="fine", tier="tuned", error=1e-7, cause=None, ground="rigid ground", **more):

@@ -11,33 +11,41 @@ from analytic.rocking import restitution
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.refine import Transition
 from comparisons.running.study import compute
-from comparisons.showing.rows import where
-from comparisons.studies.caryatid import STUDY
-from comparisons.studies.caryatid.cost import DIVISIONS, _cpu_at, _fixed_step
+from comparisons.showing.parts import where
+from comparisons.studies import get_study
 from comparisons.studies.caryatid.formulas import formulas
-from comparisons.studies.caryatid.paper import (
+from comparisons.studies.caryatid.runs import (
     CORRECTED,
     DERIVED,
+    FREE,
+    ISOLATED,
     NOT_CHECKABLE,
     NOT_REPRODUCIBLE,
     OTHER_MOTION,
     REPRODUCED,
+    caryatid,
     is_papers_motion,
     judged,
     motion_values,
+    oscillator,
+    slender_block,
 )
-from comparisons.studies.caryatid.runs import FREE, ISOLATED, caryatid, oscillator, slender_block
 from comparisons.studies.caryatid.variations import (
     BOTH,
+    DIVISIONS,
     NEITHER,
     ONLY_FREE,
     ONLY_ISOLATED,
+    _cpu_at,
+    _fixed_step,
     _intervals,
     _overlap,
     benefit,
     claims,
     uplift_slenderness,
 )
+
+STUDY = get_study("caryatid")
 
 
 @pytest.fixture(scope="module")

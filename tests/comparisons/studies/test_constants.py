@@ -6,7 +6,7 @@ from answered import answered, by_model, stored
 from comparisons.running.cases import Case
 from comparisons.running.plan import Request
 from comparisons.running.run_sample import case_of
-from comparisons.showing.rows import where
+from comparisons.showing.parts import where
 from comparisons.studies import get_study
 from comparisons.studies.constants.page import NOT_A_BIT
 from comparisons.studies.constants.study import changed, measure

@@ -9,8 +9,7 @@ from page_numbers import number_in
 from comparisons.report.write import SHORT
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.sources import source_digests
-from comparisons.showing.parts import Head
-from comparisons.showing.rows import where
+from comparisons.showing.parts import Head, where
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.stability.page import judgements as hard_cases
 

@@ -20,7 +20,7 @@ from analytic import Block, Scene, Start
 from comparisons.running.cases import Case
 from comparisons.running.plan import Batch, Computed, Study
 from comparisons.showing.parts import Page
-from comparisons.showing.rows import Column, table
+from comparisons.showing.parts import Column, table
 
 
 def measure(case, response):
@@ -60,7 +60,7 @@ def study(folder, *arguments):
 
 
 PAGE = """
-import sys; from pathlib import Path; from comparisons.report.studies import stored_studies
+import sys; from pathlib import Path; from comparisons.report.answer import stored_studies
 [one] = [one.section for one in stored_studies(Path(sys.argv[1]))]
 print(one.title, one.age, len(one.tables[0].rows))
 """

@@ -9,12 +9,14 @@ from answered import answered, by_model, stored
 
 from analytic import simulate
 from analytic.linear_oscillator import displacement_spectrum
-from comparisons.measuring.fragility import fit_fragility
+from comparisons.measuring.statistics import fit_fragility
 from comparisons.running.plan import Request
-from comparisons.showing.rows import where
-from comparisons.studies.fragility import STUDY, fits
-from comparisons.studies.fragility.cloud import PERIOD, SCENES, cloud
-from comparisons.studies.fragility.study import NEAR, plan
+from comparisons.showing.parts import where
+from comparisons.studies import get_study
+from comparisons.studies.fragility import fits
+from comparisons.studies.fragility.study import NEAR, PERIOD, SCENES, cloud, plan
+
+STUDY = get_study("fragility")
 
 FREE = {"free-standing": SCENES["free-standing"]}
 RUNS = (300, 110, 10)

@@ -19,7 +19,7 @@ from analytic import synthetic_motion
 from comparisons.report.runs import restitution_cases
 from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS, json_ready, read_result
-from comparisons.showing.rows import where
+from comparisons.showing.parts import where
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.caryatid.runs import simulations
 from comparisons.studies.overturning import study as overturning

@@ -15,13 +15,23 @@ from analytic.caryatid import MASS
 from analytic.pulses import PULSES
 from comparisons.running.plan import Request
 from comparisons.running.refine import drive
-from comparisons.showing.rows import where
-from comparisons.studies.overturning import STUDY
-from comparisons.studies.overturning.drawn import FREQUENCY, JUMPS, drawn_edges
-from comparisons.studies.overturning.edges import Edge, edges, least_normal, locate, pulse
+from comparisons.showing.parts import where
+from comparisons.studies import get_study
+from comparisons.studies.overturning.edges import (
+    FREQUENCY,
+    JUMPS,
+    Edge,
+    drawn_edges,
+    edges,
+    least_normal,
+    locate,
+    pulse,
+)
 from comparisons.studies.overturning.page import _under_jumps
 from comparisons.studies.overturning.study import QUICK
 from engines.statue_range import outside
+
+STUDY = get_study("overturning")
 
 # the block of the published boundaries
 SCENE = under_a_pulse(1.0, 1.0).with_(motion=None, duration=None)

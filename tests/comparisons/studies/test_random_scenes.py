@@ -11,10 +11,9 @@ from analytic.response import COMPARED, EDGE
 from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.sweep import Row
-from comparisons.showing.rows import NAME
+from comparisons.showing.parts import NAME
 from comparisons.studies import get_study
-from comparisons.studies.random_scenes.scenes import random_scene
-from comparisons.studies.random_scenes.study import plan
+from comparisons.studies.random_scenes.study import plan, random_scene
 from engines import ENGINES
 from engines.statue_range import RANGE
 

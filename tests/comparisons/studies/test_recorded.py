@@ -18,12 +18,11 @@ from comparisons.measuring.statistics import equality
 from comparisons.running.plan import Request
 from comparisons.running.provenance import read_result, write_result
 from comparisons.running.sweep import Row
-from comparisons.showing.rows import where
+from comparisons.showing.parts import where
 from comparisons.studies import get_study
-from comparisons.studies.fragility.cloud import peak_velocity
+from comparisons.studies.fragility.study import peak_velocity
 from comparisons.studies.recorded.page import summary
-from comparisons.studies.recorded.scenes import LAWS, RANGES, drawn_scene
-from comparisons.studies.recorded.study import _errors, _run_row, of_engine, plan
+from comparisons.studies.recorded.study import LAWS, RANGES, _errors, _run_row, drawn_scene, of_engine, plan
 from engines import ENGINES, get_engine, installed_engines
 from engines.comparison import END
 from engines.copies import near_copies

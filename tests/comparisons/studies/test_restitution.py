@@ -11,9 +11,8 @@ from analytic.rocking import restitution
 from comparisons.report.detail import write_study
 from comparisons.running.provenance import read_result
 from comparisons.running.study import compute
-from comparisons.showing.parts import Figure, Table
-from comparisons.showing.rows import where
-from comparisons.studies.restitution import STUDY
+from comparisons.showing.parts import Figure, Table, where
+from comparisons.studies import get_study
 from comparisons.studies.restitution.cases import (
     CARYATID_BASE,
     FULL,
@@ -26,6 +25,8 @@ from comparisons.studies.restitution.cases import (
 )
 from comparisons.studies.restitution.study import damped_error, friction_needed
 from engines import get_engine
+
+STUDY = get_study("restitution")
 
 pytestmark = pytest.mark.xdist_group("restitution study")  # the small study is run once
 

@@ -9,10 +9,9 @@ from analytic import load_scene, simulate, synthetic_motion
 from analytic.bearing import BearingLaw
 from analytic.rocking import RockingModel
 from comparisons.running.plan import Computed, Request
-from comparisons.showing.rows import where
+from comparisons.showing.parts import where
 from comparisons.studies import get_study
-from comparisons.studies.sensitivity.changes import changes, with_vertical
-from comparisons.studies.sensitivity.study import FASTER, RATIOS, SPREAD
+from comparisons.studies.sensitivity.study import FASTER, RATIOS, SPREAD, changes, with_vertical
 
 STUDY = get_study("sensitivity")
 SCENES = {"isolated": ("caryatid-isolated", (0.15,))}

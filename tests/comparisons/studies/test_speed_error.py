@@ -14,13 +14,15 @@ from comparisons.running.cases import Case, solver
 from comparisons.running.provenance import Result, read_result
 from comparisons.running.study import compute
 from comparisons.showing.parts import COST, Figure, Table
-from comparisons.studies.speed_error import STUDY, growth
-from comparisons.studies.speed_error.boundary import margin, searched
-from comparisons.studies.speed_error.cases import NEEDED, entries, trials
+from comparisons.studies import get_study
+from comparisons.studies.speed_error import growth
+from comparisons.studies.speed_error.cases import NEEDED, entries, margin, searched, trials
 from comparisons.studies.speed_error.page import LEVELS, levels_run, passing
 from comparisons.studies.speed_error.share import own_share, seconds_inside
 from comparisons.studies.speed_error.study import errors, measure
 from engines import get_engine
+
+STUDY = get_study("speed-error")
 
 
 @pytest.fixture(scope="module")

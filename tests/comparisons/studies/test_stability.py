@@ -13,9 +13,9 @@ from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS, read_result
 from comparisons.running.study import compute
 from comparisons.running.sweep import Row
-from comparisons.showing.rows import where
+from comparisons.showing.parts import where
+from comparisons.studies import get_study
 from comparisons.studies.rows import wrong_with
-from comparisons.studies.stability import STUDY
 from comparisons.studies.stability.cases import BLOCK, GAP, OVERTURNS_FROM, THRESHOLD, hard_cases
 from comparisons.studies.stability.oracle import oracle
 from comparisons.studies.stability.page import judgements
@@ -34,6 +34,8 @@ from comparisons.studies.stability.study import (
     worst,
 )
 from engines import get_engine, installed_engines
+
+STUDY = get_study("stability")
 
 CASES = hard_cases()
 KERNEL = Solver("analytic")

@@ -4,7 +4,9 @@ import pytest
 
 from comparisons.measuring.tolerances import TABLE
 from comparisons.running.provenance import Result
-from comparisons.studies.tolerances import STUDY
+from comparisons.studies import get_study
+
+STUDY = get_study("tolerances")
 
 
 @pytest.mark.parametrize("broken", [0, 1])

@@ -8,7 +8,6 @@ from record_files import pairs
 
 from comparisons.running.plan import Request
 from comparisons.running.provenance import RESULTS, read_result
-from comparisons.running.sweep import Row
 from comparisons.studies import BUILT_IN, get_study
 from comparisons.studies.vocabulary import OWN, SHARED, columns_of
 from engines import installed_engines
@@ -18,19 +17,13 @@ UNSEEN = {"autopsy": {"why_not"}}
 UNSEEN_OF_ANY = {"exit_code", "time_limit"}  # of failures that no stored run had
 
 
-def timed(batch):
-    """Made-up rows of the kernel study, of which no result is stored."""
-    return [Row(case, {"error": 0.0, "impacts": 1}, None, {"cpu_seconds": 1.0}, False) for case in batch.cases]
-
-
 @pytest.fixture(scope="module")
 def columns(tmp_path_factory):
-    """{study: columns of its rows}; those made up here have no stored result."""
-    found = {"kernel": set().union(*answered(get_study("kernel").plan(Request(quick=True)), timed)[-1].rows)}
+    """{study: columns of its rows}; those of recorded motions are made up here, too."""
     folder = str(pairs(tmp_path_factory.mktemp("records"), 2))
     ask = Request(installed_engines()[:1], quick=True)
     recorded = answered(get_study("recorded").plan(ask, records=folder), by_model(history=True))[-1].rows
-    found["recorded"] = set().union(*recorded)
+    found = {"recorded": set().union(*recorded)}
     for result in map(read_result, RESULTS.glob("*.json")):
         found.setdefault(result.kind, set()).update(*result.rows)
     return found

@@ -1,0 +1,261 @@
+"""Problems A and B, a block alone, that every integrator solves, with references of 30 digits: the kernel, scipy's
+`solve_ivp` and, of the optional extra `peers`, heyoka, each set up by someone who wants it fast.
+
+No classes, floats instead of arrays in the right-hand side, the smallest set of events, a first step taken from the
+length of the coming hop. The readable set-up, the one to learn from, is `analytic.twin`.
+"""
+
+import functools
+import itertools
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.metadata import version
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from analytic import Response, Scene, State, kernel, layout
+from analytic.problems import problem_a, problem_b
+from analytic.rocking import RockingModel
+from analytic.solver import REST_RATE, ground, options, parameters
+from analytic.twin.run import Event
+
+from ...running.cases import Case
+
+SOLVER = f"{__name__}:prepared"
+SHORT_HOP = 0.3  # in units of 1/omega_r: below it, the first step is the whole hop
+COOLDOWN = 1e-12  # s; heyoka's own choice drops the shortest hops silently
+
+
+@dataclass(frozen=True)
+class Problem:
+    """phi'' = -p2 (sin(s gamma - phi) + a sin(frequency t) cos(s gamma - phi)); s is the side, + or -1.
+
+    It moves from `begin` [s] on, with `tilt` [rad] and no velocity; at an impact the velocity is multiplied by
+    `restitution`, and the block rests when less than `rest_rate` [rad/s] is left. a = 0 without a pulse, or after
+    `pulse_end` [s].
+
+    reference: |tilt| [rad] at `horizon` [s]. impacts: how many there are to the scene's duration.
+    """
+
+    scene: Scene
+    horizon: float
+    rest_rate: float
+    impacts: int
+    reference: float
+    p2: float
+    gamma: float
+    restitution: float
+    a: float
+    frequency: float
+    begin: float
+    tilt: float
+    side: float
+    pulse_end: float
+
+    @property
+    def stops(self) -> list[float]:
+        """Times [s] where an integrator has to stop: the pulse's end, the horizon, the end."""
+        return sorted({self.pulse_end, self.horizon, self.scene.duration} - {0.0})
+
+    def error(self, tilt: float) -> float:
+        """Of a tilt [rad] at the horizon, over the slenderness [-]."""
+        return abs(abs(tilt) - self.reference) / self.gamma
+
+
+def _problem(scene: Scene, rest: float, **known: Any) -> Problem:
+    """rest: rest_rate over omega_r; known: what the scene does not say."""
+    model, omega, pulse = RockingModel.of(scene), scene.rocking_frequency, scene.motion
+    if pulse is None:
+        a, frequency, pulse_end, begin, side = 0.0, 0.0, 0.0, 0.0, math.copysign(1.0, scene.start.tilt)
+    else:  # it lifts where the pulse first reaches g tan(gamma), to the left
+        a, frequency, pulse_end, side = pulse.amplitude / scene.gravity, pulse.frequency, pulse.end, -1.0
+        begin = math.asin(1 / (pulse.amplitude / (scene.gravity * math.tan(scene.block.slenderness)))) / frequency
+    return Problem(
+        scene=scene, rest_rate=rest * omega, p2=omega**2, gamma=model.gamma, restitution=model.restitution, a=a,
+        frequency=frequency, begin=begin, tilt=scene.start.tilt, side=side, pulse_end=pulse_end, **known,
+    )  # fmt: skip
+
+
+A = dict(horizon=7.0, impacts=10, reference=0.01588089793859602683756374)
+B = dict(horizon=6.0, impacts=81, reference=0.01186179747282689895957273)
+SOLVED = _problem(problem_a(duration=7.0), REST_RATE, **A), _problem(problem_b(duration=9.2), 1e-4, **B)
+PROBLEMS = {problem.scene.name: problem for problem in SOLVED}
+
+
+def kernel_run(problem: Problem, tolerance: float) -> Callable[[], tuple[float, int]]:
+    """A function that runs `problem` without history or ledger; it returns (tilt at the horizon, impacts)."""
+    scene = problem.scene
+    inside = problem.horizon < scene.duration
+    rest = problem.rest_rate / scene.rocking_frequency
+    chosen = options(tolerance, rest_rate=rest, record=False, output_step=problem.horizon if inside else 0.0)
+    arguments = parameters(scene), ground(scene.motion), chosen
+
+    def run():
+        totals, *_, history = kernel.run(*arguments)
+        return float(history[1, 1] if inside else totals[layout.END_TILT]), int(totals[layout.IMPACTS])
+
+    return run
+
+
+def scipy_run(problem: Problem, rtol: float, method: str) -> Callable[[], tuple[float, int]]:
+    """A function that runs `problem` by `solve_ivp`, flight by flight; it returns (tilt at the horizon, impacts).
+
+    Absolute tolerances are `rtol` of gamma and of gamma omega_r.
+    """
+    p2, gamma, a, frequency = problem.p2, problem.gamma, problem.a, problem.frequency
+    omega = math.sqrt(p2)
+    atol = rtol * np.array([gamma, gamma * omega])
+    sin, cos = math.sin, math.cos
+
+    def fly(begin, stop, tilt, rate, side, pushed):
+        def free(t, y):
+            phi, w = y.tolist()
+            return w, -p2 * sin(side * gamma - phi)
+
+        def forced(t, y):
+            phi, w = y.tolist()
+            angle = side * gamma - phi
+            return w, -p2 * (sin(angle) + a * sin(frequency * t) * cos(angle))
+
+        def impact(t, y):  # the root at take-off is divided out
+            return side * y[0] / (t - begin) if t > begin else 1.0
+
+        step = {}
+        if tilt == 0.0:
+            push = a * sin(frequency * begin) * cos(gamma) if pushed else 0.0
+            hop = 2 * abs(rate) / (p2 * (sin(gamma) + side * push)) if rate else 0.0
+            if 0 < hop * omega < SHORT_HOP:
+                step["first_step"] = min(1.1 * hop, stop - begin)
+        derivative, event = forced if pushed else free, Event(impact)
+        solution = solve_ivp(
+            derivative, (begin, stop), (tilt, rate), method, events=event, rtol=rtol, atol=atol, **step
+        )
+        if solution.status < 0:
+            raise RuntimeError(solution.message)
+        return float(solution.t[-1]), *solution.y[:, -1].tolist(), solution.status == 1
+
+    def run():
+        t, tilt, rate, side = problem.begin, problem.tilt, 0.0, problem.side
+        impacts, found = 0, math.nan
+        for stop in problem.stops:
+            pushed = stop <= problem.pulse_end
+            while t < stop:
+                t, tilt, rate, hit = fly(t, stop, tilt, rate, side, pushed)
+                if hit:
+                    impacts, tilt, rate, side = impacts + 1, 0.0, problem.restitution * rate, -side
+                    if abs(rate) < problem.rest_rate:
+                        return found, impacts
+            if stop == problem.horizon:
+                found = tilt
+        return found, impacts
+
+    return run
+
+
+def heyoka_run(problem: Problem, tolerance: float) -> Callable[[], tuple[float, int]]:
+    """One compiled system in flight under the pulse, one for free flight.
+
+    Impacts are a callback in heyoka's own loop; the restart between them costs no return to Python.
+    """
+    import heyoka
+
+    p2, gamma, e, a, frequency = problem.p2, problem.gamma, problem.restitution, problem.a, problem.frequency
+    phi, w = heyoka.make_vars("phi", "w")
+    angle = heyoka.par[0] * gamma - phi
+    counted = [0]
+
+    def impact(system, _):
+        counted[0] += 1
+        system.state[:] = 0.0, e * system.state[1]
+        system.pars[0] = -system.pars[0]
+        return abs(system.state[1]) >= problem.rest_rate
+
+    def system(push):
+        event = heyoka.t_event(
+            heyoka.par[0] * phi, callback=impact, direction=heyoka.event_direction.negative, cooldown=COOLDOWN
+        )
+        equations = [(phi, w), (w, -p2 * (heyoka.sin(angle) + push))]
+        return heyoka.taylor_adaptive(equations, [0.0, 0.0], pars=[1.0], tol=tolerance, t_events=[event])
+
+    free = system(0.0)
+    stages = [(free, problem.horizon)]
+    if a:
+        forced = system(a * heyoka.sin(frequency * heyoka.time) * heyoka.cos(angle))
+        stages.insert(0, (forced, problem.pulse_end))
+    duration = problem.scene.duration
+
+    def run():
+        counted[0] = 0
+        t, y, side = problem.begin, (problem.tilt, 0.0), problem.side
+        for stage, until in stages:
+            stage.time = t
+            stage.state[:] = y
+            stage.pars[0] = side
+            stage.reset_cooldowns()
+            stage.propagate_until(until)
+            t, y, side = until, stage.state, stage.pars[0]
+        tilt = float(free.state[0])
+        if problem.horizon < duration:
+            free.propagate_until(duration)
+        return tilt, counted[0]
+
+    return run
+
+
+METHODS = ("RK45", "DOP853", "LSODA", "Radau")
+PEERS = {("heyoka", "Taylor"): heyoka_run}  # an engine's name is that of its package
+INTEGRATORS: dict[tuple[str, str], Callable[..., Any]] = {
+    ("analytic", "kernel"): kernel_run,
+    **{("scipy", method): functools.partial(scipy_run, method=method) for method in METHODS},
+    **PEERS,
+}
+# relative tolerances, of a full and of a quick run
+TOLERANCES = {
+    ("analytic", "kernel"): (
+        (1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15, 1e-16),
+        (1e-8, 1e-10, 1e-12, 1e-14, 1e-16),
+    ),
+    ("scipy", "RK45"): ((1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12), (1e-8, 1e-10)),
+    ("scipy", "DOP853"): ((1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13), (1e-10, 1e-11, 1e-12)),
+    ("scipy", "LSODA"): ((1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12), (1e-9, 1e-11)),
+    ("scipy", "Radau"): ((1e-6, 1e-8, 1e-9), (1e-6,)),
+    ("heyoka", "Taylor"): ((1e-6, 1e-8, 1e-9, 1e-10, 1e-12, 1e-14, 2.3e-16), (1e-9, 1e-12, 2.3e-16)),
+}
+
+
+def installed() -> dict[tuple[str, str], str]:
+    """{(engine, variant): version} of the peers that can be imported here."""
+    return {name: version(name[0]) for name in PEERS if find_spec(name[0])}
+
+
+@functools.lru_cache(maxsize=256)
+def run_of(problem: str, engine: str, variant: str, tolerance: float) -> Callable[[], tuple[float, int]]:
+    """A function without arguments: a problem by an integrator."""
+    return INTEGRATORS[engine, variant](PROBLEMS[problem], tolerance)
+
+
+def prepared(scene: Scene, *, engine: str, variant: str, tolerance: float, **settings: Any) -> Response:
+    """The first run, which loads and compiles what the timed ones need; nothing is measured in it."""
+    run_of(scene.name, engine, variant, tolerance)()
+    known = dict(engine=engine, variant=variant, outcome="rocks", settings=settings, versions={})
+    return Response.unmeasured(**known, end=State(scene.duration, *[math.nan] * 5))
+
+
+def timed(case: Case, least: float) -> dict[str, Any]:
+    """What the runs of a problem found, and the mean CPU time of the last so many of them: of `least` [s] in all."""
+    problem = PROBLEMS[case.scene.name]
+    run = run_of(problem.scene.name, *(case.settings[name] for name in ("engine", "variant", "tolerance")))
+    for repeats in (2**doubled for doubled in itertools.count()):
+        begin = time.process_time()
+        for _ in range(repeats):
+            tilt, impacts = run()
+        if (spent := time.process_time() - begin) >= least:
+            break
+    errors = {"lost": problem.impacts - impacts, "horizon_tilt": problem.error(tilt)}
+    known = {"outcome": "rocks", "end": {"time": case.scene.duration}, "steps": 0, "settings": case.settings}
+    return {**known, "boundary_shifts": None, "errors": errors, "cost": {"cpu_seconds": spent / repeats}}
