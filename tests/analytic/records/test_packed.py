@@ -7,8 +7,10 @@ import zipfile
 
 import numpy as np
 import pytest
-from mutated_files import VALUES, cosmos, csmip, damaged_bytes, records
+from made_up_records import VALUES, cosmos, csmip
+from mutated_files import damaged_bytes
 from record_files import assert_refused, write
+from undamaged_files import records
 
 from analytic.errors import SceneError
 from analytic.records import content, read_record
