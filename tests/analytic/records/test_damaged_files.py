@@ -18,7 +18,7 @@ import strict_scenes
 from made_up_records import cosmos
 from mutated_files import cases
 from record_files import write
-from undamaged_files import records, scenes
+from undamaged_records import records
 
 from analytic import SceneError, load_scene
 from analytic.errors import FILE_LENGTH, KEY_LENGTH, TEXT_LENGTH, VALUE_LENGTH
@@ -32,6 +32,42 @@ NUMBERS = re.compile(r"[+-]?(?:[0-9]+[.]?[0-9]*|[.][0-9]+)(?:E[+-]?[0-9]{1,3})?"
 FACTORS = (9.81, 1.0, 0.01, 0.001, 0.0981, 0.00981)  # m/s2
 OFFSETS = (0.1, 16.5)  # of the files of K-NET CSV
 TIMES = 0.1  # share of the step by which a changed time changes it at most
+SCENE = """\
+name = "made up"
+gravity = 9.81
+friction = 0.6
+[block]
+mass = 3172.05            # kg
+radius = 1.0884
+slenderness = 0.28
+corner_inertia = 5010.2
+[base]
+mass = 212.0
+[bearings]
+law = "algebraic"
+count = 4
+ka = 6.22e4
+kb = 6.22e3
+alpha = 44.69
+[motion]
+{motion}
+scale = 1.5
+[start]
+tilt = 0.01
+[run]
+duration = 20.0
+"""
+
+
+def scenes():
+    """(name, text) of undamaged scene files."""
+    return [
+        ("pulse", SCENE.format(motion='pulse = "one-cosine"\namplitude = -2.0\nfrequency = 3')),
+        ("synthetic", SCENE.format(motion='synthetic = "duzce-like"\nseed = 5')),
+        ("least", "[block]\nmass = 1\nradius = 1.0\nslenderness = 0.2\n"),
+    ]
+
+
 DEFAULTS = {
     "gravity": 9.81,
     "start.tilt": 0.0,

@@ -10,7 +10,7 @@ import pytest
 from made_up_records import VALUES, cosmos, csmip
 from mutated_files import damaged_bytes
 from record_files import assert_refused, write
-from undamaged_files import records
+from undamaged_records import records
 
 from analytic.errors import SceneError
 from analytic.records import content, read_record

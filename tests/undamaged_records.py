@@ -1,4 +1,4 @@
-"""Undamaged records of every family, with what they are made of, and undamaged scenes."""
+"""Undamaged records of every family, with what they are made of."""
 
 import itertools
 
@@ -383,40 +383,4 @@ def titled():
             {"units": "g"},
             (TWICE, GRAVITY, 0.005),
         ),
-    ]
-
-
-SCENE = """\
-name = "made up"
-gravity = 9.81
-friction = 0.6
-[block]
-mass = 3172.05            # kg
-radius = 1.0884
-slenderness = 0.28
-corner_inertia = 5010.2
-[base]
-mass = 212.0
-[bearings]
-law = "algebraic"
-count = 4
-ka = 6.22e4
-kb = 6.22e3
-alpha = 44.69
-[motion]
-{motion}
-scale = 1.5
-[start]
-tilt = 0.01
-[run]
-duration = 20.0
-"""
-
-
-def scenes():
-    """(name, text) of undamaged scene files."""
-    return [
-        ("pulse", SCENE.format(motion='pulse = "one-cosine"\namplitude = -2.0\nfrequency = 3')),
-        ("synthetic", SCENE.format(motion='synthetic = "duzce-like"\nseed = 5')),
-        ("least", "[block]\nmass = 1\nradius = 1.0\nslenderness = 0.2\n"),
     ]
