@@ -18,10 +18,11 @@ import strict_scenes
 from made_up_records import cosmos
 from mutated_files import cases
 from record_files import write
-from undamaged_records import records
+from undamaged_records import TWICE, records
 
 from analytic import SceneError, load_scene
 from analytic.errors import FILE_LENGTH, KEY_LENGTH, TEXT_LENGTH, VALUE_LENGTH
+from analytic.motion import SampledMotion
 from analytic.records import read_record
 from analytic.records.numbers import NUMBER
 
@@ -121,15 +122,17 @@ def explained(motion, truth, text, damaged):
     """Whether a record is the one it was made as, but for numbers in lines that damage took away or put in: a law of
     conservation, which knows no rule of any format."""
     numbers, unit, step = truth
-    gone, come = map(numbers_in, changed(text, damaged))
+    lines = changed(text, damaged)
+    gone, come = map(numbers_in, lines)
+    units = (unit, *FACTORS) if re.search("[A-DF-Z]", " ".join(lines[0])) else (unit,)  # words have changed, or none
     after = numbers_in(damaged.upper().splitlines())
     mean = np.mean(after[-len(motion.samples) :])  # of counts, which the reader of K-NET removes
     scales = [gal / count / 100 for gal, count in itertools.pairwise(come) if gal and count]  # K-NET states its own
-    for factor, offset in itertools.product((unit, *FACTORS, *scales), (0.0, mean, *OFFSETS, *come)):
+    for factor, offset in itertools.product((*units, *scales), (0.0, mean, *OFFSETS, *come)):
         found = motion.samples / factor
         held, found = tally(numbers), tally(np.round(found + offset, 6) if offset else found)
         if not found - held - tally(come) and not held - found - tally(gone):
-            stated = [1000 * step, step / 1000, *after]
+            stated = [1000 * step, step / 1000, *come]
             steps = {*stated, *(number / 1000 for number in stated), *(1 / number for number in stated if number)}
             return abs(motion.dt - step) <= TIMES * step or any(math.isclose(motion.dt, one) for one in steps)
     return any("the header states" in words for words in motion.warnings)
@@ -160,12 +163,23 @@ def same_scene(scene, tables):
 @pytest.mark.parametrize("name, text, said, truth", records(), ids=[name for name, *_ in records()])
 def test_undamaged_records_hold_the_numbers_they_were_made_of(tmp_path, name, text, said, truth):
     motion = read(tmp_path / "file", text.encode(), read_record, **said)
-    if "refused" in name:
-        assert motion is None
-        return
-    numbers, unit, step = truth
-    assert explained(motion, truth, text, text) and motion.dt == pytest.approx(step, rel=1e-10)
-    assert (motion.samples - motion.samples[0]) / unit == pytest.approx(np.array(numbers) - numbers[0], rel=1e-10)
+    assert (motion is None) == ("refused" in name)
+    if motion is not None:
+        numbers, unit, step = truth
+        assert explained(motion, truth, text, text) and motion.dt == pytest.approx(step, rel=1e-10)
+        assert (motion.samples - motion.samples[0]) / unit == pytest.approx(np.array(numbers) - numbers[0], rel=1e-10)
+
+
+def test_what_the_damage_does_not_explain_is_seen():
+    (text, truth), right = next((one[1], one[3]) for one in records() if one[0] == "csv"), np.array(TWICE)
+    right[7] = 0.131
+
+    def seen(numbers, unit=0.01, step=0.005):
+        motion = SampledMotion(step, unit * np.asarray(numbers))
+        return explained(motion, truth, text, text.replace("0.0310", "0.1310", 1))
+
+    assert seen(right) and not seen(right, unit=9.81) and not seen(right, step=0.01)
+    assert not any(map(seen, (right[1:], [*right, 0.5], right[::2], right + 0.001, abs(right))))
 
 
 @pytest.mark.parametrize("scene", scenes(), ids=[name for name, _ in scenes()])
