@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from bad_scenes import BAD, SCENE, write_scene
-from mutated_files import VALUES, csmip
+from made_up_records import VALUES, csmip
 
 from analytic import Base, Bearings, Block, PulseMotion, SceneError, Start, load_scene, shipped_scenes
 from analytic.synthetic import synthetic_motion

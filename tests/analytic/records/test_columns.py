@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mutated_files import SMOOTH, VALUES
+from made_up_records import SMOOTH, VALUES
 from record_files import assert_refused, write
 
 from analytic.records import read_record

@@ -7,7 +7,7 @@ import math
 from datetime import datetime, timedelta
 
 import pytest
-from mutated_files import corrected, csmnc, knet_csv
+from made_up_records import corrected, csmnc, knet_csv
 from record_files import assert_refused, write
 
 from analytic.records import G, read_channels, read_record
@@ -192,6 +192,13 @@ REFUSED = {
         {},
         "line 2 = '02.01.2030 03:04:00.000,0.0000000': its time is a date or a clock of no known form; write the times",
         "time,acc (g)\n" + rows("{t:.3f},{a:.7f}"),
+        {},
+    ),
+    "no day of the calendar": (
+        "time,acc (g)\n" + rows("{s},{a:.7f}").replace("2030-01-02", "2030-13-02"),
+        {},
+        "line 2 = '2030-13-02T03:04:15.000': not a date (month must be in 1..12); write the times in seconds",
+        "time,acc (g)\n" + rows("{s},{a:.7f}"),
         {},
     ),
     "a header that begins with a number": (

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mutated_files import VALUES, cosmos, csmip, knet, smc
+from made_up_records import VALUES, cosmos, csmip, knet, smc
 from record_files import FORMATS, assert_refused, needs_records, write
 
 from analytic.records import read_channels, read_record

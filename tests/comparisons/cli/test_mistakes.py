@@ -6,8 +6,8 @@ import re
 
 import pytest
 import typer
-from mutated_files import VALUES as SAMPLES
-from mutated_files import csmip
+from made_up_records import VALUES as SAMPLES
+from made_up_records import csmip
 
 from comparisons.cli.application import app
 from engines import get_engine, installed_engines

@@ -4,7 +4,7 @@ import io
 import json
 
 import pytest
-from mutated_files import VALUES, cosmos
+from made_up_records import VALUES, cosmos
 
 from analytic import load_scene
 from analytic.records import read_record

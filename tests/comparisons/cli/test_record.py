@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from mutated_files import VALUES, csmip, knet
+from made_up_records import VALUES, csmip, knet
 
 from analytic import SampledMotion
 from analytic.records import G, read_record
