@@ -180,18 +180,18 @@ def _searched(scene, family, names, error, criterion, **options):
 def _kinds(names: Iterable[str], scene: Scene) -> list[tuple[str, str, Variant]]:
     """(engine, variant, its record) of those that may be chosen: not default settings, and able to run the scene."""
     return [
-        (name, variant, kind)
+        (name, variant, spec)
         for name in names
-        for variant, kind in get_engine(name).variants.items()
-        if kind.tier != "defaults" and (scene.block.restitution is None or kind.takes_restitution)
+        for variant, spec in get_engine(name).variants.items()
+        if spec.kind != "defaults" and (scene.block.restitution is None or spec.takes_restitution)
     ]
 
 
-def _variant(name, variant, kind, search):
+def _variant(name, variant, spec, search):
     """The `VariantLevels` of a variant from what was run."""
     levels: list[Level] = []
     finer = True
-    for value in reversed(kind.levels):
+    for value in reversed(spec.levels):
         rows = search.rows[name, variant, value]
         found, why = problem(rows, search.error, search.criterion)
         if why is None and not finer:
@@ -205,9 +205,9 @@ def _variant(name, variant, kind, search):
             Level(
                 engine=name,
                 variant=variant,
-                parameter=kind.accuracy_parameter,
+                parameter=spec.accuracy_parameter,
                 value=value,
-                default=value == kind.default,
+                default=value == spec.default,
                 runs=len(rows),
                 error=found,
                 cpu_per_second=spent / simulated if sound else None,
@@ -219,8 +219,8 @@ def _variant(name, variant, kind, search):
     return VariantLevels(
         engine=name,
         variant=variant,
-        tier=kind.tier,
-        applies_impact=kind.takes_restitution,
+        tier=spec.kind,
+        applies_impact=spec.takes_restitution,
         order=_order(levels) if search.criterion != "outcome" else None,
         levels=levels,
     )

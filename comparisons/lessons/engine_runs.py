@@ -30,7 +30,7 @@ class EngineRun:
 
     solver: str
     name: str
-    tier: str
+    kind: str
     parameter: str
     value: float
     error: float
@@ -73,18 +73,18 @@ def engine_runs() -> tuple[EngineRun, ...]:
     found = []
     for name in installed_engines():
         engine = get_engine(name)
-        for variant, kind in engine.variants.items():
-            for value in kind.levels:
+        for variant, spec in engine.variants.items():
+            for value in spec.levels:
                 response = engine.simulate(
-                    SCENE, variant=variant, history=False, compare=False, **{kind.accuracy_parameter: value}
+                    SCENE, variant=variant, history=False, compare=False, **{spec.accuracy_parameter: value}
                 )
                 error = math.nan if response.outcome == "failed" else error_of(response)
                 found.append(
                     EngineRun(
                         name,
                         f"{name}, {variant}",
-                        kind.tier,
-                        kind.accuracy_parameter,
+                        spec.kind,
+                        spec.accuracy_parameter,
                         value,
                         error,
                         response.cpu_seconds,

@@ -88,7 +88,7 @@ def diagnosis(engine: str, variant: str, scene: Scene, which: int = 0, **setting
         the block is placed deepest [m]; else why_not.
     """
     record = get_engine(engine)
-    row: dict[str, object] = {"engine": engine, "variant": variant, "tier": record.variants[variant].tier}
+    row: dict[str, object] = {"engine": engine, "variant": variant, "tier": record.variants[variant].kind}
     row["best"] = variant == record.default_variant
     _, trace = record.traced(scene, variant=variant, history=False, **settings)
     try:

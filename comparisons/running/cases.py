@@ -138,13 +138,13 @@ def _place(name):
 
 def variant_settings(engine: str, variant: str, levels: Iterable[float] | None = None) -> dict[str, Any]:
     """A variant as the settings of a result list it; levels: those that are tried of it, in place of all."""
-    kind = get_engine(engine).variants[variant]
+    spec = get_engine(engine).variants[variant]
     return {
         "engine": engine,
         "variant": variant,
-        "tier": kind.tier,
-        "parameter": kind.accuracy_parameter,
-        "default": kind.default,
-        "levels": sorted(kind.levels) if levels is None else levels,
-        "applies_impact": kind.takes_restitution,
+        "tier": spec.kind,
+        "parameter": spec.accuracy_parameter,
+        "default": spec.default,
+        "levels": sorted(spec.levels) if levels is None else levels,
+        "applies_impact": spec.takes_restitution,
     }

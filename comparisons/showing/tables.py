@@ -150,7 +150,7 @@ def engines_table(engines: Sequence[Engine]) -> Grid:
     caption = Text(f"Tested for {in_words()}.\nrocking engines NAME: settings, refinement levels, versions.")
     heads = ["engine", "variant", "tier", "the engine computes", "the adapter imposes"]
     rows = [
-        [engine.name if name == engine.default_variant else "", name, variant.tier, variant.computes, variant.imposes]
+        [engine.name if name == engine.default_variant else "", name, variant.kind, variant.computes, variant.imposes]
         for engine in engines
         for name, variant in engine.variants.items()
     ]
@@ -168,7 +168,7 @@ def engine_text(engine: Engine) -> str:
         values = [f"{field}={value:.6g}" for field, value in dataclasses.asdict(variant.settings).items()]
         values[:1] = [f"{value} (accuracy parameter)" for value in values[:1]]
         lines += [
-            f"  --variant {name} ({default}{variant.tier}): {about}",
+            f"  --variant {name} ({default}{variant.kind}): {about}",
             f"      settings: {', '.join(values)}",
             f"      levels, coarse to fine: {', '.join(f'{value:.4g}' for value in variant.levels)}",
             f"      the engine computes: {variant.computes}",

@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(),
-        tier="tuned",
+        kind="tuned",
         levels=(2e-3, 6e-4, 2e-4, 1e-4),
         computes="motion, contact, impact and rest",
         imposes="the steps, by gaps and closing speeds",
     ),
     "first-script": Variant(
         FirstScript(1e-3),  # DART's own default
-        tier="defaults",
+        kind="defaults",
         levels=(5e-3, 1e-3, 2e-4),
         computes="motion, contact, impact and rest",
         imposes="nothing",

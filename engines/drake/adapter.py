@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 VARIANTS = {
     "first-script": Variant(
         FirstScript(1e-3),  # Drake's own default
-        tier="defaults",
+        kind="defaults",
         levels=(5e-3, 2e-3, 1e-3),
         computes="motion, contact, impact and rest",
         imposes="nothing",

@@ -32,7 +32,7 @@ _MODULES = {"compliant-corners": corners, "switched-joints": joints, "native-con
 VARIANTS = {
     "compliant-corners": Variant(
         corners.CompliantCorners(),
-        tier="tuned",
+        kind="tuned",
         levels=(1e9, 1e10, 2e11, 1e12),
         finer=(
             {"stiffness": 1e12, "pivoting_step": 2e-4},
@@ -52,7 +52,7 @@ VARIANTS = {
     ),
     "switched-joints": Variant(
         joints.SwitchedJoints(),
-        tier="assisted",
+        kind="assisted",
         levels=(1.6e-2, 4e-3, 1e-3),
         finer=({"step": 1e-4},),
         takes_restitution=True,
@@ -61,7 +61,7 @@ VARIANTS = {
     ),
     "native-contact": Variant(
         native.NativeContact(),
-        tier="defaults",
+        kind="defaults",
         levels=(1e-3, 3e-4, 1e-4),
         finer=({"step": 5e-5},),
         computes="motion, contact, impact and rest",

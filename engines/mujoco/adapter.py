@@ -29,14 +29,14 @@ if TYPE_CHECKING:
 VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(),
-        tier="tuned",
+        kind="tuned",
         levels=(2e-3, 6e-4, 2e-4, 1e-4),
         computes="motion, contact, impact and rest",
         imposes="a plane, by joints; the steps, by gaps and closing speeds",
     ),
     "fixed-step": Variant(
         FixedStep(1e-4),
-        tier="tuned",
+        kind="tuned",
         levels=(4e-3, 1e-3, 1e-4),
         finer=({"step": 2e-5},),
         computes="motion, contact, impact and rest",
@@ -44,7 +44,7 @@ VARIANTS = {
     ),
     "first-script": Variant(
         FirstScript(2e-3),  # MuJoCo's own default
-        tier="defaults",
+        kind="defaults",
         levels=(1 / 120, 2e-3, 5e-4),
         finer=({"step": 2e-4},),
         computes="motion, contact, impact and rest",

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(1e-3, 1e-3),
-        tier="tuned",
+        kind="tuned",
         levels=(7e-3, 3e-3, 1e-3, 5e-4),
         constants=CONSTANTS,
         computes="motion, contact, impact and rest",
@@ -35,7 +35,7 @@ VARIANTS = {
     ),
     "fixed-step": Variant(
         FixedStep(1e-4),
-        tier="tuned",
+        kind="tuned",
         levels=(4e-3, 1e-3, 2.5e-4, 1e-4),
         finer=({"step": 2e-5},),
         free_block="engines.pybullet.free_block:simulate",
@@ -44,7 +44,7 @@ VARIANTS = {
     ),
     "first-script": Variant(  # damping that no one asked for: e off by .01 to .5 at every step
         FirstScript(1 / 240),  # Bullet's own default
-        tier="defaults",
+        kind="defaults",
         levels=(1 / 60, 1 / 240, 1 / 1000),
         finer=({"step": 2e-4},),
         friction=0.5 * 0.5,  # the default on either body, which Bullet multiplies

@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 VARIANTS = {
     "impact-aware": Variant(
         ImpactAware(),
-        tier="tuned",
+        kind="tuned",
         levels=(2e-3, 6e-4, 2e-4, 1e-4),
         computes="motion, contact, impact and rest",
         imposes="the steps, by gaps and closing speeds",
     ),
     "first-script": Variant(
         FirstScript(1 / 240),  # four a frame: pymunk leaves the step to its user
-        tier="defaults",
+        kind="defaults",
         levels=(1 / 60, 1 / 240, 1e-3),
         computes="motion, contact, impact and rest",
         imposes="nothing",

@@ -51,9 +51,9 @@ def traces(factor):
 def test_nothing_hangs_on_the_answer():
     right, wrong = traces(1.0), traces(0.8)
     tiers = {
-        f"{name}, {variant}": kind.tier
+        f"{name}, {variant}": spec.kind
         for name in installed_engines()
-        for variant, kind in get_engine(name).variants.items()
+        for variant, spec in get_engine(name).variants.items()
     }
     assert right.keys() == wrong.keys() == tiers.keys()
     assisted = {name for name, tier in tiers.items() if tier == "assisted"}

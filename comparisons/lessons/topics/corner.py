@@ -100,7 +100,7 @@ def engines_table() -> Table:
     rows = [
         [
             run.name,
-            run.tier,
+            run.kind,
             f"{run.parameter} = {run.value:g}",
             "no impact" if math.isnan(run.error) else number(100 * run.error, 2),
         ]

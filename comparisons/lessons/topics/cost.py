@@ -50,7 +50,7 @@ def view(step: float) -> View:
     """Error against CPU time; step [ms] of the fixed-step integrator."""
     figure, axis = canvas()
     for name, levels in levels_by_variant(everything()).items():
-        solver, first = levels[0].solver, levels[0].tier == "defaults"
+        solver, first = levels[0].solver, levels[0].kind == "defaults"
         colour = {OWN: THIRD, MODEL: INK}.get(solver) or style(solver)["color"]
         known = [run for run in levels if not math.isnan(run.error)]
         axis.loglog(

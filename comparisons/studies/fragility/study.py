@@ -42,8 +42,8 @@ def variants_of(engines: Sequence[str]) -> list[tuple[str, str]]:
         *(
             (name, variant)
             for name, default in defaults.items()
-            for variant, kind in get_engine(name).variants.items()
-            if kind.tier == "defaults" and variant != default
+            for variant, spec in get_engine(name).variants.items()
+            if spec.kind == "defaults" and variant != default
         ),
     ]
 
@@ -183,7 +183,7 @@ def _settings(request, scenes, counts, variants):
         "x_max": X_MAX,
         "change": CHANGE,
         "variants": [
-            {"engine": engine, "variant": variant, "tier": kind.tier, "friction": kind.friction}
-            for engine, variant, kind in kinds
+            {"engine": engine, "variant": variant, "tier": spec.kind, "friction": spec.friction}
+            for engine, variant, spec in kinds
         ],
     }

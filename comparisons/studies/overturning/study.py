@@ -126,21 +126,21 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
         found += edges(grounds[ground], ground, shape, grid.frequencies)
     rows = [{"part": "edge", **vars(edge)} for edge in found]
     variants = [
-        (name, variant, kind) for name in request.engines for variant, kind in get_engine(name).variants.items()
+        (name, variant, spec) for name in request.engines for variant, spec in get_engine(name).variants.items()
     ]
     default = [
-        Setting(name, variant, kind.default)
-        for name, variant, kind in variants
+        Setting(name, variant, spec.default)
+        for name, variant, spec in variants
         if variant == get_engine(name).default_variant
     ]
     held = [
-        Setting(name, variant, settings.get(kind.accuracy_parameter, kind.default), settings)
-        for name, variant, kind in variants
-        if kind.takes_restitution
-        for settings in (kind.finer[0] if kind.finer else {},)
+        Setting(name, variant, settings.get(spec.accuracy_parameter, spec.default), settings)
+        for name, variant, spec in variants
+        if spec.takes_restitution
+        for settings in (spec.finer[0] if spec.finer else {},)
     ]
     first_scripts = [
-        Setting(name, variant, kind.default) for name, variant, kind in variants if kind.tier == "defaults"
+        Setting(name, variant, spec.default) for name, variant, spec in variants if spec.kind == "defaults"
     ]
     runs = _Runs(grounds, default)
     for setting in default:
@@ -170,10 +170,10 @@ def plan(request: Request, grid: Grid | None = None) -> Plan:
     return Computed(settings, rows + runs.failures, arrays)
 
 
-def _described(engine: str, variant: str, kind: Variant) -> dict[str, Any]:
+def _described(engine: str, variant: str, spec: Variant) -> dict[str, Any]:
     """A variant, as the settings list it; levels: those that are tried of it."""
-    tried = () if kind.takes_restitution or kind.tier == "defaults" else kind.levels
-    return variant_settings(engine, variant, tried) | {"friction": kind.friction}
+    tried = () if spec.takes_restitution or spec.kind == "defaults" else spec.levels
+    return variant_settings(engine, variant, tried) | {"friction": spec.friction}
 
 
 def _refined(described, levels):

@@ -52,7 +52,7 @@ def plan(request: Request, *, seed: Seed = None, scenes: Number = None) -> Plan:
         {
             "engine": row.case.solver,
             "variant": row.case.variant,
-            "tier": get_engine(row.case.solver).variants[row.case.variant or ""].tier,
+            "tier": get_engine(row.case.solver).variants[row.case.variant or ""].kind,
             **row.case.tag,
             **(_failed(row) if row.failed else row.values),
         }

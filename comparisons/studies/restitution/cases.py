@@ -168,8 +168,8 @@ def experiment_cases(grid: Grid, engines: Sequence[str]) -> Iterator[Case]:
                 for value in values:
                     yield case(name, ratio, start, value, engine, variant, {setting: value})
     # where the impact is decided with care at one step: starts so close that impacts lie within the longest step
-    for engine, variant, kind in variants_of(engines):
-        if kind.tier == "tuned" and kind.accuracy_parameter == "step":
+    for engine, variant, spec in variants_of(engines):
+        if spec.kind == "tuned" and spec.accuracy_parameter == "step":
             for start in map(float, np.linspace(0.600, 0.604, grid.phase_starts)):
                 for step in PHASE_STEPS:
                     yield case("phase", None, start, step, engine, variant, {"step": step})

@@ -162,19 +162,19 @@ def solvers(engines: Iterable[str]) -> list[Solver]:
             Solver(
                 name,
                 variant,
-                kind.tier,
+                spec.kind,
                 "stepping",
-                kind.accuracy_parameter,
-                kind.default,
-                tuple(sorted(kind.levels)),
-                kind.takes_restitution,
-                dataclasses.asdict(kind.settings),
-                kind.step,
-                kind.finer,
+                spec.accuracy_parameter,
+                spec.default,
+                tuple(sorted(spec.levels)),
+                spec.takes_restitution,
+                dataclasses.asdict(spec.settings),
+                spec.step,
+                spec.finer,
                 variant == get_engine(name).default_variant,
             )
             for name in engines
-            for variant, kind in get_engine(name).variants.items()
+            for variant, spec in get_engine(name).variants.items()
         ),
     ]
 
