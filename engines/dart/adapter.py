@@ -1,4 +1,4 @@
-"""DART's variants: its boxed LCP decides contact and impact, in double precision. All with dartpy 6.20.0."""
+"""DART's variants: its boxed LCP solver computes contact and impact, in double precision. Tested with dartpy 6.20.0."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ VARIANTS = {
     ),
 }
 
-# Tilt below which the block counts as in flat contact in a first script: a corner is met in the step after it has sunk,
-# what a block passes in a step or two, so often of gamma a second.
+# Tilt rate, in gamma per second, whose tilt in one step is the flat contact of a first script: contact acts in the step
+# after a corner has penetrated, which is passed in one or two steps.
 PASSING = 10.0
 
 
 def versions() -> dict[str, str]:
-    """Versions of what computes: {package: version}."""
+    """Versions of the packages that compute: {package: version}."""
     return {"dartpy": dartpy.__version__}
 
 
