@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     from .swings import Trace
 
-# `impulse_error` above which a run counts as failed. A doubled or missing force gives 1. Exact motions sampled at random
-# steps of 1/60 s on average give up to .03, tuned variants at most 2e-3.
+# `impulse_error` above which a run counts as failed. A doubled or missing force gives 1. Exact motions sampled at
+# random steps of 1/60 s on average give up to .03, tuned variants at most 2e-3.
 IMPULSE_LIMIT = 0.1
 # Share of the momentum below which the impulse of the bearings is not checked.
 LEAST_IMPULSE = 0.1

@@ -22,7 +22,7 @@ RANGE = {
     "damping": (0.0, 1.0, "damping up to critical"),
     "tilt": (0.01, math.inf, "a peak tilt of at least {low:g} slendernesses"),
 }
-NAMES = {"base_mass": "base mass over block mass", "tilt": "peak tilt over slenderness"}  # where it differs from the key
+NAMES = {"base_mass": "base mass over block mass", "tilt": "peak tilt over slenderness"}  # where not the key
 
 
 def in_words() -> str:

@@ -1,4 +1,4 @@
-"""exudyn's variants, and what of a run its own solver does not see."""
+"""exudyn's variants, and checks of a run that exudyn's solver does not make."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def run(scene: Scene, variant: str, settings: CompliantCorners | SwitchedJoints 
 
 
 def _fault(scene: Scene, run: Run) -> Failure | None:
-    """The failure of a run that exudyn took for a success, or None."""
+    """The failure of a run that exudyn reported as successful, or None."""
     if not all(np.isfinite(getattr(run.trace, name)).all() for name in run.trace.COLUMNS):
         return None  # observe reports it, with the last finite state
     difference = replay_bearing(scene, run.trace)

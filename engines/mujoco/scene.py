@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 FRICTION = 5.0  # prevents sliding; MuJoCo takes the larger of two geoms; e is the same with 1
 CORNER_RADIUS = 1e-6  # share of R: the block has a sphere at each bottom corner for contact; e is the same with 1e-8
 IMPEDANCE = 0.999  # d of the contacts, at any depth; 1 - d is the share of a landing speed that remains after a step
-# A penetration decays at RECOVERY [1/s], for the Caryatid's R, by at most MOST_RECOVERY in a step. It must vanish before
-# the next impact, but slowly: a faster recovery throws the corner up.
+# A penetration decays at RECOVERY [1/s], for the Caryatid's R, by at most MOST_RECOVERY in a step. It must vanish
+# before the next impact, but slowly: a faster recovery throws the corner up.
 RECOVERY, MOST_RECOVERY = 75.0, 0.1
 
 
@@ -99,8 +99,8 @@ def check_readback(
 ) -> None:
     """Compare what MuJoCo holds with what the scene needs; raises `Mismatch` naming what differs.
 
-    The contacts are checked after MuJoCo has combined the parameters of both geoms: the block is moved into its base for
-    this, and back. Contacts and solver are not checked where solref is None, as those are MuJoCo's defaults.
+    The contacts are checked after MuJoCo has combined the parameters of both geoms: the block is moved into its base
+    for this, and back. Contacts and solver are not checked where solref is None, as those are MuJoCo's defaults.
     """
     option, block, depth = model.opt, scene.block, -1e-3 * scene.block.radius
     masses = [block.mass] if scene.base is None else [scene.base.mass, block.mass]
